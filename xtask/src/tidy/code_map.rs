@@ -3,9 +3,39 @@
 use super::{Finding, Repo};
 
 const MAP: &str = "ARCHITECTURE.md";
+/// Pages that lead to files, too.
+const PAGES: &[&str] = &["CONTRIBUTING.md", "docs/step.md", "docs/glossary.md"];
 
-/// Each section of a crate names its files and folders, and no others.
+/// Each section of a crate names its files and folders, and no others; the files that other pages name are there.
 pub fn check(repo: &Repo) -> Vec<Finding> {
+    let mut findings: Vec<Finding> = PAGES.iter().flat_map(|page| missing(repo, page)).collect();
+    findings.extend(check_map(repo));
+    findings
+}
+
+/// Files that a page names and that are nowhere.
+fn missing(repo: &Repo, page: &str) -> Vec<Finding> {
+    let text = repo.file(page).map_or("", |file| file.text.as_str());
+    let lines = text
+        .lines()
+        .enumerate()
+        .flat_map(|(index, line)| code(line).into_iter().map(move |name| (name, index + 1)));
+    let is_file = |name: &str| name.ends_with(".rs") && name.len() > 3 && name.chars().all(is_path);
+    let is_there =
+        |name: &str| repo.rust_files().any(|file| format!("/{}", file.path).ends_with(&format!("/{name}")));
+    let within = |name: &str| {
+        name.split_once('/').is_some_and(|(first, rest)| {
+            let path = format!("crates/{first}/src/{rest}");
+            repo.file(&path).is_some()
+        })
+    };
+    lines
+        .filter(|(name, _)| is_file(name) && !is_there(name) && !within(name))
+        .map(|(name, line)| Finding::new(page, line, format!("there is no `{name}`")))
+        .collect()
+}
+
+fn check_map(repo: &Repo) -> Vec<Finding> {
     let Some(map) = repo.file(MAP) else { return Vec::new() };
     let mut findings = Vec::new();
     for section in sections(&map.text) {
@@ -94,9 +124,12 @@ fn code(line: &str) -> Vec<String> {
         .collect()
 }
 
+fn is_path(c: char) -> bool {
+    c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '_' | '/' | '.')
+}
+
 /// Whether a piece of code is a file or a folder of the crate at hand.
 fn is_place(name: &str) -> bool {
-    let is_path = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '_' | '/' | '.');
     let ends = name.ends_with(".rs") || name.ends_with('/');
     let is_of_root = ["crates/", "docs/", "xtask/", "fuzz/", "bench/", "tests/", "out/", "src/"];
     ends && name.chars().all(is_path) && !is_of_root.iter().any(|root| name.starts_with(root))
@@ -105,6 +138,14 @@ fn is_place(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_page_that_leads_nowhere_is_found() {
+        let page = "`trig.rs`, `sinew_math/trig.rs` and `sinew_math/src/trig.rs`, `crates/sinew_math/src/trig.rs`,\n`sine.rs`";
+        let repo = Repo::planted(&[("docs/step.md", page), ("crates/sinew_math/src/trig.rs", "")]);
+        let found: Vec<String> = check(&repo).iter().map(ToString::to_string).collect();
+        assert_eq!(found, ["docs/step.md:2: there is no `sine.rs`"]);
+    }
 
     #[test]
     fn what_is_named_is_there_and_what_is_there_is_named() {

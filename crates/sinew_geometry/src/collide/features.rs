@@ -2,7 +2,7 @@
 
 use super::clip_features::{Clipped, clip};
 use super::feature::{WHOLE, pair};
-use super::manifold::{Manifold, ManifoldPoint, Parting};
+use super::manifold::{Manifold, ManifoldPoint, SeparationCache};
 use super::placed::{Segment, sign};
 use super::reduce::push_best;
 use crate::convex::feature::Feature;
@@ -30,7 +30,7 @@ pub(crate) fn collide<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
     margin: f32,
-    parting: &mut Parting,
+    parting: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     let gap = meet(a, b);

@@ -83,7 +83,7 @@ impl Manifold {
 
 /// Knowledge of two shapes beside their points. It decides nothing about those, whatever it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parting {
+pub struct SeparationCache {
     /// The axis along which two polytopes were parted when they were asked last: it is tried first, since most that stay apart
     /// do so along the same one.
     pub axis: Option<AxisOf>,
@@ -91,14 +91,14 @@ pub struct Parting {
     pub gap: f32,
 }
 
-impl Default for Parting {
+impl Default for SeparationCache {
     /// Nothing is known.
     fn default() -> Self {
         Self { axis: None, gap: f32::NEG_INFINITY }
     }
 }
 
-impl Parting {
+impl SeparationCache {
     /// They are parted along an axis.
     pub(super) fn along(axis: &Axis) -> Self {
         Self { axis: Some(axis.of), gap: axis.separation }

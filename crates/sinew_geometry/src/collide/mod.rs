@@ -27,8 +27,8 @@ mod surface;
 
 use crate::convex::support::{Core, Posed};
 use crate::shape::Shape;
-pub use manifold::{MAX_POINTS, Manifold, ManifoldPoint, Parting};
-use placed::{Ball, Pill, PlacedBox, Plane};
+pub use manifold::{MAX_POINTS, Manifold, ManifoldPoint, SeparationCache};
+use placed::{PlacedBox, PlacedCapsule, PlacedSphere, Plane};
 use sinew_math::{Transform, Vec3};
 pub use surface::{Half, MAX_PARTS, Motion, Patch, Scratch, collide_surface, is_on_face, name_as_face};
 
@@ -46,7 +46,7 @@ pub fn collide(
     margin: f32,
     out: &mut Manifold,
 ) {
-    collide_again((a, world_from_a), (b, world_from_b), margin, &mut Parting::default(), out);
+    collide_again((a, world_from_a), (b, world_from_b), margin, &mut SeparationCache::default(), out);
 }
 
 /// Share of the distance between two frames by which rounding may make a gap too large.
@@ -57,7 +57,7 @@ pub fn collide_again(
     (a, world_from_a): (&Shape, &Transform),
     (b, world_from_b): (&Shape, &Transform),
     margin: f32,
-    parting: &mut Parting,
+    parting: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     *out = Manifold::default();
@@ -149,9 +149,11 @@ fn collide_half_space(a: &Plane, b: &Shape, wb: &Transform, margin: f32, out: &m
             half_space::against_box(a, &PlacedBox::new(half_extents, wb), margin, out);
         }
         Shape::Capsule { half_height, radius } => {
-            half_space::against_capsule(a, &Pill::new(half_height, radius, wb), margin, out);
+            half_space::against_capsule(a, &PlacedCapsule::new(half_height, radius, wb), margin, out);
         }
-        Shape::Sphere { radius } => half_space::against_sphere(a, &Ball::new(radius, wb), margin, out),
+        Shape::Sphere { radius } => {
+            half_space::against_sphere(a, &PlacedSphere::new(radius, wb), margin, out)
+        }
         Shape::Hull(ref hull) => half_space::against_hull(a, hull, wb, margin, out),
         ref other => {
             if let Some(core) = Core::of(other) {
@@ -166,7 +168,7 @@ fn collide_ranked(
     (a, wa): (&Shape, &Transform),
     (b, wb): (&Shape, &Transform),
     margin: f32,
-    parting: &mut Parting,
+    parting: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     // B is never the half-space, whose origin may be far away.
@@ -185,13 +187,13 @@ fn collide_ranked(
             box_box::collide(&a, &b, margin, parting, out);
         }
         (&Shape::Box { half_extents }, &Shape::Capsule { half_height, radius }) => {
-            let pill = Pill::new(half_height, radius, &wb);
+            let pill = PlacedCapsule::new(half_height, radius, &wb);
             box_capsule::collide(&PlacedBox::new(half_extents, &wa), &pill, margin, parting, out);
         }
         (&Shape::Box { half_extents }, &Shape::Sphere { radius }) => {
             box_sphere::collide(
                 &PlacedBox::new(half_extents, &wa),
-                &Ball::new(radius, &wb),
+                &PlacedSphere::new(radius, &wb),
                 margin,
                 parting,
                 out,
@@ -201,20 +203,21 @@ fn collide_ranked(
             &Shape::Capsule { half_height: height_a, radius: radius_a },
             &Shape::Capsule { half_height: height_b, radius: radius_b },
         ) => {
-            let (a, b) = (Pill::new(height_a, radius_a, &wa), Pill::new(height_b, radius_b, &wb));
+            let (a, b) =
+                (PlacedCapsule::new(height_a, radius_a, &wa), PlacedCapsule::new(height_b, radius_b, &wb));
             capsule_capsule::collide(&a, &b, margin, parting, out);
         }
         (&Shape::Capsule { half_height, radius }, &Shape::Sphere { radius: radius_b }) => {
-            let pill = Pill::new(half_height, radius, &wa);
-            capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, parting, out);
+            let pill = PlacedCapsule::new(half_height, radius, &wa);
+            capsule_sphere::collide(&pill, &PlacedSphere::new(radius_b, &wb), margin, parting, out);
         }
         (&Shape::Sphere { radius }, &Shape::Sphere { radius: radius_b }) => {
             // A ball is a capsule without a middle.
-            let pill = Pill::new(0.0, radius, &wa);
-            capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, parting, out);
+            let pill = PlacedCapsule::new(0.0, radius, &wa);
+            capsule_sphere::collide(&pill, &PlacedSphere::new(radius_b, &wb), margin, parting, out);
         }
         (round, &Shape::Sphere { radius }) => {
-            round_sphere::collide(round, &wa, &Ball::new(radius, &wb), margin, out);
+            round_sphere::collide(round, &wa, &PlacedSphere::new(radius, &wb), margin, out);
         }
         // The other half of the pairs is brought into this order by `collide`; two half-spaces never meet.
         (a, b) => {
@@ -254,7 +257,7 @@ mod tests {
             let (a, b) = (solid(&mut random), solid(&mut random));
             let mut frame = Transform::new(random.direction(), random.rotation());
             let (drift, turn) = (random.in_cube() * 0.05, random.in_cube() * 0.05);
-            let mut parting = Parting::default();
+            let mut parting = SeparationCache::default();
             for _ in 0..20 {
                 let before = parting.axis;
                 let mut found = Manifold::default();
@@ -265,7 +268,7 @@ mod tests {
                     1 => AxisOf::FaceB(any(&mut random)),
                     _ => AxisOf::Edges(any(&mut random), any(&mut random)),
                 });
-                let mut wild = Parting { axis, gap: 1.0 };
+                let mut wild = SeparationCache { axis, gap: 1.0 };
                 let mut again = Manifold::default();
                 collide_again((&a, &Transform::IDENTITY), (&b, &frame), 0.02, &mut wild, &mut again);
                 let mut fresh = Manifold::default();

@@ -4,7 +4,7 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::body::def::BodyKind;
 use crate::body::material::Material;
-use crate::contact::meetings::{load_shape_id, save_shape_id, shape_ids};
+use crate::contact::tracking::{load_shape_id, save_shape_id, shape_ids};
 use crate::contact::{Contact, Effect};
 use crate::id::ShapeId;
 use sinew_math::{ReadError, Reader, Vec3, Writer, max, normalize_or};

@@ -1,23 +1,23 @@
 //! Contacts: pairs of shapes that are near each other, with what the solver remembers of them.
 
+pub(crate) mod disabled_pairs;
 pub(crate) mod events;
 pub(crate) mod filter;
 pub(crate) mod hits;
-pub(crate) mod kept;
-pub(crate) mod meetings;
 pub(crate) mod modifiers;
 pub(crate) mod near;
-pub(crate) mod parted;
 pub(crate) mod parts;
 pub(crate) mod proxies;
+pub(crate) mod recycled;
 pub(crate) mod snapshot;
+pub(crate) mod tracking;
 
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::body::material::ContactMaterial;
 use crate::boxes::AxisOf;
-use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint, Parting};
-use crate::contact::kept::Kept;
+use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint, SeparationCache};
+use crate::contact::recycled::Recycled;
 use core::cmp::Ordering;
 use sinew_math::Vec3;
 
@@ -211,7 +211,7 @@ pub(crate) struct Contact {
     pub has_surface: bool,
     /// It does nothing but push, as long as neither surface is changed. Not part of the state: it follows from them.
     pub is_plain: bool,
-    pub kept: Kept,
+    pub kept: Recycled,
 }
 
 impl Contact {
@@ -231,7 +231,7 @@ impl Contact {
             gap: f32::NEG_INFINITY,
             has_surface: false,
             is_plain: false,
-            kept: Kept::default(),
+            kept: Recycled::default(),
         }
     }
 
@@ -241,8 +241,8 @@ impl Contact {
     }
 
     /// Separating axis and gap of its shapes, as far as they are known.
-    pub fn parting(&self) -> Parting {
-        Parting { axis: self.apart, gap: self.gap }
+    pub fn parting(&self) -> SeparationCache {
+        SeparationCache { axis: self.apart, gap: self.gap }
     }
 
     /// True if the solver has to do with it.

@@ -7,7 +7,7 @@
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::boxes::AxisOf;
-use crate::collide::Parting;
+use crate::collide::SeparationCache;
 use crate::contact::filter::PairFilter;
 use crate::contact::proxies::{Closing, Leaf, MARGIN, Owner, Proxies};
 use crate::contact::{Contact, ContactKey};
@@ -50,8 +50,8 @@ impl NearPair {
         Self { meets: filter.lets_meet(bodies, key), has_surface, ..*self }
     }
 
-    pub fn parting(&self) -> Parting {
-        Parting { axis: self.axis.unpack(), gap: f32::NEG_INFINITY }
+    pub fn parting(&self) -> SeparationCache {
+        SeparationCache { axis: self.axis.unpack(), gap: f32::NEG_INFINITY }
     }
 
     /// Takes note of how the two moved: whether points may be looked for as far away as they are apart.
@@ -71,7 +71,7 @@ impl NearPair {
     }
 
     /// They were looked at, and have no points.
-    pub fn part(&mut self, parting: &Parting) {
+    pub fn part(&mut self, parting: &SeparationCache) {
         self.left = parting.gap - SKIN;
         self.axis = PackedAxis::new(parting.axis);
     }

@@ -23,7 +23,7 @@ pub(super) struct Press {
 const LEAVE: f32 = 12.0;
 const FASTEST_LEAVE: f32 = 1.0;
 /// Upward component of a normal above which what meets there bears or is borne.
-const BEARS: f32 = 0.7;
+const BEARING_COSINE: f32 = 0.7;
 
 /// A mover as what hits and is hit.
 struct Hitter {
@@ -96,7 +96,7 @@ impl Hitter {
         let own = if braced { self.inverse_mass * (1.0 - rise * rise) } else { self.inverse_mass };
         let inelastic = |speed: f32| speed / (response + self.inverse_mass);
         let wanted = excess / (response + own);
-        let hit = if rise > BEARS { wanted } else { inelastic(min(max(comes, 0.0), excess)) };
+        let hit = if rise > BEARING_COSINE { wanted } else { inelastic(min(max(comes, 0.0), excess)) };
         let impulse = min(wanted, hit + self.force * dt);
         self.velocity += normal * (impulse * own);
         Some(impulse)

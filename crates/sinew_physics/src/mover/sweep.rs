@@ -67,7 +67,7 @@ impl Touches {
 /// what lies in one plane.
 const STOP: f32 = 0.75;
 const BAND: f32 = 0.05;
-const BEARS: f32 = 0.5;
+const BEARING: f32 = 0.5;
 const THERE: f32 = 0.02;
 const HIDDEN: f32 = 0.04;
 /// Share of a way by which it may lead toward what it slides along.
@@ -133,7 +133,7 @@ impl Surroundings<'_> {
 
     /// Touches that may bear the capsule: a little farther away than what stops it.
     pub fn bearers(&self, center: Vec3, skin: f32) -> Touches {
-        let mut touches = self.near(center, skin * (1.0 + BEARS));
+        let mut touches = self.near(center, skin * (1.0 + BEARING));
         touches.drop_hidden(HIDDEN * skin);
         touches
     }

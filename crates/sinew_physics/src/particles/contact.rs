@@ -321,7 +321,7 @@ impl ParticleGroup {
 
     /// Surfaces that particles would meet within the iteration with the velocities just found; whether there are any that
     /// the solve does not know of.
-    fn foresee(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> bool {
+    fn predict_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> bool {
         let mut found = false;
         for i in 0..self.positions.len() {
             let way = self.velocities[i] * h;
@@ -406,7 +406,7 @@ impl ParticleGroup {
                 break;
             }
             let changed = self.change_grips(bodies);
-            let found = self.foresee(h, obstacles, bodies);
+            let found = self.predict_contacts(h, obstacles, bodies);
             let ends = (self.positions.as_slice(), self.velocities.as_slice());
             let bent = self.system.follow_springs(&self.forest, &self.springs, ends, h);
             if !(changed || found || bent) {

@@ -21,7 +21,7 @@ mod tuning;
 mod view;
 
 use crate::body::def::Quality;
-use crate::body::work::Work;
+use crate::body::external_work::Work;
 use crate::runner::TaskRunner;
 use crate::solver::body::{SolverBody, advance};
 use crate::solver::boundary::groups::TakenGroup;
@@ -32,7 +32,7 @@ use crate::solver::pass::{Corrected, Coupling, Pass};
 use crate::solver::piles::touch::{Pressing, Touch};
 use crate::solver::sweep::dirty::DirtyRows;
 use crate::solver::sweep::policy::SweepPolicy;
-use crate::solver::tuning::FORESIGHTS;
+use crate::solver::tuning::PREDICTIONS;
 pub(crate) use crate::solver::view::{Grading, Pace, View};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, linear};
 use articulation::batches::Batches;
@@ -88,7 +88,7 @@ pub(crate) struct IslandSolver {
     limits: Vec<LimitRow>,
     limit_blocks: LimitBlocks,
     response: Response,
-    columns: ResponseCache,
+    response_cache: ResponseCache,
     /// Impulses of contacts and limits that the sweeps in progress have put on each moving body.
     impulses: Vec<Vec6>,
     /// Linear impulses of contacts on each moving body in this substep.
@@ -261,7 +261,7 @@ impl IslandSolver {
         self.sweep(Pass::Solve, runner);
         self.limit_inner_turn();
         let mut torn = self.correct_positions(Corrected::All);
-        for _ in 0..FORESIGHTS {
+        for _ in 0..PREDICTIONS {
             let tightened = self.tighten_limits();
             if !self.predict_contacts() && !tightened {
                 break;
@@ -381,7 +381,7 @@ impl IslandSolver {
             self.place_contacts(view, runner);
         }
         for rows in &mut self.manifolds {
-            rows.refind(&self.bodies, &self.velocities, self.h);
+            rows.refresh_points(&self.bodies, &self.velocities, self.h);
             rows.place(rows.poses(&self.bodies));
         }
         self.choose_limits();
@@ -456,7 +456,7 @@ impl IslandSolver {
         }
         self.response.choose(&self.links, self.trees.len(), wanted);
         self.loops.respond(&self.joints, &self.bodies, &self.links, &mut self.response);
-        self.columns.clear();
+        self.response_cache.clear();
         self.limit_blocks.clear(self.trees.len());
         for rows in &mut self.manifolds {
             rows.columns = None;

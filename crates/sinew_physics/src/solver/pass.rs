@@ -28,5 +28,5 @@ pub(super) enum Coupling {
 pub(super) enum Corrected {
     All,
     /// Trees whose velocities have changed since the last corrections of this substep.
-    Stirred,
+    Changed,
 }

@@ -86,7 +86,7 @@ impl IslandSolver {
             let room = max(most - rigid.angular.length(), 0.0);
             keep = min(keep, if inner > room { room / inner } else { 1.0 });
         }
-        self.dirty.stir(self.links[range.start].tree, most);
+        self.dirty.mark(self.links[range.start].tree, most);
         for i in range {
             let rigid = rigid.at(self.bodies[i].pose.translation);
             for (v, r) in self.velocities[i].iter_mut().zip(rigid) {

@@ -6,10 +6,10 @@ use crate::body::contact_rule::{ContactRule, Yields};
 use crate::body::def::BodyKind;
 use crate::body::shape::Sensing;
 use crate::body::surface::Surface;
-use crate::collide::{Manifold, Motion, Parting, collide_again};
+use crate::collide::{Manifold, Motion, SeparationCache, collide_again};
 use crate::contact::SPECULATIVE_SLOPS;
-use crate::contact::kept::Kept;
 use crate::contact::parts::Parts;
+use crate::contact::recycled::Recycled;
 use crate::contact::{Contact, ContactKey, Effect, slop};
 use crate::context::StepContext;
 use crate::slices::for_each_mut;
@@ -72,12 +72,19 @@ fn renew(contact: &mut Contact, a: &Body, b: &Body, ahead: f32, dt: f32) {
     meet(a, b, contact.key, margin, &mut parting, &mut manifold);
     contact.memory = contact.memory.matched(&contact.manifold, &manifold);
     contact.manifold = manifold;
-    contact.kept = Kept::new([a, b], contact.key, (margin, slop), &manifold);
+    contact.kept = Recycled::new([a, b], contact.key, (margin, slop), &manifold);
     (contact.apart, contact.gap) = (parting.axis, parting.gap);
 }
 
 /// The manifold of two convex shapes.
-fn meet(a: &Body, b: &Body, key: ContactKey, margin: f32, parting: &mut Parting, manifold: &mut Manifold) {
+fn meet(
+    a: &Body,
+    b: &Body,
+    key: ContactKey,
+    margin: f32,
+    parting: &mut SeparationCache,
+    manifold: &mut Manifold,
+) {
     let (sa, sb) = (key.shape_a as usize, key.shape_b as usize);
     let (shape_a, shape_b) = (&a.shapes[sa].shape, &b.shapes[sb].shape);
     let (from_a, from_b) = (a.world_from_shape(sa), b.world_from_shape(sb));
@@ -88,7 +95,7 @@ fn meet(a: &Body, b: &Body, key: ContactKey, margin: f32, parting: &mut Parting,
 pub(crate) fn ask(a: &Body, b: &Body, asked: &mut Asked, ahead: f32, dt: f32) {
     let (margin, slop) = margin(a, b, asked.key, ahead, dt);
     meet(a, b, asked.key, margin, &mut asked.parting, &mut asked.manifold);
-    asked.kept = Kept::new([a, b], asked.key, (margin, slop), &asked.manifold);
+    asked.kept = Recycled::new([a, b], asked.key, (margin, slop), &asked.manifold);
 }
 
 /// Finds how fast a contact comes in, and what it does.

@@ -6,7 +6,7 @@ use crate::body::Body;
 use crate::body::def::BodyKind;
 use crate::collide::ManifoldPoint;
 use crate::contact::events::Events;
-use crate::contact::meetings::{Meetings, Told};
+use crate::contact::tracking::{ContactTracking, Told};
 use crate::contact::{Contact, ContactMemory, Effect, pairs_of, slop};
 use crate::field::Fields;
 use crate::joint::Joint;
@@ -24,7 +24,7 @@ pub(crate) fn touch(
     contacts: &mut Vec<Contact>,
     activity: &mut Activity,
     fields: &Fields<'_>,
-    meetings: &mut Meetings,
+    meetings: &mut ContactTracking,
     events: &mut Events,
 ) {
     let touching = &mut meetings.touching;

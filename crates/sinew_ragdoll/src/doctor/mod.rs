@@ -102,12 +102,12 @@ fn in_proportion(exam: &Exam<'_>) -> Vec<Finding> {
     limits::findings(exam, &mut findings);
     mirror::findings(exam, &mut findings);
     // Places where it moves are an effect; where the cause is known, they show what that does.
-    let unrest = motion::Unrest::of(exam);
-    if let Some(evidence) = unrest.is_notable(exam) {
+    let jitter = motion::Jitter::of(exam);
+    if let Some(evidence) = jitter.is_notable(exam) {
         let cause = findings.iter_mut().find(|f| f.severity == Severity::Error || f.code == Code::HugeShape);
         match cause {
             Some(cause) => cause.evidence = format!("{}; {evidence}", cause.evidence),
-            None => findings.push(unrest.finding(exam, evidence)),
+            None => findings.push(jitter.finding(exam, evidence)),
         }
     }
     findings

@@ -11,7 +11,7 @@ use sinew_math::{Vec3, max};
 
 impl IslandSolver {
     /// Masses of all joints that need them, at the step's beginning.
-    pub(in crate::solver) fn weigh_joints(&mut self) {
+    pub(in crate::solver) fn find_joint_masses(&mut self) {
         if self.joints.iter().all(|joint| !joint.drive.needs_mass()) {
             return;
         }

@@ -161,7 +161,7 @@ impl IslandSolver {
         s.corrected.clear();
         match of {
             Corrected::All => s.corrected.resize(trees, true),
-            Corrected::Stirred => s.corrected.extend((0..trees).map(|tree| self.dirty.has_stirred(tree))),
+            Corrected::Changed => s.corrected.extend((0..trees).map(|tree| self.dirty.has_changed(tree))),
         }
         s.errors.resize(trees, 0.0);
         s.looked_at.clear();
@@ -193,7 +193,7 @@ impl IslandSolver {
                 self.contacts.stir(i, change);
                 most = max(most, change);
             }
-            self.dirty.stir(tree as u32, most);
+            self.dirty.mark(tree as u32, most);
         }
     }
 

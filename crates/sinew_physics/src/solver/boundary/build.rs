@@ -1,6 +1,6 @@
 //! `prepare`: from the world to the arrays of one island's solver.
 
-use crate::body::work::Work;
+use crate::body::external_work::Work;
 use crate::collide::MAX_POINTS;
 use crate::contact::{ContactMemory, slop};
 use crate::island::Island;
@@ -17,7 +17,7 @@ use crate::solver::contacts::{Added, OfStep, placed};
 use crate::solver::joint::SolverJoint;
 use crate::solver::pass::Coupling;
 use crate::solver::piles::touch::Touch;
-use crate::solver::tuning::{BALLASTED_RATIO, FAST_APPROACH, MAX_EXACT_ROWS, REFIND_TURN_RESPONSE};
+use crate::solver::tuning::{BALLASTED_RATIO, FAST_APPROACH, MAX_EXACT_ROWS, REFRESH_TURN_RESPONSE};
 use crate::solver::view::{View, lasting_force};
 use crate::spatial::{ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
@@ -39,7 +39,7 @@ impl IslandSolver {
         self.copy_bodies(island, view);
         self.look_for_fields(view);
         self.copy_joints(island, view);
-        self.weigh_joints();
+        self.find_joint_masses();
         self.refresh_rows();
         self.choose_coupling(island.contacts.len());
         self.form_batches();
@@ -247,7 +247,7 @@ impl IslandSolver {
             let still = body.kind == crate::BodyKind::Dynamic && !body.is_active();
             let velocity = if still { ZERO6 } else { join(body.velocity.linear, body.velocity.angular) };
             self.velocities.push(velocity);
-            s.faces.push(body, body.velocity.angular.length() * self.h >= 0.5 * REFIND_TURN_RESPONSE);
+            s.faces.push(body, body.velocity.angular.length() * self.h >= 0.5 * REFRESH_TURN_RESPONSE);
         }
         self.scratch.predicted.clear();
         self.scratch.predicted.reserve(self.bodies.len());

@@ -58,7 +58,7 @@ impl IslandSolver {
             + self.batches.bytes()
             + self.contacts.bytes()
             + self.response.bytes()
-            + self.columns.bytes()
+            + self.response_cache.bytes()
             + self.limit_blocks.bytes();
         bytes as u64
     }

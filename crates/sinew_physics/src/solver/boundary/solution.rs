@@ -1,7 +1,7 @@
 //! Results of the islands' substeps, for the world to take.
 
 use crate::body::Velocity;
-use crate::body::work::Work;
+use crate::body::external_work::Work;
 use crate::collide::Manifold;
 use crate::contact::ContactMemory;
 use crate::island::Island;

@@ -9,7 +9,7 @@ mod row;
 mod visit;
 
 use super::articulation::response::Response;
-use super::articulation::response_cache::{ResponseCache, Strip};
+use super::articulation::response_cache::{CachedColumns, ResponseCache};
 use super::articulation::tree::Link;
 use crate::body::material::ContactMaterial;
 use crate::collide::{MAX_POINTS, Manifold};
@@ -17,7 +17,7 @@ use crate::contact::ContactMemory;
 use crate::solver::body::{SolverBody, add_row, free_response};
 use crate::solver::sweep::policy::Firmness;
 use crate::solver::tuning::{
-    DEEP_SLOPS, IMPACT_JUMP, LASTING, REDUNDANCY, REFIND_TURN_RESPONSE, REFIND_TURN_RIM, RELAX_TURN,
+    DEEP_SLOPS, IMPACT_JUMP, LASTING, REDUNDANCY, REFRESH_TURN_RESPONSE, REFRESH_TURN_RIM, RELAX_TURN,
 };
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
 use bounce::Approach;
@@ -29,14 +29,14 @@ use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max};
 
 /// Impulses of a manifold's rows.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Given {
+pub(super) struct ContactImpulses {
     normal: [f32; MAX_POINTS],
     friction: Vec3,
     twist: f32,
     rolling: Vec3,
 }
 
-impl Given {
+impl ContactImpulses {
     /// With `share` of another.
     pub fn plus(&self, other: &Self, share: f32) -> Self {
         Self {
@@ -95,7 +95,7 @@ pub(crate) struct ManifoldRows {
     lever: f32,
     /// Columns of its rows: of the points, the tangents, the twist, and of torques about each axis if it resists rolling. None
     /// as long as it is idle at this pose.
-    pub columns: Option<Strip>,
+    pub columns: Option<CachedColumns>,
     /// Responses, with the columns.
     k: [[f32; MAX_POINTS]; MAX_POINTS],
     k_tangent: [[f32; 2]; 2],
@@ -145,7 +145,7 @@ impl ManifoldRows {
             is_new: false,
             shapes: source.shapes.clone(),
             rounds: [0.0; 2],
-            most_turn: REFIND_TURN_RESPONSE,
+            most_turn: REFRESH_TURN_RESPONSE,
             normal: n,
             count: source.manifold.count,
             core_a: [Vec3::ZERO; MAX_POINTS],
@@ -213,8 +213,8 @@ impl ManifoldRows {
         self.rounds = [round_a, round_b];
         // Of a rim, the points beside the one that it rolls on bear nothing.
         let (most_turn, bearing) = match a.has_rim(in_a) || b.has_rim(in_b) {
-            true => (REFIND_TURN_RIM, self.slop),
-            false => (REFIND_TURN_RESPONSE, f32::INFINITY),
+            true => (REFRESH_TURN_RIM, self.slop),
+            false => (REFRESH_TURN_RESPONSE, f32::INFINITY),
         };
         self.most_turn = most_turn;
         self.weight = weights(&self.memory, &self.manifold, bearing);
@@ -266,7 +266,7 @@ impl ManifoldRows {
         links: &[Link],
         response: &Response,
         columns: &mut ResponseCache,
-    ) -> Strip {
+    ) -> CachedColumns {
         let pair = self.pair();
         let least =
             |row: &Row| REDUNDANCY * free_response(bodies, links.len(), [(pair.a, &row.a), (pair.b, &row.b)]);
@@ -334,14 +334,19 @@ impl ManifoldRows {
     }
 
     /// Impulses of this substep.
-    pub(super) fn given(&self) -> Given {
-        Given { normal: self.impulse, friction: self.friction, twist: self.twist, rolling: self.rolling }
+    pub(super) fn impulses(&self) -> ContactImpulses {
+        ContactImpulses {
+            normal: self.impulse,
+            friction: self.friction,
+            twist: self.twist,
+            rolling: self.rolling,
+        }
     }
 
     /// Adds a share of impulses to those of this substep; the caller puts them on the bodies. Gives the largest speed that
     /// one of them makes by itself, m/s or rad/s.
-    pub(super) fn give(&mut self, more: &Given, share: f32) -> f32 {
-        let Given { normal, friction, twist, rolling } = self.given().plus(more, share);
+    pub(super) fn apply(&mut self, more: &ContactImpulses, share: f32) -> f32 {
+        let ContactImpulses { normal, friction, twist, rolling } = self.impulses().plus(more, share);
         (self.impulse, self.friction, self.twist, self.rolling) = (normal, friction, twist, rolling);
         let k = self.k_tangent[0][0] + self.k_tangent[1][1];
         let mut most = max(more.friction.length() * k, more.twist.abs() * self.k_spin);

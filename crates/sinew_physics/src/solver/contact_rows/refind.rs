@@ -7,7 +7,7 @@ use crate::collide::Manifold;
 use crate::contact::{ContactMemory, PointImpulse};
 use crate::convex::support::{Core, Posed, wide};
 use crate::solver::body::{SolverBody, advance};
-use crate::solver::tuning::FORESEEN_DEPTH;
+use crate::solver::tuning::PREDICTED_DEPTH;
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::{Transform, Vec3, max, min};
 
@@ -19,7 +19,7 @@ fn turn(velocities: &[Vec6], body: u32, h: f32) -> f32 {
 impl ManifoldRows {
     /// Looks for the contact anew if a body turned fast in this substep: the points of the step's beginning say nothing
     /// of the corner that swings in. Impulses go on by feature. A pair that has come apart keeps its rows.
-    pub fn refind(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) {
+    pub fn refresh_points(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) {
         if self.turns(velocities, h)
             && let Some(manifold) = self.found_anew(self.poses(bodies), self.margin(velocities, h))
         {
@@ -37,7 +37,7 @@ impl ManifoldRows {
         let poses =
             [self.a, self.b].map(|body| advance(&bodies[body as usize].pose, &velocities[body as usize], h));
         let deepest = |separations: &mut dyn Iterator<Item = f32>| separations.fold(0.0, min);
-        let least = deepest(&mut self.separation[..self.count].iter().copied()) - FORESEEN_DEPTH;
+        let least = deepest(&mut self.separation[..self.count].iter().copied()) - PREDICTED_DEPTH;
         if self.apart_along_normal(poses) > least {
             return false;
         }

@@ -17,7 +17,7 @@ use crate::slices::{MOST_NEAR, for_each_near};
 use crate::solver::body::SolverBody;
 use crate::solver::contact_rows::{Placed, Softness, contact_softness};
 use crate::solver::contacts::classes::{Class, Color};
-use crate::solver::tuning::REFIND_TURN_RIM;
+use crate::solver::tuning::REFRESH_TURN_RIM;
 use crate::solver::view::View;
 use crate::spatial::Vec6;
 use core::ops::Range;
@@ -294,7 +294,7 @@ impl Lists<'_> {
         if extra.rolls {
             let manifold = view.contacts[edge.contact as usize].manifold;
             let cores = Cores::new(&manifold, bodies.map(|body| body.pose), extra.rounds);
-            self.found.push(Found::new(at, edge, manifold, cores, REFIND_TURN_RIM));
+            self.found.push(Found::new(at, edge, manifold, cores, REFRESH_TURN_RIM));
         }
         if extra.rolling <= 0.0 {
             return rolling;

@@ -13,7 +13,7 @@ use crate::slices::for_each_mut;
 use crate::solver::body::SolverBody;
 use crate::solver::contact_rows::{Placed, found_anew, margin, weights};
 use crate::solver::contacts::classes::Class;
-use crate::solver::tuning::{REFIND_TURN_LANES, REFIND_TURN_RIM};
+use crate::solver::tuning::{REFRESH_TURN_LANES, REFRESH_TURN_RIM};
 use crate::solver::view::View;
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::lanes::WIDTH;
@@ -101,7 +101,7 @@ impl Contacts {
         for (turned, body) in self.turned[..substep.moving].iter_mut().zip(0..) {
             *turned += substep.turn(body);
         }
-        if !self.turned.iter().any(|&turned| turned >= REFIND_TURN_LANES) {
+        if !self.turned.iter().any(|&turned| turned >= REFRESH_TURN_LANES) {
             return;
         }
         let known = self.found.len();
@@ -127,7 +127,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
                 let (block, contact) = (&self.blocks[place], self.memory[place].contacts[lane]);
                 let bodies = [0, 1].map(|end| block.bodies[end][lane] & !HELD);
                 if contact == super::block::NONE
-                    || bodies.iter().all(|&body| turned[body as usize] < REFIND_TURN_LANES)
+                    || bodies.iter().all(|&body| turned[body as usize] < REFRESH_TURN_LANES)
                 {
                     continue;
                 }
@@ -145,7 +145,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
                     bodies,
                     manifold: of.manifold,
                     cores,
-                    most_turn: REFIND_TURN_LANES,
+                    most_turn: REFRESH_TURN_LANES,
                     turned: 0.0,
                     anew: None,
                 });
@@ -207,7 +207,7 @@ impl Found {
         }
         let in_principal = |end: usize| poses[end].rotation.inverse() * self.cores.normal;
         let rolls = shapes[0].has_rim(in_principal(0)) || shapes[1].has_rim(in_principal(1));
-        self.most_turn = if rolls { REFIND_TURN_RIM } else { REFIND_TURN_LANES };
+        self.most_turn = if rolls { REFRESH_TURN_RIM } else { REFRESH_TURN_LANES };
         let weights = weights(&of_lane, &self.manifold, if rolls { slop_of(&shapes) } else { f32::INFINITY });
         let moves = self.bodies.map(|body| (body as usize) < substep.moving);
         let geometry = Geometry::new(&self.cores, poses, moves, &weights);

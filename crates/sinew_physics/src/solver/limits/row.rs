@@ -20,7 +20,7 @@ pub(super) enum Hardness {
     Hard,
     /// A stop that a foreseen pose asks for: linearised at the end of the substep rather than at its start, to reach at
     /// least this rate; lives through `solve` only.
-    Foreseen(f32),
+    Predicted(f32),
     /// A spring that pushes while there is no room, with this share of its damping.
     Soft(Softness, f32),
 }
@@ -136,7 +136,7 @@ impl LimitRow {
     }
 
     /// Adds to the impulse of this substep; the caller puts it on the bodies. Gives the speed that it makes by itself.
-    pub fn give(&mut self, more: f32) -> f32 {
+    pub fn apply(&mut self, more: f32) -> f32 {
         self.impulse += more;
         more.abs() * self.effective
     }
@@ -180,7 +180,7 @@ impl LimitRow {
     /// take an impulse back at another pose than it was given at gives energy.
     pub(super) fn wanted(&self, pass: Pass, rate: f32, h: f32) -> f32 {
         match (pass, self.hardness) {
-            (Pass::Solve, Hardness::Foreseen(rate)) => rate,
+            (Pass::Solve, Hardness::Predicted(rate)) => rate,
             (Pass::Solve, _) if self.room < 0.0 => min(-self.room / h, self.most_push()),
             (Pass::Solve, _) => -self.room / h,
             _ => clamp(rate, min(-self.room / h, 0.0), 0.0),

@@ -92,7 +92,7 @@ impl IslandSolver {
             let of_stop = stop.row(&joint.geometry.kind, predicted);
             let rate = of_stop.rate(joint, &self.velocities) + beyond / self.h;
             let axis = predicted.rotation_a * stop.axis;
-            let hardness = Hardness::Foreseen(rate);
+            let hardness = Hardness::Predicted(rate);
             self.limits.push(LimitRow {
                 axis,
                 row: of_stop,

@@ -34,9 +34,10 @@ impl IslandSolver {
             }
         }
         for i in 0..self.pressing.len() {
-            let (squeeze, mass) = (self.pressing[i].squeeze(), self.bodies[i].mass);
+            let (scaled_load, mass) = (self.pressing[i].scaled_load(), self.bodies[i].mass);
             let is_jointed = self.is_jointed(i as u32);
-            self.bodies[i].mass_scale = if is_jointed { 1.0 } else { max(1.0, MASS_SCALE * squeeze / mass) };
+            self.bodies[i].mass_scale =
+                if is_jointed { 1.0 } else { max(1.0, MASS_SCALE * scaled_load / mass) };
         }
     }
 }

@@ -70,7 +70,7 @@ impl Pressing {
     }
 
     /// The part that cancels itself.
-    pub(super) fn squeeze(&self) -> f32 {
+    pub(super) fn scaled_load(&self) -> f32 {
         0.5 * (self.size - self.sum.length())
     }
 }

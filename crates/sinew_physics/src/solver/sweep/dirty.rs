@@ -41,7 +41,7 @@ impl DirtyRows {
     }
 
     /// True of a tree whose velocities have changed since the pass was [resumed](Self::resume).
-    pub fn has_stirred(&self, tree: usize) -> bool {
+    pub fn has_changed(&self, tree: usize) -> bool {
         self.trees[tree] != self.corrected[tree]
     }
 
@@ -53,21 +53,21 @@ impl DirtyRows {
 
     /// A tree's velocities have changed by this much.
     #[inline(always)]
-    pub fn stir(&mut self, tree: u32, change: f32) {
+    pub fn mark(&mut self, tree: u32, change: f32) {
         if let Some(sum) = self.trees.get_mut(tree as usize) {
             *sum += change;
         }
     }
 
     /// A row whose impulses have changed what they make of a velocity by this needs a visit, whatever its trees do.
-    pub fn stir_manifold(&mut self, i: usize, change: f32) {
+    pub fn mark_manifold(&mut self, i: usize, change: f32) {
         if change >= self.tolerance {
             self.manifolds[i] = f32::NEG_INFINITY;
         }
     }
 
     /// Marks a block of limits for a visit if its own change asks for one.
-    pub fn stir_limits(&mut self, block: u32, change: f32) {
+    pub fn mark_limits(&mut self, block: u32, change: f32) {
         if change >= self.tolerance {
             self.limits[block as usize] = f32::NEG_INFINITY;
         }

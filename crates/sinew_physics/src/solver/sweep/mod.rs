@@ -32,7 +32,7 @@ impl IslandSolver {
     pub(in crate::solver) fn sweep_again(&mut self, runner: &dyn TaskRunner) -> Corrected {
         if self.coupling == Coupling::Turns {
             self.resume_by_turns(runner);
-            return Corrected::Stirred;
+            return Corrected::Changed;
         }
         self.sweep(Pass::Solve, runner);
         Corrected::All
@@ -116,7 +116,7 @@ impl IslandSolver {
             let strip = match rows.columns {
                 Some(strip) => strip,
                 None if rows.is_idle(&self.velocities, pass, self.h) => continue,
-                None => rows.respond(&self.bodies, &self.links, &self.response, &mut self.columns),
+                None => rows.respond(&self.bodies, &self.links, &self.response, &mut self.response_cache),
             };
             let bodies = [rows.a, rows.b];
             self.tally.visits += 1;
@@ -138,7 +138,7 @@ impl IslandSolver {
             return;
         }
         let before = bodies.map(|body| self.velocities[body as usize]);
-        self.columns.push(&self.response, &self.links, bodies, change, &mut self.velocities);
+        self.response_cache.push(&self.response, &self.links, bodies, change, &mut self.velocities);
         for (end, body) in bodies.into_iter().enumerate() {
             let body = body as usize;
             let Some(link) = self.links.get(body) else { continue };
@@ -148,7 +148,7 @@ impl IslandSolver {
                 self.change_energy += x * p;
             }
             let largest = largest(&by);
-            self.dirty.stir(link.tree, largest);
+            self.dirty.mark(link.tree, largest);
             self.largest_change = max(self.largest_change, largest);
         }
     }

@@ -78,7 +78,7 @@ impl Kernel for TurnOfTrees<'_> {
                 moved = L::max(moved, (now - L::load(&swept[i])).abs());
                 now.store(&mut velocities[i]);
             }
-            dirty.stir(tree as u32, largest_of(moved));
+            dirty.mark(tree as u32, largest_of(moved));
         }
         largest_of(most)
     }
@@ -252,12 +252,12 @@ impl IslandSolver {
             if tree == trees.len() {
                 return; // fixed
             }
-            dirty.stir(tree as u32, change);
+            dirty.mark(tree as u32, change);
         };
         contacts.after_conjugate(energy, (velocities, &mut scratch.limits), runner, stir);
         for (row, impulse) in limits.iter_mut().zip(&scratch.limits) {
-            let change = row.give(impulse - row.impulse);
-            dirty.stir_limits(row.block, change);
+            let change = row.apply(impulse - row.impulse);
+            dirty.mark_limits(row.block, change);
         }
     }
 

@@ -64,7 +64,7 @@ impl Kernel for TurnOfBatch<'_, '_> {
         most.store(&mut all[1]);
         let mut largest = 0.0;
         for lane in 0..batch.lanes {
-            dirty.stir(batch.trees[lane], all[0][lane]);
+            dirty.mark(batch.trees[lane], all[0][lane]);
             largest = sinew_math::max(largest, all[1][lane]);
         }
         largest

@@ -11,7 +11,7 @@ use sinew_math::{ReadError, Reader, Writer};
 
 /// Memory of the world about pairs beside their contacts, which come and go with the broad phase. Part of the snapshot.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Meetings {
+pub(crate) struct ContactTracking {
     /// Solid shapes.
     pub touching: Touches,
     /// A sensor and what is in it.
@@ -23,7 +23,7 @@ pub(crate) struct Meetings {
     pub modifiers: Modifiers,
 }
 
-impl Meetings {
+impl ContactTracking {
     pub fn save(&self, w: &mut Writer) {
         self.touching.save(w);
         self.sensed.save(w);

@@ -17,7 +17,7 @@ const ON_FACE: f32 = 0.999_999;
 
 /// A manifold as it was found, in the frames of its bodies. Part of the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Kept {
+pub(crate) struct Recycled {
     /// Number of points; none if there is nothing to keep to.
     count: usize,
     /// Rotation of B seen from A when the manifold was found.
@@ -42,7 +42,7 @@ fn is_of_face(shape: &Shape, direction: Vec3) -> bool {
     }
 }
 
-impl Kept {
+impl Recycled {
     /// Record of a manifold that was just found. Only of what lies on a face of a solid with flat faces: other
     /// points are found as soon as renewed, and what rolls has others from step to step.
     pub fn new([a, b]: [&Body; 2], key: ContactKey, (margin, slop): (f32, f32), manifold: &Manifold) -> Self {
@@ -199,7 +199,7 @@ mod tests {
             if manifold.count == 0 {
                 continue;
             }
-            let of = Kept::new([&a, &b], key, (MARGIN, slop(0.4)), &manifold);
+            let of = Recycled::new([&a, &b], key, (MARGIN, slop(0.4)), &manifold);
             // Both together, and B a little, or more than is allowed.
             let (shift, turn) = (random.in_cube(), random.in_cube());
             for body in [&mut a, &mut b] {

@@ -5,7 +5,7 @@ use crate::contact::{Contact, ContactKey};
 /// Contacts of which neither body can touch anything: both sleep or never move. Each is in the lists of both its bodies,
 /// so that it is found, and taken out, by what becomes of either.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Aside {
+pub(crate) struct SleepingContacts {
     links: Vec<Link>,
     free: Vec<u32>,
     /// The first contact of each body, by slot.
@@ -28,7 +28,7 @@ fn side(key: ContactKey, body: u32) -> usize {
     usize::from(key.b == body)
 }
 
-impl Aside {
+impl SleepingContacts {
     /// Makes room for the lists of the bodies below `count`.
     pub fn reserve(&mut self, count: usize) {
         if self.first.len() < count {
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn each_body_finds_its_contacts_and_no_others() {
         let mut random = Random::new(3);
-        let (mut aside, mut expected) = (Aside::default(), BTreeSet::new());
+        let (mut aside, mut expected) = (SleepingContacts::default(), BTreeSet::new());
         aside.reserve(BODIES as usize);
         for _ in 0..2000 {
             if random.index(4) > 0 {

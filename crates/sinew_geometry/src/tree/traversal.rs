@@ -8,7 +8,7 @@ use sinew_math::Vec3;
 use sinew_math::lanes::{Lanes, WIDTH};
 
 /// A line, how far it counts, and what it has still to see.
-pub struct Flight {
+pub struct Traversal {
     line: Line,
     /// Fraction beyond which nothing counts any more, ≥ 0.
     pub limit: f32,
@@ -19,13 +19,13 @@ pub struct Flight {
 pub enum Stop {
     /// A leaf that it may meet.
     Leaf(u32),
-    /// A node, to be [entered](Flight::enter).
+    /// A node, to be [entered](Traversal::enter).
     Node(u32),
     /// It has seen all.
     End,
 }
 
-impl Flight {
+impl Traversal {
     /// Has seen all.
     pub fn ended() -> Self {
         let line = Line::new(Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, 0.0);

@@ -7,7 +7,7 @@ use crate::joint::Joint;
 
 /// Disabled pairs: those that the user named, and those of joints whose bodies do not collide.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct PartedPairs {
+pub(crate) struct DisabledPairs {
     /// By the user: body indices, smaller first, ascending.
     pub disabled: Vec<(u32, u32)>,
     /// Pairs of the user and of joints together: body indices, smaller first, ascending.
@@ -20,7 +20,7 @@ pub(crate) struct PartedPairs {
     pub functions: PairFunctions,
 }
 
-impl PartedPairs {
+impl DisabledPairs {
     /// Takes over what a snapshot holds.
     pub fn restore(&mut self, disabled: Vec<(u32, u32)>, function: Option<u32>) {
         (self.disabled, self.functions.chosen, self.stale) = (disabled, function, true);

@@ -6,8 +6,8 @@ use crate::body::shape::Shape;
 use crate::id::{BodyId, ShapeId};
 use sinew_math::Transform;
 
-/// Question that a [`Query`] can be asked; [the module](super) lists all questions there are.
-pub trait Question: sealed::Ask<Found = <Self as Question>::Answer> {
+/// QueryKind that a [`Query`] can be asked; [the module](super) lists all questions there are.
+pub trait QueryKind: sealed::Ask<Found = <Self as QueryKind>::Answer> {
     /// Answer of a shape.
     type Answer: sealed::Reply;
 }
@@ -17,7 +17,7 @@ pub(super) mod sealed {
     use super::{BodyId, Query, Reach, Shape, ShapeId, Transform};
 
     pub trait Ask {
-        /// [`Question::Answer`](super::Question::Answer).
+        /// [`QueryKind::Answer`](super::QueryKind::Answer).
         type Found: Reply;
 
         /// Reach of the question, or `None` if no shape has an answer: a number is not finite.
