@@ -53,7 +53,7 @@ fn check_map(repo: &Repo) -> Vec<Finding> {
                 Some(folder) => format!("/{file}").contains(&format!("/{folder}/")),
                 None => format!("/{file}").ends_with(&format!("/{name}")),
             };
-            if !files.iter().any(|file| is_there(&file)) {
+            if !files.iter().any(is_there) {
                 let message = format!("{} has no `{name}`", section.name);
                 findings.push(Finding::new(MAP, *number, message));
             }

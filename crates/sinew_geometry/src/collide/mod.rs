@@ -152,7 +152,7 @@ fn collide_half_space(a: &Plane, b: &Shape, wb: &Transform, margin: f32, out: &m
             half_space::against_capsule(a, &PlacedCapsule::new(half_height, radius, wb), margin, out);
         }
         Shape::Sphere { radius } => {
-            half_space::against_sphere(a, &PlacedSphere::new(radius, wb), margin, out)
+            half_space::against_sphere(a, &PlacedSphere::new(radius, wb), margin, out);
         }
         Shape::Hull(ref hull) => half_space::against_hull(a, hull, wb, margin, out),
         ref other => {
