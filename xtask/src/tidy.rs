@@ -17,6 +17,7 @@ mod libraries;
 mod rooms;
 mod size;
 mod stages;
+mod tuning;
 mod unsafety;
 
 use crate::command;
@@ -42,6 +43,7 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     leftovers::check,
     dependencies::check,
     first_words::check,
+    tuning::check,
 ];
 
 /// `cargo xtask tidy`.

@@ -11,6 +11,7 @@ pub(crate) mod proxies;
 pub(crate) mod recycled;
 pub(crate) mod snapshot;
 pub(crate) mod tracking;
+pub(crate) mod tuning;
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -20,9 +21,6 @@ use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint, SeparationCache};
 use crate::contact::recycled::Recycled;
 use core::cmp::Ordering;
 use sinew_math::Vec3;
-
-/// Points are looked for so many slops away, however slow.
-pub(crate) const SPECULATIVE_SLOPS: f32 = 4.0;
 
 /// Key of a contact: body index and shape number of both shapes, the smaller body index first, and which part of their contact.
 /// Sorting by it is the order in which everything about contacts happens.

@@ -9,7 +9,9 @@ use crate::body::Body;
 use crate::boxes::AxisOf;
 use crate::collide::SeparationCache;
 use crate::contact::filter::PairFilter;
-use crate::contact::proxies::{Closing, Leaf, MARGIN, Owner, Proxies};
+use crate::contact::proxies::{Closing, Leaf, Owner, Proxies};
+use crate::contact::tuning::GAP_ERROR;
+use crate::contact::tuning::MARGIN;
 use crate::contact::{Contact, ContactKey};
 use sinew_math::max;
 
@@ -29,10 +31,6 @@ pub(crate) struct NearPair {
     /// One of them is a mesh or a height field.
     pub has_surface: bool,
 }
-
-/// Length by which a gap that was found may be less than it seems, metres: points of manifolds may lie outside of the faces
-/// that they are cut to by up to half a millimetre.
-const SKIN: f32 = 0.001;
 
 impl NearPair {
     /// That they may meet is still to be [found](Self::met).
@@ -63,16 +61,16 @@ impl NearPair {
 
     /// Takes note of a gap between their bounds, metres, if no points are looked for that far away.
     pub fn is_apart(&mut self, closing: &Closing, gap: f32) -> bool {
-        let is_far = !self.has_surface && gap - SKIN > max(MARGIN, closing.ahead);
+        let is_far = !self.has_surface && gap - GAP_ERROR > max(MARGIN, closing.ahead);
         if is_far {
-            self.left = gap - SKIN;
+            self.left = gap - GAP_ERROR;
         }
         is_far
     }
 
     /// They were looked at, and have no points.
     pub fn part(&mut self, parting: &SeparationCache) {
-        self.left = parting.gap - SKIN;
+        self.left = parting.gap - GAP_ERROR;
         self.axis = PackedAxis::new(parting.axis);
     }
 }

@@ -5,13 +5,10 @@ use crate::body::Body;
 use crate::body::shape::Shape;
 use crate::collide::{MAX_POINTS, Manifold};
 use crate::contact::ContactKey;
-use crate::contact::SPECULATIVE_SLOPS;
+use crate::contact::tuning::SPECULATIVE_SLOPS;
+use crate::contact::tuning::{RECYCLED_HALF_TURN, RECYCLED_SLIP};
 use sinew_math::{ReadError, Reader, Rotation, Transform, Vec3, Writer};
 
-/// Points of the two bodies may slip past each other by so much of the slop before the manifold is found anew: 2 mm of crates.
-const SLIP: f32 = 0.4;
-/// Cosine of half the turn of one body against the other, 1°, from which on it is.
-const HALF_TURN: f32 = 0.999_962;
 /// From this cosine on, a normal is that of a face, to rounding.
 const ON_FACE: f32 = 0.999_999;
 
@@ -87,12 +84,12 @@ impl Recycled {
         }
         let [pose_a, pose_b] = [a.world_from_principal, b.world_from_principal];
         let a_from_b = pose_a.rotation.inverse() * pose_b.rotation;
-        if a_from_b.dot(self.a_from_b).abs() < HALF_TURN {
+        if a_from_b.dot(self.a_from_b).abs() < RECYCLED_HALF_TURN {
             return false;
         }
         let normal = if self.of_b { pose_b } else { pose_a }.rotation * self.normal;
         let offset = pose_b.translation - pose_a.translation;
-        let most = SLIP * self.slop * (SLIP * self.slop);
+        let most = RECYCLED_SLIP * self.slop * (RECYCLED_SLIP * self.slop);
         let mut renewed = *manifold;
         renewed.normal = normal;
         for (point, [on_a, on_b]) in renewed.points[..self.count].iter_mut().zip(&self.points) {

@@ -7,13 +7,14 @@ use crate::body::def::BodyKind;
 use crate::body::shape::Sensing;
 use crate::body::surface::Surface;
 use crate::collide::{Manifold, Motion, SeparationCache, collide_again};
-use crate::contact::SPECULATIVE_SLOPS;
 use crate::contact::parts::Parts;
 use crate::contact::recycled::Recycled;
+use crate::contact::tuning::SPECULATIVE_SLOPS;
 use crate::contact::{Contact, ContactKey, Effect, slop};
 use crate::context::StepContext;
 use crate::slices::for_each_mut;
 use crate::step::pairs::{Asked, BroadPhase};
+use crate::step::tuning::YIELDING_DEPTH;
 use sinew_math::{Vec3, max, min};
 
 /// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
@@ -201,9 +202,6 @@ fn rule(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     }
 }
 
-/// Overlap from which on a shape that yields lets pass what it cannot press out of itself, metres.
-const PRESSED: f32 = 0.01;
-
 /// True if a kinematic body lets a dynamic one pass, since it would have to push it harder than it may, or did until they part.
 fn gives_way(yields: Yields, contact: &Contact, [a, b]: [&Body; 2], dt: f32) -> bool {
     let (other, led, out) = match (a.kind, b.kind) {
@@ -229,7 +227,7 @@ fn gives_way(yields: Yields, contact: &Contact, [a, b]: [&Body; 2], dt: f32) -> 
     let took = contact.impulses().fold(0.0, |sum, (_, impulse)| sum + impulse);
     let jammed = contact.touching && closing > 0.0 && shoves > 0.0 && took > push;
     jammed
-        || points.iter().any(|point| point.separation < -PRESSED)
+        || points.iter().any(|point| point.separation < -YIELDING_DEPTH)
         || mass * min(shoves, closing) > push
         || mass * min(comes, closing) > yields.max_impulse
 }

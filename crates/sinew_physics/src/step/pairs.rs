@@ -218,7 +218,8 @@ mod tests {
     use crate::body::def::{BodyDef, BodyKind, WorldDef};
     use crate::body::shape::{Filter, Shape, ShapeDef};
     use crate::boxes::{Aabb, Overlap};
-    use crate::contact::proxies::{MARGIN, Owner};
+    use crate::contact::proxies::Owner;
+    use crate::contact::tuning::MARGIN;
     use crate::id::{BodyId, ShapeId};
     use crate::{MassUpdate, Velocity, World};
     use sinew_math::{Random, Reader, Transform, Vec3, Writer};

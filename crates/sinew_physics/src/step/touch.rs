@@ -11,10 +11,8 @@ use crate::contact::{Contact, ContactMemory, Effect, pairs_of, slop};
 use crate::field::Fields;
 use crate::joint::Joint;
 use crate::step::collide::smallest_extent;
+use crate::step::tuning::LINGER;
 use sinew_math::min;
-
-/// Gap within which two shapes that touched go on touching, as a share of their slop.
-const LINGER: f32 = 0.1;
 
 /// `touch`: what contacts do, events, and waking of what an awake body touches or attracts, or a moving kinematic one holds.
 /// What wakes comes with its contacts.
