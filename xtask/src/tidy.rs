@@ -14,6 +14,7 @@ mod first_words;
 mod leftovers;
 mod lexer;
 mod libraries;
+mod public;
 mod rooms;
 mod size;
 mod stages;
@@ -33,6 +34,7 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     arrows::check,
     rooms::check,
     circles::check,
+    public::check,
     code_map::check,
     libraries::check,
     bits::check,

@@ -30,8 +30,8 @@ mod step;
 mod world;
 
 pub use sinew_geometry::{
-    Aabb, DataKind, HeightField, HeightFieldDef, HeightFieldError, Hull, HullError, Mesh, MeshError, Obb,
-    boxes, collide, convex, cook, hull, ray, triangles,
+    Aabb, DataKind, DefError, HeightField, HeightFieldDef, HeightFieldError, Hull, HullError, MassProperties,
+    Mesh, MeshError, Obb, Shape, boxes, collide, convex, cook, hull, ray, triangles,
 };
 use sinew_geometry::{revolved, slabs, tree};
 
@@ -41,7 +41,7 @@ pub use body::external_work::Work;
 pub use body::force::{ForceDef, ForceFrame, ForceId, Wrench};
 pub use body::library::LoadError;
 pub use body::material::{Combine, CombineRules, ContactMaterial, Material};
-pub use body::shape::{Filter, MassProperties, Sensing, Shape, ShapeDef};
+pub use body::shape::{Filter, Sensing, ShapeDef};
 pub use body::{Velocity, def, shape};
 pub use contact::Effect;
 pub use contact::events::Events;

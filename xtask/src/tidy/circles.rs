@@ -60,11 +60,13 @@ struct Module<'a> {
 }
 
 /// One name of a `use`.
-struct Import<'a> {
+pub struct Import<'a> {
     /// `*` for all of them.
-    name: &'a str,
-    path: Vec<&'a str>,
-    is_public: bool,
+    pub name: &'a str,
+    /// As written.
+    pub path: Vec<&'a str>,
+    /// Whether it is `pub` to some extent.
+    pub is_public: bool,
 }
 
 /// A definition: the module of it, and whether it was found there or only expected.
@@ -206,6 +208,11 @@ impl<'a> Module<'a> {
         }
         paths
     }
+}
+
+/// What a file imports.
+pub fn imports(file: &File) -> Vec<Import<'_>> {
+    Module::read(file).imports
 }
 
 /// Adds what a tree of a `use` imports, `prefix` being the path that leads to it.

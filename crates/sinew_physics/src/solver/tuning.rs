@@ -254,8 +254,8 @@ pub(super) const LYING_SINE: f32 = 0.1;
 
 /// Sine up to which the end of a cylinder or cone may lean and count as standing on it.
 ///
-/// Larger: the wobble of a coin ends early. Smaller: one that stands is looked for anew for nothing. Sensible from 0.001 to 0.05. Shown
-/// by the test `round_rest::a_standing_cylinder_stands_still`, `coin`.
+/// Larger: the wobble of a coin ends early. Smaller: one that stands is looked for anew for nothing. Sensible from 0.001 to 0.05. Shown by
+/// the test `round_rest::a_standing_cylinder_stands_still`, `coin`.
 pub(super) const FLAT_SINE: f32 = 0.01;
 
 // ---- Friction ----
