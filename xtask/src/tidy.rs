@@ -6,15 +6,19 @@
 
 mod arrows;
 mod bits;
+mod circles;
+mod code_map;
 mod contract_table;
 mod dependencies;
 mod first_words;
 mod leftovers;
 mod lexer;
 mod libraries;
+mod public;
 mod rooms;
 mod size;
 mod stages;
+mod tuning;
 mod unsafety;
 
 use crate::command;
@@ -29,6 +33,9 @@ use std::path::Path;
 const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     arrows::check,
     rooms::check,
+    circles::check,
+    public::check,
+    code_map::check,
     libraries::check,
     bits::check,
     size::check,
@@ -38,6 +45,7 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     leftovers::check,
     dependencies::check,
     first_words::check,
+    tuning::check,
 ];
 
 /// `cargo xtask tidy`.

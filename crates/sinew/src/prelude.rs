@@ -11,7 +11,7 @@ pub use sinew_physics::{
     ContainsPoint, Corrections, DebugDraw, DrawKind, Events, Explosion, FieldDef, FieldId, FieldKind, Filter,
     ForceDef, Forces, GroupId, JointDef, JointId, JointKind, LockedAxes, MassProperties, MassUpdate,
     Material, Motor, MoverDef, MoverGround, MoverId, NearestTo, NearestToShape, Obb, ObjectId, OverlapWith,
-    PenetrationOf, PhysicsObject, Probe, Quality, Query, QueryFilter, Question, Region, Sensing, Sensors,
+    PenetrationOf, PhysicsObject, Probe, Quality, Query, QueryFilter, QueryKind, Region, Sensing, Sensors,
     Serial, Shape, ShapeCast, ShapeDef, ShapeId, Sleeping, Softness, Spring, Strength, Threads, Update,
     Velocity, Wind, World, WorldDef,
 };

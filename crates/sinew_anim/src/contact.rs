@@ -1,10 +1,10 @@
 //! Contacts of the feet with the ground, and the slide of the feet during these.
 
+use crate::clip::take::Take;
 use crate::legs::Foot;
 use crate::pose::local_to_model;
 use crate::rig::Rig;
 use crate::roles::Side;
-use crate::take::Take;
 use sinew_math::{Affine, Rotation, Vec3, clamp, max, min, trig};
 
 /// A foot on the ground for a while.

@@ -1,7 +1,7 @@
 //! Joint limits learned from motion: centre, ellipse of swing, range of twist, and which joints are hinges.
 
+use crate::clip::take::Take;
 use crate::rig::{JointIdx, LocalTransform, Rig};
-use crate::take::Take;
 use sinew_math::{
     Mat3, Range, Rotation, SwingTwistLimit, Sym3, Vec3, any_orthonormal, clamp, direction, max, min, trig,
 };

@@ -1,10 +1,10 @@
 //! Data that the characters of one rig share: clips with what belongs to them, and masks.
 
 use crate::built::{BuiltClip, Fill};
+use crate::clip::root_motion::MotionTrack;
 use crate::event::{Event, FiredEvent};
+use crate::playback::sync::Markers;
 use crate::pose::{Mask, Skeleton};
-use crate::root_motion::MotionTrack;
-use crate::sync::Markers;
 use sinew_math::StableHasher;
 
 /// A clip of an [`AnimationSet`].

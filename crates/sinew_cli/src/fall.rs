@@ -1,9 +1,9 @@
 //! A fall: a character, what is done to it, and what became of it. What `bake` and `demo` have in common.
 
 use crate::cpu_clock::timed;
-use crate::quality_report::{quality_json, quality_text};
 use crate::report::number;
-use crate::story;
+use crate::report::quality_report::{quality_json, quality_text};
+use crate::report::story;
 use serde_json::{Map, Value, json};
 use sinew::ragdoll::quality::judge_bake;
 use sinew::ragdoll::{BakeInput, Baked, Flaw, SkinQuality, Verdict, bake};

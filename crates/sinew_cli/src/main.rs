@@ -1,32 +1,13 @@
 //! The `sinew` command line: arguments in, report out. Each command is a struct in a file of its own.
 #![forbid(unsafe_code)]
 
-mod bones;
 mod commands;
 mod cpu_clock;
 mod failure;
 mod fall;
-mod files;
-mod film;
-mod footsteps;
-mod framing;
-mod kin;
-mod motion;
-mod onto;
-mod picture_file;
-mod progress;
-mod quality_report;
-mod ragdoll_file;
-mod ragdoll_report;
+mod input;
+mod render;
 mod report;
-mod scene_choice;
-mod settings_arg;
-mod show;
-mod skeleton;
-mod skin;
-mod skin_report;
-mod story;
-mod table;
 
 use clap::Parser;
 use clap::builder::styling::{AnsiColor, Styles};

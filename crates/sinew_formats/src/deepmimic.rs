@@ -20,8 +20,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::container::json::{self, At};
 use crate::error::{Result, quoted};
-use crate::json::{self, At};
 use sinew_anim::{Channel, Clip, Interpolation, Joint, JointIdx, LocalTransform, Property, Rig, Wrap};
 use sinew_math::{EulerOrder, Rotation, Vec3};
 

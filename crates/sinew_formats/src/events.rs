@@ -23,8 +23,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::container::json::{self, At, number};
 use crate::error::{Result, quoted};
-use crate::json::{self, At, number};
 use serde_json::{Map, Value, json};
 use sinew_anim::{Clip, Event, EventPolicy, FiredBy};
 

@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bvh;
+mod container;
 pub mod deepmimic;
 mod error;
 pub mod events;
@@ -13,10 +14,8 @@ pub mod events;
 pub mod fbx;
 #[cfg(feature = "fs")]
 pub mod fs;
-mod glb;
 pub mod gltf;
 pub mod jolt;
-mod json;
 mod material;
 pub mod mesh;
 pub mod mjcf;
@@ -25,7 +24,6 @@ pub mod obj;
 mod parts;
 pub mod ragdoll;
 mod surface;
-mod uri;
 pub mod world;
 
 pub use bvh::{BvhDocument, BvhEnds, BvhOptions, BvhText, BvhWriteOptions, read_bvh, write_bvh};

@@ -1,7 +1,7 @@
 //! Properties of shapes in a world file besides geometry: materials, filters, rules of contacts.
 
+use crate::container::json::{At, number, numbers};
 use crate::error::{Result, quoted};
-use crate::json::{At, number, numbers};
 use crate::parts;
 use serde_json::{Map, Value, json};
 use sinew_math::Vec3;
@@ -168,7 +168,7 @@ pub(crate) fn read_rule(at: At<'_>) -> Result<ContactRule> {
     let direction = at.numbers_or("direction", default.direction.to_array())?;
     let tolerance = at.get("tolerance")?.map_or(Ok(default.tolerance), At::not_negative)?;
     let rule = ContactRule::OneWay(OneWay { direction: Vec3::from_array(direction), tolerance });
-    rule.check().map_err(|what| at.malformed(what))?;
+    rule.check().map_err(|error| at.malformed(error.what()))?;
     Ok(rule)
 }
 

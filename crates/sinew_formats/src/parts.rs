@@ -1,7 +1,7 @@
 //! Parts that world files and ragdoll files have in common: poses, shapes, masses.
 
+use crate::container::json::{At, number, numbers};
 use crate::error::{Result, quoted};
-use crate::json::{At, number, numbers};
 use crate::surface;
 use serde_json::{Map, Value};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
@@ -122,7 +122,7 @@ pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
             return Err(kind.malformed(format!("unknown shape {other}; known are {known}")));
         }
     };
-    shape.check().map_err(|what| at.malformed(what))?;
+    shape.check().map_err(|error| at.malformed(error.what()))?;
     for size in &SHAPE_KEYS[1..] {
         if let Some(extra) = at.get(size)?
             && !needed.contains(size)

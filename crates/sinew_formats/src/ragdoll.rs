@@ -65,8 +65,8 @@
 
 pub mod settings;
 
+use crate::container::json::{self, At, number, numbers};
 use crate::error::{Result, quoted};
-use crate::json::{self, At, number, numbers};
 use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
 use serde_json::{Map, Value, json};
 use sinew_math::{Range, SwingTwistLimit, Transform, Vec3};

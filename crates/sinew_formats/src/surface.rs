@@ -1,7 +1,7 @@
 //! Meshes and height fields in world files, and mesh files as worlds.
 
+use crate::container::json::{At, number, numbers};
 use crate::error::{Error, Result};
-use crate::json::{At, number, numbers};
 use crate::mesh::TriangleMesh;
 use serde_json::{Map, Value};
 use sinew_math::Vec3;

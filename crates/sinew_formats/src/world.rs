@@ -62,8 +62,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::container::json::{self, At, number, numbers};
 use crate::error::Result;
-use crate::json::{self, At, number, numbers};
 use crate::material::{read_filter, read_material, read_rule, write_material, write_rule};
 use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
 use serde_json::{Map, Value, json};

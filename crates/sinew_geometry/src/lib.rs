@@ -62,11 +62,13 @@
 //! batch. NaN and infinities go in and no panic comes out; what each call does with them is in its documentation.
 #![forbid(unsafe_code)]
 
+mod bounds;
 pub mod boxes;
 pub mod collide;
 pub mod convex;
 pub mod cook;
 mod data;
+mod def_error;
 mod distance;
 pub mod hull;
 mod mass;
@@ -82,6 +84,7 @@ pub mod triangles;
 
 pub use boxes::{Aabb, Obb};
 pub use data::DataKind;
+pub use def_error::DefError;
 pub use hull::{Hull, HullError};
 pub use shape::{MassProperties, Shape};
 pub use triangles::{HeightField, HeightFieldDef, HeightFieldError, Mesh, MeshError};

@@ -1,8 +1,9 @@
 //! Collision shapes: their kinds and sizes.
 
 use crate::boxes::Aabb;
+use crate::def_error::DefError;
 use crate::hull::{Hull, HullError};
-use crate::triangles::{HeightField, Mesh, MeshError};
+use crate::triangles::{HeightField, Mesh, MeshError, Surface};
 use sinew_math::{Sym3, Vec3, abs3, max, max3, min};
 use std::sync::Arc;
 
@@ -117,33 +118,35 @@ impl Shape {
     ///
     /// # Errors
     /// What is wrong, in lower case.
-    pub fn check(&self) -> Result<(), &'static str> {
+    pub fn check(&self) -> Result<(), DefError> {
         // Written so that NaN fails.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         match *self {
             Self::Box { half_extents: h } if !(positive(h.x) && positive(h.y) && positive(h.z)) => {
-                Err("half extents of a box must be positive and finite")
+                Err(DefError::new("half extents of a box must be positive and finite"))
             }
             Self::Sphere { radius } | Self::Capsule { radius, .. } if !positive(radius) => {
-                Err("a radius must be positive and finite")
+                Err(DefError::new("a radius must be positive and finite"))
             }
             Self::Capsule { half_height, .. } if !(half_height == 0.0 || positive(half_height)) => {
-                Err("half height of a capsule must not be negative, and finite")
+                Err(DefError::new("half height of a capsule must not be negative, and finite"))
             }
             Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
                 if !(positive(half_height) && positive(radius_bottom) && positive(radius_top)) {
-                    Err("half height and radii of a tapered capsule must be positive and finite")
+                    Err(DefError::new(
+                        "half height and radii of a tapered capsule must be positive and finite",
+                    ))
                 } else if (radius_bottom - radius_top).abs() >= 2.0 * half_height {
-                    Err("one end of a tapered capsule must not hold the other")
+                    Err(DefError::new("one end of a tapered capsule must not hold the other"))
                 } else {
                     Ok(())
                 }
             }
             Self::Cylinder { half_height, radius } if !(positive(half_height) && positive(radius)) => {
-                Err("half height and radius of a cylinder must be positive and finite")
+                Err(DefError::new("half height and radius of a cylinder must be positive and finite"))
             }
             Self::Cone { half_height, radius } if !(positive(half_height) && positive(radius)) => {
-                Err("half height and radius of a cone must be positive and finite")
+                Err(DefError::new("half height and radius of a cone must be positive and finite"))
             }
             _ => Ok(()),
         }
@@ -218,4 +221,16 @@ pub struct MassProperties {
     pub center: Vec3,
     /// Inertia about the centre of mass, in the axes of the frame at hand, kg·m².
     pub inertia: Sym3,
+}
+
+impl Shape {
+    /// Its surface, if it is made of triangles.
+    #[inline]
+    pub fn surface(&self) -> Option<Surface<'_>> {
+        match self {
+            Self::Mesh(mesh) => Some(Surface::Mesh(mesh)),
+            Self::HeightField(field) => Some(Surface::HeightField(field)),
+            _ => None,
+        }
+    }
 }

@@ -22,14 +22,11 @@
 
 pub mod bytes;
 pub mod dispatch;
-mod euler;
 pub mod hash;
 pub mod lanes;
 pub mod limits;
-mod orthonormal;
-mod quaternion;
 pub mod random;
-mod rotation;
+mod rotations;
 mod symmetric;
 mod transform;
 pub mod trig;
@@ -37,14 +34,16 @@ pub mod trig;
 pub mod unlimited;
 
 pub use bytes::{ReadError, Reader, Writer};
-pub use euler::{EulerAngles, EulerAxes, EulerConvention, EulerOrder, GimbalLock};
 pub use glam::{DVec3, Mat3, Vec2, Vec3};
 pub use hash::StableHasher;
 pub use limits::{Range, SwingTwistLimit};
-pub use orthonormal::{MatrixDrift, Orthonormalization, Orthonormalized, Uniqueness, orthonormalize};
-pub use quaternion::Quaternion;
 pub use random::Random;
-pub use rotation::Rotation;
+pub use rotations::euler::{EulerAngles, EulerAxes, EulerConvention, EulerOrder, GimbalLock};
+pub use rotations::orthonormal::{
+    MatrixDrift, Orthonormalization, Orthonormalized, Uniqueness, orthonormalize,
+};
+pub use rotations::quaternion::Quaternion;
+pub use rotations::rotation::Rotation;
 pub use symmetric::Sym3;
 pub use transform::{Affine, Transform};
 

@@ -30,18 +30,18 @@ mod step;
 mod world;
 
 pub use sinew_geometry::{
-    Aabb, DataKind, HeightField, HeightFieldDef, HeightFieldError, Hull, HullError, Mesh, MeshError, Obb,
-    boxes, collide, convex, cook, hull, ray, triangles,
+    Aabb, DataKind, DefError, HeightField, HeightFieldDef, HeightFieldError, Hull, HullError, MassProperties,
+    Mesh, MeshError, Obb, Shape, boxes, collide, convex, cook, hull, ray, triangles,
 };
 use sinew_geometry::{revolved, slabs, tree};
 
 pub use body::contact_rule::{ContactModifier, ContactRule, ContactSide, FoundContact, OneWay, Yields};
 pub use body::def::{BodyDef, BodyKind, Quality, SleepThresholds, Sleeping, WorldDef};
+pub use body::external_work::Work;
 pub use body::force::{ForceDef, ForceFrame, ForceId, Wrench};
 pub use body::library::LoadError;
 pub use body::material::{Combine, CombineRules, ContactMaterial, Material};
-pub use body::shape::{Filter, MassProperties, Sensing, Shape, ShapeDef};
-pub use body::work::Work;
+pub use body::shape::{Filter, Sensing, ShapeDef};
 pub use body::{Velocity, def, shape};
 pub use contact::Effect;
 pub use contact::events::Events;
@@ -60,7 +60,7 @@ pub use joint::def::{
 pub use mover::{Mover, MoverDef, MoverGround};
 pub use query::{
     BodyHit, BodyKinds, BodyPenetration, BodySurface, ContainsPoint, Energy, Momentum, NearestTo,
-    NearestToShape, OverlapWith, PenetrationOf, Probe, Query, QueryFilter, Question, Sensors, ShapeCast,
+    NearestToShape, OverlapWith, PenetrationOf, Probe, Query, QueryFilter, QueryKind, Sensors, ShapeCast,
 };
 pub use runner::{Serial, TaskRunner, Threads};
 pub use user_object::{Corrections, Forces, PhysicsObject, Substep};

@@ -124,6 +124,11 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
     task();
 }
 
+/// Takes the first items out of what is left.
+pub(crate) fn split_off<'a, T>(left: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    left.split_off_mut(..count).expect("there is room for each island")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,4 @@
-use crate::raster::LANE_NUMBERS;
+use crate::pipeline::raster::LANE_NUMBERS;
 use sinew::math::lanes::{Lanes, Vector3};
 use sinew::math::{Vec3, clamp, max, normalize_or, trig};
 use sinew::physics::boxes::Aabb;

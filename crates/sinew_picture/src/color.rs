@@ -1,6 +1,6 @@
 //! sRGB bytes ↔ linear numbers (IEC 61966-2-1).
 
-use crate::shade::limited;
+use crate::pipeline::shade::limited;
 use sinew::math::lanes::{Lanes, WIDTH};
 use sinew::math::{clamp, trig};
 

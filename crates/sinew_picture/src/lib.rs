@@ -8,17 +8,14 @@
 #![forbid(unsafe_code)]
 
 mod camera;
-mod clip;
 mod color;
 pub mod draw;
 pub mod encode;
 mod image;
 mod overlay;
-mod raster;
+mod pipeline;
 mod render;
 mod scene;
-mod shade;
-mod shadow;
 mod texture;
 pub mod world;
 

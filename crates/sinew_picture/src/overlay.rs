@@ -3,7 +3,7 @@
 use crate::camera::{NEAR, View};
 use crate::color::ColorTables;
 use crate::image::Image;
-use crate::raster::{Samples, ScreenVertex};
+use crate::pipeline::raster::{Samples, ScreenVertex};
 use crate::scene::{Caption, Line, LineDepth};
 use sinew::math::{clamp, max};
 

@@ -1,12 +1,12 @@
 use crate::camera::{Camera, NEAR, View};
-use crate::clip::{clip, is_whole, unseen};
 use crate::color::ColorTables;
 use crate::image::Image;
 use crate::overlay;
-use crate::raster::{Band, Footprint, NOTHING, Samples, ScreenVertex, Winding};
+use crate::pipeline::clip::{clip, is_whole, unseen};
+use crate::pipeline::raster::{Band, Footprint, NOTHING, Samples, ScreenVertex, Winding};
+use crate::pipeline::shade::{SPAN, Shader, Triangle};
+use crate::pipeline::shadow::ShadowMap;
 use crate::scene::{Faces, Model, Scene, ShadowCasting};
-use crate::shade::{SPAN, Shader, Triangle};
-use crate::shadow::ShadowMap;
 use sinew::math::Vec3;
 use sinew::math::dispatch::{self, Kernel};
 use sinew::math::lanes::{Lanes, WIDTH};

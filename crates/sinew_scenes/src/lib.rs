@@ -5,6 +5,7 @@ pub mod blueprint;
 pub mod cabin;
 pub mod crowd;
 pub mod demo;
+mod framework;
 pub use sinew::mannequin;
 mod parts;
 pub mod scenes;

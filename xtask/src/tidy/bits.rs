@@ -23,7 +23,7 @@ const EXACT: &[&str] = &[
 const TYPES: &[&str] = &["Quat", "Vec3A", "Vec4", "Mat4", "Mat3A", "Affine3A", "Affine2"];
 
 /// Where `glam::Quat` is converted from and to.
-const CONVERSIONS: &str = "crates/sinew_math/src/rotation.rs";
+const CONVERSIONS: &str = "crates/sinew_math/src/rotations/rotation.rs";
 
 /// Methods of floats and of glam vectors that are not made of `+ − × ÷ √` alone, or are contracted on some targets.
 const METHODS: &[(&str, &str)] = &[

@@ -206,6 +206,26 @@ pub fn end_of_item(tokens: &[Token<'_>], start: usize) -> usize {
     tokens.len() - 1
 }
 
+/// Pieces of a list between its commas, those within brackets aside.
+pub fn parts<'b, 'a>(list: &'b [Token<'a>]) -> Vec<&'b [Token<'a>]> {
+    let mut parts = Vec::new();
+    let (mut at, mut start) = (0, 0);
+    while at < list.len() {
+        match list[at].text {
+            "(" | "[" | "{" => at = closing(list, at),
+            "," => {
+                parts.push(&list[start..at]);
+                start = at + 1;
+            }
+            _ => {}
+        }
+        at += 1;
+    }
+    parts.push(&list[start..]);
+    parts.retain(|part| !part.is_empty());
+    parts
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -45,7 +45,18 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
             format!("stage `{name}` stands where {MANUAL} has `{other}`"),
         ));
     }
+    if findings.is_empty() && drawn(&manual.text, &coded).is_some_and(|drawn| drawn != coded.len()) {
+        findings.push(Finding::new(MANUAL, 1, "the diagram has not all stages in their order"));
+    }
     findings
+}
+
+/// Number of words in the manual's first diagram that are the stages in their order; `None` if it has no diagram.
+fn drawn(text: &str, stages: &[(String, usize)]) -> Option<usize> {
+    let diagram = text.split("```").nth(1)?.strip_prefix("text\n")?;
+    let words = diagram.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty());
+    let mut left = stages.iter().map(|(name, _)| name.as_str()).peekable();
+    Some(words.filter(|word| left.next_if_eq(word).is_some()).count())
 }
 
 /// Stages by heading: "## `name`".
@@ -91,6 +102,16 @@ mod tests {
     #[test]
     fn same_names_in_the_same_order_are_fine() {
         assert!(check_stages(CODE, "# Step\n## `pairs`\n## Notes\n## `integrate_velocity`\n").is_empty());
+    }
+
+    #[test]
+    fn the_diagram_has_all_stages_in_order() {
+        let with = |diagram: &str| {
+            check_stages(CODE, &format!("```text\n{diagram}\n```\n## `pairs`\n## `integrate_velocity`\n"))
+        };
+        assert!(with("pairs → 4 × { integrate_velocity }").is_empty());
+        assert_eq!(with("integrate_velocity → pairs").len(), 1);
+        assert_eq!(with("pairs").len(), 1);
     }
 
     #[test]

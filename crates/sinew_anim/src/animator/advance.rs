@@ -2,11 +2,11 @@
 
 use super::fire::{TrackCrossing, leader};
 use super::{Animator, EndAction, Slot, Track};
+use crate::clip::root_motion::MotionTrack;
 use crate::event::FiredEvent;
-use crate::playhead::{Crossing, LoopMode, Passage, Place};
-use crate::root_motion::MotionTrack;
+use crate::playback::playhead::{Crossing, LoopMode, Passage, Place};
+use crate::playback::sync::match_place;
 use crate::set::{AnimatedClip, AnimationSet};
-use crate::sync::match_place;
 use sinew_math::Transform;
 
 /// Shortest time that is played again and again, seconds: a shorter one stands still, else an update would have no end.

@@ -2,7 +2,7 @@
 
 use super::root_inertia::{RootInertia, RootVelocity};
 use super::{Animator, FILL_BELOW, Slot, crossfade};
-use crate::inertial::Motion;
+use crate::playback::inertial::Motion;
 use crate::pose::{BlendLayer, Pose};
 use crate::set::AnimationSet;
 use core::cmp::Ordering;

@@ -6,7 +6,7 @@
 //! speed of the easing (Shoemake, "Animating rotation with quaternion curves", 1985), so that its acceleration is at most
 //! `6 |x₀|/t₁²` by the distance and `3 |v₀|/t₁` by the speed at which the two part.
 
-use crate::inertial::logarithm;
+use crate::playback::inertial::logarithm;
 use crate::pose::{Mask, Pose};
 use crate::rig::LocalTransform;
 use sinew_math::{ReadError, Reader, Rotation, Vec3, Writer};

@@ -2,9 +2,9 @@
 
 use super::{Animator, Slot, Track};
 use crate::event::{FiredBy, FiredEvent};
-use crate::playhead::Place;
+use crate::playback::playhead::Place;
+use crate::playback::sync::Phase;
 use crate::set::{AnimatedClip, AnimationSet, ClipId};
-use crate::sync::Phase;
 
 /// A track has passed an event; whether it is fired depends on the others.
 #[derive(Clone, Copy, Debug)]

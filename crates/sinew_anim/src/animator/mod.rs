@@ -13,11 +13,11 @@ pub use track::{Easing, EndAction, MAX_SPEED, Track, TrackDef, TrackId};
 
 use crate::built::Cursor;
 use crate::event::{Event, FiredEvent};
-use crate::inertial::Inertia;
-use crate::playhead::Playhead;
+use crate::playback::inertial::Inertia;
+use crate::playback::playhead::Playhead;
+use crate::playback::sync;
 use crate::pose::{BlendLayer, BlendOptions, Blender, Pose};
 use crate::set::AnimationSet;
-use crate::sync;
 use crossfade::{Crossfade, Weights};
 use fire::{LastFired, TrackCrossing};
 use root_inertia::{RootInertia, RootVelocity};

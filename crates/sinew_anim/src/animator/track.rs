@@ -1,4 +1,4 @@
-use crate::playhead::{LoopMode, Playhead};
+use crate::playback::playhead::{LoopMode, Playhead};
 use crate::pose::smoothstep;
 use crate::set::{ClipId, MaskId};
 use sinew_math::clamp;

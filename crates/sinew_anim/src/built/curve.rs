@@ -2,8 +2,8 @@
 
 use super::build::BuildOptions;
 use super::error::angle_between;
+use crate::clip::sample::channel_at;
 use crate::clip::{Channel, Interpolation, Property};
-use crate::sample::channel_at;
 use sinew_math::{Rotation, Vec3, abs3, max, trig};
 
 /// Values of a channel at times, straight lines between them; rotations on one hemisphere, of length 1.

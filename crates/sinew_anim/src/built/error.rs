@@ -1,8 +1,8 @@
 use super::{BuiltClip, Cursor};
 use crate::clip::Clip;
+use crate::clip::sample::{SampleCache, Wrap, sample_cached};
 use crate::pose::Pose;
 use crate::rig::{LocalTransform, Rig};
-use crate::sample::{SampleCache, Wrap, sample_cached};
 use sinew_math::{Rotation, max};
 
 /// Largest difference between poses, over all joints and times.
@@ -53,7 +53,7 @@ impl BuiltClip {
     /// rest pose is that.
     ///
     /// # Panics
-    /// If the rig has another number of joints, or `raw` is not fit to be sampled (see [`sample`](crate::sample())).
+    /// If the rig has another number of joints, or `raw` is not fit to be sampled (see [`sample`](crate::clip::sample())).
     pub fn measure_error(&self, raw: &Clip, rig: &Rig, between: usize) -> ClipError {
         let (mut cache, mut cursor) = (SampleCache::default(), Cursor::new());
         let mut pose = Pose::new(self.joints());

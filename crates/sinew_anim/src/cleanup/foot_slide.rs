@@ -1,12 +1,12 @@
 //! Feet held where they stand.
 
 use super::smooth_above;
+use crate::clip::take::Take;
 use crate::contact::{FootContact, FootSlide, Ground, foot_slide, frames_of, sole_points};
 use crate::ik::{Pole, TwoBoneGoal, two_bone_ik};
 use crate::legs::{Foot, Legs};
 use crate::pose::{local_to_model, smoothstep};
 use crate::rig::Rig;
-use crate::take::Take;
 use sinew_math::{Affine, Vec3, max, min};
 
 /// Result of holding the feet on the ground.

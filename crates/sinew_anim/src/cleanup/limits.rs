@@ -1,8 +1,8 @@
 //! Joints brought back into their limits.
 
+use crate::clip::take::Take;
 use crate::learned_limits::LearnedLimit;
 use crate::rig::JointIdx;
-use crate::take::Take;
 use sinew_math::max;
 
 /// Excess of a joint beyond its limit.

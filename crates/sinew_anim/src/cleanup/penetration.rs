@@ -1,11 +1,11 @@
 //! Bodies lifted out of the floor.
 
 use super::smooth_above;
+use crate::clip::take::Take;
 use crate::contact::lowest;
 use crate::legs::Legs;
 use crate::pose::local_to_model;
 use crate::rig::{JointIdx, Rig};
-use crate::take::Take;
 use sinew_math::{Affine, Vec3, max, min};
 
 /// Result of raising a body out of the floor.

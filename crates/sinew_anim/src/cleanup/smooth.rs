@@ -1,7 +1,7 @@
 //! Trembling taken out.
 
+use crate::clip::take::Take;
 use crate::rig::LocalTransform;
-use crate::take::Take;
 use sinew_math::{Rotation, Vec3, max, trig};
 
 /// Change of a take by smoothing.

@@ -1,7 +1,7 @@
 //! Frames in which a joint jumps away and back.
 
+use crate::clip::take::Take;
 use crate::rig::{JointIdx, LocalTransform};
-use crate::take::Take;
 use sinew_math::max;
 
 /// Thresholds for a spike.

@@ -12,6 +12,7 @@ pub use reference::{Reference, stand};
 
 use crate::cleanup::{FootSlideReport, remove_foot_slide};
 use crate::clip::Clip;
+use crate::clip::take::Take;
 use crate::contact::{
     ContactSettings, FootContact, FootSlide, Ground, contacts, flatten_soles, foot_slide, frames_of, lowest,
     sole_points, toes_up,
@@ -20,7 +21,6 @@ use crate::legs::{Foot, Legs};
 use crate::pose::{local_to_model, rest_pose, smoothstep};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::{RigAnalysis, Role, Side};
-use crate::take::Take;
 use align::Alignment;
 use sinew_math::{Affine, Rotation, Vec3, max};
 
@@ -148,7 +148,7 @@ impl Retargeted {
 /// clip that is too long.
 ///
 /// # Panics
-/// As [`sample`](crate::sample()).
+/// As [`sample`](crate::clip::sample()).
 pub fn retarget(
     actor: Body<'_>,
     clip: &Clip,
@@ -166,7 +166,7 @@ pub fn retarget(
     check(pace, "the pace")?;
     check(options.frame_time as f32, "the frame time")?;
     let step = options.frame_time / f64::from(pace);
-    let frames = crate::take::frames_of(clip.duration, step);
+    let frames = crate::clip::take::frames_of(clip.duration, step);
     if frames > Take::MOST_FRAMES {
         return Err(RetargetError::TooLong(frames));
     }

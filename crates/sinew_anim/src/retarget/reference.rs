@@ -1,10 +1,10 @@
 //! A pose of an actor that tells the body from the motion.
 
 use crate::clip::Clip;
+use crate::clip::sample::{Wrap, sample};
 use crate::pose::rest_pose;
 use crate::rig::{LocalTransform, Rig};
 use crate::roles::{NoSkin, RigAnalysis, Role, Side, analyze_skeleton};
-use crate::sample::{Wrap, sample};
 use sinew_math::{Vec3, direction};
 
 /// Source of a reference pose.
@@ -30,7 +30,7 @@ const STANDING: f32 = 0.85;
 /// [`NoSkin`] if no bone has a length.
 ///
 /// # Panics
-/// If `stated` is not as long as the rig has joints, and as [`sample`](crate::sample()).
+/// If `stated` is not as long as the rig has joints, and as [`sample`](crate::clip::sample()).
 pub fn stand(
     rig: &Rig,
     clip: &Clip,

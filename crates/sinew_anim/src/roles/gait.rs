@@ -1,9 +1,9 @@
 //! Limbs in motion: which of them swing in turns, as legs do, which way they step, and how long a stride takes.
 
 use crate::clip::Clip;
+use crate::clip::sample::{SampleCache, Wrap, sample_cached};
 use crate::pose::local_to_model;
 use crate::rig::{JointIdx, LocalTransform, Rig};
-use crate::sample::{SampleCache, Wrap, sample_cached};
 use sinew_math::{Affine, Vec3, clamp, max};
 use std::sync::Arc;
 
@@ -74,7 +74,7 @@ impl Gait {
     /// Motion in the clips of a rig.
     ///
     /// # Panics
-    /// As [`sample`](crate::sample()): if a clip is not one of the rig's.
+    /// As [`sample`](crate::clip::sample()): if a clip is not one of the rig's.
     pub fn of(rig: &Rig, clips: &[Clip]) -> Self {
         let lasts = |clip: &&Clip| clip.duration.is_finite() && clip.duration >= SHORTEST;
         let mut wanted: Vec<&Clip> = clips.iter().filter(lasts).collect();

@@ -1,12 +1,12 @@
 //! `sinew boxes`: a render mesh becomes a world of few boxes.
 
 use crate::failure::{Failure, Result};
-use crate::files::{Outputs, must_end_in};
-use crate::film::body_models;
-use crate::picture_file::PictureFile;
-use crate::progress::Progress;
+use crate::input::files::{Outputs, must_end_in};
+use crate::input::picture_file::PictureFile;
+use crate::render::film::body_models;
+use crate::report::progress::Progress;
+use crate::report::table::{Table, shown};
 use crate::report::{Report, number};
-use crate::table::{Table, shown};
 use serde_json::json;
 use sinew::formats::{TriangleMesh, load_mesh, write_world};
 use sinew::math::Vec3;

@@ -1,8 +1,8 @@
 //! Choice of those of a file's clips that the user means.
 
 use crate::failure::{Failure, Result};
-use crate::motion::Motion;
-use crate::table::shown;
+use crate::input::motion::Motion;
+use crate::report::table::shown;
 use sinew::anim::Clip;
 use sinew::ragdoll::settings::instead;
 

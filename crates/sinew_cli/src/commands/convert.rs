@@ -1,16 +1,16 @@
 //! `sinew convert`: clips from one format into another, or from one character onto another.
 
-use crate::bones::flesh_out;
 use crate::commands::clip_choice::{choose_clips, few};
 use crate::failure::{Failure, Result};
-use crate::files::{CharacterFile, Outputs, must_end_in, never_over};
-use crate::motion::Motion;
-use crate::onto::{Carried, carry};
-use crate::picture_file::{PictureFile, longest};
+use crate::input::files::{CharacterFile, Outputs, must_end_in, never_over};
+use crate::input::motion::Motion;
+use crate::input::onto::{Carried, carry};
+use crate::input::picture_file::{PictureFile, longest};
+use crate::input::skeleton::{bones_only, frame_rate, lost_meshes, transform};
+use crate::render::bones::flesh_out;
+use crate::render::show::Show;
 use crate::report::Report;
-use crate::show::Show;
-use crate::skeleton::{bones_only, frame_rate, lost_meshes, transform};
-use crate::table::shown;
+use crate::report::table::shown;
 use clap::ValueEnum;
 use serde_json::json;
 use sinew::anim::retarget::{Feet, Pace, RetargetOptions};

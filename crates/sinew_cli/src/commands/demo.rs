@@ -2,8 +2,8 @@
 
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
-use crate::files::Outputs;
-use crate::film::{FLOOR_HALF_SIZE, Film, View, body_models};
+use crate::input::files::Outputs;
+use crate::render::film::{FLOOR_HALF_SIZE, Film, View, body_models};
 use crate::report::Report;
 use sinew::anim::{Joint, LocalTransform, Mesh, Primitive, Rig};
 use sinew::formats::write_gltf;

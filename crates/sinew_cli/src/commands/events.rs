@@ -2,11 +2,11 @@
 
 use crate::commands::clip_choice::choose_clips;
 use crate::failure::{Failure, Result};
-use crate::files::{Outputs, must_end_in, never_over};
-use crate::footsteps::footsteps;
-use crate::motion::Motion;
+use crate::input::files::{Outputs, must_end_in, never_over};
+use crate::input::motion::Motion;
+use crate::report::footsteps::footsteps;
+use crate::report::table::{Table, counted, shown};
 use crate::report::{Report, number};
-use crate::table::{Table, counted, shown};
 use clap::Subcommand;
 use serde_json::{Value, json};
 use sinew::anim::Event;

@@ -2,12 +2,12 @@
 
 use crate::cpu_clock::timed;
 use crate::failure::Result;
-use crate::files::{CharacterFile, Outputs, must_end_in, never_over};
-use crate::progress::Progress;
-use crate::ragdoll_report::RagdollReport;
+use crate::input::files::{CharacterFile, Outputs, must_end_in, never_over};
+use crate::input::settings_arg::{LoadedSettings, SettingsArg};
 use crate::report::Report;
-use crate::settings_arg::{LoadedSettings, SettingsArg};
-use crate::skin_report::SkinReport;
+use crate::report::progress::Progress;
+use crate::report::ragdoll_report::RagdollReport;
+use crate::report::skin_report::SkinReport;
 use clap::ValueEnum;
 use sinew::formats::{Textures, write_ragdoll};
 use sinew::physics::Threads;

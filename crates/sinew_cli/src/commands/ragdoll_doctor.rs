@@ -1,12 +1,12 @@
 //! `sinew ragdoll doctor`: what is wrong with a ragdoll, and what mends it.
 
 use crate::failure::Result;
-use crate::files::{CharacterFile, Outputs, must_end_in, never_over};
-use crate::ragdoll_file::RagdollFile;
+use crate::input::files::{CharacterFile, Outputs, must_end_in, never_over};
+use crate::input::ragdoll_file::RagdollFile;
+use crate::input::settings_arg::SettingsArg;
 use crate::report::Report;
-use crate::settings_arg::SettingsArg;
-use crate::skin_report::SkinReport;
-use crate::table::{Table, counted, shown};
+use crate::report::skin_report::SkinReport;
+use crate::report::table::{Table, counted, shown};
 use serde_json::{Value, json};
 use sinew::formats::{Textures, write_ragdoll};
 use sinew::ragdoll::doctor::{Code, Finding, Severity};

@@ -1,11 +1,11 @@
 //! `sinew ragdoll export`: the definition for other engines.
 
 use crate::failure::{Failure, Result};
-use crate::files::{CharacterFile, Outputs, must_end_in, never_over};
-use crate::ragdoll_file::{RagdollFile, is_character, read_definition};
+use crate::input::files::{CharacterFile, Outputs, must_end_in, never_over};
+use crate::input::ragdoll_file::{RagdollFile, is_character, read_definition};
+use crate::input::settings_arg::SettingsArg;
 use crate::report::Report;
-use crate::settings_arg::SettingsArg;
-use crate::table::{counted, shown};
+use crate::report::table::{counted, shown};
 use clap::ValueEnum;
 use serde_json::json;
 use sinew::formats::{KhrFile, MjcfText, Textures, read_bytes, write_khr, write_mjcf};

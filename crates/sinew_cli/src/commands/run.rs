@@ -1,10 +1,10 @@
 //! `sinew run`: a named scene without a picture: figures, times, state hash.
 
 use crate::failure::Result;
-use crate::progress::Progress;
+use crate::input::scene_choice::choose;
 use crate::report::Report;
-use crate::scene_choice::choose;
-use crate::table::Table;
+use crate::report::progress::Progress;
+use crate::report::table::Table;
 use serde_json::{Map, Value, json};
 use sinew::physics::stage::NoProfiler;
 use sinew::physics::{Quality, Serial, TaskRunner, Threads};

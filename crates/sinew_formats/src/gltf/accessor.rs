@@ -1,8 +1,8 @@
 //! Typed reading of accessors (glTF 2.0 §3.6.2): strides, sparse parts, normalised integers.
 
 use super::source::Source;
+use crate::container::json::At;
 use crate::error::{Error, Result};
-use crate::json::At;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Component {

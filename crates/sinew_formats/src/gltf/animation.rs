@@ -1,9 +1,9 @@
 //! Animations: channels over joints (glTF 2.0 §3.11).
 
 use super::source::Source;
+use crate::container::json::At;
 use crate::error::Result;
 use crate::events;
-use crate::json::At;
 use sinew_anim::{Channel, Clip, Event, Interpolation, JointIdx, Property};
 
 type Clips = (Vec<Clip>, Vec<Vec<Event>>);

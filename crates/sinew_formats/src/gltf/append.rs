@@ -3,7 +3,7 @@
 use super::Document;
 use super::source::Buffer;
 use crate::error::{Error, Result};
-use crate::{glb, uri};
+use crate::{container::glb, container::uri};
 use serde_json::{Map, Value, json};
 use sinew_anim::{Channel, Clip, Interpolation, Joint, LocalTransform, Property};
 use std::collections::BTreeMap;

@@ -3,8 +3,8 @@
 use super::accessor::fill_holes;
 use super::draco::Decoded;
 use super::source::Source;
+use crate::container::json::At;
 use crate::error::Result;
-use crate::json::At;
 
 /// The attributes of a primitive.
 pub(super) struct Attributes<'s, 'a> {

@@ -1,8 +1,8 @@
 //! Meshes in bit streams of their own: `KHR_draco_mesh_compression`.
 
 use super::source::Source;
+use crate::container::json::At;
 use crate::error::{Result, quoted};
-use crate::json::At;
 use draco_core::{DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder};
 
 /// The name of the extension.

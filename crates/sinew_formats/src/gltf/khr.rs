@@ -2,8 +2,8 @@
 
 use super::Document;
 use super::append::Editor;
+use crate::container::json::{number, numbers};
 use crate::error::{Error, Result, quoted};
-use crate::json::{number, numbers};
 use serde_json::{Map, Value, json};
 use sinew_math::{Affine, Range, Rotation, SwingTwistLimit, Transform, Vec3, max};
 use sinew_physics::{JointKind, Shape};

@@ -2,9 +2,9 @@
 
 use super::Textures;
 use super::source::Source;
+use crate::container::json::At;
+use crate::container::uri::{self, Uri};
 use crate::error::Result;
-use crate::json::At;
-use crate::uri::{self, Uri};
 use sinew_anim::Texture;
 use sinew_math::clamp;
 use std::collections::BTreeMap;

@@ -4,8 +4,8 @@ use super::attributes::Attributes;
 use super::material::Materials;
 use super::scene::Scene;
 use super::source::Source;
+use crate::container::json::At;
 use crate::error::Result;
-use crate::json::At;
 use sinew_anim::{Mesh, Primitive};
 use sinew_math::{Vec2, Vec3, clamp, normalize_or};
 

@@ -41,9 +41,9 @@ pub(crate) use material::{MAX_DECODED, decode_picture};
 pub(crate) use mesh::strongest_four;
 pub use write::{write_gltf, write_motion};
 
+use crate::container::json::{self, At};
 use crate::error::{Error, Result, quoted};
-use crate::json::{self, At};
-use crate::{glb, uri};
+use crate::{container::glb, container::uri};
 use serde_json::Value;
 use sinew_anim::{Clip, Event, Rig};
 use source::{Buffer, Source};

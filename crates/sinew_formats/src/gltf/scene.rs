@@ -1,8 +1,8 @@
 //! Nodes and skins: the tree of joints (glTF 2.0 §3.5, §3.7.3).
 
 use super::source::Source;
+use crate::container::json::At;
 use crate::error::Result;
-use crate::json::At;
 use sinew_anim::{Joint, JointIdx, LocalTransform, Rig, Skin};
 use sinew_math::{Affine, Mat3, Rotation, Vec3};
 

@@ -1,7 +1,7 @@
 //! The lists of a glTF file that everything else refers to, and the budget of what may be decoded from them.
 
+use crate::container::json::At;
 use crate::error::Result;
-use crate::json::At;
 use core::cell::Cell;
 
 /// Source of the bytes of a buffer.

@@ -1,6 +1,6 @@
 //! Roles that a VRM file states: its humanoid bones.
 
-use crate::json::At;
+use crate::container::json::At;
 use serde_json::Value;
 use sinew_anim::JointIdx;
 

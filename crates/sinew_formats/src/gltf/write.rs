@@ -1,9 +1,9 @@
 //! A rig that came from no file, as a new GLB.
 
 use super::{Document, NewClip, ReadOptions, append_clips, no_files, read_gltf};
+use crate::container::glb;
 use crate::error::Result;
 use crate::events::events_extras;
-use crate::glb;
 use serde_json::{Map, Value, json};
 use sinew_anim::{Clip, Event, Mesh, Primitive, Rig, Skin};
 use sinew_math::{Affine, Vec2, Vec3, max, min};

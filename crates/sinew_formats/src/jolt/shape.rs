@@ -77,7 +77,7 @@ fn collect(
         _ if solids.len() == MOST => Err(object.unsupported("a body of more than 64 solids")),
         _ => {
             let shape = primitive(object)?;
-            shape.check().map_err(|what| object.malformed(what))?;
+            shape.check().map_err(|error| object.malformed(error.what()))?;
             let density = object.member("mDensity")?.number()?;
             if density <= 0.0 {
                 return Err(object.malformed("a density that is not positive"));

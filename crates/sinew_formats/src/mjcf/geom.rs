@@ -111,7 +111,7 @@ fn read_shape(geom: &Merged<'_, '_>, kind: &str, segment: Option<&Segment>) -> R
         _ if segment.is_some() => Shape::Box { half_extents: Vec3::new(number(0)?, along(2)?, number(0)?) },
         _ => Shape::Box { half_extents: Vec3::new(number(0)?, number(2)?, number(1)?) },
     };
-    shape.check().map_err(|what| size.malformed(what))?;
+    shape.check().map_err(|error| size.malformed(error.what()))?;
     Ok(shape)
 }
 

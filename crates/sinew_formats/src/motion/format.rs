@@ -1,7 +1,7 @@
 //! Format of a file, told by its bytes.
 
 use crate::error::{Error, Result};
-use crate::{glb, json};
+use crate::{container::glb, container::json};
 
 /// Format of a file with clips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -32,8 +32,8 @@
 //! of the body, with all that hangs below them.
 
 use super::{read_range, read_up_axis};
+use crate::container::json::{self, At};
 use crate::error::{Error, Result, quoted};
-use crate::json::{self, At};
 use sinew_anim::Role;
 use sinew_math::Range;
 use sinew_ragdoll::settings::{

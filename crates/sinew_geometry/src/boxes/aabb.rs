@@ -1,8 +1,7 @@
 //! Axis-aligned boxes: what pairs are sought with.
 
 use super::expect_half_extents;
-use crate::shape::Shape;
-use sinew_math::{Mat3, Transform, Vec3, abs3, max3, min3};
+use sinew_math::{Vec3, max3, min3};
 
 /// Bounds of a half-space reach this far from the origin, metres: finite, so that sums and differences stay finite,
 /// and beyond any world.
@@ -81,77 +80,4 @@ impl Aabb {
     pub fn half_extents(&self) -> Vec3 {
         (self.max - self.min) * 0.5
     }
-}
-
-/// Around bounds in another frame.
-fn turned(bounds: &Aabb, world_from_frame: &Transform) -> Aabb {
-    let (m, half) = (world_from_frame.rotation.to_mat3(), bounds.half_extents());
-    let reach = abs3(m.x_axis) * half.x + abs3(m.y_axis) * half.y + abs3(m.z_axis) * half.z;
-    // The middle and half sides are rounded.
-    let rounding = 1e-6 * max3(abs3(bounds.min), abs3(bounds.max)).length();
-    Aabb::reaching(world_from_frame.point(bounds.center()), reach).expand(rounding)
-}
-
-impl Shape {
-    /// Bounds of the placed shape, tight but for rounding. A half-space's reach to [`HALF_SPACE_REACH`] on every
-    /// side, except above a level one, whose top is its plane. Those of a mesh or height field are its bounds, turned.
-    pub fn aabb(&self, world_from_shape: &Transform) -> Aabb {
-        let (center, rotation) = (world_from_shape.translation, world_from_shape.rotation);
-        match *self {
-            Shape::Box { half_extents } => {
-                let m = rotation.to_mat3();
-                let reach = abs3(m.x_axis) * half_extents.x
-                    + abs3(m.y_axis) * half_extents.y
-                    + abs3(m.z_axis) * half_extents.z;
-                Aabb::reaching(center, reach)
-            }
-            Shape::Sphere { radius } => Aabb::reaching(center, Vec3::splat(radius)),
-            Shape::Capsule { half_height, radius } => {
-                let core = abs3(rotation * Vec3::Y) * half_height;
-                Aabb::reaching(center, core + Vec3::splat(radius))
-            }
-            Shape::Hull(ref hull) => {
-                // Of the corners as they lie from its origin, so that nothing is lost far from the world's.
-                let m = rotation.to_mat3();
-                let (mut low, mut high) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
-                for &vertex in hull.vertices() {
-                    let turned = m * vertex;
-                    (low, high) = (min3(turned, low), max3(turned, high));
-                }
-                Aabb { min: center + low, max: center + high }
-            }
-            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
-                let axis = rotation * Vec3::Y * half_height;
-                let [low, high] = [(-axis, radius_bottom), (axis, radius_top)]
-                    .map(|(end, radius)| Aabb::reaching(center + end, Vec3::splat(radius)));
-                low.merge(&high)
-            }
-            Shape::Cylinder { half_height, radius } => {
-                let m = rotation.to_mat3();
-                Aabb::reaching(center, abs3(m.y_axis) * half_height + disk_reach(&m) * radius)
-            }
-            Shape::Cone { half_height, radius } => {
-                let m = rotation.to_mat3();
-                let axis = m.y_axis * half_height;
-                let apex = Aabb::reaching(center + axis, Vec3::ZERO);
-                apex.merge(&Aabb::reaching(center - axis, disk_reach(&m) * radius))
-            }
-            Shape::HalfSpace => {
-                let mut bounds = Aabb::reaching(Vec3::ZERO, Vec3::splat(HALF_SPACE_REACH));
-                if rotation * Vec3::Y == Vec3::Y {
-                    bounds.max.y = center.y;
-                }
-                bounds
-            }
-            Shape::Mesh(ref mesh) => turned(&mesh.bounds(), world_from_shape),
-            Shape::HeightField(ref field) => turned(&field.bounds(), world_from_shape),
-        }
-    }
-}
-
-/// Reach of the unit disk across y along each axis. Of the sines themselves: from the cosine, near 1, half of
-/// their digits would be gone.
-fn disk_reach(m: &Mat3) -> Vec3 {
-    let reach = |x: f32, z: f32| (x * x + z * z).sqrt();
-    Vec3::new(reach(m.x_axis.x, m.z_axis.x), reach(m.x_axis.y, m.z_axis.y), reach(m.x_axis.z, m.z_axis.z))
 }

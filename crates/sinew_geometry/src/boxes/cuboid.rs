@@ -1,7 +1,7 @@
 //! Questions to a box of either kind.
 
 use super::{Aabb, Obb, Penetration, PlacedBox, SurfacePoint};
-use crate::distance::distance_beyond;
+use crate::boxes::distance_beyond;
 use crate::mass::box_inertia;
 use crate::ray::{Ray, RayHit};
 use crate::shape::{MassProperties, Shape};

@@ -54,6 +54,7 @@ use sinew_math::Vec3;
 mod aabb;
 pub mod batch;
 mod cuboid;
+mod depth;
 mod fifteen;
 mod fit;
 mod frustum;
@@ -71,6 +72,7 @@ pub use obb::Obb;
 pub use overlap::{Capsule, Overlap, Sphere};
 pub use placed::PlacedBox;
 pub use point::{Penetration, SurfacePoint};
+pub(crate) use point::{box_distance, distance_beyond};
 pub use separation::AxisOf;
 
 /// # Panics

@@ -1,8 +1,7 @@
 //! Points in and around boxes.
 
 use super::PlacedBox;
-use crate::distance::box_distance;
-use sinew_math::Vec3;
+use sinew_math::{Vec3, abs3, max3};
 
 /// Point of a box's surface that is closest to another point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,4 +38,47 @@ impl PlacedBox {
         let normal = self.vector(normal);
         SurfacePoint { point: p - normal * distance, normal, distance }
     }
+}
+
+/// Signed distance to the box of the given half extents around the origin, and the outward normal.
+pub(crate) fn box_distance(half: Vec3, p: Vec3) -> (f32, Vec3) {
+    distance_beyond(abs3(p) - half, p)
+}
+
+/// Signed distance to a box and its outward normal, from how far a point is beyond the nearer face along each axis, and a
+/// vector whose signs tell on which side that face is.
+pub(crate) fn distance_beyond(beyond: Vec3, p: Vec3) -> (f32, Vec3) {
+    let outside = max3(beyond, Vec3::ZERO);
+    let distance = outside.length();
+    if distance > 0.0 {
+        let toward =
+            Vec3::new(with_sign(outside.x, p.x), with_sign(outside.y, p.y), with_sign(outside.z, p.z));
+        // Squares of tiny distances vanish: measure them again at a larger scale.
+        return if distance > 1e-12 { (distance, toward / distance) } else { (0.0, face_normal(beyond, p)) };
+    }
+    let axis = nearest_face(beyond);
+    (beyond[axis], face_normal(beyond, p))
+}
+
+/// The axis of the face that is nearest from inside; the lowest among equals.
+fn nearest_face(beyond: Vec3) -> usize {
+    let mut axis = 0;
+    for k in 1..3 {
+        if beyond[k] > beyond[axis] {
+            axis = k;
+        }
+    }
+    axis
+}
+
+fn face_normal(beyond: Vec3, p: Vec3) -> Vec3 {
+    let axis = nearest_face(beyond);
+    let mut normal = Vec3::ZERO;
+    normal[axis] = with_sign(1.0, p[axis]);
+    normal
+}
+
+/// `magnitude` with the sign of `x`.
+fn with_sign(magnitude: f32, x: f32) -> f32 {
+    if x < 0.0 { -magnitude } else { magnitude }
 }

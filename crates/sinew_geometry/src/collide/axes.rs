@@ -2,9 +2,9 @@
 
 use super::clip::{Incident, Reference, clip};
 use super::feature::{self, pair};
+use super::manifold::{Manifold, ManifoldPoint};
 use super::placed::Segment;
 use super::reduce::{midway, push_best};
-use super::{Manifold, ManifoldPoint};
 use crate::boxes::separation::{Axis, AxisOf};
 use sinew_math::{Vec3, min};
 

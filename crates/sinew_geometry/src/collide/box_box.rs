@@ -6,12 +6,18 @@ use super::axes::{
 };
 use super::clip::{BOX_CORNERS, BoxFace, Reference};
 use super::feature::{self, WHOLE, pair};
+use super::manifold::{Manifold, SeparationCache};
 use super::placed::{PlacedBox, Segment, sign};
-use super::{Manifold, Parting};
 use crate::boxes::separation::{Axis, AxisOf, Crossed, axis};
 use sinew_math::{Vec3, max, min, normalize_or};
 
-pub(super) fn collide(a: &PlacedBox, b: &PlacedBox, margin: f32, parting: &mut Parting, out: &mut Manifold) {
+pub(super) fn collide(
+    a: &PlacedBox,
+    b: &PlacedBox,
+    margin: f32,
+    parting: &mut SeparationCache,
+    out: &mut Manifold,
+) {
     let parts = |axis: &Axis| axis.separation > margin;
     if let Some(axis) = parting.axis.and_then(|of| axis(a, b, of, PARALLEL_SINE)).filter(parts) {
         parting.gap = axis.separation;
@@ -21,14 +27,14 @@ pub(super) fn collide(a: &PlacedBox, b: &PlacedBox, margin: f32, parting: &mut P
     let crossed = Crossed::new(a, b);
     let (face_a, face_b) = (crossed.best_face_of_a(), crossed.best_face_of_b());
     if let Some(axis) = [face_a, face_b].iter().find(|axis| parts(axis)) {
-        *parting = Parting::along(axis);
+        *parting = SeparationCache::along(axis);
         return;
     }
     let tolerance = tolerance(a.thinnest(), b.thinnest());
     let face = choose_face(face_a, face_b, tolerance, TIE_DIRECTION);
     let edges = crossed.best_edges(PARALLEL_SINE, min(margin, least_of_edges(&face, tolerance)));
     if let Some(axis) = edges.filter(parts) {
-        *parting = Parting::along(&axis);
+        *parting = SeparationCache::along(&axis);
         return;
     }
     push(a, b, &choose(face, edges, tolerance), margin, tolerance, out);

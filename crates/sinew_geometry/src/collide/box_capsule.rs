@@ -3,8 +3,8 @@
 
 use super::feature::{self, WHOLE, pair};
 use super::line::Line;
-use super::placed::{Pill, PlacedBox, Segment, largest_axis, sign};
-use super::{Manifold, Parting};
+use super::manifold::{Manifold, SeparationCache};
+use super::placed::{PlacedBox, PlacedCapsule, Segment, largest_axis, sign};
 use crate::boxes::segment::{Gap, Meeting, best_edge, best_face, cut, gap};
 use sinew_math::{Vec3, min};
 
@@ -17,7 +17,13 @@ const ACROSS_SINE: f32 = 0.03;
 /// A core whose sine against a side is below this is taken as parallel: the faces then say all there is to say.
 const PARALLEL_SINE: f32 = 0.005;
 
-pub(super) fn collide(a: &PlacedBox, b: &Pill, margin: f32, parting: &mut Parting, out: &mut Manifold) {
+pub(super) fn collide(
+    a: &PlacedBox,
+    b: &PlacedCapsule,
+    margin: f32,
+    parting: &mut SeparationCache,
+    out: &mut Manifold,
+) {
     let core = Segment { ends: b.core.ends.map(|p| a.local_point(p)) };
     let meeting = apart(a.half, &core).unwrap_or_else(|| pierced(a.half, &core, b.radius));
     let nearest = (meeting.on_core - meeting.on_box).dot(meeting.normal) - b.radius;

@@ -1,11 +1,17 @@
 //! Box against sphere: the closest point of the box to the centre.
 
 use super::feature::{WHOLE, pair};
-use super::placed::{Ball, PlacedBox};
-use super::{Manifold, Parting};
-use crate::distance::box_distance;
+use super::manifold::{Manifold, SeparationCache};
+use super::placed::{PlacedBox, PlacedSphere};
+use crate::boxes::box_distance;
 
-pub(super) fn collide(a: &PlacedBox, b: &Ball, margin: f32, parting: &mut Parting, out: &mut Manifold) {
+pub(super) fn collide(
+    a: &PlacedBox,
+    b: &PlacedSphere,
+    margin: f32,
+    parting: &mut SeparationCache,
+    out: &mut Manifold,
+) {
     let (distance, normal) = box_distance(a.half, a.local_point(b.center));
     let separation = distance - b.radius;
     if separation > margin {

@@ -1,8 +1,8 @@
 //! Capsule against capsule: closest points of the cores; two points where the cores run side by side.
 
 use super::feature::{WHOLE, end, pair};
-use super::placed::{Pill, direction_or, sign};
-use super::{Manifold, Parting};
+use super::manifold::{Manifold, SeparationCache};
+use super::placed::{PlacedCapsule, direction_or, sign};
 use sinew_math::{Vec3, any_orthonormal, min, normalize_or};
 
 /// Cores that run side by side touch along a line; its two ends are used while the cores lie within this share of
@@ -12,13 +12,20 @@ const SIDEWAYS_SHARE: f32 = 0.25;
 /// Sine of the angle from which on cores count as crossing: about half a degree.
 const LEAST_SINE: f32 = 0.01;
 
-pub(super) fn collide(a: &Pill, b: &Pill, margin: f32, parting: &mut Parting, out: &mut Manifold) {
+pub(super) fn collide(
+    a: &PlacedCapsule,
+    b: &PlacedCapsule,
+    margin: f32,
+    parting: &mut SeparationCache,
+    out: &mut Manifold,
+) {
     let (s, t) = a.core.closest_to_segment(&b.core);
     let (pa, pb) = (a.core.at(s), b.core.at(t));
     let cross = a.axis.cross(b.axis);
     let sine = cross.length();
-    let inside =
-        |share: f32, pill: &Pill| 0.0 < share && share < 1.0 && pill.core.ends[0] != pill.core.ends[1];
+    let inside = |share: f32, pill: &PlacedCapsule| {
+        0.0 < share && share < 1.0 && pill.core.ends[0] != pill.core.ends[1]
+    };
     // Of cores that cross, the common perpendicular is exact however near they are; the direction between the two points
     // is rounding then.
     let (normal, separation) = if inside(s, a) && inside(t, b) && sine > LEAST_SINE {
@@ -42,7 +49,7 @@ pub(super) fn collide(a: &Pill, b: &Pill, margin: f32, parting: &mut Parting, ou
 }
 
 /// The two ends of the stretch along which the cores run side by side; false, and nothing pushed, if they don't.
-fn push_side_by_side(a: &Pill, b: &Pill, margin: f32, out: &mut Manifold) -> bool {
+fn push_side_by_side(a: &PlacedCapsule, b: &PlacedCapsule, margin: f32, out: &mut Manifold) -> bool {
     // Along both, so that their order does not matter.
     let common = a.axis + b.axis * sign(a.axis.dot(b.axis));
     let place = |p: Vec3| (p - a.core.ends[0]).dot(common);

@@ -2,11 +2,17 @@
 //! core is a point.
 
 use super::feature::{WHOLE, pair};
-use super::placed::{Ball, Pill, direction_or};
-use super::{Manifold, Parting};
+use super::manifold::{Manifold, SeparationCache};
+use super::placed::{PlacedCapsule, PlacedSphere, direction_or};
 use sinew_math::any_orthonormal;
 
-pub(super) fn collide(a: &Pill, b: &Ball, margin: f32, parting: &mut Parting, out: &mut Manifold) {
+pub(super) fn collide(
+    a: &PlacedCapsule,
+    b: &PlacedSphere,
+    margin: f32,
+    parting: &mut SeparationCache,
+    out: &mut Manifold,
+) {
     let on_core = a.core.at(a.core.closest(b.center));
     let offset = b.center - on_core;
     let separation = offset.length() - a.radius - b.radius;

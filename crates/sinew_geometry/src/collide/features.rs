@@ -2,9 +2,9 @@
 
 use super::clip_features::{Clipped, clip};
 use super::feature::{WHOLE, pair};
+use super::manifold::{Manifold, ManifoldPoint, SeparationCache};
 use super::placed::{Segment, sign};
 use super::reduce::push_best;
-use super::{Manifold, ManifoldPoint, Parting};
 use crate::convex::feature::Feature;
 use crate::convex::support::{Posed, Support, wide};
 use crate::convex::{Gap, apart_along, meet};
@@ -30,7 +30,7 @@ pub(crate) fn collide<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
     margin: f32,
-    parting: &mut Parting,
+    parting: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     let gap = meet(a, b);

@@ -2,9 +2,9 @@
 
 use super::axes::tolerance;
 use super::feature::{self, WHOLE, end, pair};
-use super::placed::{Ball, Pill, PlacedBox, Plane};
+use super::manifold::{Manifold, ManifoldPoint};
+use super::placed::{PlacedBox, PlacedCapsule, PlacedSphere, Plane};
 use super::reduce::push_best;
-use super::{Manifold, ManifoldPoint};
 use crate::convex::feature::MOST_CORNERS;
 use crate::convex::support::{Posed, Support, narrow, wide};
 use crate::hull::{Hull, MAX_VERTICES};
@@ -34,7 +34,7 @@ pub(super) fn against_hull(a: &Plane, b: &Hull, frame: &Transform, margin: f32, 
 }
 
 /// Both ends.
-pub(super) fn against_capsule(a: &Plane, b: &Pill, margin: f32, out: &mut Manifold) {
+pub(super) fn against_capsule(a: &Plane, b: &PlacedCapsule, margin: f32, out: &mut Manifold) {
     out.normal = a.normal;
     for (index, point) in b.core.ends.into_iter().enumerate() {
         push(a, point, b.radius, margin, end(index), out);
@@ -45,7 +45,7 @@ pub(super) fn against_capsule(a: &Plane, b: &Pill, margin: f32, out: &mut Manifo
     }
 }
 
-pub(super) fn against_sphere(a: &Plane, b: &Ball, margin: f32, out: &mut Manifold) {
+pub(super) fn against_sphere(a: &Plane, b: &PlacedSphere, margin: f32, out: &mut Manifold) {
     out.normal = a.normal;
     push(a, b.center, b.radius, margin, WHOLE, out);
 }

@@ -1,8 +1,8 @@
 //! Hull against everything that has an end, in the frame of the hull.
 
 use super::axes::TIE_DIRECTION;
-use super::placed::{Pill, PlacedBox};
-use super::{Manifold, Parting};
+use super::manifold::{Manifold, SeparationCache};
+use super::placed::{PlacedBox, PlacedCapsule};
 use super::{features, hull_round, polytope};
 use crate::convex::support::{Core, Posed};
 use crate::hull::{BoxPolytope, Hull, Room};
@@ -16,7 +16,7 @@ pub(super) fn collide(
     other: &Shape,
     pair_from_other: &Transform,
     margin: f32,
-    parting: &mut Parting,
+    parting: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     let frame = pair_from_hull.inverse() * *pair_from_other;
@@ -33,7 +33,7 @@ pub(super) fn collide(
             polytope::collide(&polytope, &other.polytope(), margin, tie, parting, out);
         }
         Shape::Capsule { half_height, radius } => {
-            let pill = Pill::new(half_height, radius, &frame);
+            let pill = PlacedCapsule::new(half_height, radius, &frame);
             hull_round::against_capsule(&polytope, &pill.core, radius, margin, parting, out);
         }
         Shape::Sphere { radius } => {

@@ -4,8 +4,8 @@
 use super::axes::{PARALLEL_SINE, choose};
 use super::feature::{self, WHOLE, pair};
 use super::line::Line;
+use super::manifold::{Manifold, SeparationCache};
 use super::placed::Segment;
-use super::{Manifold, Parting};
 use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{Plane, Polytope};
 use sinew_math::{Vec3, max, min};
@@ -22,7 +22,7 @@ pub(super) fn against_sphere(
     center: Vec3,
     radius: f32,
     margin: f32,
-    parting: &mut Parting,
+    parting: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     let (distance, normal) = hull.distance(center);
@@ -52,7 +52,7 @@ pub(super) fn against_capsule(
     core: &Segment,
     radius: f32,
     margin: f32,
-    parting: &mut Parting,
+    parting: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     let meeting = apart(hull, core).unwrap_or_else(|| pierced(hull, core, radius));

@@ -1,7 +1,7 @@
 //! A capsule that lies on a face or along an edge: contact along a line.
 
-use super::Manifold;
 use super::feature::{end, pair};
+use super::manifold::Manifold;
 use super::placed::Segment;
 use sinew_math::Vec3;
 

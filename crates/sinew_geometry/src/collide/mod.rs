@@ -18,120 +18,19 @@ mod half_space;
 mod hull_pairs;
 mod hull_round;
 mod line;
+mod manifold;
 pub(crate) mod placed;
 pub(crate) mod polytope;
 mod reduce;
 mod round_sphere;
 mod surface;
 
-use crate::boxes::separation::{Axis, AxisOf};
 use crate::convex::support::{Core, Posed};
 use crate::shape::Shape;
-use placed::{Ball, Pill, PlacedBox, Plane};
+pub use manifold::{MAX_POINTS, Manifold, ManifoldPoint, SeparationCache};
+use placed::{PlacedBox, PlacedCapsule, PlacedSphere, Plane};
 use sinew_math::{Transform, Vec3};
 pub use surface::{Half, MAX_PARTS, Motion, Patch, Scratch, collide_surface, is_on_face, name_as_face};
-
-/// At most this many points describe the contact of two shapes.
-pub const MAX_POINTS: usize = 4;
-
-/// One point of a manifold.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ManifoldPoint {
-    /// Half-way between the two surfaces, in the frame the shapes were given in (world), metres.
-    pub position: Vec3,
-    /// Gap along the normal, metres; negative when they overlap.
-    pub separation: f32,
-    /// Features that touch: A's in the low 16 bits, B's in the high ones. The same from step to step while the
-    /// same features touch; the other order of the shapes exchanges the halves (`feature.rotate_left(16)`).
-    pub feature: u32,
-}
-
-/// Contact of two convex shapes that touch or are about to: a normal and up to four points.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Manifold {
-    /// Unit, from A to B.
-    pub normal: Vec3,
-    /// The points; only the first `count` count.
-    pub points: [ManifoldPoint; MAX_POINTS],
-    /// Number of points, 0..=4.
-    pub count: usize,
-}
-
-impl Manifold {
-    /// The points that count.
-    #[inline]
-    pub fn points(&self) -> &[ManifoldPoint] {
-        &self.points[..self.count]
-    }
-
-    /// Middle of its points, metres; the origin if there are none.
-    #[inline]
-    pub fn center(&self) -> Vec3 {
-        let sum = self.points().iter().fold(Vec3::ZERO, |sum, point| sum + point.position);
-        if self.count > 0 { sum / self.count as f32 } else { sum }
-    }
-
-    /// Appends a point that lies on one of the surfaces' midplane.
-    fn push(&mut self, position: Vec3, separation: f32, feature: u32) {
-        self.points[self.count] = ManifoldPoint { position, separation, feature };
-        self.count += 1;
-    }
-
-    /// Appends a point, or puts it in the place of the one that is least deep where there is no room.
-    fn push_or_replace_shallowest(&mut self, position: Vec3, separation: f32, feature: u32) {
-        if self.count < MAX_POINTS {
-            self.push(position, separation, feature);
-        } else {
-            let deeper =
-                |a: &usize, b: &usize| self.points[*a].separation.total_cmp(&self.points[*b].separation);
-            let shallowest = (0..MAX_POINTS).max_by(deeper).unwrap_or(0);
-            self.points[shallowest] = ManifoldPoint { position, separation, feature };
-        }
-    }
-
-    /// Turns the result of (B, A) into that of (A, B).
-    fn flip(&mut self) {
-        self.normal = -self.normal;
-        for point in &mut self.points[..self.count] {
-            point.feature = point.feature.rotate_left(16);
-        }
-    }
-
-    /// Back from coordinates relative to `origin`; drops everything if a number is not finite.
-    fn finish(&mut self, origin: Vec3) {
-        for point in &mut self.points[..self.count] {
-            point.position += origin;
-        }
-        let sane = |p: &ManifoldPoint| p.position.is_finite() && p.separation.is_finite();
-        if !self.normal.is_finite() || !self.points().iter().all(sane) {
-            self.count = 0;
-        }
-    }
-}
-
-/// Knowledge of two shapes beside their points. It decides nothing about those, whatever it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parting {
-    /// The axis along which two polytopes were parted when they were asked last: it is tried first, since most that stay apart
-    /// do so along the same one.
-    pub axis: Option<AxisOf>,
-    /// Least gap that they surely have, metres. Told where no points are found.
-    pub gap: f32,
-}
-
-impl Default for Parting {
-    /// Nothing is known.
-    fn default() -> Self {
-        Self { axis: None, gap: f32::NEG_INFINITY }
-    }
-}
-
-impl Parting {
-    /// They are parted along an axis.
-    fn along(axis: &Axis) -> Self {
-        Self { axis: Some(axis.of), gap: axis.separation }
-    }
-}
 
 /// Fills `out` with the contact of two placed shapes: the normal points from `a` to `b`, every point has a
 /// separation of at most `margin` (metres, ≥ 0). No points if the shapes are further apart than that, if both are
@@ -147,7 +46,7 @@ pub fn collide(
     margin: f32,
     out: &mut Manifold,
 ) {
-    collide_again((a, world_from_a), (b, world_from_b), margin, &mut Parting::default(), out);
+    collide_again((a, world_from_a), (b, world_from_b), margin, &mut SeparationCache::default(), out);
 }
 
 /// Share of the distance between two frames by which rounding may make a gap too large.
@@ -158,7 +57,7 @@ pub fn collide_again(
     (a, world_from_a): (&Shape, &Transform),
     (b, world_from_b): (&Shape, &Transform),
     margin: f32,
-    parting: &mut Parting,
+    parting: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     *out = Manifold::default();
@@ -250,9 +149,11 @@ fn collide_half_space(a: &Plane, b: &Shape, wb: &Transform, margin: f32, out: &m
             half_space::against_box(a, &PlacedBox::new(half_extents, wb), margin, out);
         }
         Shape::Capsule { half_height, radius } => {
-            half_space::against_capsule(a, &Pill::new(half_height, radius, wb), margin, out);
+            half_space::against_capsule(a, &PlacedCapsule::new(half_height, radius, wb), margin, out);
         }
-        Shape::Sphere { radius } => half_space::against_sphere(a, &Ball::new(radius, wb), margin, out),
+        Shape::Sphere { radius } => {
+            half_space::against_sphere(a, &PlacedSphere::new(radius, wb), margin, out);
+        }
         Shape::Hull(ref hull) => half_space::against_hull(a, hull, wb, margin, out),
         ref other => {
             if let Some(core) = Core::of(other) {
@@ -267,7 +168,7 @@ fn collide_ranked(
     (a, wa): (&Shape, &Transform),
     (b, wb): (&Shape, &Transform),
     margin: f32,
-    parting: &mut Parting,
+    parting: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     // B is never the half-space, whose origin may be far away.
@@ -286,13 +187,13 @@ fn collide_ranked(
             box_box::collide(&a, &b, margin, parting, out);
         }
         (&Shape::Box { half_extents }, &Shape::Capsule { half_height, radius }) => {
-            let pill = Pill::new(half_height, radius, &wb);
+            let pill = PlacedCapsule::new(half_height, radius, &wb);
             box_capsule::collide(&PlacedBox::new(half_extents, &wa), &pill, margin, parting, out);
         }
         (&Shape::Box { half_extents }, &Shape::Sphere { radius }) => {
             box_sphere::collide(
                 &PlacedBox::new(half_extents, &wa),
-                &Ball::new(radius, &wb),
+                &PlacedSphere::new(radius, &wb),
                 margin,
                 parting,
                 out,
@@ -302,20 +203,21 @@ fn collide_ranked(
             &Shape::Capsule { half_height: height_a, radius: radius_a },
             &Shape::Capsule { half_height: height_b, radius: radius_b },
         ) => {
-            let (a, b) = (Pill::new(height_a, radius_a, &wa), Pill::new(height_b, radius_b, &wb));
+            let (a, b) =
+                (PlacedCapsule::new(height_a, radius_a, &wa), PlacedCapsule::new(height_b, radius_b, &wb));
             capsule_capsule::collide(&a, &b, margin, parting, out);
         }
         (&Shape::Capsule { half_height, radius }, &Shape::Sphere { radius: radius_b }) => {
-            let pill = Pill::new(half_height, radius, &wa);
-            capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, parting, out);
+            let pill = PlacedCapsule::new(half_height, radius, &wa);
+            capsule_sphere::collide(&pill, &PlacedSphere::new(radius_b, &wb), margin, parting, out);
         }
         (&Shape::Sphere { radius }, &Shape::Sphere { radius: radius_b }) => {
             // A ball is a capsule without a middle.
-            let pill = Pill::new(0.0, radius, &wa);
-            capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, parting, out);
+            let pill = PlacedCapsule::new(0.0, radius, &wa);
+            capsule_sphere::collide(&pill, &PlacedSphere::new(radius_b, &wb), margin, parting, out);
         }
         (round, &Shape::Sphere { radius }) => {
-            round_sphere::collide(round, &wa, &Ball::new(radius, &wb), margin, out);
+            round_sphere::collide(round, &wa, &PlacedSphere::new(radius, &wb), margin, out);
         }
         // The other half of the pairs is brought into this order by `collide`; two half-spaces never meet.
         (a, b) => {
@@ -331,6 +233,7 @@ fn collide_ranked(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::boxes::separation::AxisOf;
     use crate::hull::Hull;
     use sinew_math::{Random, Rotation};
     use std::sync::Arc;
@@ -354,7 +257,7 @@ mod tests {
             let (a, b) = (solid(&mut random), solid(&mut random));
             let mut frame = Transform::new(random.direction(), random.rotation());
             let (drift, turn) = (random.in_cube() * 0.05, random.in_cube() * 0.05);
-            let mut parting = Parting::default();
+            let mut parting = SeparationCache::default();
             for _ in 0..20 {
                 let before = parting.axis;
                 let mut found = Manifold::default();
@@ -365,7 +268,7 @@ mod tests {
                     1 => AxisOf::FaceB(any(&mut random)),
                     _ => AxisOf::Edges(any(&mut random), any(&mut random)),
                 });
-                let mut wild = Parting { axis, gap: 1.0 };
+                let mut wild = SeparationCache { axis, gap: 1.0 };
                 let mut again = Manifold::default();
                 collide_again((&a, &Transform::IDENTITY), (&b, &frame), 0.02, &mut wild, &mut again);
                 let mut fresh = Manifold::default();

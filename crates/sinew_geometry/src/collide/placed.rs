@@ -24,27 +24,27 @@ impl Plane {
     }
 }
 
-/// Ball.
-pub(crate) struct Ball {
+/// PlacedSphere.
+pub(crate) struct PlacedSphere {
     pub center: Vec3,
     pub radius: f32,
 }
 
-impl Ball {
+impl PlacedSphere {
     pub fn new(radius: f32, frame: &Transform) -> Self {
         Self { center: frame.translation, radius }
     }
 }
 
 /// Capsule: a core segment and a radius.
-pub(crate) struct Pill {
+pub(crate) struct PlacedCapsule {
     pub core: Segment,
     /// Unit direction of the core, also where the core is a point.
     pub axis: Vec3,
     pub radius: f32,
 }
 
-impl Pill {
+impl PlacedCapsule {
     pub fn new(half_height: f32, radius: f32, frame: &Transform) -> Self {
         let axis = frame.rotation * Vec3::Y;
         let reach = axis * half_height;

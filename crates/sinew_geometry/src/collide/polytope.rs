@@ -7,8 +7,8 @@ use super::axes::{
 };
 use super::clip::{PolytopeFace, Reference};
 use super::feature::{self, WHOLE, pair};
+use super::manifold::{Manifold, SeparationCache};
 use super::placed::Segment;
-use super::{Manifold, Parting};
 use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{MAX_VERTICES, Plane, Polytope};
 use sinew_math::{Vec3, min};
@@ -24,7 +24,7 @@ pub(super) fn collide(
     b: &Polytope<'_>,
     margin: f32,
     tie: Vec3,
-    parting: &mut Parting,
+    parting: &mut SeparationCache,
     out: &mut Manifold,
 ) {
     let parts = |axis: &Axis| axis.separation > margin;
@@ -35,17 +35,17 @@ pub(super) fn collide(
     parting.axis = None;
     let face_a = best_face(a, b, margin, AxisOf::FaceA);
     if parts(&face_a) {
-        *parting = Parting::along(&face_a);
+        *parting = SeparationCache::along(&face_a);
         return;
     }
     let face_b = best_face(b, a, margin, AxisOf::FaceB);
     if parts(&face_b) {
-        *parting = Parting::along(&face_b);
+        *parting = SeparationCache::along(&face_b);
         return;
     }
     let edges = best_edges(a, b);
     if let Some(axis) = edges.filter(parts) {
-        *parting = Parting::along(&axis);
+        *parting = SeparationCache::along(&axis);
         return;
     }
     let tolerance = tolerance(a.thickness, b.thickness);
@@ -270,7 +270,7 @@ mod tests {
                 best = sinew_math::max(gap(&a, &b, n), best);
             }
             let mut out = Manifold::default();
-            collide(&a, &b, 0.0, Vec3::Y, &mut Parting::default(), &mut out);
+            collide(&a, &b, 0.0, Vec3::Y, &mut SeparationCache::default(), &mut out);
             assert_eq!(out.count > 0, best <= 0.0, "case {case}: {best}, {out:?}");
             if out.count > 0 {
                 let along = gap(&a, &b, out.normal);

@@ -1,6 +1,6 @@
 //! From many points in one plane to the few that hold as well.
 
-use super::{MAX_POINTS, Manifold, ManifoldPoint};
+use super::manifold::{MAX_POINTS, Manifold, ManifoldPoint};
 use sinew_math::Vec3;
 
 /// Appends at most four of `points` to `out`: the deepest, the one furthest from it, and on either side of the line

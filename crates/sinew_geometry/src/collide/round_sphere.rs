@@ -1,12 +1,12 @@
 //! Cone, cylinder and tapered capsule against sphere: the closest point of the surface to the centre.
 
-use super::Manifold;
 use super::feature::{WHOLE, pair};
-use super::placed::Ball;
+use super::manifold::Manifold;
+use super::placed::PlacedSphere;
 use crate::shape::Shape;
 use sinew_math::Transform;
 
-pub(super) fn collide(a: &Shape, frame: &Transform, b: &Ball, margin: f32, out: &mut Manifold) {
+pub(super) fn collide(a: &Shape, frame: &Transform, b: &PlacedSphere, margin: f32, out: &mut Manifold) {
     let (distance, normal) = a.signed_distance(frame, b.center);
     let separation = distance - b.radius;
     if separation > margin {

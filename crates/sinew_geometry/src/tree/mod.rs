@@ -6,21 +6,21 @@
 //! searching", SIGMOD 1984). What a query finds never depends on the tree's shape, only in which order.
 
 mod build;
-mod flight;
 mod node;
 mod query;
 #[cfg(test)]
 mod tests;
+mod traversal;
 mod waiting;
 
 use crate::boxes::Aabb;
 pub use build::Item;
-pub use flight::{Flight, Stop};
 pub use node::PAD;
 use node::{Child, Node, half_area};
 pub use query::Sweep;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, WIDTH};
+pub use traversal::{Stop, Traversal};
 
 /// Most levels of nodes: what the queries' stacks are made for. Full nodes hold 2³² leaves in 11.
 const MOST_LEVELS: usize = 14;

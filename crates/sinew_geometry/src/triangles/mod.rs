@@ -17,7 +17,6 @@ pub(crate) use tree::{Branch, DEPTH, Tree};
 pub use triangle::{Part, Triangle, closest_on_triangle, normal};
 
 use crate::boxes::{Aabb, Overlap};
-use crate::shape::Shape;
 use sinew_math::Vec3;
 
 /// An edge by its corners, the smaller number first.
@@ -143,18 +142,6 @@ impl Surface<'_> {
                 best.map(|(share, place)| (share, mesh.triangle(place).normal))
             }
             Self::HeightField(field) => field.enter(origin, direction),
-        }
-    }
-}
-
-impl Shape {
-    /// Its surface, if it is made of triangles.
-    #[inline]
-    pub fn surface(&self) -> Option<Surface<'_>> {
-        match self {
-            Self::Mesh(mesh) => Some(Surface::Mesh(mesh)),
-            Self::HeightField(field) => Some(Surface::HeightField(field)),
-            _ => None,
         }
     }
 }

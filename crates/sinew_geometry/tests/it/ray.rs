@@ -285,7 +285,10 @@ fn sizes_that_are_none_are_named() {
         }
     }
     let swallowed = Shape::TaperedCapsule { half_height: 0.5, radius_bottom: 1.5, radius_top: 0.5 };
-    assert_eq!(swallowed.check(), Err("one end of a tapered capsule must not hold the other"));
+    assert_eq!(
+        swallowed.check(),
+        Err(sinew_geometry::DefError::new("one end of a tapered capsule must not hold the other"))
+    );
     for bad in [-1.0, f32::NAN, f32::INFINITY] {
         assert!(Shape::Capsule { half_height: bad, radius: 1.0 }.check().is_err());
     }

@@ -4,9 +4,9 @@
 //! All of it follows from the bodies and the contacts, and is no part of the state: a world whose bookkeeping is made anew
 //! has the same future.
 
-mod aside;
 #[cfg(test)]
 mod check;
+mod sleeping_contacts;
 mod slot_set;
 
 use crate::arena::Arena;
@@ -17,8 +17,8 @@ use crate::contact::near::bear;
 use crate::contact::proxies::{Owner, Proxies};
 use crate::joint::{Incidence, Joint};
 use crate::particles::ParticleGroup;
-use aside::Aside;
 use core::ops::ControlFlow;
+use sleeping_contacts::SleepingContacts;
 use slot_set::SlotSet;
 
 /// Who is awake, what those who are not have put aside, and who holds whom.
@@ -30,7 +30,7 @@ pub(crate) struct Activity {
     kinematic: Vec<u32>,
     /// By slot: the next body of the same sleeping island, in a ring.
     next: Vec<u32>,
-    aside: Aside,
+    aside: SleepingContacts,
     /// Contacts of what woke or set off, until the step goes through them.
     returned: Vec<Contact>,
     struck: Vec<u32>,

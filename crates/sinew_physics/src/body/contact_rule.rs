@@ -4,6 +4,7 @@ use crate::body::Velocity;
 use crate::body::material::{ContactMaterial, Material};
 use crate::collide::ManifoldPoint;
 use crate::id::ShapeId;
+use sinew_geometry::DefError;
 use sinew_math::{Vec3, normalize_or};
 
 /// Rule for the contacts of a shape. Contacts of two shapes push only if both rules let them.
@@ -32,7 +33,7 @@ impl ContactRule {
     ///
     /// # Errors
     /// What is wrong, in lower case.
-    pub fn check(&self) -> Result<(), &'static str> {
+    pub fn check(&self) -> Result<(), DefError> {
         match self {
             Self::OneWay(one_way) => one_way.check(),
             Self::Yields(yields) => yields.check(),
@@ -63,14 +64,16 @@ impl Default for OneWay {
 }
 
 impl OneWay {
-    fn check(&self) -> Result<(), &'static str> {
+    fn check(&self) -> Result<(), DefError> {
         // Written so that NaN fails.
         let length = self.direction.length();
         if !(length > 0.0 && length < f32::INFINITY) {
-            return Err("the direction of a one-way shape must be finite and not 0");
+            return Err(DefError::new("the direction of a one-way shape must be finite and not 0"));
         }
         if !(0.0..=core::f32::consts::PI).contains(&self.tolerance) {
-            return Err("the tolerance of a one-way shape must be an angle of 0 to 180 degrees");
+            return Err(DefError::new(
+                "the tolerance of a one-way shape must be an angle of 0 to 180 degrees",
+            ));
         }
         Ok(())
     }
@@ -104,12 +107,14 @@ impl Default for Yields {
 }
 
 impl Yields {
-    fn check(&self) -> Result<(), &'static str> {
+    fn check(&self) -> Result<(), DefError> {
         // Written so that NaN fails.
         if [self.max_force, self.max_impulse].iter().all(|x| (0.0..f32::INFINITY).contains(x)) {
             return Ok(());
         }
-        Err("the force and the impulse of a shape that yields must not be negative, and finite")
+        Err(DefError::new(
+            "the force and the impulse of a shape that yields must not be negative, and finite",
+        ))
     }
 }
 

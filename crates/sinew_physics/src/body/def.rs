@@ -2,6 +2,7 @@
 
 use crate::body::shape::{MassProperties, Shape, ShapeDef};
 use crate::boxes::Obb;
+use sinew_geometry::DefError;
 use sinew_math::{Rotation, Vec3};
 
 /// Settings of a world.
@@ -113,31 +114,33 @@ impl WorldDef {
     ///
     /// # Errors
     /// What is wrong, in lower case.
-    pub fn check(&self) -> Result<(), &'static str> {
+    pub fn check(&self) -> Result<(), DefError> {
         // Written so that NaN fails.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         if self.step_nanoseconds == 0 || self.substeps == 0 {
-            return Err("a step takes time and has substeps");
+            return Err(DefError::new("a step takes time and has substeps"));
         }
         if self.step_nanoseconds > LONGEST_STEP || self.substeps > MOST_SUBSTEPS {
-            return Err("a step is no longer than 30 years and has at most 1,024 substeps");
+            return Err(DefError::new("a step is no longer than 30 years and has at most 1,024 substeps"));
         }
         if self.catch_up_steps == 0 {
-            return Err("an update may take a step");
+            return Err(DefError::new("an update may take a step"));
         }
         if !self.gravity.is_finite() {
-            return Err("gravity is finite");
+            return Err(DefError::new("gravity is finite"));
         }
         if !(positive(self.max_speed) && positive(self.max_turn)) {
-            return Err("the speed limits are positive and finite");
+            return Err(DefError::new("the speed limits are positive and finite"));
         }
         if !(0.0..f32::INFINITY).contains(&self.hit_speed) {
-            return Err("the speed of a hit is not negative, and finite");
+            return Err(DefError::new("the speed of a hit is not negative, and finite"));
         }
         let SleepThresholds { time, distance, angle, speed, spin } = self.sleep_thresholds;
         if !((0.0..f32::INFINITY).contains(&time) && [distance, angle, speed, spin].into_iter().all(positive))
         {
-            return Err("what counts as rest takes no negative time and is positive and finite");
+            return Err(DefError::new(
+                "what counts as rest takes no negative time and is positive and finite",
+            ));
         }
         Ok(())
     }

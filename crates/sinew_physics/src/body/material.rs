@@ -1,5 +1,6 @@
 //! Materials of surfaces, and how those of two shapes combine.
 
+use sinew_geometry::DefError;
 use sinew_math::{Vec3, max, min};
 
 /// Material of a shape: how it rubs, bounces and moves along.
@@ -47,18 +48,18 @@ impl Material {
     ///
     /// # Errors
     /// What is wrong, in lower case.
-    pub fn check(&self) -> Result<(), &'static str> {
+    pub fn check(&self) -> Result<(), DefError> {
         // Written so that NaN fails.
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         let positive = not_negative(self.friction) && not_negative(self.rolling);
         if !(positive && not_negative(self.restitution)) {
-            return Err("friction, restitution and rolling must not be negative, and finite");
+            return Err(DefError::new("friction, restitution and rolling must not be negative, and finite"));
         }
         if !(self.friction..f32::INFINITY).contains(&self.hold()) {
-            return Err("static friction must be no less than friction, and finite");
+            return Err(DefError::new("static friction must be no less than friction, and finite"));
         }
         if !(self.surface_velocity.is_finite() && self.surface_spin.is_finite()) {
-            return Err("the velocity of a surface must be finite");
+            return Err(DefError::new("the velocity of a surface must be finite"));
         }
         Ok(())
     }

@@ -2,13 +2,13 @@
 
 pub(crate) mod contact_rule;
 pub mod def;
+pub(crate) mod external_work;
 pub(crate) mod force;
 pub(crate) mod library;
 pub(crate) mod material;
 pub mod shape;
 pub(crate) mod snapshot;
 pub(crate) mod surface;
-pub(crate) mod work;
 
 use crate::arena::Item;
 use crate::body::def::{BodyDef, BodyKind, Quality, Sleeping};

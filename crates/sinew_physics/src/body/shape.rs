@@ -2,6 +2,7 @@
 
 use crate::body::contact_rule::ContactRule;
 use crate::body::material::Material;
+use sinew_geometry::DefError;
 use sinew_math::Transform;
 
 pub use sinew_geometry::{MassProperties, Shape};
@@ -86,7 +87,7 @@ impl ShapeDef {
     ///
     /// # Errors
     /// What is wrong, in lower case.
-    pub fn check(&self) -> Result<(), &'static str> {
+    pub fn check(&self) -> Result<(), DefError> {
         self.shape.check()?;
         self.material.check()?;
         self.rule.check()?;
@@ -96,7 +97,7 @@ impl ShapeDef {
         if placed && dense {
             Ok(())
         } else {
-            Err("a shape's pose and density must be finite, density not negative")
+            Err(DefError::new("a shape's pose and density must be finite, density not negative"))
         }
     }
 

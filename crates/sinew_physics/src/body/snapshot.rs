@@ -51,7 +51,7 @@ pub(crate) fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
         max_turn,
         hit_speed,
     };
-    def.check().map_err(|what| r.error(what))?;
+    def.check().map_err(|error| r.error(error.what()))?;
     Ok(def)
 }
 
@@ -304,7 +304,7 @@ pub(crate) fn load_geometry(r: &mut Reader<'_>, library: &ShapeLibrary) -> Resul
         6 => Shape::Cone { half_height: r.f32()?, radius: r.f32()? },
         _ => return Err(r.error("unknown shape").into()),
     };
-    shape.check().map_err(|what| r.error(what))?;
+    shape.check().map_err(|error| r.error(error.what()))?;
     Ok(shape)
 }
 
@@ -338,7 +338,7 @@ fn load_rule(r: &mut Reader<'_>) -> Result<ContactRule, ReadError> {
         4 => ContactRule::Yields(Yields { max_force: r.f32()?, max_impulse: r.f32()? }),
         _ => return Err(r.error("unknown contact rule")),
     };
-    rule.check().map_err(|what| r.error(what))?;
+    rule.check().map_err(|error| r.error(error.what()))?;
     Ok(rule)
 }
 
@@ -401,7 +401,7 @@ pub(crate) fn load_material(r: &mut Reader<'_>) -> Result<Material, ReadError> {
         combine,
         tag: r.u32()?,
     };
-    material.check().map_err(|what| r.error(what))?;
+    material.check().map_err(|error| r.error(error.what()))?;
     Ok(material)
 }
 

@@ -4,7 +4,8 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::body::def::BodyKind;
 use crate::body::material::Material;
-use crate::contact::meetings::{load_shape_id, save_shape_id, shape_ids};
+use crate::contact::tracking::{load_shape_id, save_shape_id, shape_ids};
+use crate::contact::tuning::STILL_COMING;
 use crate::contact::{Contact, Effect};
 use crate::id::ShapeId;
 use sinew_math::{ReadError, Reader, Vec3, Writer, max, normalize_or};
@@ -48,9 +49,6 @@ pub(crate) struct OpenHits {
     list: Vec<OpenHit>,
     next: Vec<OpenHit>,
 }
-
-/// A pair that still comes in with more than this share of the speed that it came with has not been stopped yet.
-const STILL_COMING: f32 = 0.1;
 
 impl OpenHits {
     /// Tells of what was hit in this step, faster than `threshold` (m/s).

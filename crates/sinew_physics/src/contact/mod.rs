@@ -1,28 +1,26 @@
 //! Contacts: pairs of shapes that are near each other, with what the solver remembers of them.
 
+pub(crate) mod disabled_pairs;
 pub(crate) mod events;
 pub(crate) mod filter;
 pub(crate) mod hits;
-pub(crate) mod kept;
-pub(crate) mod meetings;
 pub(crate) mod modifiers;
 pub(crate) mod near;
-pub(crate) mod parted;
 pub(crate) mod parts;
 pub(crate) mod proxies;
+pub(crate) mod recycled;
 pub(crate) mod snapshot;
+pub(crate) mod tracking;
+pub(crate) mod tuning;
 
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::body::material::ContactMaterial;
 use crate::boxes::AxisOf;
-use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint, Parting};
-use crate::contact::kept::Kept;
+use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint, SeparationCache};
+use crate::contact::recycled::Recycled;
 use core::cmp::Ordering;
 use sinew_math::Vec3;
-
-/// Points are looked for so many slops away, however slow.
-pub(crate) const SPECULATIVE_SLOPS: f32 = 4.0;
 
 /// Key of a contact: body index and shape number of both shapes, the smaller body index first, and which part of their contact.
 /// Sorting by it is the order in which everything about contacts happens.
@@ -211,7 +209,7 @@ pub(crate) struct Contact {
     pub has_surface: bool,
     /// It does nothing but push, as long as neither surface is changed. Not part of the state: it follows from them.
     pub is_plain: bool,
-    pub kept: Kept,
+    pub kept: Recycled,
 }
 
 impl Contact {
@@ -231,7 +229,7 @@ impl Contact {
             gap: f32::NEG_INFINITY,
             has_surface: false,
             is_plain: false,
-            kept: Kept::default(),
+            kept: Recycled::default(),
         }
     }
 
@@ -241,8 +239,8 @@ impl Contact {
     }
 
     /// Separating axis and gap of its shapes, as far as they are known.
-    pub fn parting(&self) -> Parting {
-        Parting { axis: self.apart, gap: self.gap }
+    pub fn parting(&self) -> SeparationCache {
+        SeparationCache { axis: self.apart, gap: self.gap }
     }
 
     /// True if the solver has to do with it.

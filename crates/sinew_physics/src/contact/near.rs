@@ -7,9 +7,11 @@
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::boxes::AxisOf;
-use crate::collide::Parting;
+use crate::collide::SeparationCache;
 use crate::contact::filter::PairFilter;
-use crate::contact::proxies::{Closing, Leaf, MARGIN, Owner, Proxies};
+use crate::contact::proxies::{Closing, Leaf, Owner, Proxies};
+use crate::contact::tuning::GAP_ERROR;
+use crate::contact::tuning::MARGIN;
 use crate::contact::{Contact, ContactKey};
 use sinew_math::max;
 
@@ -30,10 +32,6 @@ pub(crate) struct NearPair {
     pub has_surface: bool,
 }
 
-/// Length by which a gap that was found may be less than it seems, metres: points of manifolds may lie outside of the faces
-/// that they are cut to by up to half a millimetre.
-const SKIN: f32 = 0.001;
-
 impl NearPair {
     /// That they may meet is still to be [found](Self::met).
     fn new(key: ContactKey, leaves: [Leaf; 2]) -> Self {
@@ -50,8 +48,8 @@ impl NearPair {
         Self { meets: filter.lets_meet(bodies, key), has_surface, ..*self }
     }
 
-    pub fn parting(&self) -> Parting {
-        Parting { axis: self.axis.unpack(), gap: f32::NEG_INFINITY }
+    pub fn parting(&self) -> SeparationCache {
+        SeparationCache { axis: self.axis.unpack(), gap: f32::NEG_INFINITY }
     }
 
     /// Takes note of how the two moved: whether points may be looked for as far away as they are apart.
@@ -63,16 +61,16 @@ impl NearPair {
 
     /// Takes note of a gap between their bounds, metres, if no points are looked for that far away.
     pub fn is_apart(&mut self, closing: &Closing, gap: f32) -> bool {
-        let is_far = !self.has_surface && gap - SKIN > max(MARGIN, closing.ahead);
+        let is_far = !self.has_surface && gap - GAP_ERROR > max(MARGIN, closing.ahead);
         if is_far {
-            self.left = gap - SKIN;
+            self.left = gap - GAP_ERROR;
         }
         is_far
     }
 
     /// They were looked at, and have no points.
-    pub fn part(&mut self, parting: &Parting) {
-        self.left = parting.gap - SKIN;
+    pub fn part(&mut self, parting: &SeparationCache) {
+        self.left = parting.gap - GAP_ERROR;
         self.axis = PackedAxis::new(parting.axis);
     }
 }

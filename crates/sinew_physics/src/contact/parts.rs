@@ -4,13 +4,11 @@
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::collide::{MAX_PARTS, Manifold, Motion, Patch, Scratch, collide_pair};
+use crate::contact::tuning::SAME_PART_COSINE;
 use crate::contact::{Contact, ContactMemory};
 use crate::context::StepContext;
 use crate::slices::for_each_mut;
 use std::sync::{Mutex, PoisonError};
-
-/// Cosine of the largest turn of a normal, 25°, after which a part is another one.
-const SAME_PART: f32 = 0.9;
 
 /// New manifolds of the pairs with parts; kept between steps for its memory.
 #[derive(Debug, Default)]
@@ -106,7 +104,7 @@ fn push_parts(old: &[Contact], new: &[Manifold], out: &mut Vec<Contact>) {
         let mut best: Option<(f32, usize)> = None;
         for (k, manifold) in new.iter().enumerate().filter(|(k, _)| !taken[*k]) {
             let cosine = manifold.normal.dot(contact.manifold.normal);
-            if cosine >= SAME_PART && best.is_none_or(|(most, _)| cosine > most) {
+            if cosine >= SAME_PART_COSINE && best.is_none_or(|(most, _)| cosine > most) {
                 best = Some((cosine, k));
             }
         }

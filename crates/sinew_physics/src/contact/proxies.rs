@@ -9,20 +9,12 @@ use crate::body::surface::Surface;
 use crate::body::{Body, Velocity};
 use crate::boxes::Aabb;
 use crate::contact::ContactKey;
+use crate::contact::tuning::{BOUNDS_EXCESS, BOUNDS_ROOM, BOUNDS_STEPS, BOUNDS_STEPS_ALONE, MARGIN};
 use crate::tree::{Item, PAD, Sweep, Tree};
 use core::ops::ControlFlow;
 use sinew_math::{Transform, Vec3, max, max3, min3};
 use std::collections::BTreeMap;
 
-/// Distance within which contacts are looked for, beside the motion of the step, metres.
-pub(crate) const MARGIN: f32 = 0.02;
-/// Room that what moves has beyond that, metres, and where it is going to, steps at its present velocity: more for what meets
-/// nobody, whose bounds nothing but rays and the like ask for.
-const ROOM: f32 = 0.04;
-const ROOM_STEPS: f32 = 3.0;
-const ROOM_STEPS_ALONE: f32 = 12.0;
-/// Multiple of its room by which a shape's bounds may exceed those that it needs; larger ones are made smaller.
-const TOO_MUCH: f32 = 3.0;
 /// Bodies with fewer shapes are put into a tree one by one.
 const FEW: usize = 64;
 
@@ -341,7 +333,7 @@ impl Proxies {
             let ahead = stride.ahead;
             for shape in 0..home.count {
                 let is_alone = body.surface(shape as usize).filter.meets_none();
-                let way = ahead * if is_alone { ROOM_STEPS_ALONE } else { ROOM_STEPS };
+                let way = ahead * if is_alone { BOUNDS_STEPS_ALONE } else { BOUNDS_STEPS };
                 let reach = grown(body, shape, motion);
                 self.reach[(home.first + shape) as usize] = reach;
                 if self.cover(home, shape, &thick(&reach), way) {
@@ -741,9 +733,10 @@ impl Proxies {
         let leaf = home.first + shape;
         let tree = &mut self.layer_mut(home.moves).tree;
         let own = tree.bounds(leaf);
-        let room = if home.moves { ROOM } else { 0.0 };
+        let room = if home.moves { BOUNDS_ROOM } else { 0.0 };
         // What comes to rest needs less room than what fell.
-        let fits = own.contains(needed) && needed.expand(TOO_MUCH * (room + way.length())).contains(&own);
+        let fits =
+            own.contains(needed) && needed.expand(BOUNDS_EXCESS * (room + way.length())).contains(&own);
         if !fits {
             let Aabb { min, max } = needed.expand(room);
             let roomy = Aabb { min: min + min3(way, Vec3::ZERO), max: max + max3(way, Vec3::ZERO) };

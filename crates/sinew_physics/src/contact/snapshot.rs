@@ -4,7 +4,7 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::body::snapshot::body_index;
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
-use crate::contact::kept::Kept;
+use crate::contact::recycled::Recycled;
 use crate::contact::{Contact, ContactKey, ContactMemory, Effect, PointImpulse};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
@@ -65,7 +65,7 @@ pub(crate) fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<C
     memory.twist = r.f32()?;
     memory.rolling = r.vec3()?;
     memory.total_friction = r.vec3()?;
-    let kept = Kept::load(r)?;
+    let kept = Recycled::load(r)?;
     let is_surface = |body: u32, shape: u32| bodies.at(body).shapes[shape as usize].shape.surface().is_some();
     let has_surface = is_surface(a, key.shape_a) || is_surface(b, key.shape_b);
     Ok(Contact { manifold, memory, effect, touching, sensed, passes, has_surface, kept, ..Contact::new(key) })

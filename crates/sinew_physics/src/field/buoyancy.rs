@@ -4,6 +4,7 @@ use super::def::not_negative;
 use super::exposed::{exposed, stream_force};
 use super::{Load, Target, WaterPlane};
 use crate::body::shape::Shape;
+use sinew_geometry::DefError;
 use sinew_math::{Transform, Vec3};
 
 /// A fluid at rest or in uniform flow below a plane.
@@ -46,12 +47,16 @@ impl Default for Buoyancy {
 }
 
 impl Buoyancy {
-    pub(super) fn check(&self) -> Result<(), &'static str> {
+    pub(super) fn check(&self) -> Result<(), DefError> {
         if !(super::def::is_pose(&self.world_from_surface) && self.flow.is_finite()) {
-            return Err("a surface and its flow must be finite");
+            return Err(DefError::new("a surface and its flow must be finite"));
         }
         let valid = not_negative(self.density) && not_negative(self.damping) && not_negative(self.drag);
-        if valid { Ok(()) } else { Err("a fluid's density, damping and drag must not be negative") }
+        if valid {
+            Ok(())
+        } else {
+            Err(DefError::new("a fluid's density, damping and drag must not be negative"))
+        }
     }
 
     fn plane(&self) -> WaterPlane {

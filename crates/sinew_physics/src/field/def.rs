@@ -4,6 +4,7 @@ use super::custom::PARAMETERS;
 use super::{Buoyancy, Drag, MutualGravity, PointGravity, Region, UniformGravity, Wind};
 use crate::arena::Item;
 use crate::id::FieldId;
+use sinew_geometry::DefError;
 use sinew_math::Transform;
 
 /// A field to be made: what it does, where, and to whom.
@@ -59,7 +60,7 @@ impl FieldDef {
     ///
     /// # Errors
     /// What is wrong, in lower case.
-    pub fn check(&self) -> Result<(), &'static str> {
+    pub fn check(&self) -> Result<(), DefError> {
         self.region.check()?;
         match &self.kind {
             FieldKind::Uniform(field) => field.check(),
@@ -70,7 +71,7 @@ impl FieldDef {
             FieldKind::Buoyancy(field) => field.check(),
             FieldKind::Custom { parameters, .. } => {
                 let finite = parameters.iter().all(|x| x.is_finite());
-                if finite { Ok(()) } else { Err("a field's parameters must be finite") }
+                if finite { Ok(()) } else { Err(DefError::new("a field's parameters must be finite")) }
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use super::def::not_negative;
 use super::{Load, Target};
+use sinew_geometry::DefError;
 use sinew_math::Vec3;
 
 /// Resistance of a medium, the same for all that it reaches, whatever its shape: with `w` the velocity against the medium
@@ -29,12 +30,12 @@ pub struct Drag {
 }
 
 impl Drag {
-    pub(super) fn check(&self) -> Result<(), &'static str> {
+    pub(super) fn check(&self) -> Result<(), DefError> {
         let valid = not_negative(self.linear) && not_negative(self.quadratic) && not_negative(self.angular);
         if valid && self.flow.is_finite() {
             Ok(())
         } else {
-            Err("drag must not be negative, and its flow finite")
+            Err(DefError::new("drag must not be negative, and its flow finite"))
         }
     }
 

@@ -4,6 +4,7 @@ use super::Fade;
 use super::def::{not_negative, positive};
 use super::exposed::exposed;
 use crate::body::shape::Shape;
+use sinew_geometry::DefError;
 use sinew_math::{Transform, Vec3, max, normalize_or};
 
 /// A blast: pressure that is over before anything moves, so that all it leaves is an impulse.
@@ -50,9 +51,13 @@ impl Explosion {
     ///
     /// # Errors
     /// What is wrong, in lower case.
-    pub fn check(&self) -> Result<(), &'static str> {
+    pub fn check(&self) -> Result<(), DefError> {
         let valid = self.center.is_finite() && positive(self.radius) && not_negative(self.impulse);
-        if valid { Ok(()) } else { Err("an explosion's place, radius and impulse must be finite") }
+        if valid {
+            Ok(())
+        } else {
+            Err(DefError::new("an explosion's place, radius and impulse must be finite"))
+        }
     }
 
     /// Impulse on a shape, N·s, and where it acts.

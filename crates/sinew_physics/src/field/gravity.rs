@@ -2,6 +2,7 @@
 
 use super::Target;
 use super::def::not_negative;
+use sinew_geometry::DefError;
 use sinew_math::Vec3;
 
 /// The same acceleration for all, beside the world's own gravity: `F = s m a`, with `s` the gravity scale of the body or
@@ -15,8 +16,12 @@ pub struct UniformGravity {
 }
 
 impl UniformGravity {
-    pub(super) fn check(&self) -> Result<(), &'static str> {
-        if self.acceleration.is_finite() { Ok(()) } else { Err("an acceleration must be finite") }
+    pub(super) fn check(&self) -> Result<(), DefError> {
+        if self.acceleration.is_finite() {
+            Ok(())
+        } else {
+            Err(DefError::new("an acceleration must be finite"))
+        }
     }
 
     pub(super) fn force(&self, target: &Target<'_>) -> Vec3 {
@@ -51,9 +56,9 @@ impl Default for PointGravity {
 }
 
 impl PointGravity {
-    pub(super) fn check(&self) -> Result<(), &'static str> {
+    pub(super) fn check(&self) -> Result<(), DefError> {
         let valid = self.center.is_finite() && self.strength.is_finite() && not_negative(self.softening);
-        if valid { Ok(()) } else { Err("a centre of gravity and its strength must be finite") }
+        if valid { Ok(()) } else { Err(DefError::new("a centre of gravity and its strength must be finite")) }
     }
 
     pub(super) fn force(&self, target: &Target<'_>) -> Vec3 {

@@ -4,6 +4,7 @@ use super::def::{FieldDef, not_negative};
 use super::gravity::{attraction, potential};
 use super::target::Target;
 use core::f32::consts::PI;
+use sinew_geometry::DefError;
 use sinew_math::Vec3;
 
 /// Newton's gravitation between all that the field reaches: dynamic bodies, and particles.
@@ -48,12 +49,12 @@ impl MutualGravity {
     /// for the Earth. A step is then 1/60 of a year.
     pub const ASTRONOMICAL: f32 = 4.0 * PI * PI;
 
-    pub(super) fn check(&self) -> Result<(), &'static str> {
+    pub(super) fn check(&self) -> Result<(), DefError> {
         let valid = self.constant.is_finite() && not_negative(self.softening);
         if valid {
             Ok(())
         } else {
-            Err("a constant of gravitation must be finite, its softening not negative")
+            Err(DefError::new("a constant of gravitation must be finite, its softening not negative"))
         }
     }
 

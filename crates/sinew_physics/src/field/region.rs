@@ -1,6 +1,7 @@
 //! Regions in which fields act, and how they fade toward their borders.
 
 use crate::body::shape::Shape;
+use sinew_geometry::DefError;
 use sinew_math::{Transform, Vec3};
 
 /// Decrease of a field's strength from where it is full to its border, with `u` from 1 to 0 on the way.
@@ -86,13 +87,17 @@ impl Region {
         }
     }
 
-    pub(super) fn check(&self) -> Result<(), &'static str> {
+    pub(super) fn check(&self) -> Result<(), DefError> {
         match self {
             Self::Everywhere => Ok(()),
             Self::Inside { shape, world_from_shape, margin, .. } => {
                 shape.check()?;
                 let valid = super::def::is_pose(world_from_shape) && super::def::not_negative(*margin);
-                if valid { Ok(()) } else { Err("a region's pose must be one, and its margin finite") }
+                if valid {
+                    Ok(())
+                } else {
+                    Err(DefError::new("a region's pose must be one, and its margin finite"))
+                }
             }
         }
     }

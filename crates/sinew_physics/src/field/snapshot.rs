@@ -29,7 +29,7 @@ impl FieldDef {
         let layers = r.u32()?;
         let region = load_region(r, library)?;
         let field = Self { kind: load_kind(r)?, region, layers };
-        field.check().map_err(|what| r.error(what))?;
+        field.check().map_err(|error| r.error(error.what()))?;
         match field.kind {
             FieldKind::Custom { function, .. } if !functions.has(function) => {
                 Err(r.error("names a field function that is not registered").into())

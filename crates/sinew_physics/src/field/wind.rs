@@ -4,6 +4,7 @@ use super::def::{not_negative, positive};
 use super::exposed::{exposed, stream_force};
 use super::noise::turbulence;
 use super::{Load, Target};
+use sinew_geometry::DefError;
 use sinew_math::Vec3;
 
 /// Air that moves, with drag and lift by the area that shapes expose to it.
@@ -61,18 +62,18 @@ impl Default for Wind {
 }
 
 impl Wind {
-    pub(super) fn check(&self) -> Result<(), &'static str> {
+    pub(super) fn check(&self) -> Result<(), DefError> {
         if !self.velocity.is_finite() {
-            return Err("a wind's velocity must be finite");
+            return Err(DefError::new("a wind's velocity must be finite"));
         }
         if !(not_negative(self.density) && not_negative(self.drag) && not_negative(self.lift)) {
-            return Err("a wind's density, drag and lift must not be negative");
+            return Err(DefError::new("a wind's density, drag and lift must not be negative"));
         }
         match &self.gusts {
             Some(g)
                 if !(not_negative(g.speed) && positive(g.length) && g.time >= 1e-9 && positive(g.time)) =>
             {
-                Err("gusts need a speed that is not negative, and a positive length and time")
+                Err(DefError::new("gusts need a speed that is not negative, and a positive length and time"))
             }
             _ => Ok(()),
         }

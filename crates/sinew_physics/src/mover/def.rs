@@ -2,6 +2,7 @@
 
 use crate::body::shape::Filter;
 use core::f32::consts::PI;
+use sinew_geometry::DefError;
 use sinew_math::Vec3;
 
 /// A kinematic character mover: an upright capsule that walks, falls, jumps and pushes, with no body of its own.
@@ -76,36 +77,38 @@ impl MoverDef {
     ///
     /// # Errors
     /// What is wrong, in lower case.
-    pub fn check(&self) -> Result<(), &'static str> {
+    pub fn check(&self) -> Result<(), DefError> {
         // Written so that NaN fails.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         if !self.position.is_finite() {
-            return Err("a mover's position is finite");
+            return Err(DefError::new("a mover's position is finite"));
         }
         if !(0.9999..1.0001).contains(&self.up.length()) {
-            return Err("a mover's up has length 1");
+            return Err(DefError::new("a mover's up has length 1"));
         }
         if !(positive(self.radius) && positive(self.height) && self.height >= 2.0 * self.radius) {
-            return Err("a mover's radius is above 0 and its height at least twice that");
+            return Err(DefError::new("a mover's radius is above 0 and its height at least twice that"));
         }
         if !(positive(self.skin) && self.skin < self.radius) {
-            return Err("a mover's skin is above 0 and below its radius");
+            return Err(DefError::new("a mover's skin is above 0 and below its radius"));
         }
         if !(positive(self.mass) && not_negative(self.push_force) && not_negative(self.step_height)) {
-            return Err("a mover's mass is above 0, its push force and step height are not negative");
+            return Err(DefError::new(
+                "a mover's mass is above 0, its push force and step height are not negative",
+            ));
         }
         if !(0.0..0.5 * PI).contains(&self.slope_limit) {
-            return Err("a mover's slope limit is at least 0 and below a right angle");
+            return Err(DefError::new("a mover's slope limit is at least 0 and below a right angle"));
         }
         if !(not_negative(self.ground_acceleration) && not_negative(self.air_acceleration)) {
-            return Err("a mover's accelerations are not negative");
+            return Err(DefError::new("a mover's accelerations are not negative"));
         }
         if !not_negative(self.lets_pass) {
-            return Err("a mover lets pass a momentum that is finite and not negative");
+            return Err(DefError::new("a mover lets pass a momentum that is finite and not negative"));
         }
         if !self.gravity_scale.is_finite() {
-            return Err("a mover's gravity scale is finite");
+            return Err(DefError::new("a mover's gravity scale is finite"));
         }
         Ok(())
     }

@@ -10,6 +10,7 @@ mod press;
 mod segment;
 mod snapshot;
 mod sweep;
+mod tuning;
 mod walk;
 mod world;
 

@@ -10,6 +10,7 @@ use crate::body::shape::{Sensing, Shape};
 use crate::boxes::{Aabb, Overlap};
 use crate::contact::proxies::thick;
 use crate::convex::{Gap, gap};
+use crate::mover::tuning::FLYING_SPEED;
 use crate::triangles::Triangle;
 use crate::world::World;
 use core::ops::ControlFlow;
@@ -200,13 +201,10 @@ fn gather_shape(
     obstacles.push(obstacle);
 }
 
-/// Speed from which a body flies, m/s.
-const FLIES: f32 = 2.0;
-
 /// True if a body is fast and light enough to be left to others than the mover.
 fn flies_past(body: &Body, mover: &Mover) -> bool {
     let speed = body.velocity.linear.length();
-    speed > FLIES && speed <= mover.def.lets_pass * body.inverse_mass()
+    speed > FLYING_SPEED && speed <= mover.def.lets_pass * body.inverse_mass()
 }
 
 /// True if a joint ties a body to one that is not dynamic: a door's leaf brings more than its own momentum, and comes back.

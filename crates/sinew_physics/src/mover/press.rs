@@ -6,6 +6,7 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::body::def::BodyKind;
 use crate::boxes::Overlap;
+use crate::mover::tuning::{BEARING_COSINE, LEAVE_RATE, LEAVE_SPEED};
 use crate::world::World;
 use sinew_math::{Vec3, max, min};
 
@@ -18,12 +19,6 @@ pub(super) struct Press {
     /// True if a body that sleeps wakes of it.
     wakes: bool,
 }
-
-/// Share of what a body is too deep that it is told to leave within a second, and the fastest of that, 1/s and m/s.
-const LEAVE: f32 = 12.0;
-const FASTEST_LEAVE: f32 = 1.0;
-/// Upward component of a normal above which what meets there bears or is borne.
-const BEARS: f32 = 0.7;
 
 /// A mover as what hits and is hit.
 struct Hitter {
@@ -83,7 +78,7 @@ impl Hitter {
         let arm = point - body.center();
         let (comes, walks) = (body.velocity.at(arm).dot(normal), -self.velocity.dot(normal));
         let closing = comes + walks;
-        let deep = min(max(-room, 0.0) * LEAVE, FASTEST_LEAVE);
+        let deep = min(max(-room, 0.0) * LEAVE_RATE, LEAVE_SPEED);
         let excess = closing + deep - max(room, 0.0) / dt;
         if excess <= 0.0 || closing + deep <= 1e-4 {
             return None;
@@ -96,7 +91,7 @@ impl Hitter {
         let own = if braced { self.inverse_mass * (1.0 - rise * rise) } else { self.inverse_mass };
         let inelastic = |speed: f32| speed / (response + self.inverse_mass);
         let wanted = excess / (response + own);
-        let hit = if rise > BEARS { wanted } else { inelastic(min(max(comes, 0.0), excess)) };
+        let hit = if rise > BEARING_COSINE { wanted } else { inelastic(min(max(comes, 0.0), excess)) };
         let impulse = min(wanted, hit + self.force * dt);
         self.velocity += normal * (impulse * own);
         Some(impulse)

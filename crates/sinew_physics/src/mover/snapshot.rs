@@ -71,7 +71,7 @@ impl Mover {
         mover.ground = load_footing(r, tag & !LETS_PASS, bodies)?;
         if tag & LETS_PASS != 0 {
             mover.def.lets_pass = r.f32()?;
-            mover.def.check().map_err(|what| r.error(what))?;
+            mover.def.check().map_err(|error| r.error(error.what()))?;
         }
         let finite =
             [mover.position, mover.previous, mover.velocity, mover.walk].iter().all(|v| v.is_finite());
@@ -100,7 +100,7 @@ fn load_def(r: &mut Reader<'_>) -> Result<MoverDef, ReadError> {
         user_data: r.u64()?,
         lets_pass: 0.0,
     };
-    def.check().map_err(|what| r.error(what))?;
+    def.check().map_err(|error| r.error(error.what()))?;
     Ok(def)
 }
 

@@ -4,6 +4,9 @@ use super::obstacle::Surroundings;
 use super::planes::{MOST, Planes};
 use super::segment::level;
 use crate::boxes::Overlap;
+use crate::mover::tuning::{
+    ARRIVED_SKIN, BEARING_SKIN, BESIDE_RADIUS, COPLANAR_SKIN, SLIDE_AWAY, STOP_SKIN, TOUCH_SKIN,
+};
 use sinew_math::{Vec3, clamp, min};
 
 /// Place at which the capsule is near an obstacle.
@@ -63,19 +66,8 @@ impl Touches {
     }
 }
 
-/// Shares of the skin: where sweeps stop, what counts as touching and as bearing beyond the skin, what is as good as there,
-/// what lies in one plane.
-const STOP: f32 = 0.75;
-const BAND: f32 = 0.05;
-const BEARS: f32 = 0.5;
-const THERE: f32 = 0.02;
-const HIDDEN: f32 = 0.04;
 /// Share of a way by which it may lead toward what it slides along.
 const ALONG: f32 = 1e-4;
-/// Share of the skin by which one slide leads away from what is too near.
-const LEAVE: f32 = 0.3;
-/// Share of the radius by which a way goes on beside a face that it may come to.
-const BESIDE: f32 = 0.1;
 const MOST_STEPS: usize = 48;
 const MOST_SLIDES: usize = 8;
 const MOST_PUSHES: usize = 8;
@@ -100,7 +92,7 @@ pub(super) struct Manner {
 
 impl Manner {
     pub fn stop(&self) -> f32 {
-        STOP * self.skin
+        STOP_SKIN * self.skin
     }
 }
 
@@ -126,15 +118,15 @@ impl Surroundings<'_> {
 
     /// Touches of the capsule: within its skin, and a little beyond.
     pub fn touches(&self, center: Vec3, skin: f32) -> Touches {
-        let mut touches = self.near(center, skin * (1.0 + BAND));
-        touches.drop_hidden(HIDDEN * skin);
+        let mut touches = self.near(center, skin * (1.0 + TOUCH_SKIN));
+        touches.drop_hidden(COPLANAR_SKIN * skin);
         touches
     }
 
     /// Touches that may bear the capsule: a little farther away than what stops it.
     pub fn bearers(&self, center: Vec3, skin: f32) -> Touches {
-        let mut touches = self.near(center, skin * (1.0 + BEARS));
-        touches.drop_hidden(HIDDEN * skin);
+        let mut touches = self.near(center, skin * (1.0 + BEARING_SKIN));
+        touches.drop_hidden(COPLANAR_SKIN * skin);
         touches
     }
 
@@ -159,10 +151,10 @@ impl Surroundings<'_> {
                     break;
                 }
                 let left = gap.distance - manner.stop();
-                if hidden && left <= THERE * manner.skin {
+                if hidden && left <= ARRIVED_SKIN * manner.skin {
                     // Beside a face, in its plane: the way may yet lead over it.
-                    share += BESIDE * self.radius / length;
-                } else if left <= THERE * manner.skin {
+                    share += BESIDE_RADIUS * self.radius / length;
+                } else if left <= ARRIVED_SKIN * manner.skin {
                     let touch = Touch {
                         normal: gap.normal,
                         distance: gap.distance,
@@ -187,7 +179,7 @@ impl Surroundings<'_> {
         let mut planes = Planes::new();
         for touch in self.touches(center, manner.skin).as_slice() {
             // What a sweep stopped at is left for the skin again: the next of two walls that abut would be met there.
-            let least = min(manner.skin - touch.distance, LEAVE * manner.skin);
+            let least = min(manner.skin - touch.distance, SLIDE_AWAY * manner.skin);
             let rise = touch.normal.dot(self.up);
             planes.push(touch.normal, least);
             if rise > 0.0 && rise < manner.flattest {

@@ -6,19 +6,10 @@ use super::sweep::{Course, Manner, Touch};
 use super::{Bearer, Footing, Mover, Movers, surface_velocity};
 use crate::arena::Arena;
 use crate::body::Body;
+use crate::mover::tuning::{BEHIND_EDGE, LOOK_AHEAD, OVER_EDGE, STOPPED_SHARE, WEDGED_SHARE};
 use crate::ray::Ray;
 use crate::world::World;
 use sinew_math::{Vec3, max, trig};
-
-/// Distance around its way within which a mover looks for bodies that come toward it, metres.
-const LOOK: f32 = 0.5;
-/// Distances behind an edge, and over and under it, at which a tread is looked for, metres.
-const BEHIND_EDGE: f32 = 0.01;
-const OVER_EDGE: f32 = 0.03;
-/// Missing share of a way from which on something other than the ground's slope has stopped it.
-const STOPPED: f32 = 0.02;
-/// A fall that comes less far than this share of its way lies wedged.
-const WEDGED: f32 = 0.02;
 
 /// Surroundings of a move, besides the mover itself.
 struct Move<'a> {
@@ -57,7 +48,8 @@ fn look_around(
     let def = &mover.def;
     let (center, way) = (mover.center(), mover.velocity() * dt + carried);
     let jump = (mover.jump + gravity.length() * dt) * dt;
-    let margin = LOOK + jump + 2.0 * def.step_height + 0.5 * def.radius + 4.0 * def.skin + 0.3 * way.length();
+    let margin =
+        LOOK_AHEAD + jump + 2.0 * def.step_height + 0.5 * def.radius + 4.0 * def.skin + 0.3 * way.length();
     let bounds = Surroundings::new(&world.bodies, &[], mover).bounds(center, way, margin);
     gather(world, movers, index, &bounds, obstacles);
 }
@@ -174,7 +166,7 @@ impl<'a> Move<'a> {
         let mut center = self.sight.slide(start, wanted, &self.level());
         let across = |v: Vec3| v - up * v.dot(up);
         let missing = wanted - across(center - start);
-        if missing.dot(wanted) > STOPPED * wanted.length_squared() {
+        if missing.dot(wanted) > STOPPED_SHARE * wanted.length_squared() {
             center = self.step_up(mover, start, center, missing).unwrap_or(center);
         }
         let (found, footing) = self.snap(mover, center);
@@ -258,7 +250,7 @@ impl<'a> Move<'a> {
         let free = mover.velocity;
         mover.velocity = blocked.closest(free).unwrap_or(Vec3::ZERO);
         let fell = -wanted.dot(up);
-        let wedged = fell > 0.0 && (center - start).length() < WEDGED * fell;
+        let wedged = fell > 0.0 && (center - start).length() < WEDGED_SHARE * fell;
         let edges = if wedged { Edges::Wedge } else { Edges::Fall };
         if let Some(footing) = self.ground_at(mover, center, edges) {
             let beside = free - footing.velocity;

@@ -4,10 +4,8 @@ use super::{
     AttachmentDef, AttachmentTarget, BendDef, GroupDef, ParticleDef, SpringDef, SpringScheme, TetherDef,
     VolumeDef,
 };
+use crate::particles::tuning::ROPE_DAMPING;
 use sinew_math::Vec3;
-
-/// Share of critical damping that ropes and strands have.
-const ROPE_DAMPING: f32 = 0.1;
 
 impl GroupDef {
     /// Holds a particle in place, or at a point of a body.

@@ -1,6 +1,7 @@
 //! Checks of the definitions of particles.
 
 use super::{BendDef, GroupDef, ParticleDef, SpringDef, TetherDef, VolumeDef};
+use sinew_geometry::DefError;
 
 /// Parts that a substep may be moved in.
 const MAX_ITERATIONS: u32 = 64;
@@ -15,8 +16,8 @@ fn not_negative(x: f32) -> bool {
 }
 
 /// The phrase, unless it holds.
-fn must(holds: bool, what: &'static str) -> Result<(), &'static str> {
-    if holds { Ok(()) } else { Err(what) }
+fn must(holds: bool, what: &'static str) -> Result<(), DefError> {
+    if holds { Ok(()) } else { Err(DefError::new(what)) }
 }
 
 impl GroupDef {
@@ -24,7 +25,7 @@ impl GroupDef {
     ///
     /// # Errors
     /// What is wrong, in lower case.
-    pub fn check(&self) -> Result<(), &'static str> {
+    pub fn check(&self) -> Result<(), DefError> {
         let count = self.particles.len();
         self.particles.iter().try_for_each(ParticleDef::check)?;
         self.springs.iter().try_for_each(|s| s.check(count))?;
@@ -51,7 +52,7 @@ impl GroupDef {
 }
 
 impl ParticleDef {
-    fn check(&self) -> Result<(), &'static str> {
+    fn check(&self) -> Result<(), DefError> {
         must(
             self.position.is_finite() && self.velocity.is_finite(),
             "a particle's position and velocity must be finite",
@@ -64,7 +65,7 @@ impl ParticleDef {
 }
 
 impl SpringDef {
-    fn check(&self, count: usize) -> Result<(), &'static str> {
+    fn check(&self, count: usize) -> Result<(), DefError> {
         let known = |index: u32| (index as usize) < count;
         must(
             known(self.a) && known(self.b) && self.a != self.b,
@@ -78,7 +79,7 @@ impl SpringDef {
 }
 
 impl BendDef {
-    fn check(&self, count: usize) -> Result<(), &'static str> {
+    fn check(&self, count: usize) -> Result<(), DefError> {
         let [a, b, c] = self.particles;
         let known = self.particles.iter().all(|&i| (i as usize) < count);
         must(
@@ -93,7 +94,7 @@ impl BendDef {
 }
 
 impl TetherDef {
-    fn check(&self, held: &[bool]) -> Result<(), &'static str> {
+    fn check(&self, held: &[bool]) -> Result<(), DefError> {
         let (particle, to) = (self.particle as usize, self.to as usize);
         let ends = held.get(particle).is_some() && particle != to && held.get(to) == Some(&true);
         must(
@@ -104,7 +105,7 @@ impl TetherDef {
 }
 
 impl VolumeDef {
-    fn check(&self, count: usize) -> Result<(), &'static str> {
+    fn check(&self, count: usize) -> Result<(), DefError> {
         let known = self.triangles.iter().flatten().all(|&i| (i as usize) < count);
         must(
             known && positive(self.rest_volume) && positive(self.bulk_modulus),

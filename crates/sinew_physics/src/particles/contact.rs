@@ -13,18 +13,15 @@ use super::{Part, ParticleGroup};
 use crate::body::material::{ContactMaterial, Material};
 use crate::body::shape::Shape;
 use crate::boxes::Aabb;
+use crate::particles::tuning::{DETOUR, NET_GAP};
 use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
 /// Slower than that, nothing moves, m/s.
 const NO_SPEED: f32 = 1e-6;
 /// Solves per iteration until grips and directions have to be right.
 const GRIP_ROUNDS: u32 = 8;
-/// Gap that a net may close by pressing, metres.
-const TOUCHING: f32 = 1e-4;
 /// Depth at the end of an iteration below which a contact is left to impacts, metres.
 const IMPACT_DEPTH: f32 = 1e-5;
-/// Factor on the length of a way within which everything is looked for: what is still to push may turn it a little.
-pub(super) const DETOUR: f32 = 1.5;
 
 /// The motion of a body that particles may touch. Its velocity changes as they do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -321,7 +318,7 @@ impl ParticleGroup {
 
     /// Surfaces that particles would meet within the iteration with the velocities just found; whether there are any that
     /// the solve does not know of.
-    fn foresee(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> bool {
+    fn predict_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> bool {
         let mut found = false;
         for i in 0..self.positions.len() {
             let way = self.velocities[i] * h;
@@ -406,7 +403,7 @@ impl ParticleGroup {
                 break;
             }
             let changed = self.change_grips(bodies);
-            let found = self.foresee(h, obstacles, bodies);
+            let found = self.predict_contacts(h, obstacles, bodies);
             let ends = (self.positions.as_slice(), self.velocities.as_slice());
             let bent = self.system.follow_springs(&self.forest, &self.springs, ends, h);
             if !(changed || found || bent) {
@@ -421,7 +418,7 @@ impl ParticleGroup {
             (self.backings[i], self.press_normals[i], self.presses[i]) = (0.0, Vec3::ZERO, Vec3::ZERO);
             let Some(touch) = self.touches[i] else { continue };
             let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
-            if (relative.dot(touch.normal) - touch.speed_min) * h > TOUCHING {
+            if (relative.dot(touch.normal) - touch.speed_min) * h > NET_GAP {
                 continue;
             }
             let yielding = bodies[touch.body].yielding(touch.point, touch.normal);

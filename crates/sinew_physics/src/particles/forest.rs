@@ -7,10 +7,8 @@
 //! zero, so that a chain hangs exactly where its forces balance, whatever the length of the step.
 
 use super::{Resists, SpringDef};
+use crate::particles::tuning::LENGTH_TOLERANCE;
 use sinew_math::{Sym3, Vec3, max};
-
-/// Length by which a spring may exceed its foreseen length at the end of a step, as a share of its rest length.
-const LENGTH_TOLERANCE: f32 = 1e-3;
 
 /// The spring between a particle and the next one toward the root.
 #[derive(Clone, Copy, Debug)]

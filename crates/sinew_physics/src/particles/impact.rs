@@ -2,12 +2,12 @@
 //! its end. Each particle answers with its own mass.
 
 use super::ParticleGroup;
-use super::contact::{DETOUR, Obstacle, ObstacleBody, Touch};
+use super::contact::{Obstacle, ObstacleBody, Touch};
 use super::sweep::Meeting;
+use crate::particles::tuning::DETOUR;
+use crate::particles::tuning::IMPACT_SPEED;
 use sinew_math::{Vec3, max};
 
-/// Approaches from this speed on bounce, m/s.
-const IMPACT_SPEED: f32 = 1.0;
 /// Surfaces that a particle is moved out of, one after the other; after that it stays where it met the next.
 const ROUNDS: usize = 2;
 /// Depths within rounding, metres.

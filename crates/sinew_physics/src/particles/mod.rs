@@ -26,6 +26,7 @@ mod near;
 mod net;
 mod snapshot;
 mod sweep;
+mod tuning;
 
 pub use attach::Anchor;
 pub use builders::{Blob, BlobDef, Cloth, ClothDef, Rope, RopeDef, StrandDef};
@@ -40,16 +41,15 @@ use crate::body::material::Material;
 use crate::body::shape::{Filter, Shape};
 use crate::boxes::Aabb;
 use crate::id::GroupId;
+use crate::particles::tuning::STRIKE_GAP;
 use contact::{Grip, Placed, Touch};
 use forest::{Forest, Freedom, System};
 use impact::MAX_TOUCHES;
 use near::Near;
 use sinew_math::{Sym3, Transform, Vec3, max};
 
-/// Most strides in which the way of a particle is looked along, and how near it comes to what it strikes, metres: what falls
-/// gains no more within a step.
+/// Most strides in which the way of a particle is looked along.
 const STRIDES: usize = 16;
-const STRIKE: f32 = 0.005;
 
 /// Particles and springs at run time. One array per quantity, by index of the particle.
 #[derive(Clone, Debug, Default)]
@@ -301,8 +301,8 @@ impl ParticleGroup {
             for _ in 0..STRIDES {
                 let (distance, outward) = shape.signed_distance(at, position + velocity * (way / whole));
                 let gap = distance - radius;
-                if gap < STRIKE || way > whole * dt {
-                    return gap < STRIKE && velocity.dot(outward) < -speed;
+                if gap < STRIKE_GAP || way > whole * dt {
+                    return gap < STRIKE_GAP && velocity.dot(outward) < -speed;
                 }
                 way += gap;
             }

@@ -5,14 +5,12 @@
 //! list leaves out cannot be met: the results are the bits that trying all gives, so that lists are no part of the state.
 
 use super::ParticleGroup;
-use super::contact::{DETOUR, Placed, distance_at_least};
+use super::contact::{Placed, distance_at_least};
 use crate::boxes::Aabb;
+use crate::particles::tuning::DETOUR;
+use crate::particles::tuning::{LIST_ITERATIONS, LIST_ROOM};
 use sinew_math::Vec3;
 
-/// Iterations that particles and obstacles have room for at their present speed and acceleration.
-const LASTING: f32 = 8.0;
-/// Room of each at least, metres.
-const ROOM: f32 = 0.01;
 /// Indices that all lists together have room for, per particle.
 const SHARE: usize = 32;
 /// Lists are made anew when more than one in so many does not hold.
@@ -77,7 +75,7 @@ impl Near {
         self.rooms.clear();
         self.rooms.extend(placed.iter().map(|placed| {
             let way = (placed.end.translation - placed.start.translation).length();
-            placed.bounds.expand(ROOM + LASTING * way)
+            placed.bounds.expand(LIST_ROOM + LIST_ITERATIONS * way)
         }));
     }
 
@@ -128,9 +126,9 @@ impl ParticleGroup {
         self.near.make_rooms(&self.placed);
         self.near.obstacles.clear();
         for i in 0..self.positions.len() {
-            let time = LASTING * h;
+            let time = LIST_ITERATIONS * h;
             let speed = self.velocities[i].length() + self.accelerations[i].length() * time;
-            let room = ROOM + self.radii[i] + speed * (time + DETOUR * h);
+            let room = LIST_ROOM + self.radii[i] + speed * (time + DETOUR * h);
             let reach = self.sight(i, h) + room;
             self.near.push(i, self.positions[i], self.radii[i], reach);
             self.near.follow(i, self.positions[i]);

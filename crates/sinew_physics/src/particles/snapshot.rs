@@ -136,7 +136,7 @@ impl ParticleGroup {
         for _ in 0..input.count(ATTACHMENT_BYTES)? {
             def.attachments.push(read_attachment(input)?);
         }
-        def.check().map_err(|what| input.error(what))?;
+        def.check().map_err(|error| input.error(error.what()))?;
         let finite = contact_impulses.iter().chain(&drawn_from).all(|v: &Vec3| v.is_finite());
         if !(finite && span.is_finite()) {
             return Err(input.error("an impulse, a place or a time is not finite"));

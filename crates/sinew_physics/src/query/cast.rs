@@ -2,10 +2,10 @@
 
 use super::Query;
 use super::candidates::Reach;
+use super::kind::QueryKind;
+use super::kind::sealed::{Ask, Reply};
 use super::pair;
 use super::probe::Probe;
-use super::question::Question;
-use super::question::sealed::{Ask, Reply};
 use super::rays;
 use crate::body::shape::Shape;
 use crate::boxes::{Aabb, Penetration};
@@ -53,7 +53,7 @@ impl Reply for BodyHit {
 }
 
 /// Asks for the shapes that the ray meets, from its start to its end; those that are met first come first.
-impl Question for Ray {
+impl QueryKind for Ray {
     type Answer = BodyHit;
 }
 
@@ -98,7 +98,7 @@ pub struct ShapeCast {
     pub translation: Vec3,
 }
 
-impl Question for ShapeCast {
+impl QueryKind for ShapeCast {
     type Answer = BodyHit;
 }
 

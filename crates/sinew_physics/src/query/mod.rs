@@ -1,6 +1,6 @@
 //! Questions to a world: what a ray meets, what a shape would touch, what is near.
 //!
-//! A [`Question`] is plain data. [`World::query`] takes it to the shapes of a world, all of them or those that pass a
+//! A [`QueryKind`] is plain data. [`World::query`] takes it to the shapes of a world, all of them or those that pass a
 //! [`QueryFilter`] and a predicate:
 //!
 //! ```
@@ -66,22 +66,22 @@ mod body;
 mod candidates;
 mod cast;
 mod filter;
+mod kind;
 mod metrics;
 mod pair;
 mod place;
 mod probe;
-mod question;
 mod rays;
 mod surface;
 
 pub use cast::{BodyHit, ShapeCast};
 pub use filter::{BodyKinds, QueryFilter, Sensors};
+pub use kind::QueryKind;
 pub use metrics::{Energy, Momentum};
 pub use place::{
     BodyPenetration, BodySurface, ContainsPoint, NearestTo, NearestToShape, OverlapWith, PenetrationOf,
 };
 pub use probe::Probe;
-pub use question::Question;
 
 use crate::body::def::BodyKind;
 use crate::body::shape::{Filter, Sensing, Shape};
@@ -90,7 +90,7 @@ use crate::id::{BodyId, ShapeId};
 use crate::world::World;
 use candidates::{Limit, candidates};
 use core::ops::ControlFlow;
-use question::sealed::{Ask, Reply};
+use kind::sealed::{Ask, Reply};
 use sinew_math::Transform;
 
 /// Asks a world, about those of its shapes that pass a filter and a predicate.
@@ -129,12 +129,12 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
 
     /// The first answer in the question's order: of a ray the nearest hit. Of equal ones that of the body with the lower
     /// index, then of its shape with the lower number.
-    pub fn first<Q: Question>(&self, question: &Q) -> Option<Q::Answer> {
+    pub fn first<Q: QueryKind>(&self, question: &Q) -> Option<Q::Answer> {
         self.best(question)
     }
 
     /// True if there is an answer; cheaper than the first one.
-    pub fn any<Q: Question>(&self, question: &Q) -> bool {
+    pub fn any<Q: QueryKind>(&self, question: &Q) -> bool {
         let mut any = false;
         self.shapes(question, |id, shape, frame| {
             any = question.is_met(id, shape, frame);
@@ -145,7 +145,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
 
     /// All answers, one for each shape that has one, in the question's order, equal ones by body and shape. `answers` is
     /// emptied first, and allocates only to grow.
-    pub fn all<Q: Question>(&self, question: &Q, answers: &mut Vec<Q::Answer>) {
+    pub fn all<Q: QueryKind>(&self, question: &Q, answers: &mut Vec<Q::Answer>) {
         answers.clear();
         self.answers(question, |answer| {
             answers.push(answer);
@@ -156,7 +156,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
     }
 
     /// The bodies that have an answer, each once, by index. `bodies` is emptied first, and allocates only to grow.
-    pub fn bodies<Q: Question>(&self, question: &Q, bodies: &mut Vec<BodyId>) {
+    pub fn bodies<Q: QueryKind>(&self, question: &Q, bodies: &mut Vec<BodyId>) {
         bodies.clear();
         self.shapes(question, |id, shape, frame| {
             if question.is_met(id, shape, frame) {
@@ -172,7 +172,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
     ///
     /// # Panics
     /// If there are not as many answers as questions.
-    pub fn first_each<Q: Question>(&self, questions: &[Q], answers: &mut [Option<Q::Answer>]) {
+    pub fn first_each<Q: QueryKind>(&self, questions: &[Q], answers: &mut [Option<Q::Answer>]) {
         assert_eq!(questions.len(), answers.len(), "one answer for each question");
         Q::first_each(self, questions, answers);
     }
@@ -181,7 +181,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
     ///
     /// # Panics
     /// If there are not as many answers as questions.
-    pub fn any_each<Q: Question>(&self, questions: &[Q], answers: &mut [bool]) {
+    pub fn any_each<Q: QueryKind>(&self, questions: &[Q], answers: &mut [bool]) {
         assert_eq!(questions.len(), answers.len(), "one answer for each question");
         for (question, answer) in questions.iter().zip(answers) {
             *answer = self.any(question);
@@ -190,7 +190,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
 
     /// [`all`](Self::all) of each question, one after the other: `visit` sees the number of the question and its answers.
     /// `answers` is room to work in, and allocates only to grow.
-    pub fn all_each<Q: Question>(
+    pub fn all_each<Q: QueryKind>(
         &self,
         questions: &[Q],
         answers: &mut Vec<Q::Answer>,

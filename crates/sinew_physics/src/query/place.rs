@@ -1,10 +1,10 @@
 //! Questions about a place: shapes that hold a point, that a probe overlaps, how deep, and what is nearest.
 
 use super::candidates::Reach;
+use super::kind::QueryKind;
+use super::kind::sealed::{Ask, Reply};
 use super::pair;
 use super::probe::Probe;
-use super::question::Question;
-use super::question::sealed::{Ask, Reply};
 use crate::body::shape::Shape;
 use crate::boxes::{Aabb, Penetration, SurfacePoint};
 use crate::convex::Gap;
@@ -15,7 +15,7 @@ use sinew_math::{Transform, Vec3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContainsPoint(pub Vec3);
 
-impl Question for ContainsPoint {
+impl QueryKind for ContainsPoint {
     type Answer = ShapeId;
 }
 
@@ -45,7 +45,7 @@ impl Reply for ShapeId {
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverlapWith(pub Probe);
 
-impl Question for OverlapWith {
+impl QueryKind for OverlapWith {
     type Answer = ShapeId;
 }
 
@@ -89,7 +89,7 @@ impl Reply for BodyPenetration {
     }
 }
 
-impl Question for PenetrationOf {
+impl QueryKind for PenetrationOf {
     type Answer = BodyPenetration;
 }
 
@@ -154,7 +154,7 @@ impl Reply for BodySurface {
     }
 }
 
-impl Question for NearestTo {
+impl QueryKind for NearestTo {
     type Answer = BodySurface;
 }
 
@@ -181,7 +181,7 @@ pub struct NearestToShape {
     pub within: f32,
 }
 
-impl Question for NearestToShape {
+impl QueryKind for NearestToShape {
     type Answer = BodySurface;
 }
 

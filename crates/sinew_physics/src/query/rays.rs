@@ -3,7 +3,7 @@
 //! the answers are those of single rays.
 
 use super::candidates::{Reach, sweep, what_is_left};
-use super::question::sealed::{Ask, Reply};
+use super::kind::sealed::{Ask, Reply};
 use super::{BodyHit, Query, keep_first};
 use crate::body::shape::Shape;
 use crate::boxes::Obb;
@@ -12,7 +12,7 @@ use crate::contact::proxies::Owner;
 use crate::id::BodyId;
 use crate::ray::{CLEARLY_OUTSIDE, Ray};
 use crate::slabs::Slabs;
-use crate::tree::{Flight, Stop, Sweep, Tree};
+use crate::tree::{Stop, Sweep, Traversal, Tree};
 use sinew_math::dispatch::{self, Kernel, Level};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Transform, Vec3};
@@ -85,14 +85,14 @@ struct Stream<'a, 'w, P> {
 struct Rider {
     ray: usize,
     sweep: Sweep,
-    flight: Flight,
+    flight: Traversal,
 }
 
 impl Rider {
     fn idle() -> Self {
         let [origin, direction, half_extents] = Default::default();
         let sweep = Sweep { origin, direction, half_extents, limit: 0.0 };
-        Self { ray: 0, sweep, flight: Flight::ended() }
+        Self { ray: 0, sweep, flight: Traversal::ended() }
     }
 }
 

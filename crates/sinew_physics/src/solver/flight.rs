@@ -3,7 +3,6 @@
 //! The angular momentum stays as it is in the world but for torque and damping; spin and rotation follow from it, substep by substep,
 //! by [`middle_of_spin`].
 
-use super::boundary::build::{View, lasting_force};
 use super::boundary::solution::SolvedBody;
 use super::motion::{Turn, divided, middle_of_spin, over, within};
 use crate::body::Velocity;
@@ -12,6 +11,7 @@ use crate::context::StepContext;
 use crate::island::Island;
 use crate::slices::for_each_mut;
 use crate::solver::tuning::MOST_FLIGHT_TURN;
+use crate::solver::view::{View, lasting_force};
 use crate::stage::Counter;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};

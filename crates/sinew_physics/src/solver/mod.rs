@@ -4,158 +4,55 @@
 //! `finalize`, so that threads never share what they write.
 
 mod articulation;
+mod body;
 pub(crate) mod boundary;
 mod contact_rows;
 mod contacts;
 pub(crate) mod flight;
+mod joint;
 mod limits;
 mod motion;
+mod pass;
 mod piles;
 mod safeguards;
 pub(crate) mod strands;
 mod sweep;
 mod tuning;
+mod view;
 
 use crate::body::def::Quality;
-use crate::body::work::Work;
-use crate::joint::{
-    DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
-};
+use crate::body::external_work::Work;
 use crate::runner::TaskRunner;
+use crate::solver::body::{SolverBody, advance};
 use crate::solver::boundary::groups::TakenGroup;
-use crate::solver::tuning::FORESIGHTS;
-use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
+use crate::solver::joint::SolverJoint;
+use crate::solver::limits::row::LimitRow;
+use crate::solver::motion::momentum::Momentum;
+use crate::solver::pass::{Corrected, Coupling, Pass};
+use crate::solver::piles::touch::{Pressing, Touch};
+use crate::solver::sweep::dirty::DirtyRows;
+use crate::solver::sweep::policy::SweepPolicy;
+use crate::solver::tuning::PREDICTIONS;
+pub(crate) use crate::solver::view::{Grading, Pace, View};
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular, linear};
 use articulation::batches::Batches;
-use articulation::drives::SoftRow;
 use articulation::elimination::Inertia;
-use articulation::joints::Corrected;
 use articulation::loops::Loops;
 use articulation::pins::Pins;
 use articulation::response::Response;
 use articulation::response_cache::ResponseCache;
 use articulation::tree::Link;
-pub(crate) use boundary::build::{Grading, Pace, View};
 use boundary::fields::Attraction;
-pub(crate) use boundary::solution::{IslandSolution, Solution, SolvedBody, SolvedJoint, split_off};
+pub(crate) use boundary::solution::{IslandSolution, Solution, SolvedBody, SolvedJoint};
 use contact_rows::ManifoldRows;
 use contacts::{Contacts, Substep};
 use core::ops::Range;
 use limits::blocks::LimitBlocks;
-use limits::rows::LimitRow;
 use motion::{IntegratePosition, IntegrateVelocity, RefreshInertia};
-use piles::mass_scaling::{Pressing, Touch};
 use piles::support_depth::SupportDepth;
-use safeguards::Momentum;
 use sinew_math::dispatch;
-use sinew_math::{Sym3, Transform, Vec3, abs3, normalize_or};
+use sinew_math::{Transform, Vec3, abs3, normalize_or};
 use sweep::conjugate::Conjugate;
-use sweep::policy::SweepPolicy;
-use sweep::{DirtyRows, Pass};
-
-/// A body of the island. Moving ones come first, in tree order; fixed ones (static, kinematic, asleep) follow.
-#[derive(Clone, Debug)]
-pub(crate) struct SolverBody {
-    /// World index.
-    pub index: u32,
-    pub pose: Transform,
-    pub mass: f32,
-    /// Principal moments.
-    pub inertia: Vec3,
-    /// Moments added for stability, kg·m²: geometric stiffness beyond what the inertia can carry.
-    pub excess: Vec3,
-    /// Factor on mass and inertia in the body's answer to forces and impulses: 1 unless it is squeezed.
-    pub mass_scale: f32,
-    /// Inverse of inertia and excess with mass scaling, world axes.
-    pub inverse_inertia: Sym3,
-    /// Gravity's, the user's and those of fields, N and N·m.
-    pub force: Vec3,
-    pub torque: Vec3,
-    /// Angular momentum that the body would have at the substep's end without impulses, N·m·s.
-    momentum: Vec3,
-    pub linear_damping: f32,
-    pub angular_damping: f32,
-    /// In a substep of this step it was faster than the world lets it be.
-    pub is_limited: bool,
-}
-
-/// A row's answer to its own impulse if nothing held the bodies; those from `moving` on are fixed.
-fn free_response(bodies: &[SolverBody], moving: usize, ends: [(u32, &Vec6); 2]) -> f32 {
-    let on = |(body, row): (u32, &Vec6)| match bodies.get(body as usize) {
-        Some(of) if (body as usize) < moving => dot(row, &of.velocity_change(row)),
-        _ => 0.0,
-    };
-    on(ends[0]) + on(ends[1])
-}
-
-impl SolverBody {
-    /// N·m·s, without what geometric stiffness adds.
-    fn angular_momentum(&self, w: Vec3) -> Vec3 {
-        self.pose.rotation.turn(self.pose.rotation.inverse().turn(w) * self.inertia)
-    }
-
-    /// Answer to an impulse if no joint held it.
-    fn velocity_change(&self, p: &Vec6) -> Vec6 {
-        join(linear(p) / (self.mass * self.mass_scale), self.inverse_inertia * angular(p))
-    }
-}
-
-/// A joint of the island.
-#[derive(Clone, Debug)]
-pub(crate) struct SolverJoint {
-    /// World index.
-    pub index: u32,
-    /// Local bodies.
-    pub a: u32,
-    pub b: u32,
-    pub geometry: JointGeometry,
-    pub drive: JointDrive,
-    pub pose: JointPose,
-    pub rows: JointRows,
-    /// Rows that hold exactly.
-    rigid: usize,
-    /// Position errors that the rigid rows may leave in this substep, row by row, m or rad.
-    left_open: Vec6,
-    /// Rows that it may have.
-    most_rows: usize,
-    /// The others, row by row.
-    soft: [SoftRow; DIRECTIONS],
-    /// Part of the motor in the soft rows, row by row.
-    driven: [SoftRow; DIRECTIONS],
-    /// Motion of a weld that gives beyond that along its rows in this substep, m or rad, and before the last correction.
-    bent: Vec6,
-    bent_before: Vec6,
-    /// Masses that springs and motors move, direction by direction, kg or kg·m².
-    pub mass: Vec6,
-    /// Least masses that motors move, whatever else gives way: those of the joint's two bodies. Without a motor the same as `mass`.
-    least_mass: Vec6,
-    /// Rates of driven directions when the substep began.
-    start_rate: Vec6,
-    pub saturated: Saturation,
-    pub limits: [LimitImpulse; MAX_LIMITS],
-    /// Impulses of the limits in the substep so far, world axes.
-    limit_impulse: [Vec3; MAX_LIMITS],
-    pub force: Vec3,
-    /// Impulses of this substep if it closes a loop, row by row.
-    impulse: Vec6,
-    /// Impulses of the last substep if it closes a loop, direction by direction.
-    pub warm_impulse: Vec6,
-    /// Impulses of the substeps so far on B, torque about its anchor.
-    pub reaction: Vec6,
-    /// As much of them as has been counted as work of a body that moves by itself.
-    accounted: Vec6,
-}
-
-/// Way in which contacts and joints of an island come to agree. It decides how nearly and how soon they do, nothing else.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Coupling {
-    /// There are no joints.
-    #[default]
-    Free,
-    /// Contacts and limits see all links move with each impulse: for single figures.
-    Response,
-    /// Contacts in lanes and trees by turns: for heaps.
-    Turns,
-}
 
 /// The solver of one island. Its memory is kept for the next one, but nothing in it.
 #[derive(Clone, Debug, Default)]
@@ -191,7 +88,7 @@ pub(crate) struct IslandSolver {
     limits: Vec<LimitRow>,
     limit_blocks: LimitBlocks,
     response: Response,
-    columns: ResponseCache,
+    response_cache: ResponseCache,
     /// Impulses of contacts and limits that the sweeps in progress have put on each moving body.
     impulses: Vec<Vec6>,
     /// Linear impulses of contacts on each moving body in this substep.
@@ -241,7 +138,7 @@ pub(crate) struct IslandSolver {
     h: f32,
     substeps: u32,
     stretch: f32,
-    tally: boundary::counts::Tally,
+    tally: boundary::tally::Tally,
     /// Most that a body moves, m/s, and turns within a substep, radians.
     max_speed: f32,
     max_turn: f32,
@@ -272,8 +169,8 @@ struct Scratch {
     /// Velocities that the joints of the substep are solved from.
     started: Vec<Vec6>,
     loads: piles::loads::Scratch,
-    pieces: Vec<articulation::composite::Piece>,
-    build: boundary::build::Scratch,
+    pieces: Vec<articulation::piece::Piece>,
+    build: boundary::growth::Scratch,
 }
 
 impl IslandSolver {
@@ -364,7 +261,7 @@ impl IslandSolver {
         self.sweep(Pass::Solve, runner);
         self.limit_inner_turn();
         let mut torn = self.correct_positions(Corrected::All);
-        for _ in 0..FORESIGHTS {
+        for _ in 0..PREDICTIONS {
             let tightened = self.tighten_limits();
             if !self.predict_contacts() && !tightened {
                 break;
@@ -484,7 +381,7 @@ impl IslandSolver {
             self.place_contacts(view, runner);
         }
         for rows in &mut self.manifolds {
-            rows.refind(&self.bodies, &self.velocities, self.h);
+            rows.refresh_points(&self.bodies, &self.velocities, self.h);
             rows.place(rows.poses(&self.bodies));
         }
         self.choose_limits();
@@ -559,7 +456,7 @@ impl IslandSolver {
         }
         self.response.choose(&self.links, self.trees.len(), wanted);
         self.loops.respond(&self.joints, &self.bodies, &self.links, &mut self.response);
-        self.columns.clear();
+        self.response_cache.clear();
         self.limit_blocks.clear(self.trees.len());
         for rows in &mut self.manifolds {
             rows.columns = None;
@@ -608,9 +505,4 @@ impl IslandSolver {
     pub fn moving_bodies(&self) -> &[SolverBody] {
         &self.bodies[..self.links.len()]
     }
-}
-
-/// Pose after moving with a velocity for `h` seconds.
-fn advance(pose: &Transform, v: &Vec6, h: f32) -> Transform {
-    Transform::new(pose.translation + linear(v) * h, pose.rotation.integrate(angular(v), h))
 }

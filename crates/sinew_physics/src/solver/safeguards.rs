@@ -3,15 +3,17 @@
 //! work. None of this acts at rest or in ordinary falls.
 
 use crate::joint::DIRECTIONS;
+use crate::solver::IslandSolver;
 use crate::solver::articulation::tree::NONE;
+use crate::solver::body::SolverBody;
 use crate::solver::contact_rows::ManifoldRows;
 use crate::solver::motion::KineticEnergy;
-use crate::solver::sweep::Pass;
+use crate::solver::motion::momentum::{Momentum, RigidMotion, center_of_mass};
+use crate::solver::pass::Pass;
 use crate::solver::tuning::{DIVERGED_SPEED, DIVERGED_SPIN, ENERGY_SLACK, MAX_INNER_TURN, TORN};
-use crate::solver::{IslandSolver, SolverBody};
-use crate::spatial::{Vec6, ZERO6, angular, difference, join, linear};
+use crate::spatial::{Vec6, ZERO6, angular, difference, linear};
 use sinew_math::dispatch;
-use sinew_math::{Sym3, Vec3, max, min};
+use sinew_math::{Vec3, max, min};
 
 impl IslandSolver {
     /// Impulses that hold up weights take energy away; those of an impact, repeated at another pose, add it. If they did,
@@ -84,7 +86,7 @@ impl IslandSolver {
             let room = max(most - rigid.angular.length(), 0.0);
             keep = min(keep, if inner > room { room / inner } else { 1.0 });
         }
-        self.dirty.stir(self.links[range.start].tree, most);
+        self.dirty.mark(self.links[range.start].tree, most);
         for i in range {
             let rigid = rigid.at(self.bodies[i].pose.translation);
             for (v, r) in self.velocities[i].iter_mut().zip(rigid) {
@@ -289,63 +291,4 @@ impl IslandSolver {
             *v = core::array::from_fn(|k| before[k] + (v[k] - before[k]) * share);
         }
     }
-}
-
-/// The motion of several bodies as if they were one.
-#[derive(Clone, Copy, Debug, Default)]
-struct RigidMotion {
-    center: Vec3,
-    linear: Vec3,
-    angular: Vec3,
-}
-
-impl RigidMotion {
-    /// With the momentum and angular momentum that the bodies have.
-    fn of(bodies: &[SolverBody], velocities: &[Vec6]) -> Self {
-        let center = center_of_mass(bodies).1;
-        let mut momentum = Momentum::default();
-        for (body, v) in bodies.iter().zip(velocities) {
-            momentum.add(body, center, linear(v), body.angular_momentum(angular(v)));
-        }
-        Self::with_momentum(bodies, &momentum)
-    }
-
-    fn with_momentum(bodies: &[SolverBody], momentum: &Momentum) -> Self {
-        let (mass, center) = center_of_mass(bodies);
-        let mut inertia = Sym3::ZERO;
-        for body in bodies {
-            let arm = body.pose.translation - center;
-            let carried = Sym3::from_diagonal(Vec3::splat(arm.length_squared())) - Sym3::outer(arm);
-            inertia += Sym3::from_rotated_diagonal(body.pose.rotation, body.inertia) + carried * body.mass;
-        }
-        Self { center, linear: momentum.linear / mass, angular: inertia.inverse() * momentum.angular }
-    }
-
-    fn at(&self, point: Vec3) -> Vec6 {
-        join(self.linear + self.angular.cross(point - self.center), self.angular)
-    }
-}
-
-/// Momentum of several bodies, N·s and N·m·s; angular momentum about their centre of mass.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::solver) struct Momentum {
-    linear: Vec3,
-    angular: Vec3,
-}
-
-impl Momentum {
-    fn add(&mut self, body: &SolverBody, center: Vec3, velocity: Vec3, spin: Vec3) {
-        self.linear += velocity * body.mass;
-        self.angular += spin + (body.pose.translation - center).cross(velocity * body.mass);
-    }
-}
-
-/// Total mass, and where its centre is.
-fn center_of_mass(bodies: &[SolverBody]) -> (f32, Vec3) {
-    let (mut mass, mut center) = (0.0, Vec3::ZERO);
-    for body in bodies {
-        mass += body.mass;
-        center += body.pose.translation * body.mass;
-    }
-    (mass, center / mass)
 }

@@ -70,7 +70,7 @@ pub(super) const MAX_TREE: usize = 1024;
 ///
 /// Each is a resumed pass of sweeps. Sensible from 1 to 8. More: violent crashes cost more. Fewer: a limb that whirls leaves its cone
 /// on a side that no row faces. Shown by `ragdoll_wall_fast` and the test `humanoid::wall_hits`.
-pub(super) const FORESIGHTS: usize = 4;
+pub(super) const PREDICTIONS: usize = 4;
 
 // ---- Sweeps ----
 
@@ -210,21 +210,21 @@ pub(super) const RELAX_TURN: f32 = 0.15;
 /// Points of the step's beginning say nothing of the corner that swings in: a hand sank 33 mm into a thigh (docs/step.md). Larger:
 /// that. Smaller: figures that roll over cost more. It also decides which contacts are foreseen, and by half of it which in lanes have
 /// room for four points from the start. Sensible from 0.003 to 0.05. Shown by `ragdoll_drop`, `ragdoll_poses`.
-pub(super) const REFIND_TURN_RESPONSE: f32 = 0.01;
+pub(super) const REFRESH_TURN_RESPONSE: f32 = 0.01;
 
 /// Turn since they were found from which on contacts in lanes are looked for anew, radians.
 ///
 /// Points that are known stay exact, and corners that swing in by less have rows, since they were within reach. Larger: corners of what
 /// tumbles come down unseen. With a fifth of it heaps that fall cost half as much again and are as deep. Sensible from 0.01 to 0.1.
 /// Shown by `box_rain`.
-pub(super) const REFIND_TURN_LANES: f32 = 0.05;
+pub(super) const REFRESH_TURN_LANES: f32 = 0.05;
 
 /// Turn within a substep from which on the contacts of a rolling rim are looked for anew, radians.
 ///
 /// However slowly it rolls, what pushes from where the rim was turns the body as much as it gyrates. Larger: discs roll in wrong
 /// circles. Smaller: nothing but cost. Sensible from 1e-5 to 1e-3. Shown by the test
 /// `rims::a_disc_rolls_in_a_circle_at_the_rate_of_its_closed_form`, `coin`.
-pub(super) const REFIND_TURN_RIM: f32 = 1e-4;
+pub(super) const REFRESH_TURN_RIM: f32 = 1e-4;
 
 /// Distance up to which points found anew count, as a share of the smaller bounding radius.
 ///
@@ -237,7 +237,7 @@ pub(super) const FAR_CORNER: f32 = 0.4;
 /// Beyond it the manifold of the predicted pose takes the place of the one at hand: a foot at 7 m/s met the other shin with a corner
 /// that its rows did not know, and was 2 cm in (docs/step.md). Larger: limbs enter each other. Smaller: more passes are resumed.
 /// Sensible from 0.2 to 5 mm. Shown by `ragdoll_drop`, the tests of `humanoid`.
-pub(super) const FORESEEN_DEPTH: f32 = 1e-3;
+pub(super) const PREDICTED_DEPTH: f32 = 1e-3;
 
 /// Approach above which a contact in lanes has room for four points from the start, m/s.
 ///
@@ -254,8 +254,8 @@ pub(super) const LYING_SINE: f32 = 0.1;
 
 /// Sine up to which the end of a cylinder or cone may lean and count as standing on it.
 ///
-/// Larger: the wobble of a coin ends early. Smaller: one that stands is looked for anew for nothing. Sensible from 0.001 to 0.05. Shown
-/// by the test `round_rest::a_standing_cylinder_stands_still`, `coin`.
+/// Larger: the wobble of a coin ends early. Smaller: one that stands is looked for anew for nothing. Sensible from 0.001 to 0.05. Shown by
+/// the test `round_rest::a_standing_cylinder_stands_still`, `coin`.
 pub(super) const FLAT_SINE: f32 = 0.01;
 
 // ---- Friction ----

@@ -6,14 +6,15 @@ use crate::body::contact_rule::{ContactRule, Yields};
 use crate::body::def::BodyKind;
 use crate::body::shape::Sensing;
 use crate::body::surface::Surface;
-use crate::collide::{Manifold, Motion, Parting, collide_again};
-use crate::contact::SPECULATIVE_SLOPS;
-use crate::contact::kept::Kept;
+use crate::collide::{Manifold, Motion, SeparationCache, collide_again};
 use crate::contact::parts::Parts;
+use crate::contact::recycled::Recycled;
+use crate::contact::tuning::SPECULATIVE_SLOPS;
 use crate::contact::{Contact, ContactKey, Effect, slop};
 use crate::context::StepContext;
 use crate::slices::for_each_mut;
 use crate::step::pairs::{Asked, BroadPhase};
+use crate::step::tuning::YIELDING_DEPTH;
 use sinew_math::{Vec3, max, min};
 
 /// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
@@ -72,12 +73,19 @@ fn renew(contact: &mut Contact, a: &Body, b: &Body, ahead: f32, dt: f32) {
     meet(a, b, contact.key, margin, &mut parting, &mut manifold);
     contact.memory = contact.memory.matched(&contact.manifold, &manifold);
     contact.manifold = manifold;
-    contact.kept = Kept::new([a, b], contact.key, (margin, slop), &manifold);
+    contact.kept = Recycled::new([a, b], contact.key, (margin, slop), &manifold);
     (contact.apart, contact.gap) = (parting.axis, parting.gap);
 }
 
 /// The manifold of two convex shapes.
-fn meet(a: &Body, b: &Body, key: ContactKey, margin: f32, parting: &mut Parting, manifold: &mut Manifold) {
+fn meet(
+    a: &Body,
+    b: &Body,
+    key: ContactKey,
+    margin: f32,
+    parting: &mut SeparationCache,
+    manifold: &mut Manifold,
+) {
     let (sa, sb) = (key.shape_a as usize, key.shape_b as usize);
     let (shape_a, shape_b) = (&a.shapes[sa].shape, &b.shapes[sb].shape);
     let (from_a, from_b) = (a.world_from_shape(sa), b.world_from_shape(sb));
@@ -88,7 +96,7 @@ fn meet(a: &Body, b: &Body, key: ContactKey, margin: f32, parting: &mut Parting,
 pub(crate) fn ask(a: &Body, b: &Body, asked: &mut Asked, ahead: f32, dt: f32) {
     let (margin, slop) = margin(a, b, asked.key, ahead, dt);
     meet(a, b, asked.key, margin, &mut asked.parting, &mut asked.manifold);
-    asked.kept = Kept::new([a, b], asked.key, (margin, slop), &asked.manifold);
+    asked.kept = Recycled::new([a, b], asked.key, (margin, slop), &asked.manifold);
 }
 
 /// Finds how fast a contact comes in, and what it does.
@@ -197,9 +205,6 @@ fn rule(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     }
 }
 
-/// Overlap from which on a shape that yields lets pass what it cannot press out of itself, metres.
-const PRESSED: f32 = 0.01;
-
 /// True if a kinematic body lets a dynamic one pass, since it would have to push it harder than it may, or did until they part.
 fn gives_way(yields: Yields, contact: &Contact, [a, b]: [&Body; 2], dt: f32) -> bool {
     let (other, led, out) = match (a.kind, b.kind) {
@@ -225,7 +230,7 @@ fn gives_way(yields: Yields, contact: &Contact, [a, b]: [&Body; 2], dt: f32) -> 
     let took = contact.impulses().fold(0.0, |sum, (_, impulse)| sum + impulse);
     let jammed = contact.touching && closing > 0.0 && shoves > 0.0 && took > push;
     jammed
-        || points.iter().any(|point| point.separation < -PRESSED)
+        || points.iter().any(|point| point.separation < -YIELDING_DEPTH)
         || mass * min(shoves, closing) > push
         || mass * min(comes, closing) > yields.max_impulse
 }

@@ -1,7 +1,7 @@
 //! `islands` and `color`: which active bodies hang together through contacts, joints, particles and attraction.
 
 use crate::arena::Arena;
-use crate::body::work::Work;
+use crate::body::external_work::Work;
 use crate::context::StepContext;
 use crate::field::Target;
 use crate::island::Island;

@@ -12,6 +12,7 @@ pub(crate) mod sleep;
 pub(crate) mod store;
 pub(crate) mod tasks;
 pub(crate) mod touch;
+mod tuning;
 
 use crate::context::StepContext;
 use crate::field::Fields;

@@ -3,12 +3,12 @@
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::collide::{Manifold, Parting};
+use crate::collide::{Manifold, SeparationCache};
 use crate::contact::filter::PairFilter;
-use crate::contact::kept::Kept;
-use crate::contact::meetings::Meetings;
 use crate::contact::near::{NearPair, NearPairs, bear};
 use crate::contact::proxies::Proxies;
+use crate::contact::recycled::Recycled;
+use crate::contact::tracking::ContactTracking;
 use crate::contact::{Contact, ContactKey};
 
 /// The trees, and what pairs are found with.
@@ -28,9 +28,9 @@ pub(crate) struct Asked {
     pub key: ContactKey,
     /// Its place among the near pairs.
     pub pair: usize,
-    pub parting: Parting,
+    pub parting: SeparationCache,
     pub manifold: Manifold,
-    pub kept: Kept,
+    pub kept: Recycled,
 }
 
 impl BroadPhase {
@@ -40,7 +40,7 @@ impl BroadPhase {
         &mut self,
         bodies: &Arena<Body>,
         filter: PairFilter<'_>,
-        meetings: &mut Meetings,
+        meetings: &mut ContactTracking,
         contacts: &mut Vec<Contact>,
         activity: &mut Activity,
         dt: f32,
@@ -58,7 +58,7 @@ impl BroadPhase {
     fn sort_out(
         &mut self,
         bodies: &Arena<Body>,
-        meetings: &mut Meetings,
+        meetings: &mut ContactTracking,
         contacts: &mut Vec<Contact>,
         activity: &mut Activity,
     ) {
@@ -138,7 +138,7 @@ impl Asked {
             pair,
             parting: near.parting(),
             manifold: Manifold::default(),
-            kept: Kept::default(),
+            kept: Recycled::default(),
         }
     }
 }
@@ -150,7 +150,7 @@ struct Keeper<'a> {
     from: usize,
     to: usize,
     bodies: &'a Arena<Body>,
-    meetings: &'a mut Meetings,
+    meetings: &'a mut ContactTracking,
     activity: &'a mut Activity,
 }
 
@@ -181,7 +181,7 @@ impl Keeper<'_> {
     }
 
     /// Drops one that is idle, and tells what parted its shapes.
-    fn forget(&mut self) -> Parting {
+    fn forget(&mut self) -> SeparationCache {
         self.from += 1;
         self.contacts[self.from - 1].parting()
     }
@@ -218,7 +218,8 @@ mod tests {
     use crate::body::def::{BodyDef, BodyKind, WorldDef};
     use crate::body::shape::{Filter, Shape, ShapeDef};
     use crate::boxes::{Aabb, Overlap};
-    use crate::contact::proxies::{MARGIN, Owner};
+    use crate::contact::proxies::Owner;
+    use crate::contact::tuning::MARGIN;
     use crate::id::{BodyId, ShapeId};
     use crate::{MassUpdate, Velocity, World};
     use sinew_math::{Random, Reader, Transform, Vec3, Writer};

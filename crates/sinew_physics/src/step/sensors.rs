@@ -3,7 +3,7 @@
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::events::Events;
-use crate::contact::meetings::{Meetings, Told};
+use crate::contact::tracking::{ContactTracking, Told};
 use crate::contact::{Contact, Effect, pairs_of};
 
 /// Compares the sensor pairs with those of the step before, and tells of hits faster than `hit_speed` (m/s). All that the
@@ -11,7 +11,7 @@ use crate::contact::{Contact, Effect, pairs_of};
 pub(crate) fn sensors(
     bodies: &mut Arena<Body>,
     contacts: &mut [Contact],
-    meetings: &mut Meetings,
+    meetings: &mut ContactTracking,
     hit_speed: f32,
     events: &mut Events,
 ) {

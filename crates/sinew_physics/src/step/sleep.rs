@@ -7,17 +7,7 @@ use crate::body::def::{SleepThresholds, Sleeping, WorldDef};
 use crate::body::{Body, Rest};
 use crate::field::Fields;
 use crate::step::islands::Islands;
-
-/// Factor on the distance over the time, and on the angle over the time, of the thresholds: what creeps more slowly than that
-/// is calm wherever it gets to, since limp limbs sag for seconds.
-const CREEP: f32 = 2.0;
-/// Speed of the way in a step from which on a body without velocity is being pushed out of another, m/s: half of what bodies with joints are pushed
-/// out with.
-const PUSHED: f32 = 0.0275;
-/// Speeds below which what hangs on particles may sleep, m/s and rad/s: it swings about its place, and must come to rest
-/// before that.
-const SLOW_LINEAR: f32 = 0.02;
-const SLOW_ANGULAR: f32 = 0.05;
+use crate::step::tuning::{CREEP, HANGING_SPEED, HANGING_SPIN, PUSHED_SPEED};
 
 /// Counts the calm time of every body and puts islands to sleep. `sleepers` numbers them.
 pub(crate) fn sleep(
@@ -44,7 +34,7 @@ pub(crate) fn sleep(
             let calm = body.sleeping == Sleeping::On
                 && is_slower(body, thresholds.speed, thresholds.spin)
                 && (creeps_little || stays(body, thresholds))
-                && (island.groups.is_empty() || is_slower(body, SLOW_LINEAR, SLOW_ANGULAR))
+                && (island.groups.is_empty() || is_slower(body, HANGING_SPEED, HANGING_SPIN))
                 && !fields.keep_awake(body);
             least = sinew_math::min(least, count(body, calm, def.dt()));
         }
@@ -78,7 +68,7 @@ fn stays(body: &Body, thresholds: &SleepThresholds) -> bool {
 
 /// True if a slow body went on all the same in this step.
 fn is_pushed_out(body: &Body, dt: f32) -> bool {
-    (body.world_from_principal.translation - body.previous.translation).length() > PUSHED * dt
+    (body.world_from_principal.translation - body.previous.translation).length() > PUSHED_SPEED * dt
 }
 
 fn is_slower(body: &Body, speed: f32, spin: f32) -> bool {

@@ -2,8 +2,8 @@
 
 use crate::arena::Arena;
 use crate::contact::Contact;
+use crate::contact::disabled_pairs::DisabledPairs;
 use crate::contact::events::Events;
-use crate::contact::parted::PartedPairs;
 use crate::context::StepContext;
 use crate::joint::Joint;
 use crate::joint::def::JointState;
@@ -16,7 +16,7 @@ use crate::step::islands::Islands;
 pub(crate) fn store(
     islands: &mut Islands,
     joints: &mut Arena<Joint>,
-    parted: &mut PartedPairs,
+    parted: &mut DisabledPairs,
     contacts: &mut [Contact],
     groups: &mut Arena<ParticleGroup>,
     events: &mut Events,

@@ -3,8 +3,9 @@
 use crate::context::StepContext;
 use crate::island::Island;
 use crate::runner::TaskRunner;
+use crate::slices::split_off;
 use crate::solver::boundary::groups::TakenGroup;
-use crate::solver::{IslandSolution, IslandSolver, Solution, View, split_off};
+use crate::solver::{IslandSolution, IslandSolver, Solution, View};
 use crate::step::phase::{Phase, solve};
 use crate::step::project::Surroundings;
 use std::sync::{Mutex, PoisonError};

@@ -6,15 +6,13 @@ use crate::body::Body;
 use crate::body::def::BodyKind;
 use crate::collide::ManifoldPoint;
 use crate::contact::events::Events;
-use crate::contact::meetings::{Meetings, Told};
+use crate::contact::tracking::{ContactTracking, Told};
 use crate::contact::{Contact, ContactMemory, Effect, pairs_of, slop};
 use crate::field::Fields;
 use crate::joint::Joint;
 use crate::step::collide::smallest_extent;
+use crate::step::tuning::LINGER;
 use sinew_math::min;
-
-/// Gap within which two shapes that touched go on touching, as a share of their slop.
-const LINGER: f32 = 0.1;
 
 /// `touch`: what contacts do, events, and waking of what an awake body touches or attracts, or a moving kinematic one holds.
 /// What wakes comes with its contacts.
@@ -24,7 +22,7 @@ pub(crate) fn touch(
     contacts: &mut Vec<Contact>,
     activity: &mut Activity,
     fields: &Fields<'_>,
-    meetings: &mut Meetings,
+    meetings: &mut ContactTracking,
     events: &mut Events,
 ) {
     let touching = &mut meetings.touching;

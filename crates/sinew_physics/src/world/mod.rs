@@ -1,6 +1,7 @@
 //! The world: owner of everything that is simulated.
 
 mod body_ref;
+mod body_type;
 mod connect;
 mod copy;
 mod counts;
@@ -9,7 +10,6 @@ mod explosions;
 mod fields;
 mod forces;
 mod joints;
-mod kind;
 mod library;
 mod moved;
 mod objects;
@@ -31,15 +31,15 @@ pub use update::Update;
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::def::{BodyDef, BodyKind, WorldDef};
+use crate::body::external_work::Work;
 use crate::body::library::ShapeLibrary;
 use crate::body::shape::{MassProperties, Sensing};
-use crate::body::work::Work;
 use crate::body::{Body, Velocity};
 use crate::contact::Contact;
+use crate::contact::disabled_pairs::DisabledPairs;
 use crate::contact::events::Events;
-use crate::contact::meetings::Meetings;
-use crate::contact::parted::PartedPairs;
 use crate::contact::parts::Parts;
+use crate::contact::tracking::ContactTracking;
 use crate::context::StepContext;
 use crate::field::{FieldDef, Functions};
 use crate::id::Lineage;
@@ -76,8 +76,8 @@ pub struct World {
     pub(crate) library: ShapeLibrary,
     pub(crate) objects: Objects,
     pub(crate) movers: Movers,
-    pub(crate) parted: PartedPairs,
-    pub(crate) meetings: Meetings,
+    pub(crate) parted: DisabledPairs,
+    pub(crate) meetings: ContactTracking,
     pub(crate) events: Events,
     pub(crate) broad: BroadPhase,
     pub(crate) parts: Parts,
@@ -116,8 +116,8 @@ impl World {
             library: ShapeLibrary::default(),
             objects: Objects::new(lineage),
             movers: Movers::new(lineage),
-            parted: PartedPairs::default(),
-            meetings: Meetings::default(),
+            parted: DisabledPairs::default(),
+            meetings: ContactTracking::default(),
             events: Events::default(),
             broad: BroadPhase::default(),
             parts: Parts::default(),

@@ -3,13 +3,13 @@
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
+use crate::body::external_work::Work;
 use crate::body::library::LoadError;
 use crate::body::snapshot::{body_index, load_body, load_def, load_option, save_body, save_def, save_option};
-use crate::body::work::Work;
 use crate::contact::Contact;
 use crate::contact::events::Events;
-use crate::contact::meetings::Meetings;
 use crate::contact::snapshot::{load_contact, save_contact};
+use crate::contact::tracking::ContactTracking;
 use crate::field::FieldDef;
 use crate::joint::Joint;
 use crate::mover::Mover;
@@ -99,7 +99,7 @@ impl World {
         if !disabled.is_sorted() {
             return Err(r.error("disabled pairs are out of order").into());
         }
-        let meetings = Meetings::load(r, &mut bodies)?;
+        let meetings = ContactTracking::load(r, &mut bodies)?;
         let pair_function = load_option(r, Reader::u32)?;
         if !pair_function.is_none_or(|number| self.parted.functions.registered.has(number)) {
             return Err(r.error("names a pair function that is not registered").into());
@@ -112,7 +112,7 @@ impl World {
         (self.bodies, self.joints, self.contacts) = (bodies, joints, contacts);
         self.parted.restore(disabled, pair_function);
         let modifiers = core::mem::take(&mut self.meetings.modifiers);
-        self.meetings = Meetings { modifiers, ..meetings };
+        self.meetings = ContactTracking { modifiers, ..meetings };
         (self.groups, self.fields, self.movers.all) = (groups, fields, movers);
         self.events = Events::default();
         self.islands.forget();

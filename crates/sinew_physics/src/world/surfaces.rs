@@ -5,7 +5,7 @@ use crate::body::material::{ContactMaterial, Material};
 use crate::body::shape::{Filter, Sensing};
 use crate::body::surface::Surface;
 use crate::collide::MAX_POINTS;
-use crate::contact::meetings::shape_ids;
+use crate::contact::tracking::shape_ids;
 use crate::contact::{Contact, Effect};
 use crate::id::{BodyId, ShapeId};
 use crate::world::World;

@@ -3,7 +3,7 @@
 use crate::body::def::BodyKind;
 use crate::body::shape::MassProperties;
 use crate::body::{Velocity, expect_solid, principal_frame};
-use crate::contact::kept::Kept;
+use crate::contact::recycled::Recycled;
 use crate::id::BodyId;
 use crate::world::World;
 use sinew_math::Transform;
@@ -75,7 +75,7 @@ impl World {
         // Manifolds are kept in the frames of their bodies.
         let returned = self.activity.returned_mut();
         for contact in self.contacts.iter_mut().chain(returned).filter(|contact| contact.key.has(index)) {
-            contact.kept = Kept::default();
+            contact.kept = Recycled::default();
         }
         self.renew_bounds(id);
     }

@@ -1,28 +1,12 @@
 //! The pose while clips decide it.
 
-use super::{Character, CharacterDef, Event, Opening, ground};
-use sinew_anim::{Animator, TrackDef, TrackId};
+use super::{Character, Event, ground};
+use sinew_anim::Animator;
 use sinew_math::{Affine, Transform, Vec3, clamp};
 use sinew_physics::World;
 
 /// Largest speed at which the height of the character's origin follows the ground, m/s: a step of a stair takes a few frames.
 const CLIMB_SPEED: f32 = 1.2;
-
-/// The animator of a new character, with its looped clip if it opens by that.
-pub(super) fn opening(def: &CharacterDef, phase: f32) -> Animator {
-    let mut animator = Animator::new(def.set());
-    if def.motions().opening == Opening::Looped {
-        play_looped(def, &mut animator, phase);
-    }
-    animator.update(def.set(), 0.0);
-    animator
-}
-
-/// Starts the looped clip, if there is one.
-pub(super) fn play_looped(def: &CharacterDef, animator: &mut Animator, phase: f32) -> Option<TrackId> {
-    let clip = def.clip(def.motions().looped?);
-    Some(animator.play(def.set(), &TrackDef { start: phase, ..TrackDef::new(clip) }))
-}
 
 impl Character {
     /// Takes the clips forward by a step, and the character over the ground with them.

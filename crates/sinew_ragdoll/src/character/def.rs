@@ -8,7 +8,7 @@ use crate::drive::DriveMode;
 use crate::hand_over::SpeedBound;
 use crate::mapping::Mapping;
 use crate::ragdoll::BodySettings;
-use sinew_anim::{AnimationSet, Clip, ClipId, LocalTransform, Rig, rest_pose};
+use sinew_anim::{AnimationSet, Animator, Clip, ClipId, LocalTransform, Rig, TrackDef, TrackId, rest_pose};
 use sinew_math::Affine;
 use std::sync::Arc;
 
@@ -181,6 +181,22 @@ impl CharacterDef {
     /// If there is no such clip.
     pub fn clip(&self, index: usize) -> ClipId {
         self.moves.clips[index]
+    }
+
+    /// The animator of a new character, with its looped clip if it opens by that, `phase` seconds in.
+    pub(super) fn opening(&self, phase: f32) -> Animator {
+        let mut animator = Animator::new(self.set());
+        if self.motions.opening == Opening::Looped {
+            self.play_looped(&mut animator, phase);
+        }
+        animator.update(self.set(), 0.0);
+        animator
+    }
+
+    /// Starts the looped clip, if there is one, `phase` seconds in.
+    pub(super) fn play_looped(&self, animator: &mut Animator, phase: f32) -> Option<TrackId> {
+        let clip = self.clip(self.motions.looped?);
+        Some(animator.play(self.set(), &TrackDef { start: phase, ..TrackDef::new(clip) }))
     }
 
     pub(super) fn feet(&self) -> Option<&Feet> {

@@ -4,6 +4,7 @@
 //! What is kept from step to step is how high the ground is that each foot stands on, over the floor of the clip: it follows
 //! the world as a spring does that is damped critically, so that an edge below a foot that moves is no jump.
 
+use super::memory::Planting;
 use super::{Character, State, ground};
 use crate::def::RagdollDef;
 use sinew_anim::ik::{FootGround, FootPlacement, TwoBone, place_feet};
@@ -112,17 +113,6 @@ impl Feet {
     }
 }
 
-/// Smoothed ground under each foot, over the floor of the clip, and its rates of change, per second.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Planting {
-    /// Metres.
-    pub heights: [f32; 2],
-    pub rates: [f32; 2],
-    /// From heel to ball: up over along.
-    pub slopes: [f32; 2],
-    pub slope_rates: [f32; 2],
-}
-
 /// Ground under a foot over the floor of its clip: metres, and up over along.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Need {
@@ -131,10 +121,6 @@ struct Need {
 }
 
 impl Planting {
-    pub fn is_over(&self) -> bool {
-        *self == Self::default()
-    }
-
     /// Follows the ground for `dt` seconds.
     fn follow(&mut self, goals: [Need; 2], dt: f32) {
         for (foot, goal) in goals.into_iter().enumerate() {

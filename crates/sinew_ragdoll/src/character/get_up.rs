@@ -1,8 +1,9 @@
 //! From lying to standing: which clip, from which moment, where, and which way round.
 
+use super::memory::Rising;
 use super::moves::{GetUp, Start};
 use super::pose_similarity::{PoseSimilarity, Stance};
-use super::{Character, Event, State, animate, ground};
+use super::{Character, Event, State, ground};
 use sinew_anim::{Animator, LoopMode, Pose, Track, TrackDef, TrackId, local_to_model, smoothstep};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 use sinew_physics::World;
@@ -19,15 +20,6 @@ const STRAIGHTENS: f32 = 0.6;
 const LIES: f32 = 0.0;
 /// Height above the pelvis from which the ground is sought, metres.
 const ABOVE_PELVIS: f32 = 0.3;
-
-/// A character on its way up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Rising {
-    /// By this track.
-    ByClip(TrackId),
-    /// By the looped clip alone, for so many seconds more.
-    Without(f32),
-}
 
 /// A get-up clip, the moment of it that is most like the present pose, and how much that is.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +71,7 @@ impl Character {
             }
             None => {
                 self.settle_into(world, moves.landmarks.compare(&moves.upright, &lies).motion, INTO_STANDING);
-                animate::play_looped(&def, &mut self.animator, 0.0);
+                def.play_looped(&mut self.animator, 0.0);
                 self.rising = Rising::Without(INTO_STANDING);
                 self.events.push(Event::GettingUp { clip: None });
             }
@@ -143,7 +135,7 @@ impl Character {
         let stands = self.stance();
         self.lean = Vec3::ZERO;
         self.settle_into(world, moves.landmarks.compare(&moves.upright, &stands).motion, INTO_LOOP);
-        animate::play_looped(&def, &mut self.animator, 0.0);
+        def.play_looped(&mut self.animator, 0.0);
         self.be_up();
     }
 

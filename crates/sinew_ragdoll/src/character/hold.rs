@@ -1,6 +1,7 @@
 //! Bodies that hang on a character's: a sword in a hand, a lantern on a belt. Hit bodies and ragdoll are the same bodies, so that what hangs
 //! on them does in every state.
 
+use super::memory::Hold;
 use super::{Character, Event};
 use sinew_math::{Transform, Vec3};
 use sinew_physics::{BodyId, ContactRule, JointDef, JointId, JointKind, Strength, Velocity, World, Yields};
@@ -20,16 +21,6 @@ impl Default for Grip {
     fn default() -> Self {
         Self { bone_from_held: Transform::IDENTITY, strength: Strength::UNBREAKABLE, drops: false }
     }
-}
-
-/// A body that is held, and by what.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Hold {
-    pub held: BodyId,
-    pub joint: JointId,
-    /// Index of the body that holds it.
-    pub body: u32,
-    pub drops: bool,
 }
 
 impl Character {

@@ -1,8 +1,8 @@
 //! A character's share of the world while its clips move it: a mover that stands, walks and falls, and bodies that can be
 //! hit. Settings, and how it comes and goes.
 
-use super::detail::Detail;
-use super::hold::Hold;
+use super::distances::Detail;
+use super::memory::Hold;
 use super::stumble::Stumble;
 use super::{Character, CharacterDef, State};
 use crate::def::RagdollDef;

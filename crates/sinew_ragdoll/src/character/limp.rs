@@ -1,6 +1,7 @@
 //! Going limp at the speed of the animation, and lying still.
 
 use super::ground::{self, GroundMotion};
+use super::memory::Stillness;
 use super::{AfterSettling, Character, Event, State};
 use crate::def::RagdollBodyDef;
 use crate::drive::DriveMode;
@@ -25,17 +26,6 @@ pub(crate) const STILL_LINEAR: f32 = 0.02;
 pub(crate) const STILL_ANGULAR: f32 = 0.05;
 /// Seconds that all bodies must be still.
 pub(crate) const STILL_TIME: f32 = 0.5;
-
-/// Time for which a limp character has been still, in steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Stillness {
-    /// Steps since it went limp.
-    pub steps: u32,
-    /// Steps for which every body has been slow.
-    pub calm_steps: u32,
-    pub settled: bool,
-    pub touched: bool,
-}
 
 impl Character {
     /// Lets the bodies take over, at the pose and the speed that the animation has now. Nothing happens if they did

@@ -27,6 +27,8 @@ mod animate;
 mod blows;
 mod def;
 mod detail;
+mod distances;
+mod event;
 mod feet;
 mod get_up;
 mod ground;
@@ -34,6 +36,7 @@ mod hit_bodies;
 mod hold;
 mod in_world;
 mod limp;
+mod memory;
 mod mirror;
 mod moves;
 mod pose_similarity;
@@ -50,7 +53,8 @@ mod walk;
 pub(crate) use limp::{STILL_TIME, is_still, is_sunk, touches_world};
 
 pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet, Opening};
-pub use detail::{Detail, Distances};
+pub use distances::{Detail, Distances};
+pub use event::{Event, State};
 pub use hold::Grip;
 pub use in_world::{Blow, HitBodies, InWorld, Toughness};
 pub use moves::MotionError;
@@ -59,108 +63,12 @@ pub use powered::{Part, Preset};
 use crate::drive::Drives;
 use crate::mapping::Physical;
 use crate::ragdoll::Ragdoll;
-use feet::Planting;
-use get_up::Rising;
 use in_world::Presence;
-use limp::Stillness;
-use prepare::Preparation;
-use show::Shown;
-use sinew_anim::{Animator, FiredEvent, Inertia, LocalTransform, Pose};
+use memory::{Planting, Preparation, Rising, Shown, Stillness};
+use sinew_anim::{Animator, Inertia, LocalTransform, Pose};
 use sinew_math::{Affine, Transform, Vec3};
-use sinew_physics::{BodyId, Velocity, World};
+use sinew_physics::{Velocity, World};
 use std::sync::Arc;
-
-/// State of a character: what decides its pose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
-    /// Clips; they lead its bodies, if it has any in the world.
-    Animated,
-    /// Its bodies: it falls, or lies.
-    Limp,
-    /// Its bodies, which are brought to where a get-up clip begins.
-    Preparing,
-    /// A get-up clip, in which the pose and the motion of the bodies die away.
-    GettingUp,
-    /// Clips, but for a limb that was struck and comes back to them.
-    Flinching,
-    /// Its bodies, which muscles and pins draw to its clips.
-    Powered,
-}
-
-/// Something that happened to a character.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Event {
-    /// It was pushed.
-    Hit {
-        /// Index of the body in the definition.
-        body: usize,
-    },
-    /// Something struck one of its bodies: contacts tell more.
-    Struck {
-        /// Index of the body in the definition.
-        body: usize,
-        /// N·s.
-        impulse: f32,
-    },
-    /// A blow did not fell it: the limb gives way and comes back.
-    Flinched {
-        /// Index of the struck body in the definition.
-        body: usize,
-    },
-    /// Its limb is as the clips have it again.
-    Recovered,
-    /// Muscles and pins hold it from now on.
-    Powered,
-    /// A moment of a clip came by that decides its pose ([`MotionSet::events`]); the name is [`AnimationSet::event`](sinew_anim::AnimationSet::event) of
-    /// [`CharacterDef::set`].
-    Clip(FiredEvent),
-    /// One of its bodies began or stopped to touch a body that is not its own: where [`InWorld::tells_contacts`] says so.
-    Contact {
-        /// Index of its body in the definition.
-        body: usize,
-        /// The other.
-        other: BodyId,
-        /// False: they parted.
-        begins: bool,
-    },
-    /// It let go of what one of its bodies held, or that was torn off.
-    LetGo {
-        /// Index of its body in the definition.
-        body: usize,
-        /// Body that was held.
-        held: BodyId,
-    },
-    /// A push would have it over: it begins to step.
-    Stumbled,
-    /// Its steps caught it; its feet are as its clips have them again.
-    Caught {
-        /// Number of steps beside those that only brought its feet home.
-        steps: u32,
-    },
-    /// Its bodies took over.
-    WentLimp,
-    /// The first of its bodies touched something of the world since it went limp.
-    Touched,
-    /// It lies still.
-    Settled {
-        /// When it began to lie still, seconds of the world's time.
-        since: f32,
-    },
-    /// It did not come to rest in the time it was given.
-    NeverSettled,
-    /// It lies otherwise than its get-up clips begin, and is brought to where the nearest does.
-    Preparing {
-        /// True if it has to be rolled over.
-        rolls: bool,
-    },
-    /// It began to get up.
-    GettingUp {
-        /// Index of the clip; `None`: it has none that fits, and fades to standing.
-        clip: Option<usize>,
-    },
-    /// It is animated again.
-    Up,
-}
 
 /// A character in a world.
 #[derive(Clone, Debug)]
@@ -231,7 +139,7 @@ impl Character {
     /// # Panics
     /// If `phase` is not finite.
     pub fn new(def: Arc<CharacterDef>, world_from_character: Transform, phase: f32) -> Self {
-        let animator = animate::opening(&def, phase);
+        let animator = def.opening(phase);
         let pose: Vec<LocalTransform> = animator.pose().iter().collect();
         Self {
             state: State::Animated,

@@ -4,6 +4,7 @@
 //! turns, bounded in torque and time, so that [`Drives::pin_effort`](crate::Drives::pin_effort) tells how much that was.
 
 use super::get_up::{Choice, choose};
+use super::memory::Preparation;
 use super::{Character, Event, GettingReady, State};
 use crate::drive::{DriveMode, Muscle, Pin};
 use sinew_math::Rotation;
@@ -25,16 +26,6 @@ const PULL: Muscle = Muscle { hertz: 2.0, damping_ratio: 1.0, strength: 0.6 };
 const ROLL: f32 = 2.0;
 /// Largest torque of what rolls a body over, on each part of the trunk, over its weight times its height: 90 N·m of a man.
 const STRENGTH: f32 = 0.07;
-
-/// A body on its way to where a clip begins.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Preparation {
-    /// Index of the way to get up, and of its moment.
-    pub get_up: u32,
-    pub start: u32,
-    /// That are left.
-    pub seconds: f32,
-}
 
 impl Character {
     /// Gets up, or first brings the body to where it can.

@@ -1,12 +1,8 @@
 //! A character's own state, beside the world's snapshot.
 
-use super::detail::Detail;
-use super::feet::Planting;
-use super::get_up::Rising;
-use super::hold::Hold;
+use super::distances::Detail;
 use super::in_world::Presence;
-use super::limp::Stillness;
-use super::prepare::Preparation;
+use super::memory::{Hold, Planting, Preparation, Rising, Stillness};
 use super::stumble::Stumble;
 use super::{Character, Earlier, State};
 use crate::drive::Drives;

@@ -1,15 +1,9 @@
 //! Data for a renderer: the pose between two steps, and matrices of the skin.
 
 use super::Character;
+use super::memory::Shown;
 use sinew_anim::LocalTransform;
 use sinew_math::{Affine, Transform};
-
-/// Pose and place that were shown at the end of the step before.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Shown {
-    pub pose: Vec<LocalTransform>,
-    pub world_from_character: Transform,
-}
 
 impl Character {
     /// Keeps what is shown now for [`interpolated`](Self::interpolated).

@@ -22,6 +22,7 @@
 mod anatomy;
 mod code;
 mod exam;
+mod finding;
 mod geometry;
 mod limits;
 mod masses;
@@ -34,55 +35,11 @@ mod shapes;
 pub use code::{Code, Severity};
 pub(crate) use exam::bones_of;
 pub use exam::limit_reach;
+pub use finding::{Finding, Repair};
 pub(crate) use geometry::scaled;
 
-use crate::def::RagdollDef;
 use crate::skin::{Flaw, FlawKind};
 use exam::Exam;
-use sinew_physics::{Softness, WorldDef};
-
-/// A ragdoll to be examined and repaired.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Repair {
-    /// The ragdoll.
-    pub def: RagdollDef,
-    /// Spring or motor of each joint, in the order of the joints; `None` for a limp one. May be shorter than the joints.
-    pub springs: Vec<Option<Softness>>,
-    /// Ragdoll that a build from its rig gives, if that is at hand: it knows what the definition leaves out.
-    pub reference: Option<RagdollDef>,
-    /// Flaws of its skin ([`SkinQuality::flaws`](crate::SkinQuality::flaws)), where it was measured.
-    pub skin: Vec<Flaw>,
-    /// Length of a substep, seconds. Default: that of a default world, 1/240.
-    pub substep: f32,
-}
-
-impl Repair {
-    /// A limp ragdoll whose rig is not at hand.
-    pub fn new(def: RagdollDef) -> Self {
-        let world = WorldDef::default();
-        let substep = world.dt() / world.substeps as f32;
-        Self { def, springs: Vec::new(), reference: None, skin: Vec::new(), substep }
-    }
-}
-
-/// Something that is wrong with a ragdoll.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
-    /// Kind of trouble.
-    pub code: Code,
-    /// Severity of the trouble.
-    pub severity: Severity,
-    /// Indices of the bodies that it is about, the one to look at first.
-    pub bodies: Vec<usize>,
-    /// Names of their bones; of a body that is missing, its role.
-    pub bones: Vec<String>,
-    /// Measured evidence, a sentence with both bodies' names.
-    pub evidence: String,
-    /// Advice on what to do, a sentence.
-    pub fix: String,
-    /// True if [`cure`] has mended it; false from [`doctor`].
-    pub fixed: bool,
-}
 
 /// Everything that is wrong with a ragdoll, the worst first.
 ///
@@ -145,12 +102,12 @@ fn in_proportion(exam: &Exam<'_>) -> Vec<Finding> {
     limits::findings(exam, &mut findings);
     mirror::findings(exam, &mut findings);
     // Places where it moves are an effect; where the cause is known, they show what that does.
-    let unrest = motion::Unrest::of(exam);
-    if let Some(evidence) = unrest.is_notable(exam) {
+    let jitter = motion::Jitter::of(exam);
+    if let Some(evidence) = jitter.is_notable(exam) {
         let cause = findings.iter_mut().find(|f| f.severity == Severity::Error || f.code == Code::HugeShape);
         match cause {
             Some(cause) => cause.evidence = format!("{}; {evidence}", cause.evidence),
-            None => findings.push(unrest.finding(exam, evidence)),
+            None => findings.push(jitter.finding(exam, evidence)),
         }
     }
     findings

@@ -15,7 +15,7 @@ const TURNED: f32 = 0.105;
 
 /// Motion of the bodies that nothing has caused. Places tell more than speeds: a solver that adds no energy mends what is wrong by moving it.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Unrest {
+pub(super) struct Jitter {
     /// Farthest way of a body, metres, and whose.
     moved: (f32, usize),
     /// Largest turn of a body, radians, and whose.
@@ -26,7 +26,7 @@ pub(super) struct Unrest {
     is_lost: bool,
 }
 
-impl Unrest {
+impl Jitter {
     /// Half a second at rest. Joints are as the definition has them, not fitted to the pose.
     pub fn of(exam: &Exam<'_>) -> Self {
         let def = exam.def;

@@ -6,7 +6,7 @@ use crate::disguise::{
     CONVENTIONS, affixed, bound_in, hung_on_root, renamed, shuffled, transformed, with_controls, with_hair,
     with_twists, with_two_skins, z_up,
 };
-use crate::guises::Falls;
+use crate::rig_variants::Falls;
 use sinew_anim::{JointIdx, Rig, RigAnalysis, Role, Side, analyze};
 use sinew_math::{Random, Rotation};
 use sinew_ragdoll::{BuildOptions, RagdollDef};

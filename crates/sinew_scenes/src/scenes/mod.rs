@@ -12,112 +12,22 @@
 //! # Ok::<(), sinew_scenes::scenes::SettingError>(())
 //! ```
 
-mod actors;
-mod camera_hint;
-mod flight;
-mod instance;
-mod metric;
-mod setting;
-mod stand;
-
-mod air;
-mod arch;
-mod arena;
-mod ballistics;
-mod blasts;
-mod blending;
-mod blobs;
-mod boxes;
-mod cabin;
-mod callbacks;
-mod chains;
-mod cloths;
-mod coin;
-mod crowds;
-mod drives;
-mod engine;
-mod falls;
-mod forces;
-mod gimbal;
-mod house;
-mod impacts;
-mod incline;
-mod laden;
-mod linkages;
-mod mjcf;
-mod mocap;
-mod motors;
-mod movers;
-mod nets;
-mod orbits;
-mod orientation;
-mod overhang;
+mod characters;
+mod contacts;
+mod fields;
+mod free_motion;
+mod joints;
 mod particles;
-mod pendulums;
 mod piles;
 mod ragdolls;
-mod rolling;
-mod settling;
-mod showroom;
-mod springs;
-mod stacks;
-mod street;
-mod strings;
-mod support;
-mod surfaces;
-mod throng;
-mod tops;
-mod transitions;
-mod trees;
-mod walking;
-mod water;
-mod weightless;
+mod shows;
 
-pub use actors::Figure;
-pub use camera_hint::{CameraHint, Trails};
-pub use instance::{Instance, Part, Script};
-pub use metric::{Expected, Metric};
-pub use setting::{Domain, Setting, SettingError, Settings};
-
-use crate::parts;
-use setting::Setup;
-
-/// A named scenario.
-#[derive(Clone, Copy, Debug)]
-pub struct Scene {
-    /// Name of the scene for `sinew run`.
-    pub name: &'static str,
-    /// One line for people.
-    pub about: &'static str,
-    /// Steps of 1/60 s after which its expectations hold.
-    pub steps: u32,
-    settings: &'static [Setting],
-    build: fn(&Setup<'_>) -> Instance,
-}
-
-impl Scene {
-    /// Its settings, all at their defaults.
-    pub fn settings(&self) -> Settings {
-        Settings::new(self.settings)
-    }
-
-    /// Builds it.
-    ///
-    /// # Panics
-    /// If the settings are those of another scene, or one that has to be set is not: see [`Settings::check`].
-    pub fn start(&self, settings: &Settings) -> Instance {
-        self.start_under(settings, 1.0)
-    }
-
-    /// Builds it in a world whose gravity is wrong by a factor, while its expectations remain those of the right one:
-    /// they must fail wherever gravity matters.
-    ///
-    /// # Panics
-    /// If the settings are those of another scene.
-    pub fn start_under(&self, settings: &Settings, gravity_factor: f32) -> Instance {
-        (self.build)(&Setup { settings, gravity_factor })
-    }
-}
+pub use crate::framework::actors::Figure;
+pub use crate::framework::camera_hint::{CameraHint, Trails};
+pub use crate::framework::instance::{Instance, Part, Script};
+pub use crate::framework::metric::{Expected, Metric};
+pub use crate::framework::scene::Scene;
+pub use crate::framework::setting::{Domain, Setting, SettingError, Settings};
 
 /// All scenes, closed forms first.
 pub fn registry() -> &'static [Scene] {
@@ -125,122 +35,122 @@ pub fn registry() -> &'static [Scene] {
 }
 
 const REGISTRY: &[Scene] = &[
-    ballistics::FREE_FALL,
-    ballistics::PROJECTILE,
-    ballistics::BOUNCE,
-    forces::TWO_MEN,
-    forces::PUSH,
-    forces::BULLET,
-    orbits::KEPLER,
-    orbits::SUN_EARTH,
-    orbits::THREE_BODIES,
-    air::WIND,
-    air::TERMINAL_VELOCITY,
-    water::FLOAT,
-    blasts::EXPLOSION,
-    pendulums::PENDULUM,
-    pendulums::DOUBLE_PENDULUM,
-    pendulums::TRIPLE_PENDULUM,
-    motors::ARM,
-    linkages::LINKAGE,
-    incline::HOLDS,
-    incline::SLIDES,
-    incline::ROLLS,
-    rolling::SLIDE_TO_ROLL,
-    rolling::ROLLING_BALLS,
-    coin::COIN,
-    surfaces::STATIC_FRICTION,
-    surfaces::CONVEYOR,
-    surfaces::ONE_WAY,
-    surfaces::SENSORS,
-    movers::COURSE,
-    street::STREET,
-    arena::ARENA,
-    impacts::ELASTIC_PAIRS,
-    impacts::NEWTONS_CRADLE,
-    impacts::BOUNCING_BALLS,
-    overhang::BLOCK_OVERHANG,
-    tops::DZHANIBEKOV,
-    tops::SYMMETRIC_TOP,
-    tops::SPINNING_TOP,
-    springs::SPRING,
-    springs::SPRING_CHAIN,
-    springs::SPRINGS_RATIO,
-    strings::CATENARY,
-    strings::CHAIN_MODES,
-    particles::PARTICLE,
-    particles::FAST_PARTICLE,
-    cloths::CLOTH,
-    blobs::BLOB,
-    blobs::STEEL_VS_BASKETBALL,
-    gimbal::GIMBAL,
-    orientation::MATRIX_DRIFT,
-    orientation::VERSOR,
-    orientation::HELPERS,
-    weightless::ZERO_GRAVITY_PILE,
-    weightless::SPIN_DOUBLE,
-    weightless::SPIN_TRIPLE,
-    weightless::SPIN_RAGDOLL,
-    cabin::CABIN,
-    showroom::SHOWROOM,
-    piles::STACK,
-    piles::PYRAMID,
-    piles::DOMINOES,
-    stacks::MASS_RATIO,
-    stacks::SIZE_RATIO,
-    stacks::JENGA,
-    stacks::CARDS,
-    arch::ARCH,
-    stacks::LARGE_PYRAMID,
-    laden::JENGA,
-    laden::SIZE_RATIO,
-    laden::MASS_RATIO,
-    laden::CARDS,
-    laden::PYRAMID,
-    laden::ARCH,
-    laden::STACK,
-    springs::ROPE_ON_BOX,
-    ragdolls::DROP,
-    falls::POSES,
-    drives::POWERED,
-    drives::HIT_REACTION,
-    ragdolls::WALL,
-    ragdolls::WALL_FAST,
-    ragdolls::STAIRS,
-    chains::SWING_1000,
-    chains::SWING_100,
-    chains::HANG_1000,
-    chains::HANG_100,
-    chains::LINKS_100,
-    chains::HEAVY_ROPE,
-    chains::HANGING_ROPE,
-    nets::JOINT_GRID,
-    nets::NET,
-    crowds::PILE,
-    throng::CROWD,
-    settling::RAGDOLLS,
-    settling::WAVE_PILE,
-    settling::MESH_DROP,
-    settling::ROCKS,
-    crowds::RAIN,
-    engine::FRAME_RATES,
-    engine::TAUTOCHRONE,
-    trees::HEAVY_FOOT,
-    trees::MASS_RATIO,
-    boxes::AABB_VS_OBB,
-    boxes::POINT_IN_OBB,
-    blending::TWO_TRACKS,
-    blending::WALK_RUN,
-    transitions::TRANSITION,
-    callbacks::FOOTSTEPS,
-    callbacks::PUNCH,
-    walking::ROOT_WALK,
-    walking::UNEVEN_GROUND,
-    mocap::RETARGET,
+    free_motion::ballistics::FREE_FALL,
+    free_motion::ballistics::PROJECTILE,
+    free_motion::ballistics::BOUNCE,
+    free_motion::forces::TWO_MEN,
+    free_motion::forces::PUSH,
+    free_motion::forces::BULLET,
+    free_motion::orbits::KEPLER,
+    free_motion::orbits::SUN_EARTH,
+    free_motion::orbits::THREE_BODIES,
+    fields::air::WIND,
+    fields::air::TERMINAL_VELOCITY,
+    fields::water::FLOAT,
+    fields::blasts::EXPLOSION,
+    joints::pendulums::PENDULUM,
+    joints::pendulums::DOUBLE_PENDULUM,
+    joints::pendulums::TRIPLE_PENDULUM,
+    joints::motors::ARM,
+    joints::linkages::LINKAGE,
+    contacts::incline::HOLDS,
+    contacts::incline::SLIDES,
+    contacts::incline::ROLLS,
+    contacts::rolling::SLIDE_TO_ROLL,
+    contacts::rolling::ROLLING_BALLS,
+    contacts::coin::COIN,
+    contacts::surfaces::STATIC_FRICTION,
+    contacts::surfaces::CONVEYOR,
+    contacts::surfaces::ONE_WAY,
+    contacts::surfaces::SENSORS,
+    characters::movers::COURSE,
+    characters::street::STREET,
+    characters::arena::ARENA,
+    contacts::impacts::ELASTIC_PAIRS,
+    contacts::impacts::NEWTONS_CRADLE,
+    contacts::impacts::BOUNCING_BALLS,
+    contacts::overhang::BLOCK_OVERHANG,
+    free_motion::tops::DZHANIBEKOV,
+    free_motion::tops::SYMMETRIC_TOP,
+    free_motion::tops::SPINNING_TOP,
+    joints::springs::SPRING,
+    joints::springs::SPRING_CHAIN,
+    joints::springs::SPRINGS_RATIO,
+    joints::strings::CATENARY,
+    joints::strings::CHAIN_MODES,
+    particles::single::PARTICLE,
+    particles::single::FAST_PARTICLE,
+    particles::cloths::CLOTH,
+    particles::blobs::BLOB,
+    particles::blobs::STEEL_VS_BASKETBALL,
+    free_motion::gimbal::GIMBAL,
+    free_motion::orientation::MATRIX_DRIFT,
+    free_motion::orientation::VERSOR,
+    free_motion::orientation::HELPERS,
+    free_motion::weightless::ZERO_GRAVITY_PILE,
+    free_motion::weightless::SPIN_DOUBLE,
+    free_motion::weightless::SPIN_TRIPLE,
+    free_motion::weightless::SPIN_RAGDOLL,
+    shows::cabin::CABIN,
+    shows::showroom::SHOWROOM,
+    piles::blocks::STACK,
+    piles::blocks::PYRAMID,
+    piles::blocks::DOMINOES,
+    piles::stacks::MASS_RATIO,
+    piles::stacks::SIZE_RATIO,
+    piles::stacks::JENGA,
+    piles::stacks::CARDS,
+    piles::arch::ARCH,
+    piles::stacks::LARGE_PYRAMID,
+    piles::laden::JENGA,
+    piles::laden::SIZE_RATIO,
+    piles::laden::MASS_RATIO,
+    piles::laden::CARDS,
+    piles::laden::PYRAMID,
+    piles::laden::ARCH,
+    piles::laden::STACK,
+    joints::springs::ROPE_ON_BOX,
+    ragdolls::limp::DROP,
+    ragdolls::falls::POSES,
+    ragdolls::drives::POWERED,
+    ragdolls::drives::HIT_REACTION,
+    ragdolls::limp::WALL,
+    ragdolls::limp::WALL_FAST,
+    ragdolls::limp::STAIRS,
+    joints::chains::SWING_1000,
+    joints::chains::SWING_100,
+    joints::chains::HANG_1000,
+    joints::chains::HANG_100,
+    joints::chains::LINKS_100,
+    joints::chains::HEAVY_ROPE,
+    joints::chains::HANGING_ROPE,
+    joints::nets::JOINT_GRID,
+    joints::nets::NET,
+    piles::crowds::PILE,
+    ragdolls::throng::CROWD,
+    piles::settling::RAGDOLLS,
+    piles::settling::WAVE_PILE,
+    piles::settling::MESH_DROP,
+    piles::settling::ROCKS,
+    piles::crowds::RAIN,
+    shows::engine::FRAME_RATES,
+    shows::engine::TAUTOCHRONE,
+    joints::trees::HEAVY_FOOT,
+    joints::trees::MASS_RATIO,
+    contacts::boxes::AABB_VS_OBB,
+    contacts::boxes::POINT_IN_OBB,
+    characters::blending::TWO_TRACKS,
+    characters::blending::WALK_RUN,
+    characters::transitions::TRANSITION,
+    characters::callbacks::FOOTSTEPS,
+    characters::callbacks::PUNCH,
+    characters::walking::ROOT_WALK,
+    characters::walking::UNEVEN_GROUND,
+    characters::mocap::RETARGET,
 ];
 
 /// Scenes that need a file of the user's, and so are in no list.
-const OF_FILES: &[Scene] = &[mjcf::DROP, house::HOUSE, mocap::MOCAP];
+const OF_FILES: &[Scene] = &[ragdolls::mjcf::DROP, ragdolls::house::HOUSE, characters::mocap::MOCAP];
 
 /// The scene of that name; of those that need a file, too, which the registry does not list.
 pub fn find(name: &str) -> Option<&'static Scene> {

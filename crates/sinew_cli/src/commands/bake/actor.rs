@@ -2,7 +2,7 @@
 
 use super::clips::Motions;
 use crate::failure::{Failure, Result};
-use crate::files::CharacterFile;
+use crate::input::files::CharacterFile;
 use sinew::anim::retarget::RetargetError;
 use sinew::motions::{BuiltinError, set_motions_with_builtin};
 use sinew::ragdoll::{AfterSettling, CharacterDef, Locomotion, MotionSet, RagdollDef};

@@ -2,8 +2,8 @@
 
 use super::hit::HitArg;
 use crate::failure::{Failure, Result};
-use crate::files::CharacterFile;
-use crate::table::shown;
+use crate::input::files::CharacterFile;
+use crate::report::table::shown;
 use sinew::anim::{RigAnalysis, Role, Side};
 use sinew::ragdoll::settings::{instead, role_named};
 use sinew::ragdoll::{CharacterDef, Hit, RagdollBodyDef};

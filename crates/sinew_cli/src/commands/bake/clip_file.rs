@@ -2,8 +2,8 @@
 
 use crate::failure::Result;
 use crate::fall::Fall;
-use crate::files::CharacterFile;
-use crate::skeleton::{bones_only, lost_meshes, transform};
+use crate::input::files::CharacterFile;
+use crate::input::skeleton::{bones_only, lost_meshes, transform};
 use sinew::formats::{BvhEnds, BvhWriteOptions, append_clip, write_bvh};
 use sinew::math::Rotation;
 use std::path::{Path, PathBuf};

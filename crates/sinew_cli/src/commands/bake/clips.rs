@@ -2,9 +2,9 @@
 
 use crate::commands::clip_choice::find_clip;
 use crate::failure::{Failure, Result};
-use crate::files::CharacterFile;
-use crate::motion::Motion;
-use crate::onto::carry;
+use crate::input::files::CharacterFile;
+use crate::input::motion::Motion;
+use crate::input::onto::carry;
 use sinew::anim::Clip;
 use sinew::anim::retarget::RetargetOptions;
 use sinew::formats::MotionOptions;

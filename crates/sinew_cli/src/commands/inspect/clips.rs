@@ -1,8 +1,8 @@
 //! Facts that `sinew inspect` tells about clips and their events.
 
-use crate::motion::Motion;
+use crate::input::motion::Motion;
+use crate::report::table::{Table, shown};
 use crate::report::{number, numbers};
-use crate::table::{Table, shown};
 use serde_json::{Value, json};
 use sinew::anim::{BuildOptions, BuiltClip, Clip, Event, RigAnalysis, Role, Wrap, local_to_model, sample};
 use sinew::math::{Affine, Rotation, Vec3};

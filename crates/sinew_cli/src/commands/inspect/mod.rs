@@ -3,11 +3,11 @@
 mod clips;
 
 use crate::failure::Result;
-use crate::motion::Motion;
-use crate::ragdoll_report::axis_name;
+use crate::input::motion::Motion;
+use crate::input::settings_arg::assumed;
+use crate::report::ragdoll_report::axis_name;
+use crate::report::table::{Table, counted, shown};
 use crate::report::{Report, number};
-use crate::settings_arg::assumed;
-use crate::table::{Table, counted, shown};
 use clips::{ClipFacts, clip_table, event_table};
 use serde_json::{Value, json};
 use sinew::formats::MotionOptions;

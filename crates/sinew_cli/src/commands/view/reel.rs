@@ -1,8 +1,8 @@
 //! Pictures of a scene that runs.
 
 use super::Subject;
-use crate::progress::Progress;
-use crate::skin;
+use crate::render::skin;
+use crate::report::progress::Progress;
 use sinew::math::{Vec3, clamp, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;

@@ -9,8 +9,8 @@ mod filter;
 mod indices;
 
 use super::source::{Buffer, buffer_bytes};
+use crate::container::json::At;
 use crate::error::Result;
-use crate::json::At;
 
 /// Both names of the extension; what the newer one adds is told by the streams themselves.
 const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];

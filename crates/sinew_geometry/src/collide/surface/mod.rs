@@ -128,8 +128,8 @@ fn meet(triangle: &Triangle, solid: &Solid<'_>, motion: &Motion, scratch: &mut S
     }
     let mut teller = Teller { triangle, solid, margin: motion.margin, scratch };
     let part = match solid {
-        Solid::Ball(radius) => round::ball(*radius, &mut teller),
-        Solid::Pill(pill) => round::pill(pill, &mut teller),
+        Solid::PlacedSphere(radius) => round::sphere(*radius, &mut teller),
+        Solid::PlacedCapsule(pill) => round::capsule(pill, &mut teller),
         Solid::Box(placed) => boxed::meet(placed, gap, &mut teller),
         Solid::Other(posed) => other::other(posed, gap, &mut teller),
     };

@@ -1,13 +1,13 @@
-//! Ball and capsule against a triangle.
+//! PlacedSphere and capsule against a triangle.
 
 use super::{Teller, When};
 use crate::collide::feature::WHOLE;
-use crate::collide::placed::{Pill, Segment};
+use crate::collide::placed::{PlacedCapsule, Segment};
 use crate::triangles::{Part, closest_on_triangle};
 use sinew_math::{Vec3, min};
 
 /// The closest point of the triangle to the centre.
-pub(super) fn ball(radius: f32, teller: &mut Teller<'_>) -> Option<Part> {
+pub(super) fn sphere(radius: f32, teller: &mut Teller<'_>) -> Option<Part> {
     let (point, part) = closest_on_triangle(&teller.triangle.corners, Vec3::ZERO);
     let distance = point.length();
     if distance - radius > teller.margin {
@@ -27,7 +27,7 @@ pub(super) fn ball(radius: f32, teller: &mut Teller<'_>) -> Option<Part> {
 }
 
 /// The stretch of the core that is over the triangle, or the closest points of the core and an edge.
-pub(super) fn pill(pill: &Pill, teller: &mut Teller<'_>) -> Option<Part> {
+pub(super) fn capsule(pill: &PlacedCapsule, teller: &mut Teller<'_>) -> Option<Part> {
     let over = teller.over_face(Vec3::ZERO);
     let lowest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
     let nearest = nearest_rim(pill, teller);
@@ -49,7 +49,7 @@ pub(super) fn pill(pill: &Pill, teller: &mut Teller<'_>) -> Option<Part> {
 }
 
 /// True if the core goes through the triangle.
-fn pierces(pill: &Pill, teller: &Teller<'_>) -> bool {
+fn pierces(pill: &PlacedCapsule, teller: &Teller<'_>) -> bool {
     let [from, to] = pill.core.ends.map(|end| teller.triangle.height(end));
     if from * to > 0.0 {
         return false;
@@ -66,7 +66,7 @@ struct Nearest {
     part: Part,
 }
 
-fn nearest_rim(pill: &Pill, teller: &Teller<'_>) -> Nearest {
+fn nearest_rim(pill: &PlacedCapsule, teller: &Teller<'_>) -> Nearest {
     let corners = teller.triangle.corners;
     let mut best =
         Nearest { distance: f32::INFINITY, on_core: Vec3::ZERO, on_rim: Vec3::ZERO, part: Part::Face };

@@ -3,16 +3,16 @@
 use super::name;
 use super::outline::{Corner, Outline, Side};
 use crate::collide::feature::{self, WHOLE};
-use crate::collide::placed::{Pill, PlacedBox};
+use crate::collide::placed::{PlacedBox, PlacedCapsule};
 use crate::convex::support::{Core, Posed, Support, narrow, wide};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, min};
 
-/// Ball, capsule and box have ways of their own; all others are met by GJK and EPA.
+/// PlacedSphere, capsule and box have ways of their own; all others are met by GJK and EPA.
 pub(super) enum Solid<'a> {
-    /// Ball of this radius.
-    Ball(f32),
-    Pill(Pill),
+    /// PlacedSphere of this radius.
+    PlacedSphere(f32),
+    PlacedCapsule(PlacedCapsule),
     Box(PlacedBox),
     Other(Posed<'a, Core<'a>>),
 }
@@ -21,8 +21,10 @@ impl<'a> Solid<'a> {
     pub fn new(shape: &Shape, core: &'a Core<'a>, frame: &Transform) -> Self {
         match *shape {
             Shape::Box { half_extents } => Self::Box(PlacedBox::new(half_extents, frame)),
-            Shape::Sphere { radius } => Self::Ball(radius),
-            Shape::Capsule { half_height, radius } => Self::Pill(Pill::new(half_height, radius, frame)),
+            Shape::Sphere { radius } => Self::PlacedSphere(radius),
+            Shape::Capsule { half_height, radius } => {
+                Self::PlacedCapsule(PlacedCapsule::new(half_height, radius, frame))
+            }
             _ => Self::Other(Posed::new(core, frame, Vec3::ZERO)),
         }
     }
@@ -30,8 +32,8 @@ impl<'a> Solid<'a> {
     /// Radius of its rounding.
     pub fn radius(&self) -> f32 {
         match self {
-            Self::Ball(radius) => *radius,
-            Self::Pill(pill) => pill.radius,
+            Self::PlacedSphere(radius) => *radius,
+            Self::PlacedCapsule(pill) => pill.radius,
             Self::Box(_) => 0.0,
             Self::Other(posed) => posed.solid.rounding(),
         }
@@ -40,8 +42,8 @@ impl<'a> Solid<'a> {
     /// Reach against the unit vector `n`, metres.
     pub fn depth(&self, n: Vec3) -> f32 {
         match self {
-            Self::Ball(radius) => *radius,
-            Self::Pill(pill) => pill.core.ends[1].dot(n).abs() + pill.radius,
+            Self::PlacedSphere(radius) => *radius,
+            Self::PlacedCapsule(pill) => pill.core.ends[1].dot(n).abs() + pill.radius,
             Self::Box(placed) => placed.half_width(n),
             Self::Other(posed) => posed.extent(-wide(n)) as f32,
         }
@@ -50,8 +52,8 @@ impl<'a> Solid<'a> {
     /// Lengths below this don't matter for the choice of features, metres.
     pub fn tolerance(&self) -> f32 {
         let thin = match self {
-            Self::Ball(radius) => *radius,
-            Self::Pill(pill) => pill.radius,
+            Self::PlacedSphere(radius) => *radius,
+            Self::PlacedCapsule(pill) => pill.radius,
             Self::Box(placed) => placed.thinnest(),
             Self::Other(posed) => posed.solid.thinnest(),
         };
@@ -65,8 +67,8 @@ impl<'a> Solid<'a> {
             outline.push(Corner { at, of_shape, of_surface: name::FACE, side });
         };
         match self {
-            Self::Ball(_) => push(Vec3::ZERO, WHOLE, Side::None),
-            Self::Pill(pill) => {
+            Self::PlacedSphere(_) => push(Vec3::ZERO, WHOLE, Side::None),
+            Self::PlacedCapsule(pill) => {
                 for (index, at) in pill.core.ends.into_iter().enumerate() {
                     push(at, feature::end(index), Side::Shape(WHOLE));
                 }

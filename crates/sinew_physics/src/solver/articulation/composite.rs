@@ -1,71 +1,17 @@
 //! Masses that a joint's springs and motors move: each side of the joint as one rigid piece.
 
 use crate::joint::{DIRECTIONS, JointRows, TWIST};
+use crate::solver::IslandSolver;
+use crate::solver::articulation::piece::Piece;
 use crate::solver::articulation::tree::{Link, NONE};
+use crate::solver::joint::SolverJoint;
 use crate::solver::tuning::{LEAST_ROW_MASS, LEAST_ROW_MOMENT};
-use crate::solver::{IslandSolver, SolverBody, SolverJoint};
-use crate::spatial::{Vec6, ZERO6, ZERO66, angular, linear, spd_inverse};
-use sinew_math::{Sym3, Vec3, max};
-
-/// Mass, first moment and inertia of rigidly held bodies about a common reference point.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::solver) struct Piece {
-    mass: f32,
-    moment: Vec3,
-    inertia: Sym3,
-}
-
-impl Piece {
-    pub(in crate::solver) fn of(body: &SolverBody, reference: Vec3) -> Self {
-        let arm = body.pose.translation - reference;
-        let own = Sym3::from_rotated_diagonal(body.pose.rotation, body.inertia);
-        Self { mass: body.mass, moment: arm * body.mass, inertia: own + parallel_axis(arm) * body.mass }
-    }
-
-    pub(in crate::solver) fn plus(self, other: &Self) -> Self {
-        Self {
-            mass: self.mass + other.mass,
-            moment: self.moment + other.moment,
-            inertia: self.inertia + other.inertia,
-        }
-    }
-
-    fn minus(self, other: &Self) -> Self {
-        Self {
-            mass: self.mass - other.mass,
-            moment: self.moment - other.moment,
-            inertia: self.inertia - other.inertia,
-        }
-    }
-
-    /// Velocity response matrix of rows on this piece; each row is given for a body whose centre is at `arm` from the
-    /// reference point. Nothing for a piece without mass.
-    fn add_response(&self, rows: &[Vec6], arm: Vec3, out: &mut [Vec6; DIRECTIONS]) {
-        if self.mass <= 0.0 {
-            return;
-        }
-        let center = self.moment / self.mass;
-        let inverse = (self.inertia - parallel_axis(center) * self.mass).inverse();
-        let wrench = |row: &Vec6| (linear(row), angular(row) + (arm - center).cross(linear(row)));
-        for (i, row) in rows.iter().enumerate() {
-            let (force, torque) = wrench(row);
-            let (push, turn) = (force / self.mass, inverse * torque);
-            for (k, other) in rows.iter().enumerate() {
-                let (force, torque) = wrench(other);
-                out[i][k] += push.dot(force) + turn.dot(torque);
-            }
-        }
-    }
-}
-
-/// `|r|² 1 − r rᵀ`
-fn parallel_axis(arm: Vec3) -> Sym3 {
-    Sym3::from_diagonal(Vec3::splat(arm.length_squared())) - Sym3::outer(arm)
-}
+use crate::spatial::{Vec6, ZERO6, ZERO66, spd_inverse};
+use sinew_math::{Vec3, max};
 
 impl IslandSolver {
     /// Masses of all joints that need them, at the step's beginning.
-    pub(in crate::solver) fn weigh_joints(&mut self) {
+    pub(in crate::solver) fn find_joint_masses(&mut self) {
         if self.joints.iter().all(|joint| !joint.drive.needs_mass()) {
             return;
         }

@@ -1,96 +1,18 @@
 //! Drives in a joint's directions beside the hard constraint: springs, welds that give, motors, dry friction. Each is a
 //! row of the tree factor with compliance, so that any stiffness is stable.
 
-use crate::joint::def::{Gains, Motor, Softness};
+use crate::joint::def::{Gains, Motor};
 use crate::joint::{DIRECTIONS, JointPose, JointRows, TWIST, displacement, locked_error, open_row};
+use crate::solver::IslandSolver;
+use crate::solver::articulation::soft_row::SoftRow;
+use crate::solver::joint::SolverJoint;
+use crate::solver::pass::Pass;
 use crate::solver::tuning::{
-    CLOSING_SPEED, CLOSING_SPIN, FASTEST_SPRING, MOST_BENT_ANGLE, MOST_BENT_LENGTH, MOTOR_SHARE,
-    SATURATION_ROUNDS, SPRING_MARGIN, STICK_SPEED, STICK_SPIN,
+    CLOSING_SPEED, CLOSING_SPIN, MOST_BENT_ANGLE, MOST_BENT_LENGTH, MOTOR_SHARE, SATURATION_ROUNDS,
+    STICK_SPEED, STICK_SPIN,
 };
-use crate::solver::{IslandSolver, SolverJoint};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, linear};
-use sinew_math::{Transform, clamp, max, trig};
-
-/// Impulse of a soft row: `λ = −(gain v⁺ + carry v + push)`, with `v` its rate when the substep begins and `v⁺` when it
-/// ends.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::solver) struct SoftRow {
-    gain: f32,
-    carry: f32,
-    push: f32,
-}
-
-impl SoftRow {
-    /// A damped oscillator of the given mass, `x` from where it wants to be and meant to move at `rate` there. Its poles
-    /// and its static stiffness are those of the differential equation, whatever the substep: with poles
-    /// `e^(−ζωh ± iω_d h)` and `x⁺ = x + h v⁺`, the update `(1 + α) v⁺ = (1 − γ) v − h ω² x` has determinant
-    /// `(1 − γ)/(1 + α)` and `(1 + α)(1 + det − trace) = (ωh)²`. Implicit Euler would add a damping ratio of ωh/2.
-    /// `least`: what may move by itself while the rest gives way.
-    fn add_spring(&mut self, softness: Softness, [mass, least]: [f32; 2], x: f32, rate: f32, h: f32) {
-        let (stiffness, damping) = softness.of_mass(mass);
-        let omega2 = stiffness / mass * h * h;
-        let a = 0.5 * damping / mass * h;
-        // Faster oscillations than a substep can show, and none at all, are left to implicit Euler.
-        let shown = omega2 > 0.0 && omega2 < FASTEST_SPRING;
-        let implicit = (2.0 * a + omega2, 0.0);
-        let (mut alpha, mut gamma) = if shown { exact_oscillator(omega2, a) } else { implicit };
-        // With a share `r` of the mass the update is stable as long as `4r + 2(α − γ) > (ωh)²`: what carries a figure by its hand
-        // must not shake when that is all that moves. Implicit Euler is for any.
-        if 4.0 * least + 2.0 * mass * (alpha - gamma) < SPRING_MARGIN * mass * omega2 {
-            (alpha, gamma) = implicit;
-        }
-        self.gain += mass * alpha;
-        self.carry += mass * gamma;
-        self.push += h * stiffness * x - mass * (alpha + gamma) * rate;
-    }
-
-    fn add_viscosity(&mut self, gain: f32, rate: f32) {
-        self.gain += gain;
-        self.push -= gain * rate;
-    }
-
-    fn add(&mut self, other: &Self) {
-        self.gain += other.gain;
-        self.carry += other.carry;
-        self.push += other.push;
-    }
-
-    /// Work that the row does from one rate to the other.
-    fn work(&self, before: f32, after: f32) -> f32 {
-        0.5 * self.impulse(before, after) * (before + after)
-    }
-
-    pub(in crate::solver) fn impulse(&self, before: f32, after: f32) -> f32 {
-        -(self.gain * after + self.carry * before + self.push)
-    }
-
-    /// Γ.
-    pub fn compliance(&self) -> f32 {
-        1.0 / self.gain
-    }
-
-    /// Rate that the row goes to where it moves nothing.
-    pub fn wanted(&self, before: f32) -> f32 {
-        -(self.carry * before + self.push) / self.gain
-    }
-}
-
-/// α and γ of [`SoftRow::add_spring`] from `(ωh)²` and `a = ζωh`. Differences of nearly equal numbers are avoided:
-/// `1 + det − trace = (1 − e^−a)² + 4 e^−a sin²(½ω_d h)`, or `(1 − e^(s−a))(1 − e^(−s−a))` when overdamped.
-fn exact_oscillator(omega2: f32, a: f32) -> (f32, f32) {
-    let det = trig::exp(-2.0 * a);
-    let distance = if omega2 > a * a {
-        let sin = trig::sin(0.5 * (omega2 - a * a).sqrt());
-        let fall = trig::exp_m1(-a);
-        fall * fall + 4.0 * trig::exp(-a) * sin * sin
-    } else {
-        let s = (a * a - omega2).sqrt();
-        // a − s = ω²h²/(a + s) keeps its digits.
-        trig::exp_m1(-omega2 / (a + s)) * trig::exp_m1(-a - s)
-    };
-    let one_plus_alpha = omega2 / distance;
-    (one_plus_alpha - 1.0, 1.0 - det * one_plus_alpha)
-}
+use sinew_math::{Transform, clamp, max};
 
 impl Motor {
     /// Most force or torque in a direction.
@@ -422,7 +344,7 @@ impl IslandSolver {
             self.refresh_rows();
             self.factor_joints();
             self.refresh_response();
-            self.project_joints(crate::solver::sweep::Pass::Solve);
+            self.project_joints(Pass::Solve);
         }
     }
 

@@ -1,24 +1,17 @@
 //! The joints of the trees: their rows, the factor, and the exact solve of velocities (RATTLE) and positions (SHAKE).
 
 use crate::joint::JointPose;
+use crate::solver::IslandSolver;
 use crate::solver::articulation::tree::{self, NONE};
+use crate::solver::joint::SolverJoint;
 use crate::solver::motion::{FindErrors, ListInertias, Predict};
-use crate::solver::sweep::Pass;
+use crate::solver::pass::{Corrected, Coupling, Pass};
 use crate::solver::tuning::{
     POSITION_CORRECTIONS, POSITION_CORRECTIONS_ITERATED, POSITION_TOLERANCE, RATE_SHARE, REFINEMENTS,
     WORTH_ANOTHER,
 };
-use crate::solver::{Coupling, IslandSolver, SolverJoint};
 use crate::spatial::{Vec6, ZERO6, add_scaled, largest, linear};
 use sinew_math::{Transform, dispatch, max, min};
-
-/// Trees whose positions are corrected.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::solver) enum Corrected {
-    All,
-    /// Trees whose velocities have changed since the last corrections of this substep.
-    Stirred,
-}
 
 impl IslandSolver {
     /// Poses and rows of all joints.
@@ -168,7 +161,7 @@ impl IslandSolver {
         s.corrected.clear();
         match of {
             Corrected::All => s.corrected.resize(trees, true),
-            Corrected::Stirred => s.corrected.extend((0..trees).map(|tree| self.dirty.has_stirred(tree))),
+            Corrected::Changed => s.corrected.extend((0..trees).map(|tree| self.dirty.has_changed(tree))),
         }
         s.errors.resize(trees, 0.0);
         s.looked_at.clear();
@@ -200,7 +193,7 @@ impl IslandSolver {
                 self.contacts.stir(i, change);
                 most = max(most, change);
             }
-            self.dirty.stir(tree as u32, most);
+            self.dirty.mark(tree as u32, most);
         }
     }
 

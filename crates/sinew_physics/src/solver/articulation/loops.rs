@@ -6,10 +6,12 @@
 use crate::solver::articulation::response::Response;
 use crate::solver::articulation::response_cache::ResponseCache;
 use crate::solver::articulation::tree::{self, Link, NONE};
+use crate::solver::body::{SolverBody, free_response};
+use crate::solver::joint::SolverJoint;
 use crate::solver::tuning::{
     LOOP_RATE_TOLERANCE, LOOP_REDUNDANCY, LOOP_RESIDUAL_SHARE, LOOP_ROUNDS, MAX_EXACT_ROWS,
 };
-use crate::solver::{IslandSolver, Scratch, SolverBody, SolverJoint, free_response};
+use crate::solver::{IslandSolver, Scratch};
 use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
 use sinew_math::{clamp, max};
 

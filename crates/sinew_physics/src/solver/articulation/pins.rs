@@ -2,10 +2,11 @@
 //! `J` of gains `G`, a pin gives `λ = G (r − J dv)`, so the body moves as if it had `Jᵀ G J` more inertia and were pushed by
 //! `Jᵀ G r`. Both go into the factor of its tree, which stays exact, in linear time, and stable for any stiffness.
 
-use crate::solver::articulation::composite::Piece;
+use crate::solver::IslandSolver;
 use crate::solver::articulation::elimination::{Inertia, wide};
+use crate::solver::articulation::piece::Piece;
 use crate::solver::articulation::tree::NONE;
-use crate::solver::{IslandSolver, SolverJoint};
+use crate::solver::joint::SolverJoint;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, linear};
 
 /// The pins of an island.

@@ -14,19 +14,19 @@ use sinew_math::lanes::{Lanes, WIDTH};
 /// The columns of all rows that were not idle at the present pose.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ResponseCache {
-    /// Column after column, each as its [`Reach`] says.
+    /// Column after column, each as its [`CoveredBodies`] says.
     entries: Vec<Vec6>,
     lanes: Vec<AnswerLanes>,
 }
 
 /// Place of columns of the same bodies that lie side by side: start and stride, in entries.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Strip {
+pub(crate) struct CachedColumns {
     start: usize,
     stride: usize,
 }
 
-impl Strip {
+impl CachedColumns {
     /// Index of the first entry of column `k`.
     pub fn column(&self, k: usize) -> usize {
         self.start + k * self.stride
@@ -36,13 +36,13 @@ impl Strip {
 /// Bodies that the columns of two bodies' rows cover: the members of the tree of A, then those of the tree of B if it is
 /// another one. Fixed bodies have none.
 #[derive(Clone, Copy, Debug)]
-struct Reach<'a> {
+struct CoveredBodies<'a> {
     members: [&'a [u32]; 2],
     /// Places of A and B in a column.
     places: [Option<usize>; 2],
 }
 
-impl<'a> Reach<'a> {
+impl<'a> CoveredBodies<'a> {
     fn new(response: &'a Response, links: &[Link], bodies: [u32; 2]) -> Self {
         let trees = bodies.map(|body| links.get(body as usize).map(|link| link.tree));
         let members = |tree: Option<u32>| tree.map_or(&[][..], |tree| response.members(tree));
@@ -95,8 +95,8 @@ impl ResponseCache {
     }
 
     /// Place at which the next columns, of these bodies, will lie.
-    pub fn strip(&self, response: &Response, links: &[Link], bodies: [u32; 2]) -> Strip {
-        Strip { start: self.end(), stride: Reach::new(response, links, bodies).len() }
+    pub fn strip(&self, response: &Response, links: &[Link], bodies: [u32; 2]) -> CachedColumns {
+        CachedColumns { start: self.end(), stride: CoveredBodies::new(response, links, bodies).len() }
     }
 
     /// Bytes that are filled.
@@ -122,7 +122,7 @@ impl ResponseCache {
         bodies: [u32; 2],
         row: [&Vec6; 2],
     ) -> [Vec6; 2] {
-        let reach = Reach::new(response, links, bodies);
+        let reach = CoveredBodies::new(response, links, bodies);
         let start = self.end();
         let second =
             reach.places[1].map_or(0, |place| if place < reach.members[0].len() { reach.len() } else { 0 });
@@ -156,7 +156,7 @@ impl ResponseCache {
         (links, batches): (&[Link], &mut Batches),
         rows: &[([u32; 2], &Row)],
     ) -> (usize, usize) {
-        let reach = Reach::new(response, links, rows[0].0);
+        let reach = CoveredBodies::new(response, links, rows[0].0);
         let (start, stride) = (self.end(), reach.len());
         self.entries.resize(start + rows.len() * stride, ZERO6);
         let mut first = start;
@@ -183,7 +183,7 @@ impl ResponseCache {
 
     /// Places of a row's bodies in its column.
     pub fn places(response: &Response, links: &[Link], bodies: [u32; 2]) -> [Option<usize>; 2] {
-        Reach::new(response, links, bodies).places
+        CoveredBodies::new(response, links, bodies).places
     }
 
     /// Response of the rate of a row whose bodies have these places in a column, per unit of impulse of the column's row.
@@ -201,7 +201,7 @@ impl ResponseCache {
         (columns, by): (&[usize; WIDTH], &[f32; WIDTH]),
         velocities: &mut [Vec6],
     ) -> f32 {
-        let reach = Reach::new(response, links, bodies);
+        let reach = CoveredBodies::new(response, links, bodies);
         let (mut starts, mut shares, mut count) = ([0; WIDTH], [0.0; WIDTH], 0);
         for (&column, &by) in columns.iter().zip(by).filter(|(_, by)| **by != 0.0) {
             (starts[count], shares[count]) = (column, by);
@@ -220,7 +220,7 @@ impl ResponseCache {
         change: &Change,
         velocities: &mut [Vec6],
     ) {
-        let reach = Reach::new(response, links, bodies);
+        let reach = CoveredBodies::new(response, links, bodies);
         let (stride, by) = (reach.len(), &change.by[..change.count]);
         let columns = &self.entries[change.column..change.column + by.len() * stride];
         dispatch::run(Push { columns, stride, by, members: reach.members, velocities });

@@ -6,10 +6,10 @@
 //! dry friction.
 
 use crate::joint::{DIRECTIONS, JointRows, TWIST};
-use crate::solver::SolverJoint;
 use crate::solver::articulation::elimination::{
     Elimination, Freedom, Inertia, Sequence, Swivel, Twist, wide,
 };
+use crate::solver::joint::SolverJoint;
 use crate::solver::tuning::{LEAST_AXIS_SHARE, LEAST_AXIS_SQUARE};
 use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, join};
 use core::ops::Range;

@@ -1,251 +1,29 @@
 //! `prepare`: from the world to the arrays of one island's solver.
 
-use crate::activity::Activity;
-use crate::arena::Arena;
-use crate::body::Body;
-use crate::body::def::{Quality, WorldDef};
-use crate::body::work::Work;
+use crate::body::external_work::Work;
 use crate::collide::MAX_POINTS;
-use crate::contact::modifiers::Modifiers;
-use crate::contact::proxies::Proxies;
-use crate::contact::{Contact, ContactMemory, slop};
-use crate::context::StepContext;
-use crate::field::Fields;
+use crate::contact::{ContactMemory, slop};
 use crate::island::Island;
-use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
+use crate::joint::{DIRECTIONS, JointPose, JointRows, MAX_LIMITS};
 use crate::runner::TaskRunner;
-use crate::solver::articulation::drives::SoftRow;
+use crate::solver::IslandSolver;
+use crate::solver::articulation::soft_row::SoftRow;
 use crate::solver::articulation::tree::{Link, NONE};
-use crate::solver::boundary::counts;
-use crate::solver::boundary::faces::Faces;
+use crate::solver::body::SolverBody;
+use crate::solver::boundary::growth::Roots;
+use crate::solver::boundary::tally::Tally;
 use crate::solver::contact_rows::{ManifoldRows, ManifoldSource, PlacedShape};
 use crate::solver::contacts::{Added, OfStep, placed};
-use crate::solver::piles::mass_scaling::Touch;
-use crate::solver::tuning::{BALLASTED_RATIO, FAST_APPROACH, MAX_EXACT_ROWS, MAX_TREE, REFIND_TURN_RESPONSE};
-use crate::solver::{Coupling, IslandSolver, SolverBody, SolverJoint};
+use crate::solver::joint::SolverJoint;
+use crate::solver::pass::Coupling;
+use crate::solver::piles::touch::Touch;
+use crate::solver::tuning::{BALLASTED_RATIO, FAST_APPROACH, MAX_EXACT_ROWS, REFRESH_TURN_RESPONSE};
+use crate::solver::view::{View, lasting_force};
 use crate::spatial::{ZERO6, join};
-use core::ops::Range;
 use sinew_math::{Sym3, Vec3, min};
 
 /// Bodies and contacts more than an island has for which there is room: those that come and go ask for none.
 const SPARE: usize = 32;
-
-/// The world as islands and their solvers read it.
-pub(crate) struct View<'a> {
-    pub bodies: &'a Arena<Body>,
-    pub activity: &'a Activity,
-    pub proxies: &'a Proxies,
-    pub joints: &'a Arena<Joint>,
-    pub contacts: &'a [Contact],
-    pub modifiers: &'a Modifiers,
-    pub def: &'a WorldDef,
-    pub fields: Fields<'a>,
-    pub pace: Pace,
-}
-
-impl View<'_> {
-    /// Quality that a body asks for.
-    pub fn quality(&self, body: u32) -> Quality {
-        self.bodies.at(body).quality.unwrap_or(self.def.quality)
-    }
-}
-
-/// Substeps of the world.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pace {
-    /// Length of one, seconds, and how many a step has.
-    pub h: f32,
-    pub substeps: u32,
-    pub grading: Grading,
-}
-
-impl Pace {
-    pub fn new(context: &StepContext<'_>, grading: Grading) -> Self {
-        Self { h: context.h, substeps: context.substeps, grading }
-    }
-
-    /// Length of substeps that are some times as long, seconds, and how many a step has.
-    pub fn stretched(&self, times: f32) -> (f32, u32) {
-        (self.h * times, (self.substeps as f32 / times) as u32)
-    }
-}
-
-/// Rule by which an island may take fewer substeps than the world.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Grading {
-    /// It follows from what the island holds.
-    ByContent,
-    /// All take those of the world.
-    None,
-}
-
-/// Memory for building.
-#[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Scratch {
-    /// Bodies in the order in which the trees grew over them.
-    seeds: Vec<Seed>,
-    /// Per tree: rows of loops.
-    loop_rows: Vec<usize>,
-    /// Number of seeds whose neighbours have been visited.
-    grown: usize,
-    /// Number of bodies of each tree.
-    sizes: Vec<usize>,
-    /// World indices of the moving bodies in tree order.
-    order: Vec<u32>,
-    /// Per body of the island (by its place there): local index; while trees grow, no more than not `NONE`.
-    local: Vec<u32>,
-    /// World indices of the fixed bodies, ascending.
-    fixed: Vec<u32>,
-    /// Per slot of the world's bodies, of those that the island has: the place there while trees grow, then the local index.
-    local_of: Vec<u32>,
-    /// Per joint of the island: used by a tree.
-    used: Vec<bool>,
-    /// Places of the joints of each body, ascending, body after body, and where those of each body end.
-    adjacent: Vec<u32>,
-    adjacent_ends: Vec<u32>,
-    faces: Faces,
-}
-
-/// In which order the trees of an island grow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Roots {
-    /// Each as far as it can before the next begins.
-    InTurn,
-    /// All trees on fixed bodies grow side by side.
-    AtOnce,
-}
-
-/// A body that a tree has grown over.
-#[derive(Clone, Copy, Debug)]
-struct Seed {
-    tree: u32,
-    /// Its number among all.
-    found: u32,
-    /// Places in the island: of the body, of its parent, of the joint between them.
-    place: u32,
-    parent: u32,
-    joint: u32,
-}
-
-impl Scratch {
-    /// A new tree, held by the joint `ground` or free.
-    fn plant(&mut self, root: u32, ground: u32) {
-        let tree = self.sizes.len() as u32;
-        self.sizes.push(0);
-        self.add(tree, root, NONE, ground);
-    }
-
-    fn add(&mut self, tree: u32, place: u32, parent: u32, joint: u32) {
-        let found = self.seeds.len() as u32;
-        self.sizes[tree as usize] += 1;
-        self.local[place as usize] = found;
-        if joint != NONE {
-            self.used[joint as usize] = true;
-        }
-        self.seeds.push(Seed { tree, found, place, parent, joint });
-    }
-
-    /// Lets all trees grow as far as they can.
-    fn grow(&mut self, island: &Island<'_>, view: &View<'_>) {
-        while let Some(&Seed { tree, place, .. }) = self.seeds.get(self.grown) {
-            self.grown += 1;
-            let body = island.bodies[place as usize];
-            for k in self.adjacent_of(place) {
-                if self.sizes[tree as usize] >= MAX_TREE {
-                    break;
-                }
-                let j = self.adjacent[k];
-                let joint = view.joints.at(island.joints[j as usize]);
-                let other = if joint.a == body { joint.b } else { joint.a };
-                let Some(other) = self.place_of(island, other) else { continue };
-                if self.local[other as usize] == NONE {
-                    self.add(tree, other, place, j);
-                }
-            }
-        }
-    }
-
-    /// Place in the island of one of the world's bodies, if it moves with it.
-    fn place_of(&self, island: &Island<'_>, body: u32) -> Option<u32> {
-        let place = self.local_of[body as usize];
-        (island.bodies.get(place as usize) == Some(&body)).then_some(place)
-    }
-
-    /// Lists which joints each body has: a counting sort.
-    fn list_adjacent(&mut self, island: &Island<'_>, view: &View<'_>) {
-        if self.local_of.len() < view.bodies.slot_count() {
-            self.local_of.resize(view.bodies.slot_count(), NONE);
-        }
-        for (place, &body) in island.bodies.iter().enumerate() {
-            self.local_of[body as usize] = place as u32;
-        }
-        let mut ends = core::mem::take(&mut self.adjacent_ends);
-        ends.clear();
-        ends.resize(island.bodies.len(), 0);
-        let places = |s: &Self, joint: u32| {
-            let joint = view.joints.at(joint);
-            [joint.a, joint.b].map(|body| s.place_of(island, body)).into_iter().flatten()
-        };
-        for &joint in island.joints {
-            places(self, joint).for_each(|place| ends[place as usize] += 1);
-        }
-        let mut start = 0;
-        for end in &mut ends {
-            // Where the list starts, until it is filled.
-            start += core::mem::replace(end, start);
-        }
-        self.adjacent.clear();
-        self.adjacent.resize(start as usize, 0);
-        for (j, &joint) in island.joints.iter().enumerate() {
-            for place in places(self, joint) {
-                let end = &mut ends[place as usize];
-                self.adjacent[*end as usize] = j as u32;
-                *end += 1;
-            }
-        }
-        self.adjacent_ends = ends;
-    }
-
-    fn adjacent_of(&self, place: u32) -> Range<usize> {
-        let place = place as usize;
-        let start = if place == 0 { 0 } else { self.adjacent_ends[place - 1] };
-        start as usize..self.adjacent_ends[place] as usize
-    }
-}
-
-impl Scratch {
-    /// True if a body of a joint or a contact is one of those that move.
-    fn moves(&self, body: u32) -> bool {
-        self.order.get(self.local_of[body as usize] as usize) == Some(&body)
-    }
-
-    /// Lists the bodies of joints and contacts that do not move.
-    fn list_fixed(&mut self, island: &Island<'_>, view: &View<'_>) {
-        let mut fixed = core::mem::take(&mut self.fixed);
-        fixed.clear();
-        for &index in island.joints {
-            let joint = view.joints.at(index);
-            fixed.extend([joint.a, joint.b].into_iter().filter(|&body| !self.moves(body)));
-        }
-        // Contacts with them come last.
-        for &index in island.contacts.iter().rev() {
-            let key = view.contacts[index as usize].key;
-            let before = fixed.len();
-            fixed.extend([key.a, key.b].into_iter().filter(|&body| !self.moves(body)));
-            if fixed.len() == before {
-                break;
-            }
-        }
-        fixed.sort_unstable();
-        fixed.dedup();
-        self.fixed = fixed;
-    }
-}
-
-/// Force and torque that act on a body all through the step: gravity and the user's.
-pub(in crate::solver) fn lasting_force(body: &Body, view: &View<'_>) -> (Vec3, Vec3) {
-    (body.force + view.def.gravity * (body.gravity_scale * body.mass), body.torque)
-}
 
 impl IslandSolver {
     /// Fills the solver with an island of the world.
@@ -254,14 +32,14 @@ impl IslandSolver {
         self.displaced = false;
         self.disturbed = false;
         self.work = Work::default();
-        self.tally = counts::Tally::default();
+        self.tally = Tally::default();
         (self.max_speed, self.max_turn) = (view.def.max_speed, view.def.max_turn);
         self.order_trees(island, view);
         self.make_room(island);
         self.copy_bodies(island, view);
         self.look_for_fields(view);
         self.copy_joints(island, view);
-        self.weigh_joints();
+        self.find_joint_masses();
         self.refresh_rows();
         self.choose_coupling(island.contacts.len());
         self.form_batches();
@@ -469,7 +247,7 @@ impl IslandSolver {
             let still = body.kind == crate::BodyKind::Dynamic && !body.is_active();
             let velocity = if still { ZERO6 } else { join(body.velocity.linear, body.velocity.angular) };
             self.velocities.push(velocity);
-            s.faces.push(body, body.velocity.angular.length() * self.h >= 0.5 * REFIND_TURN_RESPONSE);
+            s.faces.push(body, body.velocity.angular.length() * self.h >= 0.5 * REFRESH_TURN_RESPONSE);
         }
         self.scratch.predicted.clear();
         self.scratch.predicted.reserve(self.bodies.len());

@@ -1,10 +1,12 @@
 //! Counts of what an island's step took, for a profiler that counts.
 
+use crate::solver::IslandSolver;
 use crate::solver::articulation::tree::Link;
+use crate::solver::body::SolverBody;
+use crate::solver::boundary::tally::Tally;
 use crate::solver::contact_rows::ManifoldRows;
-use crate::solver::limits::rows::LimitRow;
-use crate::solver::sweep::Pass;
-use crate::solver::{IslandSolver, SolverBody, SolverJoint};
+use crate::solver::joint::SolverJoint;
+use crate::solver::limits::row::LimitRow;
 use crate::spatial::Vec6;
 use crate::stage::{Counter, Profiler};
 
@@ -12,34 +14,6 @@ use crate::stage::{Counter, Profiler};
 const PER_SUBSTEP: u64 = 2;
 /// Times that the rest of the step does: `prepare` and `store`.
 const PER_STEP: u64 = 2;
-
-/// Counts of what the sweeps of a step have gone through: cheap enough to be added up whether somebody asks or not.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::solver) struct Tally {
-    pub substeps: u64,
-    /// Rows that were not skipped.
-    pub visits: u64,
-    /// Rows of `relax`, once for each substep.
-    pass_rows: u64,
-    /// Rows gone through, sweep by sweep.
-    solve_rows: u64,
-    relax_rows: u64,
-}
-
-impl Tally {
-    /// A sweep of a pass, the `number`th from 1, over so many rows.
-    pub fn sweep(&mut self, pass: Pass, number: usize, rows: usize) {
-        let rows = rows as u64;
-        match pass {
-            Pass::Solve => self.solve_rows += rows,
-            Pass::Relax => self.relax_rows += rows,
-            Pass::Restitution => {}
-        }
-        if pass == Pass::Relax && number == 1 {
-            self.pass_rows += rows;
-        }
-    }
-}
 
 impl IslandSolver {
     /// Tells a profiler the counts of the step, when it is over.
@@ -84,7 +58,7 @@ impl IslandSolver {
             + self.batches.bytes()
             + self.contacts.bytes()
             + self.response.bytes()
-            + self.columns.bytes()
+            + self.response_cache.bytes()
             + self.limit_blocks.bytes();
         bytes as u64
     }

@@ -3,9 +3,9 @@
 use crate::body::material::{ContactMaterial, Material};
 use crate::body::{Body, BodyShape};
 use crate::contact::ContactKey;
-use crate::solver::View;
 use crate::solver::articulation::tree::NONE;
 use crate::solver::contact_rows::Placed;
+use crate::solver::view::View;
 
 /// Different materials of an island of which pairs are combined once; others are combined for each contact.
 const MATERIALS: usize = 8;

@@ -4,8 +4,10 @@
 use crate::body::Velocity;
 use crate::body::force::Wrench;
 use crate::field::{Attractor, Target, attractor, least};
+use crate::solver::IslandSolver;
+use crate::solver::body::SolverBody;
 use crate::solver::boundary::groups::TakenGroup;
-use crate::solver::{IslandSolver, SolverBody, View};
+use crate::solver::view::View;
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::Vec3;
 

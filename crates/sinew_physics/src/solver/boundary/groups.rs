@@ -5,7 +5,7 @@ use crate::boxes::Overlap;
 use crate::contact::proxies::Owner;
 use crate::field::{Fields, Target};
 use crate::particles::{AttachmentTarget, ParticleGroup};
-use crate::solver::View;
+use crate::solver::view::View;
 use core::ops::ControlFlow;
 
 /// A particle group, taken out of the world until `store`.

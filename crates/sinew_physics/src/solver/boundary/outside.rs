@@ -1,7 +1,8 @@
 //! Effects of the user's objects on the moving bodies of an island between its stages.
 
-use crate::solver::boundary::build::{View, lasting_force};
-use crate::solver::{IslandSolver, advance};
+use crate::solver::IslandSolver;
+use crate::solver::body::advance;
+use crate::solver::view::{View, lasting_force};
 use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
 use sinew_math::Vec3;
 

@@ -1,14 +1,13 @@
 //! Results of the islands' substeps, for the world to take.
 
 use crate::body::Velocity;
-use crate::body::work::Work;
+use crate::body::external_work::Work;
 use crate::collide::Manifold;
 use crate::contact::ContactMemory;
 use crate::island::Island;
 use crate::joint::{LimitImpulse, MAX_LIMITS, Saturation};
-use crate::solver::{IslandSolver, SolverBody};
-use crate::spatial::{Vec6, angular, linear};
-use crate::stage::Profiler;
+use crate::slices::split_off;
+use crate::spatial::Vec6;
 use sinew_math::{Transform, Vec3};
 
 /// A moving body after the step.
@@ -81,10 +80,10 @@ impl Solution {
 
 /// Room for what comes of an island, or of several.
 pub(crate) struct IslandSolution<'a> {
-    bodies: &'a mut [SolvedBody],
-    joints: &'a mut [SolvedJoint],
-    contacts: &'a mut [SolvedContact],
-    work: &'a mut [Work],
+    pub(super) bodies: &'a mut [SolvedBody],
+    pub(super) joints: &'a mut [SolvedJoint],
+    pub(super) contacts: &'a mut [SolvedContact],
+    pub(super) work: &'a mut [Work],
 }
 
 impl<'a> IslandSolution<'a> {
@@ -95,46 +94,6 @@ impl<'a> IslandSolution<'a> {
             joints: split_off(&mut self.joints, island.joints.len()),
             contacts: split_off(&mut self.contacts, island.contacts.len()),
             work: split_off(&mut self.work, 1),
-        }
-    }
-}
-
-/// Takes the first items out of what is left.
-pub(crate) fn split_off<'a, T>(left: &mut &'a mut [T], count: usize) -> &'a mut [T] {
-    left.split_off_mut(..count).expect("there is room for each island")
-}
-
-impl IslandSolver {
-    /// Writes down what has come of the island.
-    pub fn store(&self, solution: &mut IslandSolution<'_>, profiler: &dyn Profiler) {
-        self.tell_counts(profiler);
-        for ((solved, body), v) in solution.bodies.iter_mut().zip(&self.bodies).zip(&self.velocities) {
-            let velocity = Velocity { linear: linear(v), angular: angular(v) };
-            let SolverBody { index, pose, is_limited, .. } = *body;
-            *solved = SolvedBody { index, pose, velocity, is_limited };
-        }
-        for (solved, joint) in solution.joints.iter_mut().zip(&self.joints) {
-            *solved = SolvedJoint {
-                index: joint.index,
-                limits: joint.limits.map(|limit| limit.of_substeps(1.0 / self.stretch)),
-                force: joint.force,
-                warm_impulse: joint.warm_impulse.map(|impulse| impulse / self.stretch),
-                saturated: joint.saturated,
-                mass: joint.mass,
-                reaction: joint.reaction,
-            };
-        }
-        solution.work.fill(self.work);
-        if self.is_in_lanes() {
-            self.contacts.store(self.stretch, solution.contacts);
-            return;
-        }
-        for (solved, rows) in solution.contacts.iter_mut().zip(&self.manifolds) {
-            *solved = SolvedContact {
-                index: rows.contact,
-                found: rows.found(),
-                memory: rows.memory.of_substeps(1.0 / self.stretch),
-            };
         }
     }
 }

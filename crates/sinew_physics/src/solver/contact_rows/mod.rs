@@ -3,42 +3,40 @@
 mod bounce;
 mod disk;
 pub(crate) mod lcp;
+mod placed;
 mod refind;
 mod row;
 mod visit;
 
 use super::articulation::response::Response;
-use super::articulation::response_cache::{ResponseCache, Strip};
+use super::articulation::response_cache::{CachedColumns, ResponseCache};
 use super::articulation::tree::Link;
-use super::limits::rows::add_row;
-use super::sweep::policy::Firmness;
-use super::{SolverBody, free_response};
 use crate::body::material::ContactMaterial;
 use crate::collide::{MAX_POINTS, Manifold};
 use crate::contact::ContactMemory;
+use crate::solver::body::{SolverBody, add_row, free_response};
+use crate::solver::sweep::policy::Firmness;
 use crate::solver::tuning::{
-    CONTACT_DAMPING, CONTACT_HERTZ, DEEP_SLOPS, FIXED_HERTZ, IMPACT_JUMP, LASTING, REDUNDANCY,
-    REFIND_TURN_RESPONSE, REFIND_TURN_RIM, RELAX_TURN, WEIGHT_EVENLY, WEIGHT_OF_LOAD,
+    DEEP_SLOPS, IMPACT_JUMP, LASTING, REDUNDANCY, REFRESH_TURN_RESPONSE, REFRESH_TURN_RIM, RELAX_TURN,
 };
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
 use bounce::Approach;
-pub(crate) use refind::PlacedShape;
-pub(super) use refind::{Placed, found_anew, margin};
-pub(super) use row::Softness;
+pub(crate) use placed::PlacedShape;
+pub(super) use placed::{Placed, found_anew, margin};
+pub(super) use row::{NEVER, Softness, contact_softness, weights};
 use row::{Pair, Row};
-use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max, min};
-pub(super) use visit::NEVER;
+use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max};
 
 /// Impulses of a manifold's rows.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Given {
+pub(super) struct ContactImpulses {
     normal: [f32; MAX_POINTS],
     friction: Vec3,
     twist: f32,
     rolling: Vec3,
 }
 
-impl Given {
+impl ContactImpulses {
     /// With `share` of another.
     pub fn plus(&self, other: &Self, share: f32) -> Self {
         Self {
@@ -97,7 +95,7 @@ pub(crate) struct ManifoldRows {
     lever: f32,
     /// Columns of its rows: of the points, the tangents, the twist, and of torques about each axis if it resists rolling. None
     /// as long as it is idle at this pose.
-    pub columns: Option<Strip>,
+    pub columns: Option<CachedColumns>,
     /// Responses, with the columns.
     k: [[f32; MAX_POINTS]; MAX_POINTS],
     k_tangent: [[f32; 2]; 2],
@@ -147,7 +145,7 @@ impl ManifoldRows {
             is_new: false,
             shapes: source.shapes.clone(),
             rounds: [0.0; 2],
-            most_turn: REFIND_TURN_RESPONSE,
+            most_turn: REFRESH_TURN_RESPONSE,
             normal: n,
             count: source.manifold.count,
             core_a: [Vec3::ZERO; MAX_POINTS],
@@ -215,8 +213,8 @@ impl ManifoldRows {
         self.rounds = [round_a, round_b];
         // Of a rim, the points beside the one that it rolls on bear nothing.
         let (most_turn, bearing) = match a.has_rim(in_a) || b.has_rim(in_b) {
-            true => (REFIND_TURN_RIM, self.slop),
-            false => (REFIND_TURN_RESPONSE, f32::INFINITY),
+            true => (REFRESH_TURN_RIM, self.slop),
+            false => (REFRESH_TURN_RESPONSE, f32::INFINITY),
         };
         self.most_turn = most_turn;
         self.weight = weights(&self.memory, &self.manifold, bearing);
@@ -268,7 +266,7 @@ impl ManifoldRows {
         links: &[Link],
         response: &Response,
         columns: &mut ResponseCache,
-    ) -> Strip {
+    ) -> CachedColumns {
         let pair = self.pair();
         let least =
             |row: &Row| REDUNDANCY * free_response(bodies, links.len(), [(pair.a, &row.a), (pair.b, &row.b)]);
@@ -336,14 +334,19 @@ impl ManifoldRows {
     }
 
     /// Impulses of this substep.
-    pub(super) fn given(&self) -> Given {
-        Given { normal: self.impulse, friction: self.friction, twist: self.twist, rolling: self.rolling }
+    pub(super) fn impulses(&self) -> ContactImpulses {
+        ContactImpulses {
+            normal: self.impulse,
+            friction: self.friction,
+            twist: self.twist,
+            rolling: self.rolling,
+        }
     }
 
     /// Adds a share of impulses to those of this substep; the caller puts them on the bodies. Gives the largest speed that
     /// one of them makes by itself, m/s or rad/s.
-    pub(super) fn give(&mut self, more: &Given, share: f32) -> f32 {
-        let Given { normal, friction, twist, rolling } = self.given().plus(more, share);
+    pub(super) fn apply(&mut self, more: &ContactImpulses, share: f32) -> f32 {
+        let ContactImpulses { normal, friction, twist, rolling } = self.impulses().plus(more, share);
         (self.impulse, self.friction, self.twist, self.rolling) = (normal, friction, twist, rolling);
         let k = self.k_tangent[0][0] + self.k_tangent[1][1];
         let mut most = max(more.friction.length() * k, more.twist.abs() * self.k_spin);
@@ -406,30 +409,4 @@ impl ManifoldRows {
         self.memory.twist = self.twist;
         self.memory.rolling = self.rolling;
     }
-}
-
-/// Softness of a contact before its firmness is applied, in a substep of `h` seconds.
-pub(super) fn contact_softness(both_move: bool, h: f32) -> Softness {
-    let hertz = if both_move { CONTACT_HERTZ } else { FIXED_HERTZ };
-    Softness::new(min(hertz, 0.25 / h), CONTACT_DAMPING, h)
-}
-
-/// Shares of the load by point, smoothed so that a point which is about to bear some has a say: one whose separation is at
-/// most `bearing`, if there is any.
-pub(super) fn weights(memory: &ContactMemory, manifold: &Manifold, bearing: f32) -> [f32; MAX_POINTS] {
-    let points = manifold.points();
-    let total: f32 = memory.points[..points.len()].iter().map(|point| point.now).sum();
-    let bears = |separation: f32| separation <= bearing;
-    let heirs = points.iter().filter(|point| bears(point.separation)).count();
-    let mut weights = [0.0; MAX_POINTS];
-    for (i, point) in points.iter().enumerate() {
-        let even = match heirs {
-            0 => 1.0 / points.len() as f32,
-            _ if bears(point.separation) => 1.0 / heirs as f32,
-            _ => 0.0,
-        };
-        let share = if total > 0.0 { memory.points[i].now / total } else { even };
-        weights[i] = WEIGHT_OF_LOAD * share + WEIGHT_EVENLY * even;
-    }
-    weights
 }

@@ -1,7 +1,10 @@
 //! A row of two bodies, and how softly it gives.
 
+use crate::collide::{MAX_POINTS, Manifold};
+use crate::contact::ContactMemory;
+use crate::solver::tuning::{CONTACT_DAMPING, CONTACT_HERTZ, FIXED_HERTZ, WEIGHT_EVENLY, WEIGHT_OF_LOAD};
 use crate::spatial::{Vec6, ZERO6, dot, join};
-use sinew_math::Vec3;
+use sinew_math::{Vec3, min};
 
 /// Coefficients of a soft constraint (Catto, "Soft Constraints", GDC 2011).
 #[derive(Clone, Copy, Debug)]
@@ -59,4 +62,37 @@ impl Row {
     pub fn dot(&self, other: &Self) -> f32 {
         dot(&self.a, &other.a) + dot(&self.b, &other.b)
     }
+}
+
+/// Distance over time of a point that no substep brings to touch, m/s.
+pub(in crate::solver) const NEVER: f32 = 1e6;
+
+/// Softness of a contact before its firmness is applied, in a substep of `h` seconds.
+pub(in crate::solver) fn contact_softness(both_move: bool, h: f32) -> Softness {
+    let hertz = if both_move { CONTACT_HERTZ } else { FIXED_HERTZ };
+    Softness::new(min(hertz, 0.25 / h), CONTACT_DAMPING, h)
+}
+
+/// Shares of the load by point, smoothed so that a point which is about to bear some has a say: one whose separation is at
+/// most `bearing`, if there is any.
+pub(in crate::solver) fn weights(
+    memory: &ContactMemory,
+    manifold: &Manifold,
+    bearing: f32,
+) -> [f32; MAX_POINTS] {
+    let points = manifold.points();
+    let total: f32 = memory.points[..points.len()].iter().map(|point| point.now).sum();
+    let bears = |separation: f32| separation <= bearing;
+    let heirs = points.iter().filter(|point| bears(point.separation)).count();
+    let mut weights = [0.0; MAX_POINTS];
+    for (i, point) in points.iter().enumerate() {
+        let even = match heirs {
+            0 => 1.0 / points.len() as f32,
+            _ if bears(point.separation) => 1.0 / heirs as f32,
+            _ => 0.0,
+        };
+        let share = if total > 0.0 { memory.points[i].now / total } else { even };
+        weights[i] = WEIGHT_OF_LOAD * share + WEIGHT_EVENLY * even;
+    }
+    weights
 }

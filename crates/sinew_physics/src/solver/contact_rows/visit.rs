@@ -1,18 +1,16 @@
 //! Visits of a manifold's rows in a sweep.
 
+use super::row::NEVER;
 use super::row::Row;
 use super::{AXES, ManifoldRows};
 use super::{disk, lcp};
 use crate::body::material::ContactMaterial;
 use crate::collide::MAX_POINTS;
-use crate::solver::articulation::response_cache::{Change, Strip};
-use crate::solver::sweep::Pass;
+use crate::solver::articulation::response_cache::{CachedColumns, Change};
+use crate::solver::pass::Pass;
 use crate::solver::tuning::{DEAD_ZONE, SLIP_SPEED};
 use crate::spatial::{Vec6, angular};
 use sinew_math::{Vec3, clamp, max, min};
-
-/// Distance over time of a point that no substep brings to touch, m/s.
-pub(in crate::solver) const NEVER: f32 = 1e6;
 
 /// Complementarity problem of a manifold's normal rows: `K (x − old) + rate + soft x ≥ 0`, complementary to `x ≥ 0`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -85,7 +83,7 @@ impl ManifoldRows {
     }
 
     /// One visit of the normal rows as a block.
-    pub fn visit_normal(&mut self, strip: Strip, velocities: &[Vec6], pass: Pass, h: f32) -> Change {
+    pub fn visit_normal(&mut self, strip: CachedColumns, velocities: &[Vec6], pass: Pass, h: f32) -> Change {
         let NormalProblem { rate, old, soft } = self.normal_problem(velocities, pass, h);
         let new = lcp::solve(&self.k, &rate, &old, &soft, self.count);
         let mut change = Change::from_column(strip.column(0));
@@ -98,7 +96,7 @@ impl ManifoldRows {
 
     /// One visit of friction, limited by the load that was weighed last: a 2×2 row limited to the circle, twist about the
     /// normal. What static friction does not hold slides.
-    pub fn visit_friction(&mut self, strip: Strip, velocities: &[Vec6]) -> Change {
+    pub fn visit_friction(&mut self, strip: CachedColumns, velocities: &[Vec6]) -> Change {
         let pair = self.pair();
         let mut change = Change::from_column(strip.column(self.count));
         let k = &self.k_tangent;
@@ -140,7 +138,7 @@ impl ManifoldRows {
     }
 
     /// One visit of the rolling resistance: a torque against the relative rotation, at most `rolling × load`.
-    pub fn visit_rolling(&mut self, strip: Strip, velocities: &[Vec6]) -> Option<Change> {
+    pub fn visit_rolling(&mut self, strip: CachedColumns, velocities: &[Vec6]) -> Option<Change> {
         if self.material.rolling <= 0.0 {
             return None;
         }

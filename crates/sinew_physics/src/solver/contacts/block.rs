@@ -1,6 +1,5 @@
 //! Eight manifolds of one colour, side by side: no two of them push the same body, so that a sweep solves them at once.
 
-use super::conjugate::Impulses;
 use crate::slices::SharedRows;
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};
@@ -333,4 +332,17 @@ impl<L: Lanes> Motion<L> {
         let (v, w) = ((self.linear - before.linear).abs(), (self.angular - before.angular).abs());
         L::max(L::max(L::max(v.x, v.y), L::max(v.z, w.x)), L::max(w.y, w.z))
     }
+}
+
+/// Impulses of all rows of a block.
+#[derive(Clone, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Impulses<const N: usize> {
+    pub normal: [Eight; N],
+    pub friction: [Eight; 2],
+    pub twist: Eight,
+}
+
+impl<const N: usize> Impulses<N> {
+    pub const ZERO: Self = Self { normal: [ZERO8; N], friction: [ZERO8; 2], twist: ZERO8 };
 }

@@ -3,11 +3,12 @@
 //! DETERMINISM: colours are divided in the same way whatever the number of threads, and what parts sum up is added in their order.
 #![allow(unsafe_code)]
 
+use super::Contacts;
 use super::block::{Block, Memory};
 use super::visit::Sweep;
-use super::{Class, Color, Contacts, Visitor};
 use crate::runner::TaskRunner;
 use crate::slices::{MOST_NEAR, SharedRows, for_each_near};
+use crate::solver::contacts::classes::{Class, Color, Visitor};
 use crate::solver::sweep::policy::Order;
 use core::ops::Range;
 use sinew_math::dispatch::{self, Kernel};

@@ -4,8 +4,10 @@
 use super::Contacts;
 use super::block::{Block, Eight, ZERO8, packed};
 use crate::runner::TaskRunner;
+use crate::slices::split_off;
 use crate::slices::{MOST_NEAR, for_each_near};
-use crate::solver::split_off;
+use crate::solver::contacts::block::Impulses;
+use crate::solver::contacts::visit::Step;
 use crate::spatial::{Vec6, ZERO6, largest};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
@@ -29,31 +31,6 @@ pub(super) struct Conjugate {
 struct State {
     velocities: Vec<Vec6>,
     limits: Vec<f32>,
-}
-
-/// Share of a block in conjugate steps when a sweep comes to it, before its visit.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum Step {
-    #[default]
-    None,
-    /// Writes its impulses down.
-    Begin,
-    /// Goes on by a share of the direction so far, and writes down where that leads. Then the direction is that share and the change of
-    /// the last sweep.
-    GoOn(f32),
-}
-
-/// Impulses of all rows of a block.
-#[derive(Clone, Debug)]
-#[repr(C, align(32))]
-pub(super) struct Impulses<const N: usize> {
-    normal: [Eight; N],
-    friction: [Eight; 2],
-    twist: Eight,
-}
-
-impl<const N: usize> Impulses<N> {
-    pub const ZERO: Self = Self { normal: [ZERO8; N], friction: [ZERO8; 2], twist: ZERO8 };
 }
 
 /// One row of eight manifolds goes on. Gives by how much.

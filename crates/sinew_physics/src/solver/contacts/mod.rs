@@ -6,6 +6,7 @@
 
 mod block;
 mod chunks;
+mod classes;
 mod color;
 mod conjugate;
 mod disk;
@@ -23,42 +24,24 @@ pub(super) use prepare::{OfStep, placed};
 pub(super) use record::Added;
 pub(super) use refind::Substep;
 
-use super::SolverBody;
-use super::sweep::Pass;
-use super::sweep::policy::Order;
 use crate::runner::TaskRunner;
 use crate::slices::SharedRows;
+use crate::solver::body::SolverBody;
+use crate::solver::contacts::classes::{Class, Color, Each, Visitor};
+use crate::solver::pass::Pass;
+use crate::solver::sweep::policy::{Order, Sweeps};
 use crate::solver::tuning::{FRICTION_BOUND_UPDATES, RELAX_TURN};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
 use block::{Block, Bounce, Memory, Rolling};
 use chunks::{Parted, parted, shared};
 use color::Coloring;
 use conjugate::Conjugate;
-use core::ops::Range;
 use record::{Extra, Record};
 use refind::Found;
-use sinew_math::dispatch::{self, Kernel};
+use sinew_math::dispatch::{self};
 use sinew_math::lanes::Lanes;
 use sinew_math::max;
 use visit::Sweep;
-
-/// Blocks of manifolds with up to `N` points.
-#[derive(Clone, Debug, Default)]
-struct Class<const N: usize, const T: usize> {
-    blocks: Vec<Block<N, T>>,
-    memory: Vec<Memory<N>>,
-    bounces: Vec<Bounce<N>>,
-    /// Blocks in use: memory stays for the next island.
-    count: usize,
-}
-
-/// Blocks of one colour, in each class.
-#[derive(Clone, Debug, Default)]
-struct Color {
-    one: Range<usize>,
-    two: Range<usize>,
-    four: Range<usize>,
-}
 
 /// All contacts of an island.
 #[derive(Clone, Debug, Default)]
@@ -102,58 +85,6 @@ pub(super) struct Tally {
     /// Manifolds in blocks that were not skipped, and the blocks' bytes.
     pub visits: u64,
     pub visited_bytes: u64,
-}
-
-impl<const N: usize, const T: usize> Class<N, T> {
-    fn bytes(&self) -> usize {
-        self.count * (size_of::<Block<N, T>>() + size_of::<Memory<N>>())
-    }
-}
-
-/// Something that is done to each block.
-trait Visitor {
-    fn visit<L: Lanes, const N: usize, const T: usize>(
-        &mut self,
-        block: &mut Block<N, T>,
-        memory: &mut Memory<N>,
-        bounces: &mut [Bounce<N>],
-    );
-}
-
-/// Blocks of one class, one after the other.
-#[inline(always)]
-fn each<L: Lanes, V: Visitor, const N: usize, const T: usize>(
-    class: &mut Class<N, T>,
-    range: &Range<usize>,
-    visitor: &mut V,
-) {
-    let Class { blocks, memory, bounces, .. } = class;
-    for i in range.clone() {
-        visitor.visit::<L, N, T>(&mut blocks[i], &mut memory[i], bounces);
-    }
-}
-
-/// All blocks, colour by colour.
-struct Each<'a, V> {
-    one: &'a mut Class<1, 1>,
-    two: &'a mut Class<2, 3>,
-    four: &'a mut Class<4, 10>,
-    colors: &'a [Color],
-    visitor: V,
-}
-
-impl<V: Visitor> Kernel for Each<'_, V> {
-    type Output = V;
-
-    #[inline(always)]
-    fn run<L: Lanes>(mut self) -> V {
-        for color in self.colors {
-            each::<L, V, 1, 1>(self.one, &color.one, &mut self.visitor);
-            each::<L, V, 2, 3>(self.two, &color.two, &mut self.visitor);
-            each::<L, V, 4, 10>(self.four, &color.four, &mut self.visitor);
-        }
-        self.visitor
-    }
 }
 
 /// Declares a visitor: its fields, and what it does to a block.
@@ -296,18 +227,6 @@ impl Visitor for Sweep<'_> {
     ) {
         self.visit_block::<L, N, T>(block);
     }
-}
-
-/// Most sweeps of a pass, the change of a velocity in one below which there is no other, m/s or rad/s, and their order.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Sweeps {
-    pub most: usize,
-    pub tolerance: f32,
-    /// Share of the energy of the substep's largest change that is small enough for there to be no other sweep.
-    pub small: f32,
-    pub order: Order,
-    /// The sweep from which on they are conjugate steps.
-    pub first_conjugate: usize,
 }
 
 /// Result of one sweep.

@@ -2,7 +2,7 @@
 
 use super::block::{Block, Bounce, Memory, Motion, NONE, ZERO8, gather, load3, packed, times};
 use crate::solver::contact_rows::NEVER;
-use crate::solver::sweep::Pass;
+use crate::solver::pass::Pass;
 use crate::solver::tuning::{POINT_PROXIMAL, RELAX_TURN};
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3};

@@ -1,5 +1,6 @@
 //! From the world's contacts to blocks: once a step.
 
+use super::Contacts;
 use super::block::{Block, Bounce, Memory, NONE, Rolling, ZERO8};
 use super::chunks::Run;
 use super::color::{Coloring, Edge};
@@ -8,15 +9,16 @@ use super::place::{respond, take_inertias};
 use super::record::{Extra, Record};
 use super::refind::Found;
 use super::write::write;
-use super::{Class, Color, Contacts};
 use crate::body::material::ContactMaterial;
 use crate::collide::MAX_POINTS;
 use crate::contact::{Contact, ContactMemory};
 use crate::runner::TaskRunner;
 use crate::slices::{MOST_NEAR, for_each_near};
+use crate::solver::body::SolverBody;
 use crate::solver::contact_rows::{Placed, Softness, contact_softness};
-use crate::solver::tuning::REFIND_TURN_RIM;
-use crate::solver::{SolverBody, View};
+use crate::solver::contacts::classes::{Class, Color};
+use crate::solver::tuning::REFRESH_TURN_RIM;
+use crate::solver::view::View;
 use crate::spatial::Vec6;
 use core::ops::Range;
 use sinew_math::dispatch::{self, Kernel};
@@ -292,7 +294,7 @@ impl Lists<'_> {
         if extra.rolls {
             let manifold = view.contacts[edge.contact as usize].manifold;
             let cores = Cores::new(&manifold, bodies.map(|body| body.pose), extra.rounds);
-            self.found.push(Found::new(at, edge, manifold, cores, REFIND_TURN_RIM));
+            self.found.push(Found::new(at, edge, manifold, cores, REFRESH_TURN_RIM));
         }
         if extra.rolling <= 0.0 {
             return rolling;

@@ -8,7 +8,7 @@ use super::geometry::Side;
 use crate::body::material::ContactMaterial;
 use crate::collide::{MAX_POINTS, ManifoldPoint};
 use crate::contact::{Contact, PointImpulse};
-use crate::solver::SolverBody;
+use crate::solver::body::SolverBody;
 use crate::solver::contact_rows::Placed;
 use crate::solver::sweep::policy::Firmness;
 use crate::spatial::Vec6;

@@ -1,18 +1,20 @@
 //! Manifolds of bodies that turn fast are looked for again within the step, and written to their lanes.
 
+use super::Contacts;
 use super::block::{Block, HELD, Memory};
 use super::color::Edge;
 use super::geometry::{Cores, Geometry};
 use super::prepare::{placed, write_impulses, write_material};
 use super::store::memory_of;
-use super::{Class, Contacts};
 use crate::collide::{MAX_POINTS, Manifold};
 use crate::contact::slop;
 use crate::runner::TaskRunner;
 use crate::slices::for_each_mut;
-use crate::solver::contact_rows::{self, weights};
-use crate::solver::tuning::{REFIND_TURN_LANES, REFIND_TURN_RIM};
-use crate::solver::{SolverBody, View};
+use crate::solver::body::SolverBody;
+use crate::solver::contact_rows::{Placed, found_anew, margin, weights};
+use crate::solver::contacts::classes::Class;
+use crate::solver::tuning::{REFRESH_TURN_LANES, REFRESH_TURN_RIM};
+use crate::solver::view::View;
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::lanes::WIDTH;
 use sinew_math::{Transform, max, min};
@@ -99,7 +101,7 @@ impl Contacts {
         for (turned, body) in self.turned[..substep.moving].iter_mut().zip(0..) {
             *turned += substep.turn(body);
         }
-        if !self.turned.iter().any(|&turned| turned >= REFIND_TURN_LANES) {
+        if !self.turned.iter().any(|&turned| turned >= REFRESH_TURN_LANES) {
             return;
         }
         let known = self.found.len();
@@ -125,7 +127,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
                 let (block, contact) = (&self.blocks[place], self.memory[place].contacts[lane]);
                 let bodies = [0, 1].map(|end| block.bodies[end][lane] & !HELD);
                 if contact == super::block::NONE
-                    || bodies.iter().all(|&body| turned[body as usize] < REFIND_TURN_LANES)
+                    || bodies.iter().all(|&body| turned[body as usize] < REFRESH_TURN_LANES)
                 {
                     continue;
                 }
@@ -143,7 +145,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
                     bodies,
                     manifold: of.manifold,
                     cores,
-                    most_turn: REFIND_TURN_LANES,
+                    most_turn: REFRESH_TURN_LANES,
                     turned: 0.0,
                     anew: None,
                 });
@@ -153,7 +155,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
 }
 
 /// Slop of two shapes, metres.
-fn slop_of(shapes: &[contact_rows::Placed<'_>; 2]) -> f32 {
+fn slop_of(shapes: &[Placed<'_>; 2]) -> f32 {
     slop(min(shapes[0].shape.smallest_extent(), shapes[1].shape.smallest_extent()))
 }
 
@@ -177,7 +179,7 @@ impl Found {
         let shapes = placed(substep.view, contact);
         let on_surfaces = [0, 1].map(|end: usize| poses[end].point(self.cores.points[end][0]));
         let margin = self.margin(substep, &shapes, slop_of(&shapes));
-        self.anew = contact_rows::found_anew(shapes, poses, margin, &self.manifold, on_surfaces);
+        self.anew = found_anew(shapes, poses, margin, &self.manifold, on_surfaces);
     }
 
     /// Writes the contact to its lane as it is now. Impulses go on by feature. A pair that has come apart keeps its rows.
@@ -205,7 +207,7 @@ impl Found {
         }
         let in_principal = |end: usize| poses[end].rotation.inverse() * self.cores.normal;
         let rolls = shapes[0].has_rim(in_principal(0)) || shapes[1].has_rim(in_principal(1));
-        self.most_turn = if rolls { REFIND_TURN_RIM } else { REFIND_TURN_LANES };
+        self.most_turn = if rolls { REFRESH_TURN_RIM } else { REFRESH_TURN_LANES };
         let weights = weights(&of_lane, &self.manifold, if rolls { slop_of(&shapes) } else { f32::INFINITY });
         let moves = self.bodies.map(|body| (body as usize) < substep.moving);
         let geometry = Geometry::new(&self.cores, poses, moves, &weights);
@@ -237,10 +239,10 @@ impl Found {
     }
 
     /// Largest separation of points that this substep may bring together, metres.
-    fn margin(&self, substep: &Substep<'_>, shapes: &[contact_rows::Placed<'_>; 2], slop: f32) -> f32 {
+    fn margin(&self, substep: &Substep<'_>, shapes: &[Placed<'_>; 2], slop: f32) -> f32 {
         let [a, b] = self.bodies.map(|body| linear(&substep.velocities[body as usize]));
         let turns = self.bodies.map(|body| substep.turn(body));
-        contact_rows::margin(shapes, turns, (b - a).length() * substep.h, slop)
+        margin(shapes, turns, (b - a).length() * substep.h, slop)
     }
 
     pub fn place(&self) -> [u32; 3] {

@@ -1,11 +1,12 @@
 //! From blocks back to the world's contacts.
 
+use super::Contacts;
 use super::block::{Block, Memory, NONE, Rolling};
 use super::refind::Found;
-use super::{Class, Contacts};
 use crate::contact::{ContactMemory, PointImpulse};
 use crate::solver::boundary::solution::SolvedContact;
-use crate::solver::piles::mass_scaling::Touch;
+use crate::solver::contacts::classes::Class;
+use crate::solver::piles::touch::Touch;
 use crate::spatial::Vec6;
 use sinew_math::Vec3;
 use sinew_math::lanes::WIDTH;

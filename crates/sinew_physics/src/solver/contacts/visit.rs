@@ -1,10 +1,9 @@
 //! One visit of a block in a sweep: friction, then the normal rows, block by block in impulse space.
 
 use super::block::{Block, Eight, HELD, Motion, NONE, Rolling, load3, packed, store3, times};
-use super::conjugate::Step;
 use super::disk;
 use crate::slices::SharedRows;
-use crate::solver::sweep::Pass;
+use crate::solver::pass::Pass;
 use crate::solver::tuning::{IMPACT_JUMP, MANIFOLD_ROUNDS, SLIP_SPEED};
 use crate::spatial::Vec6;
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
@@ -264,4 +263,16 @@ fn visit_rolling<L: Lanes, const N: usize, const T: usize>(
     let none = Vector3::new(zero, zero, zero);
     ends[0].push(zero, &block.inertia[0], none, -change);
     ends[1].push(zero, &block.inertia[1], none, change);
+}
+
+/// Share of a block in conjugate steps when a sweep comes to it, before its visit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Step {
+    #[default]
+    None,
+    /// Writes its impulses down.
+    Begin,
+    /// Goes on by a share of the direction so far, and writes down where that leads. Then the direction is that share and the change of
+    /// the last sweep.
+    GoOn(f32),
 }

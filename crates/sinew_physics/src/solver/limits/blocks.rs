@@ -2,12 +2,13 @@
 //! side. Those that push are solved among each other, by what they answer to each other, and then the bodies get what all of them
 //! give at once: a change of one row goes through eight numbers, and not through all links of the tree.
 
+use crate::solver::IslandSolver;
 use crate::solver::articulation::response_cache::ResponseCache;
 use crate::solver::articulation::tree::NONE;
-use crate::solver::limits::rows::{LimitRow, add_row};
-use crate::solver::sweep::Pass;
+use crate::solver::body::add_row;
+use crate::solver::limits::row::LimitRow;
+use crate::solver::pass::{Coupling, Pass};
 use crate::solver::tuning::LIMIT_ROUNDS;
-use crate::solver::{Coupling, IslandSolver};
 use crate::spatial::{Vec6, ZERO6};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
@@ -242,7 +243,7 @@ impl IslandSolver {
             return;
         }
         let [a, b] = block.ends(0);
-        let moved = self.columns.push_all(
+        let moved = self.response_cache.push_all(
             &self.response,
             &self.links,
             [a, b],
@@ -260,7 +261,7 @@ impl IslandSolver {
         self.largest_change = max(self.largest_change, moved);
         let trees = [a, b].map(|body| self.links.get(body as usize).map(|link| link.tree));
         for tree in [trees[0], trees[1].filter(|_| trees[0] != trees[1])].into_iter().flatten() {
-            self.dirty.stir(tree, moved);
+            self.dirty.mark(tree, moved);
         }
         // What they have made of themselves needs no other visit.
         if left < tolerance {
@@ -271,7 +272,8 @@ impl IslandSolver {
 
     /// Columns of rows of a block that begin to push, and what they and those that push already answer to each other.
     fn respond_to_limits(&mut self, at: usize, new: u8) {
-        let Self { limits, limit_blocks, joints, bodies, links, batches, response, columns, .. } = self;
+        let Self { limits, limit_blocks, joints, bodies, links, batches, response, response_cache, .. } =
+            self;
         let block = &mut limit_blocks.blocks[at];
         let mut rows = [([NONE; 2], &limits[block.limits[0] as usize].row); WIDTH];
         let mut count = 0;
@@ -279,14 +281,14 @@ impl IslandSolver {
             rows[count] = (block.ends(k), &limits[block.limits[k] as usize].row);
             count += 1;
         }
-        let (mut column, stride) = columns.add_all(response, (links, batches), &rows[..count]);
+        let (mut column, stride) = response_cache.add_all(response, (links, batches), &rows[..count]);
         for k in lanes(new) {
             block.columns[k] = column;
             block.places[k] = ResponseCache::places(response, links, block.ends(k));
             block.pushing |= 1 << k;
             for l in lanes(block.pushing) {
                 let row = &limits[block.limits[l] as usize].row;
-                let answer = columns.answer(column, block.places[l], row);
+                let answer = response_cache.answer(column, block.places[l], row);
                 (block.response[k][l], block.response[l][k]) = (answer, answer);
             }
             column += stride;

@@ -2,8 +2,8 @@
 
 use super::turn::Turn;
 use crate::joint::def::JointKind;
-use crate::solver::SolverJoint;
 use crate::solver::articulation::tree::Link;
+use crate::solver::joint::SolverJoint;
 use crate::spatial::{Vec6, ZERO6, largest};
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};

@@ -1,12 +1,13 @@
 //! Motion of the island's bodies, eight side by side: forces to velocities, velocities to poses, inertias, energies.
 
 use super::articulation::elimination::{Inertia, Symmetric};
-use super::{SolverBody, advance};
+use crate::solver::body::{SolverBody, advance};
 use crate::spatial::{Vec6, ZERO6};
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Sym3, Transform};
 
+pub(in crate::solver) mod momentum;
 #[cfg(test)]
 mod tests;
 mod turn;

@@ -1,6 +1,7 @@
 //! Tests of the kernels that move bodies.
 
 use super::*;
+use crate::solver::body::{SolverBody, advance};
 use crate::solver::tuning::MOST_HALF_TURN;
 use crate::spatial::{angular, join, linear};
 use sinew_math::dispatch::{Level, run_at};

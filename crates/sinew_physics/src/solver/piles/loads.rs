@@ -1,9 +1,10 @@
 //! Loads of contacts that do not know theirs yet: level by level from the top, each body shares what it bears among those that it
 //! stands on. A wall of a hundred rows that began without them sank by 0.15 m before sweeps had found them.
 
-use crate::solver::piles::mass_scaling::Touch;
+use crate::solver::IslandSolver;
+use crate::solver::body::SolverBody;
+use crate::solver::piles::touch::Touch;
 use crate::solver::tuning::STANDING_COSINE;
-use crate::solver::{IslandSolver, SolverBody};
 use core::cmp::Reverse;
 
 /// A moving body, while loads are handed down.

@@ -3,3 +3,4 @@
 pub(in crate::solver) mod loads;
 pub(in crate::solver) mod mass_scaling;
 pub(in crate::solver) mod support_depth;
+pub(in crate::solver) mod touch;

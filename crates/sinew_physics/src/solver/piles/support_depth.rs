@@ -1,6 +1,6 @@
 //! Support depth of the bodies of a pile: how high each of them stands.
 
-use crate::solver::piles::mass_scaling::Touch;
+use crate::solver::piles::touch::Touch;
 
 /// The level of a body of which no way to what cannot move is known.
 const UNSUPPORTED: u32 = u32::MAX;

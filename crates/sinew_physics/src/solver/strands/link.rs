@@ -1,11 +1,11 @@
 //! A link of eight strands side by side.
 
-use super::super::boundary::build::{View, lasting_force};
 use super::super::flight::{Eight, ZERO, put, take};
 use super::super::motion::Turn;
 use super::order::{NONE, Placed};
 use super::{SolvedBody, SolvedJoint, stiffness_of};
 use crate::body::Velocity;
+use crate::solver::view::{View, lasting_force};
 use crate::spatial::join;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 use sinew_math::{Rotation, Transform, Vec3};

@@ -12,13 +12,13 @@ mod motion;
 mod order;
 mod substep;
 
-use super::boundary::build::View;
 use super::boundary::solution::{SolvedBody, SolvedJoint};
-use super::sweep::policy::stretch_of;
 use crate::context::StepContext;
 use crate::island::Island;
 use crate::joint::Joint;
 use crate::slices::for_each_mut;
+use crate::solver::sweep::choice::stretch_of;
+use crate::solver::view::View;
 use crate::stage::Counter;
 use link::{Hook, Link};
 use order::Order;

@@ -1,8 +1,8 @@
 //! Islands that are strands, and the order in which their links follow each other.
 
-use super::super::boundary::build::View;
 use super::is_plain;
 use crate::island::Island;
+use crate::solver::view::View;
 
 /// No body, no joint.
 pub(super) const NONE: u32 = u32::MAX;

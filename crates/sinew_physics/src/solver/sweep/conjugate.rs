@@ -3,9 +3,9 @@
 //! chest that lies on it, 12 sweeps do what took 30 (ADR 0011).
 
 use crate::solver::articulation::tree::Link;
-use crate::solver::contact_rows::{Given, ManifoldRows};
-use crate::solver::limits::rows::LimitRow;
-use crate::solver::sweep::DirtyRows;
+use crate::solver::contact_rows::{ContactImpulses, ManifoldRows};
+use crate::solver::limits::row::LimitRow;
+use crate::solver::sweep::dirty::DirtyRows;
 use crate::spatial::{Vec6, add_scaled, largest};
 
 /// State of the conjugate steps of a pass. What lists hold of a pass before is never used: its first sweep has no energy to go on from.
@@ -22,7 +22,7 @@ pub(in crate::solver) struct Conjugate {
 /// Impulses of all rows, and the velocities that they make.
 #[derive(Clone, Debug, Default)]
 struct State {
-    manifolds: Vec<Given>,
+    manifolds: Vec<ContactImpulses>,
     limits: Vec<f32>,
     velocities: Vec<Vec6>,
 }
@@ -55,7 +55,7 @@ impl Conjugate {
     /// Before a sweep.
     pub fn before(&mut self, rows: &Rows<'_>) {
         self.was.manifolds.clear();
-        self.was.manifolds.extend(rows.manifolds.iter().map(ManifoldRows::given));
+        self.was.manifolds.extend(rows.manifolds.iter().map(ManifoldRows::impulses));
         self.was.limits.clear();
         self.was.limits.extend(rows.limits.iter().map(|row| row.impulse));
         self.was.velocities.clear();
@@ -82,7 +82,7 @@ impl State {
     /// From an earlier state to the change from it to the present one.
     fn set_difference(&mut self, rows: &Rows<'_>) {
         for (was, row) in self.manifolds.iter_mut().zip(rows.manifolds.iter()) {
-            *was = row.given().plus(was, -1.0);
+            *was = row.impulses().plus(was, -1.0);
         }
         for (was, row) in self.limits.iter_mut().zip(rows.limits.iter()) {
             *was = row.impulse - *was;
@@ -98,18 +98,18 @@ impl State {
     fn go_on(&mut self, rows: &mut Rows<'_>, change: &Self, share: f32) {
         for (i, row) in rows.manifolds.iter_mut().enumerate() {
             let d = &mut self.manifolds[i];
-            rows.dirty.stir_manifold(i, row.give(d, share));
+            rows.dirty.mark_manifold(i, row.apply(d, share));
             *d = change.manifolds[i].plus(d, share);
         }
         for (i, row) in rows.limits.iter_mut().enumerate() {
             let d = &mut self.limits[i];
-            rows.dirty.stir_limits(row.block, row.give(*d * share));
+            rows.dirty.mark_limits(row.block, row.apply(*d * share));
             *d = change.limits[i] + *d * share;
         }
         for (i, link) in rows.links.iter().enumerate() {
             let by = self.velocities[i].map(|d| d * share);
             add_scaled(&mut rows.velocities[i], &by, 1.0);
-            rows.dirty.stir(link.tree, largest(&by));
+            rows.dirty.mark(link.tree, largest(&by));
             self.velocities[i] = change.velocities[i];
             add_scaled(&mut self.velocities[i], &by, 1.0);
         }

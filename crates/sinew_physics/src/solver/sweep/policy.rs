@@ -1,16 +1,11 @@
 //! Sweep policy: how hard the sweeps of an island try, and how hard its contacts are.
 
 use crate::body::def::Quality;
-use crate::island::Island;
-use crate::solver::articulation::tree::NONE;
-use crate::solver::contacts::Sweeps;
-use crate::solver::sweep::Pass;
+use crate::solver::pass::Pass;
 use crate::solver::tuning::{
-    BOUNCE_SPEED, CALM_TURN, DAMPED_CONTACTS, DAMPED_CONTACTS_JOINTED, DAMPED_CONTACTS_PER_BODY,
     GRADED_RATIO, HEAP_CONTACTS, LEAST_SWEEP_TOLERANCE, MOST_RELAX_SWEEPS, MOST_SOLVE_SWEEPS, POLICY_LEVELS,
-    RESPONSE_CONTACTS, RESPONSE_CONTACTS_PER_LINK, RESPONSE_TREES, TO_AND_FRO_RATIO,
+    TO_AND_FRO_RATIO,
 };
-use crate::solver::{Coupling, Grading, IslandSolver, View};
 use sinew_math::{max, min};
 
 /// Limits on the sweeps of a pass: how many there may be, and what ends them.
@@ -68,7 +63,7 @@ pub(in crate::solver) enum Order {
 
 /// Sweep policy for islands with joints that are swept with the response of all links. What a sweep changes is soon next to nothing: a quarter of all
 /// passes of falling figures went through all 24 for a thousandth of the first one's energy.
-const JOINTED: SweepPolicy = SweepPolicy {
+pub(super) const JOINTED: SweepPolicy = SweepPolicy {
     solve: 24,
     relax: 24,
     tolerance: 2e-3,
@@ -79,7 +74,7 @@ const JOINTED: SweepPolicy = SweepPolicy {
 };
 /// Sweep policy for heaps in which contacts and trees are solved by turns: most sweeps of a heap at rest end with the second, those
 /// of a crash are needed (a chain of 70 links sank 85 mm into a wall with four).
-const TURNS: SweepPolicy = SweepPolicy {
+pub(super) const TURNS: SweepPolicy = SweepPolicy {
     solve: 6,
     relax: 4,
     tolerance: 0.05,
@@ -112,7 +107,7 @@ impl SweepPolicy {
     ///
     /// A light body between heavy ones tosses what they do to each other to and fro. Exponents and bounds are what a tower of six
     /// cubes, each 8 times as heavy as the one below it, stands with.
-    fn of_pile(levels: u32, ratio: f32, contacts: usize) -> Self {
+    pub(super) fn of_pile(levels: u32, ratio: f32, contacts: usize) -> Self {
         let root = ratio.sqrt();
         if ratio <= GRADED_RATIO {
             let relax = (PILE.relax as f32 * root) as usize;
@@ -132,7 +127,7 @@ impl SweepPolicy {
     }
 
     /// Fewer or more sweeps, which end later or sooner.
-    fn of_quality(self, quality: Quality) -> Self {
+    pub(super) fn of_quality(self, quality: Quality) -> Self {
         let [sweeps, finer] = match quality {
             Quality::Fast => [0.5, 2.0],
             Quality::Balanced => return self,
@@ -163,7 +158,7 @@ impl SweepPolicy {
 
     /// As long as the longer of two, in the order of this one: where trees have their turns, backward sweeps let what stands under
     /// joints creep (a tower of 18 levels under a rope fell).
-    fn at_least(self, other: Self) -> Self {
+    pub(super) fn at_least(self, other: Self) -> Self {
         Self {
             solve: usize::max(self.solve, other.solve),
             relax: usize::max(self.relax, other.relax),
@@ -183,120 +178,14 @@ impl SweepPolicy {
     }
 }
 
-impl IslandSolver {
-    /// Number of substeps that an island takes. Balanced: half of the world's where many contacts damp all motion, nothing spins fast and
-    /// masses are alike; all of them for what swings, flies or balances. With particles all, whatever the quality.
-    pub(in crate::solver) fn choose_substeps(&mut self, island: &Island<'_>, view: &View<'_>) {
-        self.quality = quality_of(island, view);
-        self.stretch = stretch_of(island, view);
-        (self.h, self.substeps) = view.pace.stretched(self.stretch);
-    }
-
-    /// Chooses how islands of joints come to agree with their contacts: few figures by the response of all their links, heaps by turns.
-    pub(in crate::solver) fn choose_coupling(&mut self, contacts: usize) {
-        let jointed = self.trees.iter().filter(|tree| tree.len() > 1 || self.links[tree.start].joint != NONE);
-        let (trees, links) = jointed.fold((0, 0), |(trees, links), tree| (trees + 1, links + tree.len()));
-        self.coupling = match trees {
-            0 if self.pins.joints.is_empty() => Coupling::Free,
-            _ if trees > RESPONSE_TREES
-                || contacts > RESPONSE_CONTACTS + RESPONSE_CONTACTS_PER_LINK * links =>
-            {
-                Coupling::Turns
-            }
-            _ => Coupling::Response,
-        };
-    }
-
-    /// Once it is known who touches.
-    pub(in crate::solver) fn choose_policy(&mut self) {
-        let of_pile =
-            |contacts: usize| SweepPolicy::of_pile(self.support.highest(), self.mass_ratio(), contacts);
-        self.policy = match self.coupling {
-            Coupling::Free => of_pile(self.touches.len()),
-            // What touches jointed bodies is swept as they need it, piles beside and under them as those of which each contact counts.
-            _ if self.paired.contains(&true) => self.policy_with_joints().at_least(of_pile(0)),
-            _ => self.policy_with_joints(),
-        }
-        .of_quality(self.quality);
-    }
-
-    fn policy_with_joints(&self) -> SweepPolicy {
-        if self.coupling == Coupling::Turns { TURNS } else { JOINTED }
-    }
-
-    /// Firmness of the contact of two bodies.
-    pub(in crate::solver) fn firmness(&self, [a, b]: [u32; 2]) -> Firmness {
-        if self.coupling == Coupling::Free {
-            return Firmness::FREE;
-        }
-        let tree = |body: u32| self.links.get(body as usize).map(|link| link.tree);
-        if tree(a).is_some() && tree(a) == tree(b) {
-            Firmness::WITHIN_TREE
-        } else {
-            let moving = |body: u32| (body as usize) < self.links.len();
-            match [a, b].map(|body| self.is_jointed(body)) {
-                [false, false] => Firmness::FREE,
-                [true, false] if moving(b) => Firmness::ON_FREE,
-                [false, true] if moving(a) => Firmness::ON_FREE,
-                _ => Firmness::JOINTED,
-            }
-        }
-    }
-
-    /// Mass ratio of the heaviest to the lightest of the bodies that touch each other and are not jointed, as they answer to impulses.
-    pub(in crate::solver) fn mass_ratio(&self) -> f32 {
-        let (mut lightest, mut heaviest) = (f32::INFINITY, 0.0);
-        for (body, _) in self.bodies.iter().zip(&self.paired).filter(|(_, is_paired)| **is_paired) {
-            let mass = body.mass * body.mass_scale;
-            lightest = min(lightest, mass);
-            heaviest = max(heaviest, mass);
-        }
-        if heaviest > lightest { heaviest / lightest } else { 1.0 }
-    }
-}
-
-/// The highest that a body of an island asks for.
-fn quality_of(island: &Island<'_>, view: &View<'_>) -> Quality {
-    island.bodies.iter().map(|&body| view.quality(body)).max().unwrap_or_default()
-}
-
-/// Length of an island's substeps over that of the world's: a power of two.
-pub(in crate::solver) fn stretch_of(island: &Island<'_>, view: &View<'_>) -> f32 {
-    let may_halve = view.pace.substeps.is_multiple_of(2);
-    match quality_of(island, view) {
-        _ if view.pace.grading == Grading::None || !island.groups.is_empty() => 1.0,
-        Quality::Exact => 0.5,
-        Quality::Balanced if may_halve && is_damped(island, view) => 2.0,
-        Quality::Fast if may_halve && is_calm(island, view) => 2.0,
-        Quality::Balanced | Quality::Fast => 1.0,
-    }
-}
-
-/// True if contacts of an island damp all motion, so that it may take longer substeps.
-fn is_damped(island: &Island<'_>, view: &View<'_>) -> bool {
-    let (contacts, bodies) = (island.contacts.len(), island.bodies.len());
-    let many = if island.joints.is_empty() {
-        contacts >= DAMPED_CONTACTS
-    } else {
-        contacts >= DAMPED_CONTACTS_JOINTED
-            && contacts as f32 >= DAMPED_CONTACTS_PER_BODY * bodies as f32
-            && island.joints.iter().all(|&joint| view.joints.at(joint).drive.is_limp())
-    };
-    let bounces = |&contact: &u32| {
-        let approach = view.contacts[contact as usize].approach;
-        approach > BOUNCE_SPEED && view.contacts[contact as usize].material(view.bodies).restitution > 0.0
-    };
-    many && !island.contacts.iter().any(bounces) && is_calm(island, view)
-}
-
-/// True if masses and spins of an island let it take longer substeps.
-fn is_calm(island: &Island<'_>, view: &View<'_>) -> bool {
-    let (mut lightest, mut heaviest, mut spin) = (f32::INFINITY, 0.0, 0.0);
-    for &index in island.bodies {
-        let body = view.bodies.at(index);
-        lightest = min(lightest, body.mass);
-        heaviest = max(heaviest, body.mass);
-        spin = max(spin, body.velocity.angular.length());
-    }
-    heaviest <= GRADED_RATIO * lightest && spin * 2.0 * view.pace.h <= CALM_TURN
+/// Most sweeps of a pass, the change of a velocity in one below which there is no other, m/s or rad/s, and their order.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct Sweeps {
+    pub most: usize,
+    pub tolerance: f32,
+    /// Share of the energy of the substep's largest change that is small enough for there to be no other sweep.
+    pub small: f32,
+    pub order: Order,
+    /// The sweep from which on they are conjugate steps.
+    pub first_conjugate: usize,
 }

@@ -7,11 +7,13 @@
 //! alone, a chain of 70 links that was curled up by a wall gained five times its energy.
 
 use crate::runner::TaskRunner;
+use crate::solver::IslandSolver;
 use crate::solver::articulation::batches::{Batches, TurnVelocities};
 use crate::solver::articulation::tree::{self, Link, NONE};
+use crate::solver::body::SolverBody;
 use crate::solver::contacts::Contacts;
-use crate::solver::sweep::{DirtyRows, Pass};
-use crate::solver::{Coupling, IslandSolver, SolverBody};
+use crate::solver::pass::{Coupling, Pass};
+use crate::solver::sweep::dirty::DirtyRows;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, difference, join, largest, linear};
 use core::ops::Range;
 use sinew_math::dispatch::{self, Kernel};
@@ -76,7 +78,7 @@ impl Kernel for TurnOfTrees<'_> {
                 moved = L::max(moved, (now - L::load(&swept[i])).abs());
                 now.store(&mut velocities[i]);
             }
-            dirty.stir(tree as u32, largest_of(moved));
+            dirty.mark(tree as u32, largest_of(moved));
         }
         largest_of(most)
     }
@@ -250,12 +252,12 @@ impl IslandSolver {
             if tree == trees.len() {
                 return; // fixed
             }
-            dirty.stir(tree as u32, change);
+            dirty.mark(tree as u32, change);
         };
         contacts.after_conjugate(energy, (velocities, &mut scratch.limits), runner, stir);
         for (row, impulse) in limits.iter_mut().zip(&scratch.limits) {
-            let change = row.give(impulse - row.impulse);
-            dirty.stir_limits(row.block, change);
+            let change = row.apply(impulse - row.impulse);
+            dirty.mark_limits(row.block, change);
         }
     }
 

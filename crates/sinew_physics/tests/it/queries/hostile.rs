@@ -13,7 +13,7 @@ fn bad_vectors() -> impl Iterator<Item = Vec3> {
     BAD.into_iter().flat_map(|x| [Vec3::new(x, 0.0, 0.0), Vec3::new(0.1, x, 0.0), Vec3::new(0.0, 0.2, x)])
 }
 
-fn silent<Q: Question>(world: &World, question: &Q)
+fn silent<Q: QueryKind>(world: &World, question: &Q)
 where
     Q::Answer: Copy + PartialEq + core::fmt::Debug,
 {
@@ -150,7 +150,7 @@ fn finite(v: Vec3) -> bool {
     v.is_finite()
 }
 
-fn check_hits<Q: Question<Answer = BodyHit> + core::fmt::Debug>(world: &World, way: &Q) {
+fn check_hits<Q: QueryKind<Answer = BodyHit> + core::fmt::Debug>(world: &World, way: &Q) {
     let mut hits = Vec::new();
     world.query().all(way, &mut hits);
     for hit in &hits {
@@ -165,7 +165,7 @@ fn check_hits<Q: Question<Answer = BodyHit> + core::fmt::Debug>(world: &World, w
     assert_eq!(world.query().any(way), !hits.is_empty());
 }
 
-fn check_near<Q: Question<Answer = BodySurface> + core::fmt::Debug>(world: &World, question: &Q) {
+fn check_near<Q: QueryKind<Answer = BodySurface> + core::fmt::Debug>(world: &World, question: &Q) {
     if let Some(near) = world.query().first(question) {
         let sound = finite(near.point) && finite(near.normal) && near.distance.is_finite();
         assert!(sound, "{near:?} of {question:?}");

@@ -8,14 +8,14 @@ use sinew_physics::convex::{cast_shape, gap};
 use sinew_physics::ray::Ray;
 use sinew_physics::{
     BodyHit, BodyId, BodyPenetration, BodySurface, ContainsPoint, NearestTo, NearestToShape, OverlapWith,
-    PenetrationOf, Probe, QueryFilter, Question, Shape, ShapeCast, ShapeId,
+    PenetrationOf, Probe, QueryFilter, QueryKind, Shape, ShapeCast, ShapeId,
 };
 
 /// Answer of one shape, with the rank by which answers are sorted.
 type One<'a, A> = &'a dyn Fn(ShapeId, &Shape, &Transform) -> Option<(f32, A)>;
 
 /// Asks in every way, and compares with what all shapes answer one by one.
-fn check<Q: Question>(populated: &Populated, filter: QueryFilter<'_>, question: &Q, one: One<'_, Q::Answer>)
+fn check<Q: QueryKind>(populated: &Populated, filter: QueryFilter<'_>, question: &Q, one: One<'_, Q::Answer>)
 where
     Q::Answer: Copy + PartialEq + core::fmt::Debug,
 {

@@ -17,7 +17,7 @@ use crate::joint::TWIST;
 use crate::solver::articulation::response::Push;
 use crate::solver::articulation::tree::{Link, NONE};
 use crate::solver::contacts::Contacts;
-use crate::solver::sweep::DirtyRows;
+use crate::solver::sweep::dirty::DirtyRows;
 use crate::solver::{SolverBody, SolverJoint};
 use crate::spatial::Vec6;
 use answer::AnswerRows;

@@ -6,7 +6,7 @@ use super::{Batch, TurnVelocities};
 use crate::solver::articulation::elimination::{Symmetric, Twist};
 use crate::solver::contacts::Contacts;
 use crate::solver::flight::Eight;
-use crate::solver::sweep::DirtyRows;
+use crate::solver::sweep::dirty::DirtyRows;
 use crate::spatial::Vec6;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
@@ -64,7 +64,7 @@ impl Kernel for TurnOfBatch<'_, '_> {
         most.store(&mut all[1]);
         let mut largest = 0.0;
         for lane in 0..batch.lanes {
-            dirty.stir(batch.trees[lane], all[0][lane]);
+            dirty.mark(batch.trees[lane], all[0][lane]);
             largest = sinew_math::max(largest, all[1][lane]);
         }
         largest

@@ -1,0 +1,261 @@
+//! Root motion: the path along which a clip carries its character, taken out of the pose, so that it can move what the game moves.
+
+use crate::clip::sample::{SampleCache, Wrap, sample_cached};
+use crate::clip::{Channel, Clip, Interpolation, Property};
+use crate::playback::playhead::{LoopMode, Place};
+use crate::rig::{JointIdx, LocalTransform, Rig};
+use sinew_math::{Affine, Rotation, Transform, Vec3};
+
+/// Part of a motion along an axis that is taken out of the pose.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AxisMotion {
+    /// Nothing: it stays in the pose.
+    #[default]
+    None,
+    /// The straight way from the first pose to the last; what sways about that stays in the pose.
+    Linear,
+    /// All of it.
+    Full,
+}
+
+/// Choice of the motion that is taken out of a clip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RootMotionOptions {
+    /// The joint that carries the body: hips, or whatever is above them.
+    pub joint: JointIdx,
+    /// Along x, y, z of model space.
+    pub axes: [AxisMotion; 3],
+    /// Turns about `up`.
+    pub turn: AxisMotion,
+    /// Unit vector, model space.
+    pub up: Vec3,
+}
+
+impl RootMotionOptions {
+    /// Over the ground and about y: all of x, z and the turn, nothing of y.
+    pub fn on_ground(joint: JointIdx) -> Self {
+        let (none, full) = (AxisMotion::None, AxisMotion::Full);
+        Self { joint, axes: [full, none, full], turn: full, up: Vec3::Y }
+    }
+}
+
+/// Path along which a clip has carried its character since its start: model space, file units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionTrack {
+    /// Seconds, increasing, at least one.
+    times: Vec<f32>,
+    positions: Vec<Vec3>,
+    /// Radians about `up`, of any size.
+    turns: Vec<f32>,
+    up: Vec3,
+}
+
+/// Longest time between samples, seconds: in between, motion goes in a straight line.
+const SAMPLING: f32 = 1.0 / 60.0;
+
+/// Takes the motion of a joint out of a clip: the clip that stays on its place, and the motion that was in it. Put
+/// together they are the clip again: `motion · pose` in model space, to within the rounding and what lies between two
+/// samples 1/60 s apart. The clip that stays ends where it starts wherever the motion took all or the straight part.
+///
+/// Model space is that of the file, its unit too; times are seconds. The joint's channels of translation and rotation are
+/// replaced. `clip` and `rig` are such as
+/// [`BuiltClip::build`](crate::BuiltClip::build) takes.
+///
+/// # Panics
+/// If the joint is not in the rig, or the clip is not fit to be sampled (see [`sample`](crate::clip::sample())).
+pub fn extract_root_motion(clip: &Clip, rig: &Rig, options: &RootMotionOptions) -> (Clip, MotionTrack) {
+    let times = sample_times(clip);
+    let poses = chain_poses(clip, rig, options.joint, &times);
+    let motion = MotionTrack::from_poses(&times, &poses, options);
+    let mut rest = Keys::default();
+    for (i, pose) in poses.iter().enumerate() {
+        let back = Affine::from(motion.sample(i).inverse());
+        let place = pose.parent.inverse() * (back * (pose.parent * pose.local.to_affine()));
+        let parent = pose.parent.to_rigid().rotation;
+        let turn = parent.inverse() * motion.sample(i).rotation.inverse() * parent;
+        rest.translations.extend(place.translation.to_array());
+        let q = (turn * pose.local.rotation).normalize();
+        rest.rotations.extend([q.x, q.y, q.z, q.w]);
+    }
+    let joint = options.joint;
+    let mut still = clip.clone();
+    still.channels.retain(|channel| channel.joint != joint || channel.property == Property::Scale);
+    for (property, values) in
+        [(Property::Translation, rest.translations), (Property::Rotation, rest.rotations)]
+    {
+        let interpolation = Interpolation::Linear;
+        still.channels.push(Channel { joint, property, interpolation, times: times.clone(), values });
+    }
+    (still, motion)
+}
+
+#[derive(Default)]
+struct Keys {
+    translations: Vec<f32>,
+    rotations: Vec<f32>,
+}
+
+/// The joint at a time, and what it hangs on, in model space.
+struct ChainPose {
+    local: LocalTransform,
+    parent: Affine,
+}
+
+/// From 0 to the clip's end, evenly.
+fn sample_times(clip: &Clip) -> Vec<f32> {
+    let steps = (clip.duration / SAMPLING).ceil();
+    let steps = if steps >= 1.0 { steps as u32 } else { 1 };
+    if clip.duration > 0.0 {
+        (0..=steps).map(|i| clip.duration * (i as f32 / steps as f32)).collect()
+    } else {
+        vec![0.0]
+    }
+}
+
+fn chain_poses(clip: &Clip, rig: &Rig, joint: JointIdx, times: &[f32]) -> Vec<ChainPose> {
+    let (mut cache, mut pose) = (SampleCache::default(), vec![LocalTransform::default(); rig.joints.len()]);
+    let at = |&time: &f32| {
+        sample_cached(clip, rig, time, Wrap::Clamp, &mut cache, &mut pose);
+        let mut parent = Affine::IDENTITY;
+        let mut above = rig.joints[joint].parent;
+        while let Some(next) = above {
+            parent = pose[next].to_affine() * parent;
+            above = rig.joints[next].parent;
+        }
+        ChainPose { local: pose[joint], parent }
+    };
+    times.iter().map(at).collect()
+}
+
+impl MotionTrack {
+    /// Straight on for `duration` seconds: what carries a clip that was made on the spot. `velocity` is in file units per
+    /// second, model space, `up` a unit vector there.
+    ///
+    /// # Panics
+    /// If `duration` is negative or not finite.
+    pub fn straight(velocity: Vec3, duration: f32, up: Vec3) -> Self {
+        assert!(duration >= 0.0 && duration.is_finite(), "a motion takes 0 s or longer, not {duration}");
+        if duration == 0.0 {
+            return Self { times: vec![0.0], positions: vec![Vec3::ZERO], turns: vec![0.0], up };
+        }
+        let positions = vec![Vec3::ZERO, velocity * duration];
+        Self { times: vec![0.0, duration], positions, turns: vec![0.0; 2], up }
+    }
+
+    /// Through places (file units, model space) and turns (radians about `up`) at increasing times; straight on in between.
+    ///
+    /// # Panics
+    /// If there is no time, not one place and one turn for each, a number is not finite, or times do not increase.
+    pub fn through(times: Vec<f32>, positions: Vec<Vec3>, turns: Vec<f32>, up: Vec3) -> Self {
+        let count = times.len();
+        assert!(
+            count > 0 && [positions.len(), turns.len()] == [count; 2],
+            "each time has a place and a turn"
+        );
+        assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "times increase");
+        let finite =
+            times.iter().chain(&turns).all(|x| x.is_finite()) && positions.iter().all(|p| p.is_finite());
+        assert!(finite, "times, places and turns are finite");
+        Self { times, positions, turns, up }
+    }
+
+    fn from_poses(times: &[f32], poses: &[ChainPose], options: &RootMotionOptions) -> Self {
+        let rotation = |pose: &ChainPose| pose.parent.to_rigid().rotation * pose.local.rotation;
+        let first = rotation(&poses[0]);
+        let mut turns: Vec<f32> = Vec::with_capacity(poses.len());
+        for pose in poses {
+            let turn = (rotation(pose) * first.inverse()).twist_angle(options.up);
+            let last = turns.last().copied().unwrap_or(0.0);
+            turns.push(unwrapped(turn, last));
+        }
+        take(options.turn, times, &mut turns);
+        let place = |pose: &ChainPose| pose.parent.point(pose.local.translation);
+        let start = place(&poses[0]);
+        // The joint stays where it was first, seen from what carries it.
+        let carried = |(pose, &turn): (&ChainPose, &f32)| {
+            place(pose) - Rotation::from_axis_angle(options.up, turn) * start
+        };
+        let carried: Vec<Vec3> = poses.iter().zip(&turns).map(carried).collect();
+        let axis = |i: usize| {
+            let mut way: Vec<f32> = carried.iter().map(|at| at[i]).collect();
+            take(options.axes[i], times, &mut way);
+            way
+        };
+        let [x, y, z] = [axis(0), axis(1), axis(2)];
+        let positions = (0..times.len()).map(|i| Vec3::new(x[i], y[i], z[i])).collect();
+        Self { times: times.to_vec(), positions, turns, up: options.up }
+    }
+
+    fn sample(&self, i: usize) -> Transform {
+        Transform::new(self.positions[i], Rotation::from_axis_angle(self.up, self.turns[i]))
+    }
+
+    /// Place of the character at `time`, clip seconds, limited to the clip; the identity at its start.
+    pub fn at(&self, time: f32) -> Transform {
+        let right = self.times.partition_point(|&t| t <= time);
+        if right == 0 || right == self.times.len() {
+            return self.sample(right.saturating_sub(1));
+        }
+        let left = right - 1;
+        let share = (time - self.times[left]) / (self.times[right] - self.times[left]);
+        let position = self.positions[left] + (self.positions[right] - self.positions[left]) * share;
+        let turn = self.turns[left] + (self.turns[right] - self.turns[left]) * share;
+        Transform::new(position, Rotation::from_axis_angle(self.up, turn))
+    }
+
+    /// Motion of one lap: from the clip's start to its end.
+    pub fn lap(&self) -> Transform {
+        self.at(0.0).inverse() * self.sample(self.times.len() - 1)
+    }
+
+    /// Length of a lap over the ground, file units: what is left of the way without its part along up.
+    pub fn stride(&self) -> f32 {
+        let way = self.lap().translation;
+        (way - self.up * self.up.dot(way)).length()
+    }
+
+    /// Motion between two places, seen from the first.
+    pub(crate) fn between(&self, from: Place, to: Place, mode: LoopMode, length: f64) -> Transform {
+        let at = |place: Place| {
+            let is_way_back = mode == LoopMode::PingPong && place.lap.rem_euclid(2) == 1;
+            self.at(if is_way_back { length - place.time } else { place.time } as f32)
+        };
+        let laps = if mode == LoopMode::Loop { to.lap.saturating_sub(from.lap) } else { 0 };
+        at(from).inverse() * (power(self.lap(), laps) * at(to))
+    }
+}
+
+/// `t` as many times as `n` says, the other way round for less than 0.
+fn power(t: Transform, n: i64) -> Transform {
+    let (mut square, mut rest) = (if n < 0 { t.inverse() } else { t }, n.unsigned_abs());
+    let mut product = Transform::IDENTITY;
+    while rest > 0 {
+        if rest & 1 == 1 {
+            product = product * square;
+        }
+        square = square * square;
+        rest >>= 1;
+    }
+    product
+}
+
+/// The angle that is the same as `angle`, and nearest to `last`.
+fn unwrapped(angle: f32, last: f32) -> f32 {
+    const TURN: f32 = core::f32::consts::TAU;
+    angle + TURN * ((last - angle) / TURN + 0.5).floor()
+}
+
+/// Replaces the path `way` by the part of it that a mode takes, from its first number on.
+fn take(mode: AxisMotion, times: &[f32], way: &mut [f32]) {
+    let first = way[0];
+    let last = way[way.len() - 1] - first;
+    let duration = times[times.len() - 1];
+    for (value, &time) in way.iter_mut().zip(times) {
+        *value = match mode {
+            AxisMotion::None => 0.0,
+            AxisMotion::Linear if duration > 0.0 => last * (time / duration),
+            AxisMotion::Linear => 0.0,
+            AxisMotion::Full => *value - first,
+        };
+    }
+}

@@ -1,0 +1,166 @@
+//! Reading and writing what commands work on.
+
+use crate::failure::{Failure, Result};
+use crate::input::kin::units_beside;
+use sinew::anim::{Hints, RigAnalysis, analyze_hinted, characters};
+use sinew::formats::{
+    Document, MotionFormat, MotionOptions, ReadOptions, Textures, load_gltf, load_motion, no_files,
+    read_bytes, read_gltf, write_all_atomic, write_motion,
+};
+use std::path::{Path, PathBuf};
+
+/// A character file: what it holds, and what its joints are.
+pub struct CharacterFile {
+    /// As the user named it.
+    pub name: String,
+    /// Its rig, clips and JSON.
+    pub document: Document,
+    /// Analysis of its joints.
+    pub analysis: RigAnalysis,
+}
+
+impl CharacterFile {
+    /// Reads a file that has to hold a skinned character. An FBX becomes a glTF first, to which clips can be added.
+    pub fn load(path: &Path, textures: Textures) -> Result<Self> {
+        let name = path.display().to_string();
+        let options = ReadOptions { textures };
+        let document = if is_fbx(path)? {
+            let file = load_motion(path, &MotionOptions::default())?;
+            let bytes = write_motion(&file.rig, &file.clips, &file.events);
+            let read = |bytes: Vec<u8>| read_gltf(&bytes, options, &mut no_files);
+            bytes.and_then(read).map_err(|error| error.with_file(&name))?
+        } else {
+            load_gltf(path, options)?
+        };
+        let hints = Hints {
+            exporter: document.generator().to_owned(),
+            ..Hints::of_clips(&document.rig, &document.clips)
+        };
+        let analysis =
+            analyze_hinted(&document.rig, &hints).map_err(|error| Failure::of_file(&name, error))?;
+        let mut file = Self { name, document, analysis };
+        // A file in metres is taken at its word; of another the others beside it may know more.
+        if file.is_in_doubt() && file.analysis.unit_scale != 1.0 {
+            let kin = units_beside(path);
+            file.hint(&Hints { kin, ..hints })?;
+        }
+        Ok(file)
+    }
+
+    /// True if the file's unit may as well be another.
+    pub fn is_in_doubt(&self) -> bool {
+        self.analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only)
+    }
+
+    /// Takes more evidence into account.
+    pub fn hint(&mut self, hints: &Hints) -> Result<()> {
+        if *hints != self.analysis.hints {
+            let analysis = analyze_hinted(&self.document.rig, hints);
+            self.analysis = analysis.map_err(|no_skin| Failure::of_file(&self.name, no_skin))?;
+        }
+        Ok(())
+    }
+}
+
+impl CharacterFile {
+    /// Leaves out the meshes of other characters than the `wanted` one, from 1. Where there are several and none is wanted, that
+    /// is a note of the analysis.
+    pub fn choose(&mut self, wanted: Option<usize>) -> Result<()> {
+        let rig = &mut self.document.rig;
+        let all = characters(rig);
+        let Some(number) = wanted else {
+            if all.len() > 1 {
+                self.analysis.notes.push(format!(
+                    "{} skeletons without a joint in common are taken for one character: --character 1 to {0} picks one",
+                    all.len()
+                ));
+            }
+            return Ok(());
+        };
+        let Some(own) = number.checked_sub(1).and_then(|index| all.get(index)) else {
+            let there = if all.len() == 1 { "one character" } else { &format!("{} characters", all.len()) };
+            return Err(Failure::at(
+                &self.name,
+                format!("there is no character {number} but {there}"),
+                "--character",
+            ));
+        };
+        let is_others = |mesh: usize| all.iter().any(|meshes| meshes.contains(&mesh)) && !own.contains(&mesh);
+        let mut index = 0;
+        rig.meshes.retain(|_| {
+            index += 1;
+            !is_others(index - 1)
+        });
+        let hints = &self.analysis.hints;
+        self.analysis =
+            analyze_hinted(rig, hints).map_err(|no_skin| Failure::of_file(&self.name, no_skin))?;
+        Ok(())
+    }
+}
+
+fn is_fbx(path: &Path) -> Result<bool> {
+    let bytes = read_bytes(path)?;
+    Ok(matches!(MotionFormat::of(&bytes), Ok(MotionFormat::Fbx)))
+}
+
+/// Refuses an output that is one of the user's own files.
+pub fn never_over<'a>(
+    inputs: impl IntoIterator<Item = &'a Path>,
+    outputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<()> {
+    // Both may be named in different ways; what does not exist yet is no input.
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    let inputs: Vec<PathBuf> = inputs.into_iter().filter_map(real).collect();
+    match outputs.into_iter().find(|output| real(output).is_some_and(|output| inputs.contains(&output))) {
+        Some(output) => {
+            Err(Failure::Usage(format!("{} is an input: write to another file", output.display())))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Refuses an output whose name ends in none of these: a name says what is in a file.
+pub fn must_end_in(output: &Path, extensions: &[&str]) -> Result<()> {
+    let extension = output.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    if extensions.iter().any(|known| known.eq_ignore_ascii_case(extension)) {
+        return Ok(());
+    }
+    let known: Vec<String> = extensions.iter().map(|known| format!(".{known}")).collect();
+    Err(Failure::Usage(format!("-o {}: must end in {}", output.display(), known.join(" or "))))
+}
+
+/// Files that are written together: all of them, or none.
+#[derive(Debug, Default)]
+pub struct Outputs {
+    files: Vec<(PathBuf, Vec<u8>)>,
+}
+
+impl Outputs {
+    /// One more file, of these bytes.
+    pub fn add(&mut self, path: &Path, bytes: Vec<u8>) {
+        self.files.push((path.to_path_buf(), bytes));
+    }
+
+    /// The first of them.
+    pub fn first(&self) -> Option<(&Path, &[u8])> {
+        self.files.first().map(|(path, bytes)| (path.as_path(), bytes.as_slice()))
+    }
+
+    /// Paths of the files.
+    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.files.iter().map(|(path, _)| path.as_path())
+    }
+
+    /// Writes them. Each is there as a whole or not at all; none appears before all are on the disk.
+    pub fn write(&self) -> Result<()> {
+        let mut paths: Vec<&Path> = self.paths().collect();
+        paths.sort_unstable();
+        if let Some(twice) = paths.windows(2).find(|pair| pair[0] == pair[1]) {
+            let name = twice[0].display();
+            return Err(Failure::Usage(format!(
+                "{name} is asked for twice: give each output a name of its own"
+            )));
+        }
+        Ok(write_all_atomic(&self.files)?)
+    }
+}

@@ -1,0 +1,84 @@
+//! Files with clips, whatever they are.
+
+use crate::failure::Result;
+use crate::input::kin::units_beside;
+use sinew::anim::retarget::stand;
+use sinew::anim::{Clip, Hints, RigAnalysis, analyze_hinted};
+use sinew::formats::{Error, MotionFile, MotionFormat, MotionOptions, load_motion};
+use std::path::Path;
+
+/// A file with clips: what it holds, and what its joints are.
+pub struct Motion {
+    /// As the user named it.
+    pub name: String,
+    /// Its rig and its clips.
+    pub file: MotionFile,
+    /// Analysis of its joints; `None` where there is neither a skin nor a skeleton like a human's.
+    pub analysis: Option<RigAnalysis>,
+}
+
+impl Motion {
+    /// Reads a file and finds out what its joints are.
+    pub fn load(path: &Path, options: &MotionOptions<'_>) -> Result<Self> {
+        let file = load_motion(path, options).map_err(helped)?;
+        let mut motion = Self::new(path.display().to_string(), file);
+        motion.look_beside(path);
+        Ok(motion)
+    }
+
+    /// Judges a unit that is in doubt by the files beside a glTF, as for its fall.
+    fn look_beside(&mut self, path: &Path) {
+        let Some(analysis) = &self.analysis else { return };
+        let in_doubt = analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only);
+        let is_gltf = matches!(self.file.format, MotionFormat::Glb | MotionFormat::Gltf);
+        if !(is_gltf && in_doubt && analysis.unit_scale != 1.0 && self.has_skin()) {
+            return;
+        }
+        let hints = Hints { kin: units_beside(path), ..analysis.hints.clone() };
+        if hints != analysis.hints
+            && let Ok(analysis) = analyze_hinted(&self.file.rig, &hints)
+        {
+            self.analysis = Some(analysis);
+        }
+    }
+
+    /// Finds out what the joints of a file of that name are.
+    pub fn new(name: String, file: MotionFile) -> Self {
+        let analysis = analyze_any(&file);
+        Self { name, file, analysis }
+    }
+
+    /// True if a mesh hangs on its joints.
+    pub fn has_skin(&self) -> bool {
+        !self.file.rig.skins.is_empty()
+    }
+}
+
+/// An error with the option that gets around it, where there is one.
+fn helped(mut error: Error) -> Error {
+    if error.what.starts_with("declares ") && error.what.contains(" frames, has ") {
+        error.what += "; 'sinew convert --any-rows' takes those that are there";
+    }
+    error
+}
+
+/// By the skin, else as a skeleton in the pose in which it stands best: any few nodes look like some creature, so that
+/// counts for humans only.
+fn analyze_any(file: &MotionFile) -> Option<RigAnalysis> {
+    let hints = Hints { exporter: file.generator.clone(), ..Hints::of_clips(&file.rig, &file.clips) };
+    if let Ok(analysis) = analyze_hinted(&file.rig, &hints) {
+        return Some(analysis);
+    }
+    let has_bones = file.rig.meshes.is_empty() || !file.clips.is_empty() || !file.rig.stated_roles.is_empty();
+    if file.rig.joints.is_empty() || !has_bones {
+        return None;
+    }
+    let still = Clip::default();
+    let clip = file.clips.first().unwrap_or(&still);
+    let (analysis, _) = stand(&file.rig, clip, file.rest_pose.as_deref()).ok()?;
+    let analysis = match file.metres_per_unit {
+        Some(metres) => analysis.with_unit_scale(metres),
+        None => analysis,
+    };
+    analysis.humanoid.then_some(analysis)
+}

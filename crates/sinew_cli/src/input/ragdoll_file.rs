@@ -1,0 +1,99 @@
+//! Any file that a ragdoll comes from: a rigged character, a definition of ours, an MJCF model.
+
+use crate::failure::{Failure, Result};
+use crate::input::files::CharacterFile;
+use crate::input::settings_arg::SettingsArg;
+use sinew::formats::{Textures, read_bytes, read_mjcf, read_ragdoll};
+use sinew::ragdoll::{BuildOptions, RagdollDef, Repair};
+use std::path::Path;
+
+/// A ragdoll and what is known of it.
+pub struct RagdollFile {
+    /// As the user named it.
+    pub name: String,
+    /// The ragdoll, its springs, and what its rig says of it.
+    pub repair: Repair,
+    /// Notes of reading and building for a person, a sentence each.
+    pub notes: Vec<String>,
+    /// The rigged file that it was built from, if it is one.
+    pub character: Option<CharacterFile>,
+}
+
+impl RagdollFile {
+    /// Settings change a build: of what is built already there is nothing to change.
+    pub fn check_settings(&self, settings: &SettingsArg) -> Result<()> {
+        if let Some(option) = settings.given().filter(|_| self.repair.reference.is_none()) {
+            let what = "changes how a ragdoll is built: name a character, not a definition or a model";
+            return Err(Failure::Usage(format!("{option} {what}")));
+        }
+        Ok(())
+    }
+
+    /// Reads a file of any of the three kinds; of a character the ragdoll is built.
+    pub fn load(path: &Path, textures: Textures, settings: &SettingsArg) -> Result<Self> {
+        let name = path.display().to_string();
+        let bytes = read_bytes(path)?;
+        match kind_of(&bytes) {
+            Kind::Definition => Ok(Self {
+                repair: Repair::new(read_ragdoll(&bytes).map_err(|error| error.with_file(&name))?),
+                name,
+                notes: Vec::new(),
+                character: None,
+            }),
+            Kind::Mjcf => {
+                let model = read_mjcf(&bytes).and_then(|model| Ok((model.to_ragdoll()?, model.notes)));
+                let (ragdoll, mut notes) = model.map_err(|error| error.with_file(&name))?;
+                notes.extend(ragdoll.notes);
+                let repair = Repair { springs: ragdoll.springs, ..Repair::new(ragdoll.def) };
+                Ok(Self { repair, name, notes, character: None })
+            }
+            Kind::Character => {
+                drop(bytes);
+                let (character, settings) = settings.load_character(path, textures)?;
+                let (def, report) = settings.build(&character, &BuildOptions::default())?;
+                let repair = Repair { reference: Some(def.clone()), ..Repair::new(def) };
+                Ok(Self { repair, name, notes: report.notes, character: Some(character) })
+            }
+        }
+    }
+}
+
+/// True if these are the bytes of a character, and not of a definition or a model.
+pub fn is_character(bytes: &[u8]) -> bool {
+    matches!(kind_of(bytes), Kind::Character)
+}
+
+/// A definition for a character, whose joints it finds by their names.
+pub fn read_definition(path: &Path, character: &CharacterFile) -> Result<RagdollDef> {
+    let name = path.display().to_string();
+    let def = read_bytes(path).and_then(|bytes| read_ragdoll(&bytes));
+    let def = def.map_err(|error| error.with_file(&name))?;
+    def.for_rig(&character.document.rig).map_err(|error| {
+        let place = format!("bodies[{}]", error.body());
+        Failure::at(&name, format!("{error} ({})", character.name), place)
+    })
+}
+
+enum Kind {
+    Definition,
+    Mjcf,
+    Character,
+}
+
+/// A glTF is JSON too, but has an `asset` at its top, and nothing of us.
+fn kind_of(bytes: &[u8]) -> Kind {
+    let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
+    match text.first() {
+        Some(b'<') => Kind::Mjcf,
+        Some(b'{') if is_ours(text) => Kind::Definition,
+        _ => Kind::Character,
+    }
+}
+
+/// True if an object's first key is `"sinew"`, or one after it and there is no `asset`.
+fn is_ours(text: &[u8]) -> bool {
+    text[1..].trim_ascii_start().starts_with(b"\"sinew\"")
+        || text.windows(7).any(|word| word == b"\"sinew\"")
+            && serde_json::from_slice::<serde_json::Map<String, serde_json::Value>>(text)
+                .is_ok_and(|object| object.contains_key("sinew") && !object.contains_key("asset"))
+}

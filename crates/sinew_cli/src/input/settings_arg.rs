@@ -1,0 +1,265 @@
+//! Settings of a ragdoll: those beside the character's file or in one that was named, and over them what was asked for.
+
+use crate::failure::{Failure, Result};
+use crate::input::files::CharacterFile;
+use sinew::anim::{Hints, RigAnalysis, Role, UnitGuess};
+use sinew::formats::{Textures, read_bytes, read_ragdoll_settings, settings_path};
+use sinew::ragdoll::build::{BuildReport, takes};
+use sinew::ragdoll::quality::implausible;
+use sinew::ragdoll::settings::{BodyWish, BoneSettings, Unit, analyze_with, role_named};
+use sinew::ragdoll::{BuildError, BuildOptions, RagdollDef, Settings, SettingsError, build_moving};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// Under which the help lists these options.
+const HEADING: &str = "Correcting what is read from the file";
+
+/// Options by which a user corrects the build of a ragdoll.
+#[derive(clap::Args)]
+pub struct SettingsArg {
+    /// Settings of the ragdoll, a JSON file; by default NAME.ragdoll.json beside the character, if it is there. The options
+    /// below go before it
+    #[arg(help_heading = HEADING, long, value_name = "FILE")]
+    settings: Option<PathBuf>,
+    /// Number of the character in the file, from 1, where there are several skeletons that have no joint in common; by default all are
+    /// taken for one
+    #[arg(help_heading = HEADING, long = "character", id = "character_number", value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    character: Option<u16>,
+    /// Height that the character has, metres: sets the length of the file's unit
+    #[arg(help_heading = HEADING, long, value_name = "M", value_parser = positive, allow_negative_numbers = true, conflicts_with = "unit")]
+    height: Option<f32>,
+    /// Length of one unit of the file: m, dm, cm, mm, in, ft, or metres as a number
+    #[arg(help_heading = HEADING, long, value_name = "UNIT", value_parser = unit, allow_negative_numbers = true)]
+    unit: Option<f32>,
+    /// Mass of the whole character, kg; by default from its height or volume
+    #[arg(help_heading = HEADING, long, value_name = "KG", allow_negative_numbers = true)]
+    mass: Option<f32>,
+    /// Say which bone is what, as in hips=Bone_12; 'sinew inspect' lists both; repeatable
+    #[arg(help_heading = HEADING, long = "role", value_name = "ROLE=BONE")]
+    roles: Vec<RoleArg>,
+    /// A bone that is no part of the body, with all below it (a cape, hair, a flag): it goes along; repeatable
+    #[arg(help_heading = HEADING, long, value_name = "BONE")]
+    ignore: Vec<String>,
+    /// A bone, by role or name, that gets a body of its own; repeatable
+    #[arg(help_heading = HEADING, long, value_name = "BONE")]
+    body: Vec<String>,
+    /// A bone, by role or name, that moves with its parent's body; repeatable
+    #[arg(help_heading = HEADING, long, value_name = "BONE")]
+    no_body: Vec<String>,
+}
+
+/// `ROLE=BONE`.
+#[derive(Clone, Debug)]
+struct RoleArg {
+    role: Role,
+    bone: String,
+}
+
+impl FromStr for RoleArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        // No role has a `=` in its name, but a bone may.
+        let (role, bone) = text.split_once('=').ok_or("must be ROLE=BONE, as in hips=Bone_12")?;
+        if bone.is_empty() {
+            return Err("BONE is missing, as in hips=Bone_12".to_owned());
+        }
+        Ok(Self { role: role_named(role)?, bone: bone.to_owned() })
+    }
+}
+
+/// A length above 0.
+fn positive(text: &str) -> Result<f32, String> {
+    let number: f32 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
+    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be above 0".to_owned()) }
+}
+
+/// Key of the whole's mass in settings.
+const MASS: &str = "mass";
+
+/// Units by their names, in metres.
+const UNITS: [(&str, f32); 6] =
+    [("m", 1.0), ("dm", 0.1), ("cm", 0.01), ("mm", 0.001), ("in", 0.0254), ("ft", 0.3048)];
+
+fn unit(text: &str) -> Result<f32, String> {
+    match UNITS.iter().find(|(name, _)| name.eq_ignore_ascii_case(text)) {
+        Some(&(_, metres)) => Ok(metres),
+        None => positive(text).map_err(|_| "must be m, dm, cm, mm, in, ft or metres above 0".to_owned()),
+    }
+}
+
+/// Settings and where they are from.
+#[derive(Debug, Default)]
+pub struct LoadedSettings {
+    /// The file as a person names it, `""` where there is none.
+    pub file: String,
+    /// The settings themselves.
+    pub settings: Settings,
+    /// Keys in the settings that the command line said, with the option as it was typed.
+    said: Vec<(String, String)>,
+}
+
+impl SettingsArg {
+    /// The first option that asks for something, as it is typed.
+    pub fn given(&self) -> Option<&'static str> {
+        let given = [
+            ("--settings", self.settings.is_some()),
+            ("--character", self.character.is_some()),
+            ("--height", self.height.is_some()),
+            ("--unit", self.unit.is_some()),
+            ("--mass", self.mass.is_some()),
+            ("--role", !self.roles.is_empty()),
+            ("--ignore", !self.ignore.is_empty()),
+            ("--body", !self.body.is_empty()),
+            ("--no-body", !self.no_body.is_empty()),
+        ];
+        given.into_iter().find(|(_, is_given)| *is_given).map(|(option, _)| option)
+    }
+
+    /// Path of the settings for a character's file: where the user said, else beside it, whether there are any or not.
+    pub fn path_for(&self, character: &Path) -> PathBuf {
+        self.settings.clone().unwrap_or_else(|| settings_path(character))
+    }
+
+    /// Reads those for a character's file.
+    pub fn load(&self, character: &Path) -> Result<LoadedSettings> {
+        let path = &self.path_for(character);
+        let mut loaded = LoadedSettings::default();
+        if self.settings.is_some() || path.is_file() {
+            loaded.file = path.display().to_string();
+            let read = read_bytes(path).and_then(|bytes| read_ragdoll_settings(&bytes));
+            loaded.settings = read.map_err(|error| error.with_file(&loaded.file))?;
+        }
+        self.say(&mut loaded)?;
+        Ok(loaded)
+    }
+
+    /// A character with its settings: its roles and its unit are what they say.
+    pub fn load_character(&self, path: &Path, textures: Textures) -> Result<(CharacterFile, LoadedSettings)> {
+        self.load_into(path, textures, || None)
+    }
+
+    /// [`Self::load_character`] for a world with doors of a free height (metres) that is asked for if the unit is in doubt.
+    pub fn load_into(
+        &self,
+        path: &Path,
+        textures: Textures,
+        door: impl FnOnce() -> Option<f32>,
+    ) -> Result<(CharacterFile, LoadedSettings)> {
+        let mut character = CharacterFile::load(path, textures)?;
+        character.choose(self.character.map(usize::from))?;
+        if character.is_in_doubt()
+            && let Some(door) = door()
+        {
+            // What the choice of a character has to say is none of the analysis's own.
+            let notes = character.analysis.notes.clone();
+            let hints = Hints { door: Some(door), ..character.analysis.hints.clone() };
+            character.hint(&hints)?;
+            character.analysis.notes = notes;
+        }
+        let loaded = self.load(path)?;
+        let analysis = analyze_with(&character.document.rig, &character.analysis, &loaded.settings);
+        character.analysis = analysis.map_err(|error| loaded.failure(&character.name, error))?;
+        Ok((character, loaded))
+    }
+
+    /// Puts what the command line says over what the file says.
+    fn say(&self, loaded: &mut LoadedSettings) -> Result<()> {
+        let LoadedSettings { settings, said, .. } = loaded;
+        for (index, RoleArg { role, bone }) in self.roles.iter().enumerate() {
+            if self.roles[..index].iter().any(|other| other.role == *role || other.bone == *bone) {
+                let what = "is said twice: a role has one bone, and a bone one role";
+                return Err(Failure::Usage(format!("--role {}={bone} {what}", role.name())));
+            }
+            settings
+                .bones
+                .push((bone.clone(), BoneSettings { role: Some(*role), ..BoneSettings::default() }));
+            said.push((format!("bones.{bone}.role"), format!("--role {}={bone}", role.name())));
+        }
+        for bone in &self.ignore {
+            said.push((format!("ignore[{}]", settings.ignore.len()), format!("--ignore {bone}")));
+            settings.ignore.push(bone.clone());
+        }
+        if !self.ignore.is_empty() {
+            said.push(("ignore".into(), "--ignore".into()));
+        }
+        for (bones, body, option) in
+            [(&self.body, BodyWish::Keep, "--body"), (&self.no_body, BodyWish::Drop, "--no-body")]
+        {
+            for bone in bones {
+                settings
+                    .bones
+                    .push((bone.clone(), BoneSettings { body: Some(body), ..BoneSettings::default() }));
+                said.push((format!("bones.{bone}"), format!("{option} {bone}")));
+            }
+        }
+        if let Some(unit) = self.height.map(Unit::Height).or_else(|| self.unit.map(Unit::Scale)) {
+            settings.unit = Some(unit);
+            said.push(("height".into(), "--height".into()));
+        }
+        if let Some(mass) = self.mass {
+            settings.mass = Some(mass);
+            said.push((MASS.into(), "--mass".into()));
+        }
+        Ok(())
+    }
+}
+
+/// A guess of the unit with the options that set it.
+pub fn unit_note(guess: &UnitGuess) -> String {
+    format!("{}; --unit or --height sets it", guess.note)
+}
+
+/// Assumptions of the analysis, the unit among them, a sentence each.
+pub fn assumed(analysis: &RigAnalysis) -> Vec<String> {
+    let unit = analysis.unit_guess.as_ref().map(unit_note);
+    unit.into_iter().chain(analysis.notes.iter().cloned()).collect()
+}
+
+impl LoadedSettings {
+    /// The ragdoll of a character and its clips, and what the build says of it.
+    pub fn build(
+        &self,
+        character: &CharacterFile,
+        options: &BuildOptions,
+    ) -> Result<(RagdollDef, BuildReport)> {
+        let CharacterFile { name, document, analysis } = character;
+        let moves = takes(&document.rig, &document.clips);
+        let built = build_moving(&document.rig, analysis, &moves, options, &self.settings);
+        let (def, mut report) = built.map_err(|error| self.failure(name, error))?;
+        let mut notes = Vec::new();
+        if !self.file.is_empty() {
+            notes.push(format!("with the settings of {}", self.file));
+        }
+        notes.extend(assumed(analysis));
+        notes.extend(self.doubt(&def));
+        notes.append(&mut report.notes);
+        report.notes = notes;
+        Ok((def, report))
+    }
+
+    /// Why the mass is hardly that of a body, and what to do; nothing where the user gave it, or the unit that it comes from.
+    pub fn doubt(&self, def: &RagdollDef) -> Option<String> {
+        let is_given = self.settings.mass.is_some() || self.settings.unit.is_some();
+        let doubt = implausible(def).filter(|_| !is_given)?;
+        Some(format!("{doubt}; --height or --unit sets the size, --mass the mass"))
+    }
+
+    /// Names the file of the settings, or the option that said what cannot be.
+    fn failure(&self, character: &str, error: SettingsError) -> Failure {
+        match error {
+            SettingsError::Build(error @ BuildError::Mass(_)) => {
+                let is_said = self.said.iter().any(|(key, _)| key == MASS);
+                let place = if is_said { "--mass" } else { "" };
+                Failure::at(character, error, place)
+            }
+            SettingsError::Build(error) => Failure::of_file(character, error),
+            SettingsError::Setting { what, place } => {
+                match self.said.iter().rev().find(|(key, _)| *key == place) {
+                    Some((_, option)) => Failure::at(character, what, option),
+                    None => Failure::at(&self.file, what, place),
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Report of a command.
+
+pub(crate) mod footsteps;
+pub(crate) mod progress;
+pub(crate) mod quality_report;
+pub(crate) mod ragdoll_report;
+pub(crate) mod skin_report;
+pub(crate) mod story;
+pub(crate) mod table;
+
+use serde_json::Value;
+
+/// The outcome of a command: the same for a script and for a person.
+#[derive(Debug)]
+pub struct Report {
+    /// For `--json`: an object with the keys of `docs/contract.md`.
+    pub json: Value,
+    /// For a person, with a line feed at the end.
+    pub text: String,
+}
+
+/// A number with the fewest digits that tell it from its neighbours; null if it is not finite.
+pub fn number(x: f32) -> Value {
+    // The decimal digits of the f32, not those of the f64 nearest to it.
+    x.to_string().parse::<f64>().map_or(Value::Null, Value::from)
+}
+
+/// [`number`] for each.
+pub fn numbers(xs: &[f32]) -> Value {
+    xs.iter().map(|&x| number(x)).collect()
+}

@@ -1,0 +1,106 @@
+//! Manifolds: what the contact of two shapes is.
+
+use crate::boxes::separation::{Axis, AxisOf};
+use sinew_math::Vec3;
+
+/// At most this many points describe the contact of two shapes.
+pub const MAX_POINTS: usize = 4;
+
+/// One point of a manifold.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ManifoldPoint {
+    /// Half-way between the two surfaces, in the frame the shapes were given in (world), metres.
+    pub position: Vec3,
+    /// Gap along the normal, metres; negative when they overlap.
+    pub separation: f32,
+    /// Features that touch: A's in the low 16 bits, B's in the high ones. The same from step to step while the
+    /// same features touch; the other order of the shapes exchanges the halves (`feature.rotate_left(16)`).
+    pub feature: u32,
+}
+
+/// Contact of two convex shapes that touch or are about to: a normal and up to four points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Manifold {
+    /// Unit, from A to B.
+    pub normal: Vec3,
+    /// The points; only the first `count` count.
+    pub points: [ManifoldPoint; MAX_POINTS],
+    /// Number of points, 0..=4.
+    pub count: usize,
+}
+
+impl Manifold {
+    /// The points that count.
+    #[inline]
+    pub fn points(&self) -> &[ManifoldPoint] {
+        &self.points[..self.count]
+    }
+
+    /// Middle of its points, metres; the origin if there are none.
+    #[inline]
+    pub fn center(&self) -> Vec3 {
+        let sum = self.points().iter().fold(Vec3::ZERO, |sum, point| sum + point.position);
+        if self.count > 0 { sum / self.count as f32 } else { sum }
+    }
+
+    /// Appends a point that lies on one of the surfaces' midplane.
+    pub(super) fn push(&mut self, position: Vec3, separation: f32, feature: u32) {
+        self.points[self.count] = ManifoldPoint { position, separation, feature };
+        self.count += 1;
+    }
+
+    /// Appends a point, or puts it in the place of the one that is least deep where there is no room.
+    pub(super) fn push_or_replace_shallowest(&mut self, position: Vec3, separation: f32, feature: u32) {
+        if self.count < MAX_POINTS {
+            self.push(position, separation, feature);
+        } else {
+            let deeper =
+                |a: &usize, b: &usize| self.points[*a].separation.total_cmp(&self.points[*b].separation);
+            let shallowest = (0..MAX_POINTS).max_by(deeper).unwrap_or(0);
+            self.points[shallowest] = ManifoldPoint { position, separation, feature };
+        }
+    }
+
+    /// Turns the result of (B, A) into that of (A, B).
+    pub(super) fn flip(&mut self) {
+        self.normal = -self.normal;
+        for point in &mut self.points[..self.count] {
+            point.feature = point.feature.rotate_left(16);
+        }
+    }
+
+    /// Back from coordinates relative to `origin`; drops everything if a number is not finite.
+    pub(super) fn finish(&mut self, origin: Vec3) {
+        for point in &mut self.points[..self.count] {
+            point.position += origin;
+        }
+        let sane = |p: &ManifoldPoint| p.position.is_finite() && p.separation.is_finite();
+        if !self.normal.is_finite() || !self.points().iter().all(sane) {
+            self.count = 0;
+        }
+    }
+}
+
+/// Knowledge of two shapes beside their points. It decides nothing about those, whatever it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeparationCache {
+    /// The axis along which two polytopes were parted when they were asked last: it is tried first, since most that stay apart
+    /// do so along the same one.
+    pub axis: Option<AxisOf>,
+    /// Least gap that they surely have, metres. Told where no points are found.
+    pub gap: f32,
+}
+
+impl Default for SeparationCache {
+    /// Nothing is known.
+    fn default() -> Self {
+        Self { axis: None, gap: f32::NEG_INFINITY }
+    }
+}
+
+impl SeparationCache {
+    /// They are parted along an axis.
+    pub(super) fn along(axis: &Axis) -> Self {
+        Self { axis: Some(axis.of), gap: axis.separation }
+    }
+}

@@ -1,0 +1,21 @@
+//! Refusal of a definition whose numbers make no sense.
+
+/// Refusal of a definition, a shape or a setting: the first of its numbers that makes no sense, and why. Its text is one line in lower case
+/// without a full stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{what}")]
+pub struct DefError {
+    what: &'static str,
+}
+
+impl DefError {
+    /// From what is wrong, in lower case: "a radius must be positive and finite".
+    pub const fn new(what: &'static str) -> Self {
+        Self { what }
+    }
+
+    /// Description of what is wrong, in lower case.
+    pub const fn what(&self) -> &'static str {
+        self.what
+    }
+}

@@ -1,0 +1,154 @@
+//! Contacts that nothing can happen to for now, so that a step need not go through them.
+
+use crate::contact::{Contact, ContactKey};
+
+/// Contacts of which neither body can touch anything: both sleep or never move. Each is in the lists of both its bodies,
+/// so that it is found, and taken out, by what becomes of either.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SleepingContacts {
+    links: Vec<Link>,
+    free: Vec<u32>,
+    /// The first contact of each body, by slot.
+    first: Vec<u32>,
+}
+
+#[derive(Clone, Debug)]
+struct Link {
+    /// `None` while the link is free.
+    contact: Option<Contact>,
+    /// Neighbours in the lists of bodies A and B.
+    before: [u32; 2],
+    after: [u32; 2],
+}
+
+const NONE: u32 = u32::MAX;
+
+/// Side of the contact that a body is on: 0 for A, 1 for B.
+fn side(key: ContactKey, body: u32) -> usize {
+    usize::from(key.b == body)
+}
+
+impl SleepingContacts {
+    /// Makes room for the lists of the bodies below `count`.
+    pub fn reserve(&mut self, count: usize) {
+        if self.first.len() < count {
+            self.first.resize(count, NONE);
+        }
+    }
+
+    /// Puts a contact in. There must be room for its bodies.
+    pub fn put(&mut self, contact: Contact) {
+        let bodies = [contact.key.a, contact.key.b];
+        let after = bodies.map(|body| self.first[body as usize]);
+        let link = Link { contact: Some(contact), before: [NONE; 2], after };
+        let at = match self.free.pop() {
+            Some(at) => {
+                self.links[at as usize] = link;
+                at
+            }
+            None => {
+                self.links.push(link);
+                self.links.len() as u32 - 1
+            }
+        };
+        for (body, next) in bodies.into_iter().zip(after) {
+            if next != NONE {
+                let side = self.side_at(next, body);
+                self.links[next as usize].before[side] = at;
+            }
+            self.first[body as usize] = at;
+        }
+    }
+
+    /// Takes out all contacts of a body.
+    pub fn take(&mut self, body: u32, mut each: impl FnMut(Contact)) {
+        while self.first[body as usize] != NONE {
+            each(self.unlink(self.first[body as usize]));
+        }
+    }
+
+    /// The contacts of a body, in no order that means anything.
+    pub fn of(&self, body: u32) -> impl Iterator<Item = &Contact> {
+        let at = |at: u32| (at != NONE).then(|| &self.links[at as usize]);
+        let next = move |link: &&Link| at(link.after[side(link.key(), body)]);
+        core::iter::successors(at(self.first[body as usize]), next).filter_map(|link| link.contact.as_ref())
+    }
+
+    /// All of them, likewise.
+    pub fn iter(&self) -> impl Iterator<Item = &Contact> {
+        self.links.iter().filter_map(|link| link.contact.as_ref())
+    }
+
+    fn side_at(&self, at: u32, body: u32) -> usize {
+        side(self.links[at as usize].key(), body)
+    }
+
+    fn unlink(&mut self, at: u32) -> Contact {
+        let link = &mut self.links[at as usize];
+        let (before, after) = (link.before, link.after);
+        let contact = link.contact.take().expect("what is in a list is in use");
+        for (own, body) in [contact.key.a, contact.key.b].into_iter().enumerate() {
+            match before[own] {
+                NONE => self.first[body as usize] = after[own],
+                before => {
+                    let side = self.side_at(before, body);
+                    self.links[before as usize].after[side] = after[own];
+                }
+            }
+            if after[own] != NONE {
+                let side = self.side_at(after[own], body);
+                self.links[after[own] as usize].before[side] = before[own];
+            }
+        }
+        self.free.push(at);
+        contact
+    }
+}
+
+impl Link {
+    fn key(&self) -> ContactKey {
+        self.contact.as_ref().expect("what is in a list is in use").key
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_math::Random;
+    use std::collections::BTreeSet;
+
+    const BODIES: u32 = 12;
+
+    fn key(random: &mut Random) -> ContactKey {
+        let a = random.index(BODIES as usize - 1) as u32;
+        let b = a + 1 + random.index((BODIES - 1 - a) as usize) as u32;
+        ContactKey { a, b, shape_a: random.index(3) as u32, shape_b: random.index(3) as u32, part: 0 }
+    }
+
+    #[test]
+    fn each_body_finds_its_contacts_and_no_others() {
+        let mut random = Random::new(3);
+        let (mut aside, mut expected) = (SleepingContacts::default(), BTreeSet::new());
+        aside.reserve(BODIES as usize);
+        for _ in 0..2000 {
+            if random.index(4) > 0 {
+                let key = key(&mut random);
+                if expected.insert(key) {
+                    aside.put(Contact::new(key));
+                }
+            } else {
+                let body = random.index(BODIES as usize) as u32;
+                let mut taken = BTreeSet::new();
+                aside.take(body, |contact| assert!(taken.insert(contact.key)));
+                let (own, rest) = expected.into_iter().partition(|key| key.a == body || key.b == body);
+                assert_eq!(taken, own);
+                expected = rest;
+            }
+            for body in 0..BODIES {
+                let own: BTreeSet<_> = aside.of(body).map(|contact| contact.key).collect();
+                assert!(own.iter().eq(expected.iter().filter(|key| key.a == body || key.b == body)));
+            }
+            assert_eq!(aside.iter().map(|contact| contact.key).collect::<BTreeSet<_>>(), expected);
+        }
+    }
+}

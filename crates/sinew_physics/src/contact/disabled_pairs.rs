@@ -1,0 +1,68 @@
+//! Pairs of bodies that pass through each other.
+
+use crate::arena::Arena;
+use crate::contact::filter::{PairFilter, PairFunctions};
+use crate::contact::ordered;
+use crate::joint::Joint;
+
+/// Disabled pairs: those that the user named, and those of joints whose bodies do not collide.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct DisabledPairs {
+    /// By the user: body indices, smaller first, ascending.
+    pub disabled: Vec<(u32, u32)>,
+    /// Pairs of the user and of joints together: body indices, smaller first, ascending.
+    all: Vec<(u32, u32)>,
+    /// `all` misses something.
+    stale: bool,
+    /// Number of times that `all` was made.
+    version: u64,
+    /// The user's, that part more.
+    pub functions: PairFunctions,
+}
+
+impl DisabledPairs {
+    /// Takes over what a snapshot holds.
+    pub fn restore(&mut self, disabled: Vec<(u32, u32)>, function: Option<u32>) {
+        (self.disabled, self.functions.chosen, self.stale) = (disabled, function, true);
+    }
+
+    /// Joints came, went, or changed.
+    pub fn invalidate(&mut self) {
+        self.stale = true;
+    }
+
+    pub fn disable(&mut self, a: u32, b: u32) {
+        let pair = ordered(a, b);
+        if let Err(place) = self.disabled.binary_search(&pair) {
+            self.disabled.insert(place, pair);
+        }
+        self.stale = true;
+    }
+
+    pub fn enable(&mut self, a: u32, b: u32) {
+        if let Ok(place) = self.disabled.binary_search(&ordered(a, b)) {
+            self.disabled.remove(place);
+        }
+        self.stale = true;
+    }
+
+    /// Forgets a body that is taken out.
+    pub fn forget(&mut self, body: u32) {
+        self.disabled.retain(|&(a, b)| a != body && b != body);
+        self.stale = true;
+    }
+
+    /// Filter that keeps shapes from meeting, brought up to date.
+    pub fn filter(&mut self, joints: &Arena<Joint>) -> PairFilter<'_> {
+        if core::mem::take(&mut self.stale) {
+            let jointed = joints.iter().filter(|(_, joint)| joint.parts_bodies());
+            self.all.clear();
+            self.all.extend_from_slice(&self.disabled);
+            self.all.extend(jointed.map(|(_, joint)| ordered(joint.a, joint.b)));
+            self.all.sort_unstable();
+            self.all.dedup();
+            self.version += 1;
+        }
+        PairFilter { parted: &self.all, function: self.functions.function(), version: self.version }
+    }
+}

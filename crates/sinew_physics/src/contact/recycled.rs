@@ -1,0 +1,286 @@
+//! Manifolds that are kept: as long as two bodies hardly move against each other, the same features touch, and only their
+//! distance is worked out anew, from points that are fixed in the bodies.
+
+use crate::body::Body;
+use crate::body::shape::Shape;
+use crate::collide::{MAX_POINTS, Manifold};
+use crate::contact::ContactKey;
+use crate::contact::tuning::{RECYCLED_HALF_TURN, RECYCLED_SLIP, SPECULATIVE_SLOPS};
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
+use sinew_math::{ReadError, Reader, Rotation, Transform, Vec3, Writer};
+
+/// From this cosine on, a normal is that of a face, to rounding.
+const ON_FACE: f32 = 0.999_999;
+
+/// A manifold as it was found, in the frames of its bodies. Part of the state.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Recycled {
+    /// Number of points; none if there is nothing to keep to.
+    count: usize,
+    /// Rotation of B seen from A when the manifold was found.
+    a_from_b: Rotation,
+    /// The normal, in the frame of the body whose face it is of.
+    normal: Vec3,
+    of_b: bool,
+    /// Within which points were looked for, metres.
+    margin: f32,
+    /// Slop of the two shapes, metres.
+    slop: f32,
+    /// Places of the points on the surfaces of A and B, in their frames.
+    places: Places,
+}
+
+/// Places of four points on two surfaces: rows of x, y and z on A, then of those on B. The last row is there so that eight numbers
+/// can be read from the start of any other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Places([[f32; MAX_POINTS]; 7]);
+
+impl Places {
+    fn put(&mut self, point: usize, on: [Vec3; 2]) {
+        for (row, number) in self.0.iter_mut().zip(on.into_iter().flat_map(|place| place.to_array())) {
+            row[point] = number;
+        }
+    }
+
+    fn get(&self, point: usize) -> [Vec3; 2] {
+        [0, 3]
+            .map(|first| Vec3::new(self.0[first][point], self.0[first + 1][point], self.0[first + 2][point]))
+    }
+
+    /// Places on a surface in the first lanes; what others hold means nothing.
+    #[inline(always)]
+    fn on<L: Lanes>(&self, side: usize) -> Vector3<L> {
+        let rows = self.0.as_flattened();
+        let row = |number: usize| {
+            let from = &rows[(3 * side + number) * MAX_POINTS..];
+            L::load(from.first_chunk().expect("there is a row more"))
+        };
+        Vector3::new(row(0), row(1), row(2))
+    }
+}
+
+/// True if a direction in the frame of a solid is that of the normal of one of its faces.
+fn is_of_face(shape: &Shape, direction: Vec3) -> bool {
+    match shape {
+        Shape::Box { .. } => direction.abs().cmpgt(Vec3::splat(ON_FACE)).any(),
+        Shape::Hull(hull) => hull.faces().any(|face| face.normal().dot(direction) > ON_FACE),
+        _ => false,
+    }
+}
+
+impl Recycled {
+    /// Record of a manifold that was just found. Only of what lies on a face of a solid with flat faces: other
+    /// points are found as soon as renewed, and what rolls has others from step to step.
+    pub fn new([a, b]: [&Body; 2], key: ContactKey, (margin, slop): (f32, f32), manifold: &Manifold) -> Self {
+        let shapes = [(a, key.shape_a), (b, key.shape_b)].map(|(body, shape)| &body.shapes[shape as usize]);
+        let is_flat = |shape: &Shape| matches!(shape, Shape::Box { .. } | Shape::Hull(_));
+        if manifold.count == 0 || !shapes.iter().all(|shape| is_flat(&shape.shape)) {
+            return Self::default();
+        }
+        let [pose_a, pose_b] = [a.world_from_principal, b.world_from_principal];
+        let n = manifold.normal;
+        let of_face = |side: usize, pose: &Transform, n: Vec3| {
+            let shape_from_world = (pose.rotation * shapes[side].principal_from_shape.rotation).inverse();
+            is_of_face(&shapes[side].shape, shape_from_world * n)
+        };
+        let of_b = !of_face(0, &pose_a, n);
+        if of_b && !of_face(1, &pose_b, -n) {
+            return Self::default();
+        }
+        let mut places = Places::default();
+        for (k, point) in manifold.points().iter().enumerate() {
+            let half = n * (0.5 * point.separation);
+            let on =
+                [pose_a.inverse_point(point.position - half), pose_b.inverse_point(point.position + half)];
+            places.put(k, on);
+        }
+        let frame = if of_b { pose_b } else { pose_a };
+        Self {
+            count: manifold.count,
+            a_from_b: pose_a.rotation.inverse() * pose_b.rotation,
+            normal: frame.rotation.inverse() * n,
+            of_b,
+            margin,
+            slop,
+            places,
+        }
+    }
+
+    /// Brings a manifold to where the bodies are, if they have hardly moved against each other since it was found; false if it
+    /// has to be found anew, and then it is as it was.
+    pub fn renew(&self, [a, b]: [&Body; 2], margin: f32, manifold: &mut Manifold) -> bool {
+        if self.count == 0 || self.count != manifold.count || margin > self.margin {
+            return false;
+        }
+        let [pose_a, pose_b] = [a.world_from_principal, b.world_from_principal];
+        let a_from_b = pose_a.rotation.inverse() * pose_b.rotation;
+        if a_from_b.dot(self.a_from_b).abs() < RECYCLED_HALF_TURN {
+            return false;
+        }
+        let normal = if self.of_b { pose_b } else { pose_a }.rotation * self.normal;
+        dispatch::run(Renew { recycled: self, poses: [pose_a, pose_b], normal, margin, manifold })
+    }
+
+    /// Least margin within which points are looked for, metres; 0 if there is nothing to keep to.
+    pub fn least_margin(&self) -> f32 {
+        if self.count > 0 { SPECULATIVE_SLOPS * self.slop } else { 0.0 }
+    }
+
+    /// It no longer holds.
+    pub fn drop(&mut self) {
+        self.count = 0;
+    }
+
+    pub fn save(&self, w: &mut Writer) {
+        w.count(self.count);
+        if self.count == 0 {
+            return;
+        }
+        w.rotation(self.a_from_b);
+        w.vec3(self.normal);
+        w.bool(self.of_b);
+        w.f32(self.margin);
+        w.f32(self.slop);
+        for point in 0..self.count {
+            self.places.get(point).into_iter().for_each(|on| w.vec3(on));
+        }
+    }
+
+    pub fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let count = r.count(24)?;
+        if count > MAX_POINTS {
+            return Err(r.error("a contact keeps too many points"));
+        }
+        if count == 0 {
+            return Ok(Self::default());
+        }
+        let (a_from_b, normal, of_b) = (r.rotation()?, r.vec3()?, r.bool()?);
+        let (margin, slop) = (r.f32()?, r.f32()?);
+        let mut places = Places::default();
+        for point in 0..count {
+            places.put(point, [r.vec3()?, r.vec3()?]);
+        }
+        Ok(Self { count, a_from_b, normal, of_b, margin, slop, places })
+    }
+}
+
+/// Brings the points of a manifold to where the bodies are, side by side; false, and nothing changed, if one has slipped too far or
+/// is farther than the margin.
+struct Renew<'a> {
+    recycled: &'a Recycled,
+    poses: [Transform; 2],
+    /// Of the face, as it has turned, world axes.
+    normal: Vec3,
+    margin: f32,
+    manifold: &'a mut Manifold,
+}
+
+impl Kernel for Renew<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> bool {
+        let Self { recycled, poses: [a, b], normal, margin, manifold } = self;
+        let n = Vector3::<L>::splat(normal);
+        let arm = recycled.places.on::<L>(0).turned(a.rotation);
+        let offset = Vector3::splat(b.translation - a.translation);
+        let gap = offset + recycled.places.on::<L>(1).turned(b.rotation) - arm;
+        let separation = gap.dot(n);
+        let slip = gap - n * separation;
+        let most = RECYCLED_SLIP * recycled.slop * (RECYCLED_SLIP * recycled.slop);
+        // Not finite is not within either.
+        let holds = L::le(slip.dot(slip), L::splat(most)) & L::le(separation, L::splat(margin));
+        let all = u8::MAX >> (WIDTH - recycled.count);
+        if holds.bits() & all != all {
+            return false;
+        }
+        let position = Vector3::splat(a.translation) + (arm + gap * L::splat(0.5));
+        let mut rows = [[0.0; WIDTH]; 4];
+        for (row, numbers) in rows.iter_mut().zip([position.x, position.y, position.z, separation]) {
+            numbers.store(row);
+        }
+        manifold.normal = normal;
+        for (k, point) in manifold.points[..recycled.count].iter_mut().enumerate() {
+            point.position = Vec3::new(rows[0][k], rows[1][k], rows[2][k]);
+            point.separation = rows[3][k];
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::def::{BodyDef, BodyKind};
+    use crate::body::shape::ShapeDef;
+    use crate::collide::collide;
+    use crate::contact::slop;
+    use sinew_math::Random;
+
+    const MARGIN: f32 = 0.02;
+
+    fn found([a, b]: [&Body; 2]) -> Manifold {
+        let [(shape_a, from_a), (shape_b, from_b)] =
+            [a, b].map(|body| (&body.shapes[0].shape, body.world_from_shape(0)));
+        let mut manifold = Manifold::default();
+        collide(shape_a, &from_a, shape_b, &from_b, MARGIN, &mut manifold);
+        manifold
+    }
+
+    fn put(body: &mut Body, shift: Vec3, turn: Vec3) {
+        let Transform { translation, rotation } = body.world_from_principal;
+        body.world_from_principal =
+            Transform::new(translation + shift, Rotation::from_scaled_axis(turn) * rotation);
+    }
+
+    /// Boxes that lie on each other and are moved a little: points that are kept are as far apart as points found anew. Where
+    /// they are is not compared: edges that are nearly parallel cross somewhere else at once.
+    #[test]
+    fn kept_points_are_as_far_apart_as_new_ones() {
+        let mut random = Random::new(14);
+        let key = ContactKey { a: 0, b: 1, shape_a: 0, shape_b: 0, part: 0 };
+        let (mut kept, mut dropped, mut same) = (0, 0, 0);
+        for case in 0..4_000 {
+            let mut boxed = |at: Vec3| {
+                let half_extents = Vec3::new(0.3, 0.3, 0.3) + random.in_cube() * 0.1;
+                let shapes = vec![ShapeDef::new(Shape::Box { half_extents })];
+                Body::new(&BodyDef { kind: BodyKind::Dynamic, position: at, shapes, ..BodyDef::default() })
+            };
+            let (mut a, mut b) = (boxed(Vec3::ZERO), boxed(Vec3::Y * 0.6));
+            put(&mut b, random.in_cube() * 0.1, random.in_cube() * 0.02);
+            let mut manifold = found([&a, &b]);
+            if manifold.count == 0 {
+                continue;
+            }
+            let of = Recycled::new([&a, &b], key, (MARGIN, slop(0.4)), &manifold);
+            // Both together, and B a little, or more than is allowed.
+            let (shift, turn) = (random.in_cube(), random.in_cube());
+            for body in [&mut a, &mut b] {
+                let around =
+                    Transform::new(Vec3::ZERO, Rotation::from_scaled_axis(turn)) * body.world_from_principal;
+                body.world_from_principal = Transform::new(around.translation + shift, around.rotation);
+            }
+            let most = [0.1, 0.5, 20.0][random.index(3)];
+            put(&mut b, random.in_cube() * (2e-3 * most), random.in_cube() * (2e-3 * most));
+            let before = manifold;
+            if !of.renew([&a, &b], MARGIN, &mut manifold) {
+                assert_eq!(manifold, before, "case {case}");
+                dropped += 1;
+                continue;
+            }
+            kept += 1;
+            let anew = found([&a, &b]);
+            // The face of the other box may be as good: tilted by up to 3 degrees, with names of its own.
+            assert!(anew.normal.dot(manifold.normal) > 0.998, "case {case}: {anew:?}, {manifold:?}");
+            for point in manifold.points() {
+                if let Some(other) = anew.points().iter().find(|other| other.feature == point.feature) {
+                    same += 1;
+                    let off = (other.separation - point.separation).abs();
+                    assert!(off < 2e-4, "case {case}: {off} m, {anew:?}, {manifold:?}");
+                }
+            }
+        }
+        assert!(kept > 1_000 && dropped > 500 && same > 3 * kept, "{kept} {dropped} {same}");
+    }
+}

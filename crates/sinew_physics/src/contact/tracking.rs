@@ -1,0 +1,238 @@
+//! Contact tracking: which shapes touch, from which begin and end events are told.
+
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::body::snapshot::body_index;
+use crate::contact::hits::OpenHits;
+use crate::contact::modifiers::Modifiers;
+use crate::contact::{Contact, ContactKey};
+use crate::id::{BodyId, ShapeId};
+use sinew_math::{ReadError, Reader, Writer};
+
+/// Memory of the world about pairs beside their contacts, which come and go with the broad phase. Part of the snapshot.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ContactTracking {
+    /// Solid shapes.
+    pub touching: Touches,
+    /// A sensor and what is in it.
+    pub sensed: Touches,
+    pub hits: OpenHits,
+    /// Bodies that were changed since the last step: what they touch is looked for anew even if nothing moves.
+    pub stirred: Vec<u32>,
+    /// No part of the snapshot.
+    pub modifiers: Modifiers,
+}
+
+impl ContactTracking {
+    pub fn save(&self, w: &mut Writer) {
+        self.touching.save(w);
+        self.sensed.save(w);
+        self.hits.save(w);
+        w.count(self.stirred.len());
+        for &index in &self.stirred {
+            w.u32(index);
+        }
+    }
+
+    /// Marks the bodies that were changed.
+    pub fn load(r: &mut Reader<'_>, bodies: &mut Arena<Body>) -> Result<Self, ReadError> {
+        let (touching, sensed, hits) = (Touches::load(r)?, Touches::load(r)?, OpenHits::load(r)?);
+        let mut stirred = Vec::new();
+        for _ in 0..r.count(4)? {
+            let index = body_index(r, bodies)?;
+            bodies.at_mut(index).stirred = true;
+            stirred.push(index);
+        }
+        Ok(Self { touching, sensed, hits, stirred, modifiers: Modifiers::default() })
+    }
+
+    /// A contact is dropped: what it told of ends.
+    pub fn part(&mut self, bodies: &Arena<Body>, contact: &Contact) {
+        if contact.touching {
+            self.touching.gone.push(touch_of(bodies, contact.key));
+        }
+        if contact.sensed {
+            self.sensed.gone.push(touch_of(bodies, contact.key));
+        }
+    }
+
+    /// The step has looked at what was changed.
+    pub fn settle(&mut self, bodies: &mut Arena<Body>) {
+        for index in self.stirred.drain(..) {
+            bodies.at_mut(index).stirred = false;
+        }
+    }
+}
+
+/// Two shapes that touch; the one with the smaller body index is A.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Touch {
+    pub a: ShapeId,
+    pub b: ShapeId,
+}
+
+impl Touch {
+    /// Key that all lists are ordered by.
+    fn shapes(&self) -> (BodyId, BodyId, u32, u32) {
+        (self.a.body, self.b.body, self.a.shape, self.b.shape)
+    }
+
+    fn bodies(&self) -> (BodyId, BodyId) {
+        (self.a.body, self.b.body)
+    }
+}
+
+/// Ids of the two shapes of a contact.
+pub(crate) fn shape_ids(bodies: &Arena<Body>, key: ContactKey) -> (ShapeId, ShapeId) {
+    (
+        ShapeId { body: bodies.id(key.a), shape: key.shape_a },
+        ShapeId { body: bodies.id(key.b), shape: key.shape_b },
+    )
+}
+
+/// The shapes of a contact.
+fn touch_of(bodies: &Arena<Body>, key: ContactKey) -> Touch {
+    let (a, b) = shape_ids(bodies, key);
+    Touch { a, b }
+}
+
+/// Who touches whom, or is in which sensor. Contacts know whether their pair did when it was last looked at; here are the pairs
+/// whose contact is gone since, and what one step finds.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Touches {
+    /// Pairs that touched until their contact was dropped: the next step tells of it. Part of the snapshot.
+    gone: Vec<Touch>,
+    /// Pairs that touched before this step or do now; only of bodies of which something changed, where nothing is gone.
+    seen: Vec<Seen>,
+    /// Start in `seen` of the pairs of the two bodies at hand, and whether anything changed of them.
+    first: usize,
+    changes: bool,
+    /// Both together, while they are told of.
+    noted: Vec<Noted>,
+}
+
+/// A pair of shapes that the step came by.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    key: ContactKey,
+    was: bool,
+    is: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Noted {
+    touch: Touch,
+    was: bool,
+    is: bool,
+}
+
+/// Lists of what began, or of what ended.
+pub(crate) struct Told<'a> {
+    pub bodies: &'a mut Vec<(BodyId, BodyId)>,
+    pub shapes: &'a mut Vec<(ShapeId, ShapeId)>,
+}
+
+impl Touches {
+    /// Makes room for the pairs of so many contacts.
+    pub fn start(&mut self, contacts: usize) {
+        self.seen.clear();
+        self.noted.clear();
+        (self.first, self.changes) = (0, false);
+        self.seen.reserve(contacts);
+        self.noted.reserve(contacts + self.gone.len());
+        self.gone.reserve(contacts);
+    }
+
+    /// Notes a pair of shapes: whether it touched when it was last looked at, and whether it does now. Pairs come in order.
+    pub fn note(&mut self, key: ContactKey, was: bool, is: bool) {
+        if !was && !is {
+            return;
+        }
+        if self.seen.last().is_some_and(|last| (last.key.a, last.key.b) != (key.a, key.b)) {
+            self.forget_unchanged();
+        }
+        self.changes |= was != is;
+        self.seen.push(Seen { key, was, is });
+    }
+
+    /// Forgets the pairs of two bodies of which nothing changed: there is nothing to tell, unless a contact is gone.
+    fn forget_unchanged(&mut self) {
+        if !self.changes && self.gone.is_empty() {
+            self.seen.truncate(self.first);
+        }
+        (self.first, self.changes) = (self.seen.len(), false);
+    }
+
+    /// Tells in order what is not as it was.
+    pub fn tell<'a>(&mut self, bodies: &Arena<Body>, mut begin: Told<'a>, mut end: Told<'a>) {
+        self.forget_unchanged();
+        let noted = |&Seen { key, was, is }: &Seen| Noted { touch: touch_of(bodies, key), was, is };
+        self.noted.extend(self.seen.iter().map(noted));
+        self.noted.extend(self.gone.drain(..).map(|touch| Noted { touch, was: true, is: false }));
+        // All of them: how many come at once differs from hit to hit.
+        let most = self.noted.capacity();
+        for Told { bodies, shapes } in [&mut begin, &mut end] {
+            bodies.clear();
+            bodies.reserve(most);
+            shapes.clear();
+            shapes.reserve(most);
+        }
+        self.noted.sort_unstable_by_key(|noted| noted.touch.shapes());
+        for of_bodies in self.noted.chunk_by(|p, q| p.touch.bodies() == q.touch.bodies()) {
+            match change(of_bodies) {
+                Some(Change::Begins) => begin.bodies.push(of_bodies[0].touch.bodies()),
+                Some(Change::Ends) => end.bodies.push(of_bodies[0].touch.bodies()),
+                None => {}
+            }
+            for of_shapes in of_bodies.chunk_by(|p, q| p.touch == q.touch) {
+                let Touch { a, b } = of_shapes[0].touch;
+                match change(of_shapes) {
+                    Some(Change::Begins) => begin.shapes.push((a, b)),
+                    Some(Change::Ends) => end.shapes.push((a, b)),
+                    None => {}
+                }
+            }
+        }
+    }
+
+    fn save(&self, w: &mut Writer) {
+        let mut gone = self.gone.clone();
+        gone.sort_unstable_by_key(Touch::shapes);
+        w.count(gone.len());
+        for touch in gone {
+            save_shape_id(w, touch.a);
+            save_shape_id(w, touch.b);
+        }
+    }
+
+    fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut gone = Vec::new();
+        for _ in 0..r.count(24)? {
+            gone.push(Touch { a: load_shape_id(r)?, b: load_shape_id(r)? });
+        }
+        Ok(Self { gone, ..Self::default() })
+    }
+}
+
+enum Change {
+    Begins,
+    Ends,
+}
+
+/// Change of some pairs taken together, if there is one.
+fn change(noted: &[Noted]) -> Option<Change> {
+    match (noted.iter().any(|noted| noted.was), noted.iter().any(|noted| noted.is)) {
+        (false, true) => Some(Change::Begins),
+        (true, false) => Some(Change::Ends),
+        _ => None,
+    }
+}
+
+pub(crate) fn save_shape_id(w: &mut Writer, id: ShapeId) {
+    w.u64(id.body.to_bits());
+    w.u32(id.shape);
+}
+
+pub(crate) fn load_shape_id(r: &mut Reader<'_>) -> Result<ShapeId, ReadError> {
+    Ok(ShapeId { body: BodyId::from_bits(r.u64()?), shape: r.u32()? })
+}

@@ -1,0 +1,47 @@
+//! Constants of behaviour of particles: numbers that an engineer would turn.
+//!
+//! Each says its unit, why it is what it is, what a larger and a smaller one does, and the scene (`sinew run NAME`) or test
+//! (`crates/sinew_physics/tests/it`) where that is to be seen; consequences without a figure are judgement, not measured. Any change may
+//! move the golden hashes. Tolerances of rounding stand in the formulas that they belong to.
+
+/// Iterations for which the lists of what is near have room, at the present speed and acceleration, a number.
+///
+/// Larger: longer lists. Smaller: they are made more often. Shown by `cargo xtask bench --trace box_rain`.
+pub(super) const LIST_ITERATIONS: f32 = 8.0;
+
+/// Room of each entry of those lists at least, metres.
+///
+/// As [`LIST_ITERATIONS`].
+pub(super) const LIST_ROOM: f32 = 0.01;
+
+/// Length by which a spring may exceed its predicted length at the end of a step, as a share of its rest length, a ratio.
+///
+/// Larger: ropes stretch visibly in jerks. Smaller: more iterations. Shown by `catenary`, `spring_chain`.
+pub(super) const LENGTH_TOLERANCE: f32 = 1e-3;
+
+/// Gap that a net may close by pressing, metres.
+///
+/// Larger: cloth pushes what it does not touch. Smaller: it trembles on what it lies on. Shown by `cloth`.
+pub(super) const NET_GAP: f32 = 1e-4;
+
+/// Factor on the length of a way within which everything is looked for, a ratio.
+///
+/// What is still to push may turn the way a little. Larger: more to look at. Smaller: particles pass what they are pushed into. Shown by
+/// `fast_particle` and the tests of `particles`.
+pub(super) const DETOUR: f32 = 1.5;
+
+/// Gap from which on a way has come to what it strikes, metres.
+///
+/// What falls gains no more within a step. Larger: what passes closely is struck. Smaller: more strides along a way. Shown by the tests of
+/// `particles`.
+pub(super) const STRIKE_GAP: f32 = 0.005;
+
+/// Share of critical damping that ropes and strands are built with, a ratio.
+///
+/// Larger: they hang like dough. Smaller: they hum for seconds. Shown by `catenary` and the tests of `rope`.
+pub(super) const ROPE_DAMPING: f32 = 0.1;
+
+/// Speed of approach from which on particles bounce, m/s.
+///
+/// Larger: what drops from a hand's breadth stays down. Smaller: what lies trembles. Shown by `particle`.
+pub(super) const IMPACT_SPEED: f32 = 1.0;

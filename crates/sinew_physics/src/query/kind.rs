@@ -1,0 +1,56 @@
+//! Questions that can be asked: a question finds out one shape's answer, and orders the answers of several.
+
+use super::Query;
+use super::candidates::Reach;
+use crate::body::shape::Shape;
+use crate::id::{BodyId, ShapeId};
+use sinew_math::Transform;
+
+/// QueryKind that a [`Query`] can be asked; [the module](super) lists all questions there are.
+pub trait QueryKind: sealed::Ask<Found = <Self as QueryKind>::Answer> {
+    /// Answer of a shape.
+    type Answer: sealed::Reply;
+}
+
+/// Methods that questions have, kept from those who only ask them.
+pub(super) mod sealed {
+    use super::{BodyId, Query, Reach, Shape, ShapeId, Transform};
+
+    pub trait Ask {
+        /// [`QueryKind::Answer`](super::QueryKind::Answer).
+        type Found: Reply;
+
+        /// Reach of the question, or `None` if no shape has an answer: a number is not finite.
+        fn reach(&self) -> Option<Reach>;
+
+        /// The answer of a placed shape, if it has one. No number in it is NaN or infinite.
+        fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<Self::Found>;
+
+        /// The first answer to each of several, for questions that have a quicker way than one after the other.
+        fn first_each<P: Fn(BodyId, u32) -> bool>(
+            query: &Query<'_, P>,
+            questions: &[Self],
+            answers: &mut [Option<Self::Found>],
+        ) where
+            Self: Sized,
+        {
+            for (question, answer) in questions.iter().zip(answers) {
+                *answer = query.best(question);
+            }
+        }
+
+        /// True if it has one; where that is cheaper than the answer itself.
+        fn is_met(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> bool {
+            self.ask(id, shape, world_from_shape).is_some()
+        }
+    }
+
+    /// Answer of a shape.
+    pub trait Reply: Copy + core::fmt::Debug + PartialEq {
+        /// Shape that answered.
+        fn shape(&self) -> ShapeId;
+
+        /// Rank of the answer among others: what is smaller comes first; equal ones go by body and shape.
+        fn rank(&self) -> f32;
+    }
+}

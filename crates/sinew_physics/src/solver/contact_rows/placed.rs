@@ -1,0 +1,119 @@
+//! Shapes where their bodies are, and the contact that two of them have there.
+
+use crate::body::shape::Shape;
+use crate::collide::{Half, Manifold, collide, is_on_face, name_as_face};
+use crate::solver::tuning::{FAR_CORNER, FLAT_SINE, LYING_SINE};
+use sinew_math::{Rotation, Transform, Vec3, max, min};
+
+/// One of the two shapes of a manifold.
+#[derive(Clone, Debug)]
+pub(crate) struct PlacedShape {
+    pub shape: Shape,
+    pub principal_from_shape: Transform,
+}
+
+impl PlacedShape {
+    pub fn new(shape: Shape, principal_from_shape: Transform) -> Self {
+        Self { shape, principal_from_shape }
+    }
+
+    pub(super) fn placed(&self) -> Placed<'_> {
+        Placed { shape: &self.shape, principal_from_shape: &self.principal_from_shape }
+    }
+}
+
+/// A shape in the principal frame of its body.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct Placed<'a> {
+    pub shape: &'a Shape,
+    pub principal_from_shape: &'a Transform,
+}
+
+impl Placed<'_> {
+    /// True if any part of the shape has a rounding or a rim.
+    pub fn is_curved(&self) -> bool {
+        !matches!(
+            self.shape,
+            Shape::Box { .. } | Shape::Hull(_) | Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_)
+        )
+    }
+
+    /// Radius of the rounding around its core where it meets a normal (in the principal frame); 0 of what has corners.
+    pub fn round(&self, normal: Vec3) -> f32 {
+        match *self.shape {
+            Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
+            // The thinner end's: what a core is rounded by all around.
+            Shape::TaperedCapsule { radius_bottom, radius_top, .. } => min(radius_bottom, radius_top),
+            Shape::Cylinder { radius, .. } => {
+                let axis = self.principal_from_shape.rotation * Vec3::Y;
+                if axis.dot(normal).abs() < LYING_SINE { radius } else { 0.0 }
+            }
+            Shape::Box { .. }
+            | Shape::Cone { .. }
+            | Shape::Hull(_)
+            | Shape::HalfSpace
+            | Shape::Mesh(_)
+            | Shape::HeightField(_) => 0.0,
+        }
+    }
+
+    /// True if it meets a normal (in the principal frame) with a curved part that [`Self::round`] does not cover: as it rolls,
+    /// other points come down.
+    pub fn has_rim(&self, normal: Vec3) -> bool {
+        let axis = || self.principal_from_shape.rotation * Vec3::Y;
+        match *self.shape {
+            Shape::Cylinder { .. } => self.round(normal) == 0.0 && axis().cross(normal).length() > FLAT_SINE,
+            Shape::Cone { .. } => axis().cross(normal).length() > FLAT_SINE,
+            Shape::TaperedCapsule { radius_bottom, radius_top, .. } => radius_bottom != radius_top,
+            _ => false,
+        }
+    }
+}
+
+/// Margin of two shapes, metres: the largest separation of points that a substep may bring together in which the bodies turn by
+/// `turns` radians and approach by `approach` metres.
+pub(in crate::solver) fn margin(shapes: &[Placed<'_>; 2], turns: [f32; 2], approach: f32, slop: f32) -> f32 {
+    let [a, b] = shapes.map(|placed| placed.shape.bounding_radius());
+    let reach = a * turns[0] + b * turns[1];
+    let turning = if reach < f32::INFINITY { reach } else { 0.0 };
+    max(4.0 * slop + approach + turning, FAR_CORNER * min(a, b))
+}
+
+/// The contact of two shapes at these poses, if there is one. Of a surface the plane stands that the manifold known so far lies on,
+/// through `on_surfaces` of A or B: the surface itself would answer for all its manifolds at once. What lies on its edges stays as it
+/// was found.
+pub(in crate::solver) fn found_anew(
+    [a, b]: [Placed<'_>; 2],
+    poses: [Transform; 2],
+    margin: f32,
+    known: &Manifold,
+    on_surfaces: [Vec3; 2],
+) -> Option<Manifold> {
+    static PLANE: Shape = Shape::HalfSpace;
+    let frames = [poses[0] * *a.principal_from_shape, poses[1] * *b.principal_from_shape];
+    let plane = |origin: Vec3, normal: Vec3| Transform::new(origin, Rotation::from_arc(Vec3::Y, normal));
+    let mut manifold = Manifold::default();
+    let surface = match (a.shape.surface(), b.shape.surface()) {
+        (None, None) => {
+            collide(a.shape, &frames[0], b.shape, &frames[1], margin, &mut manifold);
+            return (manifold.count > 0).then_some(manifold);
+        }
+        (Some(_), _) => Half::OfA,
+        _ => Half::OfB,
+    };
+    if !is_on_face(known, surface) {
+        return None;
+    }
+    match surface {
+        Half::OfA => {
+            let ground = plane(on_surfaces[0], known.normal);
+            collide(&PLANE, &ground, b.shape, &frames[1], margin, &mut manifold);
+        }
+        Half::OfB => {
+            let ground = plane(on_surfaces[1], -known.normal);
+            collide(a.shape, &frames[0], &PLANE, &ground, margin, &mut manifold);
+        }
+    }
+    name_as_face(&mut manifold, surface);
+    (manifold.count > 0).then_some(manifold)
+}

@@ -1,0 +1,67 @@
+//! The world as islands and their solvers read it.
+
+use crate::activity::Activity;
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::body::def::{Quality, WorldDef};
+use crate::contact::Contact;
+use crate::contact::modifiers::Modifiers;
+use crate::contact::proxies::Proxies;
+use crate::context::StepContext;
+use crate::field::Fields;
+use crate::joint::Joint;
+use sinew_math::Vec3;
+
+/// The world as islands and their solvers read it.
+pub(crate) struct View<'a> {
+    pub bodies: &'a Arena<Body>,
+    pub activity: &'a Activity,
+    pub proxies: &'a Proxies,
+    pub joints: &'a Arena<Joint>,
+    pub contacts: &'a [Contact],
+    pub modifiers: &'a Modifiers,
+    pub def: &'a WorldDef,
+    pub fields: Fields<'a>,
+    pub pace: Pace,
+}
+
+impl View<'_> {
+    /// Quality that a body asks for.
+    pub fn quality(&self, body: u32) -> Quality {
+        self.bodies.at(body).quality.unwrap_or(self.def.quality)
+    }
+}
+
+/// Substeps of the world.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace {
+    /// Length of one, seconds, and how many a step has.
+    pub h: f32,
+    pub substeps: u32,
+    pub grading: Grading,
+}
+
+impl Pace {
+    pub fn new(context: &StepContext<'_>, grading: Grading) -> Self {
+        Self { h: context.h, substeps: context.substeps, grading }
+    }
+
+    /// Length of substeps that are some times as long, seconds, and how many a step has.
+    pub fn stretched(&self, times: f32) -> (f32, u32) {
+        (self.h * times, (self.substeps as f32 / times) as u32)
+    }
+}
+
+/// Rule by which an island may take fewer substeps than the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Grading {
+    /// It follows from what the island holds.
+    ByContent,
+    /// All take those of the world.
+    None,
+}
+
+/// Force and torque that act on a body all through the step: gravity and the user's.
+pub(super) fn lasting_force(body: &Body, view: &View<'_>) -> (Vec3, Vec3) {
+    (body.force + view.def.gravity * (body.gravity_scale * body.mass), body.torque)
+}

@@ -1,0 +1,39 @@
+//! Constants of behaviour of the stages of the world: numbers that an engineer would turn.
+//!
+//! Each says its unit, why it is what it is, what a larger and a smaller one does, and the scene (`sinew run NAME`) or test
+//! (`crates/sinew_physics/tests/it`) where that is to be seen; consequences without a figure are judgement, not measured. Any change may
+//! move the golden hashes. Tolerances of rounding stand in the formulas that they belong to.
+
+/// Factor on the threshold of distance over that of time below which a body is at rest wherever it gets to, a ratio.
+///
+/// Limp limbs sag for seconds. Larger: what creeps down a slope falls asleep on its way. Smaller: heaps of figures stay awake for seconds more.
+/// Shown by `ragdoll_pile`, `ragdoll_poses`.
+pub(super) const CREEP: f32 = 2.0;
+
+/// Speed of the way in a step from which on a body without velocity is being pushed out of another, m/s.
+///
+/// Half of what bodies with joints are pushed out with. Larger: they fall asleep in each other. Smaller: what rests on a soft contact never
+/// sleeps. Shown by `ragdoll_drop`.
+pub(super) const PUSHED_SPEED: f32 = 0.0275;
+
+/// Speed below which what hangs on particles may sleep, m/s.
+///
+/// It swings about its place, and must come to rest before that. Larger: it stops in mid-swing. Smaller: ropes keep a world awake. Shown by
+/// the tests of `rope`.
+pub(super) const HANGING_SPEED: f32 = 0.02;
+
+/// Spin below which what hangs on particles may sleep, rad/s.
+///
+/// As [`HANGING_SPEED`].
+pub(super) const HANGING_SPIN: f32 = 0.05;
+
+/// Overlap from which on a shape that yields lets pass what it cannot press out of itself, metres.
+///
+/// Larger: what a walking figure pins to a wall is squeezed for longer. Smaller: what leans on it falls through. Shown by the tests of
+/// `yields`.
+pub(super) const YIELDING_DEPTH: f32 = 0.01;
+
+/// Gap within which two shapes that touched go on touching, in slops.
+///
+/// Larger: the end of a touch is told of late. Smaller: what trembles tells of begin and end again and again. Shown by the tests of `events`.
+pub(super) const LINGER: f32 = 0.1;

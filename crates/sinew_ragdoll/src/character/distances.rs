@@ -1,0 +1,55 @@
+//! Detail of a character by the distance from which it is seen.
+
+use sinew_math::max;
+
+/// Share that a character has of its world while its clips move it, from nothing to all.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Detail {
+    /// Nothing: its clips stand still, nothing stops or carries it, and an update costs nothing.
+    Frozen,
+    /// A mover and its clips; nothing sees its limbs.
+    Keyed,
+    /// Hit bodies besides, which give no way: blows below the threshold are told of and do nothing.
+    HitBodies,
+    /// Everything. Default.
+    #[default]
+    Full,
+}
+
+/// Distances at which [`Detail`] changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distances {
+    /// Up to here full, metres. Default 15.
+    pub full: f32,
+    /// Up to here with hit bodies, metres. Default 40.
+    pub hit_bodies: f32,
+    /// Up to here keyed, beyond it frozen, metres. Default 120.
+    pub keyed: f32,
+    /// Share by which a distance must be passed for less detail, so that it does not change to and fro. Default 0.1.
+    pub slack: f32,
+}
+
+impl Default for Distances {
+    fn default() -> Self {
+        Self { full: 15.0, hit_bodies: 40.0, keyed: 120.0, slack: 0.1 }
+    }
+}
+
+impl Distances {
+    /// Detail at a distance, metres, for a character that has that much `now`. `NaN` is far away.
+    pub fn detail(&self, distance: f32, now: Detail) -> Detail {
+        let up_to = |limit: f32, detail: Detail| {
+            let limit = if now >= detail { limit * (1.0 + max(self.slack, 0.0)) } else { limit };
+            distance <= limit
+        };
+        if up_to(self.full, Detail::Full) {
+            Detail::Full
+        } else if up_to(self.hit_bodies, Detail::HitBodies) {
+            Detail::HitBodies
+        } else if up_to(self.keyed, Detail::Keyed) {
+            Detail::Keyed
+        } else {
+            Detail::Frozen
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! Free fall of bodies that hang together.
+
+use super::metric::{Expected, Metric};
+use crate::parts::GRAVITY;
+use sinew::math::{Vec3, trig};
+use sinew::physics::{BodyId, World};
+
+/// Watches how the momentum of some bodies changes until they meet another: by their weight alone, whatever their
+/// joints and contacts do among themselves.
+pub(crate) struct Flight {
+    bodies: Vec<BodyId>,
+    mass: f32,
+    start: Vec3,
+    /// 1/s: share of velocity lost per second.
+    damping: f32,
+    fall: Option<f32>,
+    landed: bool,
+}
+
+impl Flight {
+    /// Begins with the world's first step.
+    pub fn new(world: &World, bodies: Vec<BodyId>) -> Self {
+        Self::damped(world, bodies, 0.0)
+    }
+
+    /// Free fall of bodies at rest that lose a share of their velocity per second.
+    pub fn damped(world: &World, bodies: Vec<BodyId>, damping: f32) -> Self {
+        let mass = bodies.iter().map(|&id| world.mass(id).mass).sum();
+        let start = momentum(world, &bodies);
+        Self { bodies, mass, start, damping, fall: None, landed: false }
+    }
+
+    pub fn after_step(&mut self, world: &World) {
+        let is_other = |id| !self.bodies.contains(&id);
+        self.landed |= self.bodies.iter().any(|&id| world.neighbors(id).any(is_other));
+        if !self.landed {
+            let gained = momentum(world, &self.bodies) - self.start;
+            self.fall = Some(-gained.y / (self.mass * self.effective(world.time() as f32)));
+        }
+    }
+
+    /// True if they have met another.
+    pub fn landed(&self) -> bool {
+        self.landed
+    }
+
+    /// Time in which a fall without damping gains what this one has after `time` seconds: `(1 − e^(−c t)) / c`.
+    fn effective(&self, time: f32) -> f32 {
+        let c = self.damping;
+        if c > 0.0 { (1.0 - trig::exp(-c * time)) / c } else { time }
+    }
+
+    /// Mean acceleration until then, against that of gravity.
+    pub fn metric(&self) -> Metric {
+        Metric::awaited("fall_m_s2", self.fall, Expected::near(GRAVITY, 1e-3))
+    }
+}
+
+fn momentum(world: &World, bodies: &[BodyId]) -> Vec3 {
+    bodies.iter().map(|&id| world.velocity(id).linear * world.mass(id).mass).sum()
+}

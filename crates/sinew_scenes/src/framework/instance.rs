@@ -1,0 +1,253 @@
+//! A scene that runs.
+
+use super::actors::Figure;
+use super::camera_hint::CameraHint;
+use super::metric::{Expected, Metric};
+use core::time::Duration;
+use sinew::math::{ReadError, Reader, Writer, max};
+use sinew::physics::stage::{NoProfiler, Profiler};
+use sinew::physics::{BodyId, DebugDraw, Energy, LoadError, Serial, TaskRunner, Update, World};
+
+/// The part of a scene that goes along with its world.
+pub trait Script: Send {
+    /// Before each step: moves what is led by hand, such as bodies that follow an animation. As with
+    /// [`after_step`](Self::after_step), what it does depends on the world alone.
+    fn before_step(&mut self, _world: &mut World) {}
+
+    /// After each step: watches, and pushes what the next step is to feel. What it pushes depends on the world alone,
+    /// so that a restored world goes on as the saved one did.
+    fn after_step(&mut self, _world: &mut World) {}
+
+    /// [`after_step`](Self::after_step) for a host that reads a clock: `done` is told of each part of the work as soon as it is
+    /// done. The same work in the same order.
+    fn after_step_in_parts(&mut self, world: &mut World, _done: &mut dyn FnMut(Part)) {
+        self.after_step(world);
+    }
+
+    /// Writes what the script itself knows and the future depends on, if there is anything beside the world.
+    fn save(&self, _out: &mut Writer) {}
+
+    /// Reads what [`save`](Self::save) wrote.
+    ///
+    /// # Errors
+    /// If the bytes are not those of the same scene with the same settings.
+    fn load(&mut self, _bytes: &mut Reader<'_>) -> Result<(), ReadError> {
+        Ok(())
+    }
+
+    /// Energy that drives have given the world since the start, less what they took, J; asked after
+    /// [`after_step`](Self::after_step).
+    fn work_in(&self, _world: &World) -> f32 {
+        0.0
+    }
+
+    /// The figures so far.
+    fn metrics(&self, world: &World) -> Vec<Metric>;
+
+    /// View of the scene in a picture.
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint::default()
+    }
+
+    /// Draws what a picture shows beside the world, such as what it asks the world for.
+    fn draw(&self, _world: &World, _out: &mut dyn DebugDraw) {}
+
+    /// Characters that a picture shows by their skins.
+    fn figures(&self) -> Vec<Figure<'_>> {
+        Vec::new()
+    }
+
+    /// Bodies that those skins show.
+    fn bodies_of_figures(&self) -> Vec<BodyId> {
+        Vec::new()
+    }
+}
+
+/// A part of the work that goes along with a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// For whom, such as characters in a state; always in the same order.
+    pub name: &'static str,
+    /// Number of them.
+    pub count: u32,
+}
+
+/// Nothing but the world itself.
+struct Unwatched;
+
+impl Script for Unwatched {
+    fn metrics(&self, _: &World) -> Vec<Metric> {
+        Vec::new()
+    }
+}
+
+/// A scene that runs.
+pub struct Instance {
+    world: World,
+    script: Box<dyn Script>,
+    health: Health,
+}
+
+impl Instance {
+    pub(crate) fn new(world: World, script: impl Script + 'static) -> Self {
+        let health = Health::new(&world);
+        Self { world, script: Box::new(script), health }
+    }
+
+    /// Instance of a world that no scene made, such as a file's.
+    pub fn of_world(world: World) -> Self {
+        Self::new(world, Unwatched)
+    }
+
+    /// View of the scene in a picture.
+    pub fn camera_hint(&self) -> CameraHint {
+        self.script.camera_hint()
+    }
+
+    /// Draws what a picture shows beside the world.
+    pub fn draw(&self, out: &mut dyn DebugDraw) {
+        self.script.draw(&self.world, out);
+    }
+
+    /// Characters that a picture shows by their skins.
+    pub fn figures(&self) -> Vec<Figure<'_>> {
+        self.script.figures()
+    }
+
+    /// Bodies that those skins show.
+    pub fn bodies_of_figures(&self) -> Vec<BodyId> {
+        self.script.bodies_of_figures()
+    }
+
+    /// Its world, for questions, drawing, snapshots.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// Its world, to be pushed about or to load a snapshot of the same scene into.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    /// One step on the calling thread.
+    pub fn step(&mut self) {
+        self.step_with(&Serial, &NoProfiler);
+    }
+
+    /// One step with the host's threads and stage times.
+    pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
+        self.step_in_parts(runner, profiler, &mut |_| {});
+    }
+
+    /// One step, as [`step_with`](Self::step_with); `done` is told when the world has taken its step (a part named
+    /// [`WORLD`](Self::WORLD), for all its bodies), and then of each part of what goes along with it, so that a host with a
+    /// clock knows what took how long.
+    pub fn step_in_parts(
+        &mut self,
+        runner: &dyn TaskRunner,
+        profiler: &dyn Profiler,
+        done: &mut dyn FnMut(Part),
+    ) {
+        let Self { world, script, health } = self;
+        step(world, script.as_mut(), health, &|world| world.step_with(runner, profiler), done);
+    }
+
+    /// Name of the part that is the world's step.
+    pub const WORLD: &'static str = "world";
+
+    /// Writes the world and what the script knows beside it.
+    pub fn save(&self, out: &mut Writer) {
+        self.world.save(out);
+        self.script.save(out);
+    }
+
+    /// Reads what [`save`](Self::save) wrote.
+    ///
+    /// # Errors
+    /// If the bytes are not those of the same scene with the same settings.
+    pub fn load(&mut self, bytes: &mut Reader<'_>) -> Result<(), LoadError> {
+        self.world.load(bytes)?;
+        Ok(self.script.load(bytes)?)
+    }
+
+    /// Runs the whole steps that `time` more holds, as [`World::update`] does; the script sees each.
+    pub fn update(&mut self, time: Duration) -> Update {
+        let Self { world, script, health } = self;
+        world.update_with(time, |world| step(world, script.as_mut(), health, &World::step, &mut |_| {}))
+    }
+
+    /// Number of figures that every scene has, at the end of its own.
+    pub const METRICS_OF_EVERY_SCENE: usize = 2;
+
+    /// The figures so far: those of the scene, then `energy_gain_max` and `nan`, which every scene has.
+    pub fn metrics(&self) -> Vec<Metric> {
+        let mut metrics = self.script.metrics(&self.world);
+        metrics.extend(self.health.metrics());
+        metrics
+    }
+}
+
+/// One step, and what goes along with it.
+fn step(
+    world: &mut World,
+    script: &mut dyn Script,
+    health: &mut Health,
+    step: &dyn Fn(&mut World),
+    done: &mut dyn FnMut(Part),
+) {
+    script.before_step(world);
+    let before = world.energy();
+    step(world);
+    // What the script pushes is no work of this step.
+    let after = world.energy();
+    done(Part { name: Instance::WORLD, count: health.bodies });
+    script.after_step_in_parts(world, done);
+    health.after_step(world, [before, after], script.work_in(world));
+}
+
+/// Mass of all that moves, kg.
+fn mass_of(world: &World) -> f32 {
+    let of_bodies: f32 = world.body_ids().map(|id| world.mass(id).mass).sum();
+    let of_particles: f32 = world.group_ids().flat_map(|id| world.particles(id).masses()).sum();
+    of_bodies + of_particles
+}
+
+/// Faults that no scene may show, however long it runs.
+struct Health {
+    mass: f32,
+    /// That the mass is of.
+    bodies: u32,
+    /// That drives have put in, J.
+    work_in: f32,
+    energy_gain_max: f32,
+    quarantined: u32,
+}
+
+impl Health {
+    fn new(world: &World) -> Self {
+        let (mass, bodies) = (mass_of(world), world.body_ids().count() as u32);
+        Self { mass, bodies, work_in: 0.0, energy_gain_max: 0.0, quarantined: 0 }
+    }
+
+    fn after_step(&mut self, world: &World, [before, after]: [Energy; 2], work_in: f32) {
+        // Each kind by itself: their sums are large and lose digits.
+        let rise = (after.kinetic - before.kinetic) + (after.potential - before.potential)
+            - (work_in - self.work_in);
+        self.work_in = work_in;
+        let most = max(before.kinetic, self.mass);
+        // Where nothing has a mass, nothing has energy.
+        self.energy_gain_max = max(self.energy_gain_max, if most > 0.0 { rise / most } else { 0.0 });
+        self.quarantined += world.events().quarantined.len() as u32;
+        let bodies = world.body_ids().count() as u32;
+        if bodies != self.bodies {
+            (self.mass, self.bodies) = (mass_of(world), bodies);
+        }
+    }
+
+    fn metrics(&self) -> [Metric; Instance::METRICS_OF_EVERY_SCENE] {
+        [
+            Metric::new("energy_gain_max", self.energy_gain_max, Expected::AtMost(0.01)),
+            Metric::new("nan", self.quarantined, Expected::AtMost(0.0)),
+        ]
+    }
+}

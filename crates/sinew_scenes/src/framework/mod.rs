@@ -1,0 +1,14 @@
+//! Framework of scenes: what each of them is made of, and what several of them measure.
+
+pub(crate) mod actors;
+pub(crate) mod camera_hint;
+pub(crate) mod flight;
+pub(crate) mod instance;
+pub(crate) mod metric;
+pub(crate) mod performance;
+pub(crate) mod ragdolls;
+pub(crate) mod scene;
+pub(crate) mod setting;
+pub(crate) mod stand;
+pub(crate) mod support;
+pub(crate) mod turn;

@@ -1,0 +1,54 @@
+//! Support of a world that hangs.
+
+use super::metric::{Expected, Metric};
+use crate::parts::GRAVITY;
+use sinew::math::{Vec3, max};
+use sinew::physics::{BodyKind, JointId, World};
+
+/// The joints to static bodies of a world that touches nothing: what they carry is its weight and what its momentum
+/// gains.
+pub(crate) struct Support {
+    /// To static bodies, and whether the static one is the first.
+    joints: Vec<(JointId, bool)>,
+    /// Weight of the world, N.
+    weight: f32,
+    /// N·s.
+    momentum: Vec3,
+    /// The largest error, as a share of the weight.
+    error: f32,
+}
+
+impl Support {
+    pub fn new(world: &World) -> Self {
+        let is_static = |id| world.kind(id) == BodyKind::Static;
+        let anchored = |id: JointId| {
+            let (a, b) = world.joint_bodies(id);
+            (is_static(a) || is_static(b)).then(|| (id, is_static(a)))
+        };
+        let mass: f32 = world.body_ids().map(|id| world.mass(id).mass).sum();
+        Self {
+            joints: world.joint_ids().filter_map(anchored).collect(),
+            weight: mass * GRAVITY,
+            momentum: world.momentum().linear,
+            error: 0.0,
+        }
+    }
+
+    pub fn after_step(&mut self, world: &World) {
+        // A reaction is that on the second body.
+        let on_world = |&(id, static_first): &(JointId, bool)| {
+            let force = world.reaction(id).force;
+            if static_first { force } else { -force }
+        };
+        let carried: Vec3 = self.joints.iter().map(on_world).sum();
+        let momentum = world.momentum().linear;
+        let gained = (momentum - self.momentum) / world.def().dt();
+        self.momentum = momentum;
+        let unexplained = carried + Vec3::NEG_Y * self.weight - gained;
+        self.error = max(self.error, unexplained.length() / self.weight);
+    }
+
+    pub fn metric(&self) -> Metric {
+        Metric::new("support_error", self.error, Expected::AtMost(0.001))
+    }
+}

@@ -1,0 +1,35 @@
+//! Angles that go round.
+
+/// Counts how far an angle has gone that moves by less than half a turn a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Turn {
+    last: Option<f32>,
+    /// Radians.
+    sum: f64,
+    /// s.
+    time: f64,
+}
+
+impl Turn {
+    pub fn after_step(&mut self, angle: f32, dt: f32) {
+        use core::f32::consts::{PI, TAU};
+        if let Some(last) = self.last {
+            let way = angle - last;
+            let way = if way > PI {
+                way - TAU
+            } else if way < -PI {
+                way + TAU
+            } else {
+                way
+            };
+            self.sum += f64::from(way);
+            self.time += f64::from(dt);
+        }
+        self.last = Some(angle);
+    }
+
+    /// rad/s.
+    pub fn rate(&self) -> Option<f32> {
+        (self.time > 0.0).then(|| (self.sum / self.time) as f32)
+    }
+}

@@ -1,0 +1,10 @@
+//! Characters that play clips and walk about.
+
+pub(super) mod arena;
+pub(super) mod blending;
+pub(super) mod callbacks;
+pub(super) mod mocap;
+pub(super) mod movers;
+pub(super) mod street;
+pub(super) mod transitions;
+pub(super) mod walking;

@@ -1,0 +1,9 @@
+//! Motion that nothing touches: throws, orbits, spinning bodies, forces, turns.
+
+pub(super) mod ballistics;
+pub(super) mod forces;
+pub(super) mod gimbal;
+pub(super) mod orbits;
+pub(super) mod orientation;
+pub(super) mod tops;
+pub(super) mod weightless;

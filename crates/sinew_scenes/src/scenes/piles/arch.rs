@@ -1,0 +1,178 @@
+//! An arch of stones without mortar: nothing but thrust and friction holds it.
+
+use crate::blueprint::arch::{Joint, arch, joints};
+use crate::framework::camera_hint::CameraHint;
+use crate::framework::flight::Flight;
+use crate::framework::instance::{Instance, Script};
+use crate::framework::metric::{Expected, Metric};
+use crate::framework::scene::Scene;
+use crate::framework::setting::{Setting, Setup};
+use crate::framework::stand::{Bars, Stand};
+use crate::parts::{GRAVITY, ball, hook};
+use sinew::math::{Transform, Vec3, max, min};
+use sinew::physics::{
+    BodyId, BodyKind, JointDef, JointId, JointKind, Reaction, SleepThresholds, World, WorldDef,
+};
+
+pub(in crate::scenes) const ARCH: Scene = Scene {
+    name: "arch",
+    about: "stones without mortar stand as an arch under blocks; its piers say that the thrust stays within the stones",
+    steps: 600,
+    settings: &[
+        Setting::whole("stones", 15, (3, 31), "of the arch; an even number gets one more"),
+        Setting::whole("blocks", 4, (0, 10), "on top of the keystone"),
+    ],
+    build,
+};
+
+fn build(setup: &Setup<'_>) -> Instance {
+    // Contacts give way until they bear the weight; what they bear then is asked for.
+    let sleep_thresholds = SleepThresholds { time: 2.0, ..SleepThresholds::default() };
+    let mut world = World::new(WorldDef { sleep_thresholds, ..setup.world_def() });
+    let (stones, blocks) = (setup.whole("stones") | 1, setup.whole("blocks"));
+    let mut plan = arch(stones, blocks);
+    for pier in &mut plan.bodies[..2] {
+        pier.kind = BodyKind::Dynamic;
+    }
+    let bodies = plan.build_into(&mut world).bodies;
+    let masonry = Masonry::new(&world, joints(stones), &bodies[2..]);
+    let feet = [(bodies[0], 0), (bodies[1], stones)];
+    let piers = feet.map(|(pier, joint)| Pier::hold(&mut world, pier, masonry.joints[joint].middle));
+    let plumb = world.add_body(&ball(0.02, Vec3::new(0.0, 5.0, 50.0)));
+    let flight = Flight::new(&world, vec![plumb]);
+    let bars = Bars {
+        shift: 0.002,
+        top_drift: 0.002,
+        sink: 0.01,
+        turn: 0.2,
+        depth: 0.005,
+        asleep: Expected::AtMost(4.0),
+    };
+    let stand = Stand::new(&world, &bodies[2..], flight, bars);
+    Instance::new(world, Arch { stand, piers, masonry })
+}
+
+struct Arch {
+    stand: Stand,
+    /// At −x, at +x.
+    piers: [Pier; 2],
+    masonry: Masonry,
+}
+
+impl Script for Arch {
+    fn after_step(&mut self, world: &mut World) {
+        self.stand.after_step(world);
+    }
+
+    fn metrics(&self, world: &World) -> Vec<Metric> {
+        let [left, right] = self.piers.map(|pier| pier.load(world));
+        let weight: f32 = self.masonry.weights.iter().map(|weight| weight.newtons).sum();
+        let line = self.masonry.line_of_thrust(left);
+        let mut metrics = self.stand.metrics(world);
+        metrics.extend([
+            Metric::new("load_n", left.force.y + right.force.y, Expected::near(weight, 0.001)),
+            Metric::new("thrust_n", left.force.x, self.masonry.thrust()),
+            Metric::new("thrust_off_middle", line, Expected::AtMost(1.0)),
+        ]);
+        metrics
+    }
+
+    fn camera_hint(&self) -> CameraHint {
+        self.stand.camera_hint()
+    }
+}
+
+/// Pier on which one end of an arch stands.
+#[derive(Clone, Copy)]
+struct Pier {
+    /// N.
+    weight: f32,
+    /// Holds it in the middle of its joint with the arch.
+    held: JointId,
+}
+
+impl Pier {
+    fn hold(world: &mut World, pier: BodyId, foot: Vec3) -> Self {
+        let hook = world.add_body(&hook());
+        let [a, b] = [hook, pier].map(|id| world.transform(id));
+        let at = Transform::from_translation(foot);
+        let held = world.add_joint(&JointDef::new(hook, pier, a, b, at, JointKind::Fixed));
+        Self { weight: world.mass(pier).mass * GRAVITY, held }
+    }
+
+    /// Reaction of the pier on the arch, about the middle of their joint.
+    fn load(self, world: &World) -> Reaction {
+        // Its own weight is right below that.
+        let Reaction { force, torque } = world.reaction(self.held);
+        Reaction { force: force - Vec3::Y * self.weight, torque }
+    }
+}
+
+/// Weights of an arch, and the joints at which they are handed on.
+struct Masonry {
+    /// From −x to +x.
+    joints: Vec<Joint>,
+    /// Weights of the stones between them; with the keystone the blocks on it.
+    weights: Vec<Weight>,
+}
+
+struct Weight {
+    newtons: f32,
+    /// Position of its centre along x, metres.
+    x: f32,
+}
+
+impl Masonry {
+    /// Masonry of stones and the blocks after them.
+    fn new(world: &World, joints: Vec<Joint>, bodies: &[BodyId]) -> Self {
+        let newtons = |&id: &BodyId| world.mass(id).mass * GRAVITY;
+        let (stones, blocks) = bodies.split_at(joints.len() - 1);
+        let weight = |id: &BodyId| Weight { newtons: newtons(id), x: world.center_of_mass(*id).x };
+        let mut weights: Vec<_> = stones.iter().map(weight).collect();
+        weights[stones.len() / 2].newtons += blocks.iter().map(newtons).sum::<f32>();
+        Self { joints, weights }
+    }
+
+    /// Farthest that the line of thrust crosses a joint from its middle, as a share of the way to the joint's end. The line is
+    /// known from what the first pier does. At 1 the joint opens like a hinge.
+    fn line_of_thrust(&self, pier: Reaction) -> f32 {
+        let mut force = pier.force;
+        // About the world's z axis.
+        let mut moment = pier.torque.z + self.joints[0].middle.cross(force).z;
+        let crossing = |joint: &Joint, force: Vec3, moment: f32| {
+            let about_middle = moment - joint.middle.cross(force).z;
+            (about_middle / joint.half.cross(force).z).abs()
+        };
+        let mut farthest = crossing(&self.joints[0], force, moment);
+        for (joint, weight) in self.joints[1..].iter().zip(&self.weights) {
+            force.y -= weight.newtons;
+            moment -= weight.x * weight.newtons;
+            farthest = max(farthest, crossing(joint, force, moment));
+        }
+        farthest
+    }
+
+    /// Thrust of the halves against each other: between the least and the most at which the line of thrust is within
+    /// the foot and within the keystone's joint (Heyman 1966, "The stone skeleton").
+    ///
+    /// Half of the keystone's load `P` and the stones on this side of it turn about the foot at `p` one way, the thrust `H`
+    /// at `q` in the keystone's joint the other: `H (q − p)_y = Σ w (x − p_x) + P/2 (q − p)_x`.
+    fn thrust(&self) -> Expected {
+        let keystone = self.weights.len() / 2;
+        let half_load = 0.5 * self.weights[keystone].newtons;
+        let thrust = |foot: Vec3, top: Vec3| {
+            let turning = |weight: &Weight| weight.newtons * (weight.x - foot.x);
+            let stones: f32 = self.weights[..keystone].iter().map(turning).sum();
+            (stones + half_load * (top.x - foot.x)) / (top.y - foot.y)
+        };
+        let (mut least, mut most) = (f32::INFINITY, 0.0);
+        for foot in self.joints[0].ends() {
+            for top in self.joints[keystone].ends() {
+                least = min(least, thrust(foot, top));
+                most = max(most, thrust(foot, top));
+            }
+        }
+        let [value, tolerance] = [0.5 * (least + most), 0.5 * (most - least)].map(f64::from);
+        Expected::Near { value, tolerance }
+    }
+}
