@@ -35,7 +35,7 @@ enum Task {
     Tidy(tidy::Tidy),
     /// State hashes of all scenes, against the committed ones
     Golden(golden::Golden),
-    /// The pictures of docs/book.md, drawn anew
+    /// The pictures of docs/guide/src/book.md, drawn anew
     Book(book::Book),
     /// The quality of the ragdolls of many rigs, into docs/ragdoll-quality.md
     Ragdolls(ragdolls::Ragdolls),
