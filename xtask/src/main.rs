@@ -9,6 +9,7 @@ mod command;
 mod contract;
 mod fuzz;
 mod golden;
+mod new_user;
 mod ragdolls;
 mod spawns;
 mod targets;

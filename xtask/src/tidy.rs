@@ -9,6 +9,7 @@ mod bits;
 mod contract_table;
 mod dependencies;
 mod first_words;
+mod guide;
 mod leftovers;
 mod lexer;
 mod libraries;
@@ -38,6 +39,7 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     leftovers::check,
     dependencies::check,
     first_words::check,
+    guide::check,
 ];
 
 /// `cargo xtask tidy`.
