@@ -1,4 +1,4 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | fuzz`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | fuzz`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -44,6 +44,8 @@ enum Task {
     Wild(wild::Wild),
     /// Time and quality beside other engines, into docs/benchmarks.md; or instructions of the kernels
     Bench(bench::Bench),
+    /// What README and guide print, built and run in an empty folder outside the workspace
+    NewUser(new_user::NewUser),
     /// Bytes from nowhere against the readers, and clips against the runtime
     Fuzz(fuzz::Fuzz),
 }
@@ -54,6 +56,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Task::Ci(ci) => ci.run()?,
         Task::Tidy(tidy) => tidy.run()?,
         Task::Golden(golden) => golden.run()?,
+        Task::NewUser(user) => user.run()?,
         Task::Book(book) => book.run()?,
         Task::Ragdolls(ragdolls) => ragdolls.run()?,
         Task::Wild(wild) => wild.run()?,

@@ -10,16 +10,35 @@ use std::process::Command;
 const PAGES: &[(&str, &str)] = &[("README.md", "readme"), ("docs/guide/src/first_ragdoll.md", "guide")];
 const BEVY_PAGE: &str = "integrations/bevy_sinew/README.md";
 
+/// `cargo xtask new-user`.
+#[derive(clap::Args)]
+pub struct NewUser {
+    /// The plugin for Bevy as well
+    #[arg(long)]
+    bevy: bool,
+}
+
+impl NewUser {
+    /// Tries the library, and the plugin if asked.
+    ///
+    /// # Errors
+    /// As [`library`] and [`bevy`].
+    pub fn run(&self) -> Result<()> {
+        library()?;
+        if self.bevy { bevy() } else { Ok(()) }
+    }
+}
+
 /// Programs of README and of the guide's first chapter build and run, in release builds.
 ///
 /// # Errors
 /// If one does not.
 pub fn library() -> Result<()> {
     let dependencies = format!("sinew = {{ path = {:?} }}\n", command::root().join("crates/sinew"));
-    PAGES.iter().try_for_each(|&(page, name)| project(name, page, &dependencies))
+    PAGES.iter().try_for_each(|&(page, name)| project(name, page, &dependencies, &["--release"]))
 }
 
-/// The program of the plugin's README, with the dependencies that it prints.
+/// The program of the plugin's README, with the dependencies that it prints, in a debug build, which takes half the time.
 ///
 /// # Errors
 /// If it does not build or run, or none are printed.
@@ -32,7 +51,7 @@ pub fn bevy() -> Result<()> {
         _ => format!("{line}\n"),
     };
     let lines = printed.lines().filter(|line| *line != "[dependencies]");
-    project("bevy", BEVY_PAGE, &lines.map(by_path).collect::<String>())
+    project("bevy", BEVY_PAGE, &lines.map(by_path).collect::<String>(), &[])
 }
 
 fn read(page: &str) -> Result<String> {
@@ -40,15 +59,15 @@ fn read(page: &str) -> Result<String> {
 }
 
 /// A project with each block of Rust of a page as a program, in an empty folder; all are run.
-fn project(name: &str, page: &str, dependencies: &str) -> Result<()> {
+fn project(name: &str, page: &str, dependencies: &str, profile: &[&str]) -> Result<()> {
     let folder = std::env::temp_dir().join(format!("sinew-new-user-{name}-{}", std::process::id()));
     fs::create_dir_all(folder.join("src/bin")).with_context(|| folder.display().to_string())?;
-    let outcome = try_in(&folder, name, page, dependencies).with_context(|| page.to_owned());
+    let outcome = try_in(&folder, name, page, dependencies, profile).with_context(|| page.to_owned());
     fs::remove_dir_all(&folder).with_context(|| folder.display().to_string())?;
     outcome
 }
 
-fn try_in(folder: &Path, name: &str, page: &str, dependencies: &str) -> Result<()> {
+fn try_in(folder: &Path, name: &str, page: &str, dependencies: &str, profile: &[&str]) -> Result<()> {
     let programs = blocks(&read(page)?, "rust");
     if programs.is_empty() {
         bail!("it has no program");
@@ -62,7 +81,7 @@ fn try_in(folder: &Path, name: &str, page: &str, dependencies: &str) -> Result<(
     }
     for index in 0..programs.len() {
         let mut run = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-        run.args(["run", "--quiet", "--release", "--bin", &format!("{name}_{index}")]).current_dir(folder);
+        run.args(["run", "--quiet", "--bin", &format!("{name}_{index}")]).args(profile).current_dir(folder);
         run.arg("--target-dir").arg(command::target().join("new_user"));
         // What `cargo xtask` was built with is not the new user's.
         for variable in ["CARGO_MANIFEST_DIR", "CARGO_PKG_NAME", "RUSTFLAGS"] {
