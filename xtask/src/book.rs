@@ -1,4 +1,4 @@
-//! The pictures of `docs/book.md`: one of each scene that it names.
+//! The pictures of `docs/guide/src/book.md`: one of each scene that it names.
 
 use crate::command::{self, Profile};
 use anyhow::{Context, Result, bail, ensure};
@@ -7,9 +7,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-const PAGE: &str = "docs/book.md";
+const PAGE: &str = "docs/guide/src/book.md";
 /// Beside the page; its links start with the last part.
-const FOLDER: &str = "docs/book";
+const FOLDER: &str = "docs/guide/src/book";
 /// Pixels of a picture.
 const SIZE: [&str; 2] = ["560", "315"];
 /// Bytes of all pictures: what a clone of the repository should not have to carry more than.

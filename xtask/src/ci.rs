@@ -2,7 +2,7 @@
 
 use crate::command::{self, Profile};
 use crate::golden::{self, Coverage};
-use crate::{bench, contract, spawns, targets, tidy};
+use crate::{bench, contract, new_user, spawns, targets, tidy};
 use anyhow::{Context, Result, anyhow, bail};
 use serde_json::Value;
 use std::fs;
@@ -44,6 +44,8 @@ impl Ci {
         check("licences", &licences);
         check("golden", &|| golden::check(coverage));
         check("demo", &demo);
+        check("packages", &packages);
+        check("new user", &new_user::library);
         check("random falls", &|| spawns::check(if self.full { spawns::ALL } else { spawns::SOME }));
         check("wasm", &targets::browser);
         check("soup", &targets::soup);
@@ -55,6 +57,7 @@ impl Ci {
             check("serde", &serde);
             check("peers", &peers);
             check("bevy", &bevy);
+            check("new user of bevy", &new_user::bevy);
             check("counts", &bench::check_counts);
             check("oldest compiler", &oldest_compiler);
         }
@@ -87,11 +90,28 @@ fn peers() -> Result<()> {
     command::run(clippy.args(["--", "-D", "warnings"]))
 }
 
-/// The plugin for Bevy does what its tests say, without a window.
+/// The plugin for Bevy does what its tests say, without a window: with every feature, and compiles with none.
 fn bevy() -> Result<()> {
-    let mut test =
-        command::cargo(&["test", "--locked", "--manifest-path", "integrations/bevy_sinew/Cargo.toml"]);
-    command::run(test.arg("--target-dir").arg(command::target().join("bevy")))
+    let run = |command: &str, features: &str| {
+        let manifest = "integrations/bevy_sinew/Cargo.toml";
+        let mut cargo = command::cargo(&[command, "--locked", "--manifest-path", manifest, features]);
+        command::run(cargo.arg("--target-dir").arg(command::target().join("bevy")))
+    };
+    run("check", "--no-default-features")?;
+    run("test", "--all-features")
+}
+
+/// What would be published is whole: metadata, licences, versions of our own crates. That it compiles, the other checks say.
+fn packages() -> Result<()> {
+    let mut package = command::cargo(&["package", "--workspace", "--exclude", "xtask", "--no-verify"]);
+    let out =
+        package.args(["--allow-dirty", "--target-dir"]).arg(command::target().join("packages")).output()?;
+    let told = String::from_utf8_lossy(&out.stderr);
+    // A package without a description or a licence is a warning only.
+    if !out.status.success() || told.contains("warning") {
+        bail!("{told}");
+    }
+    Ok(())
 }
 
 /// Scenes that take minutes in a debug build.

@@ -1,4 +1,4 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | fuzz`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | fuzz`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -9,6 +9,7 @@ mod command;
 mod contract;
 mod fuzz;
 mod golden;
+mod new_user;
 mod ragdolls;
 mod spawns;
 mod targets;
@@ -35,7 +36,7 @@ enum Task {
     Tidy(tidy::Tidy),
     /// State hashes of all scenes, against the committed ones
     Golden(golden::Golden),
-    /// The pictures of docs/book.md, drawn anew
+    /// The pictures of docs/guide/src/book.md, drawn anew
     Book(book::Book),
     /// The quality of the ragdolls of many rigs, into docs/ragdoll-quality.md
     Ragdolls(ragdolls::Ragdolls),
@@ -43,6 +44,8 @@ enum Task {
     Wild(wild::Wild),
     /// Time and quality beside other engines, into docs/benchmarks.md; or instructions of the kernels
     Bench(bench::Bench),
+    /// What README and guide print, built and run in an empty folder outside the workspace
+    NewUser(new_user::NewUser),
     /// Bytes from nowhere against the readers, and clips against the runtime
     Fuzz(fuzz::Fuzz),
 }
@@ -53,6 +56,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Task::Ci(ci) => ci.run()?,
         Task::Tidy(tidy) => tidy.run()?,
         Task::Golden(golden) => golden.run()?,
+        Task::NewUser(user) => user.run()?,
         Task::Book(book) => book.run()?,
         Task::Ragdolls(ragdolls) => ragdolls.run()?,
         Task::Wild(wild) => wild.run()?,

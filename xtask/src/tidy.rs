@@ -11,6 +11,7 @@ mod code_map;
 mod contract_table;
 mod dependencies;
 mod first_words;
+mod guide;
 mod leftovers;
 mod lexer;
 mod libraries;
@@ -46,6 +47,7 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     dependencies::check,
     first_words::check,
     tuning::check,
+    guide::check,
 ];
 
 /// `cargo xtask tidy`.

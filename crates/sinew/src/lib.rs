@@ -52,17 +52,35 @@ pub fn all_threads() -> physics::Threads {
     physics::Threads::new(std::thread::available_parallelism().map_or(1, core::num::NonZero::get))
 }
 
-/// The README's example.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;
+/// Pages whose code is compiled and run by `cargo test --doc`.
+#[cfg(all(doctest, feature = "formats"))]
+mod pages {
+    macro_rules! pages {
+        ($($name:ident: $file:literal,)*) => {
+            $(#[doc = include_str!($file)] struct $name;)*
+        };
+    }
 
-/// The guide to worlds, whose code is tested.
-#[cfg(doctest)]
-#[doc = include_str!("../../../docs/world.md")]
-struct WorldPage;
-
-/// The guide to characters, whose code is tested.
-#[cfg(all(doctest, feature = "ragdoll"))]
-#[doc = include_str!("../../../docs/character.md")]
-struct CharacterPage;
+    pages! {
+        Readme: "../../../README.md",
+        WorldPage: "../../../docs/world.md",
+        CharacterPage: "../../../docs/character.md",
+        MoverPage: "../../../docs/mover.md",
+        GuideIntroduction: "../../../docs/guide/src/introduction.md",
+        GuideFirstRagdoll: "../../../docs/guide/src/first_ragdoll.md",
+        GuideWorlds: "../../../docs/guide/src/worlds.md",
+        GuideCharacters: "../../../docs/guide/src/characters.md",
+        GuideJoints: "../../../docs/guide/src/joints.md",
+        GuideQueriesAndEvents: "../../../docs/guide/src/queries_and_events.md",
+        GuideClothAndRope: "../../../docs/guide/src/cloth_and_rope.md",
+        GuidePerformance: "../../../docs/guide/src/performance.md",
+        GuideDeterminism: "../../../docs/guide/src/determinism.md",
+        GuideSymptoms: "../../../docs/guide/src/symptoms.md",
+        GuideFromRapier: "../../../docs/guide/src/from_rapier.md",
+        GuideFromAvian: "../../../docs/guide/src/from_avian.md",
+        GuideFromJolt: "../../../docs/guide/src/from_jolt.md",
+        GuideFromUnity: "../../../docs/guide/src/from_unity.md",
+        GuideFromUnreal: "../../../docs/guide/src/from_unreal.md",
+        GuideBook: "../../../docs/guide/src/book.md",
+    }
+}

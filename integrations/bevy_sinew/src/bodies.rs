@@ -6,12 +6,17 @@ use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::*;
 use bevy_ecs::world::DeferredWorld;
 use bevy_math::Vec3;
+#[cfg(feature = "reflect")]
+use bevy_reflect::std_traits::ReflectDefault;
+#[cfg(feature = "reflect")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
 use sinew_physics::{BodyDef, BodyId, BodyKind, MassUpdate, Shape, ShapeDef, ShapeId};
 
 /// A body, of its kind.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 #[require(Transform, Collider)]
 pub enum RigidBody {
     /// Moved by nothing.
@@ -36,6 +41,12 @@ impl From<RigidBody> for BodyKind {
 /// The shapes of a body, metres, in its own axes; mass comes from their densities. Without any, a dynamic body is a point of
 /// 1 kg that nothing touches.
 #[derive(Component, Clone, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "reflect",
+    derive(bevy_reflect::Reflect, serde::Serialize, serde::Deserialize),
+    reflect(opaque),
+    reflect(Component, Clone, Default, Debug, PartialEq, Serialize, Deserialize)
+)]
 pub struct Collider(pub Vec<ShapeDef>);
 
 impl From<Shape> for Collider {
@@ -52,6 +63,7 @@ impl From<ShapeDef> for Collider {
 
 /// Velocity of a body's centre of mass and angular velocity, world axes.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 pub struct Velocity {
     /// m/s.
     pub linear: Vec3,
@@ -86,6 +98,7 @@ fn take_out(mut world: DeferredWorld, context: HookContext) {
     let Some(&BodyHandle { id, .. }) = world.get::<BodyHandle>(context.entity) else { return };
     let Some(mut physics) = world.get_resource_mut::<Physics>() else { return };
     if physics.contains(id) {
+        crate::particles::remove_hanging(&mut physics, id);
         physics.remove_body(id);
         physics.gone.push(id);
     }

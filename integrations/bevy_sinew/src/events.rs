@@ -1,10 +1,11 @@
 //! Steps, and what they tell: as messages, and to observers.
 
-use crate::Physics;
+use crate::{BevyTasks, Physics, StepThreads};
 use bevy_app::App;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use sinew_physics::BodyId;
+use sinew_physics::stage::NoProfiler;
 
 /// Two bodies began to touch.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,12 +65,19 @@ pub(crate) fn add_messages(app: &mut App) {
     app.add_message::<SensorEntered>().add_message::<SensorLeft>().add_message::<HitTold>();
 }
 
-pub(crate) fn step(mut physics: ResMut<Physics>) {
-    physics.step();
+pub(crate) fn step(mut physics: ResMut<Physics>, threads: Res<StepThreads>) {
+    match *threads {
+        StepThreads::Bevy => physics.step_with(&BevyTasks, &NoProfiler),
+        StepThreads::One => physics.step(),
+    }
 }
 
 pub(crate) fn tell(mut physics: ResMut<Physics>, mut commands: Commands) {
-    let told = |(a, b): (BodyId, BodyId)| Some((physics.entity(a)?, physics.entity(b)?));
+    // A character's limbs do not tell of each other.
+    let told = |(a, b): (BodyId, BodyId)| {
+        let pair = (physics.entity(a)?, physics.entity(b)?);
+        (pair.0 != pair.1).then_some(pair)
+    };
     let events = physics.events();
     for (a, b) in events.begin.iter().copied().filter_map(told) {
         both(&mut commands, TouchBegan { a, b });
@@ -90,11 +98,12 @@ pub(crate) fn tell(mut physics: ResMut<Physics>, mut commands: Commands) {
     }
     for body in core::mem::take(&mut physics.gone) {
         physics.entities.remove(&body);
+        physics.limbs.remove(&body);
     }
 }
 
 /// As a message, and to observers.
-fn both<E>(commands: &mut Commands, event: E)
+pub(crate) fn both<E>(commands: &mut Commands, event: E)
 where
     E: Message + Clone + for<'a> Event<Trigger<'a>: Default>,
 {

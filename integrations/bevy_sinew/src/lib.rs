@@ -1,4 +1,4 @@
-//! Sinew's physics in Bevy: bodies, shapes, velocities, joints and fields as components, stepped in `FixedPostUpdate`.
+//! Sinew's physics in Bevy: bodies, joints, fields, movers, particles and characters as components, stepped in `FixedPostUpdate`.
 //!
 //! ```
 //! use bevy_app::{App, Update};
@@ -27,6 +27,21 @@
 //! | `Transform` | when a body comes, and when it is changed by anyone else | each frame, of bodies that moved: between the last two steps |
 //! | [`Velocity`], if it is there | when it comes or changes | after each step |
 //! | [`Joint`], [`Field`] | when they come or change | never |
+//! | [`Mover`], [`Walk`] | before each step; its height and filter may change | a jump is taken back once it was told |
+//! | [`MoverState`] | never | after each step |
+//! | [`Particles`] | when they come | never |
+//! | [`CharacterBody`] | when it comes | never |
+//! | [`CharacterHandle`] | before and after each step | each step |
+//!
+//! # Features
+//!
+//! | feature | brings | default |
+//! |---|---|---|
+//! | `characters` | [`CharacterBody`]: walks, is hit, falls, gets up, on the joints of a scene | yes |
+//! | `gltf` | `CharacterScene`: characters from GLB files | no |
+//! | `gizmos` | `SinewGizmosPlugin`: what the world looks like to itself | no |
+//! | `picking` | `SinewPickingPlugin`: pointers find bodies | no |
+//! | `reflect` | components in the type registry, for scenes and inspectors | no |
 //!
 //! A body is in the world, not in its parent: where an ancestor goes, it stays, and its `Transform` is made to fit. So it is when
 //! it gets another parent. Scales are kept and do not scale shapes. All else that a world can do is done by the resource
@@ -34,16 +49,45 @@
 #![forbid(unsafe_code)]
 
 mod bodies;
+#[cfg(feature = "characters")]
+mod characters;
 mod events;
+#[cfg(feature = "gizmos")]
+mod gizmos;
+#[cfg(feature = "gltf")]
+mod gltf;
 mod links;
+mod movers;
+mod particles;
+#[cfg(feature = "picking")]
+mod picking;
 mod pose;
+mod threads;
 
 pub use bodies::{BodyHandle, Collider, RigidBody, Velocity};
+#[cfg(feature = "characters")]
+pub use characters::{CharacterBody, CharacterHandle, CharacterJoints, CharacterTold};
 pub use events::{HitTold, SensorEntered, SensorLeft, TouchBegan, TouchEnded};
+#[cfg(feature = "gizmos")]
+pub use gizmos::{GizmoColors, PhysicsGizmos, SinewGizmosPlugin};
+#[cfg(feature = "gltf")]
+pub use gltf::{
+    CharacterFile, CharacterFileError, CharacterLoader, CharacterScene, CharacterSettings, SinewGltfPlugin,
+    read_character,
+};
 pub use links::{Field, FieldHandle, Joint, JointHandle};
+pub use movers::{Mover, MoverHandle, MoverState, Walk};
+pub use particles::{Hang, Particles, ParticlesHandle};
+#[cfg(feature = "picking")]
+pub use picking::SinewPickingPlugin;
 pub use pose::Interpolation;
+#[cfg(feature = "characters")]
+pub use sinew;
 pub use sinew_math as math;
-pub use sinew_physics::{self as physics, FieldDef, FieldKind, JointKind, Shape, ShapeDef, WorldDef};
+pub use sinew_physics::{
+    self as physics, FieldDef, FieldKind, JointKind, MoverDef, Shape, ShapeDef, WorldDef,
+};
+pub use threads::{BevyTasks, StepThreads};
 
 use bevy_app::{App, FixedPostUpdate, Plugin, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_ecs::entity::Entity;
@@ -73,14 +117,16 @@ pub enum PhysicsSystems {
 pub struct Physics {
     world: World,
     entities: BTreeMap<BodyId, Entity>,
+    /// Bodies of characters.
+    limbs: BTreeMap<BodyId, Entity>,
     /// Bodies that are gone, until the step has told what they no longer touch.
     gone: Vec<BodyId>,
 }
 
 impl Physics {
-    /// The entity of a body; also of one that was taken out since the last step.
+    /// The entity of a body, that of its character for a limb; also of one that was taken out since the last step.
     pub fn entity(&self, body: BodyId) -> Option<Entity> {
-        self.entities.get(&body).copied()
+        self.entities.get(&body).or_else(|| self.limbs.get(&body)).copied()
     }
 
     /// Number of bodies with an entity, those among them that were taken out since the last step.
@@ -125,8 +171,9 @@ impl Plugin for SinewPlugin {
         let step = Duration::from_nanos(self.def.step_nanoseconds);
         app.insert_resource(Time::<Fixed>::from_duration(step));
         let world = World::new(self.def.clone());
-        app.insert_resource(Physics { world, entities: BTreeMap::new(), gone: Vec::new() });
-        app.init_resource::<Interpolation>();
+        let (entities, limbs, gone) = (BTreeMap::new(), BTreeMap::new(), Vec::new());
+        app.insert_resource(Physics { world, entities, limbs, gone });
+        app.init_resource::<Interpolation>().init_resource::<StepThreads>();
         events::add_messages(app);
         let order = (PhysicsSystems::Prepare, PhysicsSystems::Step, PhysicsSystems::Tell);
         app.configure_sets(FixedPostUpdate, order.chain());
@@ -135,6 +182,8 @@ impl Plugin for SinewPlugin {
         app.add_observer(bodies::forget_body);
         app.add_observer(links::forget_joint);
         app.add_observer(links::forget_field);
+        app.add_observer(movers::forget_mover);
+        app.add_observer(particles::forget_particles);
         let prepare = (
             bodies::add_bodies,
             bodies::change_kinds,
@@ -145,16 +194,48 @@ impl Plugin for SinewPlugin {
             links::change_joints,
             links::add_fields,
             links::change_fields,
+            movers::add_movers,
+            movers::lead_movers,
+            particles::add_particles,
         );
         app.add_systems(FixedPostUpdate, prepare.chain().in_set(PhysicsSystems::Prepare));
         app.add_systems(FixedPostUpdate, events::step.in_set(PhysicsSystems::Step));
-        let tell = (bodies::write_velocities, events::tell);
+        let tell = (bodies::write_velocities, movers::tell_movers, events::tell);
         app.add_systems(FixedPostUpdate, tell.chain().in_set(PhysicsSystems::Tell));
-        app.add_systems(RunFixedMainLoop, pose::write_transforms.in_set(PhysicsSystems::Write));
+        let write = (pose::write_transforms, movers::write_movers);
+        app.add_systems(RunFixedMainLoop, write.chain().in_set(PhysicsSystems::Write));
+        #[cfg(feature = "characters")]
+        add_characters(app);
+        #[cfg(feature = "reflect")]
+        register_types(app);
     }
+}
+
+#[cfg(feature = "characters")]
+fn add_characters(app: &mut App) {
+    app.add_message::<CharacterTold>().add_observer(characters::forget_character);
+    let prepare = (characters::add_characters, characters::read_characters).chain();
+    app.add_systems(FixedPostUpdate, prepare.in_set(PhysicsSystems::Prepare).after(particles::add_particles));
+    // Before the world's events are told: bodies that a character let go of are still known then.
+    let update = characters::update_characters.in_set(PhysicsSystems::Tell);
+    app.add_systems(FixedPostUpdate, update.after(movers::tell_movers).before(events::tell));
+    let write = (characters::find_joints, characters::write_characters).chain();
+    app.add_systems(RunFixedMainLoop, write.in_set(PhysicsSystems::Write).after(movers::write_movers));
+}
+
+#[cfg(feature = "reflect")]
+fn register_types(app: &mut App) {
+    app.register_type::<RigidBody>().register_type::<Collider>().register_type::<Velocity>();
+    app.register_type::<Field>().register_type::<Joint>().register_type::<Interpolation>();
+    app.register_type::<Walk>().register_type::<MoverState>().register_type::<StepThreads>();
 }
 
 /// The README's example.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// The guide's chapter.
+#[cfg(all(doctest, feature = "characters"))]
+#[doc = include_str!("../../../docs/guide/src/bevy.md")]
+struct Guide;

@@ -5,14 +5,43 @@ use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::*;
 use bevy_ecs::world::DeferredWorld;
 use bevy_math::Vec3;
+#[cfg(feature = "reflect")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use sinew_physics::{FieldDef, FieldId, JointDef, JointId, JointKind};
+
+/// Entities by their bits: Bevy writes and reads them by a feature that only its scenes switch on.
+#[cfg(feature = "reflect")]
+mod bits {
+    use bevy_ecs::entity::Entity;
+    use serde::de::Error;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub fn serialize<S: Serializer>(entity: &Entity, out: S) -> Result<S::Ok, S::Error> {
+        out.serialize_u64(entity.to_bits())
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<Entity, D::Error> {
+        let bits = u64::deserialize(input)?;
+        Entity::try_from_bits(bits).ok_or_else(|| D::Error::custom("these are no bits of an entity"))
+    }
+}
 
 /// A joint between two bodies, on an entity of its own. It is made as soon as both are in the world, and goes with either of them.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "reflect",
+    derive(bevy_reflect::Reflect, serde::Serialize, serde::Deserialize),
+    reflect(opaque),
+    reflect(Component, Clone, Debug, PartialEq, Serialize, Deserialize)
+)]
 pub struct Joint {
     /// First body.
+    #[entities]
+    #[cfg_attr(feature = "reflect", serde(with = "bits"))]
     pub a: Entity,
     /// Second body.
+    #[entities]
+    #[cfg_attr(feature = "reflect", serde(with = "bits"))]
     pub b: Entity,
     /// Point at which it holds the bodies when it is made, world, metres.
     pub anchor: Vec3,
@@ -36,6 +65,12 @@ impl JointHandle {
 
 /// A field, everywhere or in a region of the world.
 #[derive(Component, Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "reflect",
+    derive(bevy_reflect::Reflect, serde::Serialize, serde::Deserialize),
+    reflect(opaque),
+    reflect(Component, Clone, Debug, PartialEq, Serialize, Deserialize)
+)]
 pub struct Field(pub FieldDef);
 
 /// The field of an entity, once the world has it.

@@ -3,12 +3,15 @@
 use crate::{BodyHandle, Physics, order};
 use bevy_ecs::prelude::*;
 use bevy_math::{Affine3A, Quat};
+#[cfg(feature = "reflect")]
+use bevy_reflect::std_traits::ReflectDefault;
 use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
 use sinew_math::{Rotation, Transform as Pose};
 
 /// What is drawn between two steps.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Resource, Default, Debug, PartialEq))]
 pub enum Interpolation {
     /// Poses between the last step and the one before, as late as a step: smooth at any frame rate. Default.
     #[default]
@@ -17,13 +20,23 @@ pub enum Interpolation {
     Off,
 }
 
+impl Interpolation {
+    /// Share of a step that what is drawn has come beyond the step before.
+    pub(crate) fn alpha(self, time: &Time<Fixed>) -> f32 {
+        match self {
+            Self::On => time.overstep_fraction(),
+            Self::Off => 1.0,
+        }
+    }
+}
+
 /// Without its scale.
 pub(crate) fn to_pose(transform: &Transform) -> Pose {
     let [x, y, z, w] = transform.rotation.to_array();
     Pose::new(transform.translation, Rotation::from_xyzw(x, y, z, w).normalize())
 }
 
-fn to_quat(rotation: Rotation) -> Quat {
+pub(crate) fn to_quat(rotation: Rotation) -> Quat {
     Quat::from_xyzw(rotation.x, rotation.y, rotation.z, rotation.w)
 }
 
@@ -79,10 +92,7 @@ pub(crate) fn write_transforms(
     mut handles: Query<(&mut BodyHandle, &mut Transform)>,
     others: Query<&Transform, Without<BodyHandle>>,
 ) {
-    let alpha = match *interpolation {
-        Interpolation::On => time.overstep_fraction(),
-        Interpolation::Off => 1.0,
-    };
+    let alpha = interpolation.alpha(&time);
     let moved = physics.bodies_moved().filter_map(|id| physics.entity(id));
     for entity in moved.filter(|&entity| !parents.contains(entity)) {
         let Ok((mut handle, mut transform)) = handles.get_mut(entity) else { continue };

@@ -11,14 +11,32 @@ use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::components::Transform;
 use std::time::Duration;
 
-#[path = "../examples/hello.rs"]
+#[cfg(feature = "characters")]
+mod characters;
+#[path = "../../examples/door.rs"]
+mod door;
+#[cfg(feature = "gizmos")]
+mod gizmos;
+#[cfg(feature = "gltf")]
+mod gltf;
+#[path = "../../examples/hello.rs"]
 mod hello;
+mod movers;
+#[cfg(feature = "picking")]
+mod picking;
+#[cfg(feature = "reflect")]
+mod reflect;
 
 const DT: f32 = 1.0 / 60.0;
 
 #[test]
 fn the_box_falls() {
     hello::main();
+}
+
+#[test]
+fn the_mover_goes_through_the_door() {
+    door::main();
 }
 
 /// Each update is one fixed step.

@@ -1,0 +1,83 @@
+//! A character with Bevy, without a window: `cargo run --example character`, or with a file of your own
+//! `cargo run --features gltf --example character -- knight.glb`.
+//!
+//! It walks, is hit, falls, gets up and walks on. The joints that it moves are entities, as those of a loaded scene are.
+
+use bevy_app::{App, FixedUpdate};
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_sinew::sinew::anim::Rig;
+use bevy_sinew::sinew::ragdoll::{CharacterDef, Event as Told, State};
+use bevy_sinew::{
+    CharacterBody, CharacterHandle, CharacterTold, Collider, Physics, RigidBody, Shape, SinewPlugin,
+};
+use bevy_time::{TimePlugin, TimeUpdateStrategy};
+use bevy_transform::components::Transform;
+use std::sync::Arc;
+
+/// The joints of a rig as entities with names, as Bevy's loader makes them of a scene. In a game it is a `SceneRoot`.
+fn scene(commands: &mut Commands, root: Entity, rig: &Rig) {
+    let mut joints: Vec<Entity> = Vec::new();
+    for joint in &rig.joints {
+        let parent = joint.parent.map_or(root, |parent| joints[parent]);
+        let bundle = (Name::new(joint.name.clone()), Transform::default(), ChildOf(parent));
+        joints.push(commands.spawn(bundle).id());
+    }
+}
+
+fn kind() -> CharacterDef {
+    #[cfg(feature = "gltf")]
+    if let Some(path) = std::env::args().nth(1).filter(|path| path.ends_with(".glb")) {
+        let bytes = std::fs::read(path).expect("the file can be read");
+        let file = bevy_sinew::read_character(&bytes, &Default::default()).expect("it is a character");
+        return CharacterDef::clone(&file.def);
+    }
+    bevy_sinew::sinew::mannequin::character()
+}
+
+fn setup(mut commands: Commands) {
+    commands.spawn((RigidBody::Static, Collider::from(Shape::HalfSpace)));
+    let def = Arc::new(kind());
+    let hero = commands.spawn(CharacterBody(def.clone())).id();
+    scene(&mut commands, hero, &def.rig);
+}
+
+/// Hits it once, after a second and a half.
+fn hit(mut physics: ResMut<Physics>, mut heroes: Query<&mut CharacterHandle>) {
+    for mut hero in &mut heroes {
+        hero.set_move(Vec3::Z * 1.2);
+        if physics.step_count() == 90 {
+            let chest = hero.def().body_named("chest").unwrap_or(0);
+            hero.hit(&mut physics, chest, Vec3::new(60.0, 0.0, -60.0));
+        }
+    }
+}
+
+#[derive(Resource, Default)]
+struct Heard(Vec<Told>);
+
+fn tell(told: On<CharacterTold>, mut heard: ResMut<Heard>, physics: Res<Physics>) {
+    if !matches!(told.event, Told::Clip(_)) {
+        println!("{:5.2} s: {:?}", physics.time(), told.event);
+    }
+    heard.0.push(told.event);
+}
+
+/// Lets it walk and fall.
+pub fn main() {
+    let mut app = App::new();
+    app.add_plugins((TimePlugin, SinewPlugin::default())); // in a game `DefaultPlugins` bring the first
+    app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1)); // no window: as fast as it goes
+    app.init_resource::<Heard>().add_observer(tell);
+    app.add_systems(bevy_app::Startup, setup).add_systems(FixedUpdate, hit);
+    (0..900).for_each(|_| app.update());
+
+    let heard = &app.world().resource::<Heard>().0;
+    for due in [Told::WentLimp, Told::Up] {
+        assert!(heard.contains(&due), "{due:?} in {heard:?}");
+    }
+    let world = app.world_mut();
+    let (hero, place) = world.query::<(&CharacterHandle, &Transform)>().single(world).expect("it is there");
+    println!("it is {:?}, at {:.2}", hero.state(), place.translation);
+    assert!(hero.state() == State::Animated && place.translation.z > 3.0);
+}

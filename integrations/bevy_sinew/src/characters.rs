@@ -1,0 +1,232 @@
+//! Characters: on the joints of a scene, they walk, are hit, fall and get up.
+
+use crate::events::both;
+use crate::pose::{to_pose, to_quat};
+use crate::{Physics, order};
+use bevy_ecs::lifecycle::HookContext;
+use bevy_ecs::prelude::*;
+use bevy_ecs::world::DeferredWorld;
+use bevy_math::{Affine3A, Mat3A, Vec3A};
+use bevy_time::{Fixed, Time};
+use bevy_transform::components::Transform;
+use core::ops::{Deref, DerefMut};
+use sinew::anim::{LocalTransform, Rig};
+use sinew::ragdoll::{Character, CharacterDef, Event as Told};
+use sinew_math::Affine;
+use sinew_physics::BodyId;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// A character of that kind. Put beside the root of a scene that was loaded from the same file, it moves the scene's joints, which it
+/// finds by their names among the entity's descendants; without a scene it is there all the same.
+///
+/// The entity's `Transform` says where it stands at first, in metres, facing +Z; from then on it is written, as that of the
+/// file's own space (which is scaled where the file counts in centimetres), and read where someone else changes it. The entity
+/// has no parent and no [`RigidBody`](crate::RigidBody).
+#[derive(Component, Clone, Debug)]
+#[require(Transform)]
+pub struct CharacterBody(pub Arc<CharacterDef>);
+
+/// The character of an entity, once the world has it: [`Character`] with all that it can do. Calls that want a world take
+/// `&mut physics` of [`ResMut<Physics>`](Physics).
+#[derive(Component, Clone, Debug)]
+#[component(on_remove = take_out)]
+pub struct CharacterHandle {
+    character: Character,
+    /// As it was written or read last.
+    transform: Transform,
+    /// Bodies that the world was told are its.
+    bodies: Vec<BodyId>,
+}
+
+impl Deref for CharacterHandle {
+    type Target = Character;
+
+    fn deref(&self) -> &Character {
+        &self.character
+    }
+}
+
+impl DerefMut for CharacterHandle {
+    fn deref_mut(&mut self) -> &mut Character {
+        &mut self.character
+    }
+}
+
+/// Entities of a character's joints, in the order of its rig; found once the scene is there.
+#[derive(Component, Clone, Debug, Default)]
+pub struct CharacterJoints(pub Vec<Option<Entity>>);
+
+/// Something happened to a character.
+#[derive(Event, Message, Clone, Copy, Debug, PartialEq)]
+pub struct CharacterTold {
+    /// Entity of the character.
+    pub character: Entity,
+    /// What happened.
+    pub event: Told,
+}
+
+fn take_out(mut world: DeferredWorld, context: HookContext) {
+    let Some(handle) = world.get::<CharacterHandle>(context.entity) else { return };
+    let (character, bodies) = (handle.character.clone(), handle.bodies.clone());
+    let Some(mut physics) = world.get_resource_mut::<Physics>() else { return };
+    for &body in &bodies {
+        if physics.contains(body) {
+            crate::particles::remove_hanging(&mut physics, body);
+        }
+    }
+    character.despawn(&mut physics);
+    physics.gone.extend(bodies);
+}
+
+/// The character goes with the component that made it.
+pub(crate) fn forget_character(removed: On<Remove, CharacterBody>, mut commands: Commands) {
+    commands.entity(removed.event().entity).try_remove::<(CharacterHandle, CharacterJoints)>();
+}
+
+pub(crate) fn add_characters(
+    mut commands: Commands,
+    mut physics: ResMut<Physics>,
+    new: Query<(Entity, &CharacterBody, &Transform), Without<CharacterHandle>>,
+) {
+    let mut new: Vec<_> = new.iter().collect();
+    new.sort_unstable_by_key(|&(entity, ..)| order(entity));
+    for (entity, CharacterBody(def), &transform) in new {
+        let character = Character::spawn(&mut physics, def, to_pose(&transform));
+        let mut handle = CharacterHandle { character, transform, bodies: Vec::new() };
+        register(&mut physics, entity, &mut handle);
+        commands.entity(entity).insert(handle);
+    }
+}
+
+/// Tells the world which bodies are whose.
+fn register(physics: &mut Physics, entity: Entity, handle: &mut CharacterHandle) {
+    if handle.bodies != handle.character.bodies() {
+        physics.gone.extend(handle.bodies.iter().filter(|body| !handle.character.bodies().contains(body)));
+        handle.bodies = handle.character.bodies().to_vec();
+        physics.limbs.extend(handle.bodies.iter().map(|&body| (body, entity)));
+    }
+}
+
+/// Puts characters where someone has put their entities.
+pub(crate) fn read_characters(
+    mut physics: ResMut<Physics>,
+    mut changed: Query<(Entity, &mut CharacterHandle, &Transform), Changed<Transform>>,
+) {
+    let mut changed: Vec<_> = changed.iter_mut().collect();
+    changed.sort_unstable_by_key(|(entity, ..)| order(*entity));
+    for (_, mut handle, &transform) in changed {
+        if handle.transform == transform {
+            continue;
+        }
+        handle.transform = transform;
+        let model_from_character = affine(&handle.def().mapping().character_from_model()).inverse();
+        let place = Transform::from_matrix((transform.compute_affine() * model_from_character).into());
+        handle.character.teleport(&mut physics, to_pose(&place));
+    }
+}
+
+/// Characters go on after the step, in the order of their entities.
+pub(crate) fn update_characters(
+    mut physics: ResMut<Physics>,
+    mut commands: Commands,
+    mut characters: Query<(Entity, &mut CharacterHandle)>,
+) {
+    let mut all: Vec<_> = characters.iter_mut().collect();
+    all.sort_unstable_by_key(|(entity, _)| order(*entity));
+    for (character, mut handle) in all {
+        handle.character.update(&mut physics);
+        register(&mut physics, character, &mut handle);
+        for &event in handle.events() {
+            both(&mut commands, CharacterTold { character, event });
+        }
+    }
+}
+
+/// Finds the joints of characters whose scenes have come.
+pub(crate) fn find_joints(
+    mut commands: Commands,
+    waiting: Query<(Entity, &CharacterBody), Without<CharacterJoints>>,
+    children: Query<&Children>,
+    names: Query<&Name>,
+) {
+    for (entity, CharacterBody(def)) in &waiting {
+        let joints = joints_below(entity, &def.rig, &children, &names);
+        let skinned = def.rig.skins.iter().flat_map(|skin| &skin.joints);
+        if skinned.clone().next().is_some() && skinned.clone().all(|&joint| joints[joint].is_some()) {
+            commands.entity(entity).insert(CharacterJoints(joints));
+        }
+    }
+}
+
+/// Entity of each joint: below that of its parent, a child of its name; of a root, the nearest descendant. Names may occur several
+/// times; each entity is taken once.
+fn joints_below(
+    root: Entity,
+    rig: &Rig,
+    children: &Query<&Children>,
+    names: &Query<&Name>,
+) -> Vec<Option<Entity>> {
+    let mut found: Vec<Option<Entity>> = Vec::with_capacity(rig.joints.len());
+    for joint in &rig.joints {
+        // Nodes without a name are called so by Bevy's reader.
+        let unnamed = format!("GltfNode{}", joint.source);
+        let wanted = if joint.name.is_empty() { &unnamed } else { &joint.name };
+        let from = joint.parent.map_or(Some(root), |parent| found[parent]);
+        let depth = if joint.parent.is_some() { 1 } else { usize::MAX };
+        let mut queue: VecDeque<(Entity, usize)> = from.into_iter().map(|from| (from, 0)).collect();
+        let mut hit = None;
+        while let Some((entity, level)) = queue.pop_front() {
+            let named = names.get(entity).is_ok_and(|name| name.as_str() == wanted);
+            if level > 0 && named && !found.contains(&Some(entity)) {
+                hit = Some(entity);
+                break;
+            }
+            if level < depth
+                && let Ok(below) = children.get(entity)
+            {
+                queue.extend(below.iter().map(|child| (child, level + 1)));
+            }
+        }
+        found.push(hit);
+    }
+    found
+}
+
+fn affine(affine: &Affine) -> Affine3A {
+    let [x, y, z] = [affine.linear.x_axis, affine.linear.y_axis, affine.linear.z_axis].map(Vec3A::from);
+    Affine3A { matrix3: Mat3A::from_cols(x, y, z), translation: affine.translation.into() }
+}
+
+/// Writes the places of characters and the transforms of their joints, between the last two steps.
+pub(crate) fn write_characters(
+    time: Res<Time<Fixed>>,
+    interpolation: Res<crate::Interpolation>,
+    mut characters: Query<(Entity, &mut CharacterHandle, Option<&CharacterJoints>)>,
+    mut transforms: Query<&mut Transform>,
+    mut pose: Local<Vec<LocalTransform>>,
+) {
+    let alpha = interpolation.alpha(&time);
+    for (entity, mut handle, joints) in &mut characters {
+        let place = handle.character.interpolated(alpha, &mut pose);
+        let world_from_model = affine(&handle.def().mapping().world_from_model(place));
+        if let Ok(mut transform) = transforms.get_mut(entity)
+            // What someone has changed since the last step is still to be read.
+            && *transform == handle.transform
+        {
+            let new = Transform::from_matrix(world_from_model.into());
+            if *transform != new {
+                *transform = new;
+                handle.transform = new;
+            }
+        }
+        let Some(CharacterJoints(joints)) = joints else { continue };
+        for (joint, local) in joints.iter().zip(pose.iter()) {
+            let Some(mut transform) = joint.and_then(|joint| transforms.get_mut(joint).ok()) else {
+                continue;
+            };
+            let LocalTransform { translation, rotation, scale } = *local;
+            transform.set_if_neq(Transform { translation, rotation: to_quat(rotation), scale });
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! Bevy's own threads as a runner of tasks.
+
+use bevy_ecs::prelude::*;
+#[cfg(feature = "reflect")]
+use bevy_reflect::std_traits::ReflectDefault;
+use bevy_tasks::ComputeTaskPool;
+use core::cell::Cell;
+use sinew_physics::{Serial, TaskRunner};
+
+/// Threads that a step runs on. The result is the same with each.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Resource, Default, Debug, PartialEq))]
+pub enum StepThreads {
+    /// Those of Bevy's `ComputeTaskPool`, or one where there is no pool: an app without `TaskPoolPlugin`. Default.
+    #[default]
+    Bevy,
+    /// The thread that the step's system runs on.
+    One,
+}
+
+/// Runs tasks on Bevy's `ComputeTaskPool`; the thread that asks takes its share. A batch that begins within a task runs on the thread that
+/// asks for it: who waits for a batch of Bevy's takes up other tasks meanwhile, and each of them would wait in turn, ever deeper.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BevyTasks;
+
+thread_local! {
+    /// True while this thread runs a batch or a part of one.
+    static BUSY: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Marks this thread as busy until it is dropped.
+struct Busy(bool);
+
+impl Busy {
+    fn new() -> Self {
+        Self(BUSY.replace(true))
+    }
+}
+
+impl Drop for Busy {
+    fn drop(&mut self) {
+        BUSY.set(self.0);
+    }
+}
+
+impl TaskRunner for BevyTasks {
+    fn run(&self, count: usize, task: &(dyn Fn() + Sync)) {
+        let pool = ComputeTaskPool::try_get().filter(|_| count > 1 && !BUSY.get());
+        let Some(pool) = pool else { return Serial.run(count, task) };
+        let _busy = Busy::new();
+        pool.scope(|scope| {
+            for _ in 1..count {
+                scope.spawn(async {
+                    let _busy = Busy::new();
+                    task();
+                });
+            }
+            task();
+        });
+    }
+}

@@ -1,0 +1,32 @@
+//! Components in the type registry.
+
+use super::*;
+use bevy_ecs::reflect::AppTypeRegistry;
+use bevy_reflect::serde::{ReflectDeserializer, ReflectSerializer};
+use bevy_reflect::{FromReflect, PartialReflect};
+use serde::de::DeserializeSeed;
+
+fn round<T: FromReflect + PartialReflect>(app: &App, value: &T) -> T {
+    let registry = app.world().resource::<AppTypeRegistry>().read();
+    let text = serde_json::to_string(&ReflectSerializer::new(value, &registry)).expect("it is written");
+    let mut read = serde_json::Deserializer::from_str(&text);
+    let back = ReflectDeserializer::new(&registry).deserialize(&mut read).expect("it is read");
+    T::from_reflect(&*back).unwrap_or_else(|| panic!("{text} is one"))
+}
+
+#[test]
+fn components_come_back_from_a_scene_as_they_were() {
+    let app = app();
+    let shapes = vec![Shape::sphere(0.25).into(), Shape::cuboid(Vec3::splat(0.5)).into()];
+    assert_eq!(round(&app, &Collider(shapes.clone())), Collider(shapes));
+    assert_eq!(round(&app, &RigidBody::Kinematic), RigidBody::Kinematic);
+    let velocity = Velocity { linear: Vec3::X, angular: Vec3::Y };
+    assert_eq!(round(&app, &velocity), velocity);
+    let up = Field(FieldDef::new(FieldKind::Uniform(UniformGravity { acceleration: Vec3::Y })));
+    assert_eq!(round(&app, &up), up);
+    let (a, b) = (Entity::from_raw_u32(1).expect("an index"), Entity::from_raw_u32(2).expect("an index"));
+    let joint = Joint { a, b, anchor: Vec3::X, axis: Vec3::Z, kind: JointKind::Hinge { limit: None } };
+    assert_eq!(round(&app, &joint), joint);
+    let walk = Walk { velocity: Vec3::X, jump: 1.0 };
+    assert_eq!(round(&app, &walk), walk);
+}

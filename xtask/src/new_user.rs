@@ -1,0 +1,140 @@
+//! First steps as a new user takes them: what README and guide print, from an empty folder outside the workspace.
+
+use crate::command;
+use anyhow::{Context, Result, bail};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// A page whose programs are tried, and the name of the project that they are put into.
+const PAGES: &[(&str, &str)] = &[("README.md", "readme"), ("docs/guide/src/first_ragdoll.md", "guide")];
+const BEVY_PAGE: &str = "integrations/bevy_sinew/README.md";
+
+/// `cargo xtask new-user`.
+#[derive(clap::Args)]
+pub struct NewUser {
+    /// The plugin for Bevy as well
+    #[arg(long)]
+    bevy: bool,
+}
+
+impl NewUser {
+    /// Tries the library, and the plugin if asked.
+    ///
+    /// # Errors
+    /// As [`library`] and [`bevy`].
+    pub fn run(&self) -> Result<()> {
+        library()?;
+        if self.bevy { bevy() } else { Ok(()) }
+    }
+}
+
+/// Programs of README and of the guide's first chapter build and run, in release builds.
+///
+/// # Errors
+/// If one does not.
+pub fn library() -> Result<()> {
+    let dependencies = format!("sinew = {{ path = {:?} }}\n", command::root().join("crates/sinew"));
+    PAGES.iter().try_for_each(|&(page, name)| project(name, page, &dependencies, &["--release"]))
+}
+
+/// The program of the plugin's README, with the dependencies that it prints, in a debug build, which takes half the time.
+///
+/// # Errors
+/// If it does not build or run, or none are printed.
+pub fn bevy() -> Result<()> {
+    let text = read(BEVY_PAGE)?;
+    let printed = blocks(&text, "toml").into_iter().next().context("no dependencies are printed")?;
+    let path = command::root().join("integrations/bevy_sinew");
+    let by_path = |line: &str| match line.split_once(" = ") {
+        Some(("bevy_sinew", _)) => format!("bevy_sinew = {{ path = {path:?} }}\n"),
+        _ => format!("{line}\n"),
+    };
+    let lines = printed.lines().filter(|line| *line != "[dependencies]");
+    project("bevy", BEVY_PAGE, &lines.map(by_path).collect::<String>(), &[])
+}
+
+fn read(page: &str) -> Result<String> {
+    fs::read_to_string(command::root().join(page)).with_context(|| page.to_owned())
+}
+
+/// A project with each block of Rust of a page as a program, in an empty folder; all are run.
+fn project(name: &str, page: &str, dependencies: &str, profile: &[&str]) -> Result<()> {
+    let folder = std::env::temp_dir().join(format!("sinew-new-user-{name}-{}", std::process::id()));
+    fs::create_dir_all(folder.join("src/bin")).with_context(|| folder.display().to_string())?;
+    let outcome = try_in(&folder, name, page, dependencies, profile).with_context(|| page.to_owned());
+    fs::remove_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    outcome
+}
+
+fn try_in(folder: &Path, name: &str, page: &str, dependencies: &str, profile: &[&str]) -> Result<()> {
+    let programs = blocks(&read(page)?, "rust");
+    if programs.is_empty() {
+        bail!("it has no program");
+    }
+    let manifest = format!(
+        "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[dependencies]\n{dependencies}"
+    );
+    fs::write(folder.join("Cargo.toml"), manifest)?;
+    for (index, program) in programs.iter().enumerate() {
+        fs::write(folder.join(format!("src/bin/{name}_{index}.rs")), whole(program))?;
+    }
+    for index in 0..programs.len() {
+        let mut run = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        run.args(["run", "--quiet", "--bin", &format!("{name}_{index}")]).args(profile).current_dir(folder);
+        run.arg("--target-dir").arg(command::target().join("new_user"));
+        // What `cargo xtask` was built with is not the new user's.
+        for variable in ["CARGO_MANIFEST_DIR", "CARGO_PKG_NAME", "RUSTFLAGS"] {
+            run.env_remove(variable);
+        }
+        command::run(run.stdout(std::process::Stdio::null()))?;
+    }
+    Ok(())
+}
+
+/// A program with a `main`: that of the text, or all of the text in one.
+fn whole(program: &str) -> String {
+    if program.contains("fn main()") { program.to_owned() } else { format!("fn main() {{\n{program}}}\n") }
+}
+
+/// Fenced blocks of a language, as they are printed: lines that only tests see are no part of them.
+fn blocks(text: &str, language: &str) -> Vec<String> {
+    let mut blocks = Vec::new();
+    let mut open: Option<(bool, String)> = None;
+    for line in text.lines() {
+        match (&mut open, line.strip_prefix("```")) {
+            (None, Some(info)) => open = Some((info == language, String::new())),
+            (Some(_), Some(_)) => blocks.extend(open.take().filter(|block| block.0).map(|block| block.1)),
+            (Some((_, block)), None) if line != "#" && !line.starts_with("# ") => {
+                block.push_str(line);
+                block.push('\n');
+            }
+            _ => {}
+        }
+    }
+    blocks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn programs_are_taken_as_they_are_printed() {
+        let page = "Text.\n\n```rust\nlet x = 1;\n# let hidden = 2;\n#[derive(Debug)]\nstruct A;\n```\n\n\
+                    ```sh\ncargo run\n```\n\n```rust\nfn main() {}\n```\n";
+        let programs = blocks(page, "rust");
+        assert_eq!(programs, ["let x = 1;\n#[derive(Debug)]\nstruct A;\n", "fn main() {}\n"]);
+        assert_eq!(whole(&programs[0]), "fn main() {\nlet x = 1;\n#[derive(Debug)]\nstruct A;\n}\n");
+        assert_eq!(whole(&programs[1]), programs[1]);
+        assert_eq!(blocks(page, "sh"), ["cargo run\n"]);
+    }
+
+    #[test]
+    fn every_page_has_programs() {
+        for page in PAGES.iter().map(|page| page.0).chain([BEVY_PAGE]) {
+            assert!(!blocks(&read(page).expect("it is there"), "rust").is_empty(), "{page}");
+        }
+        assert!(blocks(&read(BEVY_PAGE).expect("it is there"), "toml")[0].contains("bevy_sinew = "));
+    }
+}
