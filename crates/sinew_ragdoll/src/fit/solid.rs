@@ -9,6 +9,11 @@ use sinew_math::{Rotation, Transform, Vec3, max3, min3};
 use sinew_physics::{Hull, Shape};
 use std::sync::Arc;
 
+/// What is added to the directions in which a hull's corners are looked for, half sides of the box. All points of a flat side are equally
+/// far out, and which of them counts must not hang on the last bit of their places: the same skin in another unit had a hull of half
+/// the volume.
+const ASKEW: Vec3 = Vec3::new(1e-3, 6e-4, 3e-4);
+
 pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     let mut direction = bones.direction(bone, Some(patch.center));
     if bones.list[bone].part == Part::Foot {
@@ -48,7 +53,7 @@ fn hull_of(cuboid: &Fit, patch: &Patch, within: impl Fn(Vec3) -> Vec3) -> Option
     let local: Vec<_> = patch.samples.iter().map(|s| within(frame.inverse_point(s.point))).collect();
     let mut points = Vec::with_capacity(26);
     for direction in directions() {
-        let along = direction / half;
+        let along = (direction + ASKEW) / half;
         let outermost = local.iter().copied().reduce(|a, b| if b.dot(along) > a.dot(along) { b } else { a });
         points.extend(outermost.map(|p| p * SHRINK));
     }

@@ -184,6 +184,11 @@ impl SolverJoint {
         dot(&row.a, &velocities[self.a as usize]) + dot(&row.b, &velocities[self.b as usize])
     }
 
+    /// True if its motor is saturated in some direction.
+    fn pushes(&self) -> bool {
+        self.drive.motor.is_some() && self.saturated != [0; DIRECTIONS]
+    }
+
     /// Directions in which the motor acts.
     fn motor_directions(&self) -> impl Iterator<Item = usize> + use<> {
         let (kind, motor) = (self.geometry.kind, self.drive.motor);
@@ -277,7 +282,7 @@ impl SolverJoint {
 }
 
 impl IslandSolver {
-    /// Before the forces of a substep: rates of the soft rows, and what saturated motors push.
+    /// Before the forces of a substep: rates of the soft rows and of motors.
     pub(in crate::solver) fn begin_drives(&mut self) {
         for joint in &mut self.joints {
             if joint.rigid < joint.rows.count {
@@ -294,16 +299,30 @@ impl IslandSolver {
         }
     }
 
-    /// Puts the full push of all saturated motors on their bodies.
+    /// After the forces of a substep: puts the full push of all saturated motors on their bodies.
     pub(in crate::solver) fn push_saturated(&mut self) {
+        (self.push_energy, self.push_work) = (0.0, 0.0);
+        if !self.joints.iter().any(SolverJoint::pushes) {
+            return;
+        }
         for j in 0..self.joints.len() {
-            if self.joints[j].drive.motor.is_none() {
-                continue;
-            }
             for i in 0..DIRECTIONS {
                 if let Some(on_b) = self.push_motor(j, i) {
                     let arm = self.joints[j].pose.arm_b;
                     self.joints[j].add_reaction(&on_b, arm);
+                }
+            }
+        }
+        let free = self.kinetic_energy(&self.unconstrained);
+        self.push_energy = self.kinetic_energy(&self.velocities[..self.links.len()]) - free;
+    }
+
+    /// Puts the push of [`push_saturated`](Self::push_saturated) on velocities that were set back to those before it.
+    pub(in crate::solver) fn push_again(&mut self) {
+        if self.joints.iter().any(SolverJoint::pushes) {
+            for j in 0..self.joints.len() {
+                for i in 0..DIRECTIONS {
+                    self.push_motor(j, i);
                 }
             }
         }
@@ -346,8 +365,23 @@ impl IslandSolver {
         for row in &self.limits {
             given += row.soft_work(&self.joints[row.joint as usize], &self.velocities);
         }
+        self.push_work = self.work_of_saturated();
+        by_motors += self.push_work;
         self.drive_work += max(by_motors, 0.0) + given;
         self.work.drives += self.work_of_motors();
+    }
+
+    /// Kinetic energy that the pushes of saturated motors bring, J: impulse times the mean of the rates before and after it. What they would
+    /// give bodies that no joint held says nothing: that may be a thousand times as much.
+    pub(in crate::solver) fn work_of_saturated(&self) -> f32 {
+        let mut sum = 0.0;
+        for joint in self.joints.iter().filter(|joint| joint.pushes()) {
+            for i in joint.motor_directions().filter(|&i| joint.saturated[i] != 0) {
+                let impulse = f32::from(joint.saturated[i]) * joint.motor_cap(i, self.h);
+                sum += 0.5 * impulse * (joint.start_rate[i] + joint.open_rate(i, &self.velocities));
+            }
+        }
+        sum
     }
 
     /// On the way that the bodies are about to go, J: force times way. Kinetic and potential energy together rise by no more.
@@ -402,10 +436,7 @@ impl IslandSolver {
                     let asked = self.asked_of_motor(j, i);
                     if self.joints[j].saturated[i] == 0 && asked.abs() > self.joints[j].motor_cap(i, self.h) {
                         self.joints[j].saturated[i] = if asked > 0.0 { 1 } else { -1 };
-                        let before = self.joints[j].open_rate(i, &self.velocities);
                         self.push_motor(j, i);
-                        let rate = 0.5 * (before + self.joints[j].open_rate(i, &self.velocities));
-                        self.drive_work += rate.abs() * self.joints[j].motor_cap(i, self.h);
                         changed = true;
                     }
                 }
