@@ -9,10 +9,11 @@ use sinew_math::{Rotation, Transform, Vec3, max3, min3};
 use sinew_physics::{Hull, Shape};
 use std::sync::Arc;
 
-/// What is added to the directions in which a hull's corners are looked for, half sides of the box. All points of a flat side are equally
-/// far out, and which of them counts must not hang on the last bit of their places: the same skin in another unit had a hull of half
-/// the volume.
-const ASKEW: Vec3 = Vec3::new(1e-3, 6e-4, 3e-4);
+/// What being far from the middle counts for beside being far out along a direction, and how far directions are askew, half sides of the
+/// box. All points of a flat side are equally far out along it. The one nearest to a corner stands for them, and of two mirror images
+/// always the same: what decided was the last bit of their places, and the same skin in another unit had a hull of half the volume.
+const TOWARD_CORNERS: f32 = 1e-3;
+const ASKEW: Vec3 = Vec3::new(1e-4, 6e-5, 3e-5);
 
 pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     let mut direction = bones.direction(bone, Some(patch.center));
@@ -53,8 +54,12 @@ fn hull_of(cuboid: &Fit, patch: &Patch, within: impl Fn(Vec3) -> Vec3) -> Option
     let local: Vec<_> = patch.samples.iter().map(|s| within(frame.inverse_point(s.point))).collect();
     let mut points = Vec::with_capacity(26);
     for direction in directions() {
-        let along = (direction + ASKEW) / half;
-        let outermost = local.iter().copied().reduce(|a, b| if b.dot(along) > a.dot(along) { b } else { a });
+        let toward = direction + ASKEW;
+        let out = |point: Vec3| {
+            let share = point / half;
+            share.dot(toward) + TOWARD_CORNERS * share.dot(share)
+        };
+        let outermost = local.iter().copied().reduce(|a, b| if out(b) > out(a) { b } else { a });
         points.extend(outermost.map(|p| p * SHRINK));
     }
     // The body's origin is the middle of its shape.
