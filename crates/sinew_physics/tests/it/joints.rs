@@ -210,10 +210,10 @@ fn saturated_motors_give_what_they_work_and_no_more() {
         world.step();
         let after = world.energy();
         let rise = after.kinetic - before.kinetic - world.work().total();
-        assert!(rise <= 0.02 * before.kinetic.max(20.4), "step {step}: {rise} J out of {}", before.kinetic);
+        assert!(rise <= 0.01 * before.kinetic.max(20.2), "step {step}: {rise} J out of {}", before.kinetic);
         most = most.max(after.kinetic);
     }
-    assert!(most > 20.0, "they moved it: {most} J");
+    assert!(most > 2.0, "they moved it: {most} J");
 }
 
 #[test]

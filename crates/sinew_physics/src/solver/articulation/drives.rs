@@ -200,6 +200,16 @@ impl SolverJoint {
         self.drive.motor.map_or(0.0, |motor| motor.cap(direction) * h)
     }
 
+    /// Impulses of the motor on A and on B, if it is saturated in that direction.
+    pub(in crate::solver) fn push_of_motor(&self, direction: usize, h: f32) -> Option<[Vec6; 2]> {
+        if self.saturated[direction] == 0 || self.drive.motor.is_none() {
+            return None;
+        }
+        let impulse = f32::from(self.saturated[direction]) * self.motor_cap(direction, h);
+        let row = open_row(&self.geometry.kind, &self.pose, direction);
+        Some([row.a.map(|x| x * impulse), row.b.map(|x| x * impulse)])
+    }
+
     /// Change that rows with `rate` are to make to it: `solve` removes the position error within the substep and lets soft rows
     /// act, `relax` stops the rigid ones and leaves soft ones as they are, or they would act twice.
     pub(in crate::solver) fn residual(&self, rate: &Vec6, solve: bool, h: f32) -> Vec6 {
@@ -305,22 +315,15 @@ impl IslandSolver {
         if !self.joints.iter().any(SolverJoint::pushes) {
             return;
         }
-        for j in 0..self.joints.len() {
-            for i in 0..DIRECTIONS {
-                if let Some(on_b) = self.push_motor(j, i) {
-                    let arm = self.joints[j].pose.arm_b;
-                    self.joints[j].add_reaction(&on_b, arm);
-                }
-            }
-        }
+        self.push_again();
         let free = self.kinetic_energy(&self.unconstrained);
         self.push_energy = self.kinetic_energy(&self.velocities[..self.links.len()]) - free;
     }
 
     /// Puts the push of [`push_saturated`](Self::push_saturated) on velocities that were set back to those before it.
     pub(in crate::solver) fn push_again(&mut self) {
-        if self.joints.iter().any(SolverJoint::pushes) {
-            for j in 0..self.joints.len() {
+        for j in 0..self.joints.len() {
+            if self.joints[j].pushes() {
                 for i in 0..DIRECTIONS {
                     self.push_motor(j, i);
                 }
@@ -328,22 +331,15 @@ impl IslandSolver {
         }
     }
 
-    /// Gives the impulse on B, if the motor is saturated in that direction.
-    fn push_motor(&mut self, j: usize, direction: usize) -> Option<Vec6> {
+    fn push_motor(&mut self, j: usize, direction: usize) {
         let joint = &self.joints[j];
-        if joint.saturated[direction] == 0 || joint.drive.motor.is_none() {
-            return None;
-        }
-        let impulse = f32::from(joint.saturated[direction]) * joint.motor_cap(direction, self.h);
-        let row = open_row(&joint.geometry.kind, &joint.pose, direction);
-        let (on_a, on_b) = (row.a.map(|x| x * impulse), row.b.map(|x| x * impulse));
-        for (body, push) in [(joint.a as usize, on_a), (joint.b as usize, on_b)] {
+        let Some(pushes) = joint.push_of_motor(direction, self.h) else { return };
+        for (body, push) in [joint.a as usize, joint.b as usize].into_iter().zip(pushes) {
             if body < self.links.len() {
                 let change = self.bodies[body].velocity_change(&push);
                 add_scaled(&mut self.velocities[body], &change, 1.0);
             }
         }
-        Some(on_b)
     }
 
     /// Adds the work of the drives in this substep: impulse times the rate after it. Kinetic energy rises by that at most, less
