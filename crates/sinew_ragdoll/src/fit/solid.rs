@@ -9,7 +9,7 @@ use sinew_math::{Rotation, Transform, Vec3, max3, min3};
 use sinew_physics::{Hull, Shape};
 use std::sync::Arc;
 
-/// What being far from the middle counts for beside being far out along a direction, and how far directions are askew, half sides of the
+/// Weight of being far from the middle beside being far out along a direction, and by how much directions are askew, in half sides of the
 /// box. All points of a flat side are equally far out along it. The one nearest to a corner stands for them, and of two mirror images
 /// always the same: what decided was the last bit of their places, and the same skin in another unit had a hull of half the volume.
 const TOWARD_CORNERS: f32 = 1e-3;

@@ -16,12 +16,12 @@ const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=3000.0;
 pub struct Doubt {
     /// Why, a sentence.
     pub reason: String,
-    /// How many times as large the heaviest of its kind would be, at most 1.
+    /// Size at which the heaviest of its kind would weigh as much, as a share of its own, at most 1.
     size: f32,
 }
 
 impl Doubt {
-    /// Of the ragdoll's mass; `None` if there are such bodies.
+    /// Doubt about a ragdoll's mass; `None` if there are such bodies.
     pub fn of(def: &RagdollDef) -> Option<Self> {
         let (kind, range) = kin(def);
         if range.contains(&def.total_mass) {
