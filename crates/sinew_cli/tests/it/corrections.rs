@@ -111,8 +111,8 @@ fn every_command_that_builds_heeds_every_correction() {
         let bones = [["--no-body", "hand"], ["--ignore", hand.as_str()]];
         // The doctor has nothing to say of a body without hands.
         let of_bones = if command.contains(&"doctor") { &[][..] } else { &bones[..] };
-        for extra in measures.iter().chain(of_bones).copied() {
-            assert_ne!(run(&extra), plain, "{command:?} does not heed {extra:?}");
+        for extra in measures.iter().chain(of_bones) {
+            assert_ne!(run(extra), plain, "{command:?} does not heed {extra:?}");
         }
         let odd = ["--role", "hips=Bnoe_0"];
         assert!(sinew(&[command, &odd].concat()).refusal(1).ends_with("(--role hips=Bnoe_0)"), "{command:?}");
