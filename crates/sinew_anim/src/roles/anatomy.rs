@@ -504,17 +504,14 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Number of mirrored pairs whose names mirror each other, and number of all mirrored pairs. Two that are called the same part and
-/// neither by its side ("Leg.1" and "Leg.2", or sides in a language that nobody here speaks) agree as well: the shape tells sides.
+/// Number of mirrored pairs whose names mirror each other, and number of all mirrored pairs.
 fn mirrored_names(graph: &Graph, symmetry: &Symmetry, readings: &[Reading]) -> (usize, usize) {
     let (mut agreeing, mut pairs) = (0, 0);
     for (i, node) in graph.nodes.iter().enumerate() {
         let Some(other) = symmetry.other(i).filter(|&k| k > i) else { continue };
         let (a, b) = (&readings[node.joint], &readings[graph.nodes[other].joint]);
         pairs += 1;
-        let sided = a.side.is_some() && a.side.map(Side::mirror) == b.side;
-        let sideless = a.part.is_some() && a.part == b.part && (a.side, b.side) == (None, None);
-        agreeing += usize::from(a.key == b.key && (sided || sideless));
+        agreeing += usize::from(a.key == b.key && a.side.is_some() && a.side.map(Side::mirror) == b.side);
     }
     (agreeing, pairs)
 }
