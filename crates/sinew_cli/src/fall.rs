@@ -5,7 +5,7 @@ use crate::report::number;
 use crate::report::quality_report::{quality_json, quality_text};
 use crate::report::story;
 use serde_json::{Map, Value, json};
-use sinew::ragdoll::quality::judge_bake;
+use sinew::ragdoll::quality::{Doubt, Quality, judge_bake};
 use sinew::ragdoll::{BakeInput, Baked, Flaw, SkinQuality, Verdict, bake};
 use std::fmt::Write;
 use std::path::Path;
@@ -25,13 +25,15 @@ pub struct Fall<'a> {
 }
 
 impl<'a> Fall<'a> {
-    /// Simulates it.
-    pub fn simulate(input: &'a BakeInput<'a>) -> Self {
+    /// Simulates it, and judges it in the light of what is in doubt about the mass.
+    pub fn simulate(input: &'a BakeInput<'a>, doubt: Option<&Doubt>) -> Self {
         let (baked, cpu_seconds) = timed(|| bake(input));
         let seconds = baked.steps as f64 * input.world.step_nanoseconds as f64 * 1e-9;
         // The clock may be too coarse for a short bake.
         let realtime_factor = seconds / cpu_seconds.max(1e-6);
-        let (verdict, reasons) = judge_bake(&baked.quality);
+        let judge = |[quality]: &[Quality; 1]| judge_bake(quality);
+        let figures = [baked.quality];
+        let (verdict, reasons) = doubt.map_or_else(|| judge(&figures), |doubt| doubt.judge(figures, judge));
         Self { input, baked, realtime_factor, verdict, reasons }
     }
 

@@ -203,6 +203,62 @@ fn every_humanoid_walks() {
     }
 }
 
+/// The walk with joints named as other tools do, and with every second name lost, and with none: the same body, the same walk.
+#[test]
+fn a_walk_by_other_names_is_a_walk() {
+    let (Some(walk), Some((rig, analysis))) = (actor(WALK), character("mannequiny.glb")) else { return };
+    let parts = [
+        ("UpLeg", "UpperLeg"),
+        ("ForeArm", "LowerArm"),
+        ("ToeBase", "Toes"),
+        ("Leg", "LowerLeg"),
+        ("Arm", "UpperArm"),
+        ("Shoulder", "Clavicle"),
+    ];
+    let dialect = |name: &str| {
+        for (side, letter) in [("Left", "L"), ("Right", "R")] {
+            if let Some(part) = name.strip_prefix(side) {
+                let known = parts.iter().find(|(own, _)| *own == part).map_or(part, |(_, other)| other);
+                return format!("{known}_{letter}");
+            }
+        }
+        name.to_owned()
+    };
+    assert_eq!(dialect("LeftUpLeg"), "UpperLeg_L");
+    type Naming<'a> = &'a dyn Fn(usize, &str) -> String;
+    let namings: [(&str, Naming<'_>); 4] = [
+        ("UpperLeg_L", &|_, name| dialect(name)),
+        ("every second", &|i, name| if i % 2 == 0 { name.to_owned() } else { String::new() }),
+        ("the others", &|i, name| if i % 2 == 1 { name.to_owned() } else { format!("joint{i}") }),
+        ("none", &|i, _| format!("joint{i}")),
+    ];
+    for (what, name) in namings {
+        let mut other = walk.rig.clone();
+        other.joints.iter_mut().enumerate().for_each(|(i, joint)| joint.name = name(i, &joint.name));
+        let (found, reference) = stand(&other, &walk.clip, None).expect("bones");
+        for role in [
+            Role::Hips,
+            Role::UpperLeg(Side::Left),
+            Role::LowerLeg(Side::Right),
+            Role::Foot(Side::Left),
+            Role::UpperArm(Side::Right),
+            Role::LowerArm(Side::Left),
+        ] {
+            assert_eq!(found.joint_with(role), walk.analysis.joint_with(role), "{what}: {role:?}");
+        }
+        // Where they have lost their names, a finger may stand for the hand and the crown for the head.
+        for role in [Role::Hand(Side::Right), Role::Head] {
+            let [told, own] = [&found, &walk.analysis].map(|of| of.joint_with(role).expect("a human's"));
+            let mut up = std::iter::successors(Some(told), |&joint| walk.rig.joints[joint].parent);
+            assert!(up.any(|joint| joint == own), "{what}: {told} for {own}, {role:?}");
+        }
+        let named = Actor { rig: other, clip: walk.clip.clone(), analysis: found, reference };
+        let moved = onto(&named, &rig, &analysis, &RetargetOptions::default());
+        let slide = 100.0 * moved.feet.slide[1].mean / analysis.height;
+        assert!(slide < 1.0 && moved.contacts.len() >= 6, "{what}: {slide} cm/s per m");
+    }
+}
+
 /// Height of the lowest point of both soles over where it is lowest of all, at most, metres.
 fn in_the_air(rig: &Rig, analysis: &RigAnalysis, take: &Take) -> f32 {
     let legs = Legs::of(rig, analysis).unwrap();

@@ -36,7 +36,7 @@ impl Demo {
     pub fn run(&self) -> Result<Report> {
         let demo = sinew_scenes::demo::Demo::new(Site::CabinWithStairs);
         let input = demo.input();
-        let fall = Fall::simulate(&input);
+        let fall = Fall::simulate(&input, None);
         let [clip, picture, figures] =
             ["demo.glb", "demo.gif", "report.json"].map(|name| self.out.join(name));
         let paths: [&Path; 3] = [&clip, &picture, &figures];

@@ -12,7 +12,7 @@ use clap::ValueEnum;
 use sinew::formats::{Textures, write_ragdoll};
 use sinew::physics::Threads;
 use sinew::ragdoll::build::BuildReport;
-use sinew::ragdoll::quality::{GateReport, gate_on, judge_doubtful};
+use sinew::ragdoll::quality::{GateReport, gate_on, judge};
 use sinew::ragdoll::{BuildOptions, LimitSource, RagdollDef, Settings, Sex, ShapeChoice, drop_test};
 use std::path::PathBuf;
 
@@ -89,8 +89,8 @@ impl RagdollBuild {
         let (character, settings, def, build) = built?;
         let mut tested = drop_test(&def);
         if let Some(doubt) = settings.doubt(&def) {
-            tested.verdict = judge_doubtful(&def, &tested.drop, &tested.wall);
-            tested.reasons.insert(0, doubt);
+            let figures = [tested.drop, tested.wall];
+            (tested.verdict, tested.reasons) = doubt.judge(figures, |[drop, wall]| judge(drop, wall));
         }
         let skin = SkinReport::of(&character, &def, &tested);
         skin.judge(&mut tested);

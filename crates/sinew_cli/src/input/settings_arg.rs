@@ -5,7 +5,7 @@ use crate::input::files::CharacterFile;
 use sinew::anim::{Hints, RigAnalysis, Role, UnitGuess};
 use sinew::formats::{Textures, read_bytes, read_ragdoll_settings, settings_path};
 use sinew::ragdoll::build::{BuildReport, takes};
-use sinew::ragdoll::quality::implausible;
+use sinew::ragdoll::quality::Doubt;
 use sinew::ragdoll::settings::{BodyWish, BoneSettings, Unit, analyze_with, role_named};
 use sinew::ragdoll::{BuildError, BuildOptions, RagdollDef, Settings, SettingsError, build_moving};
 use std::path::{Path, PathBuf};
@@ -232,17 +232,18 @@ impl LoadedSettings {
             notes.push(format!("with the settings of {}", self.file));
         }
         notes.extend(assumed(analysis));
-        notes.extend(self.doubt(&def));
+        notes.extend(self.doubt(&def).map(|doubt| doubt.reason));
         notes.append(&mut report.notes);
         report.notes = notes;
         Ok((def, report))
     }
 
-    /// Why the mass is hardly that of a body, and what to do; nothing where the user gave it, or the unit that it comes from.
-    pub fn doubt(&self, def: &RagdollDef) -> Option<String> {
+    /// Doubt about the mass, with what to do; nothing where the user gave it, or the unit that it comes from.
+    pub fn doubt(&self, def: &RagdollDef) -> Option<Doubt> {
         let is_given = self.settings.mass.is_some() || self.settings.unit.is_some();
-        let doubt = implausible(def).filter(|_| !is_given)?;
-        Some(format!("{doubt}; --height or --unit sets the size, --mass the mass"))
+        let mut doubt = Doubt::of(def).filter(|_| !is_given)?;
+        doubt.reason += "; --height or --unit sets the size, --mass the mass";
+        Some(doubt)
     }
 
     /// Names the file of the settings, or the option that said what cannot be.

@@ -242,7 +242,7 @@ mod tests {
     fn captions_follow_the_state() {
         let demo = sinew_scenes::demo::Demo::new(Site::CabinWithStairs);
         let input = demo.input();
-        let fall = Fall::simulate(&input);
+        let fall = Fall::simulate(&input, None);
         let events = &fall.baked.events;
         let at = |what: fn(&Event) -> bool| {
             events.iter().find(|(_, event)| what(event)).expect("it comes to that").0

@@ -68,12 +68,54 @@ fn what_is_ignored_and_who_gets_a_body() {
     let stump = build(&["--ignore", &hand]);
     assert!(stump.iter().all(|(_, bone)| *bone != hand), "{stump:?}");
     assert!(stump.iter().any(|(_, bone)| *bone == forearm), "{stump:?}");
+    // All below it goes along.
+    let shorter = build(&["--ignore", &forearm]);
+    assert!(shorter.iter().all(|(_, bone)| *bone != forearm && *bone != hand), "{shorter:?}");
+    let arm = bone_of(&before, "leftUpperArm").expect("an arm");
+    assert!(shorter.iter().any(|(_, bone)| *bone == arm), "{shorter:?}");
     assert_eq!(build(&["--body", &forearm]), before, "it has one already");
     for command in [["bake"].as_slice(), &["ragdoll", "doctor"], &["ragdoll", "export"]] {
         let run = sinew(&[command, &["--help"]].concat());
         for option in ["--role", "--ignore", "--body", "--no-body", "--height", "--unit", "--mass"] {
             assert!(run.stdout.contains(option), "{command:?} has no {option}");
         }
+    }
+}
+
+/// What corrects a build corrects it on every command that builds.
+#[test]
+fn every_command_that_builds_heeds_every_correction() {
+    let folder = Folder::new("said-everywhere");
+    let (file, _) = numbered(&folder);
+    let hand =
+        bone_of(&bodies(&sinew(&["ragdoll", "build", &file, "--json"]).json()), "leftHand").expect("a hand");
+    let (fall, model) = (folder.path("fall.glb"), folder.path("body.xml"));
+    let commands: [&[&str]; 4] = [
+        &["ragdoll", "build", &file, "--json"],
+        &["bake", &file, "--seconds", "0.3", "--limp-at", "0", "-o", &fall, "--json"],
+        &["ragdoll", "doctor", &file, "--json"],
+        &["ragdoll", "export", &file, "--as", "mjcf", "-o", &model, "--json"],
+    ];
+    for command in commands {
+        let run = |extra: &[&str]| {
+            let mut object = sinew(&[command, extra].concat()).json();
+            // How long it took is another every time.
+            if let Some(object) = object.as_object_mut() {
+                object.retain(|key, _| !["realtime_factor", "build_ms"].contains(&key.as_str()));
+            }
+            // A model has the figures that its report leaves out.
+            (object, std::fs::read(&model).unwrap_or_default())
+        };
+        let plain = run(&[]);
+        let measures = [["--height", "1.2"], ["--unit", "0.7"], ["--mass", "4000"]];
+        let bones = [["--no-body", "hand"], ["--ignore", hand.as_str()]];
+        // The doctor has nothing to say of a body without hands.
+        let of_bones = if command.contains(&"doctor") { &[][..] } else { &bones[..] };
+        for extra in measures.iter().chain(of_bones) {
+            assert_ne!(run(extra), plain, "{command:?} does not heed {extra:?}");
+        }
+        let odd = ["--role", "hips=Bnoe_0"];
+        assert!(sinew(&[command, &odd].concat()).refusal(1).ends_with("(--role hips=Bnoe_0)"), "{command:?}");
     }
 }
 

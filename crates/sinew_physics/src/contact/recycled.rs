@@ -170,7 +170,7 @@ impl Recycled {
 struct Renew<'a> {
     recycled: &'a Recycled,
     poses: [Transform; 2],
-    /// Of the face, as it has turned, world axes.
+    /// Normal of the face as it has turned, world axes.
     normal: Vec3,
     margin: f32,
     manifold: &'a mut Manifold,

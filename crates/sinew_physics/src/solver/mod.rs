@@ -122,6 +122,10 @@ pub(crate) struct IslandSolver {
     /// Work in this substep of the forces, and of springs and motors, J.
     force_work: f32,
     drive_work: f32,
+    /// Kinetic energy that the full push of saturated motors gives bodies before joints hold them, and the work that it does once they
+    /// hold, J: in this substep.
+    push_energy: f32,
+    push_work: f32,
     /// In the step so far.
     pub work: Work,
     /// Particles or objects pushed in this substep.
@@ -188,7 +192,6 @@ impl IslandSolver {
         }
         self.begin_drives();
         self.kinetic_before = self.kinetic_energy(&self.velocities[..self.links.len()]);
-        self.push_saturated();
         let moving = self.links.len();
         self.kinetic_start = dispatch::run(IntegrateVelocity {
             bodies: &mut self.bodies[..moving],
@@ -204,6 +207,9 @@ impl IslandSolver {
         self.unconstrained.extend_from_slice(&self.velocities[..self.links.len()]);
         self.contact_push.clear();
         self.contact_push.resize(self.links.len(), Vec3::ZERO);
+        // Only now, as an impulse among those of joints: a light body that has a motor's full push spins as it never will once its
+        // joints hold, and the gyroscopic torque of that spin would do work of its own.
+        self.push_saturated();
     }
 
     /// The last substep's impulses of contacts and limits, but for what jumped up in it: an impact is not repeated.

@@ -20,13 +20,14 @@ impl IslandSolver {
     /// the substep starts without them.
     pub(in crate::solver) fn drop_bad_warm_start(&mut self) {
         let moving = self.links.len();
-        let before = self.kinetic_energy(&self.unconstrained);
+        let before = self.kinetic_energy(&self.unconstrained) + self.push_energy;
         let rise = self.kinetic_energy(&self.velocities[..moving]) - before;
         if self.is_in_lanes() || rise <= ENERGY_SLACK * max(before, self.mass()) {
             return;
         }
         self.velocities[..moving].copy_from_slice(&self.unconstrained);
-        self.scratch.started.copy_from_slice(&self.unconstrained);
+        self.push_again();
+        self.scratch.started.copy_from_slice(&self.velocities[..moving]);
         self.forget_impulses();
         self.project_joints(Pass::Solve);
     }
@@ -195,7 +196,8 @@ impl IslandSolver {
         }
         let (square, mut linear) = self.resistance_of_springs();
         let held = self.is_held() && self.manifolds.is_empty();
-        let mut there = self.kinetic_start;
+        let pushed = max(self.work_of_saturated(), 0.0);
+        let mut there = self.kinetic_start + pushed;
         if held {
             linear -= self.work_of_forces();
             there = self.kinetic_before + max(self.work_of_motors(), 0.0);
@@ -211,7 +213,7 @@ impl IslandSolver {
             let inner = |(body, v): (&SolverBody, &Vec6)| difference(v, &before.at(body.pose.translation));
             self.scratch.dv.clear();
             self.scratch.dv.extend(self.bodies.iter().zip(&self.unconstrained).map(inner));
-            there = self.kinetic_energy(&self.scratch.dv);
+            there = self.kinetic_energy(&self.scratch.dv) + pushed;
         }
         let there = there + slack;
         if square + linear <= there {
@@ -240,7 +242,7 @@ impl IslandSolver {
             return;
         }
         let moving = self.links.len();
-        let allowed = self.kinetic_start + self.force_work.abs();
+        let allowed = self.kinetic_start + self.force_work.abs() + max(self.push_work, 0.0);
         let start = self.kinetic_energy(&self.bounced_from);
         let after = self.kinetic_energy(&self.velocities[..moving]);
         if after <= allowed || start >= allowed {

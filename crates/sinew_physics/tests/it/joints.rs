@@ -182,6 +182,41 @@ fn motors_in_a_chain_saturate_only_where_they_are_weak() {
 }
 
 #[test]
+fn saturated_motors_give_what_they_work_and_no_more() {
+    // A light piece between two heavy ones: with the full push of both motors and no joint to hold it, it would spin a thousand times as
+    // fast as it ever does.
+    let mut world = world(0.0);
+    let kilograms = |half: Vec3, kg: f32| kg / (8.0 * half.x * half.y * half.z);
+    let block = |world: &mut World, half_extents: Vec3, at: Vec3, kg: f32| {
+        let mut shape = ShapeDef::new(Shape::Box { half_extents });
+        shape.density = kilograms(half_extents, kg);
+        world.add_body(&BodyDef { position: at, shapes: vec![shape], ..BodyDef::default() })
+    };
+    let heavy = Vec3::new(0.15, 0.1, 0.1);
+    let a = block(&mut world, heavy, Vec3::ZERO, 10.0);
+    let b = block(&mut world, Vec3::new(0.05, 0.03, 0.015), Vec3::X * 0.2, 0.2);
+    let c = block(&mut world, heavy, Vec3::X * 0.4, 10.0);
+    for (from, to, x, axis) in
+        [(a, b, 0.15, Vec3::new(1.0, 2.0, -1.0)), (b, c, 0.25, Vec3::new(-1.5, 1.0, 2.0))]
+    {
+        let mut def = joint(&world, from, to, facing(Vec3::X * x), JointKind::Ball { limit: None });
+        let target = Transform::new(Vec3::ZERO, Rotation::from_scaled_axis(axis));
+        def.motor = Some(Motor { max_torque: 40.0, ..Motor::toward(target, spring(2.0, 1.0)) });
+        world.add_joint(&def);
+    }
+    let mut most: f32 = 0.0;
+    for step in 0..180 {
+        let before = world.energy();
+        world.step();
+        let after = world.energy();
+        let rise = after.kinetic - before.kinetic - world.work().total();
+        assert!(rise <= 0.01 * before.kinetic.max(20.2), "step {step}: {rise} J out of {}", before.kinetic);
+        most = most.max(after.kinetic);
+    }
+    assert!(most > 2.0, "they moved it: {most} J");
+}
+
+#[test]
 fn a_slider_slides_along_its_axis_alone_and_stops_at_its_end() {
     let mut world = world(G);
     let a = anchor(&mut world);

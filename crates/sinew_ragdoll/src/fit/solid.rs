@@ -9,6 +9,12 @@ use sinew_math::{Rotation, Transform, Vec3, max3, min3};
 use sinew_physics::{Hull, Shape};
 use std::sync::Arc;
 
+/// Weight of being far from the middle beside being far out along a direction, and by how much directions are askew, in half sides of the
+/// box. All points of a flat side are equally far out along it. The one nearest to a corner stands for them, and of two mirror images
+/// always the same: what decided was the last bit of their places, and the same skin in another unit had a hull of half the volume.
+const TOWARD_CORNERS: f32 = 1e-3;
+const ASKEW: Vec3 = Vec3::new(1e-4, 6e-5, 3e-5);
+
 pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     let mut direction = bones.direction(bone, Some(patch.center));
     if bones.list[bone].part == Part::Foot {
@@ -48,8 +54,12 @@ fn hull_of(cuboid: &Fit, patch: &Patch, within: impl Fn(Vec3) -> Vec3) -> Option
     let local: Vec<_> = patch.samples.iter().map(|s| within(frame.inverse_point(s.point))).collect();
     let mut points = Vec::with_capacity(26);
     for direction in directions() {
-        let along = direction / half;
-        let outermost = local.iter().copied().reduce(|a, b| if b.dot(along) > a.dot(along) { b } else { a });
+        let toward = direction + ASKEW;
+        let out = |point: Vec3| {
+            let share = point / half;
+            share.dot(toward) + TOWARD_CORNERS * share.dot(share)
+        };
+        let outermost = local.iter().copied().reduce(|a, b| if out(b) > out(a) { b } else { a });
         points.extend(outermost.map(|p| p * SHRINK));
     }
     // The body's origin is the middle of its shape.

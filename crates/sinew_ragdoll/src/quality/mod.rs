@@ -21,7 +21,7 @@ mod verdict;
 pub use drop_test::{DropReport, Fallen, drop_test};
 pub use gate::{Bar, GateReport, Miss, gate, gate_on, random_fall, random_pose};
 pub use meter::QualityMeter;
-pub use plausible::{implausible, judge_doubtful};
+pub use plausible::Doubt;
 pub use verdict::{Verdict, judge, judge_bake};
 
 /// Figures of a character's falls, see the fields. Times are seconds of the world.

@@ -1,35 +1,56 @@
 //! Doubts about the size and the mass that were guessed.
 
-use super::{Quality, Verdict, judge};
+use super::{Quality, Verdict};
 use crate::def::RagdollDef;
 use sinew_math::{min, trig};
 
 /// Mass that a human may have, kg.
 const HUMAN: core::ops::RangeInclusive<f32> = 3.0..=500.0;
-/// Mass that a creature may have, kg: from a small bird's to that of the heaviest dinosaur on two legs.
-const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=8000.0;
+/// Mass that a creature may have, kg: from a small bird's to that of the heaviest rhinoceros. Above it are elephants, whales and what
+/// the clips' author drew in another unit, which is far more common.
+const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=3000.0;
 
-/// Why hardly any body has this mass, a sentence; `None` if there are such. Where the size of a file's unit is guessed, that
-/// is what is wrong as a rule, and a verdict on the ragdoll says little.
-pub fn implausible(def: &RagdollDef) -> Option<String> {
-    let (kind, range) = kin(def);
-    if range.contains(&def.total_mass) {
-        return None;
-    }
-    let (mass, height) = (in_words(def.total_mass), def.height);
-    let (least, most) = (in_words(*range.start()), in_words(*range.end()));
-    Some(format!(
-        "mass of {mass} at a height of {height:.3} m: hardly any {kind} weighs less than {least} or more than {most}"
-    ))
+/// Doubt about a mass that was guessed: hardly any body weighs that. Where the size of a file's unit is guessed, that is what is wrong
+/// as a rule, and a verdict on the ragdoll says little.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Doubt {
+    /// Why, a sentence.
+    pub reason: String,
+    /// Size at which the heaviest of its kind would weigh as much, as a share of its own, at most 1.
+    size: f32,
 }
 
-/// Verdict on drops and a wall hit, as of [`judge`], of a ragdoll whose mass is [`implausible`] and was guessed: at most `usable`. The
-/// bars are metres and seconds for bodies that there are: a heavier one is judged as it would be at the size at which the heaviest
-/// would weigh as much, at which lengths shrink with the size and times with its root.
-pub fn judge_doubtful(def: &RagdollDef, drop: &Quality, wall: &Quality) -> Verdict {
-    let size = min(1.0, trig::pow(kin(def).1.end() / def.total_mass, 1.0 / 3.0));
-    let (verdict, _) = judge(&at_size(*drop, size), &at_size(*wall, size));
-    Verdict::min(verdict, Verdict::Usable)
+impl Doubt {
+    /// Doubt about a ragdoll's mass; `None` if there are such bodies.
+    pub fn of(def: &RagdollDef) -> Option<Self> {
+        let (kind, range) = kin(def);
+        if range.contains(&def.total_mass) {
+            return None;
+        }
+        let (mass, height) = (in_words(def.total_mass), def.height);
+        let (least, most) = (in_words(*range.start()), in_words(*range.end()));
+        Some(Self {
+            reason: format!(
+                "mass of {mass} at a height of {height:.3} m: hardly any {kind} weighs less than {least} or more than {most}"
+            ),
+            size: min(1.0, trig::pow(range.end() / def.total_mass, 1.0 / 3.0)),
+        })
+    }
+
+    /// Verdict and reasons on the falls of a ragdoll in doubt, drops and bakes alike: `judge` is who judges these figures where there is
+    /// no doubt. At most `usable`, and the doubt is the first reason. The bars are metres and seconds for bodies that there are: a heavier
+    /// one is judged as it would be at the size at which the heaviest would weigh as much, at which lengths shrink with the size and times
+    /// with its root. What is outside its bar as it is stands among the reasons all the same.
+    pub fn judge<const N: usize>(
+        &self,
+        figures: [Quality; N],
+        judge: impl Fn(&[Quality; N]) -> (Verdict, Vec<String>),
+    ) -> (Verdict, Vec<String>) {
+        let (_, mut reasons) = judge(&figures);
+        let (verdict, _) = judge(&figures.map(|quality| at_size(quality, self.size)));
+        reasons.insert(0, self.reason.clone());
+        (Verdict::min(verdict, Verdict::Usable), reasons)
+    }
 }
 
 /// The figures of a fall that is like this one, of a body so many times as large.
@@ -67,10 +88,35 @@ fn in_words(kg: f32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::quality::{judge, judge_bake};
+
+    fn of(total_mass: f32) -> RagdollDef {
+        RagdollDef { total_mass, height: 4.6, ..RagdollDef::default() }
+    }
+
+    #[test]
+    fn drops_and_bakes_of_a_mass_in_doubt_are_usable_at_most() {
+        let calm = Quality {
+            asleep_s: Some(3.0),
+            calm_to_asleep_s: Some(0.7),
+            settled_omega_max: Some(0.0),
+            ..Quality::default()
+        };
+        for mass in [0.013, 3600.0, 24_000.0, 30_000.0] {
+            let doubt = Doubt::of(&of(mass)).expect("a doubt");
+            assert_eq!((judge(&calm, &calm).0, judge_bake(&calm).0), (Verdict::Good, Verdict::Good));
+            let drops = doubt.judge([calm, calm], |[drop, wall]| judge(drop, wall));
+            let bake = doubt.judge([calm], |[fall]| judge_bake(fall));
+            for (verdict, reasons) in [drops, bake] {
+                assert_eq!(verdict, Verdict::Usable, "{mass} kg");
+                assert_eq!(reasons[0], doubt.reason, "{mass} kg");
+            }
+        }
+        assert_eq!(Doubt::of(&of(2500.0)), None);
+    }
 
     #[test]
     fn who_is_too_heavy_is_judged_at_a_size_that_there_is() {
-        let of = |total_mass: f32| RagdollDef { total_mass, height: 4.6, ..RagdollDef::default() };
         let calm = Quality {
             asleep_s: Some(6.2),
             calm_to_asleep_s: Some(0.7),
@@ -78,11 +124,14 @@ mod tests {
             ..Quality::default()
         };
         let deep = |overlap: f32| Quality { nonadjacent_overlap_max_m: overlap, ..calm };
-        let verdict = |mass: f32, drop: Quality| judge_doubtful(&of(mass), &drop, &calm);
+        let verdict = |mass: f32, drop: Quality| {
+            let doubt = Doubt::of(&of(mass)).expect("a doubt");
+            doubt.judge([drop, calm], |[drop, wall]| judge(drop, wall)).0
+        };
         assert_eq!(judge(&deep(0.042), &calm).0, Verdict::Bad);
         assert_eq!(verdict(24_000.0, deep(0.042)), Verdict::Usable);
-        // At 8 t the size is what it is; 50 cm are deep at any.
-        assert_eq!(verdict(8000.0, deep(0.042)), Verdict::Bad);
+        // A little above 3 t the size is what it is; 50 cm are deep at any.
+        assert_eq!(verdict(3100.0, deep(0.042)), Verdict::Bad);
         assert_eq!(verdict(24_000.0, deep(0.5)), Verdict::Bad);
         assert_eq!(verdict(24_000.0, deep(f32::NAN)), Verdict::Bad);
         assert_eq!(verdict(24_000.0, Quality { nan: 1, ..calm }), Verdict::Bad);

@@ -575,12 +575,13 @@ fn whatever_is_asked_of_drives_nothing_explodes() {
             assert_eq!(q.nan, 0);
             assert!(q.joint_gap_p99_m < 1e-4, "{seed}, {jumps:?}: {}", q.joint_gap_p99_m);
             // Pins that are to jump within a step strike as hard as a wall, and their work is not counted well: there it is speeds
-            // that must not explode. For a few steps it is not that of a pin which stiffens until its body is keyed, either (0.30 of
-            // the measure for one of these). Where they jump a joint may open for a step: of 60 such seeds the median of the
+            // that must not explode. Where they jump a joint may open for a step: of 60 such seeds the median of the
             // widest gaps is 1.3 µm, the widest is 1.2 mm (1.1 with the build before); the median of the largest speeds is 24 m/s, the
             // largest 63, the next 46 (23, 43 and 39 with the build before, 54 with one before that).
-            let (gap, gain, speed) =
-                if jumps.is_some() { (0.05, f32::INFINITY, 70.0) } else { (5e-3, 0.5, 30.0) };
+            // Where they do not jump, what comes in is what motors work (3e-5 of the measure at most, of 24 seeds; 0.30 while saturated
+            // motors pushed before the forces), and that is much: the median of the largest speeds is 24 m/s, the largest 57.
+            let (gap, gain) = if jumps.is_some() { (0.05, f32::INFINITY) } else { (5e-3, 0.01) };
+            let speed = 70.0;
             opened += usize::from(q.joint_gap_max_m > 0.01);
             assert!(fastest < speed, "{seed}, {jumps:?}: {fastest} m/s");
             assert!(q.joint_gap_max_m < gap, "{seed}, {jumps:?}: {}", q.joint_gap_max_m);

@@ -1,7 +1,7 @@
 //! The verdict of the skin: each measure on a mannequin that has just that fault, and on rigs of others.
 
 use crate::data::document;
-use sinew_anim::{Joint, LocalTransform, Rig, RigAnalysis, analyze};
+use sinew_anim::{Joint, LocalTransform, Mesh, Primitive, Rig, RigAnalysis, Role, analyze};
 use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::Shape;
 use sinew_ragdoll::build::takes;
@@ -275,4 +275,51 @@ fn a_sword_that_is_skinned_to_a_hand_lies_on_the_floor() {
         body.shape.bounding_radius()
     };
     assert!(radius("rightHand") > 2.0 * radius("leftHand"), "{} m", radius("rightHand"));
+}
+
+/// Adds a box as a mesh without a skin on a bone of its own under that of a role, its middle `off` the joint (model space, metres).
+fn carried(rig: &mut Rig, name: &str, role: Role, off: Vec3, half: Vec3) {
+    let analysis = analyze(rig).expect("a skin");
+    let carrier = analysis.joint_with(role).expect("the role");
+    let source = rig.joints.len();
+    let rest = LocalTransform::default();
+    rig.joints.push(Joint { name: name.into(), parent: Some(carrier), rest, source });
+    let carrier_from_model = analysis.bind_model[carrier].inverse();
+    let middle = analysis.bind_model[carrier].translation + off;
+    let corner = |i: u32| {
+        let side = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        carrier_from_model.point(middle + half * Vec3::new(side(0), side(1), side(2)))
+    };
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let indices = faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
+    let part = Primitive { positions: (0..8).map(corner).collect(), indices, ..Primitive::default() };
+    rig.meshes.push(Mesh { name: name.into(), joint: source, skin: None, primitives: vec![part] });
+}
+
+/// Props get a body or join their carrier's shape, by size: a cap goes with the head, a pack on the back and a sword in a hand have
+/// bodies that are held fast, and nothing of them is in the floor.
+#[test]
+fn a_cap_goes_along_and_a_pack_and_a_sword_have_bodies() {
+    let plain = Subject::mannequin();
+    let bones = |subject: &Subject| -> Vec<String> {
+        subject.def.bodies.iter().map(|body| body.bone.clone()).collect()
+    };
+    let mut rig = mannequin().rig;
+    carried(&mut rig, "cap", Role::Head, Vec3::Y * 0.12, Vec3::new(0.09, 0.05, 0.09));
+    assert_eq!(bones(&Subject::of(rig.clone())), bones(&plain), "a cap hardly reaches beyond the head");
+    carried(&mut rig, "pack", Role::Chest, Vec3::new(0.0, 0.05, -0.35), Vec3::new(0.18, 0.25, 0.12));
+    let hand = Role::Hand(sinew_anim::Side::Right);
+    carried(&mut rig, "sword", hand, Vec3::Z * 0.45, Vec3::new(0.02, 0.03, 0.4));
+    let subject = Subject::of(rig);
+    let own: Vec<String> = bones(&subject).into_iter().filter(|bone| !bones(&plain).contains(bone)).collect();
+    assert_eq!(own, ["pack", "sword"]);
+    for (bone, on) in [("pack", "chest"), ("sword", "rightHand")] {
+        let body = subject.def.bodies.iter().position(|body| body.bone == bone).expect("seen above");
+        let joint =
+            subject.def.joints.iter().find(|joint| joint.child == body).expect("it hangs on something");
+        assert_eq!(joint.kind, sinew_physics::JointKind::Fixed, "{bone}");
+        assert_eq!(subject.def.bodies[joint.parent].role, on);
+    }
+    let skin = subject.over(&drop_test(&subject.def).falls);
+    assert!(skin.rest_height_m.is_some_and(|height| height > -0.05), "{skin:?}");
 }

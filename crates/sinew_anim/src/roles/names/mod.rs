@@ -342,6 +342,34 @@ mod tests {
         );
     }
 
+    /// Parts of a body in the languages of asset stores, with both sides, and whatever an exporter did to the case of letters.
+    #[test]
+    fn names_in_other_languages_and_in_any_case() {
+        use Part::*;
+        let (l, r) = (Some(Side::Left), Some(Side::Right));
+        let wanted = [
+            (Some(Hips), None),
+            (Some(Neck), None),
+            (Some(UpperLeg), l),
+            (Some(LowerLeg), r),
+            (Some(Foot), l),
+        ];
+        let languages = [
+            ["Cadera", "Cuello", "Muslo_izq", "Pantorrilla_der", "Pie_izq"],
+            ["Bassin", "Cou", "Cuisse_gauche", "Mollet_droit", "Pied_gauche"],
+            ["Bacino", "Collo", "Coscia.sx", "Polpaccio.dx", "Piede.sx"],
+            ["Quadril", "Pescoco", "CoxaEsq", "PanturrilhaDireita", "Pie_esq"],
+            ["Becken", "Hals", "Oberschenkel_links", "Unterschenkel_rechts", "Fuss_links"],
+            ["Таз", "Шея", "Бедро_Л", "Голень_П", "Стопа_Л"],
+            ["골반", "목", "왼쪽허벅지", "오른쪽종아리", "왼쪽발"],
+            ["kuabu", "bozi", "datui_zuo", "xiaotui_you", "jiao_zuo"],
+            ["hIPs", "NecK", "uPPerLEG.l", "LOWERleg.R", "fOOt.L"],
+        ];
+        for names in languages {
+            check(&names, &wanted);
+        }
+    }
+
     #[test]
     fn words_whose_meaning_hangs_on_the_others() {
         use Part::*;

@@ -101,26 +101,46 @@ fn cut_glued_prefix(split: &mut [Vec<String>]) {
 }
 
 /// Words in lower case, split at punctuation, at digits, at camel humps ("LHipJoint": l, hip, joint) and between Latin
-/// and other letters; namespaces and numbers are dropped.
+/// and other letters; namespaces and numbers are dropped. Where humps leave what is no word, and without them it is one or several
+/// ("UPPERarm", "fOOT"), case says nothing.
 fn words(name: &str) -> Vec<String> {
     let bare = name.rsplit([':', '|']).find(|part| !part.is_empty()).unwrap_or(name);
     let chars: Vec<char> = bare.chars().map(half_width).collect();
-    let mut words = vec![String::new()];
+    let mut runs = vec![Vec::new()];
     for (i, &c) in chars.iter().enumerate() {
         let before = i.checked_sub(1).map(|b| chars[b]);
-        let hump = c.is_uppercase()
-            && (before.is_some_and(char::is_lowercase)
-                || chars.get(i + 1).is_some_and(|next| next.is_lowercase()));
         let digits = before.is_some_and(|b| b.is_ascii_digit() != c.is_ascii_digit());
         let script = before.is_some_and(|b| (b < '\u{3000}') != (c < '\u{3000}'));
-        if hump || digits || script || !c.is_alphanumeric() {
-            words.push(String::new());
+        if digits || script || !c.is_alphanumeric() {
+            runs.push(Vec::new());
         }
         if c.is_alphanumeric() {
-            words.last_mut().expect("starts with one word").extend(c.to_lowercase());
+            runs.last_mut().expect("starts with one run").push(c);
         }
     }
+    let mut words: Vec<String> = runs.iter().flat_map(|run| humps(run)).collect();
     words.retain(|word| !word.is_empty() && !word.starts_with(|c: char| c.is_ascii_digit()));
+    words
+}
+
+/// Words of a run of letters, in lower case.
+fn humps(run: &[char]) -> Vec<String> {
+    let mut words = vec![String::new()];
+    for (i, &c) in run.iter().enumerate() {
+        let before = i.checked_sub(1).map(|b| run[b]);
+        let rises = before.is_some_and(char::is_lowercase);
+        if c.is_uppercase() && (rises || run.get(i + 1).is_some_and(|next| next.is_lowercase())) {
+            words.push(String::new());
+        }
+        words.last_mut().expect("starts with one word").extend(c.to_lowercase());
+    }
+    words.retain(|word| !word.is_empty());
+    if words.iter().any(|word| meanings(word).is_none()) {
+        let whole: String = words.concat();
+        if meanings(&whole).is_some() {
+            return vec![whole];
+        }
+    }
     words
 }
 

@@ -31,6 +31,7 @@ use sinew::formats::{Textures, load_world};
 use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::bake::KEY_BOUND;
+use sinew::ragdoll::quality::Doubt;
 use sinew::ragdoll::{BakeInput, BuildOptions, HitEffect, RagdollDef};
 use sinew_picture::Sun;
 use std::path::{Path, PathBuf};
@@ -138,7 +139,7 @@ impl Bake {
         self.check_times()?;
         let textures = if self.picture.is_some() { Textures::Decode } else { Textures::Skip };
         let bodies = self.bodies()?;
-        let (file, ragdoll, mut notes) = self.character(textures, &bodies)?;
+        let (file, ragdoll, doubt, mut notes) = self.character(textures, &bodies)?;
         let name = self.clip_name(&file)?;
         let motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
         let place = self.place(&bodies, ragdoll.height)?;
@@ -159,7 +160,7 @@ impl Bake {
             name: &name,
             ..BakeInput::new(character)
         };
-        let mut fall = Fall::simulate(&input);
+        let mut fall = Fall::simulate(&input, doubt.as_ref());
         let world = self.world.as_ref().map(|path| path.display().to_string());
         notes.extend(world.as_deref().and_then(|world| notes::stands_at(&place, world)));
         notes.extend(notes::of_bake(&input, &fall.baked.events, &gets_up_by, world.as_deref()));
@@ -207,12 +208,13 @@ impl Bake {
         }
     }
 
-    /// The character, and the definition that was given or what a build gives, with what is to be said of it.
+    /// The character, and the definition that was given or what a build gives, with the doubt about a mass that was guessed and what is to
+    /// be said of it all.
     fn character(
         &self,
         textures: Textures,
         world: &[BodyDef],
-    ) -> Result<(CharacterFile, RagdollDef, Vec<String>)> {
+    ) -> Result<(CharacterFile, RagdollDef, Option<Doubt>, Vec<String>)> {
         let Some(path) = &self.ragdoll else {
             let door = || self.world.as_ref().and_then(|_| door(world));
             let (file, settings) = self.settings.load_into(&self.character, textures, door)?;
@@ -220,12 +222,13 @@ impl Bake {
             let guess = file.analysis.unit_guess.as_ref().filter(|guess| !guess.is_sure);
             let mut notes: Vec<String> = guess.map(unit_note).into_iter().collect();
             notes.extend(file.analysis.notes.iter().filter(|note| note.contains("--character")).cloned());
-            notes.extend(settings.doubt(&def));
-            return Ok((file, def, notes));
+            let doubt = settings.doubt(&def);
+            notes.extend(doubt.iter().map(|doubt| doubt.reason.clone()));
+            return Ok((file, def, doubt, notes));
         };
         let file = CharacterFile::load(&self.character, textures)?;
         let def = read_definition(path, &file)?;
-        Ok((file, def, Vec::new()))
+        Ok((file, def, None, Vec::new()))
     }
 
     /// Name of the new clip: as the user says, else `sinew`, with a number where the file has that already.

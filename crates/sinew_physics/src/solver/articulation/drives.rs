@@ -106,6 +106,11 @@ impl SolverJoint {
         dot(&row.a, &velocities[self.a as usize]) + dot(&row.b, &velocities[self.b as usize])
     }
 
+    /// True if its motor is saturated in some direction.
+    fn pushes(&self) -> bool {
+        self.drive.motor.is_some() && self.saturated != [0; DIRECTIONS]
+    }
+
     /// Directions in which the motor acts.
     fn motor_directions(&self) -> impl Iterator<Item = usize> + use<> {
         let (kind, motor) = (self.geometry.kind, self.drive.motor);
@@ -115,6 +120,16 @@ impl SolverJoint {
     /// Most impulse of the motor within a substep.
     fn motor_cap(&self, direction: usize, h: f32) -> f32 {
         self.drive.motor.map_or(0.0, |motor| motor.cap(direction) * h)
+    }
+
+    /// Impulses of the motor on A and on B, if it is saturated in that direction.
+    pub(in crate::solver) fn push_of_motor(&self, direction: usize, h: f32) -> Option<[Vec6; 2]> {
+        if self.saturated[direction] == 0 || self.drive.motor.is_none() {
+            return None;
+        }
+        let impulse = f32::from(self.saturated[direction]) * self.motor_cap(direction, h);
+        let row = open_row(&self.geometry.kind, &self.pose, direction);
+        Some([row.a.map(|x| x * impulse), row.b.map(|x| x * impulse)])
     }
 
     /// Change that rows with `rate` are to make to it: `solve` removes the position error within the substep and lets soft rows
@@ -199,7 +214,7 @@ impl SolverJoint {
 }
 
 impl IslandSolver {
-    /// Before the forces of a substep: rates of the soft rows, and what saturated motors push.
+    /// Before the forces of a substep: rates of the soft rows and of motors.
     pub(in crate::solver) fn begin_drives(&mut self) {
         for joint in &mut self.joints {
             if joint.rigid < joint.rows.count {
@@ -216,37 +231,37 @@ impl IslandSolver {
         }
     }
 
-    /// Puts the full push of all saturated motors on their bodies.
+    /// After the forces of a substep: puts the full push of all saturated motors on their bodies.
     pub(in crate::solver) fn push_saturated(&mut self) {
+        (self.push_energy, self.push_work) = (0.0, 0.0);
+        if !self.joints.iter().any(SolverJoint::pushes) {
+            return;
+        }
+        self.push_again();
+        let free = self.kinetic_energy(&self.unconstrained);
+        self.push_energy = self.kinetic_energy(&self.velocities[..self.links.len()]) - free;
+    }
+
+    /// Puts the push of [`push_saturated`](Self::push_saturated) on velocities that were set back to those before it.
+    pub(in crate::solver) fn push_again(&mut self) {
         for j in 0..self.joints.len() {
-            if self.joints[j].drive.motor.is_none() {
-                continue;
-            }
-            for i in 0..DIRECTIONS {
-                if let Some(on_b) = self.push_motor(j, i) {
-                    let arm = self.joints[j].pose.arm_b;
-                    self.joints[j].add_reaction(&on_b, arm);
+            if self.joints[j].pushes() {
+                for i in 0..DIRECTIONS {
+                    self.push_motor(j, i);
                 }
             }
         }
     }
 
-    /// Gives the impulse on B, if the motor is saturated in that direction.
-    fn push_motor(&mut self, j: usize, direction: usize) -> Option<Vec6> {
+    fn push_motor(&mut self, j: usize, direction: usize) {
         let joint = &self.joints[j];
-        if joint.saturated[direction] == 0 || joint.drive.motor.is_none() {
-            return None;
-        }
-        let impulse = f32::from(joint.saturated[direction]) * joint.motor_cap(direction, self.h);
-        let row = open_row(&joint.geometry.kind, &joint.pose, direction);
-        let (on_a, on_b) = (row.a.map(|x| x * impulse), row.b.map(|x| x * impulse));
-        for (body, push) in [(joint.a as usize, on_a), (joint.b as usize, on_b)] {
+        let Some(pushes) = joint.push_of_motor(direction, self.h) else { return };
+        for (body, push) in [joint.a as usize, joint.b as usize].into_iter().zip(pushes) {
             if body < self.links.len() {
                 let change = self.bodies[body].velocity_change(&push);
                 add_scaled(&mut self.velocities[body], &change, 1.0);
             }
         }
-        Some(on_b)
     }
 
     /// Adds the work of the drives in this substep: impulse times the rate after it. Kinetic energy rises by that at most, less
@@ -268,8 +283,23 @@ impl IslandSolver {
         for row in &self.limits {
             given += row.soft_work(&self.joints[row.joint as usize], &self.velocities);
         }
+        self.push_work = self.work_of_saturated();
+        by_motors += self.push_work;
         self.drive_work += max(by_motors, 0.0) + given;
         self.work.drives += self.work_of_motors();
+    }
+
+    /// Kinetic energy that the pushes of saturated motors bring, J: impulse times the mean of the rates before and after it. What they would
+    /// give bodies that no joint held says nothing: that may be a thousand times as much.
+    pub(in crate::solver) fn work_of_saturated(&self) -> f32 {
+        let mut sum = 0.0;
+        for joint in self.joints.iter().filter(|joint| joint.pushes()) {
+            for i in joint.motor_directions().filter(|&i| joint.saturated[i] != 0) {
+                let impulse = f32::from(joint.saturated[i]) * joint.motor_cap(i, self.h);
+                sum += 0.5 * impulse * (joint.start_rate[i] + joint.open_rate(i, &self.velocities));
+            }
+        }
+        sum
     }
 
     /// On the way that the bodies are about to go, J: force times way. Kinetic and potential energy together rise by no more.
@@ -324,10 +354,7 @@ impl IslandSolver {
                     let asked = self.asked_of_motor(j, i);
                     if self.joints[j].saturated[i] == 0 && asked.abs() > self.joints[j].motor_cap(i, self.h) {
                         self.joints[j].saturated[i] = if asked > 0.0 { 1 } else { -1 };
-                        let before = self.joints[j].open_rate(i, &self.velocities);
                         self.push_motor(j, i);
-                        let rate = 0.5 * (before + self.joints[j].open_rate(i, &self.velocities));
-                        self.drive_work += rate.abs() * self.joints[j].motor_cap(i, self.h);
                         changed = true;
                     }
                 }

@@ -2,6 +2,7 @@
 //! it; torques about the anchor of B. Summed in two parts, since the pose changes between `solve` and `relax`: with the
 //! arms of the new one, the torque of what `solve` gave is 3 % too high for an arm that turns at 3 rad/s.
 
+use crate::joint::DIRECTIONS;
 use crate::solver::IslandSolver;
 use crate::solver::articulation::tree::NONE;
 use crate::solver::motion::ListGains;
@@ -20,15 +21,34 @@ enum Since {
 
 impl IslandSolver {
     /// Adds the reactions to what `solve` gave, with arms and axes of the pose in which it was given: that of the substep's
-    /// beginning. What saturated motors push counts among the forces, and adds itself.
+    /// beginning.
     pub(in crate::solver) fn add_solve_reactions(&mut self) {
         if !self.is_articulated() {
             return;
         }
         self.sum_gains(Since::Forces);
         self.take_pushes();
+        self.take_saturated();
         self.pass_down();
         self.add_loop_reactions(1.0);
+    }
+
+    /// Takes off what the saturated motors of loops and pins have pushed, and adds it to their reactions. Those of a tree's joints are in
+    /// what they give their subtrees.
+    fn take_saturated(&mut self) {
+        let sums = &mut self.scratch.impulses;
+        for &joint in self.loops.joints.iter().chain(&self.pins.joints) {
+            let joint = &mut self.joints[joint as usize];
+            for direction in 0..DIRECTIONS {
+                let Some([on_a, on_b]) = joint.push_of_motor(direction, self.h) else { continue };
+                for (body, push) in [(joint.a, on_a), (joint.b, on_b)] {
+                    if let Some(sum) = sums.get_mut(body as usize) {
+                        add_scaled(sum, &push, -1.0);
+                    }
+                }
+                joint.add_reaction(&on_b, joint.pose.arm_b);
+            }
+        }
     }
 
     /// At the new pose: what bodies have there, and got from contacts and loops, is no reaction of `relax`.
