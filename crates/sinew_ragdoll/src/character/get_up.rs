@@ -54,6 +54,33 @@ impl Character {
         landmarks.stance(self.def.mapping(), model, self.world_from_character, points, bodies)
     }
 
+    /// Gives the pose back to the clips where nobody stands on it: it lies until they have gone.
+    pub(super) fn get_up_where_free(&mut self, world: &mut World) {
+        let lies = self.stance();
+        let moves = self.def.moves();
+        let place = match choose(&moves.get_ups, &moves.landmarks, &lies) {
+            Some(choice) => choice.pose_similarity.motion,
+            None => moves.landmarks.compare(&moves.upright, &lies).motion,
+        };
+        let is_taken = self.is_taken(world, place.translation);
+        self.scratch.points = lies.points;
+        if !is_taken {
+            self.get_up(world);
+        }
+    }
+
+    /// True if another mover stands where its own would.
+    fn is_taken(&self, world: &World, place: Vec3) -> bool {
+        let (Some(_), Some(own)) = (&self.presence, &self.def.in_world.mover) else { return false };
+        world.mover_ids().any(|id| {
+            let other = world.mover(id);
+            let away = other.position() - place;
+            let is_level = away.y < own.height && -away.y < other.def().height;
+            let apart = own.radius + other.def().radius;
+            is_level && away.x * away.x + away.z * away.z < apart * apart
+        })
+    }
+
     /// Gives the pose back to the clips, by the moment of a get-up clip that is most like it.
     pub(super) fn get_up(&mut self, world: &mut World) {
         let lies = self.stance();

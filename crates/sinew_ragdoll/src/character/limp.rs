@@ -251,6 +251,7 @@ impl Character {
         if self.def.after_settling == AfterSettling::GetUp && (still.settled || impatient) {
             if impatient {
                 self.events.push(Event::NeverSettled);
+                self.stillness.settled = true;
             }
             self.prepare(world);
         }

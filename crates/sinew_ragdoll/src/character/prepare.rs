@@ -36,7 +36,7 @@ impl Character {
         let choice = choose(&moves.get_ups, &moves.landmarks, &lies).filter(|choice| {
             def.getting_ready == GettingReady::RollOver && !self.is_like(choice, lies.pelvis, AT_ONCE)
         });
-        let Some(choice) = choice else { return self.get_up(world) };
+        let Some(choice) = choice else { return self.get_up_where_free(world) };
         let rolls = trunk_off(&choice, lies.pelvis) > AT_ONCE[0];
         let index = |at: Option<usize>| at.unwrap_or_default() as u32;
         self.preparation = Preparation {
@@ -69,7 +69,7 @@ impl Character {
         let start = &get_up.starts[self.preparation.start as usize];
         let choice = Choice { get_up, start, pose_similarity: moves.landmarks.compare(&start.stance, &lies) };
         if self.preparation.seconds <= 0.0 || self.is_like(&choice, lies.pelvis, NEAR_ENOUGH) {
-            return self.get_up(world);
+            return self.get_up_where_free(world);
         }
         self.draw(world, &choice);
         self.scratch.points = lies.points;

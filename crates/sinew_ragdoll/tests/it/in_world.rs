@@ -413,3 +413,38 @@ fn it_gets_up_on_a_lift_that_rises_and_on_a_crate() {
     let at = place(&character);
     assert!((at.y - 0.6).abs() < 0.02 || at.y.abs() < 0.02 && at.length() > 1.5, "it stands at {at}");
 }
+
+#[test]
+fn it_gets_up_where_nobody_stands_on_it() {
+    let def = shared(walker());
+    let radius = def.in_world.mover.as_ref().expect("it has one").radius;
+    let mut world = level();
+    let mut fallen = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    run(&mut world, &mut fallen, 30);
+    fallen.go_limp(&mut world);
+    run(&mut world, &mut fallen, 45);
+    let pelvis = world.center_of_mass(fallen.bodies()[0]);
+    let mut other = Character::spawn(&mut world, &def, Transform::from_translation(pelvis.with_y(0.0)));
+    other.set_move(Vec3::ZERO);
+    let mut least = f32::INFINITY;
+    let mut up_after = None;
+    for step in 0..900 {
+        if step == 420 {
+            assert_ne!(fallen.state(), State::Animated, "somebody stands on it");
+            assert!(fallen.mover().is_none());
+            other.set_move(Vec3::X * 1.5);
+        }
+        world.step();
+        fallen.update(&mut world);
+        other.update(&mut world);
+        if fallen.mover().is_some() {
+            let way = place(&fallen) - place(&other);
+            least = f32::min(least, way.with_y(0.0).length() - 2.0 * radius);
+        }
+        if fallen.state() == State::Animated && up_after.is_none() {
+            up_after = Some(step);
+        }
+    }
+    assert!(up_after.is_some(), "it gets up once the other has gone: {:?}", fallen.state());
+    assert!(least > -0.01, "they are in each other by {} m", -least);
+}
