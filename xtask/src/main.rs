@@ -50,7 +50,15 @@ enum Task {
     Fuzz(fuzz::Fuzz),
 }
 
-fn main() -> anyhow::Result<ExitCode> {
+fn main() -> ExitCode {
+    // Without the backtrace that anyhow adds where RUST_BACKTRACE is set: what was found must not scroll away.
+    run().unwrap_or_else(|error| {
+        eprintln!("Error: {error:#}");
+        ExitCode::FAILURE
+    })
+}
+
+fn run() -> anyhow::Result<ExitCode> {
     match Xtask::parse().task {
         Task::Check(check) => check.run()?,
         Task::Ci(ci) => ci.run()?,

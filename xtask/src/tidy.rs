@@ -65,7 +65,8 @@ impl Tidy {
             println!("{finding}");
         }
         if !findings.is_empty() {
-            bail!("tidy: {} findings", findings.len());
+            let plural = if findings.len() == 1 { "" } else { "s" };
+            bail!("tidy: {} finding{plural}", findings.len());
         }
         Ok(())
     }

@@ -20,8 +20,9 @@ fn fragments(file: &File) -> Vec<Finding> {
         if let Some(text) = doc.filter(|_| is_first) {
             let word = text.trim_start().split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
             if FRAGMENTS.contains(&word) {
-                let message =
-                    format!("a first line of docs does not begin with `{word}`: it stands alone in a hover");
+                let message = format!(
+                    "a first line of docs does not begin with `{word}`: it stands alone in a hover, so it names the thing"
+                );
                 findings.push(Finding::new(&file.path, index + 1, message));
             }
         }
