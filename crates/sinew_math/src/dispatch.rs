@@ -23,7 +23,7 @@
 //! ```
 #![allow(unsafe_code)] // the call into code that is compiled for AVX2
 
-use crate::lanes::{self, Lanes, Scalar};
+use crate::lanes::{Lanes, Scalar};
 
 /// A loop over data, written once for all processors.
 pub trait Kernel {
@@ -31,7 +31,7 @@ pub trait Kernel {
     type Output;
 
     /// Runs it with `L` for eight lanes. To be marked `#[inline(always)]`, as all that it calls:
-    /// see [`lanes`].
+    /// see [`lanes`](crate::lanes).
     fn run<L: Lanes>(self) -> Self::Output;
 }
 
@@ -83,11 +83,11 @@ impl Level {
 
 /// The widest registers that every processor of a build has.
 #[cfg(target_arch = "x86_64")]
-type Base = lanes::sse2::Sse2;
+type Base = crate::lanes::sse2::Sse2;
 #[cfg(target_arch = "aarch64")]
-type Base = lanes::neon::Neon;
+type Base = crate::lanes::neon::Neon;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-type Base = lanes::simd128::Simd128;
+type Base = crate::lanes::simd128::Simd128;
 #[cfg(not(any(
     target_arch = "x86_64",
     target_arch = "aarch64",
@@ -115,14 +115,14 @@ pub fn run_at<K: Kernel>(level: Level, kernel: K) -> K::Output {
     assert!(level.is_available(), "{level:?} is not available on this processor");
     match level {
         #[cfg(target_arch = "x86_64")]
-        Level::Sse2 => kernel.run::<lanes::sse2::Sse2>(),
+        Level::Sse2 => kernel.run::<crate::lanes::sse2::Sse2>(),
         // SAFETY: the processor has AVX2, as was asserted.
         #[cfg(target_arch = "x86_64")]
         Level::Avx2 => unsafe { on_avx2(kernel) },
         #[cfg(target_arch = "aarch64")]
-        Level::Neon => kernel.run::<lanes::neon::Neon>(),
+        Level::Neon => kernel.run::<crate::lanes::neon::Neon>(),
         #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-        Level::Simd128 => kernel.run::<lanes::simd128::Simd128>(),
+        Level::Simd128 => kernel.run::<crate::lanes::simd128::Simd128>(),
         _ => kernel.run::<Scalar>(),
     }
 }
@@ -130,5 +130,5 @@ pub fn run_at<K: Kernel>(level: Level, kernel: K) -> K::Output {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn on_avx2<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<lanes::avx2::Avx2>()
+    kernel.run::<crate::lanes::avx2::Avx2>()
 }

@@ -117,7 +117,7 @@ impl BuiltClip {
     /// Rotations keep 47 bits (the three smallest numbers of the quaternion), translations and scales 48, in the bounds of
     /// their own channel. Splines and wide arcs get keys between those of the clip; a step becomes two keys at neighbouring
     /// times, so that it is as sharp as in the clip. Of two channels that move the same, the later counts, as in
-    /// [`sample`](crate::clip::sample()). A channel that moves nothing takes no keys.
+    /// [`sample`](crate::clip::sample::sample()). A channel that moves nothing takes no keys.
     ///
     /// # Errors
     /// Where the clip breaks what [`Clip`] promises, with the channel and the key; see [`BuildError`].

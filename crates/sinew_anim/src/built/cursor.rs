@@ -88,7 +88,7 @@ fn unset<const N: usize>(spans: &mut Vec<Span<N>>, len: usize) {
 impl BuiltClip {
     /// Local transforms of all joints at `time`, seconds, limited to the clip's length (see
     /// [`Wrap`](crate::Wrap) and [`Playhead`](crate::Playhead) for times beyond it); NaN is 0. Within
-    /// [`error_bound`](Self::error_bound) of what [`sample`](crate::clip::sample()) gives for the raw clip. Between keys, numbers
+    /// [`error_bound`](Self::error_bound) of what [`sample`](crate::clip::sample::sample()) gives for the raw clip. Between keys, numbers
     /// go in a straight line, and rotations are brought to length 1 (`nlerp`; keys are close enough for that).
     ///
     /// `cursor` may come from anywhere; it saves the search for keys where time moves by small steps, forward or

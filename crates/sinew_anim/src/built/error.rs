@@ -53,7 +53,7 @@ impl BuiltClip {
     /// rest pose is that.
     ///
     /// # Panics
-    /// If the rig has another number of joints, or `raw` is not fit to be sampled (see [`sample`](crate::clip::sample())).
+    /// If the rig has another number of joints, or `raw` is not fit to be sampled (see [`sample`](crate::clip::sample::sample())).
     pub fn measure_error(&self, raw: &Clip, rig: &Rig, between: usize) -> ClipError {
         let (mut cache, mut cursor) = (SampleCache::default(), Cursor::new());
         let mut pose = Pose::new(self.joints());

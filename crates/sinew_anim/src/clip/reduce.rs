@@ -65,7 +65,7 @@ const AIM: f32 = 0.9;
 /// finite.
 ///
 /// # Panics
-/// As [`sample`](crate::clip::sample()), and if the bound is negative or not finite.
+/// As [`sample`](crate::clip::sample::sample()), and if the bound is negative or not finite.
 pub fn reduce_keys(rig: &Rig, clip: &Clip, root: &Affine, bound: KeyBound) -> Reduced {
     let sound = |x: f32| (0.0..f32::INFINITY).contains(&x);
     assert!(sound(bound.distance) && sound(bound.angle), "a bound is not negative, and finite: {bound:?}");
@@ -237,7 +237,7 @@ impl Poses {
         Self { keys, stays, is_first: true, local: rest_pose(rig), model, moved }
     }
 
-    /// As [`sample`](crate::clip::sample()); values at keys are taken as they are, so that most cost nothing.
+    /// As [`sample`](crate::clip::sample::sample()); values at keys are taken as they are, so that most cost nothing.
     fn sample(&mut self, rig: &Rig, clip: &Clip, root: &Affine, time: f32) {
         self.moved.fill(core::mem::take(&mut self.is_first));
         for (i, channel) in clip.channels.iter().enumerate() {

@@ -62,7 +62,7 @@ const SAMPLING: f32 = 1.0 / 60.0;
 /// [`BuiltClip::build`](crate::BuiltClip::build) takes.
 ///
 /// # Panics
-/// If the joint is not in the rig, or the clip is not fit to be sampled (see [`sample`](crate::clip::sample())).
+/// If the joint is not in the rig, or the clip is not fit to be sampled (see [`sample`](crate::clip::sample::sample())).
 pub fn extract_root_motion(clip: &Clip, rig: &Rig, options: &RootMotionOptions) -> (Clip, MotionTrack) {
     let times = sample_times(clip);
     let poses = chain_poses(clip, rig, options.joint, &times);

@@ -25,7 +25,7 @@ impl Take {
     ///
     /// # Panics
     /// If `frame_time` is not above 0, the rig has no joints, the take would have more than
-    /// [`MOST_FRAMES`](Self::MOST_FRAMES), and as [`sample`](crate::clip::sample()).
+    /// [`MOST_FRAMES`](Self::MOST_FRAMES), and as [`sample`](crate::clip::sample::sample()).
     pub fn of(rig: &Rig, clip: &Clip, frame_time: f64) -> Self {
         assert!(frame_time > 0.0, "frames are some time apart, not {frame_time} s");
         assert!(!rig.joints.is_empty(), "a rig without joints does not move");

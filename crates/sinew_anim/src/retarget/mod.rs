@@ -148,7 +148,7 @@ impl Retargeted {
 /// clip that is too long.
 ///
 /// # Panics
-/// As [`sample`](crate::clip::sample()).
+/// As [`sample`](crate::clip::sample::sample()).
 pub fn retarget(
     actor: Body<'_>,
     clip: &Clip,

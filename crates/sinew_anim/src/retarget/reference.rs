@@ -30,7 +30,7 @@ const STANDING: f32 = 0.85;
 /// [`NoSkin`] if no bone has a length.
 ///
 /// # Panics
-/// If `stated` is not as long as the rig has joints, and as [`sample`](crate::clip::sample()).
+/// If `stated` is not as long as the rig has joints, and as [`sample`](crate::clip::sample::sample()).
 pub fn stand(
     rig: &Rig,
     clip: &Clip,

@@ -74,7 +74,7 @@ impl Gait {
     /// Motion in the clips of a rig.
     ///
     /// # Panics
-    /// As [`sample`](crate::clip::sample()): if a clip is not one of the rig's.
+    /// As [`sample`](crate::clip::sample::sample()): if a clip is not one of the rig's.
     pub fn of(rig: &Rig, clips: &[Clip]) -> Self {
         let lasts = |clip: &&Clip| clip.duration.is_finite() && clip.duration >= SHORTEST;
         let mut wanted: Vec<&Clip> = clips.iter().filter(lasts).collect();

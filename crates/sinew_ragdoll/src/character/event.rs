@@ -44,10 +44,10 @@ pub enum Event {
     Recovered,
     /// Muscles and pins hold it from now on.
     Powered,
-    /// A moment of a clip came by that decides its pose ([`MotionSet::events`]); the name is [`AnimationSet::event`](sinew_anim::AnimationSet::event) of
-    /// [`CharacterDef::set`].
+    /// A moment of a clip came by that decides its pose ([`MotionSet::events`](super::MotionSet::events)); the name is [`AnimationSet::event`](sinew_anim::AnimationSet::event) of
+    /// [`CharacterDef::set`](super::CharacterDef::set).
     Clip(FiredEvent),
-    /// One of its bodies began or stopped to touch a body that is not its own: where [`InWorld::tells_contacts`] says so.
+    /// One of its bodies began or stopped to touch a body that is not its own: where [`InWorld::tells_contacts`](super::InWorld::tells_contacts) says so.
     Contact {
         /// Index of its body in the definition.
         body: usize,

@@ -44,6 +44,6 @@ pub struct Finding {
     pub evidence: String,
     /// Advice on what to do, a sentence.
     pub fix: String,
-    /// True if [`cure`] has mended it; false from [`doctor`].
+    /// True if [`cure`](super::cure) has mended it; false from [`doctor`](super::doctor()).
     pub fixed: bool,
 }
