@@ -101,7 +101,7 @@ fn bevy() -> Result<()> {
     run("test", "--all-features")
 }
 
-/// What would be published is whole: metadata, licences, versions of our own crates. That it compiles, the other checks say.
+/// Crates are whole as they would be published: metadata, licences, versions of our own crates. That it compiles, the other checks say.
 fn packages() -> Result<()> {
     let mut package = command::cargo(&["package", "--workspace", "--exclude", "xtask", "--no-verify"]);
     let out =

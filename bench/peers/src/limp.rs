@@ -1,4 +1,4 @@
-//! What limp characters cost: each rig falls from random poses until it sleeps, and the processor time is compared with the time that
+//! Cost of limp characters: each rig falls from random poses until it sleeps, and the processor time is compared with the time that
 //! passed in the world.
 
 use crate::measure::quantile;

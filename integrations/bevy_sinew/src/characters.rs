@@ -62,7 +62,7 @@ pub struct CharacterJoints(pub Vec<Option<Entity>>);
 pub struct CharacterTold {
     /// Entity of the character.
     pub character: Entity,
-    /// What happened.
+    /// Event of the character in this step.
     pub event: Told,
 }
 

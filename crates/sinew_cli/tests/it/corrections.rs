@@ -82,7 +82,7 @@ fn what_is_ignored_and_who_gets_a_body() {
     }
 }
 
-/// What corrects a build corrects it on every command that builds.
+/// Every command that builds heeds every correction.
 #[test]
 fn every_command_that_builds_heeds_every_correction() {
     let folder = Folder::new("said-everywhere");
