@@ -3,8 +3,8 @@
 
 use libfuzzer_sys::fuzz_target;
 use sinew_anim::{
-    AnimatedClip, AnimationSet, Animator, BuildOptions, BuiltClip, Channel, Clip, Event, Interpolation,
-    Joint, LocalTransform, Mask, Property, Rig, Skeleton, TrackDef, Transition,
+    AnimatedClip, AnimationSet, Animator, BuiltClip, Channel, Clip, ClipBuildOptions, ClipEvent,
+    Interpolation, Joint, LocalTransform, Mask, Property, Rig, Skeleton, TrackDef, Transition,
 };
 use sinew_math::{Reader, Writer};
 
@@ -65,8 +65,8 @@ fn set() -> AnimationSet {
             values: vec![0.0, 0.0, 0.0, 1.0, 0.6, 0.0, 0.0, 0.8, 0.0, 0.0, 0.0, 1.0],
         };
         let clip = Clip { name: String::new(), duration, channels: (0..JOINTS).map(channel).collect() };
-        let clip = BuiltClip::build(&clip, &rig, &BuildOptions::default()).expect("a good clip");
-        let events = vec![Event::new(0.5, "middle"), Event::new(0.0, "start")];
+        let clip = BuiltClip::build(&clip, &rig, &ClipBuildOptions::default()).expect("a good clip");
+        let events = vec![ClipEvent::new(0.5, "middle"), ClipEvent::new(0.0, "start")];
         set.add_clip(AnimatedClip { events, ..AnimatedClip::from(clip) });
     }
     set.add_mask(Mask::splat(JOINTS, 0.5));

@@ -4,7 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use sinew_anim::{
-    BlendLayer, Blender, BuildOptions, BuiltClip, Channel, Clip, Cursor, Interpolation, Joint,
+    BlendLayer, Blender, BuiltClip, Channel, Clip, ClipBuildOptions, Cursor, Interpolation, Joint,
     LocalTransform, ModelPose, Pose, Property, Rig, Skeleton,
 };
 use sinew_math::{Affine, Reader};
@@ -15,7 +15,7 @@ fuzz_target!(|bytes: &[u8]| {
     let mut bytes = Reader::new(bytes);
     let rig = rig();
     let Some(clip) = clip(&mut bytes) else { return };
-    let Ok(built) = BuiltClip::build(&clip, &rig, &BuildOptions::default()) else { return };
+    let Ok(built) = BuiltClip::build(&clip, &rig, &ClipBuildOptions::default()) else { return };
     let skeleton = Skeleton::new(&rig);
     let (mut cursor, mut blender) = (Cursor::new(), Blender::default());
     let [mut pose, mut fresh, mut blended] = [(); 3].map(|()| Pose::new(JOINTS));

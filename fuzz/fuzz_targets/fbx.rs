@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use sinew_anim::{BuildOptions, BuiltClip};
+use sinew_anim::{BuiltClip, ClipBuildOptions};
 use sinew_formats::{ReadOptions, Textures, no_files, read_fbx_with};
 
 fuzz_target!(|bytes: &[u8]| {
@@ -23,6 +23,6 @@ fuzz_target!(|bytes: &[u8]| {
         }
     }
     for clip in &file.clips {
-        let _ = BuiltClip::build(clip, &file.rig, &BuildOptions::default());
+        let _ = BuiltClip::build(clip, &file.rig, &ClipBuildOptions::default());
     }
 });

@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use sinew_anim::{BuildOptions, BuiltClip};
+use sinew_anim::{BuiltClip, ClipBuildOptions};
 use sinew_formats::{ReadOptions, Textures, no_files, read_gltf};
 
 fuzz_target!(|bytes: &[u8]| {
@@ -14,7 +14,7 @@ fuzz_target!(|bytes: &[u8]| {
             let joints = document.rig.joints.len();
             assert!(document.rig.stated_roles.iter().all(|&(_, joint)| joint < joints));
             for clip in &document.clips {
-                let _ = BuiltClip::build(clip, &document.rig, &BuildOptions::default());
+                let _ = BuiltClip::build(clip, &document.rig, &ClipBuildOptions::default());
             }
         }
     }

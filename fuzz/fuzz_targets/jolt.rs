@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use sinew_anim::{BuildOptions, BuiltClip, Joint, LocalTransform, Rig};
+use sinew_anim::{BuiltClip, ClipBuildOptions, Joint, LocalTransform, Rig};
 use sinew_formats::{read_jolt_animation, read_jolt_ragdoll, read_ragdoll, write_ragdoll};
 
 fuzz_target!(|bytes: &[u8]| {
@@ -23,6 +23,6 @@ fuzz_target!(|bytes: &[u8]| {
     let rig = Rig { joints: names.into_iter().enumerate().map(joint).collect(), ..Rig::default() };
     match read_jolt_animation(bytes, &rig) {
         Err(error) => assert!(!error.what.is_empty() && !error.where_.is_empty(), "{error}"),
-        Ok(clip) => drop(BuiltClip::build(&clip, &rig, &BuildOptions::default())),
+        Ok(clip) => drop(BuiltClip::build(&clip, &rig, &ClipBuildOptions::default())),
     }
 });

@@ -4,7 +4,7 @@
 use libfuzzer_sys::fuzz_target;
 use sinew_anim::roles::HUMANOID_ROLES;
 use sinew_anim::{
-    Correction, Hints, Joint, LocalTransform, Mesh, Primitive, Rig, Role, Skin, analyze, analyze_corrected,
+    Correction, Hints, Joint, LocalTransform, Primitive, Rig, RigMesh, Role, Skin, analyze, analyze_corrected,
 };
 use sinew_math::{Affine, Vec3};
 
@@ -48,7 +48,7 @@ fn rig(lines: &[Line<'_>]) -> Rig {
         part.indices.extend([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3].map(|corner| first + corner));
     }
     rig.skins = vec![skin];
-    rig.meshes = vec![Mesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![part] }];
+    rig.meshes = vec![RigMesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![part] }];
     rig
 }
 

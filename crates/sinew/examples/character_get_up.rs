@@ -26,7 +26,7 @@ pub fn main() {
             seen.push(hero.state());
         }
         // Its steps are events as well.
-        for event in hero.events().iter().filter(|event| !matches!(event, Event::Clip(_))) {
+        for event in hero.events().iter().filter(|event| !matches!(event, CharacterEvent::Clip(_))) {
             println!("{:5.2} s: {event:?}", world.time());
         }
         // What a renderer draws, in the file's own joints.

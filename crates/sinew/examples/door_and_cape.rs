@@ -4,7 +4,7 @@
 
 use sinew::physics::particles::{AttachmentDef, AttachmentTarget, ClothDef};
 use sinew::prelude::*;
-use sinew::ragdoll::{Event, Grip};
+use sinew::ragdoll::{CharacterEvent, Grip};
 use std::sync::Arc;
 
 /// A door on a hinge between two walls, 1.5 m ahead.
@@ -75,6 +75,6 @@ pub fn main() {
             hero.hit(&mut world, 2, Vec3::Z * 90.0);
         }
     }
-    assert!(told.iter().any(|event| matches!(event, Event::LetGo { held, .. } if *held == sword)));
+    assert!(told.iter().any(|event| matches!(event, CharacterEvent::LetGo { held, .. } if *held == sword)));
     assert!(world.transform(sword).translation.y < 0.1);
 }

@@ -4,7 +4,7 @@
 //! thrown bounces off it.
 
 use sinew::prelude::*;
-use sinew::ragdoll::{Event, State};
+use sinew::ragdoll::{CharacterEvent, State};
 use std::sync::Arc;
 
 /// Shoots at what is shown of a bone, from in front: the bone that was hit.
@@ -17,7 +17,7 @@ fn shoot(world: &mut World, target: &mut Character, bone: &str, impulse: f32) ->
     target.body_index(hit.body).map(|body| def.ragdoll.bodies[body].role.clone())
 }
 
-fn run(world: &mut World, target: &mut Character, seconds: f32) -> Vec<Event> {
+fn run(world: &mut World, target: &mut Character, seconds: f32) -> Vec<CharacterEvent> {
     let mut told = Vec::new();
     for _ in 0..(seconds * 60.0) as usize {
         world.step();
@@ -49,12 +49,12 @@ pub fn main() {
     let told = run(&mut world, &mut target, 0.4);
     println!("a ball comes back at {:.1} m/s: {told:?}", world.velocity(ball).linear.z);
     assert!(world.velocity(ball).linear.z > 5.0, "it bounced off");
-    assert!(told.iter().any(|event| matches!(event, Event::Struck { .. })), "and was felt");
+    assert!(told.iter().any(|event| matches!(event, CharacterEvent::Struck { .. })), "and was felt");
 
     run(&mut world, &mut target, 1.0);
     let bone = shoot(&mut world, &mut target, "chest", 90.0);
     assert_eq!((bone.is_some(), target.state()), (true, State::Limp), "that fells it");
     let told = run(&mut world, &mut target, 12.0);
-    assert!(told.contains(&Event::Up), "and it gets up again: {told:?}");
+    assert!(told.contains(&CharacterEvent::Up), "and it gets up again: {told:?}");
     println!("felled, it said {told:?}");
 }

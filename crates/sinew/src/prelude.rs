@@ -17,5 +17,6 @@ pub use sinew_physics::{
 };
 #[cfg(feature = "ragdoll")]
 pub use sinew_ragdoll::{
-    BuildOptions, Character, CharacterDef, Event, MotionSet, Part, Preset, Ragdoll, RagdollDef, State, build,
+    BuildOptions, Character, CharacterDef, CharacterEvent, MotionSet, Part, Preset, Ragdoll, RagdollDef,
+    State, build,
 };

@@ -22,15 +22,15 @@ pub mod set;
 pub mod skinning;
 
 pub use animator::{Animator, Easing, EndAction, MAX_SPEED, Track, TrackDef, TrackId, Transition};
-pub use built::{BuildError, BuildOptions, BuiltClip, ClipError, Cursor, Fill};
+pub use built::{BuiltClip, ClipBuildError, ClipBuildOptions, ClipError, Cursor, Fill};
 pub use clip::reduce::{KeyBound, KeyError, Reduced, reduce_keys};
-pub use clip::root_motion::{AxisMotion, MotionTrack, RootMotionOptions, extract_root_motion};
+pub use clip::root_motion::{AxisExtraction, MotionTrack, RootMotionOptions, extract_root_motion};
 pub use clip::sample::{SampleCache, Wrap, sample, sample_cached};
 pub use clip::take::Take;
 pub use clip::{Channel, Clip, Interpolation, Property};
 pub use clip::{reduce, root_motion, sample, take};
 pub use contact::FootContact;
-pub use event::{Event, EventPolicy, FiredBy, FiredEvent, Footstep, FootstepMerger, FootstepSource};
+pub use event::{ClipEvent, EventPolicy, FiredBy, FiredEvent, Footstep, FootstepMerger, FootstepSource};
 pub use playback::blend_space::{weights_on_line, weights_on_plane};
 pub use playback::inertial::{Decay, Inertia, Motion};
 pub use playback::playhead::{Crossing, LoopMode, Passage, Playhead};
@@ -40,7 +40,7 @@ pub use pose::{
     BlendLayer, BlendOptions, Blender, JointVelocity, Mask, ModelPose, Pose, RotationMean, Skeleton,
     WeightedPose, blend, crossfade, joint_velocities, local_to_model, rest_pose, smoothstep,
 };
-pub use rig::{Joint, JointIdx, LocalTransform, Mesh, Primitive, Rig, Skin, Texture};
+pub use rig::{Joint, JointIdx, LocalTransform, Primitive, Rig, RigMesh, Skin, TextureImage};
 pub use roles::{
     Basis, Correction, CorrectionError, Gait, Hints, KeptBone, NoSkin, RigAnalysis, Role, RoleGuess, Side,
     UnitGuess, analyze, analyze_corrected, analyze_hinted, analyze_skeleton, characters,

@@ -78,7 +78,7 @@ pub struct Primitive {
 
 /// A mesh as placed by one node.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mesh {
+pub struct RigMesh {
     /// Name in the file, or `""`.
     pub name: String,
     /// The node that carries it. Ignored when skinned (glTF 2.0 §3.7.3.3).
@@ -91,7 +91,7 @@ pub struct Mesh {
 
 /// A picture on a surface: 8-bit sRGB with alpha, rows from the top.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Texture {
+pub struct TextureImage {
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
@@ -108,9 +108,9 @@ pub struct Rig {
     /// Skins.
     pub skins: Vec<Skin>,
     /// Meshes.
-    pub meshes: Vec<Mesh>,
+    pub meshes: Vec<RigMesh>,
     /// Decoded base colour textures; empty where pictures were not asked for.
-    pub textures: Vec<Texture>,
+    pub textures: Vec<TextureImage>,
     /// Roles that the file itself states (VRM humanoid): VRM 1 bone name and joint.
     pub stated_roles: Vec<(String, JointIdx)>,
 }

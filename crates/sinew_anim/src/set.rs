@@ -2,7 +2,7 @@
 
 use crate::built::{BuiltClip, Fill};
 use crate::clip::root_motion::MotionTrack;
-use crate::event::{Event, FiredEvent};
+use crate::event::{ClipEvent, FiredEvent};
 use crate::playback::sync::Markers;
 use crate::pose::{Mask, Skeleton};
 use sinew_math::StableHasher;
@@ -21,7 +21,7 @@ pub struct AnimatedClip {
     /// The poses. One that was built with [`Fill::Identity`] is added to others, with [`Fill::Rest`] blended with them.
     pub clip: BuiltClip,
     /// Events of the clip, in any order.
-    pub events: Vec<Event>,
+    pub events: Vec<ClipEvent>,
     /// Markers that keep it in phase with other clips.
     pub markers: Markers,
     /// Motion of its character, if that was taken out of the poses.
@@ -113,7 +113,7 @@ impl AnimationSet {
     ///
     /// # Panics
     /// If it was fired by an animator of another set, and is not in this one.
-    pub fn event(&self, fired: &FiredEvent) -> &Event {
+    pub fn event(&self, fired: &FiredEvent) -> &ClipEvent {
         &self.clip(fired.clip).events[fired.event]
     }
 

@@ -5,7 +5,7 @@ use crate::report::number;
 use crate::report::quality_report::{quality_json, quality_text};
 use crate::report::story;
 use serde_json::{Map, Value, json};
-use sinew::ragdoll::quality::{Doubt, Quality, judge_bake};
+use sinew::ragdoll::quality::{Doubt, FallQuality, judge_bake};
 use sinew::ragdoll::{BakeInput, Baked, Flaw, SkinQuality, Verdict, bake};
 use std::fmt::Write;
 use std::path::Path;
@@ -31,7 +31,7 @@ impl<'a> Fall<'a> {
         let seconds = baked.steps as f64 * input.world.step_nanoseconds as f64 * 1e-9;
         // The clock may be too coarse for a short bake.
         let realtime_factor = seconds / cpu_seconds.max(1e-6);
-        let judge = |[quality]: &[Quality; 1]| judge_bake(quality);
+        let judge = |[quality]: &[FallQuality; 1]| judge_bake(quality);
         let figures = [baked.quality];
         let (verdict, reasons) = doubt.map_or_else(|| judge(&figures), |doubt| doubt.judge(figures, judge));
         Self { input, baked, realtime_factor, verdict, reasons }

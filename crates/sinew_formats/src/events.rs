@@ -12,12 +12,12 @@
 //! `"sinew_events": {"version": 1, "events": […]}`, or the bare list.
 //!
 //! ```
-//! use sinew_anim::Event;
+//! use sinew_anim::ClipEvent;
 //! use sinew_formats::{read_events, write_events};
 //!
 //! let clips = sinew::mannequin::mannequin().clips;
 //! let mut events = vec![Vec::new(); clips.len()];
-//! events[0] = vec![Event::new(0.25, "footstep")];
+//! events[0] = vec![ClipEvent::new(0.25, "footstep")];
 //! let text = write_events(&clips, &events);
 //! assert_eq!(read_events(text.as_bytes(), &clips)?[0], Some(events[0].clone()));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -26,7 +26,7 @@
 use crate::container::json::{self, At, number};
 use crate::error::{Result, quoted};
 use serde_json::{Map, Value, json};
-use sinew_anim::{Clip, Event, EventPolicy, FiredBy};
+use sinew_anim::{Clip, ClipEvent, EventPolicy, FiredBy};
 
 /// Version of both forms.
 const VERSION: usize = 1;
@@ -42,7 +42,7 @@ const FIRED_BY: [(&str, FiredBy); 3] =
 /// # Errors
 /// Names the place: no JSON, another kind of file or a newer version, an unknown key, a clip that is not there, is there
 /// more than once or is listed twice, an event without a name or outside of its clip, a weight outside of 0..=1.
-pub fn read_events(bytes: &[u8], clips: &[Clip]) -> Result<Vec<Option<Vec<Event>>>> {
+pub fn read_events(bytes: &[u8], clips: &[Clip]) -> Result<Vec<Option<Vec<ClipEvent>>>> {
     let json = json::parse(bytes)?;
     let root = At::root(&json);
     json::check_header(root, "events", VERSION)?;
@@ -77,10 +77,10 @@ fn find_clip(at: At<'_>, clips: &[Clip]) -> Result<usize> {
 ///
 /// # Panics
 /// If there are not as many lists of events as clips, or a number is not finite.
-pub fn write_events(clips: &[Clip], events: &[Vec<Event>]) -> String {
+pub fn write_events(clips: &[Clip], events: &[Vec<ClipEvent>]) -> String {
     assert_eq!(clips.len(), events.len(), "a list of events for each clip");
     let is_unique = |name: &str| clips.iter().filter(|clip| clip.name == name).count() == 1;
-    let entry = |(index, (clip, events)): (usize, (&Clip, &Vec<Event>))| {
+    let entry = |(index, (clip, events)): (usize, (&Clip, &Vec<ClipEvent>))| {
         let is_named = !clip.name.is_empty() && is_unique(&clip.name);
         let called = if is_named { Value::from(clip.name.as_str()) } else { index.into() };
         (!events.is_empty()).then(|| json!({"clip": called, "events": write_list(events)}))
@@ -93,13 +93,13 @@ pub fn write_events(clips: &[Clip], events: &[Vec<Event>]) -> String {
 ///
 /// # Panics
 /// If a number is not finite.
-pub fn events_extras(events: &[Event]) -> Option<Value> {
+pub fn events_extras(events: &[ClipEvent]) -> Option<Value> {
     let list = || json!({EXTRAS_KEY: {"version": VERSION, "events": write_list(events)}});
     (!events.is_empty()).then(list)
 }
 
 /// Events of a glTF animation that lasts `duration` seconds. `extras` may be anything; what is under our key is ours.
-pub(crate) fn read_extras(animation: At<'_>, duration: f32) -> Result<Vec<Event>> {
+pub(crate) fn read_extras(animation: At<'_>, duration: f32) -> Result<Vec<ClipEvent>> {
     let Some(extras) = animation.get("extras")?.filter(|extras| extras.value().is_object()) else {
         return Ok(Vec::new());
     };
@@ -112,15 +112,15 @@ pub(crate) fn read_extras(animation: At<'_>, duration: f32) -> Result<Vec<Event>
     read_list(at.need("events")?, duration)
 }
 
-fn read_list(list: At<'_>, duration: f32) -> Result<Vec<Event>> {
+fn read_list(list: At<'_>, duration: f32) -> Result<Vec<ClipEvent>> {
     let mut events =
-        list.items()?.into_iter().map(|at| read_event(at, duration)).collect::<Result<Vec<Event>>>()?;
+        list.items()?.into_iter().map(|at| read_event(at, duration)).collect::<Result<Vec<ClipEvent>>>()?;
     // Stable: what happens at one time stays in the file's order.
     events.sort_by(|a, b| a.time.total_cmp(&b.time));
     Ok(events)
 }
 
-fn read_event(at: At<'_>, duration: f32) -> Result<Event> {
+fn read_event(at: At<'_>, duration: f32) -> Result<ClipEvent> {
     at.only(&["time", "name", "payload", "min_weight", "fired_by", "on_interrupt"])?;
     let time_at = at.need("time")?;
     let time = time_at.not_negative()?;
@@ -133,7 +133,7 @@ fn read_event(at: At<'_>, duration: f32) -> Result<Event> {
         return Err(name_at.malformed("an event needs a name"));
     }
     let payload = at.get("payload")?.map_or(Ok(""), At::str)?.to_owned();
-    Ok(Event { time, name, payload, policy: read_policy(at)? })
+    Ok(ClipEvent { time, name, payload, policy: read_policy(at)? })
 }
 
 fn read_policy(at: At<'_>) -> Result<EventPolicy> {
@@ -155,9 +155,9 @@ fn read_policy(at: At<'_>) -> Result<EventPolicy> {
 }
 
 /// Events as JSON; what is as usual is left out.
-fn write_list(events: &[Event]) -> Value {
+fn write_list(events: &[ClipEvent]) -> Value {
     let usual = EventPolicy::default();
-    let write = |event: &Event| {
+    let write = |event: &ClipEvent| {
         let mut object = Map::new();
         object.insert("time".into(), number(event.time));
         object.insert("name".into(), event.name.as_str().into());

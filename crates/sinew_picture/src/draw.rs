@@ -1,6 +1,6 @@
 //! Models from plain descriptions: boxes, balls, capsules, floors, meshes and their wire frames.
 
-use crate::scene::{Line, LineDepth, Material, Model, Pattern, ShadowCasting};
+use crate::scene::{Line, LineDepth, Model, Pattern, RenderMaterial, ShadowCasting};
 use sinew::math::{Rotation, Transform, Vec3, normalize_or, trig};
 use sinew::physics::{Hull, Shape};
 
@@ -11,7 +11,7 @@ const TO_POLE: usize = 6;
 
 /// The surface of a shape. Boxes, hulls, meshes and height fields have flat faces, the others smooth normals. Nothing of a
 /// half-space, which has no end: see [`plane`].
-pub fn shape(shape: &Shape, world_from_shape: Transform, material: Material) -> Model {
+pub fn shape(shape: &Shape, world_from_shape: Transform, material: RenderMaterial) -> Model {
     let mut model = match *shape {
         Shape::Box { half_extents } => box_model(half_extents),
         Shape::Sphere { radius } => round_model(0.0, radius, radius),
@@ -36,7 +36,7 @@ pub fn shape(shape: &Shape, world_from_shape: Transform, material: Material) -> 
 }
 
 /// A ball of eight fields, every second one darker, so that it is seen to turn.
-pub fn ball(radius: f32, world_from_ball: Transform, material: Material) -> Model {
+pub fn ball(radius: f32, world_from_ball: Transform, material: RenderMaterial) -> Model {
     let mut model = shape(&Shape::Sphere { radius }, world_from_ball, material);
     let shade = |vertex: usize| {
         let (ring, around) = (vertex / AROUND, vertex % AROUND);
@@ -49,7 +49,7 @@ pub fn ball(radius: f32, world_from_ball: Transform, material: Material) -> Mode
 }
 
 /// A round rod from one point to another, with round ends, all in metres of the world.
-pub fn rod(from: Vec3, to: Vec3, radius: f32, material: Material) -> Model {
+pub fn rod(from: Vec3, to: Vec3, radius: f32, material: RenderMaterial) -> Model {
     let along = to - from;
     let turn = Rotation::from_arc(Vec3::Y, normalize_or(along, Vec3::Y));
     let place = Transform::new((from + to) * 0.5, turn);
@@ -70,10 +70,10 @@ pub fn plane(world_from_plane: Transform, half_size: f32, tile: f32, colors: [[f
     Model {
         positions: vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)],
         indices: vec![0, 1, 2, 0, 2, 3],
-        material: Material {
+        material: RenderMaterial {
             pattern: Pattern::Checker { size: tile, other },
             shadow: ShadowCasting::No,
-            ..Material::new(color)
+            ..RenderMaterial::new(color)
         },
         ..Model::default()
     }
@@ -318,7 +318,7 @@ mod tests {
             (Shape::Cylinder { half_height: 0.5, radius: 0.5 }, pi * 0.25, 0.02),
             (Shape::Cone { half_height: 0.5, radius: 0.5 }, pi / 12.0, 0.02),
         ] {
-            let model = super::shape(&shape, place, Material::default());
+            let model = super::shape(&shape, place, RenderMaterial::default());
             assert!((volume(&model) - expected).abs() < tolerance, "{shape:?}: {}", volume(&model));
             assert!(!wire(&shape, place, [1.0; 3], LineDepth::Tested).is_empty());
         }

@@ -23,5 +23,7 @@ pub use camera::{Camera, FollowCamera};
 pub use encode::{EncodeError, Movie, PictureFormat};
 pub use image::Image;
 pub use render::{Antialiasing, RenderSettings, Renderer};
-pub use scene::{Caption, Faces, Line, LineDepth, Material, Model, Pattern, Scene, ShadowCasting, Sky, Sun};
+pub use scene::{
+    Caption, Faces, Line, LineDepth, Model, Pattern, RenderMaterial, Scene, ShadowCasting, Sky, Sun,
+};
 pub use texture::{Texture, TextureError};

@@ -34,12 +34,12 @@ pub struct Model {
     /// Three a triangle, counter-clockwise seen from outside.
     pub indices: Vec<u32>,
     /// Look of its surface.
-    pub material: Material,
+    pub material: RenderMaterial,
 }
 
 /// The look of a surface: matt, lit by the sun and the sky.
 #[derive(Clone, Debug)]
-pub struct Material {
+pub struct RenderMaterial {
     /// Linear share of the light that comes back, 0..=1. Default a light grey.
     pub color: [f32; 3],
     /// 0 (unseen) to 1 (solid, default). Of several translucent surfaces in a line only the nearest is seen.
@@ -159,14 +159,14 @@ impl Caption {
     }
 }
 
-impl Material {
+impl RenderMaterial {
     /// Solid, plain, of one linear colour.
     pub fn new(color: [f32; 3]) -> Self {
         Self { color, ..Self::default() }
     }
 }
 
-impl Default for Material {
+impl Default for RenderMaterial {
     fn default() -> Self {
         Self {
             color: [0.6; 3],

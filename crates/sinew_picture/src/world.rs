@@ -1,7 +1,7 @@
 //! A physics world as models and lines: what can move in colours, what stands in grey.
 
 use crate::draw;
-use crate::scene::{Line, LineDepth, Material, Model, Scene};
+use crate::scene::{Line, LineDepth, Model, RenderMaterial, Scene};
 use sinew::math::{Transform, Vec3, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::particles::{ParticleGroup, SpringDef};
@@ -156,7 +156,7 @@ fn thin(segments: &[[Vec3; 2]], color: [f32; 3], frame: &Frame, scene: &mut Scen
     let long = segments.iter().filter(|[from, to]| (*to - *from).length() > ROD * frame.radius);
     for &[from, to] in long {
         if segments.len() <= MOST_SOLID {
-            scene.models.push(draw::rod(from, to, ROD * frame.radius, Material::new(color)));
+            scene.models.push(draw::rod(from, to, ROD * frame.radius, RenderMaterial::new(color)));
         } else {
             scene.lines.push(Line { from, to, color, depth: LineDepth::Tested });
         }
@@ -175,15 +175,15 @@ fn paint_body(world: &World, id: BodyId, number: usize, frame: &Frame, models: &
     let mut seen = kind == BodyKind::Static;
     for (shape, place) in world.shapes(id) {
         models.push(match shape {
-            Shape::Sphere { radius } => draw::ball(radius, place, Material::new(color)),
+            Shape::Sphere { radius } => draw::ball(radius, place, RenderMaterial::new(color)),
             Shape::HalfSpace => floor(&place, frame),
-            _ => draw::shape(&shape, place, Material::new(color)),
+            _ => draw::shape(&shape, place, RenderMaterial::new(color)),
         });
         seen |= shape.bounding_radius() > smallest;
     }
     if !seen {
         let place = Transform::new(world.center_of_mass(id), world.transform(id).rotation);
-        models.push(draw::ball(smallest, place, Material::new(color)));
+        models.push(draw::ball(smallest, place, RenderMaterial::new(color)));
     }
 }
 
@@ -218,7 +218,7 @@ fn paint_group(group: &ParticleGroup, frame: &Frame, scene: &mut Scene) {
             let alone = group.springs().is_empty();
             let radius = max(radius, SMALLEST * frame.radius * if alone { 1.0 } else { 0.5 });
             let place = Transform::from_translation(position);
-            scene.models.push(draw::shape(&Shape::Sphere { radius }, place, Material::new(PARTICLE)));
+            scene.models.push(draw::shape(&Shape::Sphere { radius }, place, RenderMaterial::new(PARTICLE)));
         }
     }
     let ends = |spring: &SpringDef| [spring.a, spring.b].map(|i| positions[i as usize]);

@@ -19,11 +19,11 @@ pub mod rig_match;
 pub mod settings;
 pub mod skin;
 
-pub use bake::{BakeInput, Baked, Hit, HitEffect, bake};
+pub use bake::{BakeHit, BakeInput, Baked, HitEffect, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
 pub use character::{
-    AfterSettling, Blow, Character, CharacterDef, Detail, Distances, Event, GettingReady, Grip, HitBodies,
-    InWorld, Locomotion, MotionError, MotionSet, Opening, Part, Preset, State, Toughness,
+    AfterSettling, Blow, Character, CharacterDef, CharacterEvent, Detail, Distances, GettingReady, Grip,
+    HitBodies, InWorld, Locomotion, MotionError, MotionSet, Opening, Part, Preset, State, Toughness,
 };
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 pub use doctor::{Repair, cure, doctor};
@@ -32,7 +32,7 @@ pub use fit::ShapeChoice;
 pub use limits::LimitSource;
 pub use mapping::Mapping;
 pub use masses::de_leva::Sex;
-pub use quality::{DropReport, Quality, QualityMeter, Verdict, drop_test, gate};
+pub use quality::{DropReport, FallQuality, QualityMeter, Verdict, drop_test, gate};
 pub use ragdoll::{BodySettings, BodyState, Ragdoll};
 pub use rig_match::RigMismatch;
 pub use settings::{Settings, SettingsError, build_moving, build_with};

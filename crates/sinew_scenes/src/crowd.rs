@@ -1,7 +1,7 @@
 //! Characters that each blend two clips: for measurements.
 
 use sinew::anim::{
-    BlendLayer, Blender, BuildOptions, BuiltClip, Channel, Clip, Cursor, Interpolation, Joint,
+    BlendLayer, Blender, BuiltClip, Channel, Clip, ClipBuildOptions, Cursor, Interpolation, Joint,
     LocalTransform, ModelPose, Pose, Property, Rig, Skeleton,
 };
 use sinew::math::{Affine, Random, Rotation, Vec3, trig};
@@ -81,7 +81,8 @@ impl Crowd {
     /// Before its first pose.
     pub fn new(scene: CrowdScene) -> Self {
         let joints = scene.rig.joints.len();
-        let built = |clip| BuiltClip::build(clip, &scene.rig, &BuildOptions::default()).expect("a good clip");
+        let built =
+            |clip| BuiltClip::build(clip, &scene.rig, &ClipBuildOptions::default()).expect("a good clip");
         Self {
             skeleton: Skeleton::new(&scene.rig),
             clips: scene.clips.each_ref().map(built),

@@ -6,7 +6,7 @@ use crate::mannequin::{Mannequin, mannequin};
 use sinew::anim::analyze;
 use sinew::math::{Transform, Vec3};
 use sinew::physics::BodyDef;
-use sinew::ragdoll::{BakeInput, BuildOptions, CharacterDef, Hit, Locomotion, MotionSet, build};
+use sinew::ragdoll::{BakeHit, BakeInput, BuildOptions, CharacterDef, Locomotion, MotionSet, build};
 use std::sync::Arc;
 
 /// Length: the walk, the fall, getting up, and a few steps; seconds.
@@ -29,7 +29,7 @@ pub struct Demo {
     /// The bodies of `props`.
     pub bodies: Vec<BodyDef>,
     /// The hit.
-    pub hits: Vec<Hit>,
+    pub hits: Vec<BakeHit>,
 }
 
 impl Demo {
@@ -44,7 +44,7 @@ impl Demo {
             world_from_character: spawn.world_from_character,
             bodies: props.iter().map(|prop| prop.body.clone()).collect(),
             props,
-            hits: vec![Hit { time, body, impulse: IMPULSE }],
+            hits: vec![BakeHit { time, body, impulse: IMPULSE }],
         }
     }
 

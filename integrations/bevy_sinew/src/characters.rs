@@ -11,7 +11,7 @@ use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
 use core::ops::{Deref, DerefMut};
 use sinew::anim::{LocalTransform, Rig};
-use sinew::ragdoll::{Character, CharacterDef, Event as Told};
+use sinew::ragdoll::{Character, CharacterDef, CharacterEvent};
 use sinew_math::Affine;
 use sinew_physics::BodyId;
 use std::collections::VecDeque;
@@ -63,7 +63,7 @@ pub struct CharacterTold {
     /// Entity of the character.
     pub character: Entity,
     /// Event of the character in this step.
-    pub event: Told,
+    pub event: CharacterEvent,
 }
 
 fn take_out(mut world: DeferredWorld, context: HookContext) {

@@ -9,9 +9,6 @@ use std::collections::{BTreeMap, BTreeSet};
 const LIST: &str = "xtask/public.txt";
 /// Crates that no one adds as a library.
 const BINARIES: &[&str] = &["sinew_cli", "sinew_scenes"];
-/// Types of one name in two crates. May only shrink.
-const SHARED: &[&str] =
-    &["AxisMotion", "BuildError", "BuildOptions", "Event", "Hit", "Material", "Mesh", "Quality", "Texture"];
 
 /// The roots of the libraries offer what the list says, and each type's name is its own.
 pub fn check(repo: &Repo) -> Vec<Finding> {
@@ -54,17 +51,10 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
             .filter(|line| !offered.contains(**line))
             .map(|line| Finding::new(LIST, 1, message("is not offered", line))),
     );
-    for (item, crates) in &types {
-        if (crates.len() > 1) != SHARED.contains(item) {
-            let crates: Vec<&str> = crates.iter().copied().collect();
-            let what = if crates.len() > 1 {
-                "is a type of several crates"
-            } else {
-                "is no longer shared: remove it from public.rs"
-            };
-            findings.push(Finding::new(LIST, 1, format!("`{item}` {what}: {}", crates.join(", "))));
-        }
-    }
+    findings.extend(types.iter().filter(|(_, crates)| crates.len() > 1).map(|(item, crates)| {
+        let crates: Vec<&str> = crates.iter().copied().collect();
+        Finding::new(LIST, 1, format!("`{item}` is a type of several crates: {}", crates.join(", ")))
+    }));
     findings
 }
 

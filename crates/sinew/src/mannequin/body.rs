@@ -4,7 +4,7 @@
 
 use super::loft::{Chain, Loft, Section, mirror};
 use super::skeleton::{Bone, FOREARM, UPPER_ARM, bind_position, left_arm_axes};
-use crate::anim::{Mesh, Primitive};
+use crate::anim::{Primitive, RigMesh};
 use crate::math::{Vec3, trig};
 
 /// Linear RGBA of the trunk and limbs: pale beech.
@@ -15,8 +15,8 @@ const JOINT: [f32; 4] = [0.085, 0.050, 0.032, 1.0];
 const ACCENT: [f32; 4] = [0.030, 0.170, 0.260, 1.0];
 
 /// The one mesh of the mannequin, carried by the root, a primitive for each colour.
-pub(super) fn mesh() -> Mesh {
-    Mesh {
+pub(super) fn mesh() -> RigMesh {
+    RigMesh {
         name: "mannequin".to_owned(),
         joint: Bone::Root.index(),
         skin: Some(0),

@@ -69,7 +69,7 @@ pub fn character() -> crate::ragdoll::CharacterDef {
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
     // The walk begins as the left heel strikes, and has two equal steps.
     let half = 0.5 * clips[motions.walk].duration;
-    let step = |foot: &str, time: f32| (motions.walk, crate::anim::Event::new(time, foot));
+    let step = |foot: &str, time: f32| (motions.walk, crate::anim::ClipEvent::new(time, foot));
     let motions = MotionSet {
         events: vec![step("left step", 0.0), step("right step", half)],
         clips,

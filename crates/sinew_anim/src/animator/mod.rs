@@ -12,7 +12,7 @@ mod track;
 pub use track::{Easing, EndAction, MAX_SPEED, Track, TrackDef, TrackId};
 
 use crate::built::Cursor;
-use crate::event::{Event, FiredEvent};
+use crate::event::{ClipEvent, FiredEvent};
 use crate::playback::inertial::Inertia;
 use crate::playback::playhead::Playhead;
 use crate::playback::sync;
@@ -362,7 +362,7 @@ impl Animator {
         &mut self,
         set: &AnimationSet,
         seconds: f32,
-        mut on_event: impl FnMut(&FiredEvent, &Event),
+        mut on_event: impl FnMut(&FiredEvent, &ClipEvent),
     ) {
         self.update(set, seconds);
         self.events.iter().for_each(|fired| on_event(fired, set.event(fired)));

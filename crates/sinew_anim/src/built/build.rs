@@ -22,7 +22,7 @@ pub enum Fill {
 
 /// Options for building a clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BuildOptions {
+pub struct ClipBuildOptions {
     /// Content where the clip has no channel.
     pub fill: Fill,
     /// By how much straight lines may be off arcs and splines, radians; more keys are put where they would be by more.
@@ -31,7 +31,7 @@ pub struct BuildOptions {
     pub relative_tolerance: f32,
 }
 
-impl Default for BuildOptions {
+impl Default for ClipBuildOptions {
     fn default() -> Self {
         Self { fill: Fill::Rest, rotation_tolerance: 1e-4, relative_tolerance: 1e-4 }
     }
@@ -39,7 +39,7 @@ impl Default for BuildOptions {
 
 /// Why a clip cannot be built. Channels and keys are counted from 0, as in [`Clip::channels`].
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum BuildError {
+pub enum ClipBuildError {
     /// The rig has no joints.
     #[error("the rig has no joints")]
     NoJoints,
@@ -120,8 +120,8 @@ impl BuiltClip {
     /// [`sample`](crate::clip::sample::sample()). A channel that moves nothing takes no keys.
     ///
     /// # Errors
-    /// Where the clip breaks what [`Clip`] promises, with the channel and the key; see [`BuildError`].
-    pub fn build(clip: &Clip, rig: &Rig, options: &BuildOptions) -> Result<Self, BuildError> {
+    /// Where the clip breaks what [`Clip`] promises, with the channel and the key; see [`ClipBuildError`].
+    pub fn build(clip: &Clip, rig: &Rig, options: &ClipBuildOptions) -> Result<Self, ClipBuildError> {
         check(clip, rig)?;
         let mut base = match options.fill {
             Fill::Rest => Pose::rest(rig),
@@ -249,18 +249,18 @@ fn first_row(property: Property) -> usize {
     }
 }
 
-fn all_times(curves: &[(JointIdx, Property, Curve)]) -> Result<Vec<f32>, BuildError> {
+fn all_times(curves: &[(JointIdx, Property, Curve)]) -> Result<Vec<f32>, ClipBuildError> {
     let mut times: Vec<f32> = curves.iter().flat_map(|(.., curve)| curve.times.iter().copied()).collect();
     times.sort_by(f32::total_cmp);
     times.dedup();
     if times.len() > 1 << 16 {
-        return Err(BuildError::TooManyTimes { times: times.len() });
+        return Err(ClipBuildError::TooManyTimes { times: times.len() });
     }
     Ok(times)
 }
 
 /// Largest error of a channel that quantisation, straight lines and rounding can cause.
-fn bound_of(channel: &Channel, options: &BuildOptions) -> ClipError {
+fn bound_of(channel: &Channel, options: &ClipBuildOptions) -> ClipError {
     if channel.property == Property::Rotation {
         return ClipError { rotation: ROTATION_BOUND + options.rotation_tolerance, ..ClipError::default() };
     }
@@ -280,44 +280,44 @@ fn bound_of(channel: &Channel, options: &BuildOptions) -> ClipError {
 }
 
 /// Checks that the clip keeps what [`Clip`] and [`Channel`] promise.
-fn check(clip: &Clip, rig: &Rig) -> Result<(), BuildError> {
+fn check(clip: &Clip, rig: &Rig) -> Result<(), ClipBuildError> {
     let joints = rig.joints.len();
     if joints == 0 {
-        return Err(BuildError::NoJoints);
+        return Err(ClipBuildError::NoJoints);
     }
     let duration = clip.duration;
     if !(duration >= 0.0 && duration.is_finite()) {
-        return Err(BuildError::Duration { duration });
+        return Err(ClipBuildError::Duration { duration });
     }
     clip.channels.iter().enumerate().try_for_each(|(i, channel)| check_channel(i, channel, joints))
 }
 
-fn check_channel(index: usize, channel: &Channel, joints: usize) -> Result<(), BuildError> {
+fn check_channel(index: usize, channel: &Channel, joints: usize) -> Result<(), ClipBuildError> {
     let (joint, times, values) = (channel.joint, &channel.times, &channel.values);
     if joint >= joints {
-        return Err(BuildError::UnknownJoint { channel: index, joint, joints });
+        return Err(ClipBuildError::UnknownJoint { channel: index, joint, joints });
     }
     if times.is_empty() {
-        return Err(BuildError::NoKeys { channel: index });
+        return Err(ClipBuildError::NoKeys { channel: index });
     }
     let width = channel.property.width();
     let per_key = if channel.interpolation == Interpolation::CubicSpline { 3 * width } else { width };
     let needed = times.len().saturating_mul(per_key);
     if values.len() != needed {
-        return Err(BuildError::ValueCount { channel: index, values: values.len(), needed });
+        return Err(ClipBuildError::ValueCount { channel: index, values: values.len(), needed });
     }
     for (key, (&time, value)) in times.iter().zip(values.chunks(per_key)).enumerate() {
         let is_late = key == 0 || times[key - 1] < time;
         if !(time >= 0.0 && time.is_finite() && is_late) {
-            return Err(BuildError::Time { channel: index, key, time });
+            return Err(ClipBuildError::Time { channel: index, key, time });
         }
         if !value.iter().all(|x| x.abs() < 1e18) {
-            return Err(BuildError::Value { channel: index, key });
+            return Err(ClipBuildError::Value { channel: index, key });
         }
         // Of a spline's three, the value is in the middle.
         let value = if per_key == width { value } else { &value[width..2 * width] };
         if channel.property == Property::Rotation && value.iter().all(|x| x.abs() < 1e-6) {
-            return Err(BuildError::ZeroRotation { channel: index, key });
+            return Err(ClipBuildError::ZeroRotation { channel: index, key });
         }
     }
     Ok(())

@@ -291,7 +291,7 @@ mod tests {
             }
         }
         let clip =
-            BuiltClip::build(&clip, &rig, &crate::built::BuildOptions::default()).expect("a good clip");
+            BuiltClip::build(&clip, &rig, &crate::built::ClipBuildOptions::default()).expect("a good clip");
         for time in [0.0, 0.2, 0.45, 0.9, 1.0] {
             let on = |level| {
                 let (mut cursor, mut out) = (Cursor::new(), Pose::new(19));

@@ -1,6 +1,6 @@
 //! Keys of a channel such that straight lines between them are near enough.
 
-use super::build::BuildOptions;
+use super::build::ClipBuildOptions;
 use super::error::angle_between;
 use crate::clip::sample::channel_at;
 use crate::clip::{Channel, Interpolation, Property};
@@ -16,7 +16,7 @@ pub(super) struct Curve {
 const DEEPEST: u32 = 10;
 
 impl Curve {
-    pub fn of(channel: &Channel, options: &BuildOptions) -> Self {
+    pub fn of(channel: &Channel, options: &ClipBuildOptions) -> Self {
         let tolerance = match channel.property {
             Property::Rotation => options.rotation_tolerance,
             Property::Translation | Property::Scale => options.relative_tolerance * extent(channel),

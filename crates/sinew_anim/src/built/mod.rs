@@ -10,7 +10,7 @@ mod cursor;
 mod curve;
 mod error;
 
-pub use build::{BuildError, BuildOptions, Fill};
+pub use build::{ClipBuildError, ClipBuildOptions, Fill};
 pub use cursor::Cursor;
 pub use error::ClipError;
 

@@ -8,7 +8,7 @@ use sinew_math::{Affine, Rotation, Transform, Vec3};
 
 /// Part of a motion along an axis that is taken out of the pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AxisMotion {
+pub enum AxisExtraction {
     /// Nothing: it stays in the pose.
     #[default]
     None,
@@ -24,9 +24,9 @@ pub struct RootMotionOptions {
     /// The joint that carries the body: hips, or whatever is above them.
     pub joint: JointIdx,
     /// Along x, y, z of model space.
-    pub axes: [AxisMotion; 3],
+    pub axes: [AxisExtraction; 3],
     /// Turns about `up`.
-    pub turn: AxisMotion,
+    pub turn: AxisExtraction,
     /// Unit vector, model space.
     pub up: Vec3,
 }
@@ -34,7 +34,7 @@ pub struct RootMotionOptions {
 impl RootMotionOptions {
     /// Over the ground and about y: all of x, z and the turn, nothing of y.
     pub fn on_ground(joint: JointIdx) -> Self {
-        let (none, full) = (AxisMotion::None, AxisMotion::Full);
+        let (none, full) = (AxisExtraction::None, AxisExtraction::Full);
         Self { joint, axes: [full, none, full], turn: full, up: Vec3::Y }
     }
 }
@@ -246,16 +246,16 @@ fn unwrapped(angle: f32, last: f32) -> f32 {
 }
 
 /// Replaces the path `way` by the part of it that a mode takes, from its first number on.
-fn take(mode: AxisMotion, times: &[f32], way: &mut [f32]) {
+fn take(mode: AxisExtraction, times: &[f32], way: &mut [f32]) {
     let first = way[0];
     let last = way[way.len() - 1] - first;
     let duration = times[times.len() - 1];
     for (value, &time) in way.iter_mut().zip(times) {
         *value = match mode {
-            AxisMotion::None => 0.0,
-            AxisMotion::Linear if duration > 0.0 => last * (time / duration),
-            AxisMotion::Linear => 0.0,
-            AxisMotion::Full => *value - first,
+            AxisExtraction::None => 0.0,
+            AxisExtraction::Linear if duration > 0.0 => last * (time / duration),
+            AxisExtraction::Linear => 0.0,
+            AxisExtraction::Full => *value - first,
         };
     }
 }

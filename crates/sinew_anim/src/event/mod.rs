@@ -41,7 +41,7 @@ impl Default for EventPolicy {
 
 /// Something that happens in a clip: a foot comes down, a fist arrives.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Event {
+pub struct ClipEvent {
     /// When, seconds from the clip's start, 0 to its length.
     pub time: f32,
     /// Name of what happens; several events may have one name.
@@ -52,7 +52,7 @@ pub struct Event {
     pub policy: EventPolicy,
 }
 
-impl Event {
+impl ClipEvent {
     /// With the usual policy and no payload.
     pub fn new(time: f32, name: &str) -> Self {
         Self { time, name: name.to_owned(), ..Self::default() }

@@ -3,7 +3,7 @@
 use super::graph::ancestors;
 use super::names::read_names;
 use crate::pose::{local_to_model, rest_pose};
-use crate::rig::{JointIdx, LocalTransform, Mesh, Rig};
+use crate::rig::{JointIdx, LocalTransform, Rig, RigMesh};
 use crate::skinning::skin_vertices;
 use sinew_math::{Affine, Vec3, max3, min3};
 use std::collections::BTreeMap;
@@ -183,8 +183,8 @@ fn bind_pose(rig: &Rig) -> Vec<Affine> {
     local_to_model(rig, &rest_pose(rig), &Affine::IDENTITY, &mut rest);
     let mut bound: Vec<Option<Affine>> = vec![None; rig.joints.len()];
     // The skin with the most vertices says where its joints were; smaller ones (a sword) only add what it lacks.
-    let mut meshes: Vec<&Mesh> = rig.meshes.iter().filter(|mesh| mesh.skin.is_some()).collect();
-    let vertices = |mesh: &Mesh| mesh.primitives.iter().map(|p| p.positions.len()).sum::<usize>();
+    let mut meshes: Vec<&RigMesh> = rig.meshes.iter().filter(|mesh| mesh.skin.is_some()).collect();
+    let vertices = |mesh: &RigMesh| mesh.primitives.iter().map(|p| p.positions.len()).sum::<usize>();
     meshes.sort_by_key(|mesh| core::cmp::Reverse(vertices(mesh)));
     for mesh in meshes {
         let Some(skin) = mesh.skin.map(|s| &rig.skins[s]) else { continue };
@@ -210,7 +210,7 @@ fn bind_pose(rig: &Rig) -> Vec<Affine> {
 /// some other pose the joints disagree; then the mesh's own node counts if any joint confirms it, else the joint that carries
 /// most of those that move skin: the root of the skeleton, which hardly any pose moves. Joints that move no skin have no
 /// vote: a control may be bound anywhere.
-fn model_from_mesh(rig: &Rig, mesh: &Mesh, rest: &[Affine]) -> Affine {
+fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     let skin = &rig.skins[mesh.skin.expect("only skinned meshes are asked for")];
     let mut moves = vec![false; skin.joints.len()];
     for primitive in &mesh.primitives {

@@ -5,8 +5,8 @@ use sinew_anim::ik::{
     FootGround, FootPlacement, LookAt, Pole, TwoBone, TwoBoneGoal, look_at, place_feet, two_bone_ik,
 };
 use sinew_anim::{
-    AnimatedClip, AnimationSet, Animator, Easing, Event, JointIdx, Mask, ModelPose, Role, Skeleton, TrackDef,
-    Transition, local_to_model, rest_pose,
+    AnimatedClip, AnimationSet, Animator, ClipEvent, Easing, JointIdx, Mask, ModelPose, Role, Skeleton,
+    TrackDef, Transition, local_to_model, rest_pose,
 };
 use sinew_math::{Affine, Random, Vec3};
 
@@ -16,7 +16,10 @@ fn a_warm_update_allocates_nothing() {
     let mut random = Random::new(1);
     for duration in [1.0, 0.75, 1.5] {
         let clip = stage::build(&stage::swaying(&mut random, duration), sinew_anim::Fill::Rest);
-        set.add_clip(AnimatedClip { events: vec![Event::new(0.3, "a"), Event::new(0.0, "b")], ..clip });
+        set.add_clip(AnimatedClip {
+            events: vec![ClipEvent::new(0.3, "a"), ClipEvent::new(0.0, "b")],
+            ..clip
+        });
     }
     let mask = set.add_mask(Mask::splat(stage::JOINTS, 0.5));
     let clips: Vec<_> = set.clips().collect();
@@ -53,7 +56,7 @@ fn an_animator_sent_ahead_gets_where_the_other_will_be() {
     let mut random = Random::new(2);
     for duration in [1.0, 0.75, 1.5] {
         let clip = stage::build(&stage::swaying(&mut random, duration), sinew_anim::Fill::Rest);
-        set.add_clip(AnimatedClip { events: vec![Event::new(0.3, "a")], ..clip });
+        set.add_clip(AnimatedClip { events: vec![ClipEvent::new(0.3, "a")], ..clip });
     }
     let clips: Vec<_> = set.clips().collect();
     let mut animator = Animator::new(&set);

@@ -2,8 +2,8 @@
 
 use crate::{cases, stage};
 use sinew_anim::{
-    AnimatedClip, AnimationSet, Animator, Channel, Clip, ClipId, Easing, EndAction, Event, EventPolicy, Fill,
-    FiredBy, Interpolation, LoopMode, Markers, Mask, Pose, Property, Skeleton, TrackDef, Transition,
+    AnimatedClip, AnimationSet, Animator, Channel, Clip, ClipEvent, ClipId, Easing, EndAction, EventPolicy,
+    Fill, FiredBy, Interpolation, LoopMode, Markers, Mask, Pose, Property, Skeleton, TrackDef, Transition,
 };
 use sinew_math::{Random, Rotation, Vec3};
 
@@ -16,7 +16,7 @@ fn angle(a: &Pose, b: &Pose) -> f32 {
 }
 
 /// A set with one clip of `duration` that has `events`.
-fn eventful(duration: f32, events: Vec<Event>) -> AnimationSet {
+fn eventful(duration: f32, events: Vec<ClipEvent>) -> AnimationSet {
     let mut set = AnimationSet::new(Skeleton::new(&stage::rig()));
     let clip = stage::build(&stage::swaying(&mut Random::new(3), duration), Fill::Rest);
     set.add_clip(AnimatedClip { events, ..clip });
@@ -177,8 +177,8 @@ fn fired(animator: &mut Animator, set: &AnimationSet, steps: &[f32]) -> Vec<(f64
     out
 }
 
-fn numbered(time: f32, number: u32) -> Event {
-    Event { payload: number.to_string(), ..Event::new(time, "step") }
+fn numbered(time: f32, number: u32) -> ClipEvent {
+    ClipEvent { payload: number.to_string(), ..ClipEvent::new(time, "step") }
 }
 
 #[test]
@@ -218,7 +218,7 @@ fn events_have_their_own_time_and_do_not_depend_on_the_steps() {
 #[test]
 fn a_track_that_is_too_light_fires_nothing() {
     let policy = EventPolicy { min_weight: 0.5, ..EventPolicy::default() };
-    let events = (0..10).map(|i| Event { policy, ..numbered(0.1 * i as f32, i) }).collect();
+    let events = (0..10).map(|i| ClipEvent { policy, ..numbered(0.1 * i as f32, i) }).collect();
     let set = eventful(1.0, events);
     for steps in [1, 7] {
         let mut animator = Animator::new(&set);
@@ -236,7 +236,7 @@ fn a_track_that_is_too_light_fires_nothing() {
 #[test]
 fn an_interrupted_motion_is_put_right() {
     let on_interrupt = EventPolicy { on_interrupt: true, ..EventPolicy::default() };
-    let put_right = |time, number| Event { policy: on_interrupt, ..numbered(time, number) };
+    let put_right = |time, number| ClipEvent { policy: on_interrupt, ..numbered(time, number) };
     let set = eventful(1.0, vec![put_right(0.2, 0), numbered(0.6, 1), put_right(0.8, 2)]);
     let def = TrackDef { loop_mode: LoopMode::Once, ..TrackDef::new(ids(&set)[0]) };
     let mut animator = Animator::new(&set);
@@ -266,8 +266,8 @@ fn gaits(policy: EventPolicy) -> AnimationSet {
     for (duration, left, right) in [(1.0, 0.1, 0.6), (0.6, 0.2, 0.55)] {
         let clip = stage::build(&stage::swaying(&mut Random::new(8), duration), Fill::Rest);
         let events = vec![
-            Event { policy, ..numbered(left, 0) },
-            Event { policy, name: "right".to_owned(), ..numbered(right, 1) },
+            ClipEvent { policy, ..numbered(left, 0) },
+            ClipEvent { policy, name: "right".to_owned(), ..numbered(right, 1) },
         ];
         set.add_clip(AnimatedClip { events, markers: Markers::new(vec![left, right]), ..clip });
     }
@@ -378,7 +378,7 @@ fn a_footfall_is_one_whoever_leads_when() {
     for (duration, left, right, late) in [(1.0, 0.02, 0.5, 0.03), (0.6, 0.04, 0.3, -0.03)] {
         let clip = stage::build(&stage::swaying(&mut Random::new(8), duration), Fill::Rest);
         let event =
-            |time, number| Event { policy, name: "footstep".to_owned(), ..numbered(time + late, number) };
+            |time, number| ClipEvent { policy, name: "footstep".to_owned(), ..numbered(time + late, number) };
         let events = vec![event(left, 0), event(right, 1)];
         set.add_clip(AnimatedClip { events, markers: Markers::new(vec![left, right]), ..clip });
     }

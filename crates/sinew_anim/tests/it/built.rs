@@ -2,13 +2,13 @@
 
 use crate::{precise, rigs, toy};
 use sinew_anim::{
-    BuildError, BuildOptions, BuiltClip, Channel, Clip, Cursor, Fill, Interpolation, LocalTransform, Pose,
-    Property, Rig, SampleCache, Skeleton, Wrap, local_to_model, sample, sample_cached,
+    BuiltClip, Channel, Clip, ClipBuildError, ClipBuildOptions, Cursor, Fill, Interpolation, LocalTransform,
+    Pose, Property, Rig, SampleCache, Skeleton, Wrap, local_to_model, sample, sample_cached,
 };
 use sinew_math::{Affine, Random, Rotation, Vec3};
 
 fn build(clip: &Clip, rig: &Rig) -> BuiltClip {
-    BuiltClip::build(clip, rig, &BuildOptions::default())
+    BuiltClip::build(clip, rig, &ClipBuildOptions::default())
         .unwrap_or_else(|error| panic!("{}: {error}", clip.name))
 }
 
@@ -47,7 +47,7 @@ fn built_clips_are_within_their_bound_on_all_open_clips() {
         let Some((rig, all)) = rigs::load(&format!("rigs/{file}")) else { return };
         assert!(!all.is_empty(), "{file} holds clips");
         for clip in &all {
-            let built = match BuiltClip::build(clip, &rig, &BuildOptions::default()) {
+            let built = match BuiltClip::build(clip, &rig, &ClipBuildOptions::default()) {
                 Ok(built) => built,
                 Err(error) => panic!("{file}, {}: {error}", clip.name),
             };
@@ -196,36 +196,39 @@ fn bad_clips_are_refused_with_their_place() {
     let error = |change: &dyn Fn(&mut Clip)| {
         let mut clip = good.clone();
         change(&mut clip);
-        BuiltClip::build(&clip, &rig, &BuildOptions::default()).expect_err("it is not good")
+        BuiltClip::build(&clip, &rig, &ClipBuildOptions::default()).expect_err("it is not good")
     };
-    assert!(BuiltClip::build(&good, &rig, &BuildOptions::default()).is_ok());
+    assert!(BuiltClip::build(&good, &rig, &ClipBuildOptions::default()).is_ok());
     let none = Rig::default();
-    assert_eq!(BuiltClip::build(&good, &none, &BuildOptions::default()), Err(BuildError::NoJoints));
-    assert_eq!(error(&|c| c.duration = -1.0), BuildError::Duration { duration: -1.0 });
-    assert!(matches!(error(&|c| c.duration = f32::NAN), BuildError::Duration { .. }));
-    let unknown = BuildError::UnknownJoint { channel: 1, joint: 2, joints: 2 };
+    assert_eq!(BuiltClip::build(&good, &none, &ClipBuildOptions::default()), Err(ClipBuildError::NoJoints));
+    assert_eq!(error(&|c| c.duration = -1.0), ClipBuildError::Duration { duration: -1.0 });
+    assert!(matches!(error(&|c| c.duration = f32::NAN), ClipBuildError::Duration { .. }));
+    let unknown = ClipBuildError::UnknownJoint { channel: 1, joint: 2, joints: 2 };
     assert_eq!(error(&|c| c.channels[1].joint = 2), unknown);
-    assert_eq!(error(&|c| c.channels[0].times.clear()), BuildError::NoKeys { channel: 0 });
-    let short = BuildError::ValueCount { channel: 0, values: 11, needed: 12 };
+    assert_eq!(error(&|c| c.channels[0].times.clear()), ClipBuildError::NoKeys { channel: 0 });
+    let short = ClipBuildError::ValueCount { channel: 0, values: 11, needed: 12 };
     assert_eq!(error(&|c| c.channels[0].values.truncate(11)), short);
-    let late = BuildError::Time { channel: 1, key: 2, time: 0.5 };
+    let late = ClipBuildError::Time { channel: 1, key: 2, time: 0.5 };
     assert_eq!(error(&|c| c.channels[1].times[2] = 0.5), late);
     assert_eq!(
         error(&|c| c.channels[1].times[0] = -1.0),
-        BuildError::Time { channel: 1, key: 0, time: -1.0 }
+        ClipBuildError::Time { channel: 1, key: 0, time: -1.0 }
     );
     assert!(matches!(
         error(&|c| c.channels[1].times[1] = f32::NAN),
-        BuildError::Time { channel: 1, key: 1, .. }
+        ClipBuildError::Time { channel: 1, key: 1, .. }
     ));
-    assert_eq!(error(&|c| c.channels[1].values[5] = f32::NAN), BuildError::Value { channel: 1, key: 1 });
-    assert_eq!(error(&|c| c.channels[1].values[5] = 1e30), BuildError::Value { channel: 1, key: 1 });
-    assert_eq!(error(&|c| c.channels[1].values[7] = 0.0), BuildError::ZeroRotation { channel: 1, key: 1 });
+    assert_eq!(error(&|c| c.channels[1].values[5] = f32::NAN), ClipBuildError::Value { channel: 1, key: 1 });
+    assert_eq!(error(&|c| c.channels[1].values[5] = 1e30), ClipBuildError::Value { channel: 1, key: 1 });
+    assert_eq!(
+        error(&|c| c.channels[1].values[7] = 0.0),
+        ClipBuildError::ZeroRotation { channel: 1, key: 1 }
+    );
     let many = |c: &mut Clip| {
         c.channels[1].times = (0..70_000).map(|i| i as f32 * 1e-3).collect();
         c.channels[1].values = (0..70_000).flat_map(|i| [0.0, (i % 7) as f32, 0.0, 1.0]).collect();
     };
-    assert!(matches!(error(&many), BuildError::TooManyTimes { times } if times >= 70_000));
+    assert!(matches!(error(&many), ClipBuildError::TooManyTimes { times } if times >= 70_000));
 }
 
 #[test]
@@ -238,7 +241,8 @@ fn differences_on_top_of_their_reference_are_the_clip() {
     clip.channels.retain(|channel| channel.property != Property::Scale);
     let difference = clip.difference_from(&reference);
     let fill = Fill::Identity;
-    let built = BuiltClip::build(&difference, &rig, &BuildOptions { fill, ..BuildOptions::default() });
+    let built =
+        BuiltClip::build(&difference, &rig, &ClipBuildOptions { fill, ..ClipBuildOptions::default() });
     let built = built.expect("it is as good as the clip");
     let (mut out, mut expected) = (Pose::new(6), reference.clone());
     for i in 0..30 {

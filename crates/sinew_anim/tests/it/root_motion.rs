@@ -2,9 +2,9 @@
 
 use crate::stage;
 use sinew_anim::{
-    AnimatedClip, AnimationSet, Animator, AxisMotion, BuildOptions, BuiltClip, Channel, Clip, Interpolation,
-    LocalTransform, LoopMode, Property, Rig, RootMotionOptions, Skeleton, TrackDef, Transition, Wrap,
-    extract_root_motion, local_to_model, sample,
+    AnimatedClip, AnimationSet, Animator, AxisExtraction, BuiltClip, Channel, Clip, ClipBuildOptions,
+    Interpolation, LocalTransform, LoopMode, Property, Rig, RootMotionOptions, Skeleton, TrackDef,
+    Transition, Wrap, extract_root_motion, local_to_model, sample,
 };
 use sinew_math::{Affine, Rotation, Transform, Vec3, trig};
 
@@ -51,9 +51,9 @@ fn what_is_taken_out_and_what_stays_are_the_clip() {
     let (rig, clip) = circling(2.0, 1.5, 0.7);
     for options in [
         RootMotionOptions::on_ground(1),
-        RootMotionOptions { axes: [AxisMotion::Linear; 3], ..RootMotionOptions::on_ground(1) },
-        RootMotionOptions { turn: AxisMotion::None, ..RootMotionOptions::on_ground(1) },
-        RootMotionOptions { turn: AxisMotion::Linear, ..RootMotionOptions::on_ground(1) },
+        RootMotionOptions { axes: [AxisExtraction::Linear; 3], ..RootMotionOptions::on_ground(1) },
+        RootMotionOptions { turn: AxisExtraction::None, ..RootMotionOptions::on_ground(1) },
+        RootMotionOptions { turn: AxisExtraction::Linear, ..RootMotionOptions::on_ground(1) },
     ] {
         let (still, motion) = extract_root_motion(&clip, &rig, &options);
         for i in 0..=40 {
@@ -87,7 +87,7 @@ fn on_the_ground_what_stays_is_in_its_place_and_closes_its_loop() {
 fn walker(share: f32, speed: f32, loop_mode: LoopMode) -> (AnimationSet, Animator) {
     let (rig, clip) = circling(2.0, 1.5, share);
     let (still, motion) = extract_root_motion(&clip, &rig, &RootMotionOptions::on_ground(1));
-    let built = BuiltClip::build(&still, &rig, &BuildOptions::default()).expect("a good clip");
+    let built = BuiltClip::build(&still, &rig, &ClipBuildOptions::default()).expect("a good clip");
     let mut set = AnimationSet::new(Skeleton::new(&rig));
     let clip = set.add_clip(AnimatedClip { motion: Some(motion), ..AnimatedClip::from(built) });
     let mut animator = Animator::new(&set);
@@ -146,7 +146,7 @@ fn a_root_that_sets_out_by_an_inertial_transition_gains_speed_smoothly() {
     const TIME: f32 = 0.5;
     let (rig, clip) = circling(2.0, 1.5, 0.25);
     let (still, motion) = extract_root_motion(&clip, &rig, &RootMotionOptions::on_ground(1));
-    let built = BuiltClip::build(&still, &rig, &BuildOptions::default()).expect("a good clip");
+    let built = BuiltClip::build(&still, &rig, &ClipBuildOptions::default()).expect("a good clip");
     let mut set = AnimationSet::new(Skeleton::new(&rig));
     let standing = set.add_clip(AnimatedClip::from(built.clone()));
     let going = set.add_clip(AnimatedClip { motion: Some(motion), ..AnimatedClip::from(built) });

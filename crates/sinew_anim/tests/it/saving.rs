@@ -2,8 +2,8 @@
 
 use crate::stage;
 use sinew_anim::{
-    AnimatedClip, AnimationSet, Animator, Easing, EndAction, Event, EventPolicy, LoopMode, Mask, Skeleton,
-    TrackDef, Transition,
+    AnimatedClip, AnimationSet, Animator, ClipEvent, Easing, EndAction, EventPolicy, LoopMode, Mask,
+    Skeleton, TrackDef, Transition,
 };
 use sinew_math::{Random, Reader, Writer};
 
@@ -13,7 +13,8 @@ fn set() -> AnimationSet {
     for duration in [1.0, 0.7, 1.3] {
         let clip = stage::build(&stage::swaying(&mut random, duration), sinew_anim::Fill::Rest);
         let policy = EventPolicy { on_interrupt: true, ..EventPolicy::default() };
-        let events = vec![Event { policy, ..Event::new(0.5, "middle") }, Event::new(0.0, "start")];
+        let events =
+            vec![ClipEvent { policy, ..ClipEvent::new(0.5, "middle") }, ClipEvent::new(0.0, "start")];
         set.add_clip(AnimatedClip { events, ..clip });
     }
     set.add_mask(Mask::splat(stage::JOINTS, 0.5));

@@ -1,5 +1,5 @@
 use crate::toy;
-use sinew_anim::{LocalTransform, Mesh, Primitive, Rig, Skin, local_to_model, rest_pose, skin_vertices};
+use sinew_anim::{LocalTransform, Primitive, Rig, RigMesh, Skin, local_to_model, rest_pose, skin_vertices};
 use sinew_math::{Affine, Rotation, Vec3};
 use std::f32::consts::FRAC_PI_2;
 
@@ -15,7 +15,7 @@ fn bar() -> Rig {
         ..Primitive::default()
     };
     let rigid = Primitive { joints: vec![], weights: vec![], ..skinned.clone() };
-    let mesh = |skin, primitive| Mesh { name: String::new(), joint: 1, skin, primitives: vec![primitive] };
+    let mesh = |skin, primitive| RigMesh { name: String::new(), joint: 1, skin, primitives: vec![primitive] };
     rig.meshes = vec![mesh(Some(0), skinned), mesh(None, rigid)];
     let inverse_bind = vec![
         Affine { translation: -Vec3::X, ..Affine::IDENTITY },

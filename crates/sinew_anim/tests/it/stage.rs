@@ -2,8 +2,8 @@
 
 use crate::toy;
 use sinew_anim::{
-    AnimatedClip, AnimationSet, BuildOptions, BuiltClip, Channel, Clip, Fill, Interpolation, Property, Rig,
-    Skeleton,
+    AnimatedClip, AnimationSet, BuiltClip, Channel, Clip, ClipBuildOptions, Fill, Interpolation, Property,
+    Rig, Skeleton,
 };
 use sinew_math::{Random, Vec3};
 
@@ -39,7 +39,7 @@ pub fn swaying(random: &mut Random, duration: f32) -> Clip {
 }
 
 pub fn build(clip: &Clip, fill: Fill) -> AnimatedClip {
-    let options = BuildOptions { fill, ..BuildOptions::default() };
+    let options = ClipBuildOptions { fill, ..ClipBuildOptions::default() };
     AnimatedClip::from(BuiltClip::build(clip, &rig(), &options).expect("a good clip"))
 }
 

@@ -1,6 +1,6 @@
 //! Small rigs made by hand.
 
-use sinew_anim::{Joint, LocalTransform, Mesh, Primitive, Rig, Role, Skin};
+use sinew_anim::{Joint, LocalTransform, Primitive, Rig, RigMesh, Role, Skin};
 use sinew_math::{Affine, Random, Rotation, Vec3};
 
 /// A chain of `n` joints, each `offset` from its parent.
@@ -68,6 +68,6 @@ pub fn body(name: impl Fn(Role) -> String) -> Rig {
         skinned.indices.extend([0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3].map(|corner| first + corner));
     }
     rig.skins = vec![skin];
-    rig.meshes = vec![Mesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![skinned] }];
+    rig.meshes = vec![RigMesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![skinned] }];
     rig
 }

@@ -2,7 +2,7 @@
 
 use crate::{rigs, stage};
 use sinew_anim::{
-    AnimatedClip, AnimationSet, Animator, BuildOptions, BuiltClip, ClipId, Cursor, Decay, Easing,
+    AnimatedClip, AnimationSet, Animator, BuiltClip, ClipBuildOptions, ClipId, Cursor, Decay, Easing,
     LocalTransform, LoopMode, Pose, Skeleton, TrackDef, Transition,
 };
 use sinew_math::{Random, Rotation, Vec3};
@@ -54,7 +54,7 @@ fn set_of(file: &str) -> Option<AnimationSet> {
     let (rig, clips) = rigs::load(&format!("rigs/{file}"))?;
     let mut set = AnimationSet::new(Skeleton::new(&rig));
     for clip in &clips {
-        let built = BuiltClip::build(clip, &rig, &BuildOptions::default()).expect("an open clip");
+        let built = BuiltClip::build(clip, &rig, &ClipBuildOptions::default()).expect("an open clip");
         set.add_clip(AnimatedClip::from(built));
     }
     Some(set)

@@ -2,7 +2,7 @@
 
 use crate::rigs;
 use sinew_anim::roles::HUMANOID_ROLES;
-use sinew_anim::{Joint, LocalTransform, Mesh, Primitive, Rig, Skin, analyze};
+use sinew_anim::{Joint, LocalTransform, Primitive, Rig, RigMesh, Skin, analyze};
 use sinew_math::{Affine, Random, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -121,7 +121,7 @@ pub fn rig_of<'a>(
         }
     }
     rig.skins = vec![skin];
-    rig.meshes = vec![Mesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![skinned] }];
+    rig.meshes = vec![RigMesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![skinned] }];
     rig
 }
 

@@ -13,7 +13,7 @@ use sinew::math::Vec3;
 use sinew::physics::BodyDef;
 use sinew::physics::cook::{self, CookOptions, Cooked, cook};
 use sinew_picture::{
-    Camera, Caption, Material, Model, Movie, PictureFormat, RenderSettings, Renderer, Scene, Sky, Sun,
+    Camera, Caption, Model, Movie, PictureFormat, RenderMaterial, RenderSettings, Renderer, Scene, Sky, Sun,
 };
 use std::path::{Path, PathBuf};
 
@@ -171,7 +171,7 @@ fn draw(
         positions: mesh.positions.iter().map(|&p| p - apart).collect(),
         colors: mesh.colors.clone(),
         indices: mesh.triangles.as_flattened().to_vec(),
-        material: Material::new([1.0; 3]),
+        material: RenderMaterial::new([1.0; 3]),
         ..Model::default()
     }];
     for (index, body) in bodies.iter().enumerate() {

@@ -14,7 +14,7 @@ use crate::report::table::shown;
 use clap::ValueEnum;
 use serde_json::json;
 use sinew::anim::retarget::{Feet, Pace, RetargetOptions};
-use sinew::anim::{Clip, Event, Rig, RigAnalysis, Take, rest_pose};
+use sinew::anim::{Clip, ClipEvent, Rig, RigAnalysis, Take, rest_pose};
 use sinew::formats::bvh::{BvhRows, BvhUnit, RestFrame};
 use sinew::formats::{
     BvhEnds, BvhOptions, BvhWriteOptions, MotionFormat, MotionOptions, NewClip, ReadOptions, Textures,
@@ -131,7 +131,7 @@ enum Target {
 struct Content {
     rig: Rig,
     clips: Vec<Clip>,
-    events: Vec<Vec<Event>>,
+    events: Vec<Vec<ClipEvent>>,
     /// Frames a second, where the source has some.
     rate: Option<f64>,
     /// Notes on what is lost or assumed, a sentence each.
@@ -233,7 +233,7 @@ impl Convert {
         let mut notes = motion.file.notes.clone();
         notes.extend(document.warnings.iter().cloned());
         let clips = carried.iter().map(|one| one.clip.clone()).collect();
-        let events: Vec<Vec<Event>> = carried.into_iter().map(|one| one.events).collect();
+        let events: Vec<Vec<ClipEvent>> = carried.into_iter().map(|one| one.events).collect();
         if target == Target::Bvh {
             let content = Content { rig: document.rig, clips, events, rate: Some(rate), notes };
             let (_, notes) = self.to_bvh(&name, content, Some(&analysis), outputs)?;
@@ -269,7 +269,7 @@ impl Convert {
             file.clips = file.clips.iter().map(resample).collect::<Result<_>>()?;
         }
         let moving =
-            |(clip, events): (Clip, Vec<Event>)| (!clip.channels.is_empty()).then_some((clip, events));
+            |(clip, events): (Clip, Vec<ClipEvent>)| (!clip.channels.is_empty()).then_some((clip, events));
         let (clips, events): (Vec<_>, Vec<_>) =
             file.clips.into_iter().zip(file.events).filter_map(moving).unzip();
         if !self.bare && file.rig.meshes.is_empty() {
@@ -313,7 +313,7 @@ impl Convert {
         outputs.add(self.output(), written.text.into_bytes());
         if !events[0].is_empty() {
             let shift = if self.rest_frame { (1.0 / rate) as f32 } else { 0.0 };
-            let later = |event: &Event| Event { time: event.time + shift, ..event.clone() };
+            let later = |event: &ClipEvent| ClipEvent { time: event.time + shift, ..event.clone() };
             let stem = self.output().file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let text = write_events(
                 &[Clip { name: stem, ..clip.clone() }],

@@ -5,7 +5,7 @@ use crate::fall::Fall;
 use crate::input::files::Outputs;
 use crate::render::film::{FLOOR_HALF_SIZE, Film, View, body_models};
 use crate::report::Report;
-use sinew::anim::{Joint, LocalTransform, Mesh, Primitive, Rig};
+use sinew::anim::{Joint, LocalTransform, Primitive, Rig, RigMesh};
 use sinew::formats::write_gltf;
 use sinew::math::Vec3;
 use sinew_picture::{PictureFormat, Sun};
@@ -79,7 +79,7 @@ fn staged(fall: &Fall<'_>, props: &[Prop]) -> Rig {
     }
     let rest = LocalTransform::default();
     rig.joints.push(Joint { name: "cabin".into(), parent: None, rest, source: rig.joints.len() });
-    rig.meshes.push(Mesh { name: "cabin".into(), joint: rig.joints.len() - 1, skin: None, primitives });
+    rig.meshes.push(RigMesh { name: "cabin".into(), joint: rig.joints.len() - 1, skin: None, primitives });
     rig
 }
 

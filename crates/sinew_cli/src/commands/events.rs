@@ -9,7 +9,7 @@ use crate::report::table::{Table, counted, shown};
 use crate::report::{Report, number};
 use clap::Subcommand;
 use serde_json::{Value, json};
-use sinew::anim::Event;
+use sinew::anim::ClipEvent;
 use sinew::formats::{MotionOptions, write_events};
 use std::path::PathBuf;
 
@@ -86,7 +86,13 @@ impl Detect {
         Ok(self.report(&motion, &chosen, &found, &outputs))
     }
 
-    fn report(&self, motion: &Motion, chosen: &[usize], found: &[Vec<Event>], outputs: &Outputs) -> Report {
+    fn report(
+        &self,
+        motion: &Motion,
+        chosen: &[usize],
+        found: &[Vec<ClipEvent>],
+        outputs: &Outputs,
+    ) -> Report {
         let paths: Vec<String> = outputs.paths().map(|path| path.display().to_string()).collect();
         let names = chosen.iter().map(|&index| &motion.file.clips[index].name);
         let mut table = Table::titled(&["clip", "seconds", "event", "payload"]);
@@ -96,7 +102,8 @@ impl Detect {
                 let time = format!("{:.3}", event.time);
                 table.row([shown(name), time, event.name.clone(), event.payload.clone()]);
             }
-            let json = |e: &Event| json!({"time_s": number(e.time), "name": e.name, "payload": e.payload});
+            let json =
+                |e: &ClipEvent| json!({"time_s": number(e.time), "name": e.name, "payload": e.payload});
             clips.push(json!({"name": name, "events": events.iter().map(json).collect::<Vec<_>>()}));
         }
         let steps: usize = found.iter().map(Vec::len).sum();
@@ -117,13 +124,13 @@ impl Detect {
 }
 
 /// The steps that the clip does not have as events yet, each once.
-fn new_steps(there: &[Event], steps: Vec<Event>) -> Vec<Event> {
+fn new_steps(there: &[ClipEvent], steps: Vec<ClipEvent>) -> Vec<ClipEvent> {
     let mut known: Vec<(String, f32)> = there
         .iter()
         .filter(|event| event.name == FOOTSTEP)
         .map(|event| (event.payload.clone(), event.time))
         .collect();
-    let mut is_new = |step: &Event| {
+    let mut is_new = |step: &ClipEvent| {
         let same =
             |(foot, time): &(String, f32)| *foot == step.payload && (time - step.time).abs() < SAME_STEP;
         let is_new = !known.iter().any(same);

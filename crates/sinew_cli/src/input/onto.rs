@@ -4,14 +4,14 @@ use crate::failure::{Failure, Result};
 use crate::input::motion::Motion;
 use crate::report::table::shown;
 use sinew::anim::retarget::{Body, RetargetOptions, Retargeted, retarget};
-use sinew::anim::{Channel, Clip, Event, JointIdx, LocalTransform, Rig, RigAnalysis};
+use sinew::anim::{Channel, Clip, ClipEvent, JointIdx, LocalTransform, Rig, RigAnalysis};
 
 /// A clip of another rig as one of the character's.
 pub struct Carried {
     /// Clip of the character's joints.
     pub clip: Clip,
     /// Its events, at its pace.
-    pub events: Vec<Event>,
+    pub events: Vec<ClipEvent>,
     /// Criterion by which its joints were matched.
     pub by: By,
 }
@@ -46,13 +46,13 @@ pub fn carry(
         return Err(Failure::of_file(&motion.name, what));
     };
     let actor = Body { rig: &motion.file.rig, analysis: from };
-    let by_role = |(clip, events): (&Clip, &Vec<Event>)| {
+    let by_role = |(clip, events): (&Clip, &Vec<ClipEvent>)| {
         let fitted = retarget(actor, clip, Body { rig, analysis: to }, options)
             .map_err(|error| Failure::of_file(&motion.name, error.to_string().replace("actor", "file")))?;
         let new = fitted.clip(rig, &clip.name);
-        let at_pace = |event: &Event| {
+        let at_pace = |event: &ClipEvent| {
             let time = (event.time * fitted.pace).min(new.duration);
-            Event { time, ..event.clone() }
+            ClipEvent { time, ..event.clone() }
         };
         let events = events.iter().map(at_pace).collect();
         Ok(Carried { clip: new, events, by: By::Role(Box::new(fitted)) })
@@ -96,7 +96,7 @@ fn rests_alike(a: &LocalTransform, b: &LocalTransform) -> bool {
     a.rotation.angle_to(b.rotation) < SAME_TURN && apart <= SAME_PLACE * b.translation.length().max(1e-3)
 }
 
-fn by_name(clip: &Clip, events: &[Event], same: &[Option<JointIdx>]) -> Option<Carried> {
+fn by_name(clip: &Clip, events: &[ClipEvent], same: &[Option<JointIdx>]) -> Option<Carried> {
     let renamed = |channel: &Channel| same[channel.joint].map(|joint| Channel { joint, ..channel.clone() });
     let channels: Vec<Channel> = clip.channels.iter().filter_map(renamed).collect();
     let mut joints: Vec<JointIdx> = channels.iter().map(|channel| channel.joint).collect();

@@ -1,6 +1,6 @@
 //! A body for a skeleton that has none, so that it can be seen: an octahedron for each bone.
 
-use sinew::anim::{JointIdx, Mesh, Primitive, Rig, RigAnalysis, Skin, local_to_model, rest_pose};
+use sinew::anim::{JointIdx, Primitive, Rig, RigAnalysis, RigMesh, Skin, local_to_model, rest_pose};
 use sinew::math::{Affine, Vec3};
 
 /// Half the width of a bone, as a share of its length.
@@ -36,7 +36,7 @@ pub fn flesh_out(rig: &mut Rig, analysis: Option<&RigAnalysis>) {
     let inverse_bind = model.iter().map(Affine::inverse).collect();
     rig.skins.push(Skin { name: "bones".into(), joints, inverse_bind });
     let skin = Some(rig.skins.len() - 1);
-    rig.meshes.push(Mesh { name: "bones".into(), joint: 0, skin, primitives: vec![bones] });
+    rig.meshes.push(RigMesh { name: "bones".into(), joint: 0, skin, primitives: vec![bones] });
 }
 
 /// For each joint the one that carries its bones: joints right on their parents (the lab of CMU has eleven) leave that to

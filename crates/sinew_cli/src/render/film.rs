@@ -12,7 +12,7 @@ use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyKind, BodyKinds, QueryFilter, Shape, World, WorldDef};
 use sinew_picture::draw;
 use sinew_picture::{
-    Caption, EncodeError, FollowCamera, Image, Material, Model, Movie, PictureFormat, RenderSettings,
+    Caption, EncodeError, FollowCamera, Image, Model, Movie, PictureFormat, RenderMaterial, RenderSettings,
     Renderer, Scene, Sun,
 };
 
@@ -74,7 +74,7 @@ struct Shots<'a> {
     scene: Scene,
     /// Models of the scene that stay from picture to picture; the character's come after them.
     standing: usize,
-    looks: Vec<Material>,
+    looks: Vec<RenderMaterial>,
     phases: Vec<story::Phase>,
     camera: Shooting,
     direction: Vec3,
@@ -204,7 +204,7 @@ const LOOK_EVERY: usize = 4;
 fn arrow(tip: Vec3, along: Vec3) -> [Model; 2] {
     let turn = Rotation::from_arc(Vec3::Y, along);
     let part = |behind: f32, shape: Shape| {
-        draw::shape(&shape, Transform::new(tip - along * behind, turn), Material::new(ARROW_COLOR))
+        draw::shape(&shape, Transform::new(tip - along * behind, turn), RenderMaterial::new(ARROW_COLOR))
     };
     [
         part(0.55, Shape::Capsule { half_height: 0.3, radius: 0.025 }),
@@ -223,7 +223,7 @@ pub fn body_models(body: &BodyDef, half_size: f32, color: [f32; 3], other: [f32;
         let place = world_from_body * shape.body_from_shape;
         match &shape.shape {
             Shape::HalfSpace => draw::plane(place, half_size, 1.0, [color, other]),
-            shape => draw::shape(shape, place, Material::new(color)),
+            shape => draw::shape(shape, place, RenderMaterial::new(color)),
         }
     };
     body.shapes.iter().map(model).collect()
@@ -233,7 +233,7 @@ pub fn body_models(body: &BodyDef, half_size: f32, color: [f32; 3], other: [f32;
 mod tests {
     use super::*;
     use sinew::physics::ShapeDef;
-    use sinew::ragdoll::Event;
+    use sinew::ragdoll::CharacterEvent;
     use sinew_picture::Antialiasing;
     use sinew_scenes::cabin::Site;
 
@@ -244,16 +244,16 @@ mod tests {
         let input = demo.input();
         let fall = Fall::simulate(&input, None);
         let events = &fall.baked.events;
-        let at = |what: fn(&Event) -> bool| {
+        let at = |what: fn(&CharacterEvent) -> bool| {
             events.iter().find(|(_, event)| what(event)).expect("it comes to that").0
         };
-        let hit = at(|event| matches!(event, Event::Hit { .. }));
+        let hit = at(|event| matches!(event, CharacterEvent::Hit { .. }));
         let settled = events.iter().find_map(|(_, event)| match event {
-            Event::Settled { since } => Some(*since),
+            CharacterEvent::Settled { since } => Some(*since),
             _ => None,
         });
-        let rises = at(|event| matches!(event, Event::GettingUp { .. }));
-        let up = at(|event| matches!(event, Event::Up));
+        let rises = at(|event| matches!(event, CharacterEvent::GettingUp { .. }));
+        let up = at(|event| matches!(event, CharacterEvent::Up));
         let settled = settled.expect("it lies still");
         let frames = (fall.input.seconds * FPS as f32) as u32 + 1;
         let film =

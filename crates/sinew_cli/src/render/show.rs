@@ -11,7 +11,8 @@ use sinew::anim::{Clip, Rig, RigAnalysis, Wrap, local_to_model, rest_pose, sampl
 use sinew::math::{Affine, Transform, Vec3, max};
 use sinew::physics::boxes::Aabb;
 use sinew_picture::{
-    Caption, EncodeError, Material, Movie, PictureFormat, RenderSettings, Renderer, Scene, Sky, Sun, draw,
+    Caption, EncodeError, Movie, PictureFormat, RenderMaterial, RenderSettings, Renderer, Scene, Sky, Sun,
+    draw,
 };
 
 /// Pictures a second: a whole number of a GIF's hundredths of a second.
@@ -30,7 +31,7 @@ pub struct Show {
     root: Affine,
     /// Height of the ground there, if the body's soles tell it.
     floor: Option<f32>,
-    looks: Vec<Material>,
+    looks: Vec<RenderMaterial>,
     title: String,
 }
 

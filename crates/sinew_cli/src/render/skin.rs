@@ -2,7 +2,7 @@
 
 use sinew::anim::{Primitive, Rig, skin_vertices};
 use sinew::math::{Affine, Vec2, Vec3};
-use sinew_picture::{Material, Model, Texture};
+use sinew_picture::{Model, RenderMaterial, Texture};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use std::sync::Arc;
 pub fn models<'a>(
     rig: &'a Rig,
     model: &'a [Affine],
-    looks: &'a [Material],
+    looks: &'a [RenderMaterial],
 ) -> impl Iterator<Item = Model> + 'a {
     let parts = rig.meshes.iter().enumerate().flat_map(|(mesh, of)| {
         of.primitives.iter().enumerate().map(move |(part, primitive)| (mesh, part, primitive))
@@ -81,7 +81,7 @@ pub fn outline(rig: &Rig) -> Rig {
     rig
 }
 
-fn surface(part: &Primitive, positions: Vec<Vec3>, normals: Vec<Vec3>, material: Material) -> Model {
+fn surface(part: &Primitive, positions: Vec<Vec3>, normals: Vec<Vec3>, material: RenderMaterial) -> Model {
     Model {
         positions,
         normals,
@@ -93,16 +93,16 @@ fn surface(part: &Primitive, positions: Vec<Vec3>, normals: Vec<Vec3>, material:
 }
 
 /// One material per primitive, in the order of the meshes.
-pub fn looks(rig: &Rig) -> Vec<Material> {
+pub fn looks(rig: &Rig) -> Vec<RenderMaterial> {
     // A picture that is none leaves its surface in its plain colour.
-    let picture = |texture: &sinew::anim::Texture| {
+    let picture = |texture: &sinew::anim::TextureImage| {
         Texture::new(texture.width, texture.height, texture.rgba.clone()).ok().map(Arc::new)
     };
     let textures: Vec<Option<Arc<Texture>>> = rig.textures.iter().map(picture).collect();
     let look = |part: &Primitive| {
         let [r, g, b, _] = part.base_color;
         let texture = part.texture.and_then(|index| textures.get(index).cloned().flatten());
-        Material { texture, ..Material::new([r, g, b]) }
+        RenderMaterial { texture, ..RenderMaterial::new([r, g, b]) }
     };
     rig.meshes.iter().flat_map(|mesh| mesh.primitives.iter().map(look)).collect()
 }

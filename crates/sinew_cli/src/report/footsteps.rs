@@ -2,7 +2,7 @@
 
 use sinew::anim::contact::{ContactSettings, FootContact, Ground, contacts, flatten_soles, sole_points};
 use sinew::anim::legs::Legs;
-use sinew::anim::{Clip, Event, LocalTransform, Rig, RigAnalysis, Side, Take};
+use sinew::anim::{Clip, ClipEvent, LocalTransform, Rig, RigAnalysis, Side, Take};
 use sinew::math::Vec3;
 
 /// Seconds from look to look.
@@ -10,7 +10,7 @@ const FRAME_TIME: f64 = 1.0 / 60.0;
 
 /// When feet come down in a clip, as events `footstep` with the payload `left` or `right`; `None` for a body without the
 /// legs of a human, and for a clip that is too long. A foot that is down when the clip begins has come down before.
-pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Option<Vec<Event>> {
+pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Option<Vec<ClipEvent>> {
     let feet = Legs::of(rig, analysis)?.feet;
     let too_long = 2.0 * f64::from(clip.duration) / FRAME_TIME >= Take::MOST_FRAMES as f64;
     if !analysis.humanoid || too_long {
@@ -37,10 +37,10 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Option<Vec<E
             false => (contact.start > 0.0).then_some(contact.start),
         }?;
         let side = if contact.foot == Side::Left { "left" } else { "right" };
-        Some(Event { payload: side.to_owned(), ..Event::new(time.min(clip.duration), "footstep") })
+        Some(ClipEvent { payload: side.to_owned(), ..ClipEvent::new(time.min(clip.duration), "footstep") })
     };
     let found = contacts(&take, &feet, &points, ground.height, &settings);
-    let mut events: Vec<Event> = found.into_iter().filter_map(footfall).collect();
+    let mut events: Vec<ClipEvent> = found.into_iter().filter_map(footfall).collect();
     events.sort_by(|a, b| a.time.total_cmp(&b.time));
     Some(events)
 }

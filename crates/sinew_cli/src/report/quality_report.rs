@@ -2,10 +2,10 @@
 
 use crate::report::number;
 use serde_json::{Map, Value};
-use sinew::ragdoll::Quality;
+use sinew::ragdoll::FallQuality;
 
 /// The figures under the keys that `bake` and `ragdoll build` share.
-pub fn quality_json(q: &Quality) -> Map<String, Value> {
+pub fn quality_json(q: &FallQuality) -> Map<String, Value> {
     let time = |seconds: Option<f32>| seconds.map_or(Value::Null, number);
     let figures = [
         ("first_contact_s", time(q.first_contact_s)),
@@ -25,7 +25,7 @@ pub fn quality_json(q: &Quality) -> Map<String, Value> {
 }
 
 /// The figures in a few lines.
-pub fn quality_text(q: &Quality) -> String {
+pub fn quality_text(q: &FallQuality) -> String {
     let mm = |meters: f32| 1000.0 * meters;
     format!(
         "  joints open by {:.2} mm at most, bend {:.1}° beyond their limits at most (99 %: {:.1}°)\n\

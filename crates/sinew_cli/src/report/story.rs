@@ -1,7 +1,7 @@
 //! Story of a character in words.
 
 use crate::report::table::shown;
-use sinew::ragdoll::{BakeInput, CharacterDef, Event, Locomotion, Opening};
+use sinew::ragdoll::{BakeInput, CharacterDef, CharacterEvent, Locomotion, Opening};
 
 /// Phase of a character from some time on, s: its name is a word or two for the corner of a picture.
 pub type Phase = (f32, String);
@@ -12,28 +12,33 @@ pub const HIT_SECONDS: f32 = 0.4;
 const RESTS: &str = "stands in its rest pose";
 
 /// The phases of a bake, in order of time.
-pub fn phases(def: &CharacterDef, events: &[(f32, Event)]) -> Vec<Phase> {
+pub fn phases(def: &CharacterDef, events: &[(f32, CharacterEvent)]) -> Vec<Phase> {
     let mut phases = vec![(0.0, at_first(def))];
     let mut add = |time: f32, what: &str| phases.push((time, what.to_owned()));
     for &(time, event) in events {
         match event {
-            Event::Hit { .. } => {
+            CharacterEvent::Hit { .. } => {
                 add(time, "is hit");
                 add(time + HIT_SECONDS, "falls");
             }
-            Event::WentLimp => add(time, "falls"),
-            Event::Settled { since } => add(since, "lies still"),
-            Event::Preparing { rolls: true } => add(time, "rolls over"),
-            Event::Preparing { rolls: false } | Event::GettingUp { .. } => add(time, "gets up"),
-            Event::Up => add(time, &upright(def)),
-            Event::Stumbled => add(time, "stumbles"),
-            Event::Caught { .. } => add(time, &upright(def)),
-            Event::Flinched { .. } | Event::Touched | Event::NeverSettled | Event::Struck { .. } => {}
-            Event::Recovered
-            | Event::Powered
-            | Event::Clip(_)
-            | Event::Contact { .. }
-            | Event::LetGo { .. } => {}
+            CharacterEvent::WentLimp => add(time, "falls"),
+            CharacterEvent::Settled { since } => add(since, "lies still"),
+            CharacterEvent::Preparing { rolls: true } => add(time, "rolls over"),
+            CharacterEvent::Preparing { rolls: false } | CharacterEvent::GettingUp { .. } => {
+                add(time, "gets up")
+            }
+            CharacterEvent::Up => add(time, &upright(def)),
+            CharacterEvent::Stumbled => add(time, "stumbles"),
+            CharacterEvent::Caught { .. } => add(time, &upright(def)),
+            CharacterEvent::Flinched { .. }
+            | CharacterEvent::Touched
+            | CharacterEvent::NeverSettled
+            | CharacterEvent::Struck { .. } => {}
+            CharacterEvent::Recovered
+            | CharacterEvent::Powered
+            | CharacterEvent::Clip(_)
+            | CharacterEvent::Contact { .. }
+            | CharacterEvent::LetGo { .. } => {}
         }
     }
     // Stable: of two at one time the later told one counts.
@@ -60,47 +65,54 @@ fn upright(def: &CharacterDef) -> String {
 }
 
 /// The events of a bake as sentences, in order of time.
-pub fn told(input: &BakeInput<'_>, events: &[(f32, Event)]) -> Vec<(f32, String)> {
+pub fn told(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(f32, String)> {
     let def = &input.character;
     let mut told = vec![(0.0, at_first(def))];
     for &(time, event) in events {
         let sentence = match event {
-            Event::Hit { body } => hit_sentence(input, time, body),
+            CharacterEvent::Hit { body } => hit_sentence(input, time, body),
             // A hit says it better, and whoever goes limp on its feet touches the ground at once.
-            Event::WentLimp if events.iter().any(|other| is_hit_at(other, time)) => continue,
-            Event::Touched | Event::Struck { .. } | Event::Recovered | Event::Powered => continue,
-            Event::Clip(_) | Event::Contact { .. } | Event::LetGo { .. } => continue,
-            Event::Flinched { body } => format!("flinches at {}", input.character.ragdoll.bodies[body].role),
-            Event::Stumbled => "stumbles".to_owned(),
-            Event::Caught { steps } => format!("has caught itself after {steps} steps"),
-            Event::WentLimp => "goes limp".to_owned(),
-            Event::Settled { since } => {
+            CharacterEvent::WentLimp if events.iter().any(|other| is_hit_at(other, time)) => continue,
+            CharacterEvent::Touched
+            | CharacterEvent::Struck { .. }
+            | CharacterEvent::Recovered
+            | CharacterEvent::Powered => continue,
+            CharacterEvent::Clip(_) | CharacterEvent::Contact { .. } | CharacterEvent::LetGo { .. } => {
+                continue;
+            }
+            CharacterEvent::Flinched { body } => {
+                format!("flinches at {}", input.character.ragdoll.bodies[body].role)
+            }
+            CharacterEvent::Stumbled => "stumbles".to_owned(),
+            CharacterEvent::Caught { steps } => format!("has caught itself after {steps} steps"),
+            CharacterEvent::WentLimp => "goes limp".to_owned(),
+            CharacterEvent::Settled { since } => {
                 told.push((since, "lies still".to_owned()));
                 continue;
             }
-            Event::NeverSettled => "does not come to rest".to_owned(),
-            Event::Preparing { rolls: true } => "rolls over".to_owned(),
-            Event::Preparing { rolls: false } => "gathers its limbs".to_owned(),
-            Event::GettingUp { clip: Some(clip) } => {
+            CharacterEvent::NeverSettled => "does not come to rest".to_owned(),
+            CharacterEvent::Preparing { rolls: true } => "rolls over".to_owned(),
+            CharacterEvent::Preparing { rolls: false } => "gathers its limbs".to_owned(),
+            CharacterEvent::GettingUp { clip: Some(clip) } => {
                 format!("gets up by clip {}", shown(&def.motions().clips[clip].name))
             }
-            Event::GettingUp { clip: None } => "gets up".to_owned(),
-            Event::Up if def.motions().opening == Opening::Rest => upright(def),
-            Event::Up => format!("{} again", upright(def)),
+            CharacterEvent::GettingUp { clip: None } => "gets up".to_owned(),
+            CharacterEvent::Up if def.motions().opening == Opening::Rest => upright(def),
+            CharacterEvent::Up => format!("{} again", upright(def)),
         };
         told.push((time, sentence));
     }
     told
 }
 
-fn is_hit_at(&(time, event): &(f32, Event), when: f32) -> bool {
-    time == when && matches!(event, Event::Hit { .. })
+fn is_hit_at(&(time, event): &(f32, CharacterEvent), when: f32) -> bool {
+    time == when && matches!(event, CharacterEvent::Hit { .. })
 }
 
 fn hit_sentence(input: &BakeInput<'_>, time: f32, body: usize) -> String {
     let role = &input.character.ragdoll.bodies[body].role;
     let near =
-        |hit: &&sinew::ragdoll::Hit| hit.body == body && (hit.time - time).abs() < 0.5 * input.world.dt();
+        |hit: &&sinew::ragdoll::BakeHit| hit.body == body && (hit.time - time).abs() < 0.5 * input.world.dt();
     match input.hits.iter().find(near) {
         Some(hit) => format!("is hit on the {role} by {:.0} N·s", hit.impulse.length()),
         None => format!("is hit on the {role}"),

@@ -5,7 +5,7 @@ use crate::sinew::{Folder, sinew};
 use sinew::anim::{LocalTransform, local_to_model};
 use sinew::formats::{ReadOptions, load_gltf};
 use sinew::math::Vec3;
-use sinew::ragdoll::{BakeInput, Baked, Quality, State, bake};
+use sinew::ragdoll::{BakeInput, Baked, FallQuality, State, bake};
 use sinew_scenes::cabin::{PORCH_HEIGHT, Site};
 use sinew_scenes::demo::Demo;
 
@@ -17,7 +17,7 @@ fn fall(demo: &Demo) -> Baked {
 }
 
 /// Section 4 of the specification, for a fall in which nothing is faster than 15 m/s.
-fn check_gates(what: &str, q: &Quality) {
+fn check_gates(what: &str, q: &FallQuality) {
     assert_eq!(q.nan, 0, "{what}");
     let gates = [
         ("energy gain", q.energy_gain_max, 0.01),

@@ -1,7 +1,7 @@
 //! Materials: base colour and its picture, inside the file or beside it.
 
 use crate::gltf::{MAX_DECODED, Resolver, Textures, decode_picture};
-use sinew_anim::Texture;
+use sinew_anim::TextureImage;
 use sinew_math::clamp;
 use std::collections::BTreeMap;
 use ufbx::{Material, MeshPart, Node};
@@ -12,7 +12,7 @@ pub(super) struct Materials<'a, 'r> {
     wanted: Textures,
     /// Index into `textures` per texture of the file; `None` if there is no such picture.
     known: BTreeMap<u32, Option<usize>>,
-    pub textures: Vec<Texture>,
+    pub textures: Vec<TextureImage>,
     pub notes: Vec<String>,
 }
 
@@ -63,7 +63,7 @@ impl<'a, 'r> Materials<'a, 'r> {
         picture
     }
 
-    fn decode(&mut self, texture: &ufbx::Texture) -> Result<Texture, String> {
+    fn decode(&mut self, texture: &ufbx::Texture) -> Result<TextureImage, String> {
         let used: usize = self.textures.iter().map(|texture| texture.rgba.len()).sum();
         let budget = MAX_DECODED - usize::min(used, MAX_DECODED);
         let inside = [Some(&texture.content), texture.video.as_ref().map(|video| &video.content)];

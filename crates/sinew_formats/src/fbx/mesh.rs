@@ -4,7 +4,7 @@ use super::material::Materials;
 use super::{affine, index, vector};
 use crate::error::{Error, Result};
 use crate::gltf::strongest_four;
-use sinew_anim::{Mesh, Primitive, Rig, Skin};
+use sinew_anim::{Primitive, Rig, RigMesh, Skin};
 use sinew_math::{Vec2, Vec3, normalize_or};
 use std::collections::BTreeMap;
 use ufbx::{MeshPart, Scene, SkinDeformer};
@@ -29,7 +29,7 @@ pub(super) fn read_all(scene: &Scene, rig: &mut Rig, materials: &mut Materials<'
             primitives.push(primitive);
         }
         if !primitives.is_empty() {
-            rig.meshes.push(Mesh { name, joint, skin: skin.map(|skin| skin.skin), primitives });
+            rig.meshes.push(RigMesh { name, joint, skin: skin.map(|skin| skin.skin), primitives });
         }
     }
     Ok(())

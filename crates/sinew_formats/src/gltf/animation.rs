@@ -4,9 +4,9 @@ use super::source::Source;
 use crate::container::json::At;
 use crate::error::Result;
 use crate::events;
-use sinew_anim::{Channel, Clip, Event, Interpolation, JointIdx, Property};
+use sinew_anim::{Channel, Clip, ClipEvent, Interpolation, JointIdx, Property};
 
-type Clips = (Vec<Clip>, Vec<Vec<Event>>);
+type Clips = (Vec<Clip>, Vec<Vec<ClipEvent>>);
 
 /// All animations, and what happens in each.
 pub(super) fn read_all(source: &Source<'_>, joint_of_node: &[Option<JointIdx>]) -> Result<Clips> {

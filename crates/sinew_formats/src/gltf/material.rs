@@ -5,7 +5,7 @@ use super::source::Source;
 use crate::container::json::At;
 use crate::container::uri::{self, Uri};
 use crate::error::Result;
-use sinew_anim::Texture;
+use sinew_anim::TextureImage;
 use sinew_math::clamp;
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -25,7 +25,7 @@ pub(super) struct Materials<'s, 'a> {
     wanted: Textures,
     /// Index into `textures` per image that was asked for; `None` if it could not be decoded.
     decoded: BTreeMap<usize, Option<usize>>,
-    pub(super) textures: Vec<Texture>,
+    pub(super) textures: Vec<TextureImage>,
     pub(super) warnings: Vec<String>,
 }
 
@@ -93,7 +93,7 @@ impl<'s, 'a> Materials<'s, 'a> {
         Ok(decoded)
     }
 
-    fn decode(&self, image: usize) -> Result<Texture, String> {
+    fn decode(&self, image: usize) -> Result<TextureImage, String> {
         let at = self.images[image];
         let uri = at.get("uri").map_err(|e| e.what)?;
         let from_uri;
@@ -115,7 +115,7 @@ impl<'s, 'a> Materials<'s, 'a> {
 }
 
 /// A PNG or JPEG as RGBA, within the limits of side and of `budget` bytes.
-pub(crate) fn decode_picture(bytes: &[u8], budget: usize) -> Result<Texture, String> {
+pub(crate) fn decode_picture(bytes: &[u8], budget: usize) -> Result<TextureImage, String> {
     let mut reader =
         image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| one_line(&e))?;
     let mut limits = image::Limits::default();
@@ -124,7 +124,7 @@ pub(crate) fn decode_picture(bytes: &[u8], budget: usize) -> Result<Texture, Str
     limits.max_alloc = Some(budget as u64);
     reader.limits(limits);
     let rgba = reader.decode().map_err(|e| one_line(&e))?.into_rgba8();
-    Ok(Texture { width: rgba.width(), height: rgba.height(), rgba: rgba.into_raw() })
+    Ok(TextureImage { width: rgba.width(), height: rgba.height(), rgba: rgba.into_raw() })
 }
 
 fn one_line(error: &dyn core::fmt::Display) -> String {

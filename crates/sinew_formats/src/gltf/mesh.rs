@@ -6,7 +6,7 @@ use super::scene::Scene;
 use super::source::Source;
 use crate::container::json::At;
 use crate::error::Result;
-use sinew_anim::{Mesh, Primitive};
+use sinew_anim::{Primitive, RigMesh};
 use sinew_math::{Vec2, Vec3, clamp, normalize_or};
 
 /// Every mesh of the scene as often as a node places it.
@@ -15,7 +15,7 @@ pub(super) fn read_all<'a>(
     scene: &Scene,
     materials: &mut Materials<'_, 'a>,
     warnings: &mut Vec<String>,
-) -> Result<Vec<Mesh>> {
+) -> Result<Vec<RigMesh>> {
     let meshes = source.root.list("meshes")?;
     let mut out = Vec::new();
     for (joint, at_joint) in scene.rig.joints[..scene.shown].iter().enumerate() {
@@ -40,7 +40,7 @@ pub(super) fn read_all<'a>(
         let (skinned, rigid): (Vec<_>, Vec<_>) = primitives.into_iter().partition(|p| !p.joints.is_empty());
         for (primitives, skin) in [(skinned, skin), (rigid, None)] {
             if !primitives.is_empty() {
-                out.push(Mesh { name: mesh.name(), joint, skin, primitives });
+                out.push(RigMesh { name: mesh.name(), joint, skin, primitives });
             }
         }
     }

@@ -45,7 +45,7 @@ use crate::container::json::{self, At};
 use crate::error::{Error, Result, quoted};
 use crate::{container::glb, container::uri};
 use serde_json::Value;
-use sinew_anim::{Clip, Event, Rig};
+use sinew_anim::{Clip, ClipEvent, Rig};
 use source::{Buffer, Source};
 use std::collections::BTreeMap;
 
@@ -83,7 +83,7 @@ pub struct Document {
     /// Animations in file order.
     pub clips: Vec<Clip>,
     /// Events of each clip (`extras.sinew_events`), by time.
-    pub events: Vec<Vec<Event>>,
+    pub events: Vec<Vec<ClipEvent>>,
     /// The file's JSON, keys in order, numbers as they were.
     pub json: Value,
     /// The file's binary chunk.

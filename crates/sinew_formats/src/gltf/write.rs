@@ -5,7 +5,7 @@ use crate::container::glb;
 use crate::error::Result;
 use crate::events::events_extras;
 use serde_json::{Map, Value, json};
-use sinew_anim::{Clip, Event, Mesh, Primitive, Rig, Skin};
+use sinew_anim::{Clip, ClipEvent, Primitive, Rig, RigMesh, Skin};
 use sinew_math::{Affine, Vec2, Vec3, max, min};
 
 const UNSIGNED_SHORT: u32 = 5123;
@@ -34,7 +34,7 @@ pub fn write_gltf(rig: &Rig, clips: &[Clip]) -> Result<Vec<u8>> {
 ///
 /// # Panics
 /// As [`write_gltf`], and if there are not as many lists of events as clips.
-pub fn write_motion(rig: &Rig, clips: &[Clip], events: &[Vec<Event>]) -> Result<Vec<u8>> {
+pub fn write_motion(rig: &Rig, clips: &[Clip], events: &[Vec<ClipEvent>]) -> Result<Vec<u8>> {
     assert_eq!(clips.len(), events.len(), "a list of events for each clip");
     let bytes = write_rig(rig)?;
     if clips.is_empty() {
@@ -129,7 +129,7 @@ struct Writer {
 }
 
 impl Writer {
-    fn mesh(&mut self, mesh: &Mesh) -> Value {
+    fn mesh(&mut self, mesh: &RigMesh) -> Value {
         let primitives: Vec<Value> = mesh.primitives.iter().map(|part| self.primitive(part)).collect();
         json!({"name": mesh.name, "primitives": primitives})
     }

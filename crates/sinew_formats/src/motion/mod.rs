@@ -19,7 +19,7 @@ use crate::deepmimic::{DeepMimicCharacter, read_deepmimic, read_deepmimic_charac
 use crate::error::{Error, Result};
 use crate::gltf::{ReadOptions, Resolver, read_gltf};
 use crate::jolt::read_jolt_ragdoll;
-use sinew_anim::{Clip, Event, LocalTransform, Rig};
+use sinew_anim::{Clip, ClipEvent, LocalTransform, Rig};
 
 /// Options for reading a file with clips.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,7 +46,7 @@ pub struct MotionFile {
     /// Clips in file order.
     pub clips: Vec<Clip>,
     /// Events of each clip, by time: those of the file itself, and of the events file where one is beside it.
-    pub events: Vec<Vec<Event>>,
+    pub events: Vec<Vec<ClipEvent>>,
     /// Seconds from frame to frame, where the file was captured or baked at a rate.
     pub frame_time: Option<f64>,
     /// Metres per unit of the rig, where the file says so or it is inferred; `None` leaves it to the rig's analysis.

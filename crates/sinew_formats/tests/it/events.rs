@@ -1,7 +1,7 @@
 //! Events beside clips and inside glTF.
 
 use crate::data::bar;
-use sinew_anim::{Clip, Event, EventPolicy, FiredBy};
+use sinew_anim::{Clip, ClipEvent, EventPolicy, FiredBy};
 use sinew_formats::{
     ErrorKind, ReadOptions, append_clip, events_extras, no_files, read_events, read_gltf, write_events,
     write_motion,
@@ -12,8 +12,8 @@ fn clips() -> Vec<Clip> {
     vec![clip("walk", 1.0), clip("run", 0.5), clip("", 2.0), clip("run", 0.75)]
 }
 
-fn punch() -> Event {
-    Event {
+fn punch() -> ClipEvent {
+    ClipEvent {
         time: 0.1,
         name: "punch".into(),
         payload: "{\"damage\": 3}".into(),
@@ -23,8 +23,8 @@ fn punch() -> Event {
 
 #[test]
 fn what_is_written_is_read() {
-    let left = Event { payload: "left".into(), ..Event::new(0.3, "footstep") };
-    let events = vec![vec![punch(), left], Vec::new(), vec![Event::new(2.0, "end")], vec![punch()]];
+    let left = ClipEvent { payload: "left".into(), ..ClipEvent::new(0.3, "footstep") };
+    let events = vec![vec![punch(), left], Vec::new(), vec![ClipEvent::new(2.0, "end")], vec![punch()]];
     let text = write_events(&clips(), &events);
     assert!(text.starts_with("{\n  \"sinew\": \"events\",\n  \"version\": 1,"), "{text}");
     let read = read_events(text.as_bytes(), &clips()).unwrap();
@@ -84,17 +84,18 @@ fn extras_of_an_animation() {
     let bytes = write_motion(&rig, std::slice::from_ref(&clip), &[vec![punch()]]).unwrap();
     let document = read_gltf(&bytes, ReadOptions::default(), &mut no_files).unwrap();
     assert_eq!(document.events, [vec![punch()]]);
-    let more = append_clip(&document, &document.clips[0], "again", events_extras(&[Event::new(0.2, "clap")]));
+    let more =
+        append_clip(&document, &document.clips[0], "again", events_extras(&[ClipEvent::new(0.2, "clap")]));
     let document = read_gltf(&more.unwrap(), ReadOptions::default(), &mut no_files).unwrap();
-    assert_eq!(document.events, [vec![punch()], vec![Event::new(0.2, "clap")]]);
+    assert_eq!(document.events, [vec![punch()], vec![ClipEvent::new(0.2, "clap")]]);
     // The extras of others are none of our business.
     let foreign = append_clip(&document, &document.clips[0], "x", Some("text".into())).unwrap();
     assert!(read_gltf(&foreign, ReadOptions::default(), &mut no_files).unwrap().events[2].is_empty());
     let bare = serde_json::json!({"sinew_events": [{"time": 0.25, "name": "tap"}]});
     let bare = append_clip(&document, &document.clips[0], "x", Some(bare)).unwrap();
     let read = read_gltf(&bare, ReadOptions::default(), &mut no_files).unwrap();
-    assert_eq!(read.events[2], [Event::new(0.25, "tap")]);
-    let late = append_clip(&document, &document.clips[0], "x", events_extras(&[Event::new(9.0, "late")]));
+    assert_eq!(read.events[2], [ClipEvent::new(0.25, "tap")]);
+    let late = append_clip(&document, &document.clips[0], "x", events_extras(&[ClipEvent::new(9.0, "late")]));
     let error = read_gltf(&late.unwrap(), ReadOptions::default(), &mut no_files).unwrap_err();
     assert_eq!(error.where_, "animations[2].extras.sinew_events.events[0].time");
 }

@@ -1,7 +1,7 @@
 //! Any file with clips by one function.
 
 use crate::data::{bar, files, shared_data};
-use sinew_anim::Event;
+use sinew_anim::ClipEvent;
 use sinew_formats::{
     BvhWriteOptions, ErrorKind, MotionFormat, MotionOptions, no_files, read_motion, write_bvh, write_gltf,
 };
@@ -86,14 +86,15 @@ fn an_events_file_beside_counts_for_the_clips_it_names() {
         sinew_anim::Clip { name: "a".into(), ..clip.clone() },
         sinew_anim::Clip { name: "b".into(), ..clip },
     ];
-    let own = [vec![Event::new(0.1, "own")], vec![Event::new(0.1, "own")]];
+    let own = [vec![ClipEvent::new(0.1, "own")], vec![ClipEvent::new(0.1, "own")]];
     std::fs::write(&path, write_motion(&rig, &clips, &own).unwrap()).unwrap();
     assert_eq!(load_motion(&path, &MotionOptions::default()).unwrap().events, own);
     let beside = events_path(&path);
     assert_eq!(beside.file_name().unwrap(), "bar.events.json");
-    std::fs::write(&beside, write_events(&clips, &[Vec::new(), vec![Event::new(0.2, "beside")]])).unwrap();
+    std::fs::write(&beside, write_events(&clips, &[Vec::new(), vec![ClipEvent::new(0.2, "beside")]]))
+        .unwrap();
     let read = load_motion(&path, &MotionOptions::default()).unwrap();
-    assert_eq!(read.events, [own[0].clone(), vec![Event::new(0.2, "beside")]]);
+    assert_eq!(read.events, [own[0].clone(), vec![ClipEvent::new(0.2, "beside")]]);
     std::fs::write(&beside, "{}").unwrap();
     let error = load_motion(&path, &MotionOptions::default()).unwrap_err();
     assert!(error.file.ends_with("bar.events.json") && error.where_ == "top level", "{error}");

@@ -1,6 +1,8 @@
 //! A rig made by code as a file: what is read back is what went in.
 
-use sinew_anim::{Channel, Clip, Interpolation, Joint, LocalTransform, Mesh, Primitive, Property, Rig, Skin};
+use sinew_anim::{
+    Channel, Clip, Interpolation, Joint, LocalTransform, Primitive, Property, Rig, RigMesh, Skin,
+};
 use sinew_formats::{Document, ReadOptions, no_files, read_gltf, write_gltf};
 use sinew_math::{Affine, Rotation, Vec2, Vec3};
 
@@ -29,8 +31,12 @@ fn rig() -> Rig {
         weights: vec![[1.0, 0.0, 0.0, 0.0], [0.25, 0.75, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]],
         ..triangle()
     };
-    let mesh =
-        |name: &str, skin, primitive| Mesh { name: name.into(), joint: 0, skin, primitives: vec![primitive] };
+    let mesh = |name: &str, skin, primitive| RigMesh {
+        name: name.into(),
+        joint: 0,
+        skin,
+        primitives: vec![primitive],
+    };
     let bind = Affine::from_scale_rotation_translation(
         Vec3::ONE,
         Rotation::from_axis_angle(Vec3::Y, 1.0),

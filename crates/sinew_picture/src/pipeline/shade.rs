@@ -4,7 +4,7 @@ use crate::camera::View;
 use crate::color::ColorTables;
 use crate::pipeline::raster::NOTHING;
 use crate::pipeline::shadow::ShadowMap;
-use crate::scene::{Material, Model, Pattern, Scene, Sky};
+use crate::scene::{Model, Pattern, RenderMaterial, Scene, Sky};
 use sinew::math::lanes::{Lanes, Real, Vector3, WIDTH};
 use sinew::math::{Vec2, Vec3, abs3, clamp, max, normalize_or};
 
@@ -145,7 +145,7 @@ impl<'a> Shader<'a> {
     #[inline(always)]
     pub(crate) fn flat_span<L: Lanes>(&self, id: u32, x: usize, y: usize) -> [L; 3] {
         let triangle = &self.triangles[id as usize];
-        let Material { color, pattern, .. } = &self.model(triangle).material;
+        let RenderMaterial { color, pattern, .. } = &self.model(triangle).material;
         let rays = self.view.rays::<L>(x as f32, y as f32 + 0.5);
         let m = Vector3::splat(triangle.m);
         let det = rays.dot(m);
@@ -205,7 +205,7 @@ impl<'a> Shader<'a> {
     }
 
     fn base_color(&self, model: &Model, triangle: &Triangle, hit: &Hit, ray: Vec3) -> [f32; 3] {
-        let Material { color, texture, pattern, .. } = &model.material;
+        let RenderMaterial { color, texture, pattern, .. } = &model.material;
         let mut base = *color;
         if let Pattern::Checker { size, other } = *pattern {
             let [across, down] = self.view.ray_per_pixel().map(|step| abs3(triangle.slip(hit, ray, step)));

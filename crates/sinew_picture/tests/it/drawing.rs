@@ -4,8 +4,8 @@ use sinew::math::{Random, Transform, Vec2, Vec3};
 use sinew::physics::Shape;
 use sinew_picture::draw;
 use sinew_picture::{
-    Antialiasing, Camera, Caption, Faces, Image, Line, LineDepth, Material, Model, RenderSettings, Renderer,
-    Scene, ShadowCasting, Sky, Sun, Texture,
+    Antialiasing, Camera, Caption, Faces, Image, Line, LineDepth, Model, RenderMaterial, RenderSettings,
+    Renderer, Scene, ShadowCasting, Sky, Sun, Texture,
 };
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ fn triangle(points: [Vec3; 3], color: [f32; 3]) -> Model {
     Model {
         positions: points.to_vec(),
         indices: vec![0, 1, 2],
-        material: Material::new(color),
+        material: RenderMaterial::new(color),
         ..Model::default()
     }
 }
@@ -156,7 +156,7 @@ fn odd_input_is_left_out() {
     models.push(dangling);
     models.push(triangle([good[0]; 3], [1.0; 3]));
     models.push(Model {
-        material: Material { opacity: 0.0, ..Material::default() },
+        material: RenderMaterial { opacity: 0.0, ..RenderMaterial::default() },
         ..triangle(good.map(|p| p * 0.5), [1.0; 3])
     });
     let scene = plain(models);
@@ -230,9 +230,9 @@ fn textures_lie_the_right_way_up() {
         positions: vec![corner(-0.5, 0.5), corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.5, 0.5)],
         uvs: vec![Vec2::new(0.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(1.0, 0.0)],
         indices: vec![0, 1, 2, 0, 2, 3],
-        material: Material {
+        material: RenderMaterial {
             texture: Some(Arc::new(Texture::new(8, 8, rgba).expect("8 × 8"))),
-            ..Material::new([1.0; 3])
+            ..RenderMaterial::new([1.0; 3])
         },
         ..Model::default()
     };
@@ -249,7 +249,7 @@ fn textures_lie_the_right_way_up() {
 fn lines_hide_behind_surfaces_unless_on_top() {
     let half_extents = Vec3::splat(0.5);
     let place = Transform::from_translation(Vec3::new(0.0, 0.0, -3.0));
-    let cube = draw::shape(&Shape::Box { half_extents }, place, Material::new([0.5; 3]));
+    let cube = draw::shape(&Shape::Box { half_extents }, place, RenderMaterial::new([0.5; 3]));
     let middle = |line_z: f32, depth: LineDepth| {
         let mut scene = plain(vec![cube.clone()]);
         let (from, to) = (Vec3::new(-1.0, 0.01, line_z), Vec3::new(1.0, 0.01, line_z));

@@ -3,7 +3,7 @@
 use sinew::math::{Rotation, Transform, Vec3, trig};
 use sinew::physics::Shape;
 use sinew_picture::draw;
-use sinew_picture::{Camera, Caption, Line, LineDepth, Material, Model, Scene};
+use sinew_picture::{Camera, Caption, Line, LineDepth, Model, RenderMaterial, Scene};
 
 const WOOD: [f32; 3] = [0.50, 0.33, 0.19];
 const SKIN: [f32; 3] = [0.86, 0.42, 0.17];
@@ -20,8 +20,8 @@ pub fn scene(time: f32) -> Scene {
     models.push(block(Vec3::new(0.0, 0.45, -2.15), Vec3::new(0.8, 0.45, 0.65), WOOD));
     models.push(block(Vec3::new(-0.9, 0.9, -1.4), Vec3::new(0.06, 0.9, 1.4), [0.55, 0.53, 0.49]));
     let ball = Transform::from_translation(Vec3::new(1.4, 0.35, 0.3));
-    models.push(draw::shape(&Shape::Sphere { radius: 0.35 }, ball, Material::new([0.62, 0.07, 0.06])));
-    let glass = Material { opacity: 0.35, ..Material::new([0.2, 0.6, 0.9]) };
+    models.push(draw::shape(&Shape::Sphere { radius: 0.35 }, ball, RenderMaterial::new([0.62, 0.07, 0.06])));
+    let glass = RenderMaterial { opacity: 0.35, ..RenderMaterial::new([0.2, 0.6, 0.9]) };
     let place = Transform::new(Vec3::new(1.3, 0.3, -0.9), Rotation::from_axis_angle(Vec3::Y, 0.5));
     models.push(draw::shape(&Shape::Box { half_extents: Vec3::splat(0.3) }, place, glass));
     models.extend(figure(hips(time), time));
@@ -47,7 +47,7 @@ pub fn camera(time: f32) -> Camera {
 }
 
 fn block(center: Vec3, half_extents: Vec3, color: [f32; 3]) -> Model {
-    draw::shape(&Shape::Box { half_extents }, Transform::from_translation(center), Material::new(color))
+    draw::shape(&Shape::Box { half_extents }, Transform::from_translation(center), RenderMaterial::new(color))
 }
 
 fn figure(hips: Vec3, time: f32) -> Vec<Model> {
@@ -77,5 +77,5 @@ fn limb(from: Vec3, to: Vec3, radius: f32, color: [f32; 3]) -> Model {
     let length = (to - from).length();
     let rotation = Rotation::from_arc(Vec3::Y, (to - from) / length);
     let place = Transform::new((from + to) * 0.5, rotation);
-    draw::shape(&Shape::Capsule { half_height: 0.5 * length, radius }, place, Material::new(color))
+    draw::shape(&Shape::Capsule { half_height: 0.5 * length, radius }, place, RenderMaterial::new(color))
 }

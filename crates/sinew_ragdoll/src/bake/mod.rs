@@ -3,12 +3,12 @@
 //! ```
 //! use sinew_math::Vec3;
 //! use sinew_physics::{BodyDef, Shape};
-//! use sinew_ragdoll::{BakeInput, Hit, bake};
+//! use sinew_ragdoll::{BakeInput, BakeHit, bake};
 //! use std::sync::Arc;
 //!
 //! let character = Arc::new(sinew::mannequin::character());
 //! let ground = [BodyDef::fixed(Shape::HalfSpace)];
-//! let hits = [Hit { time: 0.2, body: 0, impulse: Vec3::new(0.0, 0.0, -150.0) }];
+//! let hits = [BakeHit { time: 0.2, body: 0, impulse: Vec3::new(0.0, 0.0, -150.0) }];
 //! let input = BakeInput { bodies: &ground, hits: &hits, seconds: 0.5, ..BakeInput::new(character) };
 //! let baked = bake(&input);
 //! assert_eq!((baked.frames.len(), baked.clip.duration), (16, 0.5)); // at 30 frames a second
@@ -16,8 +16,8 @@
 
 mod keys;
 
-use crate::character::{Character, CharacterDef, Event, InWorld, State};
-use crate::quality::{Quality, QualityMeter};
+use crate::character::{Character, CharacterDef, CharacterEvent, InWorld, State};
+use crate::quality::{FallQuality, QualityMeter};
 use sinew_anim::{Clip, KeyBound, KeyError, LocalTransform, Reduced, reduce_keys};
 use sinew_math::hash::hash_bytes;
 use sinew_math::{Affine, Transform, Vec3, Writer, clamp};
@@ -26,7 +26,7 @@ use std::sync::Arc;
 
 /// A push at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
+pub struct BakeHit {
     /// Seconds from the start.
     pub time: f32,
     /// Body, by index in the definition.
@@ -49,7 +49,7 @@ pub struct BakeInput<'a> {
     /// Bodies of the world beside the character's own.
     pub bodies: &'a [BodyDef],
     /// Pushes, in any order.
-    pub hits: &'a [Hit],
+    pub hits: &'a [BakeHit],
     /// Effect of pushes. Default: each fells.
     pub hit_effect: HitEffect,
     /// When it goes limp without being pushed, seconds; `None`: only by a hit.
@@ -126,9 +126,9 @@ pub struct Baked {
     /// From the model space of the file to the world, the same for all frames.
     pub world_from_model: Affine,
     /// The figures.
-    pub quality: Quality,
+    pub quality: FallQuality,
     /// Events, each with its time in seconds.
-    pub events: Vec<(f32, Event)>,
+    pub events: Vec<(f32, CharacterEvent)>,
     /// Number of bodies of the ragdoll.
     pub bodies: usize,
     /// Steps that were simulated.
@@ -180,7 +180,7 @@ struct Run {
     meter: QualityMeter,
     /// Not yet done, the latest first.
     pending: Vec<(f32, Push)>,
-    events: Vec<(f32, Event)>,
+    events: Vec<(f32, CharacterEvent)>,
     /// Events of pushes that are noted, and told again by the next update.
     ahead: usize,
 }
@@ -289,7 +289,7 @@ impl Run {
     fn note_events(&mut self, first: usize) {
         let time = self.time();
         for &event in &self.character.events()[first..] {
-            if event == Event::Up {
+            if event == CharacterEvent::Up {
                 self.meter.got_up(&self.world);
             }
             self.events.push((time, event));

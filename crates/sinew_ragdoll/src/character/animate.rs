@@ -1,6 +1,6 @@
 //! The pose while clips decide it.
 
-use super::{Character, Event, ground};
+use super::{Character, CharacterEvent, ground};
 use sinew_anim::Animator;
 use sinew_math::{Affine, Transform, Vec3, clamp};
 use sinew_physics::World;
@@ -14,7 +14,7 @@ impl Character {
         let dt = world.def().dt();
         self.keep_pace(dt);
         self.animator.update(self.def.set(), dt);
-        self.events.extend(self.animator.events().iter().map(|&fired| Event::Clip(fired)));
+        self.events.extend(self.animator.events().iter().map(|&fired| CharacterEvent::Clip(fired)));
         self.keep_earlier();
         self.take_pose();
         if let Some(to) = self.ride(world, self.step_of(&self.animator)) {

@@ -1,6 +1,6 @@
 //! Blows: what is below the threshold lets a limb give way, what is above fells.
 
-use super::{Blow, Character, Event, State, Toughness};
+use super::{Blow, Character, CharacterEvent, State, Toughness};
 use crate::drive::{DriveMode, Muscle};
 use sinew_math::Vec3;
 use sinew_physics::{BodyHit, World};
@@ -50,7 +50,7 @@ impl Character {
             return self.flinch(world, body, impulse, point);
         }
         self.go_limp(world);
-        self.events.push(Event::Hit { body });
+        self.events.push(CharacterEvent::Hit { body });
         self.drives.hit(&self.def.ragdoll, body, impulse.length());
         self.push(world, body, impulse, point)
     }
@@ -86,7 +86,7 @@ impl Character {
         point: Option<Vec3>,
     ) -> f32 {
         if self.state == State::Animated && !self.gives_way() {
-            self.events.push(Event::Flinched { body });
+            self.events.push(CharacterEvent::Flinched { body });
             return 0.0;
         }
         if self.state == State::Animated {
@@ -100,7 +100,7 @@ impl Character {
             self.flinching = GIVES + RETURNED * RETURNS;
         }
         self.drives.hit(&self.def.ragdoll, body, impulse.length());
-        self.events.push(Event::Flinched { body });
+        self.events.push(CharacterEvent::Flinched { body });
         if self.steps() {
             self.tense();
             self.shove(world, impulse);

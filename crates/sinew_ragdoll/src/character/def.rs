@@ -65,8 +65,8 @@ pub struct MotionSet {
     pub idle: Option<usize>,
     /// Clips that start lying and end standing. Each is used as a mirror shows it, too. Default none.
     pub get_ups: Vec<usize>,
-    /// Moments of clips that [`Event::Clip`](super::Event::Clip) tells of, each with the index of its clip: steps, punches. Default none.
-    pub events: Vec<(usize, sinew_anim::Event)>,
+    /// Moments of clips that [`CharacterEvent::Clip`](super::CharacterEvent::Clip) tells of, each with the index of its clip: steps, punches. Default none.
+    pub events: Vec<(usize, sinew_anim::ClipEvent)>,
     /// Default in place.
     pub locomotion: Locomotion,
     /// Default: the looped clip.

@@ -22,7 +22,7 @@ pub enum State {
 
 /// Something that happened to a character.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Event {
+pub enum CharacterEvent {
     /// It was pushed.
     Hit {
         /// Index of the body in the definition.

@@ -3,7 +3,7 @@
 use super::memory::Rising;
 use super::moves::{GetUp, Start};
 use super::pose_similarity::{PoseSimilarity, Stance};
-use super::{Character, Event, State, ground};
+use super::{Character, CharacterEvent, State, ground};
 use sinew_anim::{Animator, LoopMode, Pose, Track, TrackDef, TrackId, local_to_model, smoothstep};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 use sinew_physics::World;
@@ -94,13 +94,13 @@ impl Character {
                 let once =
                     TrackDef { start: start.time, loop_mode: LoopMode::Once, ..TrackDef::new(get_up.id) };
                 self.rising = Rising::ByClip(self.animator.play(def.set(), &once));
-                self.events.push(Event::GettingUp { clip: Some(get_up.clip) });
+                self.events.push(CharacterEvent::GettingUp { clip: Some(get_up.clip) });
             }
             None => {
                 self.settle_into(world, moves.landmarks.compare(&moves.upright, &lies).motion, INTO_STANDING);
                 def.play_looped(&mut self.animator, 0.0);
                 self.rising = Rising::Without(INTO_STANDING);
-                self.events.push(Event::GettingUp { clip: None });
+                self.events.push(CharacterEvent::GettingUp { clip: None });
             }
         }
         self.leave_bodies(world);
@@ -168,7 +168,7 @@ impl Character {
 
     fn be_up(&mut self) {
         self.state = State::Animated;
-        self.events.push(Event::Up);
+        self.events.push(CharacterEvent::Up);
     }
 
     /// Stands on the ground at `place`, stops what plays on the whole body, and lets the present pose and its motion die

@@ -1,6 +1,6 @@
 //! Bodies of a character that its clips move: led from pose to pose, and what strikes them.
 
-use super::{Character, Event};
+use super::{Character, CharacterEvent};
 use sinew_math::{Rotation, Transform, Vec3, max};
 use sinew_physics::{BodyId, BodyKind, Velocity, World};
 
@@ -71,7 +71,7 @@ impl Character {
             }
         }
         if let Some((body, impulse)) = felt {
-            self.events.push(Event::Struck { body, impulse: impulse.length() });
+            self.events.push(CharacterEvent::Struck { body, impulse: impulse.length() });
             self.strike(world, body, impulse, None);
         }
     }
@@ -86,8 +86,8 @@ impl Character {
         for (pairs, begins) in [(&told.begin, true), (&told.end, false)] {
             for &(a, b) in pairs {
                 match (self.body_index(a), self.body_index(b)) {
-                    (Some(body), None) => events.push(Event::Contact { body, other: b, begins }),
-                    (None, Some(body)) => events.push(Event::Contact { body, other: a, begins }),
+                    (Some(body), None) => events.push(CharacterEvent::Contact { body, other: b, begins }),
+                    (None, Some(body)) => events.push(CharacterEvent::Contact { body, other: a, begins }),
                     _ => {}
                 }
             }

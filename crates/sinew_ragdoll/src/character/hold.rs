@@ -2,7 +2,7 @@
 //! on them does in every state.
 
 use super::memory::Hold;
-use super::{Character, Event};
+use super::{Character, CharacterEvent};
 use sinew_math::{Transform, Vec3};
 use sinew_physics::{BodyId, ContactRule, JointDef, JointId, JointKind, Strength, Velocity, World, Yields};
 
@@ -60,7 +60,7 @@ impl Character {
         if world.contains(held) {
             self.set_passes(world, held, false);
         }
-        self.events.push(Event::LetGo { body: hold.body as usize, held });
+        self.events.push(CharacterEvent::LetGo { body: hold.body as usize, held });
         true
     }
 

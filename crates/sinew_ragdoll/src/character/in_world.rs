@@ -77,7 +77,7 @@ pub struct InWorld {
     /// Impulse from which it feels what strikes its bodies by itself, N·s; infinite: it feels only what it is told of by
     /// [`Character::hit`]. Default 3.
     pub feels: f32,
-    /// True: [`Event::Contact`](super::Event::Contact) tells which of its bodies begin and stop to touch something. Default false: in crowds that
+    /// True: [`CharacterEvent::Contact`](super::CharacterEvent::Contact) tells which of its bodies begin and stop to touch something. Default false: in crowds that
     /// is much to look through.
     pub tells_contacts: bool,
 }

@@ -2,7 +2,7 @@
 
 use super::ground::{self, GroundMotion};
 use super::memory::Stillness;
-use super::{AfterSettling, Character, Event, State};
+use super::{AfterSettling, Character, CharacterEvent, State};
 use crate::def::RagdollBodyDef;
 use crate::drive::DriveMode;
 use crate::hand_over::body_velocity;
@@ -42,7 +42,7 @@ impl Character {
         self.state = State::Limp;
         self.stillness = Stillness::default();
         self.slacken(world);
-        self.events.push(Event::WentLimp);
+        self.events.push(CharacterEvent::WentLimp);
     }
 
     /// Brings friction into the joints over [`SLACKENS`] seconds: what muscles held a moment ago goes on, for all of it at once
@@ -101,7 +101,7 @@ impl Character {
             self.ragdoll.as_ref().expect("it has bodies").set_rule(world, ContactRule::Push);
             self.slacken(world);
         }
-        self.events.push(Event::WentLimp);
+        self.events.push(CharacterEvent::WentLimp);
     }
 
     /// Takes all drives off the bodies but those of a fall.
@@ -231,7 +231,7 @@ impl Character {
         let still = &mut self.stillness;
         if !still.touched && touches_world(world, &ragdoll.bodies) {
             still.touched = true;
-            self.events.push(Event::Touched);
+            self.events.push(CharacterEvent::Touched);
         }
         let ground = match self.presence {
             Some(_) => ground::motion_below(world, &ragdoll.bodies),
@@ -245,12 +245,12 @@ impl Character {
         }
         if !still.settled && calm >= STILL_TIME {
             still.settled = true;
-            self.events.push(Event::Settled { since: world.time() as f32 - calm });
+            self.events.push(CharacterEvent::Settled { since: world.time() as f32 - calm });
         }
         let impatient = !still.settled && still.steps as f32 * dt >= self.def.patience;
         if self.def.after_settling == AfterSettling::GetUp && (still.settled || impatient) {
             if impatient {
-                self.events.push(Event::NeverSettled);
+                self.events.push(CharacterEvent::NeverSettled);
                 self.stillness.settled = true;
             }
             self.prepare(world);

@@ -1,5 +1,5 @@
 //! A character: animated until something knocks it over, limp until it lies still, brought to where a get-up clip begins
-//! if it lies otherwise, getting up, animated again. Each change is an [`Event`].
+//! if it lies otherwise, getting up, animated again. Each change is a [`CharacterEvent`].
 //!
 //! The host steps the world, then calls [`Character::update`]; poses and bodies are those of the same moment.
 //!
@@ -54,7 +54,7 @@ pub(crate) use limp::{STILL_TIME, is_still, is_sunk, touches_world};
 
 pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet, Opening};
 pub use distances::{Detail, Distances};
-pub use event::{Event, State};
+pub use event::{CharacterEvent, State};
 pub use hold::Grip;
 pub use in_world::{Blow, HitBodies, InWorld, Toughness};
 pub use moves::MotionError;
@@ -99,7 +99,7 @@ pub struct Character {
     drives: Drives,
     stillness: Stillness,
     preparation: Preparation,
-    events: Vec<Event>,
+    events: Vec<CharacterEvent>,
     /// Number of events that were there at the end of the last update.
     told: usize,
     physical: Physical,
@@ -218,7 +218,7 @@ impl Character {
 
     /// Events of the last [`update`](Self::update) and since the one before it ended, in order, and what calls have brought about
     /// since. Who reads it after each update, and only then, is told of everything exactly once.
-    pub fn events(&self) -> &[Event] {
+    pub fn events(&self) -> &[CharacterEvent] {
         &self.events
     }
 

@@ -7,7 +7,7 @@ use crate::def::RagdollDef;
 use crate::mapping::Mapping;
 use sinew_anim::take::Take;
 use sinew_anim::{
-    AnimatedClip, AnimationSet, BuildError, BuildOptions, BuiltClip, Clip, ClipId, LocalTransform,
+    AnimatedClip, AnimationSet, BuiltClip, Clip, ClipBuildError, ClipBuildOptions, ClipId, LocalTransform,
     MotionTrack, Rig, Skeleton, Wrap, local_to_model, rest_pose, sample,
 };
 use sinew_math::{Affine, Transform, Vec3};
@@ -19,7 +19,7 @@ pub struct MotionError {
     /// Name of the clip.
     pub name: String,
     /// Reason why it cannot be played.
-    pub error: BuildError,
+    pub error: ClipBuildError,
 }
 
 /// Moves of a kind of character: what [`CharacterDef`] makes of its clips.
@@ -114,15 +114,15 @@ impl Moves {
 }
 
 /// Moments of a clip, in order of time.
-fn events_of(motions: &MotionSet, clip: usize) -> Vec<sinew_anim::Event> {
+fn events_of(motions: &MotionSet, clip: usize) -> Vec<sinew_anim::ClipEvent> {
     let own = motions.events.iter().filter(|(of, _)| *of == clip).map(|(_, event)| event.clone());
-    let mut events: Vec<sinew_anim::Event> = own.collect();
+    let mut events: Vec<sinew_anim::ClipEvent> = own.collect();
     events.sort_by(|a, b| a.time.total_cmp(&b.time));
     events
 }
 
 fn built(def: &CharacterDef, clip: &Clip) -> Result<AnimatedClip, MotionError> {
-    BuiltClip::build(clip, &def.rig, &BuildOptions::default())
+    BuiltClip::build(clip, &def.rig, &ClipBuildOptions::default())
         .map(AnimatedClip::from)
         .map_err(|error| MotionError { name: clip.name.clone(), error })
 }

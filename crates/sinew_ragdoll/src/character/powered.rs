@@ -1,6 +1,6 @@
 //! Bodies between clips and physics: each led, pinned, held by muscles or limp, while clips and mover go on.
 
-use super::{Character, Event, State};
+use super::{Character, CharacterEvent, State};
 use crate::drive::{DriveMode, Drives, Muscle, Pin};
 use crate::ragdoll::Ragdoll;
 use sinew_math::{Transform, Vec3};
@@ -84,7 +84,7 @@ impl Character {
     fn become_powered(&mut self) {
         if self.state != State::Powered {
             self.state = State::Powered;
-            self.events.push(Event::Powered);
+            self.events.push(CharacterEvent::Powered);
         }
     }
 
@@ -203,7 +203,7 @@ impl Character {
         if self.state == State::Flinching && self.come_back(dt) {
             self.leave_bodies(world);
             self.state = State::Animated;
-            self.events.push(Event::Recovered);
+            self.events.push(CharacterEvent::Recovered);
             self.lead_bodies(world);
         } else {
             self.drive_bodies(world);

@@ -5,7 +5,7 @@
 
 use super::get_up::{Choice, choose};
 use super::memory::Preparation;
-use super::{Character, Event, GettingReady, State};
+use super::{Character, CharacterEvent, GettingReady, State};
 use crate::drive::{DriveMode, Muscle, Pin};
 use sinew_math::Rotation;
 use sinew_physics::{Velocity, World};
@@ -45,7 +45,7 @@ impl Character {
             seconds: if rolls { TIME_TO_ROLL } else { TIME_TO_PULL },
         };
         self.state = State::Preparing;
-        self.events.push(Event::Preparing { rolls });
+        self.events.push(CharacterEvent::Preparing { rolls });
         self.drives.set_all(DriveMode::Powered(PULL), HALF_LIFE);
         if rolls {
             let gravity = world.def().gravity.length();

@@ -1,7 +1,7 @@
 //! Eight falls and a crash: what every ragdoll must survive.
 
 use super::meter::CALM;
-use super::{Quality, QualityMeter, Verdict, judge};
+use super::{FallQuality, QualityMeter, Verdict, judge};
 use crate::def::RagdollDef;
 use crate::ragdoll::{BodySettings, BodyState, Ragdoll};
 use sinew_math::{Rotation, Transform, Vec3, max, min};
@@ -19,11 +19,11 @@ const WALL_SECONDS: f32 = 3.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropReport {
     /// The worst of the 8 drops, figure by figure; a time is `None` if any drop never came to it.
-    pub drop: Quality,
+    pub drop: FallQuality,
     /// Each drop.
-    pub drops: Vec<Quality>,
+    pub drops: Vec<FallQuality>,
     /// The wall hit.
-    pub wall: Quality,
+    pub wall: FallQuality,
     /// Poses of the bodies in each drop.
     pub falls: Vec<Fallen>,
     /// Verdict on the ragdoll.
@@ -109,7 +109,7 @@ fn floor() -> BodyDef {
     BodyDef { kind: BodyKind::Static, shapes: vec![ShapeDef::new(Shape::HalfSpace)], ..BodyDef::default() }
 }
 
-fn drop_once(def: &RagdollDef, turn: Rotation, spin: Vec3) -> (Quality, Fallen) {
+fn drop_once(def: &RagdollDef, turn: Rotation, spin: Vec3) -> (FallQuality, Fallen) {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
     let ragdoll = released(&mut world, def, turn, spin, Vec3::ZERO);
@@ -120,7 +120,7 @@ fn drop_once(def: &RagdollDef, turn: Rotation, spin: Vec3) -> (Quality, Fallen) 
     (quality, fallen)
 }
 
-fn wall_hit(def: &RagdollDef) -> Quality {
+fn wall_hit(def: &RagdollDef) -> FallQuality {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
     let half_extents = Vec3::new(4.0, 3.0, 0.25);
@@ -175,7 +175,7 @@ pub(super) fn carried(
 }
 
 /// Steps until it sleeps, or the time is over.
-pub(super) fn measure(world: &mut World, def: &RagdollDef, ragdoll: &Ragdoll, seconds: f32) -> Quality {
+pub(super) fn measure(world: &mut World, def: &RagdollDef, ragdoll: &Ragdoll, seconds: f32) -> FallQuality {
     measure_seen(world, def, ragdoll, seconds, |_, _| ())
 }
 
@@ -186,7 +186,7 @@ fn measure_seen(
     ragdoll: &Ragdoll,
     seconds: f32,
     mut see: impl FnMut(u32, &World),
-) -> Quality {
+) -> FallQuality {
     let mut meter = QualityMeter::new(def, seconds);
     let steps = (seconds / world.def().dt()) as u32;
     let steps_of_rest = (0.5 / world.def().dt()) as u32 + 1;
@@ -207,9 +207,9 @@ fn measure_seen(
 }
 
 /// The worse of two, figure by figure.
-pub(super) fn worse(a: Quality, b: Quality) -> Quality {
+pub(super) fn worse(a: FallQuality, b: FallQuality) -> FallQuality {
     let later = |a: Option<f32>, b: Option<f32>| Some(max(a?, b?));
-    Quality {
+    FallQuality {
         energy_gain_max: max(a.energy_gain_max, b.energy_gain_max),
         work_in_j: max(a.work_in_j, b.work_in_j),
         joint_gap_max_m: max(a.joint_gap_max_m, b.joint_gap_max_m),

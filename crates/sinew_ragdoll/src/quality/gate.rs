@@ -1,7 +1,7 @@
 //! Many random falls: pose × velocity × terrain.
 
 use super::drop_test::{carried, measure, worse};
-use super::{Quality, Verdict, judge};
+use super::{FallQuality, Verdict, judge};
 use crate::def::RagdollDef;
 use crate::limits::sample::random_turn;
 use crate::ragdoll::{BodySettings, BodyState, Ragdoll, colliding_pairs};
@@ -24,7 +24,7 @@ pub struct GateReport {
     /// Falls by verdict: good, usable, bad.
     pub verdicts: [usize; 3],
     /// The worst of all, figure by figure.
-    pub worst: Quality,
+    pub worst: FallQuality,
     /// Number of the first fall with the worst verdict, for a look at it alone.
     pub worst_spawn: u64,
     /// Why that fall has its verdict, a sentence each; empty if it is good.
@@ -52,9 +52,9 @@ pub struct Miss {
 pub enum Bar {
     /// No body has a state that is not finite.
     Finite,
-    /// [`Quality::energy_gain_max`] is below 0.01.
+    /// [`FallQuality::energy_gain_max`] is below 0.01.
     EnergyGain,
-    /// [`Quality::joint_gap_p99_m`] is below 1 mm.
+    /// [`FallQuality::joint_gap_p99_m`] is below 1 mm.
     JointGap,
 }
 
@@ -72,7 +72,7 @@ impl Bar {
     }
 
     /// The figure, and whether it is on the right side of the bar; a figure that is no number is not.
-    fn of(self, quality: &Quality) -> (f32, Side) {
+    fn of(self, quality: &FallQuality) -> (f32, Side) {
         let (value, holds) = match self {
             Self::Finite => (quality.nan as f32, quality.nan == 0),
             Self::EnergyGain => (quality.energy_gain_max, quality.energy_gain_max < 0.01),
@@ -95,7 +95,7 @@ impl Default for GateReport {
         Self {
             spawns: 0,
             verdicts: [0; 3],
-            worst: Quality::default(),
+            worst: FallQuality::default(),
             worst_spawn: 0,
             worst_reasons: Vec::new(),
             bad: Vec::new(),
@@ -128,7 +128,7 @@ impl GateReport {
         self
     }
 
-    fn of_fall(spawn: u64, quality: Quality) -> Self {
+    fn of_fall(spawn: u64, quality: FallQuality) -> Self {
         // A fall has no wall hit; its own figures stand for both.
         let (verdict, reasons) = judge(&quality, &quality);
         let is = |wanted: Verdict| usize::from(verdict == wanted);
@@ -175,7 +175,7 @@ pub fn gate_on(def: &RagdollDef, spawns: core::ops::Range<u64>, runner: &dyn Tas
 }
 
 /// One random fall: number `seed` of a [`gate`], for a look at it alone.
-pub fn random_fall(def: &RagdollDef, seed: u64) -> Quality {
+pub fn random_fall(def: &RagdollDef, seed: u64) -> FallQuality {
     let mut random = Random::new(seed);
     let mut world = World::new(WorldDef::default());
     terrain(&mut world, &mut random);
@@ -288,9 +288,9 @@ mod tests {
 
     #[test]
     fn every_bar_that_a_fall_breaks_is_named() {
-        let fine = Quality { energy_gain_max: 0.009, joint_gap_p99_m: 9e-4, ..Quality::default() };
+        let fine = FallQuality { energy_gain_max: 0.009, joint_gap_p99_m: 9e-4, ..FallQuality::default() };
         assert_eq!(GateReport::of_fall(3, fine).misses, []);
-        let broken = Quality { energy_gain_max: 0.01, joint_gap_p99_m: f32::NAN, nan: 2, ..fine };
+        let broken = FallQuality { energy_gain_max: 0.01, joint_gap_p99_m: f32::NAN, nan: 2, ..fine };
         let report = GateReport::of_fall(1, fine).and(GateReport::of_fall(7, broken));
         let found: Vec<_> = report.misses.iter().map(|miss| (miss.spawn, miss.bar)).collect();
         assert_eq!(found, [(7, Bar::Finite), (7, Bar::EnergyGain), (7, Bar::JointGap)]);

@@ -1,6 +1,6 @@
 //! Measures a ragdoll step by step.
 
-use super::Quality;
+use super::FallQuality;
 use crate::character::{STILL_TIME, is_still, is_sunk, touches_world};
 use crate::def::RagdollDef;
 use crate::ragdoll::Ragdoll;
@@ -10,10 +10,10 @@ use sinew_physics::{BodyId, Energy, World};
 /// All bodies below this are calm, m/s.
 pub(super) const CALM: f32 = 0.3;
 
-/// Collects the figures of [`Quality`] over the steps in which a character is limp.
+/// Collects the figures of [`FallQuality`] over the steps in which a character is limp.
 #[derive(Clone, Debug)]
 pub struct QualityMeter {
-    quality: Quality,
+    quality: FallQuality,
     total_mass: f32,
     before: Energy,
     /// One entry per joint and step.
@@ -34,7 +34,7 @@ impl QualityMeter {
         // The estimate is the caller's; a wrong one must cost time, not memory.
         let samples = samples.min(1 << 20);
         Self {
-            quality: Quality::default(),
+            quality: FallQuality::default(),
             total_mass: def.bodies.iter().map(|body| body.mass.mass).sum(),
             before: Energy::default(),
             gaps: Vec::with_capacity(samples),
@@ -140,7 +140,7 @@ impl QualityMeter {
     }
 
     /// The figures so far.
-    pub fn quality(&self) -> Quality {
+    pub fn quality(&self) -> FallQuality {
         let mut quality = self.quality;
         let mut sorted = self.gaps.clone();
         (quality.joint_gap_p99_m, quality.joint_gap_max_m) = p99_and_max(&mut sorted);

@@ -26,7 +26,7 @@ pub use verdict::{Verdict, judge, judge_bake};
 
 /// Figures of a character's falls, see the fields. Times are seconds of the world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Quality {
+pub struct FallQuality {
     /// Largest rise of kinetic and potential energy of all dynamic bodies within one step (pushes come between steps
     /// and do not count), less the work of motors, pins and kinematic bodies in it, as a share of the kinetic energy before it, or of 1 J per kg of the character if that is more.
     pub energy_gain_max: f32,

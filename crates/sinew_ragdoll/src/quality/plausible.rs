@@ -1,6 +1,6 @@
 //! Doubts about the size and the mass that were guessed.
 
-use super::{Quality, Verdict};
+use super::{FallQuality, Verdict};
 use crate::def::RagdollDef;
 use sinew_math::{min, trig};
 
@@ -43,8 +43,8 @@ impl Doubt {
     /// with its root. What is outside its bar as it is stands among the reasons all the same.
     pub fn judge<const N: usize>(
         &self,
-        figures: [Quality; N],
-        judge: impl Fn(&[Quality; N]) -> (Verdict, Vec<String>),
+        figures: [FallQuality; N],
+        judge: impl Fn(&[FallQuality; N]) -> (Verdict, Vec<String>),
     ) -> (Verdict, Vec<String>) {
         let (_, mut reasons) = judge(&figures);
         let (verdict, _) = judge(&figures.map(|quality| at_size(quality, self.size)));
@@ -54,9 +54,9 @@ impl Doubt {
 }
 
 /// The figures of a fall that is like this one, of a body so many times as large.
-fn at_size(quality: Quality, size: f32) -> Quality {
+fn at_size(quality: FallQuality, size: f32) -> FallQuality {
     let time = |seconds: Option<f32>| seconds.map(|seconds| seconds * size.sqrt());
-    Quality {
+    FallQuality {
         joint_gap_max_m: quality.joint_gap_max_m * size,
         joint_gap_p99_m: quality.joint_gap_p99_m * size,
         penetration_max_m: quality.penetration_max_m * size,
@@ -96,11 +96,11 @@ mod tests {
 
     #[test]
     fn drops_and_bakes_of_a_mass_in_doubt_are_usable_at_most() {
-        let calm = Quality {
+        let calm = FallQuality {
             asleep_s: Some(3.0),
             calm_to_asleep_s: Some(0.7),
             settled_omega_max: Some(0.0),
-            ..Quality::default()
+            ..FallQuality::default()
         };
         for mass in [0.013, 3600.0, 24_000.0, 30_000.0] {
             let doubt = Doubt::of(&of(mass)).expect("a doubt");
@@ -117,14 +117,14 @@ mod tests {
 
     #[test]
     fn who_is_too_heavy_is_judged_at_a_size_that_there_is() {
-        let calm = Quality {
+        let calm = FallQuality {
             asleep_s: Some(6.2),
             calm_to_asleep_s: Some(0.7),
             settled_omega_max: Some(0.0),
-            ..Quality::default()
+            ..FallQuality::default()
         };
-        let deep = |overlap: f32| Quality { nonadjacent_overlap_max_m: overlap, ..calm };
-        let verdict = |mass: f32, drop: Quality| {
+        let deep = |overlap: f32| FallQuality { nonadjacent_overlap_max_m: overlap, ..calm };
+        let verdict = |mass: f32, drop: FallQuality| {
             let doubt = Doubt::of(&of(mass)).expect("a doubt");
             doubt.judge([drop, calm], |[drop, wall]| judge(drop, wall)).0
         };
@@ -134,10 +134,10 @@ mod tests {
         assert_eq!(verdict(3100.0, deep(0.042)), Verdict::Bad);
         assert_eq!(verdict(24_000.0, deep(0.5)), Verdict::Bad);
         assert_eq!(verdict(24_000.0, deep(f32::NAN)), Verdict::Bad);
-        assert_eq!(verdict(24_000.0, Quality { nan: 1, ..calm }), Verdict::Bad);
-        assert_eq!(verdict(24_000.0, Quality { asleep_s: None, ..calm }), Verdict::Bad);
+        assert_eq!(verdict(24_000.0, FallQuality { nan: 1, ..calm }), Verdict::Bad);
+        assert_eq!(verdict(24_000.0, FallQuality { asleep_s: None, ..calm }), Verdict::Bad);
         // Nothing is good whose mass is in doubt, and the small are held to the bars as they are.
-        assert_eq!(verdict(24_000.0, Quality { asleep_s: Some(3.0), ..calm }), Verdict::Usable);
+        assert_eq!(verdict(24_000.0, FallQuality { asleep_s: Some(3.0), ..calm }), Verdict::Usable);
         assert_eq!(verdict(0.013, deep(0.0)), Verdict::Usable);
         assert_eq!(verdict(0.013, deep(0.042)), Verdict::Bad);
     }

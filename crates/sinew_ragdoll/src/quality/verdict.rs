@@ -1,6 +1,6 @@
 //! From figures to a verdict, by the limits of the specification (section 4).
 
-use super::Quality;
+use super::FallQuality;
 use super::drop_test::worse;
 
 /// Verdict on whether a ragdoll is fit for use.
@@ -42,7 +42,7 @@ impl Limit {
 
 /// Judges drops and a 15 m/s wall hit together. The reasons name each figure outside its limit, and each that was not
 /// measured.
-pub fn judge(drop: &Quality, wall: &Quality) -> (Verdict, Vec<String>) {
+pub fn judge(drop: &FallQuality, wall: &FallQuality) -> (Verdict, Vec<String>) {
     let timed = |what, value, good, usable| Limit { what, value, good, usable };
     let [broken, ajar, open, p99, overshoot] = of_joints(&worse(*drop, *wall));
     let limits = [
@@ -66,7 +66,7 @@ pub fn judge(drop: &Quality, wall: &Quality) -> (Verdict, Vec<String>) {
 
 /// Judges whatever became of a character: hits, a travelling clip, any world. The limits are those of [`judge`], but for the
 /// times until it sleeps and the spin once settled, which hang on where it falls and on what is done to it then. The reasons name each figure outside its limit.
-pub fn judge_bake(quality: &Quality) -> (Verdict, Vec<String>) {
+pub fn judge_bake(quality: &FallQuality) -> (Verdict, Vec<String>) {
     let [broken, ajar, open, p99, overshoot] = of_joints(quality);
     verdict_of([
         broken,
@@ -81,7 +81,7 @@ pub fn judge_bake(quality: &Quality) -> (Verdict, Vec<String>) {
 }
 
 /// Limits that must hold of a ragdoll's joints wherever it is.
-fn of_joints(q: &Quality) -> [Limit; 5] {
+fn of_joints(q: &FallQuality) -> [Limit; 5] {
     [
         Limit::of("bodies with a state that is not finite", q.nan as f32, 0.0, 0.0),
         Limit::of("joint gap p99, m", q.joint_gap_p99_m, 1e-3, 0.02),
@@ -117,14 +117,14 @@ mod tests {
 
     #[test]
     fn a_bake_is_held_to_the_gates_of_a_drop() {
-        assert_eq!(judge_bake(&Quality::default()), (Verdict::Good, vec![]));
-        let beyond = Quality { limit_overshoot_max_deg: 22.0, ..Quality::default() };
+        assert_eq!(judge_bake(&FallQuality::default()), (Verdict::Good, vec![]));
+        let beyond = FallQuality { limit_overshoot_max_deg: 22.0, ..FallQuality::default() };
         let said = vec!["limit overshoot, degrees: 22.0000, limit 4".to_owned()];
         assert_eq!(judge_bake(&beyond), (Verdict::Usable, said));
-        let open = Quality { joint_gap_max_m: 0.03, energy_gain_max: 0.07, ..Quality::default() };
+        let open = FallQuality { joint_gap_max_m: 0.03, energy_gain_max: 0.07, ..FallQuality::default() };
         let (verdict, reasons) = judge_bake(&open);
         assert_eq!((verdict, reasons.len()), (Verdict::Bad, 2));
-        let poisoned = Quality { joint_gap_p99_m: f32::NAN, ..Quality::default() };
+        let poisoned = FallQuality { joint_gap_p99_m: f32::NAN, ..FallQuality::default() };
         assert_eq!(judge_bake(&poisoned).0, Verdict::Bad);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::def::RagdollDef;
 use crate::fit::surface::carried;
-use sinew_anim::{JointIdx, Mesh, Primitive, Rig};
+use sinew_anim::{JointIdx, Primitive, Rig, RigMesh};
 use sinew_math::{Affine, Mat3, Vec3};
 
 /// Most vertices that are looked at: of larger meshes every so many.
@@ -135,7 +135,7 @@ struct Raw {
 }
 
 impl Raw {
-    fn add_mesh(&mut self, rig: &Rig, mesh: &Mesh, carried: &[Option<usize>]) {
+    fn add_mesh(&mut self, rig: &Rig, mesh: &RigMesh, carried: &[Option<usize>]) {
         let first = self.slots.len();
         if let Some(skin) = mesh.skin.map(|skin| &rig.skins[skin]) {
             let slots = skin.joints.iter().zip(&skin.inverse_bind);

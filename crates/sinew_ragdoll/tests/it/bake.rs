@@ -4,7 +4,7 @@ use crate::actor::{floor, in_centimetres_and_z_up, shared, somewhere, walker};
 use sinew_anim::{KeyBound, Wrap, local_to_model, rest_pose, sample};
 use sinew_math::{Affine, Vec3, max};
 use sinew_ragdoll::bake::KEY_BOUND;
-use sinew_ragdoll::{BakeInput, Baked, CharacterDef, Event, Hit, HitEffect, State, bake};
+use sinew_ragdoll::{BakeHit, BakeInput, Baked, CharacterDef, CharacterEvent, HitEffect, State, bake};
 use std::sync::Arc;
 
 fn baked(def: &Arc<CharacterDef>, impulse: Vec3, fps: f32) -> Baked {
@@ -13,7 +13,7 @@ fn baked(def: &Arc<CharacterDef>, impulse: Vec3, fps: f32) -> Baked {
 
 fn baked_within(def: &Arc<CharacterDef>, impulse: Vec3, fps: f32, key_bound: KeyBound) -> Baked {
     let body = def.body_named("chest").expect("it has a chest");
-    let (bodies, hits) = ([floor()], [Hit { time: 0.8, body, impulse }]);
+    let (bodies, hits) = ([floor()], [BakeHit { time: 0.8, body, impulse }]);
     let input = BakeInput {
         bodies: &bodies,
         hits: &hits,
@@ -195,8 +195,8 @@ fn a_hit_may_be_a_flinch() {
     let chest = def.body_named("chest").expect("it has a chest");
     let run = |hit_effect: HitEffect| {
         let hits = [
-            Hit { time: 0.5, body, impulse: Vec3::X * -5.0 },
-            Hit { time: 2.0, body: chest, impulse: Vec3::Z * -80.0 },
+            BakeHit { time: 0.5, body, impulse: Vec3::X * -5.0 },
+            BakeHit { time: 2.0, body: chest, impulse: Vec3::Z * -80.0 },
         ];
         let (bodies, seconds) = ([floor()], 3.0);
         bake(&BakeInput { bodies: &bodies, hits: &hits, hit_effect, seconds, ..BakeInput::new(def.clone()) })
@@ -208,7 +208,7 @@ fn a_hit_may_be_a_flinch() {
     };
     let flinched = run(HitEffect::FlinchesOrFalls);
     assert_eq!(states(&flinched), [State::Animated, State::Flinching, State::Animated, State::Limp]);
-    assert!(flinched.events.iter().any(|(_, event)| *event == Event::Flinched { body }));
+    assert!(flinched.events.iter().any(|(_, event)| *event == CharacterEvent::Flinched { body }));
     assert!(flinched.quality.nan == 0 && flinched.quality.energy_gain_max < 0.01, "{:?}", flinched.quality);
     assert_eq!(states(&run(HitEffect::Falls))[..2], [State::Animated, State::Limp]);
 }

@@ -6,7 +6,8 @@ use sinew_math::{Transform, Vec3, max};
 use sinew_physics::ray::Ray;
 use sinew_physics::{BodyDef, Shape, World};
 use sinew_ragdoll::{
-    Blow, Character, CharacterDef, DriveMode, Event, MotionSet, Muscle, Part, Preset, State, Toughness,
+    Blow, Character, CharacterDef, CharacterEvent, DriveMode, MotionSet, Muscle, Part, Preset, State,
+    Toughness,
 };
 use std::sync::Arc;
 
@@ -153,7 +154,7 @@ fn a_shot_finds_the_limb_and_it_may_be_felled_while_it_flinches() {
     assert_eq!(character.state(), State::Flinching);
     let events = run(&mut world, &mut character, 8);
     let head = hit.body;
-    let flinched = Event::Flinched { body: character.body_index(head).expect("it is its own") };
+    let flinched = CharacterEvent::Flinched { body: character.body_index(head).expect("it is its own") };
     assert_eq!(events, [flinched], "told once, and of nothing else");
     let floor = world.body_ids().next().expect("the floor");
     let other = sinew_physics::BodyHit { body: floor, ..hit };
@@ -161,7 +162,7 @@ fn a_shot_finds_the_limb_and_it_may_be_felled_while_it_flinches() {
     character.hit(&mut world, 0, Vec3::Z * -120.0);
     assert_eq!(character.state(), State::Limp);
     let events = run(&mut world, &mut character, 60 * 12);
-    assert!(events.contains(&Event::Up), "{events:?}");
+    assert!(events.contains(&CharacterEvent::Up), "{events:?}");
     assert_eq!(world.joint_ids().count(), 0, "no pin is left");
 }
 

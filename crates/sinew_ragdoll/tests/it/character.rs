@@ -5,7 +5,8 @@ use sinew_anim::{Channel, ClipId, Cursor, Interpolation, Joint, LocalTransform, 
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, trig};
 use sinew_physics::{BodyDef, BodyKind, Shape, ShapeDef, World, WorldDef};
 use sinew_ragdoll::{
-    AfterSettling, BuildOptions, Character, CharacterDef, DriveMode, Event, MotionSet, Muscle, State, build,
+    AfterSettling, BuildOptions, Character, CharacterDef, CharacterEvent, DriveMode, MotionSet, Muscle,
+    State, build,
 };
 use std::sync::Arc;
 
@@ -21,7 +22,7 @@ fn run_until(
     character: &mut Character,
     seconds: f32,
     done: impl Fn(&Character) -> bool,
-) -> Vec<(f32, Event)> {
+) -> Vec<(f32, CharacterEvent)> {
     let mut events = Vec::new();
     let end = world.time() as f32 + seconds;
     while (world.time() as f32) < end && !done(character) {
@@ -70,16 +71,16 @@ fn falls_lies_still_gets_up_and_walks_on() {
     assert_eq!(character.state(), State::Limp);
     assert_eq!(world.body_ids().count(), 1 + def.ragdoll.bodies.len());
     let events = run_until(&mut world, &mut character, 12.0, |c| c.state() == State::Animated);
-    let needed = events.iter().filter(|(_, event)| !matches!(event, Event::Preparing { .. }));
+    let needed = events.iter().filter(|(_, event)| !matches!(event, CharacterEvent::Preparing { .. }));
     let kinds: Vec<_> = needed.map(|(_, event)| core::mem::discriminant(event)).collect();
     // What the hit brought about is told by the update after it.
     let expected = [
-        Event::WentLimp,
-        Event::Hit { body: 0 },
-        Event::Touched,
-        Event::Settled { since: 0.0 },
-        Event::GettingUp { clip: None },
-        Event::Up,
+        CharacterEvent::WentLimp,
+        CharacterEvent::Hit { body: 0 },
+        CharacterEvent::Touched,
+        CharacterEvent::Settled { since: 0.0 },
+        CharacterEvent::GettingUp { clip: None },
+        CharacterEvent::Up,
     ];
     assert_eq!(kinds, expected.map(|event| core::mem::discriminant(&event)), "{events:?}");
     assert_eq!(world.body_ids().count(), 1, "its bodies are gone");
@@ -101,8 +102,8 @@ fn picks_the_clip_by_the_side_it_lies_on() {
         let (mut world, mut character) = knocked_over(&def, push);
         run_until(&mut world, &mut character, 10.0, |c| c.state() == State::GettingUp);
         assert_eq!(character.state(), State::GettingUp);
-        let Some(&Event::GettingUp { clip: Some(clip) }) =
-            character.events().iter().find(|event| matches!(event, Event::GettingUp { .. }))
+        let Some(&CharacterEvent::GettingUp { clip: Some(clip) }) =
+            character.events().iter().find(|event| matches!(event, CharacterEvent::GettingUp { .. }))
         else {
             panic!("it gets up by a clip: {:?}", character.events());
         };
@@ -166,7 +167,7 @@ fn stands_up_without_a_clip() {
     let def = shared(def);
     let (mut world, mut character) = knocked_over(&def, Vec3::Z * 60.0);
     let events = run_until(&mut world, &mut character, 10.0, |c| c.state() == State::Animated);
-    assert!(events.iter().any(|(_, event)| *event == Event::GettingUp { clip: None }), "{events:?}");
+    assert!(events.iter().any(|(_, event)| *event == CharacterEvent::GettingUp { clip: None }), "{events:?}");
     assert!(place_of(&character, "head").y > 1.3);
 }
 
@@ -306,9 +307,9 @@ fn a_hit_on_the_way_up_knocks_it_over_again() {
         let bodies = world.body_ids().count();
         character.hit(&mut world, 0, Vec3::new(20.0, 30.0, 0.0));
         assert_eq!(character.state(), State::Limp);
-        assert!(character.events().contains(&Event::WentLimp), "{:?}", character.events());
+        assert!(character.events().contains(&CharacterEvent::WentLimp), "{:?}", character.events());
         let events = run_until(&mut world, &mut character, 12.0, |c| c.state() == State::Animated);
-        assert!(events.iter().any(|(_, event)| *event == Event::Up), "{events:?}, {bodies} bodies");
+        assert!(events.iter().any(|(_, event)| *event == CharacterEvent::Up), "{events:?}, {bodies} bodies");
         assert_eq!(world.body_ids().count(), 1, "its bodies are gone, and what drove them");
     }
 }
@@ -329,7 +330,7 @@ fn a_powered_fall_keeps_more_of_its_pose() {
             steps += 1;
         }
         let events = run_until(&mut world, &mut character, 12.0, |c| c.state() == State::Animated);
-        assert!(events.iter().any(|(_, event)| *event == Event::Up), "{events:?}");
+        assert!(events.iter().any(|(_, event)| *event == CharacterEvent::Up), "{events:?}");
         off / steps as f32
     };
     let (limp, powered) = (bend(DriveMode::Limp), bend(DriveMode::Powered(Muscle::ALIVE)));

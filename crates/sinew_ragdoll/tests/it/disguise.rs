@@ -1,6 +1,6 @@
 //! Changes that a file may make to a rig without making another character of it.
 
-use sinew_anim::{Joint, JointIdx, LocalTransform, Mesh, Primitive, Rig, RigAnalysis, Role, Side};
+use sinew_anim::{Joint, JointIdx, LocalTransform, Primitive, Rig, RigAnalysis, RigMesh, Role, Side};
 use sinew_math::{Affine, Random, Rotation, Transform, Vec3};
 
 /// The rig in other units and axes: every root and every bind matrix is told of it.
@@ -367,7 +367,7 @@ pub fn with_two_skins(rig: &Rig, unit: f32) -> Rig {
     let other = bound_in(&rig, unit);
     let skins = rig.skins.len();
     rig.skins.extend(other.skins);
-    let keep = |mesh: &mut Mesh, second: bool| {
+    let keep = |mesh: &mut RigMesh, second: bool| {
         for primitive in &mut mesh.primitives {
             let half = primitive.indices.len() / 6 * 3;
             let rest = primitive.indices.split_off(half);
@@ -526,7 +526,7 @@ pub fn with_twists(rig: &Rig, analysis: &RigAnalysis) -> Rig {
 }
 
 /// Vertices of a slot beyond `middle` (in its joint's space) go to another slot.
-fn give_far_half(mesh: &mut Mesh, joint_from_mesh: &Affine, middle: Vec3, slot: usize, to: u16) {
+fn give_far_half(mesh: &mut RigMesh, joint_from_mesh: &Affine, middle: Vec3, slot: usize, to: u16) {
     for primitive in mesh.primitives.iter_mut().filter(|primitive| !primitive.joints.is_empty()) {
         for (position, slots) in primitive.positions.iter().zip(&mut primitive.joints) {
             let beyond = (joint_from_mesh.point(*position) - middle).dot(middle) > 0.0;

@@ -5,8 +5,8 @@ use sinew_math::{Random, Reader, Rotation, Sym3, Transform, Vec3, Writer, max};
 use sinew_physics::{BodyDef, JointKind, MassProperties, Shape, Sleeping, Velocity, World, WorldDef};
 use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
 use sinew_ragdoll::{
-    BodySettings, BodyState, DriveMode, Drives, Muscle, Pin, Quality, QualityMeter, Ragdoll, RagdollBodyDef,
-    RagdollDef, RagdollJointDef,
+    BodySettings, BodyState, DriveMode, Drives, FallQuality, Muscle, Pin, QualityMeter, Ragdoll,
+    RagdollBodyDef, RagdollDef, RagdollJointDef,
 };
 
 const G: f32 = 9.81;
@@ -508,7 +508,7 @@ fn some_mode(random: &mut Random, modes: usize) -> DriveMode {
 
 /// Modes change at random, bodies are hit; the pose sways if `jumps` is `None`, or else goes elsewhere from one step to the
 /// next, by as much. Gives the fastest speed of a body, too, m/s.
-fn torment(seed: u64, jumps: Option<f32>) -> (Quality, f32) {
+fn torment(seed: u64, jumps: Option<f32>) -> (FallQuality, f32) {
     let mut fastest: f32 = 0.0;
     let mut random = Random::new(seed);
     let mut driven = Driven::mannequin();

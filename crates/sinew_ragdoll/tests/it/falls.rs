@@ -5,7 +5,7 @@ use crate::pops::Pops;
 use core::fmt::Write as _;
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::{World, WorldDef};
-use sinew_ragdoll::{Character, CharacterDef, Event, State};
+use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, State};
 use std::sync::Arc;
 
 /// From the hit until it is up, seconds: the most that it may take.
@@ -79,7 +79,10 @@ fn fall(def: &Arc<CharacterDef>, random: &mut Random, pops: &mut Pops) -> Fall {
         character.update(&mut world);
         pops.watch(&character);
         if fall.lying.is_none()
-            && character.events().iter().any(|e| matches!(e, Event::Settled { .. } | Event::NeverSettled))
+            && character
+                .events()
+                .iter()
+                .any(|e| matches!(e, CharacterEvent::Settled { .. } | CharacterEvent::NeverSettled))
         {
             fall.lying = lies;
         }

@@ -6,7 +6,7 @@ use sinew_physics::ray::Ray;
 use sinew_physics::{
     BodyDef, BodyId, BodyKind, Probe, Shape, ShapeCast, ShapeDef, Velocity, World, WorldDef,
 };
-use sinew_ragdoll::{Character, CharacterDef, Event, HitBodies, State};
+use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, HitBodies, State};
 use sinew_scenes::mannequin::WALK_SPEED;
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ fn block(world: &mut World, min: Vec3, max: Vec3) -> BodyId {
 }
 
 /// Steps, and gives what the character told.
-pub fn run(world: &mut World, character: &mut Character, steps: usize) -> Vec<Event> {
+pub fn run(world: &mut World, character: &mut Character, steps: usize) -> Vec<CharacterEvent> {
     let mut events = Vec::new();
     for _ in 0..steps {
         world.step();
@@ -161,9 +161,9 @@ fn a_ball_bounces_off_and_is_told_of() {
     assert!(met, "the contact is told of by bone");
     let speed = world.velocity(thrown).linear.z;
     assert!(speed > 5.0, "it comes back at {speed} m/s");
-    assert!(events.iter().any(|event| matches!(event, Event::Struck { .. })), "{events:?}");
-    assert!(events.iter().any(|event| matches!(event, Event::Flinched { .. })), "{events:?}");
-    assert!(!events.iter().any(|event| matches!(event, Event::WentLimp)), "17 N·s do not fell it");
+    assert!(events.iter().any(|event| matches!(event, CharacterEvent::Struck { .. })), "{events:?}");
+    assert!(events.iter().any(|event| matches!(event, CharacterEvent::Flinched { .. })), "{events:?}");
+    assert!(!events.iter().any(|event| matches!(event, CharacterEvent::WentLimp)), "17 N·s do not fell it");
 }
 
 #[test]
@@ -215,7 +215,7 @@ fn it_falls_off_a_cliff() {
     block(&mut world, Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 10.0, 2.0));
     let mut character = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::Y * 10.0));
     let events = run(&mut world, &mut character, 60 * 4);
-    assert!(events.contains(&Event::WentLimp), "{events:?}");
+    assert!(events.contains(&CharacterEvent::WentLimp), "{events:?}");
     let pelvis = world.transform(character.bodies()[0]).translation;
     assert!(pelvis.y < 1.0 && pelvis.is_finite(), "it lies at {pelvis}");
     assert!(character.mover().is_none(), "what lies has no mover");
@@ -228,7 +228,7 @@ fn a_short_drop_is_walked_off() {
     block(&mut world, Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 1.0, 1.0));
     let mut character = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::Y));
     let events = run(&mut world, &mut character, 180);
-    assert!(!events.contains(&Event::WentLimp), "{events:?}");
+    assert!(!events.contains(&CharacterEvent::WentLimp), "{events:?}");
     assert!(place(&character).y.abs() < 0.01 && place(&character).z > 2.5, "{}", place(&character));
 }
 
@@ -240,7 +240,7 @@ fn a_fast_landing_fells_it() {
     let mut character = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::Y * 4.0));
     let events = run(&mut world, &mut character, 180);
     // 4 m take 0.9 s: it is not the time in the air.
-    assert!(events.contains(&Event::WentLimp), "8.9 m/s are more than 7");
+    assert!(events.contains(&CharacterEvent::WentLimp), "8.9 m/s are more than 7");
 }
 
 /// A platform that moves.
@@ -338,7 +338,7 @@ fn it_falls_gets_up_and_walks_on() {
     character.hit(&mut world, 2, Vec3::new(70.0, 0.0, 20.0));
     assert_eq!(character.state(), State::Limp);
     let events = run(&mut world, &mut character, 60 * 12);
-    assert!(events.contains(&Event::Up), "{events:?}");
+    assert!(events.contains(&CharacterEvent::Up), "{events:?}");
     assert_eq!(character.bodies(), bodies, "its bodies have the same ids");
     assert!(bodies.iter().all(|&body| world.kind(body) == BodyKind::Kinematic));
     let before = place(&character);
@@ -395,9 +395,9 @@ fn it_gets_up_on_a_lift_that_rises_and_on_a_crate() {
     run(&mut world, &mut character, 30);
     character.hit(&mut world, 2, Vec3::new(0.0, 0.0, -70.0));
     let events = run(&mut world, &mut character, 60 * 12);
-    let settled = events.iter().any(|event| matches!(event, Event::Settled { .. }));
+    let settled = events.iter().any(|event| matches!(event, CharacterEvent::Settled { .. }));
     assert!(settled, "it lies still on what moves: {events:?}");
-    assert!(events.contains(&Event::Up), "{events:?}");
+    assert!(events.contains(&CharacterEvent::Up), "{events:?}");
     let height = place(&character).y - (world.transform(platform).translation.y + 0.1);
     assert!(height.abs() < 0.02, "it stands {height} m over the lift");
 
@@ -409,7 +409,7 @@ fn it_gets_up_on_a_lift_that_rises_and_on_a_crate() {
     run(&mut world, &mut character, 30);
     character.hit(&mut world, 2, Vec3::new(0.0, 0.0, -46.0));
     let events = run(&mut world, &mut character, 60 * 12);
-    assert!(events.contains(&Event::Up), "{events:?}");
+    assert!(events.contains(&CharacterEvent::Up), "{events:?}");
     let at = place(&character);
     assert!((at.y - 0.6).abs() < 0.02 || at.y.abs() < 0.02 && at.length() > 1.5, "it stands at {at}");
 }

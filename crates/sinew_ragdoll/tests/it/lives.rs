@@ -5,7 +5,7 @@ use crate::in_world::{level, run};
 use sinew_math::{Reader, Transform, Vec3, Writer, max};
 use sinew_physics::{BodyDef, BodyId, Shape, World, WorldDef};
 use sinew_ragdoll::{
-    Character, CharacterDef, Detail, Distances, Event, Grip, HitBodies, MotionSet, Preset, State,
+    Character, CharacterDef, CharacterEvent, Detail, Distances, Grip, HitBodies, MotionSet, Preset, State,
 };
 use sinew_scenes::mannequin::WALK_SPEED;
 use std::sync::Arc;
@@ -15,7 +15,8 @@ fn walker_that_tells() -> CharacterDef {
     let mut def = walker();
     let motions = def.motions().clone();
     let half = 0.5 * motions.clips[0].duration;
-    let events = [("left", 0.0), ("right", half)].map(|(foot, time)| (0, sinew_anim::Event::new(time, foot)));
+    let events =
+        [("left", 0.0), ("right", half)].map(|(foot, time)| (0, sinew_anim::ClipEvent::new(time, foot)));
     let motions = MotionSet { idle: Some(1), events: events.to_vec(), ..motions };
     def.set_motions(motions).expect("they could be played before");
     def
@@ -37,7 +38,7 @@ fn each_step_of_the_clip_is_told_once() {
     let steps: Vec<&str> = events
         .iter()
         .filter_map(|event| match event {
-            Event::Clip(fired) => Some(def.set().event(fired).name.as_str()),
+            CharacterEvent::Clip(fired) => Some(def.set().event(fired).name.as_str()),
             _ => None,
         })
         .collect();
@@ -47,7 +48,7 @@ fn each_step_of_the_clip_is_told_once() {
     // Who lies takes no steps.
     character.hit(&mut world, 0, Vec3::X * 90.0);
     let events = run(&mut world, &mut character, 60);
-    assert!(!events.iter().any(|event| matches!(event, Event::Clip(_))), "{events:?}");
+    assert!(!events.iter().any(|event| matches!(event, CharacterEvent::Clip(_))), "{events:?}");
 }
 
 #[test]
@@ -59,13 +60,17 @@ fn what_a_call_brought_about_is_told_once_by_the_next_update() {
     character.hit(&mut world, 5, Vec3::X * 5.0);
     let mut events = run(&mut world, &mut character, 90);
     events.extend(run(&mut world, &mut character, 10));
-    let count = |wanted: Event| events.iter().filter(|event| **event == wanted).count();
-    assert_eq!((count(Event::Flinched { body: 5 }), count(Event::Recovered)), (1, 1), "{events:?}");
+    let count = |wanted: CharacterEvent| events.iter().filter(|event| **event == wanted).count();
+    assert_eq!(
+        (count(CharacterEvent::Flinched { body: 5 }), count(CharacterEvent::Recovered)),
+        (1, 1),
+        "{events:?}"
+    );
     character.set_preset(&mut world, Preset::Powered);
     character.set_preset(&mut world, Preset::Limp);
     let events = run(&mut world, &mut character, 2);
-    assert_eq!(events.iter().filter(|event| **event == Event::Powered).count(), 1, "{events:?}");
-    assert_eq!(events.iter().filter(|event| **event == Event::WentLimp).count(), 1, "{events:?}");
+    assert_eq!(events.iter().filter(|event| **event == CharacterEvent::Powered).count(), 1, "{events:?}");
+    assert_eq!(events.iter().filter(|event| **event == CharacterEvent::WentLimp).count(), 1, "{events:?}");
 }
 
 #[test]
@@ -82,7 +87,7 @@ fn contacts_are_told_by_bone_where_that_is_asked_for() {
     let ball = world.add_body(&BodyDef::dynamic(Shape::Sphere { radius: 0.05 }).at(above));
     let events = run(&mut world, &mut character, 90);
     let told = |begins: bool| {
-        let wanted = Event::Contact { body: head, other: ball, begins };
+        let wanted = CharacterEvent::Contact { body: head, other: ball, begins };
         events.iter().filter(|event| **event == wanted).count()
     };
     assert!(told(true) >= 1 && told(true) - told(false) <= 1, "{events:?}");
@@ -153,10 +158,16 @@ fn a_sword_that_is_torn_off_or_dropped_is_told_of() {
     let sword = world.add_body(&BodyDef::dynamic(blade).at(Vec3::Y * 3.0));
     let strength = sinew_physics::Strength { force: 2000.0, torque: 500.0 };
     character.hold(&mut world, "rightHand", sword, &Grip { strength, ..Grip::default() });
-    assert!(run(&mut world, &mut character, 30).iter().all(|event| !matches!(event, Event::LetGo { .. })));
+    assert!(
+        run(&mut world, &mut character, 30)
+            .iter()
+            .all(|event| !matches!(event, CharacterEvent::LetGo { .. }))
+    );
     world.apply_impulse_at_center(sword, Vec3::X * 100.0);
     let events = run(&mut world, &mut character, 5);
-    let lost = |events: &[Event]| events.iter().filter(|event| matches!(event, Event::LetGo { .. })).count();
+    let lost = |events: &[CharacterEvent]| {
+        events.iter().filter(|event| matches!(event, CharacterEvent::LetGo { .. })).count()
+    };
     assert_eq!(lost(&events), 1, "{events:?}");
     run(&mut world, &mut character, 60);
     character.hold(&mut world, "leftHand", sword, &Grip { drops: true, ..Grip::default() });
@@ -191,7 +202,7 @@ fn a_child_and_a_giant_walk_fall_and_get_up() {
         assert!((0.4..0.65).contains(&(pelvis / (factor * def.ragdoll.height))), "{pelvis} m, {factor}");
         character.go_limp(&mut world);
         let events = run(&mut world, &mut character, 60 * 12);
-        assert!(events.contains(&Event::Up), "{factor}: {events:?}");
+        assert!(events.contains(&CharacterEvent::Up), "{factor}: {events:?}");
     }
 }
 
@@ -226,14 +237,14 @@ fn less_detail_waits_until_it_is_up() {
     run(&mut world, &mut character, 60);
     assert_eq!((character.state(), character.bodies().is_empty()), (State::Limp, false));
     let events = run(&mut world, &mut character, 600);
-    assert!(events.contains(&Event::Up) && character.bodies().is_empty());
+    assert!(events.contains(&CharacterEvent::Up) && character.bodies().is_empty());
     // A light blow does nothing, a hard one fells it all the same.
     character.hit(&mut world, 2, Vec3::X * 5.0);
     assert_eq!(character.state(), State::Animated);
     character.hit(&mut world, 2, Vec3::X * 90.0);
     assert_eq!(character.state(), State::Limp);
     let events = run(&mut world, &mut character, 600);
-    assert!(events.contains(&Event::Up) && character.bodies().is_empty());
+    assert!(events.contains(&CharacterEvent::Up) && character.bodies().is_empty());
     character.despawn(&mut world);
     assert_eq!(world.body_ids().count(), 1);
 }

@@ -5,7 +5,7 @@ use core::fmt;
 use sinew_anim::{Cursor, Decay, LocalTransform, Pose, local_to_model};
 use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
 use sinew_physics::{World, WorldDef};
-use sinew_ragdoll::{Character, CharacterDef, Event, RagdollBodyDef};
+use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, RagdollBodyDef};
 use std::sync::Arc;
 
 const DT: f32 = 1.0 / 60.0;
@@ -140,8 +140,8 @@ impl Pops {
         }
         for event in character.events() {
             let kind = match event {
-                Event::GettingUp { clip: Some(_) } => 0,
-                Event::Up => 1,
+                CharacterEvent::GettingUp { clip: Some(_) } => 0,
+                CharacterEvent::Up => 1,
                 _ => continue,
             };
             self.count[kind] += 1;

@@ -1,7 +1,7 @@
 //! The verdict of the skin: each measure on a mannequin that has just that fault, and on rigs of others.
 
 use crate::data::document;
-use sinew_anim::{Joint, LocalTransform, Mesh, Primitive, Rig, RigAnalysis, Role, analyze};
+use sinew_anim::{Joint, LocalTransform, Primitive, Rig, RigAnalysis, RigMesh, Role, analyze};
 use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::Shape;
 use sinew_ragdoll::build::takes;
@@ -293,7 +293,7 @@ fn carried(rig: &mut Rig, name: &str, role: Role, off: Vec3, half: Vec3) {
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let indices = faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
     let part = Primitive { positions: (0..8).map(corner).collect(), indices, ..Primitive::default() };
-    rig.meshes.push(Mesh { name: name.into(), joint: source, skin: None, primitives: vec![part] });
+    rig.meshes.push(RigMesh { name: name.into(), joint: source, skin: None, primitives: vec![part] });
 }
 
 /// Props get a body or join their carrier's shape, by size: a cap goes with the head, a pack on the back and a sword in a hand have

@@ -6,7 +6,7 @@ use core::f32::consts::PI;
 use core::fmt::Write as _;
 use sinew_math::{Random, Reader, Rotation, Transform, Vec3, Writer, max};
 use sinew_physics::{BodyId, World, WorldDef};
-use sinew_ragdoll::{Character, CharacterDef, Event, MotionSet, Preset, QualityMeter, State};
+use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, MotionSet, Preset, QualityMeter, State};
 use std::sync::Arc;
 
 /// Stands by itself, or walks.
@@ -31,8 +31,9 @@ fn powered(def: &Arc<CharacterDef>, walks: bool, phase: usize) -> (World, Charac
     (world, character)
 }
 
-fn steps_of(events: &[Event]) -> u32 {
-    let steps = |event: &Event| if let Event::Caught { steps } = event { *steps } else { 0 };
+fn steps_of(events: &[CharacterEvent]) -> u32 {
+    let steps =
+        |event: &CharacterEvent| if let CharacterEvent::Caught { steps } = event { *steps } else { 0 };
     events.iter().map(steps).sum()
 }
 
@@ -44,7 +45,7 @@ fn a_push_that_would_have_it_over_is_caught_by_steps() {
         let (mut world, mut character) = powered(&def, false, 0);
         let before = character.world_from_character().translation;
         character.hit(&mut world, chest, way * 60.0);
-        assert!(character.stumbles() && character.events().contains(&Event::Stumbled));
+        assert!(character.stumbles() && character.events().contains(&CharacterEvent::Stumbled));
         let mut events = Vec::new();
         for _ in 0..180 {
             events.extend(run(&mut world, &mut character, 1));
@@ -92,10 +93,10 @@ fn a_light_push_needs_no_step_and_a_heavy_one_fells() {
     let (mut world, mut character) = powered(&def, false, 0);
     character.hit(&mut world, chest, Vec3::Z * 6.0);
     let events = run(&mut world, &mut character, 90);
-    assert!(!events.contains(&Event::Stumbled) && character.state() == State::Powered, "{events:?}");
+    assert!(!events.contains(&CharacterEvent::Stumbled) && character.state() == State::Powered, "{events:?}");
     character.hit(&mut world, chest, Vec3::Z * 400.0);
     let events = run(&mut world, &mut character, 180);
-    assert!(events.contains(&Event::WentLimp), "{events:?}");
+    assert!(events.contains(&CharacterEvent::WentLimp), "{events:?}");
 }
 
 #[test]
@@ -181,7 +182,7 @@ fn pushes_at_random() {
             assert_eq!(world.events().quarantined.len(), 0);
             if character.state() != State::Powered {
                 tally.fell += 1;
-            } else if events.contains(&Event::Stumbled) || steps_of(&events) > 0 {
+            } else if events.contains(&CharacterEvent::Stumbled) || steps_of(&events) > 0 {
                 tally.stepped += 1;
             } else {
                 tally.stood += 1;

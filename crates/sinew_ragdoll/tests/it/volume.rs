@@ -1,7 +1,7 @@
 //! Mass of creatures: what their skin encloses, once, of what they are made of.
 
 use crate::build::built;
-use sinew_anim::{Joint, LocalTransform, Mesh, Primitive, Rig, Skin};
+use sinew_anim::{Joint, LocalTransform, Primitive, Rig, RigMesh, Skin};
 use sinew_math::{Affine, Random, Rotation, Vec3};
 use sinew_ragdoll::BuildOptions;
 use sinew_ragdoll::masses::volume::{density, enclosed};
@@ -83,7 +83,7 @@ fn worm(names: [&str; 3]) -> Rig {
         part.indices.extend(faces.as_flattened().iter().map(|&i| first + u32::try_from(i).expect("few")));
     }
     rig.skins = vec![skin];
-    rig.meshes = vec![Mesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![part] }];
+    rig.meshes = vec![RigMesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![part] }];
     rig
 }
 

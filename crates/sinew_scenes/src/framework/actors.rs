@@ -5,8 +5,8 @@ use crate::mannequin::mannequin;
 use crate::parts::{body, ghost};
 use core::ops::Range;
 use sinew::anim::{
-    AnimatedClip, AnimationSet, Animator, BuildOptions, BuiltClip, Clip, ClipId, Event, LocalTransform,
-    Markers, Rig, RootMotionOptions, Skeleton, extract_root_motion, local_to_model,
+    AnimatedClip, AnimationSet, Animator, BuiltClip, Clip, ClipBuildOptions, ClipEvent, ClipId,
+    LocalTransform, Markers, Rig, RootMotionOptions, Skeleton, extract_root_motion, local_to_model,
 };
 use sinew::math::{Affine, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyId, BodyKind, DebugDraw, DrawKind, Shape, Velocity, World};
@@ -37,13 +37,13 @@ impl Cast {
         Self { set: AnimationSet::new(Skeleton::new(&rig)), rig }
     }
 
-    pub fn add(&mut self, clip: &Clip, events: Vec<Event>) -> ClipId {
+    pub fn add(&mut self, clip: &Clip, events: Vec<ClipEvent>) -> ClipId {
         let clip = AnimatedClip { events, ..AnimatedClip::from(self.built(clip)) };
         self.set.add_clip(clip)
     }
 
     /// Adds a cycle without the way that it goes, which becomes its root motion; what is in phase are its footfalls.
-    pub fn add_cycle(&mut self, cycle: &Cycle, events: Vec<Event>) -> ClipId {
+    pub fn add_cycle(&mut self, cycle: &Cycle, events: Vec<ClipEvent>) -> ClipId {
         let (still, motion) = extract_root_motion(&cycle.clip, &self.rig, &RootMotionOptions::on_ground(0));
         let clip = self.built(&still);
         let markers = Markers::new(cycle.strikes.to_vec());
@@ -51,7 +51,7 @@ impl Cast {
     }
 
     fn built(&self, clip: &Clip) -> BuiltClip {
-        BuiltClip::build(clip, &self.rig, &BuildOptions::default()).expect("clips made by code are good")
+        BuiltClip::build(clip, &self.rig, &ClipBuildOptions::default()).expect("clips made by code are good")
     }
 
     /// The joint of that name.

@@ -3,7 +3,7 @@
 use super::*;
 use bevy_sinew::sinew::anim::{Rig, local_to_model};
 use bevy_sinew::sinew::mannequin;
-use bevy_sinew::sinew::ragdoll::{Character, CharacterDef, Event, State};
+use bevy_sinew::sinew::ragdoll::{Character, CharacterDef, CharacterEvent, State};
 use std::sync::Arc;
 
 #[path = "../../examples/character.rs"]
@@ -126,7 +126,7 @@ fn characters_are_put_elsewhere_tell_and_go() {
     ground(&mut app);
     app.init_resource::<Heard>();
     app.add_observer(|told: On<CharacterTold>, mut heard: ResMut<Heard>| {
-        if told.event == Event::WentLimp {
+        if told.event == CharacterEvent::WentLimp {
             heard.0.push(("limp", told.character, told.character));
         }
     });

@@ -6,7 +6,7 @@ use crate::input::files::CharacterFile;
 use crate::report::table::shown;
 use sinew::anim::{RigAnalysis, Role, Side};
 use sinew::ragdoll::settings::{instead, role_named};
-use sinew::ragdoll::{CharacterDef, Hit, RagdollBodyDef};
+use sinew::ragdoll::{BakeHit, CharacterDef, RagdollBodyDef};
 
 /// From the hips up.
 const SPINE: [Role; 6] = [Role::Hips, Role::Spine, Role::Chest, Role::UpperChest, Role::Neck, Role::Head];
@@ -17,7 +17,7 @@ pub fn aim(
     character: &CharacterDef,
     file: &CharacterFile,
     notes: &mut Vec<String>,
-) -> Result<Hit> {
+) -> Result<BakeHit> {
     let bodies = &character.ragdoll.bodies;
     let role = role_named(&hit.bone).ok();
     let named = || character.body_named(&hit.bone).or_else(|| body_with(role?, bodies));
@@ -43,7 +43,7 @@ pub fn aim(
             format!("--hit {}: there is no such body; the nearest is hit, {met} ({bone})", shown(&hit.bone))
         });
     }
-    Ok(Hit { time: hit.time, body, impulse: hit.impulse })
+    Ok(BakeHit { time: hit.time, body, impulse: hit.impulse })
 }
 
 fn body_with(role: Role, bodies: &[RagdollBodyDef]) -> Option<usize> {

@@ -5,7 +5,7 @@ use super::place::Place;
 use sinew::math::Vec3;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyKinds, QueryFilter, World, WorldDef};
-use sinew::ragdoll::{BakeInput, Event};
+use sinew::ragdoll::{BakeInput, CharacterEvent};
 
 /// Depth to which the ground is sought, metres.
 const DEPTH: f32 = 1000.0;
@@ -15,7 +15,7 @@ const GAP: f32 = 0.3;
 /// All of it, a sentence each; `world` names the file that the bodies come from.
 pub fn of_bake(
     input: &BakeInput<'_>,
-    events: &[(f32, Event)],
+    events: &[(f32, CharacterEvent)],
     gets_up_by: &GetsUpBy,
     world: Option<&str>,
 ) -> Vec<String> {
@@ -40,8 +40,8 @@ pub fn stands_at(place: &Place, world: &str) -> Option<String> {
 }
 
 /// Motions that are not the file's.
-fn borrows(events: &[(f32, Event)], gets_up_by: &GetsUpBy) -> Option<String> {
-    let rises = events.iter().any(|(_, event)| matches!(event, Event::GettingUp { .. }));
+fn borrows(events: &[(f32, CharacterEvent)], gets_up_by: &GetsUpBy) -> Option<String> {
+    let rises = events.iter().any(|(_, event)| matches!(event, CharacterEvent::GettingUp { .. }));
     (rises && *gets_up_by == GetsUpBy::Builtin).then(|| {
         "it gets up by motions that come with Sinew, for it has no clip that does: --clips brings others, \
          --no-builtin-motions leaves it lying"
@@ -72,23 +72,28 @@ fn ground(input: &BakeInput<'_>, file: Option<&str>) -> Option<String> {
 }
 
 /// Why a character that fell is not up again at the end.
-fn stays_down(input: &BakeInput<'_>, events: &[(f32, Event)], gets_up_by: &GetsUpBy) -> Option<String> {
-    let last = |wanted: fn(&Event) -> bool| events.iter().rposition(|(_, event)| wanted(event));
-    let fell = last(|event| matches!(event, Event::WentLimp | Event::Hit { .. }))?;
+fn stays_down(
+    input: &BakeInput<'_>,
+    events: &[(f32, CharacterEvent)],
+    gets_up_by: &GetsUpBy,
+) -> Option<String> {
+    let last = |wanted: fn(&CharacterEvent) -> bool| events.iter().rposition(|(_, event)| wanted(event));
+    let fell = last(|event| matches!(event, CharacterEvent::WentLimp | CharacterEvent::Hit { .. }))?;
     let since = &events[fell..];
-    let has = |wanted: fn(&Event) -> bool| since.iter().any(|(_, event)| wanted(event));
-    if has(|event| matches!(event, Event::Up)) {
+    let has = |wanted: fn(&CharacterEvent) -> bool| since.iter().any(|(_, event)| wanted(event));
+    if has(|event| matches!(event, CharacterEvent::Up)) {
         return None;
     }
     let end = input.seconds;
-    let touched = events.iter().any(|(_, event)| matches!(event, Event::Touched));
+    let touched = events.iter().any(|(_, event)| matches!(event, CharacterEvent::Touched));
     let why = if !touched {
         format!("it touches nothing until the end, at {end} s")
     } else if let GetsUpBy::Nothing(why) = gets_up_by {
         why.clone()
-    } else if has(|event| matches!(event, Event::GettingUp { .. })) {
+    } else if has(|event| matches!(event, CharacterEvent::GettingUp { .. })) {
         format!("it is on its way up at the end, at {end} s: --seconds gives it more time")
-    } else if has(|event| matches!(event, Event::Settled { .. } | Event::Preparing { .. })) {
+    } else if has(|event| matches!(event, CharacterEvent::Settled { .. } | CharacterEvent::Preparing { .. }))
+    {
         format!("it lies still, but the end comes first, at {end} s: --seconds gives it more time")
     } else {
         format!("it does not lie still before the end, at {end} s: --seconds gives it more time")

@@ -4,13 +4,15 @@ use crate::input::motion::Motion;
 use crate::report::table::{Table, shown};
 use crate::report::{number, numbers};
 use serde_json::{Value, json};
-use sinew::anim::{BuildOptions, BuiltClip, Clip, Event, RigAnalysis, Role, Wrap, local_to_model, sample};
+use sinew::anim::{
+    BuiltClip, Clip, ClipBuildOptions, ClipEvent, RigAnalysis, Role, Wrap, local_to_model, sample,
+};
 use sinew::math::{Affine, Rotation, Vec3};
 
 /// A clip and what can be measured of it.
 pub struct ClipFacts<'a> {
     clip: &'a Clip,
-    events: &'a [Event],
+    events: &'a [ClipEvent],
     keys: usize,
     /// As it is played; else why it cannot be.
     built: Result<BuiltClip, String>,
@@ -30,8 +32,8 @@ impl<'a> ClipFacts<'a> {
     /// Measures the clips of a file.
     pub fn of(motion: &'a Motion) -> Vec<Self> {
         let Motion { file, analysis, .. } = motion;
-        let facts = |(clip, events): (&'a Clip, &'a Vec<Event>)| {
-            let built = BuiltClip::build(clip, &file.rig, &BuildOptions::default());
+        let facts = |(clip, events): (&'a Clip, &'a Vec<ClipEvent>)| {
+            let built = BuiltClip::build(clip, &file.rig, &ClipBuildOptions::default());
             let analysis = analysis.as_ref().filter(|_| built.is_ok());
             Self {
                 clip,
@@ -47,7 +49,7 @@ impl<'a> ClipFacts<'a> {
     pub fn to_json(&self) -> Value {
         let built = self.built.as_ref().ok();
         let bound = built.map(BuiltClip::error_bound);
-        let event = |event: &Event| json!({"time_s": number(event.time), "name": event.name, "payload": event.payload});
+        let event = |event: &ClipEvent| json!({"time_s": number(event.time), "name": event.name, "payload": event.payload});
         json!({
             "name": self.clip.name,
             "duration_s": number(self.clip.duration),

@@ -9,8 +9,8 @@ use sinew::physics::ray::Ray;
 use sinew::physics::{BodyId, BodyKind, BodyKinds, QueryFilter};
 use sinew_picture::world::{self, Frame, Kinematic, Lines};
 use sinew_picture::{
-    Camera, Caption, EncodeError, Image, Line, LineDepth, Material, Movie, PictureFormat, RenderSettings,
-    Renderer, Scene, Sky, Sun,
+    Camera, Caption, EncodeError, Image, Line, LineDepth, Movie, PictureFormat, RenderMaterial,
+    RenderSettings, Renderer, Scene, Sky, Sun,
 };
 use sinew_scenes::scenes::{CameraHint, Expected, Figure, Instance, Metric, Trails};
 
@@ -96,7 +96,7 @@ struct Take {
     /// Ways of the centres of mass so far, each with its colour.
     trails: Vec<Trail>,
     /// Materials of each figure.
-    looks: Vec<Vec<Material>>,
+    looks: Vec<Vec<RenderMaterial>>,
 }
 
 struct Trail {

@@ -8,7 +8,7 @@
 mod step;
 mod support;
 
-use super::{Character, CharacterDef, Event, State, ground};
+use super::{Character, CharacterDef, CharacterEvent, State, ground};
 use sinew_anim::ik::hold_feet;
 use sinew_anim::{LocalTransform, local_to_model, smoothstep};
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer, max, min, trig};
@@ -154,7 +154,7 @@ impl Character {
         };
         let is_over = stumble.caught && stumble.feet == [Footing::Free; 2];
         if is_over {
-            self.events.push(Event::Caught { steps: stumble.steps });
+            self.events.push(CharacterEvent::Caught { steps: stumble.steps });
         }
         if let Some(presence) = &mut self.presence {
             presence.stumble = (!is_over).then_some(stumble);
@@ -180,7 +180,7 @@ impl Character {
             age: 0,
             caught: false,
         });
-        self.events.push(Event::Stumbled);
+        self.events.push(CharacterEvent::Stumbled);
     }
 
     /// Lets it fall over as far as its feet do not hold it, and swings them to where they will. True if that is in vain.

@@ -10,7 +10,7 @@ use crate::parts::{GRAVITY, cuboid, fixed, floor};
 use sinew::anim::local_to_model;
 use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer, max, min};
 use sinew::physics::{BodyId, World};
-use sinew::ragdoll::{Character, CharacterDef, Event, Preset, State};
+use sinew::ragdoll::{Character, CharacterDef, CharacterEvent, Preset, State};
 use std::sync::Arc;
 
 pub(in crate::scenes) const ARENA: Scene = Scene {
@@ -171,10 +171,10 @@ impl Arena {
         let watch = &mut self.watch;
         watch.lost += world.events().quarantined.len() as u32;
         for event in self.fighters.iter().flat_map(|fighter| fighter.character.events()) {
-            watch.stumbles += u32::from(*event == Event::Stumbled);
-            watch.caught += u32::from(matches!(event, Event::Caught { .. }));
-            watch.falls += u32::from(*event == Event::WentLimp);
-            watch.ups += u32::from(*event == Event::Up);
+            watch.stumbles += u32::from(*event == CharacterEvent::Stumbled);
+            watch.caught += u32::from(matches!(event, CharacterEvent::Caught { .. }));
+            watch.falls += u32::from(*event == CharacterEvent::WentLimp);
+            watch.ups += u32::from(*event == CharacterEvent::Up);
         }
         let radius = self.def.in_world.mover.as_ref().map_or(0.0, |mover| mover.radius);
         let (referee, fighters) = self.fighters.split_last().expect("there is a referee");

@@ -9,7 +9,7 @@ use crate::framework::setting::{Setting, Setup};
 use crate::mannequin::Path;
 use crate::mannequin::drills::{PUNCH_ARRIVES, punch, walking};
 use crate::parts::{GRAVITY, ball, cuboid, fixed, floor, made_of};
-use sinew::anim::{Event, TrackDef, TrackId};
+use sinew::anim::{ClipEvent, TrackDef, TrackId};
 use sinew::math::{Transform, Vec3, max};
 use sinew::physics::{BodyId, DebugDraw, Material, World};
 use std::sync::Arc;
@@ -50,7 +50,7 @@ fn footsteps(setup: &Setup<'_>) -> Instance {
     let lap = cycle.clip.duration;
     let falls = [FIRST, FIRST + 0.5 * lap];
     let mut cast = Cast::mannequin();
-    let event = |i: usize| Event { payload: FEET[i].to_owned(), ..Event::new(falls[i], "footstep") };
+    let event = |i: usize| ClipEvent { payload: FEET[i].to_owned(), ..ClipEvent::new(falls[i], "footstep") };
     let clip = cast.add_cycle(&cycle, vec![event(0), event(1)]);
     let cast = Arc::new(cast);
     let mut actor = Actor::new(&cast, Transform::IDENTITY);
@@ -193,7 +193,7 @@ fn punched(setup: &Setup<'_>) -> Instance {
     world.add_body(&floor());
     let payload = setup.number("impulse").to_string();
     let mut cast = Cast::mannequin();
-    let clip = cast.add(&punch(), vec![Event { payload, ..Event::new(PUNCH_ARRIVES, "punch") }]);
+    let clip = cast.add(&punch(), vec![ClipEvent { payload, ..ClipEvent::new(PUNCH_ARRIVES, "punch") }]);
     let cast = Arc::new(cast);
     let mut actor = Actor::new(&cast, Transform::IDENTITY);
     actor.animator.play(&cast.set, &TrackDef::new(clip));

@@ -10,7 +10,7 @@ use crate::parts::{GRAVITY, cuboid, fixed, floor};
 use sinew::anim::local_to_model;
 use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer, max, min};
 use sinew::physics::{BodyId, BodyKind, Velocity, World};
-use sinew::ragdoll::{Character, CharacterDef, Event, HitBodies, State};
+use sinew::ragdoll::{Character, CharacterDef, CharacterEvent, HitBodies, State};
 use std::sync::Arc;
 
 pub(in crate::scenes) const STREET: Scene = Scene {
@@ -171,9 +171,9 @@ impl Street {
         let watch = &mut self.watch;
         for walker in &self.walkers {
             for event in walker.character.events() {
-                watch.flinches += u32::from(matches!(event, Event::Flinched { .. }));
-                watch.falls += u32::from(matches!(event, Event::WentLimp));
-                watch.ups += u32::from(matches!(event, Event::Up));
+                watch.flinches += u32::from(matches!(event, CharacterEvent::Flinched { .. }));
+                watch.falls += u32::from(matches!(event, CharacterEvent::WentLimp));
+                watch.ups += u32::from(matches!(event, CharacterEvent::Up));
             }
         }
         let stands = |walker: &&Walker| walker.character.mover().is_some();

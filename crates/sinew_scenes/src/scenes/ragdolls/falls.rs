@@ -100,7 +100,7 @@ impl Script for Falls {
     /// The worst of all, figure by figure.
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let all: Vec<_> = self.falls.iter().map(|fall| fall.meter.quality()).collect();
-        let worst = |figure: fn(&sinew::ragdoll::Quality) -> f32| all.iter().map(figure).fold(0.0, max);
+        let worst = |figure: fn(&sinew::ragdoll::FallQuality) -> f32| all.iter().map(figure).fold(0.0, max);
         let last = all.iter().map(|quality| quality.asleep_s).reduce(|a, b| Some(max(a?, b?))).flatten();
         let gain = self.falls.iter().fold(0.0, |gain, fall| max(gain, fall.energy_gain_max));
         let awake = all.iter().filter(|quality| quality.asleep_s.is_none()).count() as u32;
