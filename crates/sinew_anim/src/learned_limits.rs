@@ -2,6 +2,8 @@
 
 use crate::clip::take::Take;
 use crate::rig::{JointIdx, LocalTransform, Rig};
+pub use crate::tuning::COVERAGE;
+use crate::tuning::{HINGE_PLAY, LEAST_HINGE};
 use sinew_math::{
     Mat3, Range, Rotation, SwingTwistLimit, Sym3, Vec3, any_orthonormal, clamp, direction, max, min, trig,
 };
@@ -35,13 +37,6 @@ pub struct LearnedLimit {
     /// Frames learned from.
     pub samples: usize,
 }
-
-/// Share of the frames that the limits take in.
-pub const COVERAGE: f32 = 0.995;
-/// A joint that turns less, radians, shows too little to be called a hinge.
-const LEAST_HINGE: f32 = 0.2;
-/// Turn about other axes than its own that a hinge may have, as a share of its range.
-const HINGE_PLAY: f32 = 0.1;
 
 impl LearnedLimit {
     /// The rotation away from the centre, in the axes of the limit.

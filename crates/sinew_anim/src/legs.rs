@@ -3,6 +3,7 @@
 use crate::ik::{TwoBone, set_rotation, shift};
 use crate::rig::{JointIdx, LocalTransform, Rig};
 use crate::roles::{HUMANOID_ROLES, RigAnalysis, Role, Side};
+use crate::tuning::BALL_AHEAD;
 use sinew_math::{Affine, Rotation, Vec3};
 
 /// A leg and the two points of the sole that it stands on.
@@ -23,9 +24,6 @@ pub struct Foot {
     pub forward: Vec3,
 }
 
-/// Place of the ball in front of an ankle whose rig has no toes, in lengths of the leg.
-const BALL: f32 = 0.14;
-
 impl Foot {
     fn of(analysis: &RigAnalysis, side: Side) -> Option<Self> {
         let joint = |role: Role| analysis.joint_with(role);
@@ -40,8 +38,8 @@ impl Foot {
         let bones =
             (knee.translation - hip.translation).length() + (ankle.translation - knee.translation).length();
         let at = ankle.translation;
-        let ball =
-            joint(Role::Toes(side)).map_or(at + Vec3::Z * (BALL * bones), |toes| stands(toes).translation);
+        let ball = joint(Role::Toes(side))
+            .map_or(at + Vec3::Z * (BALL_AHEAD * bones), |toes| stands(toes).translation);
         let on_floor = |p: Vec3| Vec3::new(p.x, analysis.floor, p.z) - at;
         Some(Self {
             side,

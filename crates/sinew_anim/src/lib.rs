@@ -20,8 +20,9 @@ pub mod rig;
 pub mod roles;
 pub mod set;
 pub mod skinning;
+mod tuning;
 
-pub use animator::{Animator, Easing, EndAction, MAX_SPEED, Track, TrackDef, TrackId, Transition};
+pub use animator::{Animator, Easing, EndAction, Track, TrackDef, TrackId, Transition};
 pub use built::{BuiltClip, ClipBuildError, ClipBuildOptions, ClipError, Cursor, Fill};
 pub use clip::reduce::{KeyBound, KeyError, Reduced, reduce_keys};
 pub use clip::root_motion::{AxisExtraction, MotionTrack, RootMotionOptions, extract_root_motion};
@@ -47,3 +48,4 @@ pub use roles::{
 };
 pub use set::{AnimatedClip, AnimationSet, ClipId, MaskId};
 pub use skinning::{skin_palette, skin_vertices};
+pub use tuning::MAX_SPEED;

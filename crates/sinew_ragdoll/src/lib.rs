@@ -18,6 +18,7 @@ pub mod ragdoll;
 pub mod rig_match;
 pub mod settings;
 pub mod skin;
+mod tuning;
 
 pub use bake::{BakeHit, BakeInput, Baked, HitEffect, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};

@@ -25,7 +25,8 @@
 //! ```
 
 use crate::def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
-use crate::filter::TOLERATED;
+use crate::tuning::TOLERATED;
+use crate::tuning::WIDEST_SPAWNED;
 use sinew_math::limits::hinge_angle;
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, clamp, max, min};
 use sinew_physics::{
@@ -310,9 +311,6 @@ pub fn fitted(
     }
 }
 
-/// No swing half-angle is widened beyond this, radians (175°).
-const WIDEST: f32 = 3.054;
-
 /// The limit, widened where the rotation is outside.
 fn holding(limit: SwingTwistLimit, seen: Rotation) -> SwingTwistLimit {
     if limit.overshoot(seen) <= 0.0 {
@@ -330,7 +328,9 @@ fn holding(limit: SwingTwistLimit, seen: Rotation) -> SwingTwistLimit {
     let angle = swing.length();
     let room = if angle > 1e-6 { wide.cone_angle(swing.y / angle, swing.z / angle) } else { angle };
     let factor = if room < angle { 1.001 * angle / room } else { 1.0 };
-    let scaled = |range: Range| Range::new(max(range.lo * factor, -WIDEST), min(range.hi * factor, WIDEST));
+    let scaled = |range: Range| {
+        Range::new(max(range.lo * factor, -WIDEST_SPAWNED), min(range.hi * factor, WIDEST_SPAWNED))
+    };
     SwingTwistLimit { swing_y: scaled(wide.swing_y), swing_z: scaled(wide.swing_z), twist: wide.twist }
 }
 

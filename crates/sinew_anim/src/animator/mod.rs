@@ -9,7 +9,7 @@ mod root_inertia;
 mod save;
 mod track;
 
-pub use track::{Easing, EndAction, MAX_SPEED, Track, TrackDef, TrackId};
+pub use track::{Easing, EndAction, Track, TrackDef, TrackId};
 
 use crate::built::Cursor;
 use crate::event::{ClipEvent, FiredEvent};
@@ -18,6 +18,7 @@ use crate::playback::playhead::Playhead;
 use crate::playback::sync;
 use crate::pose::{BlendLayer, BlendOptions, Blender, Pose};
 use crate::set::AnimationSet;
+use crate::tuning::FILL_BELOW;
 use crossfade::{Crossfade, Weights};
 use fire::{LastFired, TrackCrossing};
 use root_inertia::{RootInertia, RootVelocity};
@@ -105,9 +106,6 @@ struct Room {
     motions: Vec<compose::WeightedMotion>,
     spare: Vec<Slot>,
 }
-
-/// Sum of weights in layer 0 below which the rest pose makes up for what is missing (see [`BlendOptions`]).
-const FILL_BELOW: f32 = 0.1;
 
 impl Animator {
     /// Plays nothing, in the rest pose.
@@ -273,7 +271,7 @@ impl Animator {
     /// Gives a track another speed, clip seconds per second. Without effect once it has been removed.
     ///
     /// # Panics
-    /// If `speed` is not finite, or beyond [`MAX_SPEED`].
+    /// If `speed` is not finite, or beyond [`MAX_SPEED`](crate::MAX_SPEED).
     pub fn set_speed(&mut self, id: TrackId, speed: f32) {
         check_speed(speed);
         if let Some(track) = self.track_mut(id) {

@@ -1,6 +1,7 @@
 use crate::playback::playhead::{LoopMode, Playhead};
 use crate::pose::smoothstep;
 use crate::set::{ClipId, MaskId};
+use crate::tuning::MAX_SPEED;
 use sinew_math::clamp;
 
 /// A track of an [`Animator`](super::Animator); none has the id of one before it.
@@ -59,10 +60,6 @@ impl Easing {
         }
     }
 }
-
-/// Fastest that a track goes, forward or backward, clip seconds per second: an update passes as many laps, and fires as many
-/// events, as that makes.
-pub const MAX_SPEED: f32 = 1_000.0;
 
 /// Definition of a track: the clip that is played, and the way it is played.
 #[derive(Clone, Copy, Debug, PartialEq)]

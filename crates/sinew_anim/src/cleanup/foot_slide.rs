@@ -7,6 +7,7 @@ use crate::ik::{Pole, TwoBoneGoal, two_bone_ik};
 use crate::legs::{Foot, Legs};
 use crate::pose::{local_to_model, smoothstep};
 use crate::rig::Rig;
+use crate::tuning::{LEG_REACH, PELVIS_TIME};
 use sinew_math::{Affine, Vec3, max, min};
 
 /// Result of holding the feet on the ground.
@@ -23,11 +24,6 @@ pub struct FootSlideReport {
     /// Farthest that an ankle stays from where it should be, metres.
     pub miss: f32,
 }
-
-/// Share of its length that a leg is stretched to at most: a knee never snaps straight.
-const REACH: f32 = 0.996;
-/// Time over which the pelvis goes down and up again, seconds.
-const BLEND: f32 = 0.1;
 
 /// Holds the ball of each foot on one spot of the floor through each of its contacts, by inverse kinematics of the legs;
 /// between contacts the correction blends over. Feet keep their rotations, no sole goes below the floor, and the pelvis is
@@ -57,7 +53,7 @@ pub fn remove_foot_slide(
         let need = |k: usize| pelvis_need(&model, &feet[k], shifts[k][frame]);
         needed.push(max(need(0), need(1)));
     }
-    let lowered = smooth_above(&needed, take.frames_in(BLEND));
+    let lowered = smooth_above(&needed, take.frames_in(PELVIS_TIME));
     let mut report = FootSlideReport { contacts: contacts.len(), ..FootSlideReport::default() };
     for frame in 0..take.frames() {
         local_to_model(rig, take.pose(frame), root, &mut model);
@@ -132,7 +128,7 @@ fn blend_over(shifts: &mut [Vec3], from: Option<usize>, to: usize) {
 fn pelvis_need(model: &[Affine], foot: &Foot, shift: Vec3) -> f32 {
     let [hip, knee, ankle] =
         [foot.leg.upper, foot.leg.lower, foot.leg.end].map(|joint| model[joint].translation);
-    let full = REACH * ((knee - hip).length() + (ankle - knee).length());
+    let full = LEG_REACH * ((knee - hip).length() + (ankle - knee).length());
     let way = hip - (ankle + shift);
     let aside = way.x * way.x + way.z * way.z;
     if aside >= full * full { 0.0 } else { max(way.y - (full * full - aside).sqrt(), 0.0) }

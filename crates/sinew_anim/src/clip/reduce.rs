@@ -9,6 +9,7 @@ use crate::clip::sample::{channel_at, write_property};
 use crate::clip::{Channel, Clip, Interpolation, Property};
 use crate::pose::rest_pose;
 use crate::rig::{JointIdx, LocalTransform, Rig};
+use crate::tuning::{CHANNEL_SHARE, REDUCED_ENOUGH, REDUCTION_AIM};
 use sinew_math::{Affine, Rotation, Vec3, clamp, max, min};
 
 /// Bound of the difference between a clip with fewer keys and the original, in the space that [`reduce_keys`] measures in.
@@ -54,11 +55,6 @@ pub struct Reduced {
 
 /// Rounds of choosing and measuring, and the share of the bound that is good enough to stop at.
 const ROUNDS: usize = 4;
-const GOOD_ENOUGH: f32 = 0.75;
-/// Share of the bound for each channel to begin with: errors of different joints hardly ever add up.
-const FIRST_SHARE: f32 = 0.55;
-/// The share aims at this much of the bound.
-const AIM: f32 = 0.9;
 
 /// Leaves out the keys of linear channels that are not needed for joints to stay within `bound` in model space, times
 /// `root`: the root's unit is the bound's. Other channels keep their keys. The clip lasts as long as before. Its values are
@@ -75,7 +71,7 @@ pub fn reduce_keys(rig: &Rig, clip: &Clip, root: &Affine, bound: KeyBound) -> Re
         return all();
     }
     let meter = Meter::new(rig, clip, root);
-    let (mut best, mut share): (Option<Reduced>, f32) = (None, FIRST_SHARE);
+    let (mut best, mut share): (Option<Reduced>, f32) = (None, CHANNEL_SHARE);
     // The largest share that kept the bound, and the smallest that broke it.
     let (mut kept, mut broke) = (0.0, f32::INFINITY);
     for _ in 0..ROUNDS {
@@ -86,7 +82,7 @@ pub fn reduce_keys(rig: &Rig, clip: &Clip, root: &Affine, bound: KeyBound) -> Re
         if used <= 1.0 && best.as_ref().is_none_or(|best| keys < best.keys[1]) {
             best = Some(Reduced { clip: reduced, error, keys: [before, keys] });
         }
-        if (GOOD_ENOUGH..=1.0).contains(&used) {
+        if (REDUCED_ENOUGH..=1.0).contains(&used) {
             break;
         }
         if used <= 1.0 {
@@ -94,7 +90,7 @@ pub fn reduce_keys(rig: &Rig, clip: &Clip, root: &Affine, bound: KeyBound) -> Re
         } else {
             broke = share;
         }
-        let next = share * clamp(AIM / max(used, 1e-3), 0.2, 3.0);
+        let next = share * clamp(REDUCTION_AIM / max(used, 1e-3), 0.2, 3.0);
         share = if kept < next && next < broke { next } else { 0.5 * (kept + broke) };
     }
     best.unwrap_or_else(all)

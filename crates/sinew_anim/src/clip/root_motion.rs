@@ -4,6 +4,7 @@ use crate::clip::sample::{SampleCache, Wrap, sample_cached};
 use crate::clip::{Channel, Clip, Interpolation, Property};
 use crate::playback::playhead::{LoopMode, Place};
 use crate::rig::{JointIdx, LocalTransform, Rig};
+use crate::tuning::ROOT_SAMPLING;
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
 /// Part of a motion along an axis that is taken out of the pose.
@@ -49,9 +50,6 @@ pub struct MotionTrack {
     turns: Vec<f32>,
     up: Vec3,
 }
-
-/// Longest time between samples, seconds: in between, motion goes in a straight line.
-const SAMPLING: f32 = 1.0 / 60.0;
 
 /// Takes the motion of a joint out of a clip: the clip that stays on its place, and the motion that was in it. Put
 /// together they are the clip again: `motion · pose` in model space, to within the rounding and what lies between two
@@ -103,7 +101,7 @@ struct ChainPose {
 
 /// From 0 to the clip's end, evenly.
 fn sample_times(clip: &Clip) -> Vec<f32> {
-    let steps = (clip.duration / SAMPLING).ceil();
+    let steps = (clip.duration / ROOT_SAMPLING).ceil();
     let steps = if steps >= 1.0 { steps as u32 } else { 1 };
     if clip.duration > 0.0 {
         (0..=steps).map(|i| clip.duration * (i as f32 / steps as f32)).collect()

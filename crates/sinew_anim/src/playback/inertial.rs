@@ -6,6 +6,7 @@
 
 use crate::pose::Pose;
 use crate::rig::LocalTransform;
+use crate::tuning::SHORTEST_DECAY;
 use sinew_math::{ReadError, Reader, Rotation, Vec3, Writer, max, min, trig};
 
 /// An offset that dies away within a time, from a velocity of its own, and arrives with neither velocity nor
@@ -41,14 +42,11 @@ impl Decay {
     }
 }
 
-/// The least share of its time that an offset may die away in.
-const SHORTEST: f32 = 1.0 / 3.0;
-
 /// `t₁ = min(t₁, −5 x₀/v₀)` where the offset shrinks: with more time it would change its sign. But where hardly any offset
 /// is left, that would stop a limb within a frame: there it keeps its time, and swings through.
 fn shortened(x0: f32, v0: f32, t1: f32) -> f32 {
     let without_overshoot = if v0 < 0.0 { -5.0 * x0 / v0 } else { t1 };
-    if without_overshoot < SHORTEST * t1 { t1 } else { min(t1, without_overshoot) }
+    if without_overshoot < SHORTEST_DECAY * t1 { t1 } else { min(t1, without_overshoot) }
 }
 
 /// `A t⁵ + B t⁴ + C t³ + a₀/2 t² + v₀ t + x₀` with value, velocity and acceleration 0 at `t₁`, and

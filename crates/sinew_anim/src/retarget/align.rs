@@ -2,6 +2,7 @@
 
 use crate::rig::JointIdx;
 use crate::roles::{HUMANOID_ROLES, RigAnalysis, Role, Side};
+use crate::tuning::{LEG_STANDS, SAME_UPRIGHT};
 use sinew_math::{Mat3, Rotation, Transform, Vec3, direction};
 
 /// Joints of one role.
@@ -63,11 +64,6 @@ impl<'a> Stance<'a> {
     }
 }
 
-/// Reference poses that differ by less (radians, here its cosine) are both taken to stand upright: 30°.
-const UPRIGHT: f32 = 0.866;
-/// Legs whose bones are nearer to the vertical (cosine of 25°) stand, and their feet are flat on the floor.
-const STANDS: f32 = 0.906;
-
 impl Alignment {
     pub fn of(actor: &RigAnalysis, character: &RigAnalysis) -> Self {
         let (from, to) = (Stance::of(actor), Stance::of(character));
@@ -115,7 +111,7 @@ fn trunk_turn(from: &Stance<'_>, to: &Stance<'_>) -> Rotation {
     let Some(((left, up), (new_left, new_up))) = from.trunk().zip(to.trunk()) else {
         return Rotation::IDENTITY;
     };
-    if up.dot(new_up) > UPRIGHT && left.dot(new_left) > UPRIGHT {
+    if up.dot(new_up) > SAME_UPRIGHT && left.dot(new_left) > SAME_UPRIGHT {
         return Rotation::from_arc(left, new_left);
     }
     let frame = |left: Vec3, up: Vec3| Mat3::from_cols(left, up, left.cross(up));
@@ -150,7 +146,7 @@ fn leg_turns(from: &Stance<'_>, to: &Stance<'_>, trunk: Rotation, roles: [Role; 
             let stands = |body: &Stance<'_>| {
                 [[lower, upper], [foot, lower]]
                     .iter()
-                    .all(|&[a, b]| body.way(a, b).is_some_and(|way| way.y > STANDS))
+                    .all(|&[a, b]| body.way(a, b).is_some_and(|way| way.y > LEG_STANDS))
             };
             match heading(trunk * old).zip(heading(new)) {
                 Some((a, b)) if stands(from) && stands(to) => Rotation::from_arc(a, b) * trunk,

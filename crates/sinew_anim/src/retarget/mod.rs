@@ -21,6 +21,7 @@ use crate::legs::{Foot, Legs};
 use crate::pose::{local_to_model, rest_pose, smoothstep};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::{RigAnalysis, Role, Side};
+use crate::tuning::{FLOOR_TIME, FOOT_HOLD};
 use align::Alignment;
 use sinew_math::{Affine, Rotation, Vec3, max};
 
@@ -177,8 +178,8 @@ pub fn retarget(
     let steps = transfer.watch(&source, options.floor);
     let mut take = transfer.carry(&source, &steps, options.frame_time);
     let at_pace = |contact: &FootContact| FootContact {
-        start: max((contact.start - HOLD) * pace, 0.0),
-        end: (contact.end + HOLD) * pace,
+        start: max((contact.start - FOOT_HOLD) * pace, 0.0),
+        end: (contact.end + FOOT_HOLD) * pace,
         ..*contact
     };
     let contacts: Vec<FootContact> = steps.contacts.iter().map(at_pace).collect();
@@ -226,11 +227,6 @@ struct Steps {
     heights: Vec<f32>,
     slide: FootSlide,
 }
-
-/// Time by which a foot is held longer than the actor's at either end, seconds: a foot on its way down hardly moves on.
-const HOLD: f32 = 0.02;
-/// Time over which the height of the body is matched to the floor, seconds.
-const SETTLE: f32 = 0.12;
 
 impl<'a> Transfer<'a> {
     fn new(actor: Body<'a>, character: Body<'a>) -> Result<Self, RetargetError> {
@@ -331,7 +327,7 @@ impl<'a> Transfer<'a> {
             errors.push((height - (low - self.character.analysis.floor)) * near);
             take.poses.extend(pose);
         }
-        let reach = take.frames_in(SETTLE * self.scale.sqrt());
+        let reach = take.frames_in(FLOOR_TIME * self.scale.sqrt());
         for (frame, lift) in moving_mean(&errors, reach).into_iter().enumerate() {
             local_to_model(rig, take.pose(frame), &self.character_root, &mut to);
             self.legs.carry(rig, Vec3::Y * lift, take.pose_mut(frame), &mut to);

@@ -5,6 +5,7 @@ use crate::clip::sample::{Wrap, sample};
 use crate::pose::rest_pose;
 use crate::rig::{LocalTransform, Rig};
 use crate::roles::{NoSkin, RigAnalysis, Role, Side, analyze_skeleton};
+use crate::tuning::CLEARLY_STANDING;
 use sinew_math::{Vec3, direction};
 
 /// Source of a reference pose.
@@ -20,8 +21,6 @@ pub enum Reference {
 
 /// Frames of a clip that are looked at.
 const LOOKS: usize = 24;
-/// Cosine of the angles that trunk and legs may be off the vertical in a pose that is clearly standing.
-const STANDING: f32 = 0.85;
 
 /// Analyses a skeleton without skin in the pose in which it stands best: the one stated (if any), else the rig's rest pose,
 /// else the most upright frame of the clip. Many capture files have a rest pose that is no pose at all.
@@ -53,7 +52,7 @@ pub fn stand(
         if best.as_ref().is_none_or(|(most, ..)| upright > *most) {
             best = Some((upright, analysis, reference));
         }
-        if upright > STANDING {
+        if upright > CLEARLY_STANDING {
             break;
         }
     }

@@ -13,6 +13,7 @@ use super::symmetry::Symmetry;
 use super::units::Measured;
 use super::{Basis, NoSkin, RoleGuess};
 use crate::rig::{JointIdx, Rig};
+use crate::roles::tuning::{CONTROL_SKIN, ELBOWS_BEHIND, FEET_AGAINST_NAMES, STEP_CORRELATION};
 use sinew_math::Vec3;
 
 /// Roles per joint and the directions of the body.
@@ -28,20 +29,6 @@ pub(super) struct Anatomy {
     /// Longest stride in the clips, seconds, and from where its legs begin down to the floor, file units.
     stride: Option<(f32, f32)>,
 }
-
-/// Share of all skin from which a joint named as a control counts as a bone. It need not be enough for a body: a hoof too small
-/// for one must still go with its leg.
-const LEAST_CONTROL_SHARE: f32 = 5e-4;
-
-/// Least lead of both feet together against what left and right are named, in heights of the body: half of what a human's
-/// have.
-const LEAD_AGAINST_NAMES: f32 = 0.04;
-
-/// Least distance of both elbows together behind the arms, in heights of the body, to tell more than feet that hardly do.
-const ELBOWS: f32 = 0.03;
-
-/// Least correlation of feet's height with their speed that tells which way they walk.
-const STEPS: f32 = 0.25;
 
 /// Graph, symmetry and names of a rig, as far as the names can be trusted.
 pub(super) struct Scene<'a> {
@@ -131,7 +118,7 @@ impl<'a> Scene<'a> {
         }
         if trusted {
             // A control that moves skin which nothing above it moves is a part of the body, whatever its name.
-            let fair = LEAST_CONTROL_SHARE * bound.area.iter().sum::<f32>();
+            let fair = CONTROL_SKIN * bound.area.iter().sum::<f32>();
             let is_bone = |joint: JointIdx| {
                 let carries = |ancestor: JointIdx| bound.area[ancestor] > 0.0;
                 readings[joint].is_control && bound.area[joint] >= fair && !ancestors(rig, joint).any(carries)
@@ -275,20 +262,20 @@ impl<'a> Scene<'a> {
         let forward = lateral.cross(up);
         let lead = feet_lead(self.bound, &Stance::new(self.bound, up), forward, ankles);
         let named = left_by_name(&self.graph, &self.symmetry, &self.node_readings());
-        let hardly = named == 0.0 && lead.abs() < LEAD_AGAINST_NAMES;
+        let hardly = named == 0.0 && lead.abs() < FEET_AGAINST_NAMES;
         let steps = if hardly { self.walks_toward(up) } else { 0.0 };
-        if steps.abs() > STEPS {
+        if steps.abs() > STEP_CORRELATION {
             notes.push("the feet hardly tell which way the body faces: the way they walk does".into());
             return lateral * steps.signum();
         }
         let elbows =
             arms.map_or(0.0, |arms| self.with_evidence(up, |seen| seen.elbows_behind(arms, forward)));
-        if hardly && elbows.abs() > ELBOWS {
+        if hardly && elbows.abs() > ELBOWS_BEHIND {
             notes.push("the feet hardly tell which way the body faces: the elbows do".into());
             return lateral * elbows.signum();
         }
         // Half a per cent of the height and more is a foot, less is noise; against names it takes a foot that nobody doubts.
-        if lead.abs() > if named * lead < 0.0 { LEAD_AGAINST_NAMES } else { 0.005 } {
+        if lead.abs() > if named * lead < 0.0 { FEET_AGAINST_NAMES } else { 0.005 } {
             if named * lead < 0.0 {
                 notes.push(
                     "the feet point the other way than left and right are named: the feet count".into(),

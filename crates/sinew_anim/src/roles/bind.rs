@@ -4,12 +4,10 @@ use super::graph::ancestors;
 use super::names::read_names;
 use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, LocalTransform, Rig, RigMesh};
+use crate::roles::tuning::COINCIDENT;
 use crate::skinning::skin_vertices;
 use sinew_math::{Affine, Vec3, max3, min3};
 use std::collections::BTreeMap;
-
-/// Joints nearer to each other than this share of the body's size are in one place.
-const COINCIDENT: f32 = 1e-3;
 
 /// Geometry of a rig in its bind pose, model space, file units.
 pub(super) struct Bound {

@@ -4,25 +4,16 @@ use crate::clip::Clip;
 use crate::clip::sample::{SampleCache, Wrap, sample_cached};
 use crate::pose::local_to_model;
 use crate::rig::{JointIdx, LocalTransform, Rig};
+use crate::roles::tuning::{GAIT_RATE, IN_TURNS, LEAST_SWING, SHORTEST_WALK, SWINGS_ALIKE};
 use sinew_math::{Affine, Vec3, clamp, max};
 use std::sync::Arc;
 
 /// Most clips that are looked at: walks and runs by name first.
 const MOST_CLIPS: usize = 12;
-/// Poses a second, and least and most of a clip.
-const RATE: f32 = 24.0;
+/// Least and most poses of a clip that are looked at.
 const FRAMES: [f32; 2] = [16.0, 96.0];
-/// A clip of walking lasts at least that, seconds.
-const SHORTEST: f32 = 0.2;
 /// Words of clips in which legs walk.
 const WALKS: [&str; 8] = ["walk", "run", "jog", "trot", "gallop", "sprint", "march", "move"];
-
-/// Swing of one against the other has at least this many times the variance of swing together.
-const IN_TURNS: f32 = 4.0;
-/// And neither of a pair has more than so many times the variance of the other: one arm that strikes is no pair of legs.
-const ALIKE: f32 = 3.0;
-/// Least swing of legs, root mean square, share of the body's height.
-const LEAST_SWING: f32 = 0.03;
 
 /// Poses of a rig in its clips, from which legs are told by their swing. The default shows nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -76,7 +67,7 @@ impl Gait {
     /// # Panics
     /// As [`sample`](crate::clip::sample::sample()): if a clip is not one of the rig's.
     pub fn of(rig: &Rig, clips: &[Clip]) -> Self {
-        let lasts = |clip: &&Clip| clip.duration.is_finite() && clip.duration >= SHORTEST;
+        let lasts = |clip: &&Clip| clip.duration.is_finite() && clip.duration >= SHORTEST_WALK;
         let mut wanted: Vec<&Clip> = clips.iter().filter(lasts).collect();
         let walks = |clip: &Clip| {
             let name = clip.name.to_lowercase();
@@ -120,7 +111,7 @@ impl Gait {
 
 impl Poses {
     fn of(rig: &Rig, clip: &Clip) -> Self {
-        let count = clamp((clip.duration * RATE).ceil(), FRAMES[0], FRAMES[1]) as usize;
+        let count = clamp((clip.duration * GAIT_RATE).ceil(), FRAMES[0], FRAMES[1]) as usize;
         let frame_time = clip.duration / count as f32;
         let mut local = vec![LocalTransform::default(); rig.joints.len()];
         let mut cache = SampleCache::default();
@@ -169,7 +160,7 @@ impl Ways {
         let apart: f32 = self.apart().map(|d| d * d).sum();
         let together: f32 =
             self.ahead[0].iter().zip(&self.ahead[1]).map(|(a, b)| 0.25 * (a + b) * (a + b)).sum();
-        let alike = left < ALIKE * right && right < ALIKE * left;
+        let alike = left < SWINGS_ALIKE * right && right < SWINGS_ALIKE * left;
         if alike && apart > IN_TURNS * together { (apart / self.ahead[0].len() as f32).sqrt() } else { 0.0 }
     }
 

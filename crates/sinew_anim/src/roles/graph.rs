@@ -2,6 +2,7 @@
 
 use super::bind::Bound;
 use crate::rig::{JointIdx, Rig};
+use crate::roles::tuning::{FOOT_AT_END, FOOT_AT_SKIN, TWIN_AREA, TWIN_PLACE};
 use sinew_math::Vec3;
 
 /// A joint that moves skin.
@@ -21,14 +22,6 @@ pub(super) struct Node {
 
 /// Most joints of a foot beside the body: it and its toes.
 const LONGEST_FOOT: usize = 2;
-/// A foot beside the body belongs to the leaf whose skin comes nearer than this share of the skin's size to where it begins.
-const AT_SKIN: f32 = 0.06;
-/// A foot that hangs on the root belongs to the leg whose end is nearer than this share of the skin's size.
-const AT_END: f32 = 0.01;
-
-/// Twins begin as far from the root, within this share of the skin's size, and move this share of each other's skin at least.
-const TWIN_PLACE: f32 = 0.025;
-const TWIN_AREA: f32 = 0.6;
 
 /// A tree of [`Node`]s with one root.
 pub(super) struct Graph {
@@ -151,7 +144,7 @@ impl Graph {
                 node != self.root && self.nodes[node].children.is_empty() && !own.contains(&node)
             };
             let at_end =
-                |&&(node, at): &&(usize, Vec3)| is_leg(node) && (at - start).length() < AT_END * size;
+                |&&(node, at): &&(usize, Vec3)| is_leg(node) && (at - start).length() < FOOT_AT_END * size;
             let grown = || self.grows_into(foot, 0..self.nodes.len(), bound).filter(|&leg| is_leg(leg));
             let Some(leg) = ends.iter().find(at_end).map(|&(leg, _)| leg).or_else(grown) else { continue };
             self.nodes[foot].parent = Some(leg);
@@ -176,7 +169,7 @@ impl Graph {
                 .map(|(node, place)| ((place - start).length(), node))
                 .reduce(|a, b| if b.0 < a.0 { b } else { a })
         };
-        let at_skin = |(distance, node): (f32, usize)| (distance < AT_SKIN * size).then_some(node);
+        let at_skin = |(distance, node): (f32, usize)| (distance < FOOT_AT_SKIN * size).then_some(node);
         let end = nearest(&mut ends.iter().copied()).filter(|&(distance, _)| distance < 0.03 * size);
         if self.subtree(stray).len() > LONGEST_FOOT {
             let grown = self.grows_into(stray, trunk.iter().copied(), bound).or(end.map(|(_, node)| node));

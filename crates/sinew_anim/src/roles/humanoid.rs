@@ -5,6 +5,7 @@ use super::bind::Bound;
 use super::graph::Graph;
 use super::names::{Part, Reading};
 use super::symmetry::Symmetry;
+use crate::roles::tuning::{AS_HIGH, AT_WRIST, FORKED, LONGEST_PALM, LOWEST_HIP};
 use sinew_math::{Vec3, clamp, max, min, trig};
 
 /// Directions and measures of the bind pose under the assumption that `up` is up.
@@ -56,17 +57,6 @@ pub(super) struct Humanoid {
     pub arms: Limb,
     pub legs: Limb,
 }
-
-/// The nearer of two joints on a forearm is at least at this share of the other's distance, or it is no finger.
-const FORKED: f32 = 0.8;
-/// Fingers whose beginnings lie within this share of their distance from the joint that carries them begin in one place: the wrist.
-const AT_WRIST: f32 = 0.15;
-/// A palm is at most this share of the forearm's length, also of a figure with large hands.
-const LONGEST_PALM: f32 = 0.7;
-/// Two joints are as high where their heights differ by no more than this share of the body's.
-const AS_HIGH: f32 = 0.02;
-/// The hips of a figure with a large head are at least this high, share of its height.
-const LOWEST_HIP: f32 = 0.1;
 
 /// Evidence for the recognition of a humanoid.
 pub(super) struct Evidence<'a> {

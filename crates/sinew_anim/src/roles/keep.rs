@@ -5,15 +5,7 @@ use super::graph::{Graph, ancestors};
 use super::role::Role;
 use super::{KeptBone, RoleGuess};
 use crate::rig::{JointIdx, Rig};
-
-/// Least share of all skin for a creature's body.
-const LEAST_SHARE: f32 = 0.004;
-
-/// Least share of all skin for a part of the spine of its own.
-const LEAST_SPINE_SHARE: f32 = 0.02;
-
-/// A clavicle shorter than this share of the height is no body.
-const LEAST_CLAVICLE: f32 = 0.05;
+use crate::roles::tuning::{LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN};
 
 /// Input of the selection.
 pub(super) struct Selection<'a> {
@@ -113,11 +105,11 @@ impl Selection<'_> {
         let mut area: Vec<f32> = nodes.iter().map(|node| node.area).collect();
         for &i in self.graph.order.iter().rev() {
             let Some(parent) = nodes[i].parent else { continue };
-            if area[i] < LEAST_SHARE * total {
+            if area[i] < LEAST_BODY_SKIN * total {
                 area[parent] += area[i];
             }
         }
-        let fair = |&&i: &&usize| i == self.graph.root || area[i] >= LEAST_SHARE * total;
+        let fair = |&&i: &&usize| i == self.graph.root || area[i] >= LEAST_BODY_SKIN * total;
         let mut joints: Vec<JointIdx> =
             self.graph.order.iter().filter(fair).map(|&i| nodes[i].joint).collect();
         // In the order of their roles, which is that of the body and not of the file: trunk, tail, then limbs, of which none
@@ -195,7 +187,7 @@ impl Selection<'_> {
                 sum = 0.0;
             }
             sum += self.bound.area[part];
-            open = sum < LEAST_SPINE_SHARE * total;
+            open = sum < LEAST_SPINE_SKIN * total;
         }
     }
 

@@ -22,6 +22,7 @@ mod names;
 mod props;
 mod role;
 mod symmetry;
+mod tuning;
 mod units;
 
 pub use characters::characters;

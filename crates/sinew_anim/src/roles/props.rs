@@ -8,17 +8,9 @@ use super::keep::Kept;
 use super::role::Role;
 use super::{Basis, KeptBone, RoleGuess};
 use crate::rig::{JointIdx, Rig};
+use crate::roles::tuning::{LEAST_PROP, PROP_BEYOND, PROP_CONFIDENCE, PROP_SHARE};
 use crate::skinning::skin_vertices;
 use sinew_math::{Vec3, max, max3, min3};
-
-/// A prop whose longest side is less than this share of the skin's is left with its carrier.
-const LEAST_SIZE: f32 = 0.1;
-/// Least distance outside the box of its carrier's skin, as a share of the skin's size, at which a vertex sticks out.
-const BEYOND: f32 = 0.05;
-/// Share of a prop's vertices that must stick out.
-const LEAST_SHARE: f32 = 0.1;
-/// Confidence that such a thing is carried.
-const CONFIDENCE: f32 = 0.5;
 
 /// An axis-aligned box in model space, file units.
 #[derive(Clone, Copy)]
@@ -69,9 +61,10 @@ pub(super) fn keep_props(rig: &Rig, bound: &Bound, kept: &mut Kept, roles: &mut 
         let Some(extent) = prop.points.iter().fold(None, |extent, &point| Extent::with(extent, point)) else {
             continue;
         };
-        let out = prop.points.iter().filter(|&&point| carrier.beyond(point) > BEYOND * bound.size()).count();
-        let sticks_out = out as f32 > LEAST_SHARE * prop.points.len() as f32;
-        if sticks_out && extent.longest() > LEAST_SIZE * bound.size() {
+        let out =
+            prop.points.iter().filter(|&&point| carrier.beyond(point) > PROP_BEYOND * bound.size()).count();
+        let sticks_out = out as f32 > PROP_SHARE * prop.points.len() as f32;
+        if sticks_out && extent.longest() > LEAST_PROP * bound.size() {
             insert(rig, bound, kept, roles, &prop);
         }
     }
@@ -151,7 +144,7 @@ fn insert(rig: &Rig, bound: &Bound, kept: &mut Kept, roles: &mut [Option<RoleGue
         _ => None,
     });
     let role = Role::LimbSegment { limb: limbs.max().unwrap_or(0), segment: 0 };
-    roles[joint] = Some(RoleGuess { confidence: CONFIDENCE, ..RoleGuess::new(role, Basis::Place) });
+    roles[joint] = Some(RoleGuess { confidence: PROP_CONFIDENCE, ..RoleGuess::new(role, Basis::Place) });
     for &at in &own {
         kept.merge_into[at] = Some(joint);
     }
@@ -159,7 +152,7 @@ fn insert(rig: &Rig, bound: &Bound, kept: &mut Kept, roles: &mut [Option<RoleGue
     kept.bones.push(KeptBone {
         joint,
         role,
-        confidence: CONFIDENCE,
+        confidence: PROP_CONFIDENCE,
         parent: Some(prop.carrier),
         merged: own.into_iter().filter(|&at| at != joint).collect(),
         bind_model: bound.model[joint],

@@ -1,6 +1,7 @@
 //! Mirror symmetry of the bind pose: which joint is whose mirror image.
 
 use super::graph::Graph;
+use crate::roles::tuning::MIRROR_TOLERANCE;
 use sinew_math::{Vec3, min};
 
 /// A mirror plane and what it pairs.
@@ -15,9 +16,6 @@ pub(super) struct Symmetry {
     score: f32,
 }
 
-/// Farthest that a joint may be from its mirror image, as a share of the size of the skin.
-const TOLERANCE: f32 = 0.025;
-
 impl Symmetry {
     /// The best mirror plane at right angles to one of the model's axes; x on a tie.
     pub fn find(graph: &Graph, size: f32) -> Self {
@@ -31,8 +29,8 @@ impl Symmetry {
         // The median: as many joints are left as right, so it lies on the midline.
         let centre = 0.5 * (sides[sides.len() / 2] + sides[(sides.len() - 1) / 2]);
         let mut symmetry = Self { lateral, centre, partner: vec![None; graph.nodes.len()], score: 0.0 };
-        symmetry.pair_up(graph, TOLERANCE * size);
-        let off = |i: &usize| symmetry.side(graph, *i).abs() > TOLERANCE * size;
+        symmetry.pair_up(graph, MIRROR_TOLERANCE * size);
+        let off = |i: &usize| symmetry.side(graph, *i).abs() > MIRROR_TOLERANCE * size;
         let paired = (0..graph.nodes.len()).filter(|&i| symmetry.partner[i].is_some_and(|k| k != i)).count();
         let alone = (0..graph.nodes.len()).filter(off).filter(|&i| symmetry.partner[i].is_none()).count();
         symmetry.score = paired as f32 - 0.5 * alone as f32;

@@ -1,6 +1,7 @@
 //! The length of a file's unit, read off the body and what is known around it.
 
 use super::{Hints, UnitGuess};
+use crate::roles::tuning::{STRIDE_SPEED, UNDER_DOOR, UNIT_BY_EXPORTER, UNIT_BY_KIN};
 use core::fmt::Write as _;
 use sinew_math::{clamp, max, trig};
 
@@ -58,22 +59,13 @@ const EXPORTERS: [(&str, f32); 16] = [
     ("source engine", 0.0254),
 ];
 
-/// Weight of a unit in which the program that wrote the file writes, and one that all files beside it have; in the
-/// measure of [`Unit::rarity`].
-const BY_EXPORTER: f32 = 1.0;
-const BY_KIN: f32 = 2.0;
-
 /// From where a human's head turns to its crown, metres, whatever the human's height.
 const HEAD: f32 = 0.23;
 /// Heights that a head may tell, metres.
 const BY_HEAD: [f32; 2] = [0.7, 1.8];
-/// A human's height, of the free height under a door.
-const UNDER_DOOR: f32 = 0.85;
 
-/// Acceleration of free fall, m/s², and strides of legs, in units of the square root of their length over it: between a walk's 3.6
-/// and a run's 2.3.
+/// Acceleration of free fall, m/s².
 const GRAVITY: f32 = 9.81;
-const STRIDE: f32 = 3.0;
 
 /// Sizes of a kind of body, metres.
 struct Sizes {
@@ -123,7 +115,7 @@ impl Witnesses {
     fn of(body: &Measured, hints: &Hints, sizes: &Sizes) -> Self {
         let mut words = String::new();
         let legs = body.stride.filter(|&(stride, leg)| stride > 0.0 && leg > 0.0).map(|(stride, leg)| {
-            let metres = GRAVITY * (stride / STRIDE) * (stride / STRIDE);
+            let metres = GRAVITY * (stride / STRIDE_SPEED) * (stride / STRIDE_SPEED);
             let _ = write!(words, ", a stride of {stride:.2} s is that of legs of {metres:.2} m");
             (leg, metres)
         });
@@ -152,8 +144,8 @@ impl Witnesses {
     fn against(&self, unit: &Unit) -> f32 {
         let off = |(leg, metres): (f32, f32)| trig::ln(leg * unit.metres / metres).abs();
         let same = |metres: f32| (metres / unit.metres - 1.0).abs() < 0.05;
-        let by_exporter = if self.exporter.is_some_and(same) { BY_EXPORTER } else { 0.0 };
-        let by_kin = if self.kin.is_some_and(same) { BY_KIN } else { 0.0 };
+        let by_exporter = if self.exporter.is_some_and(same) { UNIT_BY_EXPORTER } else { 0.0 };
+        let by_kin = if self.kin.is_some_and(same) { UNIT_BY_KIN } else { 0.0 };
         self.legs.map_or(0.0, off) - by_exporter - by_kin
     }
 }

@@ -6,10 +6,8 @@ use crate::filter::{FilterReport, Overlap, Remedy, Seen};
 use crate::fit::Fit;
 use crate::fit::patch::Selection;
 use crate::limits::{JointPlan, LimitSource};
+use crate::tuning::NOTED_WIDENING;
 use sinew_anim::Rig;
-
-/// A widening of limits below this is not worth a note, radians (1°).
-const NOTEWORTHY: f32 = 0.017;
 
 /// Report on how a ragdoll came about.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -82,7 +80,7 @@ fn notes(rig: &Rig, bones: &Bones, bodies: &[BodyReport], filter: &FilterReport)
         if body.selection == Selection::Twin {
             notes.push(format!("{} fits worse than its twin: it has the twin's shape", name(index)));
         }
-        if body.widened > NOTEWORTHY {
+        if body.widened > NOTED_WIDENING {
             let degrees = body.widened.to_degrees();
             notes
                 .push(format!("{} is bound {degrees:.0}° beyond its limits: they were widened", name(index)));

@@ -1,11 +1,10 @@
 //! A character's clips as poses that a build looks at.
 
+use crate::tuning::FRAME_TIME;
 use sinew_anim::{Clip, Rig, Take};
 
 /// Frames of all takes together: what a joint does in a minute.
 const MOST_FRAMES: usize = 2048;
-/// Frames are no closer than that, seconds.
-const LEAST_FRAME_TIME: f64 = 1.0 / 30.0;
 
 /// The clips as takes, all with the same time between frames: 30 a second, or fewer if they are long. Clips that do not
 /// last a finite time are left out, and so are those beyond the first 2,048.
@@ -20,6 +19,6 @@ pub fn takes(rig: &Rig, clips: &[Clip]) -> Vec<Take> {
     let clips: Vec<&Clip> = clips.iter().filter(lasts).take(MOST_FRAMES).collect();
     let whole: f64 = clips.iter().map(|clip| f64::from(clip.duration)).sum();
     let even = whole / MOST_FRAMES as f64;
-    let frame_time = if even > LEAST_FRAME_TIME { even } else { LEAST_FRAME_TIME };
+    let frame_time = if even > FRAME_TIME { even } else { FRAME_TIME };
     clips.into_iter().map(|clip| Take::of(rig, clip, frame_time)).collect()
 }

@@ -1,12 +1,10 @@
 //! The pose while clips decide it.
 
 use super::{Character, CharacterEvent, ground};
+use crate::character::tuning::{CLIMB_SPEED, HIGHEST_STEP};
 use sinew_anim::Animator;
 use sinew_math::{Affine, Transform, Vec3, clamp};
 use sinew_physics::World;
-
-/// Largest speed at which the height of the character's origin follows the ground, m/s: a step of a stair takes a few frames.
-const CLIMB_SPEED: f32 = 1.2;
 
 impl Character {
     /// Takes the clips forward by a step, and the character over the ground with them.
@@ -25,7 +23,7 @@ impl Character {
         let from = self.world_from_character;
         let mut to = from * self.step_of(&self.animator);
         let own = self.presence.as_ref().map(|presence| presence.bodies.as_slice());
-        if let Some(height) = ground::below(world, to.translation, ground::HIGHEST_STEP, own) {
+        if let Some(height) = ground::below(world, to.translation, HIGHEST_STEP, own) {
             to.translation.y += clamp(height - to.translation.y, -CLIMB_SPEED * dt, CLIMB_SPEED * dt);
         }
         self.world_from_character = to;

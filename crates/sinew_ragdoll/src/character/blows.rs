@@ -1,20 +1,13 @@
 //! Blows: what is below the threshold lets a limb give way, what is above fells.
 
 use super::{Blow, Character, CharacterEvent, State, Toughness};
+use crate::character::tuning::{FLINCH_HALF_LIFE, FLINCH_TIME, LEGS_WEAKEN, RETURNED_AFTER, TRUNK_WEAKENS};
 use crate::drive::{DriveMode, Muscle};
 use sinew_math::Vec3;
 use sinew_physics::{BodyHit, World};
 
 /// Muscles that hold a limb that was struck until it comes back.
 const GIVING: Muscle = Muscle { hertz: 3.0, damping_ratio: 1.0, strength: 0.5 };
-/// Seconds for which it gives way, and half-life of its coming back.
-const GIVES: f32 = 0.12;
-const RETURNS: f32 = 0.08;
-/// Most share of their strength that a blow takes from the legs and the trunk of a character that steps.
-const LEGS_WEAKEN: f32 = 0.2;
-const TRUNK_WEAKENS: f32 = 0.5;
-/// Half-lives after which it is as the clips have it again.
-const RETURNED: f32 = 6.0;
 
 impl Character {
     /// Hits a body with an impulse (N·s, world axes) at its centre of mass. A character that is in a world and
@@ -97,7 +90,7 @@ impl Character {
             for root in self.limb_of(body) {
                 self.drives.set_from(&self.def.ragdoll, root, DriveMode::Powered(GIVING), 0.0);
             }
-            self.flinching = GIVES + RETURNED * RETURNS;
+            self.flinching = FLINCH_TIME + RETURNED_AFTER * FLINCH_HALF_LIFE;
         }
         self.drives.hit(&self.def.ragdoll, body, impulse.length());
         self.events.push(CharacterEvent::Flinched { body });
@@ -141,11 +134,11 @@ impl Character {
 
     /// Lets a limb that gave way come back; true once it has.
     pub(super) fn come_back(&mut self, dt: f32) -> bool {
-        let back = RETURNED * RETURNS;
+        let back = RETURNED_AFTER * FLINCH_HALF_LIFE;
         let before = self.flinching;
         self.flinching -= dt;
         if before > back && self.flinching <= back {
-            self.drives.set_all(DriveMode::Keyed, RETURNS);
+            self.drives.set_all(DriveMode::Keyed, FLINCH_HALF_LIFE);
         }
         self.flinching <= 0.0
     }

@@ -6,33 +6,15 @@
 
 use super::memory::Planting;
 use super::{Character, State, ground};
+use crate::character::tuning::{
+    BALL_AHEAD, FEET_QUICKNESS, FOOT_EDGE, FOOT_FLOOR, FOOT_HOME, FOOT_RANGE, FOOT_SEARCH, MOST_TILT,
+    PLANTED_SOONER, WALKS_FROM,
+};
 use crate::def::RagdollDef;
 use sinew_anim::ik::{FootGround, FootPlacement, TwoBone, place_feet};
 use sinew_anim::{JointIdx, LocalTransform, Rig, local_to_model, smoothstep};
 use sinew_math::{Affine, Transform, Vec3, max, min, normalize_or, trig};
 use sinew_physics::World;
-
-/// Natural frequency with which feet follow the ground, critically damped, rad/s: a step of a stair asks for as much of a leg as a
-/// transition within 0.2 s.
-const QUICKNESS: f32 = 12.0;
-/// Ground farther up or down than this is nothing to stand on, metres.
-const MOST: f32 = 0.32;
-/// Ground less far up or down than this is the floor, metres.
-const LEAST: f32 = 2e-3;
-/// A foot that is no higher and no faster than this has nothing left to come back from, metres and m/s.
-const OVER: f32 = 1e-5;
-/// So many times sooner than the body stands upright its feet are planted.
-const PLANTED: f32 = 2.0;
-/// Ground that rises or falls more than this along a foot is an edge, not a slope.
-const STEEPEST: f32 = 0.6;
-/// Most that a foot tilts, radians.
-const MOST_TILT: f32 = 0.6;
-/// Height above a foot from which the ground is sought, metres.
-const ABOVE: f32 = 0.5;
-/// A character that goes this fast has its feet where its clips have them, m/s.
-const WALKS: f32 = 0.3;
-/// Place of the ball in front of an ankle without toes, in lengths of the leg.
-const BALL: f32 = 0.14;
 
 /// The legs of a humanoid that stands on them.
 #[derive(Clone, Debug)]
@@ -66,8 +48,9 @@ impl Feet {
             let toes = part("Toes").into_iter().chain(body.merged.iter().copied()).map(place);
             // The foremost of what the foot is made of.
             let foremost = toes.fold(ankle.translation, |a, b| if b.z > a.z { b } else { a });
-            let usual = ankle.translation + Vec3::Z * (BALL * length);
-            let ball = if foremost.z > ankle.translation.z + 0.5 * BALL * length { foremost } else { usual };
+            let usual = ankle.translation + Vec3::Z * (BALL_AHEAD * length);
+            let ball =
+                if foremost.z > ankle.translation.z + 0.5 * BALL_AHEAD * length { foremost } else { usual };
             is_chain.then(|| (leg, ankle.inverse_point(ball), ankle.translation.y))
         };
         let [left, right] = [foot("left")?, foot("right")?];
@@ -97,7 +80,7 @@ impl Feet {
             floor: 0.0,
             ankle_height: self.ankle_height,
             free_height: 0.1,
-            max_step: MOST,
+            max_step: FOOT_RANGE,
             max_tilt: MOST_TILT,
         };
         let normal = |foot: usize| {
@@ -128,7 +111,7 @@ impl Planting {
             follow(&mut self.slopes[foot], &mut self.slope_rates[foot], goal.slope, dt);
         }
         let all = [self.heights, self.rates, self.slopes, self.slope_rates];
-        if goals == [Need::default(); 2] && all.as_flattened().iter().all(|x| x.abs() < OVER) {
+        if goals == [Need::default(); 2] && all.as_flattened().iter().all(|x| x.abs() < FOOT_HOME) {
             *self = Self::default();
         }
     }
@@ -142,11 +125,11 @@ impl Planting {
 
 /// `x″ = −ω²(x − g) − 2ω x′` for `dt` seconds, solved exactly.
 fn follow(x: &mut f32, rate: &mut f32, goal: f32, dt: f32) {
-    let decay = trig::exp(-QUICKNESS * dt);
+    let decay = trig::exp(-FEET_QUICKNESS * dt);
     let off = *x - goal;
-    let carried = *rate + QUICKNESS * off;
+    let carried = *rate + FEET_QUICKNESS * off;
     *x = goal + (off + carried * dt) * decay;
-    *rate = (*rate - QUICKNESS * carried * dt) * decay;
+    *rate = (*rate - FEET_QUICKNESS * carried * dt) * decay;
 }
 
 impl Character {
@@ -156,8 +139,8 @@ impl Character {
         let def = self.def.clone();
         let Some(feet) = def.feet() else { return };
         let share = match self.state {
-            State::GettingUp => smoothstep(PLANTED * (1.0 - self.lies_still())),
-            State::Animated if !self.planting.is_over() => 1.0 - smoothstep(self.speed / WALKS),
+            State::GettingUp => smoothstep(PLANTED_SOONER * (1.0 - self.lies_still())),
+            State::Animated if !self.planting.is_over() => 1.0 - smoothstep(self.speed / WALKS_FROM),
             _ => 0.0,
         };
         if share <= 0.0 && self.planting.is_over() {
@@ -197,18 +180,18 @@ impl Character {
         let place = self.world_from_character;
         let normal = place.rotation * Vec3::Y;
         let over_floor = |point: Vec3| {
-            let height = ground::below(world, point, ABOVE, own)?;
+            let height = ground::below(world, point, FOOT_SEARCH, own)?;
             let away = point - place.translation;
             let floor = place.translation.y - (normal.x * away.x + normal.z * away.z) / normal.y;
-            Some(height - floor).filter(|over| over.abs() <= MOST)
+            Some(height - floor).filter(|over| over.abs() <= FOOT_RANGE)
         };
-        let least = |over: f32| if over.abs() < LEAST { 0.0 } else { over };
+        let least = |over: f32| if over.abs() < FOOT_FLOOR { 0.0 } else { over };
         [0, 1].map(|foot| {
             let ankle: Transform = place * model[feet.legs[foot].end].to_rigid();
             let (heel, ball) = (ankle.translation, ankle.point(feet.balls[foot]));
             let along = (ball - heel) * Vec3::new(1.0, 0.0, 1.0);
             match (over_floor(heel), over_floor(ball)) {
-                (Some(heel), Some(ball)) if (ball - heel).abs() <= STEEPEST * along.length() => {
+                (Some(heel), Some(ball)) if (ball - heel).abs() <= FOOT_EDGE * along.length() => {
                     Need { height: least(heel), slope: least(ball - heel) / max(along.length(), 1e-3) }
                 }
                 (heel, ball) => {

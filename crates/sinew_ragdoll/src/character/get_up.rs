@@ -4,22 +4,12 @@ use super::memory::Rising;
 use super::moves::{GetUp, Start};
 use super::pose_similarity::{PoseSimilarity, Stance};
 use super::{Character, CharacterEvent, State, ground};
+use crate::character::tuning::{
+    ABOVE_PELVIS, INTO_GET_UP, INTO_LOOP, INTO_STANDING, LYING_MOVER, STRAIGHTENS,
+};
 use sinew_anim::{Animator, LoopMode, Pose, Track, TrackDef, TrackId, local_to_model, smoothstep};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 use sinew_physics::World;
-
-/// Seconds in which the bodies' pose dies away in a get-up clip.
-const INTO_GET_UP: f32 = 0.35;
-/// Seconds in which it dies away in the looped clip, without one to get up by.
-const INTO_STANDING: f32 = 0.8;
-/// Seconds in which the end of the get-up clip dies away in the looped one.
-const INTO_LOOP: f32 = 0.3;
-/// Share of a get-up clip, to its end, in which a body that lay on a slope stands upright.
-const STRAIGHTENS: f32 = 0.6;
-/// Share of its height that a mover has over a body that lies.
-const LIES: f32 = 0.0;
-/// Height above the pelvis from which the ground is sought, metres.
-const ABOVE_PELVIS: f32 = 0.3;
 
 /// A get-up clip, the moment of it that is most like the present pose, and how much that is.
 #[derive(Clone, Copy, Debug)]
@@ -105,7 +95,7 @@ impl Character {
         }
         self.leave_bodies(world);
         self.state = State::GettingUp;
-        self.stand_up(world, LIES);
+        self.stand_up(world, LYING_MOVER);
     }
 
     /// Share of a get-up that is left until it stands upright: 1 and more as long as it still lies, 0 and less once it does.

@@ -1,18 +1,14 @@
 //! Ground that a character stands on.
 
+use crate::character::tuning::{GROUND_DEPTH, LEVEL_GROUND, LIES_ON, LYING_SEARCH, STEEPEST_GROUND};
 use sinew_math::{Rotation, Vec3, max, min, trig};
 use sinew_physics::ray::Ray;
 use sinew_physics::{BodyHit, BodyId, BodyKinds, ContactRule, QueryFilter, ShapeId, Velocity, World};
 
-/// The highest step that a walking character climbs, metres.
-pub(super) const HIGHEST_STEP: f32 = 0.45;
-/// Depth down to which the ground is sought, metres.
-const DEPTH: f32 = 100.0;
-
 /// Height of what bears under a point, sought from `above` metres over it: of the static world for a character that is not in
 /// it (`own` is `None`), else of whatever is there but its own bodies and those of others that their clips move.
 pub(super) fn below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId]>) -> Option<f32> {
-    let ray = Ray { origin: point + Vec3::Y * above, direction: Vec3::Y * -(above + DEPTH) };
+    let ray = Ray { origin: point + Vec3::Y * above, direction: Vec3::Y * -(above + GROUND_DEPTH) };
     let hit = match own {
         None => world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&ray)?,
         Some(own) => bearer(world, &ray, own)?,
@@ -47,9 +43,6 @@ impl GroundMotion {
     }
 }
 
-/// Depth under a pelvis down to which the ground that bears it is sought, metres.
-const LIES_ON: f32 = 1.0;
-
 /// Motion of what the first of some bodies, a pelvis, lies on.
 pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
     let Some(&pelvis) = bodies.first() else { return GroundMotion::default() };
@@ -58,17 +51,11 @@ pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
     GroundMotion { velocity: world.velocity(hit.body), center: world.center_of_mass(hit.body) }
 }
 
-/// Height above a point of a body that lies from which the ground is sought, metres.
-const ABOVE: f32 = 0.3;
-/// Ground that is steeper counts as if it were not, radians.
-const STEEPEST: f32 = 0.6;
-/// Slope below which ground counts as level, radians.
-const LEVEL: f32 = 0.02;
-
 /// The ground that a body lies on, as a plane through its heights under these points: the turn that brings the vertical to
 /// the plane's normal, scaled axis. Stairs are the slope on which they lie.
 pub(super) fn slope(world: &World, points: &[Vec3], own: Option<&[BodyId]>) -> Vec3 {
-    let under = |&point: &Vec3| below(world, point, ABOVE, own).map(|y| Vec3::new(point.x, y, point.z));
+    let under =
+        |&point: &Vec3| below(world, point, LYING_SEARCH, own).map(|y| Vec3::new(point.x, y, point.z));
     let places: Vec<Vec3> = points.iter().filter_map(under).collect();
     if places.len() < 3 {
         return Vec3::ZERO;
@@ -86,10 +73,10 @@ pub(super) fn slope(world: &World, points: &[Vec3], own: Option<&[BodyId]>) -> V
     let det = xx * zz - xz * xz;
     let (a, b) = ((xy * zz - zy * xz) / det, (zy * xx - xy * xz) / det);
     let steep = trig::atan2((a * a + b * b).sqrt(), 1.0);
-    if steep < LEVEL {
+    if steep < LEVEL_GROUND {
         return Vec3::ZERO;
     }
     let normal = Vec3::new(-a, 1.0, -b).normalize();
     let turn = Rotation::from_arc(Vec3::Y, normal).to_scaled_axis();
-    turn * (max(min(steep, STEEPEST), 0.0) / steep)
+    turn * (max(min(steep, STEEPEST_GROUND), 0.0) / steep)
 }

@@ -1,11 +1,9 @@
 //! Bodies of a character that its clips move: led from pose to pose, and what strikes them.
 
 use super::{Character, CharacterEvent};
+use crate::character::tuning::TELEPORTED;
 use sinew_math::{Rotation, Transform, Vec3, max};
 use sinew_physics::{BodyId, BodyKind, Velocity, World};
-
-/// Way of a body within a step beyond which it was put elsewhere, metres.
-const PUT: f32 = 1.0;
 
 impl Character {
     /// Has the hit bodies go where the pose will be at the end of the next step, as far as it goes on as it did.
@@ -116,7 +114,7 @@ impl Character {
 fn ahead(before: Option<Transform>, now: Transform, center: Vec3) -> Transform {
     let Some(before) = before else { return now };
     let way = now.point(center) - before.point(center);
-    if way.length() > PUT {
+    if way.length() > TELEPORTED {
         return now;
     }
     let turn: Rotation = now.rotation * before.rotation.inverse();

@@ -5,6 +5,7 @@ use super::distances::Detail;
 use super::memory::Hold;
 use super::stumble::Stumble;
 use super::{Character, CharacterDef, State};
+use crate::character::tuning::{FELLING_SPEED, MOVER_RADIUS};
 use crate::def::RagdollDef;
 use crate::ragdoll::{BodyState, Ragdoll};
 use sinew_math::{Transform, Vec3, max, min};
@@ -82,11 +83,6 @@ pub struct InWorld {
     pub tells_contacts: bool,
 }
 
-/// Speed that a blow gives to the whole of a character that it fells, m/s.
-const FELLS: f32 = 0.6;
-/// Radius of a mover over its height.
-const RADIUS: f32 = 0.17;
-
 impl InWorld {
     /// The defaults for a ragdoll's size and mass.
     pub fn of(ragdoll: &RagdollDef) -> Self {
@@ -95,11 +91,11 @@ impl InWorld {
         let usual = MoverDef::default();
         let mover = MoverDef {
             height,
-            radius: RADIUS * height,
+            radius: MOVER_RADIUS * height,
             mass,
             push_force: usual.push_force * mass / usual.mass,
             step_height: usual.step_height * height / usual.height,
-            skin: min(usual.skin, 0.1 * RADIUS * height),
+            skin: min(usual.skin, 0.1 * MOVER_RADIUS * height),
             ..usual
         };
         Self {
@@ -109,7 +105,7 @@ impl InWorld {
             jump_speed: 3.5,
             air_time: 1.2,
             landing_speed: 7.0,
-            toughness: Toughness::Impulse(FELLS * mass),
+            toughness: Toughness::Impulse(FELLING_SPEED * mass),
             most_steps: 4,
             feels: 3.0,
             tells_contacts: false,

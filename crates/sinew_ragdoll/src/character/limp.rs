@@ -3,6 +3,9 @@
 use super::ground::{self, GroundMotion};
 use super::memory::Stillness;
 use super::{AfterSettling, Character, CharacterEvent, State};
+use crate::character::tuning::{
+    HAND_OVER_TIME, LINGERS, SLACKENS, STILL_ANGULAR, STILL_LINEAR, STILL_TIME, SUNK,
+};
 use crate::def::RagdollBodyDef;
 use crate::drive::DriveMode;
 use crate::hand_over::body_velocity;
@@ -10,22 +13,6 @@ use crate::ragdoll::BodyState;
 use sinew_anim::{Animator, Motion, Pose};
 use sinew_math::{Transform, Vec3, min};
 use sinew_physics::{BodyId, ContactRule, Velocity, World};
-
-/// Seconds between the poses ahead of now that the hand-over takes velocities from: short against any motion, long against
-/// rounding.
-const HAND_OVER: f32 = 1.0 / 1000.0;
-
-/// Seconds in which what no body moves comes to rest.
-const LINGERS: f32 = 0.25;
-
-/// Seconds in which joints take on their friction.
-const SLACKENS: f32 = 0.2;
-
-/// A body below both speeds lies still, m/s and rad/s.
-pub(crate) const STILL_LINEAR: f32 = 0.02;
-pub(crate) const STILL_ANGULAR: f32 = 0.05;
-/// Seconds that all bodies must be still.
-pub(crate) const STILL_TIME: f32 = 0.5;
 
 impl Character {
     /// Lets the bodies take over, at the pose and the speed that the animation has now. Nothing happens if they did
@@ -123,21 +110,21 @@ impl Character {
         self.pose = pose;
         let (mut animator, mut way) = (self.sent_ahead(), Transform::IDENTITY);
         let laps = laps(&animator);
-        self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut ahead);
+        self.bodies_ahead(&mut animator, &mut way, HAND_OVER_TIME, &mut ahead);
         let mut further = Vec::new();
-        self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut further);
+        self.bodies_ahead(&mut animator, &mut way, HAND_OVER_TIME, &mut further);
         let mut from = now.clone();
         if self::laps(&animator) != laps {
             // Across a loop's seam poses may jump: what counts is how they go on behind it.
             core::mem::swap(&mut from, &mut further);
-            self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut ahead);
-            self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut further);
+            self.bodies_ahead(&mut animator, &mut way, HAND_OVER_TIME, &mut ahead);
+            self.bodies_ahead(&mut animator, &mut way, HAND_OVER_TIME, &mut further);
         }
         self.scratch.ahead = Some(animator);
         let place = self.world_from_character;
         let state = |(index, body): (usize, &RagdollBodyDef)| {
             let [first, second, third] = [from[index], ahead[index], further[index]];
-            let between = |a, b| body_velocity(a, b, body.mass.center, HAND_OVER, self.def.speed_bound);
+            let between = |a, b| body_velocity(a, b, body.mass.center, HAND_OVER_TIME, self.def.speed_bound);
             let (soon, later) = (between(first, second), between(second, third));
             // Means of two spans, brought to the start of the first: a transition may well change speeds by a tenth in one.
             let start = |soon: Vec3, later: Vec3| place.rotation * (soon + (soon - later) * 0.5);
@@ -276,9 +263,6 @@ fn is_still_on(world: &World, bodies: &[BodyId], ground: GroundMotion) -> bool {
         linear.length() < STILL_LINEAR && (velocity.angular - ground.angular()).length() < STILL_ANGULAR
     })
 }
-
-/// Deeper than this in what stands, a body does not lie yet, metres: it is pushed out, for which it has no speed of its own.
-const SUNK: f32 = 5e-3;
 
 /// True if one of the bodies is deeper than [`SUNK`] in what stands, and on its way out.
 pub(crate) fn is_sunk(world: &World, bodies: &[BodyId]) -> bool {

@@ -4,6 +4,7 @@
 //! in the character's own axes.
 
 use super::CharacterDef;
+use crate::character::tuning::{MIRROR_TOLERANCE, MOVED};
 use sinew_anim::{JointIdx, LocalTransform, Rig, local_to_model};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
@@ -16,16 +17,10 @@ pub(super) struct Mirror {
     bind: Vec<Rotation>,
 }
 
-/// Largest distance of a joint from the mirror image of its counterpart in the bind pose, share of the body's height.
-const TOLERANCE: f32 = 0.03;
-
-/// Distance from its rest beyond which a joint counts as moved along, share of its distance from its parent.
-const MOVED: f32 = 1e-3;
-
 impl Mirror {
     pub fn new(def: &CharacterDef) -> Self {
         let bind: Vec<Transform> = def.bind().iter().map(Affine::to_rigid).collect();
-        let mut twins = by_places(&def.rig, &bind, TOLERANCE * def.ragdoll.height);
+        let mut twins = by_places(&def.rig, &bind, MIRROR_TOLERANCE * def.ragdoll.height);
         by_roles(def, &mut twins);
         // Whoever is not seen by the one that it sees is alone.
         let seen = twins.clone();

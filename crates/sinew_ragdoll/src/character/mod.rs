@@ -48,9 +48,11 @@ mod show;
 mod size;
 mod stumble;
 mod travel;
+mod tuning;
 mod walk;
 
-pub(crate) use limp::{STILL_TIME, is_still, is_sunk, touches_world};
+pub(crate) use limp::{is_still, is_sunk, touches_world};
+pub(crate) use tuning::STILL_TIME;
 
 pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet, Opening};
 pub use distances::{Detail, Distances};

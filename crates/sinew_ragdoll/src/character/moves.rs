@@ -3,6 +3,7 @@
 use super::mirror::Mirror;
 use super::pose_similarity::{Landmarks, Stance};
 use super::{CharacterDef, Locomotion, MotionSet, travel};
+use crate::character::tuning::{MAY_BEGIN, MIRRORED_FRAME, ROOT_FRAME, STARTS_APART};
 use crate::def::RagdollDef;
 use crate::mapping::Mapping;
 use sinew_anim::take::Take;
@@ -55,15 +56,6 @@ pub(super) struct Start {
     /// Character from body, one for each.
     pub bodies: Vec<Transform>,
 }
-
-/// Share of a get-up clip in which it may begin.
-const MAY_BEGIN: f32 = 0.4;
-/// Seconds between the moments at which it may.
-const STARTS_APART: f32 = 1.0 / 15.0;
-/// Seconds between the poses of a clip whose root motion is moved to the pelvis.
-const FRAME: f64 = 1.0 / 60.0;
-/// And of one that is mirrored: getting up is slow.
-const MIRRORED_FRAME: f64 = 1.0 / 30.0;
 
 impl Moves {
     /// Moves of a character that has no motions.
@@ -130,7 +122,7 @@ fn built(def: &CharacterDef, clip: &Clip) -> Result<AnimatedClip, MotionError> {
 /// The clip with all its root motion in the pelvis: see [`Mapping`](crate::Mapping).
 fn flat(def: &CharacterDef, clip: &Clip) -> Clip {
     let moves_carriers = clip.channels.iter().any(|channel| def.mapping().carries(channel.joint));
-    if moves_carriers { flat_take(def, clip, FRAME).to_clip(&def.rig, &clip.name) } else { clip.clone() }
+    if moves_carriers { flat_take(def, clip, ROOT_FRAME).to_clip(&def.rig, &clip.name) } else { clip.clone() }
 }
 
 fn flat_take(def: &CharacterDef, clip: &Clip, frame_time: f64) -> Take {
@@ -145,7 +137,7 @@ fn flat_take(def: &CharacterDef, clip: &Clip, frame_time: f64) -> Take {
 
 /// A clip that travels, on its place, and its way; frames fit its length, so that the last is its end.
 fn travelling(def: &CharacterDef, clip: &Clip) -> Option<(Clip, MotionTrack)> {
-    let frames = (f64::from(clip.duration) / FRAME).round();
+    let frames = (f64::from(clip.duration) / ROOT_FRAME).round();
     if !(frames >= 1.0 && frames < (Take::MOST_FRAMES - 1) as f64) {
         return None;
     }

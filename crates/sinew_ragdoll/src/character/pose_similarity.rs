@@ -3,6 +3,7 @@
 //! As in motion graphs (Kovar, Gleicher, Pighin, SIGGRAPH 2002, §3.1): one pose is turned about the vertical and moved so
 //! that points of the body come as near to those of the other as they can; what distance is left tells them apart.
 
+use crate::character::tuning::{STICK, STICK_WEIGHT};
 use crate::def::{RagdollBodyDef, RagdollDef};
 use crate::mapping::Mapping;
 use sinew_anim::JointIdx;
@@ -50,11 +51,6 @@ fn weight(body: &RagdollBodyDef) -> f32 {
     }
 }
 
-/// Share of a stick's end.
-const OF_A_STICK: f32 = 1.5;
-/// Length of a stick over that of the body.
-const STICK: f32 = 0.2;
-
 impl Landmarks {
     pub fn new(def: &RagdollDef) -> Self {
         let bind = |body: usize| (body, def.bodies[body].character_from_body.rotation.inverse());
@@ -62,7 +58,7 @@ impl Landmarks {
             .iter()
             .find_map(|role| def.bodies.iter().position(|body| body.role == *role));
         let trunk: Vec<_> = core::iter::once(0).chain(chest.filter(|&body| body > 0)).map(bind).collect();
-        let sticks = core::iter::repeat_n(OF_A_STICK, 2 * trunk.len());
+        let sticks = core::iter::repeat_n(STICK_WEIGHT, 2 * trunk.len());
         let shares: Vec<f32> = def.bodies.iter().map(weight).chain(sticks).collect();
         let total: f32 = shares.iter().sum();
         Self {

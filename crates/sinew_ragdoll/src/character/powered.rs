@@ -1,6 +1,9 @@
 //! Bodies between clips and physics: each led, pinned, held by muscles or limp, while clips and mover go on.
 
 use super::{Character, CharacterEvent, State};
+use crate::character::tuning::{
+    FALLS_BEYOND, FALLS_TURNED, PIN_BEARS, PIN_HELPS, PIN_STEPS, PIN_TURNS, POWERED_HALF_LIFE,
+};
 use crate::drive::{DriveMode, Drives, Muscle, Pin};
 use crate::ragdoll::Ragdoll;
 use sinew_math::{Transform, Vec3};
@@ -35,16 +38,6 @@ pub enum Part<'a> {
 /// Pins that keep a body of a powered character near its place, and its legs and pelvis firmer: else feet would drag.
 const NEAR: Pin = Pin { hertz: 2.0, damping_ratio: 1.0, max_force: 0.0, max_torque: 0.0 };
 const WALKS: Pin = Pin { hertz: 4.0, ..NEAR };
-/// Most force of that over the weight of the body; at the pelvis over that of the whole, and the torque there, metres.
-const HELPS: f32 = 1.0;
-const STEPS: f32 = 4.0;
-const BEARS: f32 = 1.0;
-const TURNS: f32 = 0.3;
-/// Half-life of coming back to the clips, seconds.
-const RETURNS: f32 = 0.1;
-/// A powered character whose pelvis is farther than this from its clips', over its height, or turned by more, radians, falls.
-const FARTHEST: f32 = 0.3;
-const MOST_TURNED: f32 = 1.0;
 
 impl Character {
     /// Has all of it moved in another way.
@@ -55,8 +48,8 @@ impl Character {
         match (preset, self.state) {
             (Preset::Limp, _) => self.go_limp(world),
             (Preset::Animated, State::Powered) => {
-                self.drives.set_all(DriveMode::Keyed, RETURNS);
-                self.flinching = 6.0 * RETURNS;
+                self.drives.set_all(DriveMode::Keyed, POWERED_HALF_LIFE);
+                self.flinching = 6.0 * POWERED_HALF_LIFE;
                 self.state = State::Flinching;
                 self.stumble(world);
             }
@@ -73,7 +66,7 @@ impl Character {
                 let gravity = world.def().gravity.length();
                 for body in 0..self.def.ragdoll.bodies.len() {
                     let pin = self.powered_pin(body, gravity);
-                    self.drives.set(body, DriveMode::Pinned(Muscle::ALIVE, pin), RETURNS);
+                    self.drives.set(body, DriveMode::Pinned(Muscle::ALIVE, pin), POWERED_HALF_LIFE);
                 }
                 self.become_powered();
                 self.drive_bodies(world);
@@ -93,14 +86,14 @@ impl Character {
         let def = &self.def.ragdoll;
         if body == 0 {
             let weight = def.total_mass * gravity;
-            return Pin { max_force: BEARS * weight, max_torque: TURNS * weight, ..WALKS };
+            return Pin { max_force: PIN_BEARS * weight, max_torque: PIN_TURNS * weight, ..WALKS };
         }
         let weight = def.bodies[body].mass.mass * gravity;
         let role = &def.bodies[body].role;
         if ["Leg", "Foot", "Toes"].iter().any(|part| role.ends_with(part)) {
-            Pin { max_force: STEPS * weight, ..WALKS }
+            Pin { max_force: PIN_STEPS * weight, ..WALKS }
         } else {
-            Pin { max_force: HELPS * weight, ..NEAR }
+            Pin { max_force: PIN_HELPS * weight, ..NEAR }
         }
     }
 
@@ -234,6 +227,6 @@ impl Character {
         let ragdoll = self.ragdoll.as_ref().expect("a powered character has bodies");
         let now = world.transform(ragdoll.bodies[0]);
         let away = (now.translation - pelvis.translation).length();
-        away > FARTHEST * self.def.ragdoll.height || now.rotation.angle_to(pelvis.rotation) > MOST_TURNED
+        away > FALLS_BEYOND * self.def.ragdoll.height || now.rotation.angle_to(pelvis.rotation) > FALLS_TURNED
     }
 }

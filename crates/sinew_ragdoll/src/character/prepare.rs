@@ -6,6 +6,7 @@
 use super::get_up::{Choice, choose};
 use super::memory::Preparation;
 use super::{Character, CharacterEvent, GettingReady, State};
+use crate::character::tuning::{PREPARES_HALF_LIFE, ROLL_HERTZ, ROLL_STRENGTH, TIME_TO_PULL, TIME_TO_ROLL};
 use crate::drive::{DriveMode, Muscle, Pin};
 use sinew_math::Rotation;
 use sinew_physics::{Velocity, World};
@@ -15,17 +16,8 @@ use sinew_physics::{Velocity, World};
 /// enough.
 const AT_ONCE: [f32; 2] = [0.85, 0.16];
 const NEAR_ENOUGH: [f32; 2] = [0.7, 0.14];
-/// Seconds in which the body is brought there: where its trunk has to be turned, and where it has not.
-const TIME_TO_ROLL: f32 = 1.5;
-const TIME_TO_PULL: f32 = 0.5;
-/// Seconds in which half of the strength is there.
-const HALF_LIFE: f32 = 0.1;
 /// Muscle that draws the limbs.
 const PULL: Muscle = Muscle { hertz: 2.0, damping_ratio: 1.0, strength: 0.6 };
-/// Frequency of the pin that turns a trunk, Hz.
-const ROLL: f32 = 2.0;
-/// Largest torque of what rolls a body over, on each part of the trunk, over its weight times its height: 90 N·m of a man.
-const STRENGTH: f32 = 0.07;
 
 impl Character {
     /// Gets up, or first brings the body to where it can.
@@ -46,13 +38,13 @@ impl Character {
         };
         self.state = State::Preparing;
         self.events.push(CharacterEvent::Preparing { rolls });
-        self.drives.set_all(DriveMode::Powered(PULL), HALF_LIFE);
+        self.drives.set_all(DriveMode::Powered(PULL), PREPARES_HALF_LIFE);
         if rolls {
             let gravity = world.def().gravity.length();
-            let max_torque = STRENGTH * def.ragdoll.total_mass * gravity * def.ragdoll.height;
-            let pin = Pin { hertz: ROLL, damping_ratio: 1.0, max_force: 0.0, max_torque };
+            let max_torque = ROLL_STRENGTH * def.ragdoll.total_mass * gravity * def.ragdoll.height;
+            let pin = Pin { hertz: ROLL_HERTZ, damping_ratio: 1.0, max_force: 0.0, max_torque };
             for body in moves.landmarks.trunk_bodies() {
-                self.drives.set(body, DriveMode::Pinned(PULL, pin), HALF_LIFE);
+                self.drives.set(body, DriveMode::Pinned(PULL, pin), PREPARES_HALF_LIFE);
             }
         }
         self.draw(world, &choice);

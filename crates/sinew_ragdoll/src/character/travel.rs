@@ -1,15 +1,10 @@
 //! A looped clip that travels: the way from its start to its end is taken out of the pose, so that it goes on with each lap.
 
 use super::CharacterDef;
+use crate::character::tuning::{STAYS_TURNED, STAYS_WITHIN, STRAIGHT};
 use sinew_anim::take::Take;
 use sinew_anim::{MotionTrack, local_to_model};
 use sinew_math::{Affine, Rotation, Transform, Vec3, trig};
-
-/// A clip that ends nearer than this to where it began, metres and radians, stays in its place.
-const NEAR: f32 = 0.02;
-const LEVEL: f32 = 0.02;
-/// A turn that is less than this goes straight on, radians.
-const STRAIGHT: f32 = 1e-4;
 
 /// A motion over the ground: from start to end of a clip, along an arc at constant speed.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +24,7 @@ impl Lap {
     }
 
     fn travels(self) -> bool {
-        self.way.length() > NEAR || self.turn.abs() > LEVEL
+        self.way.length() > STAYS_WITHIN || self.turn.abs() > STAYS_TURNED
     }
 
     /// After a share of it.

@@ -1,24 +1,12 @@
 //! Steering: where a character's mover is to go, and how the character goes with it.
 
 use super::{Character, State};
+use crate::character::tuning::{
+    FASTEST_PACE, MOST_OVER, PACE_RATE, PICKS_UP, STANDS_BELOW, STEP_SETTLES, STEP_SLOPE,
+};
 use sinew_anim::{ClipId, MotionTrack, TrackDef, TrackId, smoothstep};
 use sinew_math::{Rotation, Transform, Vec3, clamp, max, min, normalize_or, trig};
 use sinew_physics::World;
-
-/// Share of what a step of a stair lifts it that is left after a second's part: the eye follows within a few frames, 1/s.
-const SETTLES: f32 = 14.0;
-/// Farthest that it is shown from its mover, metres.
-const MOST_OVER: f32 = 0.4;
-/// Ground that rises by more than this over the way is a step.
-const STEEPEST: f32 = 1.2;
-/// Rate at which the pace of the looped clip follows the speed, 1/s.
-const PACE: f32 = 10.0;
-/// Speed below which it begins to stand, m/s.
-const STANDS: f32 = 0.35;
-/// Acceleration of what stands on its own feet, m/s²: shoes give way beyond it.
-const PICKS_UP: f32 = 5.0;
-/// Most times its own speed that a clip is played.
-const FASTEST: f32 = 2.0;
 
 impl Character {
     /// Has it go at a velocity over the ground from now on, m/s, whatever its clips do: they are played as fast as it really
@@ -112,10 +100,10 @@ impl Character {
         let way = feet - mover.interpolated(0.0);
         let level = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
         let rise = way.y - velocity.y * dt;
-        if ground.is_some() && rise.abs() > STEEPEST * level(way).length() + 1e-3 {
+        if ground.is_some() && rise.abs() > STEP_SLOPE * level(way).length() + 1e-3 {
             presence.over -= rise;
         }
-        presence.over = clamp(presence.over, -MOST_OVER, MOST_OVER) * trig::exp(-SETTLES * dt);
+        presence.over = clamp(presence.over, -MOST_OVER, MOST_OVER) * trig::exp(-STEP_SETTLES * dt);
         let fell = floor.y - presence.velocity.y;
         let landed = ground.is_some() && presence.air > 0.0;
         presence.air = if ground.is_some() { 0.0 } else { presence.air + dt };
@@ -180,19 +168,19 @@ impl Character {
         if presence.wish.is_none() {
             return;
         }
-        presence.pace += (self.speed - presence.pace) * -trig::exp_m1(-PACE * dt);
+        presence.pace += (self.speed - presence.pace) * -trig::exp_m1(-PACE_RATE * dt);
         let pace = presence.pace;
         let Some(walk) = self.looped_track() else { return };
         let natural = self.natural_speed();
         if natural > 0.0 {
-            self.animator.set_speed(walk, clamp(pace / natural, 0.0, FASTEST));
+            self.animator.set_speed(walk, clamp(pace / natural, 0.0, FASTEST_PACE));
         }
         let Some(idle) = self.def.motions().idle.map(|idle| self.def.clip(idle)) else { return };
         let def = self.def.clone();
         let idle = self.track_of(idle).unwrap_or_else(|| {
             self.animator.play(def.set(), &TrackDef { weight: 0.0, ..TrackDef::new(idle) })
         });
-        let share = smoothstep(clamp(pace / STANDS, 0.0, 1.0));
+        let share = smoothstep(clamp(pace / STANDS_BELOW, 0.0, 1.0));
         self.animator.set_weight(walk, share);
         self.animator.set_weight(idle, 1.0 - share);
     }

@@ -5,6 +5,7 @@ use super::{Code, Finding, Repair, Severity};
 use crate::build::bones::Anatomy;
 use crate::build::part::{Part, Side, part_of_role};
 use crate::def::RagdollDef;
+use crate::doctor::tuning::{UNCERTAIN, USUAL_HEIGHT};
 use crate::masses::de_leva::Sex;
 use crate::masses::default_mass;
 use sinew_anim::roles::Role;
@@ -17,8 +18,6 @@ const HEIGHTS: core::ops::RangeInclusive<f32> = 0.3..=5.0;
 const CREATURES: core::ops::RangeInclusive<f32> = 0.05..=30.0;
 /// Heights that a human may have, metres.
 const HUMAN: core::ops::RangeInclusive<f32> = 0.5..=3.0;
-/// A person's, metres.
-const USUAL: f32 = 1.7;
 /// Lengths of units that files are mistaken in, metres, and what they are called.
 const UNITS: [(f32, &str); 6] = [
     (0.01, "centimetres"),
@@ -119,11 +118,11 @@ fn unit_of(def: &RagdollDef) -> (f32, String) {
     // The unit that comes nearest to a person's height; of a creature any that makes a creature of it.
     let human = bones_of(def).anatomy == Anatomy::Human;
     let heights = if human { HUMAN } else { HEIGHTS };
-    let ratio = |factor: f32| max(def.height * factor / USUAL, USUAL / (def.height * factor));
+    let ratio = |factor: f32| max(def.height * factor / USUAL_HEIGHT, USUAL_HEIGHT / (def.height * factor));
     let known = UNITS.iter().filter(|(factor, _)| heights.contains(&(def.height * factor)));
     let nearest = known.reduce(|best, one| if ratio(one.0) < ratio(best.0) { one } else { best });
     nearest.map_or_else(
-        || (USUAL / def.height, format!("a unit of {:.3} mm", 1000.0 * USUAL / def.height)),
+        || (USUAL_HEIGHT / def.height, format!("a unit of {:.3} mm", 1000.0 * USUAL_HEIGHT / def.height)),
         |&(factor, name)| (factor, name.to_owned()),
     )
 }
@@ -213,9 +212,6 @@ fn expected(exam: &Exam<'_>) -> Vec<(Role, Option<usize>)> {
     }
     missing
 }
-
-/// A role below this confidence is told of.
-const UNCERTAIN: f32 = 0.4;
 
 /// Findings about what was inferred of the rig, and may be wrong.
 pub(super) fn inferred(exam: &Exam<'_>) -> Vec<Finding> {

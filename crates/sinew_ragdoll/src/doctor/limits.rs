@@ -5,24 +5,13 @@ use super::geometry::longest;
 use super::{Code, Finding};
 use crate::build::bones::Anatomy;
 use crate::build::part::Part;
+use crate::doctor::tuning::{BACKWARDS, BEYOND_AT_BIND, LOCKED, NARROW, NO_LIMIT, OTHER_ZERO};
 use core::f32::consts::PI;
 use sinew_math::limits::hinge_angle;
 use sinew_math::{
     Mat3, Range, Rotation, SwingTwistLimit, Sym3, Transform, Vec3, any_orthonormal, max, normalize_or,
 };
 use sinew_physics::{JointKind, MassProperties, Softness};
-
-/// A joint may be so far beyond a limit in the bind pose, radians (1°).
-const AT_BIND: f32 = 0.017_453;
-/// Frames that differ by more than this in the bind pose have another zero, radians (5°).
-const OTHER_ZERO: f32 = 0.087;
-/// A range this wide is no limit, radians (350°).
-const NO_LIMIT: f32 = 6.1;
-/// A range narrower than this jitters, unless it is locked, radians (5° and 0.5°).
-const NARROW: f32 = 0.087;
-const LOCKED: f32 = 0.008_8;
-/// A knee or elbow may go so far beyond straight, radians (20°).
-const BACKWARDS: f32 = 0.349;
 
 /// Adds what is wrong with joints to `findings`, which has what is known of their bodies.
 pub(super) fn findings(exam: &Exam<'_>, findings: &mut Vec<Finding>) {
@@ -82,7 +71,7 @@ fn frames(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let mut said = Vec::new();
     // A hinge may well be bent in the bind pose: frames are wrong where they break what the joint holds.
     let Beyond { limit, locked } = beyond(&joint.kind, turn);
-    if both(&is_identity) && angle > OTHER_ZERO && max(limit, locked) > AT_BIND {
+    if both(&is_identity) && angle > OTHER_ZERO && max(limit, locked) > BEYOND_AT_BIND {
         said.push(format!("its zero is {:.0}° from the bind pose", angle.to_degrees()));
     }
     if both(&at_origin) && gap > 0.01 * exam.size {
@@ -139,7 +128,7 @@ pub(super) fn head_of_rig(exam: &Exam<'_>, body: usize) -> Option<Vec3> {
 fn at_bind(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let Beyond { limit, locked } = beyond(&joint.kind, exam.turned(index, Rotation::IDENTITY));
-    if max(limit, locked) <= AT_BIND {
+    if max(limit, locked) <= BEYOND_AT_BIND {
         return None;
     }
     let what = if limit >= locked { "beyond its limits" } else { "turned where it does not turn" };
@@ -312,7 +301,7 @@ fn cone_both_ways(exam: &Exam<'_>, index: usize, limit: &SwingTwistLimit) -> (f3
             .map(|step| step as f32 * PI / 36.0)
             .take_while(|&angle| {
                 let turn = Rotation::from_axis_angle(axis, angle) * straight;
-                swing_excess(limit, exam.turned(index, turn)) <= AT_BIND
+                swing_excess(limit, exam.turned(index, turn)) <= BEYOND_AT_BIND
             })
             .last()
             .unwrap_or(0.0)

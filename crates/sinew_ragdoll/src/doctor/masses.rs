@@ -4,23 +4,18 @@ use super::exam::Exam;
 use super::{Code, Finding};
 use crate::build::bones::Anatomy;
 use crate::def::RagdollDef;
+use crate::doctor::tuning::{CHAIN_RATIO, MOMENT_RATIO, NEIGHBOUR_RATIO};
 use crate::masses::de_leva::Sex;
 use crate::masses::default_mass;
 use sinew_math::{Vec3, max, min};
 use sinew_physics::{MassProperties, Shape};
 
-/// Largest ratio of masses across a joint.
-pub(super) const NEIGHBOUR_RATIO: f32 = 30.0;
-/// Largest ratio of masses along a chain from the root.
-pub(super) const CHAIN_RATIO: f32 = 100.0;
 /// kg/m²: body mass indices that a human may have.
 const BODY_MASS_INDEX: core::ops::RangeInclusive<f32> = 11.0..=50.0;
 /// kg/m³ of the shapes of a creature.
 const DENSITY: core::ops::RangeInclusive<f32> = 60.0..=4000.0;
 /// Largest moment of a body against that of its shape at its mass.
 const INERTIA: core::ops::RangeInclusive<f32> = 0.1..=10.0;
-/// Largest ratio of the moments of one body.
-const MOMENT_RATIO: f32 = 60.0;
 
 pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
     let mut findings: Vec<Finding> =

@@ -5,15 +5,11 @@ use super::geometry::{depth, full_size, longest, scaled};
 use super::limits::{head_of_rig, is_narrow, turning_inertia};
 use super::{Code, Finding, Repair, anatomy, masses, mirror, missing_bodies, shapes};
 use crate::def::{RagdollDef, RagdollJointDef};
+use crate::doctor::tuning::{CHAIN_RATIO, MENDED_ROOM, NEIGHBOUR_RATIO, STRAIN, THIN};
 use crate::ragdoll::fitted;
 use core::f32::consts::PI;
 use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min};
 use sinew_physics::{JointKind, Shape, Softness};
-
-/// Room that the bind pose gets to a limit that it had passed, radians (2°).
-const ROOM: f32 = 0.034_907;
-/// Angle by which a joint may be beyond its limits without moving anything, radians (0.1°).
-const STRAIN: f32 = 0.001_745;
 
 /// Mends what a finding tells of; false if nothing could be done.
 pub(super) fn mend(repair: &mut Repair, finding: &Finding) -> bool {
@@ -75,7 +71,7 @@ fn remedied(exam: &Exam<'_>, finding: &Finding, body: usize, other: usize) -> Op
         Code::TinyShape | Code::HugeShape => resize(exam, &mut def, body),
         Code::MassRatio => {
             let is_neighbour = exam.bones.list[body].parent == Some(other);
-            let most = if is_neighbour { masses::NEIGHBOUR_RATIO } else { masses::CHAIN_RATIO };
+            let most = if is_neighbour { NEIGHBOUR_RATIO } else { CHAIN_RATIO };
             masses::relieve(&mut def, [body, other], 0.9 * most);
         }
         Code::MassImplausible => {
@@ -166,7 +162,7 @@ fn holding_bind(exam: &Exam<'_>, index: usize) -> RagdollJointDef {
     let joint = exam.def.joints[index];
     let pose = |body: usize| exam.def.bodies[body].character_from_body;
     let mut new = fitted(&joint, pose(joint.parent), pose(joint.child));
-    let wider = |range: Range| Range::new(max(range.lo - ROOM, -PI), min(range.hi + ROOM, PI));
+    let wider = |range: Range| Range::new(max(range.lo - MENDED_ROOM, -PI), min(range.hi + MENDED_ROOM, PI));
     let cone = |limit: SwingTwistLimit, old: SwingTwistLimit| {
         let side = |new: Range, old: Range| if new == old { new } else { wider(new) };
         SwingTwistLimit {
@@ -381,9 +377,9 @@ fn resize(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) {
     let long = longest(&own.shape);
     let factor = if long > wanted { wanted / long } else { max(wanted / long, 1.0) };
     let shape = scaled(&own.shape, factor);
-    let shape = if shape.smallest_extent() < shapes::THIN * exam.size {
+    let shape = if shape.smallest_extent() < THIN * exam.size {
         // A thread along its bone stays thin when it is made longer: it becomes a capsule.
-        let radius = max(0.1 * wanted, 2.0 * shapes::THIN * exam.size);
+        let radius = max(0.1 * wanted, 2.0 * THIN * exam.size);
         Shape::Capsule { half_height: max(0.5 * wanted - radius, 0.0), radius }
     } else {
         shape

@@ -5,18 +5,12 @@ use super::geometry::longest;
 use super::limits::is_marked;
 use super::{Code, Finding};
 use crate::def::RagdollJointDef;
+use crate::doctor::tuning::{ENDS_APART, LENGTHS_APART, VOLUMES_APART, WIDTH_APART};
 use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min};
 use sinew_physics::{JointKind, Shape};
 
-/// Whole ranges of the two sides may differ by so much, radians (8°).
-const WIDTH: f32 = 0.14;
-/// Ends of ranges may differ by so much, radians (15°): rigs are not bound quite symmetrically.
-const REACH: f32 = 0.262;
 /// Steps in which a reach is measured, radians (2.5°).
 const STEP: f32 = 0.043_633;
-/// Largest ratio of the volumes and of the lengths of two sides.
-const VOLUME: f32 = 1.6;
-const LENGTH: f32 = 1.3;
 
 /// Adds what is not mirrored to what is known.
 pub(super) fn findings(exam: &Exam<'_>, findings: &mut Vec<Finding>) {
@@ -70,7 +64,7 @@ fn ranges(exam: &Exam<'_>, left: usize, right: usize) -> Option<Finding> {
         let l = sides.map(|axis| reach(exam, left - 1, axis));
         let r = sides.map(|axis| reach(exam, right - 1, mirrored_axis(axis)));
         let ends = max((l[0] - r[0]).abs(), (l[1] - r[1]).abs());
-        if (l[0] + l[1] - r[0] - r[1]).abs() <= WIDTH && ends <= REACH {
+        if (l[0] + l[1] - r[0] - r[1]).abs() <= WIDTH_APART && ends <= ENDS_APART {
             continue;
         }
         let [a, b, c, d] = [l[1], l[0], r[1], r[0]].map(f32::to_degrees);
@@ -91,7 +85,7 @@ fn shapes(exam: &Exam<'_>, left: usize, right: usize) -> Option<Finding> {
         max(l, r) / max(min(l, r), 1e-9)
     };
     let (volume, length) = (ratio(Shape::volume), ratio(longest));
-    if volume <= VOLUME && length <= LENGTH {
+    if volume <= VOLUMES_APART && length <= LENGTHS_APART {
         return None;
     }
     let cm = |body: usize| 100.0 * longest(shape(body));

@@ -31,6 +31,7 @@ mod mirror;
 mod missing_bodies;
 mod motion;
 mod shapes;
+mod tuning;
 
 pub use code::{Code, Severity};
 pub(crate) use exam::bones_of;

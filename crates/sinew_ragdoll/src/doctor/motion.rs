@@ -2,16 +2,12 @@
 
 use super::exam::Exam;
 use super::{Code, Finding};
-use crate::filter::TOLERATED;
+use crate::doctor::tuning::{MOVED_LENGTH, MOVED_SHARE, TURNED};
 use sinew_math::{Vec3, max};
 use sinew_physics::{BodyDef, BodyId, JointDef, ShapeDef, Spring, World, WorldDef};
 
 /// Half a second.
 const STEPS: u32 = 30;
-/// Bounds below which motion is not worth telling: heights, with as much again as two tolerated overlaps (10 mm), and radians (6°).
-const MOVED: f32 = 0.015;
-const SLOP: f32 = 2.0 * TOLERATED;
-const TURNED: f32 = 0.105;
 
 /// Motion of the bodies that nothing has caused. Places tell more than speeds: a solver that adds no energy mends what is wrong by moving it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -83,7 +79,7 @@ impl Jitter {
         if self.is_lost {
             return Some("left alone without gravity it is lost within half a second".to_owned());
         }
-        (self.moved.0 > MOVED * exam.size + SLOP || self.turned.0 > TURNED).then(|| {
+        (self.moved.0 > MOVED_SHARE * exam.size + MOVED_LENGTH || self.turned.0 > TURNED).then(|| {
             let gained = if self.energy < 0.01 {
                 String::new()
             } else {

@@ -6,19 +6,11 @@ use super::limits::is_unlimited;
 use super::{Code, Finding};
 use crate::build::bones::Anatomy;
 use crate::build::part::Part;
-use crate::filter::TOLERATED;
+use crate::doctor::tuning::{FIGHT, LONG, LONG_CREATURE, THIN};
 use crate::ragdoll::colliding_pairs;
+use crate::tuning::TOLERATED;
 use sinew_math::{Range, Rotation, Transform, Vec3, max, min};
 use sinew_physics::JointKind;
-
-/// No shape is thinner than this share of the height.
-pub(super) const THIN: f32 = 0.002;
-/// No part of a human is longer than this share of the height.
-const LONG: f32 = 0.62;
-/// No body of a creature is longer than this, in lengths of the box around all pivots and middles.
-const LONG_CREATURE: f32 = 1.5;
-/// A pair fights a limit that overlaps in more than this share of the joint's range.
-const FIGHT: f32 = 0.6;
 
 /// Findings about shapes and pairs of them.
 pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {

@@ -1,8 +1,9 @@
 //! Drives in a world: motors of joints, pins, bodies that become kinematic.
 
-use super::{Drive, Drives, NOTHING, target};
+use super::{Drive, Drives, target};
 use crate::def::RagdollDef;
 use crate::ragdoll::Ragdoll;
+use crate::tuning::NO_STRENGTH;
 use sinew_math::{Rotation, Transform, Vec3};
 use sinew_physics::{
     BodyDef, BodyId, BodyKind, Gains, JointCollision, JointDef, JointId, JointKind, Motor, Reaction, SixDof,
@@ -111,7 +112,7 @@ impl Drives {
         let vigour = 1.0 - drive.weakness;
         let softness = drive.level.pin.softness(vigour).filter(|_| !drive.keyed);
         let old = drive.pin.filter(|&pin| world.contains_joint(pin));
-        let Some(softness) = softness.filter(|_| drive.level.force + drive.level.torque > NOTHING) else {
+        let Some(softness) = softness.filter(|_| drive.level.force + drive.level.torque > NO_STRENGTH) else {
             if let Some(pin) = old {
                 world.remove_joint(pin);
             }

@@ -1,6 +1,7 @@
 //! Springs as numbers that can be blended: stiffness and damping for a unit of mass, and caps.
 
 use super::{Drive, DriveMode, Muscle, Pin};
+use crate::tuning::{KEYED_AFTER, LEAST_HERTZ};
 use sinew_math::{max, trig};
 use sinew_physics::Softness;
 
@@ -20,7 +21,7 @@ impl Spring {
     pub fn softness(self, share: f32) -> Option<Softness> {
         let hertz = (self.stiffness * share).sqrt();
         let damping_ratio = self.damping / (2.0 * max(self.stiffness.sqrt(), 1e-6));
-        (hertz > LEAST).then_some(Softness::Frequency { hertz, damping_ratio })
+        (hertz > LEAST_HERTZ).then_some(Softness::Frequency { hertz, damping_ratio })
     }
 
     fn approach(&mut self, goal: Self, share: f32) {
@@ -29,12 +30,8 @@ impl Spring {
     }
 }
 
-/// Hz.
-const LEAST: f32 = 0.02;
 /// Pin that holds a body on its way to being keyed.
 const KEYING: Pin = Pin { hertz: 30.0, damping_ratio: 1.0, max_force: 1e5, max_torque: 2e4 };
-/// Half-lives after which such a body is keyed.
-const KEYED_AFTER: f32 = 5.0;
 
 /// Strength of what drives a body at present: the springs of its muscle and its pin, and the bounds on them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

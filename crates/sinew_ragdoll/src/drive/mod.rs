@@ -43,6 +43,7 @@ mod target;
 mod torque;
 
 use crate::def::RagdollDef;
+use crate::tuning::{NO_STRENGTH, NUMBING_SPEED, WEAKNESS_FALLOFF};
 use level::Level;
 use sinew_math::{clamp, max};
 use sinew_physics::{BodyId, JointId};
@@ -139,13 +140,6 @@ pub struct Drives {
     pub recovery: f32,
 }
 
-/// Speed that a hit must give the whole ragdoll to take all strength from the muscles where it struck, m/s.
-const NUMBING: f32 = 0.2;
-/// Share of the weakness that one joint hands on to the next.
-const FALLOFF: f32 = 0.5;
-/// Threshold below which a share, or a pin's force, counts as nothing.
-const NOTHING: f32 = 1e-3;
-
 impl Drives {
     /// All limp, with the torques of [`torque_caps`].
     pub fn new(def: &RagdollDef) -> Self {
@@ -230,13 +224,13 @@ impl Drives {
     /// that would move the whole ragdoll at 0.2 m/s takes all strength there. The push itself is the caller's.
     pub fn hit(&mut self, def: &RagdollDef, body: usize, impulse: f32) {
         let mass: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
-        let weakness = clamp(impulse.abs() / (NUMBING * mass), 0.0, 1.0);
+        let weakness = clamp(impulse.abs() / (NUMBING_SPEED * mass), 0.0, 1.0);
         for (other, drive) in self.drives.iter_mut().enumerate() {
             let mut here = weakness;
             for _ in 0..joints_between(def, body, other) {
-                here *= FALLOFF;
+                here *= WEAKNESS_FALLOFF;
             }
-            if here > NOTHING {
+            if here > NO_STRENGTH {
                 drive.weakness = max(drive.weakness, here);
             }
         }

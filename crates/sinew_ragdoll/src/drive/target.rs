@@ -1,11 +1,9 @@
 //! Target of a joint's motor, so that two bodies come to lie as in a pose.
 
+use crate::tuning::STOP_ROOM;
 use sinew_math::limits::{hinge_angle, wrap};
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, clamp, max, min};
 use sinew_physics::{JointDef, JointKind, Velocity};
-
-/// Kept free before a stop, radians: a motor must not fight it.
-const ROOM: f32 = 0.01;
 
 /// Frame B seen from frame A, turned only as the joint can turn, and its angular velocity in A's axes, rad/s.
 pub(super) fn of_joint(
@@ -39,7 +37,7 @@ pub(super) fn of_joint(
 fn within(range: Option<Range>, angle: f32) -> (f32, bool) {
     let Some(range) = range else { return (angle, true) };
     let (middle, half) = (range.center(), 0.5 * (range.hi - range.lo));
-    let room = max(half - ROOM, 0.0);
+    let room = max(half - STOP_ROOM, 0.0);
     let beyond = wrap(angle - middle);
     (middle + clamp(beyond, -room, room), beyond.abs() <= half)
 }
@@ -52,7 +50,7 @@ fn clamped(limit: &SwingTwistLimit, wanted: Rotation) -> (Rotation, bool) {
     let mut inside = true;
     if angle > 1e-6 {
         let cone = limit.cone_angle(swing.y / angle, swing.z / angle);
-        share = min(max(cone - ROOM, 0.0) / angle, 1.0);
+        share = min(max(cone - STOP_ROOM, 0.0) / angle, 1.0);
         inside = angle <= cone;
     }
     let (twist, twist_inside) = within(Some(limit.twist), twist);

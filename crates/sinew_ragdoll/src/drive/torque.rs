@@ -2,6 +2,7 @@
 
 use super::{hangs_on, parent};
 use crate::def::RagdollDef;
+use crate::tuning::{CREATURE_STRENGTH, GRAVITY};
 use sinew_math::{Vec3, max};
 
 /// Largest torques of the muscles about a joint of 75 kg at 1.75 m, N·m, by the role of the body below it: the humanoid
@@ -23,10 +24,6 @@ const HUMAN: [(&str, f32); 12] = [
 const HEAD: f32 = 50.0;
 /// The body that the figures are of, kg m.
 const REFERENCE: f32 = 75.0 * 1.75;
-/// A creature's joint holds so many times what hangs on it.
-const HOLDS: f32 = 3.0;
-/// m/s².
-const GRAVITY: f32 = 9.81;
 
 /// Most that the muscles of each body's joint to its parent can do, N·m; 0 for the first body. Of roles that a person has,
 /// from a table, in proportion to mass and height. Of others from the weight that they carry: three times what holds all that
@@ -61,7 +58,7 @@ fn of_creature(def: &RagdollDef, body: usize, total: f32) -> f32 {
     for below in (body..def.bodies.len()).filter(|&below| hangs_on(def, below, body)) {
         moment += (center(below) - pivot) * def.bodies[below].mass.mass;
     }
-    let holds = HOLDS * GRAVITY * moment.length();
+    let holds = CREATURE_STRENGTH * GRAVITY * moment.length();
     let bears = if def.bodies[body].role.starts_with("limb") {
         GRAVITY * total * (center(body) - pivot).length()
     } else {

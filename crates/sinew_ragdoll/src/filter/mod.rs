@@ -29,25 +29,12 @@ mod thin;
 use crate::build::bones::Bones;
 use crate::build::part::Part;
 use crate::fit::Fit;
+pub use crate::tuning::TOLERATED;
+use crate::tuning::{A_FEW, ALWAYS, LEAST_SCALE, MOSTLY, SCALE_STEP, SELDOM};
 use poses::Poses;
 use sinew_math::{Transform, max};
 use sinew_physics::Shape;
 use sinew_physics::collide::{Manifold, collide};
-
-/// Overlap in the bind pose that is let be, metres: about the solver's slop.
-pub const TOLERATED: f32 = 0.005;
-/// The most that a shape's cross-section may be shrunk.
-const LEAST_SCALE: f32 = 0.86;
-/// Shrinking is done in steps of this factor.
-const STEP: f32 = 0.975;
-/// A pair that overlaps in as large a share of the poses within the limits overlaps always.
-const ALWAYS: f32 = 0.9;
-/// One that overlaps in the bind pose, but in a smaller share of those, is only bound so.
-const SELDOM: f32 = 0.1;
-/// The same of the clips' poses: limbs that overlap in most of them are never apart, and other parts not in more than a
-/// few, for their meeting is no sight that a fall needs.
-const MOSTLY: f32 = 0.5;
-const A_FEW: f32 = 0.02;
 
 /// Two bodies that overlap although no joint connects them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -278,9 +265,9 @@ fn shrink_apart(
     loop {
         let mut any = false;
         for body in [a, b] {
-            if !bones.list[body].part.is_trunk() && scale[body] * STEP >= LEAST_SCALE {
-                scale[body] *= STEP;
-                fits[body].shape = thin::thinner(&fits[body].shape, STEP);
+            if !bones.list[body].part.is_trunk() && scale[body] * SCALE_STEP >= LEAST_SCALE {
+                scale[body] *= SCALE_STEP;
+                fits[body].shape = thin::thinner(&fits[body].shape, SCALE_STEP);
                 any = true;
             }
         }

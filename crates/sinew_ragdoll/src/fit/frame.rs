@@ -4,16 +4,8 @@ use crate::build::bones::{Anatomy, Bones};
 use crate::build::part::Part;
 use crate::fit::patch::{Patch, bounds};
 use crate::fit::rectangle::{least_rectangle, rectangle_area};
+use crate::tuning::{ALONG_BONE, CLEARLY_SMALLER, ELONGATED, WORTH_TILTING};
 use sinew_math::{Mat3, Vec2, Vec3, any_orthonormal, normalize_or};
-
-/// Cosine of 35°: within it of the surface's own long axis, the bone's direction is taken for the shape.
-const NEAR: f32 = 0.819;
-/// The surface has a long axis if its variance there is so many times the next.
-const ELONGATED: f32 = 1.5;
-/// A trunk's box is tilted only when that makes it smaller than this share of the upright one.
-const WORTH_TILTING: f32 = 0.75;
-/// Another frame is taken when its box is smaller than this share of the preferred one's.
-const CLEARLY_SMALLER: f32 = 0.9;
 
 /// Unit vector along the flesh of a bone, pointing away from its joint.
 ///
@@ -28,7 +20,7 @@ pub fn long_axis(bones: &Bones, bone: usize, patch: &Patch) -> Vec3 {
     let along = axes * Vec3::X;
     let along = if along.dot(direction) < 0.0 { -along } else { along };
     let elongated = variance.x > ELONGATED * variance.y;
-    let agrees = along.dot(direction) > NEAR && bones.tail(bone).is_some();
+    let agrees = along.dot(direction) > ALONG_BONE && bones.tail(bone).is_some();
     // The trunk is often wider than high: there the way to the next joint is what a capsule has to follow.
     if !elongated || agrees || bones.is_central(bone) { direction } else { along }
 }

@@ -25,31 +25,13 @@ pub mod surface;
 
 use crate::build::bones::{Bone, Bones};
 use crate::build::part::Part;
+use crate::tuning::{BURDENED, INTRICATE, LEAST_HALF, PAST_JOINT, SHRINK, TAPERED, UNLIKE, UNUSUAL};
 use core::mem::discriminant;
 use patch::{Patch, Selection, Symmetry};
 use sinew_math::{Mat3, Rotation, Transform, Vec3, clamp, max, min};
 use sinew_physics::{Hull, Shape};
 use std::sync::Arc;
 use surface::Share;
-
-/// No half side or radius is smaller, metres.
-const LEAST_HALF: f32 = 0.0075;
-/// Factor on the fitted cross-section: contacts lie inside the skin rather than outside.
-const SHRINK: f32 = 0.97;
-/// Share of a bone's length by which its shape may pass each of its joints: two neighbours then overlap by at most a
-/// quarter of it.
-const PAST_JOINT: f32 = 0.125;
-/// A shape so many times as long as its twin on the other side has something in it that is not the body's.
-pub(crate) const BURDENED: f32 = 1.6;
-/// Twins whose volumes differ by more than this factor get the shape of the one that fits better.
-const UNLIKE: f32 = 1.3;
-/// Factor on a shape's error in the choice between kinds, if it is not of the kind that suits the part: it must be clearly nearer
-/// to the skin.
-const UNUSUAL: f32 = 1.0 / 0.6;
-/// Factor on the error of a tapered capsule for a limb, which is as easy to live with.
-const TAPERED: f32 = 1.0 / 0.9;
-/// Factor on the error of a hull: it costs several times a box's collisions.
-const INTRICATE: f32 = 3.0;
 
 /// Choice of the shapes that a ragdoll is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,12 +1,8 @@
 //! The piece of skin that one shape is fitted to: even samples and second moments.
 
 use crate::fit::surface::{Share, for_each_part};
+use crate::tuning::{LEAST_AREA, SAMPLES};
 use sinew_math::{Sym3, Vec3, clamp, max, min};
-
-/// About so many samples describe a patch.
-const SAMPLES: f32 = 400.0;
-/// A selection with less than this share of the area that the bone moves, weight by weight, is not all of its flesh.
-const LEAST_AREA: f32 = 0.4;
 
 /// Selection of the triangles of the skin that were taken for a bone.
 #[derive(Clone, Copy, Debug, PartialEq)]

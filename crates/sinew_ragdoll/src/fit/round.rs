@@ -5,15 +5,12 @@ use super::{Fit, LEAST_HALF, SHRINK, clip_at_joints, measured};
 use crate::build::bones::Bones;
 use crate::build::part::Part;
 use crate::fit::frame::long_axis;
+use crate::tuning::{BALL, STEEPEST};
 use sinew_math::{Rotation, Transform, Vec3, clamp, max, min};
 use sinew_physics::Shape;
 
-/// A capsule whose cylinder is shorter than this share of its radius is a ball.
-const BALL: f32 = 0.1;
 /// Shares of a limb's length, from its lower end, between which the radius of that end is looked for.
 const NEAR_END: [f32; 2] = [0.1, 0.4];
-/// The radii of a tapered capsule differ by at most this share of the distance of their middles: a cone of 20°.
-const STEEPEST: f32 = 0.35;
 
 /// Capsule nearest to the skin, of all axes that come into question.
 pub(super) fn fit_capsule(bones: &Bones, bone: usize, patch: &Patch) -> Fit {

@@ -5,14 +5,11 @@ use super::{Fit, LEAST_HALF, SHRINK, clip_at_joints, measured};
 use crate::build::bones::Bones;
 use crate::build::part::Part;
 use crate::fit::frame::{box_frame, with_y};
+use crate::tuning::TOWARD_CORNERS;
 use sinew_math::{Rotation, Transform, Vec3, max3, min3};
 use sinew_physics::{Hull, Shape};
 use std::sync::Arc;
 
-/// Weight of being far from the middle beside being far out along a direction, and by how much directions are askew, in half sides of the
-/// box. All points of a flat side are equally far out along it. The one nearest to a corner stands for them, and of two mirror images
-/// always the same: what decided was the last bit of their places, and the same skin in another unit had a hull of half the volume.
-const TOWARD_CORNERS: f32 = 1e-3;
 const ASKEW: Vec3 = Vec3::new(1e-4, 6e-5, 3e-5);
 
 pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {

@@ -1,16 +1,10 @@
 //! Shares of the bones in the skin: the part of it that belongs to each.
 
 use crate::build::bones::Bones;
+use crate::tuning::{FINEST, LEAST_PULL, MOST_CUTS};
 use sinew_anim::skinning::skin_vertices;
 use sinew_anim::{JointIdx, Primitive, Rig};
 use sinew_math::{Affine, Transform, Vec3, clamp, max, min};
-
-/// A bone's pull on a triangle below which it is not looked at.
-const LEAST_SHARE: f32 = 0.05;
-/// A triangle that several bones move is cut into parts of this share of the character's height.
-const FINEST: f32 = 0.03;
-/// No side of a triangle is cut into more parts.
-const MOST_CUTS: f32 = 8.0;
 
 /// A triangle of the skin as one bone sees it.
 #[derive(Clone, Copy, Debug)]
@@ -172,7 +166,7 @@ fn share_skinned(
                 }
             }
         }
-        pulls.retain(|(_, weights)| weights.iter().any(|&w| w > LEAST_SHARE));
+        pulls.retain(|(_, weights)| weights.iter().any(|&w| w > LEAST_PULL));
         let cuts = if pulls.len() > 1 { cuts_of(&corners, finest) } else { 1 };
         for_each_part(cuts, |at| share_part(&corners, at, &pulls, by_bone));
     }
@@ -207,7 +201,7 @@ fn share_part(corners: &[Vec3; 3], at: [[f32; 2]; 3], pulls: &[Pull], by_bone: &
     let most = pulls.iter().fold(0.0, |a, (_, w)| max(a, weight_of(w)));
     for (bone, weights) in pulls {
         let weight = weight_of(weights);
-        if weight > LEAST_SHARE {
+        if weight > LEAST_PULL {
             by_bone[*bone].push(Share { corners: part, weight: min(weight, 1.0), most: weight >= most });
         }
     }

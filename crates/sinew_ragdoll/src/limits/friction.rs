@@ -3,16 +3,9 @@
 use super::JointPlan;
 use crate::build::bones::{Anatomy, Bones};
 use crate::fit::Fit;
+use crate::tuning::{GRAVITY, SHARE_OF_LOAD};
 use sinew_math::{Vec3, max, min};
 use sinew_physics::MassProperties;
-
-/// A creature's joint resists with no less than this share of the torque that gravity has on what it carries. The table's
-/// torques give human joints 3 % (spine) to 36 % (elbow) of theirs; but they are a human's, and on a fish of four tonnes half a
-/// per cent, with which it stands on its nose and sways for ten seconds. With a tenth a column of nine metres still sways for
-/// five; with a fifth all creatures at hand are asleep 2.2 s after they are calm.
-const SHARE_OF_LOAD: f32 = 0.2;
-/// m/s²
-const GRAVITY: f32 = 9.81;
 
 /// Friction torque of each joint, N·m. `plans` have the table's, for the mass of the whole.
 pub fn friction_torques(

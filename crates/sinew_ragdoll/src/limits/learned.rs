@@ -4,10 +4,11 @@
 //! them, and a margin. Beyond the anatomical limits there is no margin: only as much as the clips show, by their frames or
 //! by the ellipse about them.
 
-use super::{BIND_MARGIN, JointPlan, Twist, WIDEST, widened_cone};
+use super::{JointPlan, Twist, widened_cone};
 use crate::build::bones::Anatomy;
 use crate::def::RagdollJointDef;
 use crate::fit::Fit;
+use crate::tuning::{BEYOND_CLIPS, BIND_MARGIN, LEAST_RANGE, TWIST_MARGIN, WIDEST_SWING};
 use sinew_anim::learned_limits::{COVERAGE, LearnedHinge, LearnedLimit, covered, learn_limit};
 use sinew_math::limits::{hinge_angle, wrap};
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min, trig};
@@ -15,12 +16,6 @@ use sinew_physics::JointKind;
 
 /// Swings beyond what was seen, as a factor, tried from the widest on.
 const SWING_FACTORS: [f32; 4] = [1.15, 1.1, 1.05, 1.0];
-/// Twist and hinges' angles beyond what was seen, radians (10°).
-const TWIST_MARGIN: f32 = 0.174_532_92;
-/// A joint that moves less shows too little to learn from, and no range becomes narrower, radians (5°).
-const LEAST: f32 = 0.087_266_46;
-/// Further beyond the anatomical limits than the clips, radians (1°): half of what a limit may be overshot by.
-const ROUNDING: f32 = 0.017_453_292;
 /// One copy of the bind pose to so many frames: twice what the coverage leaves out, so that the limits hold it.
 const FRAMES_PER_BIND: usize = 100;
 /// Directions in which a cone is held against the anatomical one.
@@ -85,7 +80,7 @@ fn mirrored(kind: JointKind, turn: Rotation) -> Rotation {
 
 fn shows_enough(limit: &LearnedLimit) -> bool {
     let [y, z] = limit.swing;
-    limit.hinge.is_some() || max(y, z) >= LEAST || limit.twist.hi - limit.twist.lo >= 2.0 * LEAST
+    limit.hinge.is_some() || max(y, z) >= LEAST_RANGE || limit.twist.hi - limit.twist.lo >= 2.0 * LEAST_RANGE
 }
 
 /// Range of a human's hinge as its motion shows it, with a margin as far as its anatomy goes.
@@ -93,7 +88,7 @@ fn hinge_range(anatomical: Range, turns: &[Rotation], bind: f32) -> Option<Range
     let middle = anatomical.center();
     let angle = |&turn: &Rotation| middle + wrap(hinge_angle(turn) - middle);
     let shown = covered(turns.iter().map(angle).collect());
-    (shown.hi - shown.lo >= LEAST).then(|| {
+    (shown.hi - shown.lo >= LEAST_RANGE).then(|| {
         let lo = min(shown.lo, max(anatomical.lo, shown.lo - TWIST_MARGIN));
         let hi = max(shown.hi, min(anatomical.hi, shown.hi + TWIST_MARGIN));
         Range::new(min(lo, bind - BIND_MARGIN), max(hi, bind + BIND_MARGIN))
@@ -163,7 +158,7 @@ impl Cone<'_> {
         beyond.sort_unstable_by(f32::total_cmp);
         let frames = beyond[((beyond.len() - 1) as f32 * COVERAGE) as usize];
         let bare = cone(learned, 1.0);
-        let shown = max(frames, self.farthest(learned, &bare)) + ROUNDING;
+        let shown = max(frames, self.farthest(learned, &bare)) + BEYOND_CLIPS;
         let widest = SWING_FACTORS.into_iter().map(|factor| cone(learned, factor));
         widest.into_iter().find(|limit| self.farthest(learned, limit) <= shown).unwrap_or(bare)
     }
@@ -194,9 +189,10 @@ impl Cone<'_> {
 
 /// Cone that was learned, with margins: `factor` on the swing, and as much of the twist's margin as there is of the swing's.
 fn cone(learned: &LearnedLimit, factor: f32) -> SwingTwistLimit {
-    let [y, z] = learned.swing.map(|half| Range::symmetric(min(max(half * factor, LEAST), WIDEST)));
+    let [y, z] =
+        learned.swing.map(|half| Range::symmetric(min(max(half * factor, LEAST_RANGE), WIDEST_SWING)));
     let twist = wider(learned.twist, TWIST_MARGIN * (factor - 1.0) / (SWING_FACTORS[0] - 1.0));
-    let twist = Range::new(min(twist.lo, -0.5 * LEAST), max(twist.hi, 0.5 * LEAST));
+    let twist = Range::new(min(twist.lo, -0.5 * LEAST_RANGE), max(twist.hi, 0.5 * LEAST_RANGE));
     SwingTwistLimit { swing_y: y, swing_z: z, twist }
 }
 

@@ -24,6 +24,7 @@ use crate::build::bones::{Anatomy, Bones};
 use crate::build::part::{Part, Side};
 use crate::def::RagdollJointDef;
 use crate::fit::Fit;
+use crate::tuning::{BELIEVED, BENT, BIND_MARGIN, FRICTION_SHARE, WIDEST_SWING};
 use anatomy::bind_from_anatomical;
 use sinew_math::limits::hinge_angle;
 use sinew_math::{
@@ -31,17 +32,6 @@ use sinew_math::{
 };
 use sinew_physics::JointKind;
 use table::{Axes, Cone, Entry, Motion, entry};
-
-/// Share of the muscles' largest torque that a limp joint resists with.
-const FRICTION_SHARE: f32 = 0.02;
-/// Room that a bind pose has to every limit, radians (2°).
-const BIND_MARGIN: f32 = 0.034_906_585;
-/// A bone bent by more than this in the bind pose shows its hinge's axis itself (cosine of 10°).
-const BENT: f32 = 0.984_8;
-/// The axis it shows is believed within 50° of the anatomical one (cosine).
-const BELIEVED: f32 = 0.642_8;
-/// No swing half-angle is widened beyond this, radians (170°).
-const WIDEST: f32 = 2.967;
 
 /// Source of joint limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -208,7 +198,8 @@ fn widened_cone(limit: SwingTwistLimit, joint: Rotation, twisting: Twist) -> (Sw
         let cone = limit.cone_angle(swing.y / angle, swing.z / angle);
         beyond = max(angle - cone, 0.0);
         let factor = max(1.0, (angle + BIND_MARGIN) / cone);
-        let stretched = |r: Range| Range::new(max(r.lo * factor, -WIDEST), min(r.hi * factor, WIDEST));
+        let stretched =
+            |r: Range| Range::new(max(r.lo * factor, -WIDEST_SWING), min(r.hi * factor, WIDEST_SWING));
         wide.swing_y = stretched(limit.swing_y);
         wide.swing_z = stretched(limit.swing_z);
     }

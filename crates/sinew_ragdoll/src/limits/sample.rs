@@ -1,12 +1,11 @@
 //! Random turns of joints within their limits.
 
+use crate::tuning::INSCRIBED;
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Vec3};
 use sinew_physics::JointKind;
 
 /// Range of a joint without limits that random turns use, radians.
 const FREE: Range = Range::symmetric(1.0);
-/// A square in the ellipse of the swing has this much of its half-axes, so that both swings together stay inside.
-const INSCRIBED: f32 = 0.7;
 
 /// A joint rotation (joint frame of the parent to that of the child) that uses at most `share` of each range, about its
 /// middle.

@@ -1,10 +1,8 @@
 //! Inertias that a solver can live with.
 
+use crate::tuning::LARGEST_MOMENTS;
 use sinew_math::{Vec3, clamp, max, max3, min};
 use sinew_physics::Shape;
-
-/// Largest ratio of principal moments: beyond it a body spins up about its long axis faster than a substep resolves.
-const LARGEST_RATIO: f32 = 8.0;
 
 /// Principal moments of a homogeneous shape of this mass about its middle, in its own axes, kg·m².
 pub fn of_shape(shape: &Shape, mass: f32) -> Vec3 {
@@ -16,7 +14,7 @@ pub fn of_shape(shape: &Shape, mass: f32) -> Vec3 {
 /// the others, which no real body has.
 pub fn conditioned(principal: Vec3) -> Vec3 {
     let largest = max(principal.x, max(principal.y, principal.z));
-    let i = max3(principal, Vec3::splat(largest / LARGEST_RATIO));
+    let i = max3(principal, Vec3::splat(largest / LARGEST_MOMENTS));
     let need = |a: f32, b: f32, c: f32| max(0.0, 0.5 * (c - a - b));
     // Half of what is missing on each of the two smaller ones; at most one of the three conditions can fail.
     let (x, y, z) = (need(i.y, i.z, i.x), need(i.x, i.z, i.y), need(i.x, i.y, i.z));

@@ -19,21 +19,11 @@ pub mod volume;
 use crate::build::bones::{Anatomy, Bones};
 use crate::build::part::{Part, Side};
 use crate::fit::Fit;
+use crate::tuning::{BOX_FILL, CAPSULE_FILL, FLESH, LEAST_MASS, LEAST_TRUNK};
 use de_leva::{GIRDLE_OF_UPPER_TRUNK, NECK_OF_HEAD, Segment, Sex, TOES_OF_FOOT, Table, table};
 use inertia::{conditioned, inside, of_shape};
 use sinew_math::{Rotation, Sym3, Vec3, clamp, max, min};
 use sinew_physics::{MassProperties, Shape};
-
-/// kg/m³ of flesh.
-const DENSITY: f32 = 1000.0;
-/// Share of a box that flesh fills.
-const BOX_FILL: f32 = 0.55;
-/// Share of a capsule that flesh fills.
-const CAPSULE_FILL: f32 = 0.8;
-/// No body has less than this share of the total: the solver wants ratios below about 1000.
-const LEAST_SHARE: f32 = 0.001;
-/// No body of the trunk takes less than this share of the trunk's length.
-const LEAST_TRUNK: f32 = 0.1;
 
 /// Options by which a character is weighed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -68,7 +58,7 @@ pub fn distribute(bones: &Bones, fits: &[Fit], options: MassOptions) -> Vec<Mass
         Anatomy::Human => default_mass(bones.height, options.sex),
         Anatomy::Creature => options.enclosed.filter(|mass| BELIEVED.contains(&(mass / sum))).unwrap_or(sum),
     });
-    let shares: Vec<_> = shares.iter().map(|share| max(share / sum, LEAST_SHARE)).collect();
+    let shares: Vec<_> = shares.iter().map(|share| max(share / sum, LEAST_MASS)).collect();
     let sum: f32 = shares.iter().sum();
     let mut masses: Vec<_> = shares.iter().map(|share| total * share / sum).collect();
     // What rounding left over goes to the pelvis, which feels it least.
@@ -80,7 +70,7 @@ pub fn distribute(bones: &Bones, fits: &[Fit], options: MassOptions) -> Vec<Mass
 /// kg of flesh in a shape.
 fn flesh(shape: &Shape) -> f32 {
     let fill = if matches!(shape, Shape::Box { .. }) { BOX_FILL } else { CAPSULE_FILL };
-    DENSITY * fill * shape.volume()
+    FLESH * fill * shape.volume()
 }
 
 /// Share of the body's mass per bone. What a rig lacks goes to the bone that would carry it.

@@ -1,12 +1,11 @@
 //! Volume that a skin encloses, and what fills it.
 
+use crate::tuning::{CLOSED, FLESH, MACHINE};
 use sinew_anim::Rig;
 use sinew_math::{Vec3, clamp, max, max3, min, min3};
 
 /// Lines along each axis on which the skin is crossed, a side.
 const LINES: usize = 64;
-/// Least share of the lines that meet the skin on which it closes.
-const CLOSED: f32 = 0.6;
 /// Position of the lines in their cells, as shares of a cell: not in the middle, where symmetric meshes have their edges.
 const OFF_MIDDLE: [f32; 2] = [0.513_7, 0.487_1];
 
@@ -95,10 +94,6 @@ fn inside(line: &mut Crossings) -> Option<f32> {
     (depth == 0).then_some(length)
 }
 
-/// kg/m³ of flesh: that of water, nearly, in all that live.
-const FLESH: f32 = 1000.0;
-/// kg/m³ of a machine with the air in it: cars have 200, tanks 1000.
-const MACHINE: f32 = 500.0;
 /// Words of machines.
 const MACHINES: [&str; 14] = [
     "tank",

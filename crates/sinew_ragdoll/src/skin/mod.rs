@@ -25,6 +25,7 @@ use crate::def::RagdollDef;
 use crate::doctor::bones_of;
 use crate::mapping::{Mapping, Physical};
 use crate::quality::Fallen;
+use crate::tuning::OWN_WEIGHT;
 pub use judge::{Flaw, FlawKind};
 use sinew_anim::{JointIdx, LocalTransform, Rig, Take, local_to_model, rest_pose};
 use sinew_math::{Affine, Transform, Vec3, max, max3, min3};
@@ -33,8 +34,6 @@ use surface::{Side, Surface};
 
 /// Most poses of clips that are looked at, evenly spread over all of them.
 const MOST_CLIP_POSES: usize = 64;
-/// A body must have this share of a vertex's weight for the vertex to be its own.
-const LEAST_PULL: f32 = 0.25;
 
 /// Figures of the drawn skin. Metres, except where a field says otherwise.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -325,7 +324,7 @@ fn cover(
             let body = &def.bodies[body];
             body.shape.signed_distance(&body.character_from_body, place).0 <= tolerance
         };
-        let pulls = surface.pulls(vertex).filter(|&(_, pull)| pull >= LEAST_PULL);
+        let pulls = surface.pulls(vertex).filter(|&(_, pull)| pull >= OWN_WEIGHT);
         if is_within(owner) || pulls.into_iter().any(|(body, _)| is_within(body)) {
             covered += 1;
         } else {

@@ -3,15 +3,11 @@
 use crate::build::bones::Bones;
 use crate::build::part::Part;
 use crate::def::{RagdollDef, RagdollJointDef};
-use crate::fit::BURDENED;
+use crate::tuning::BURDENED;
+use crate::tuning::{LOOSE, MIDDLE, MIRRORED};
 use sinew_anim::roles::Role;
 use sinew_math::{Vec3, max};
 use sinew_physics::convex::gap;
-
-/// Pivots of two sides are mirror images if they are nearer than this share of the size.
-const MIRRORED: f32 = 0.05;
-/// A body whose pivot is nearer to the plane of symmetry than this share of the size has no twin.
-const MIDDLE: f32 = 0.02;
 
 /// The largest difference of two sides, metres, and the body that has it.
 ///
@@ -79,8 +75,6 @@ fn holds(def: &RagdollDef, bones: &Bones, hand: usize, other: usize) -> bool {
 /// Joints between a body and what most of its skin runs into: of a thigh whose skin runs into the tail by way of two parts of the
 /// hip, four. Feet that hang on the root are five from their shanks.
 const NEAR: usize = 4;
-/// A body whose skin is linked to no other's may be this share of the size away from the one that it hangs on.
-const LOOSE: f32 = 0.2;
 
 /// The first body that hangs on what it does not grow from: most sides of triangles between its skin, with that of all that hangs
 /// on it, and other skin lead to a body more than four joints away; or, where there are none, its shape is far from its

@@ -1,10 +1,8 @@
 //! Sides of triangles that get longer than they were bound: where the skin tears.
 
 use super::surface::{Side, Surface};
+use crate::tuning::STRETCH_PERCENTILE;
 use sinew_math::{Affine, max};
-
-/// Percentile that is taken of all sides in all poses, as a share: one in a thousand is longer.
-const SHARE: f32 = 0.999;
 
 /// Growth of sides beyond their length as bound, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,7 +51,7 @@ impl Stretch {
         let mut longer = core::mem::take(&mut self.longer);
         let worst = core::mem::take(&mut self.worst);
         // The sides that no pose stretches rank below the others.
-        let share = 1.0 - (1.0 - SHARE) / max(surface.stretchable, 1e-6);
+        let share = 1.0 - (1.0 - STRETCH_PERCENTILE) / max(surface.stretchable, 1e-6);
         if longer.is_empty() || share <= 0.0 {
             return worst;
         }

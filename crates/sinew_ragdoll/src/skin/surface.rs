@@ -2,6 +2,7 @@
 
 use crate::def::RagdollDef;
 use crate::fit::surface::carried;
+use crate::tuning::SAME_WEIGHTS;
 use sinew_anim::{JointIdx, Primitive, Rig, RigMesh};
 use sinew_math::{Affine, Mat3, Vec3};
 
@@ -9,8 +10,6 @@ use sinew_math::{Affine, Mat3, Vec3};
 const MOST_VERTICES: usize = 8192;
 /// Most sides of triangles that are looked at, of those that a pose can stretch.
 const MOST_SIDES: usize = 4096;
-/// Weights of the two ends of a side that differ by no more cannot stretch it.
-const ALIKE: f32 = 1e-3;
 
 /// A joint that moves vertices, and where they were when they were bound to it.
 #[derive(Clone, Copy, Debug)]
@@ -187,7 +186,7 @@ fn alike(a: &Vertex, b: &Vertex) -> bool {
         of.slots.iter().zip(of.weights).filter(|(at, _)| **at == slot).map(|(_, weight)| weight).sum()
     };
     let mut slots = a.slots.iter().chain(&b.slots);
-    slots.all(|&slot| (weight(a, slot) - weight(b, slot)).abs() <= ALIKE)
+    slots.all(|&slot| (weight(a, slot) - weight(b, slot)).abs() <= SAME_WEIGHTS)
 }
 
 /// At most `most` of the indices below `count`, evenly spread, the first among them.

@@ -9,47 +9,20 @@ mod step;
 mod support;
 
 use super::{Character, CharacterDef, CharacterEvent, State, ground};
+use crate::character::tuning::{
+    AIMS_UNTIL, AIRBORNE, CAPTURE_MARGIN, CAUGHT_SHARE, CAUGHT_SPEED, DROP_TIME, FLIES_AFTER, HOME_TIME,
+    HOPELESS, HURRY, LIFT, PELVIS_SINKS, RESUMES, SOLE_RIM, STEP_RANGE, STRAIN_COST, UNTOLD_MARGIN,
+    WIDE_STEP,
+};
 use sinew_anim::ik::hold_feet;
 use sinew_anim::{LocalTransform, local_to_model, smoothstep};
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer, max, min, trig};
 use sinew_physics::World;
-use step::{DROP_TIME, Pendulum, Print, STEP_TIMES};
+use step::{Pendulum, Print, STEP_TIMES};
 use support::{Support, level};
 
-/// Seconds of a step that only brings a foot home.
-const HOME_TIME: f32 = 0.25;
-/// Share of a step until which its goal may change.
-const AIMS: f32 = 0.7;
-/// Height of a step over that of the body.
-const LIFT: f32 = 0.05;
-/// Half the width of a sole, and how far the pelvis is lowered at most, over the height of the body.
-const RIM: f32 = 0.023;
-const SINKS: f32 = 0.12;
-/// A capture point that is farther than this from the feet asks for a step, metres; and where none has been taken and nothing was told
-/// of a push, farther than this.
-const MARGIN: f32 = 0.01;
-const UNTOLD: f32 = 0.08;
-/// Velocity beside the one that it is to have at which it is caught, m/s, and share of that one besides.
-const CALM: f32 = 0.15;
-const GAIT: f32 = 0.35;
-/// Metres of a place missed that a second of a quicker step is worth.
-const HURRY: f32 = 0.2;
-/// Metres of a place missed that a metre is worth by which the foot that stands is left behind too far.
-const STRAINS: f32 = 3.0;
-/// A foot in the air that comes down farther than this from where it should, over the height of the body, is put down for the other to step.
-const HOPELESS: f32 = 0.04;
-/// Way of a foot over which it is lifted all of [`LIFT`], metres.
-const WIDE: f32 = 0.2;
 /// Steps of the world after which the mover is as fast as it was told to be.
 const FOLLOWS: u32 = 4;
-/// Rate at which what was caught takes on the velocity that it is to have, 1/s.
-const RESUMES: f32 = 10.0;
-/// Ankle above its height on the floor at which a foot is in the air, metres.
-const AIRBORNE: f32 = 0.04;
-/// Seconds without ground after which there is nothing to step on.
-const FLIES: f32 = 0.15;
-/// Ground farther up or down than this is nothing to step on, metres.
-const HIGHEST: f32 = 0.4;
 
 /// Hold on a foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,7 +88,7 @@ impl Character {
             stumble.velocity += push;
             (stumble.age, stumble.steps) = (0, 0);
             stumble.regain(&stand.ankles);
-        } else if self.is_off(&stand, push / stand.omega, MARGIN) {
+        } else if self.is_off(&stand, push / stand.omega, CAPTURE_MARGIN) {
             self.begin_stumble(&stand, push);
         }
         self.steer(world);
@@ -126,14 +99,16 @@ impl Character {
         let stand = if self.steps() { self.clips_stand(world) } else { None };
         let (Some(stand), Some(presence)) = (stand, self.presence.as_mut()) else {
             let steps = self.steps();
-            if let Some(presence) = self.presence.as_mut().filter(|presence| !steps || presence.air > FLIES) {
+            if let Some(presence) =
+                self.presence.as_mut().filter(|presence| !steps || presence.air > FLIES_AFTER)
+            {
                 presence.stumble = None;
             }
             return false;
         };
         let Some(mut stumble) = presence.stumble.take() else {
             let sway = self.sway(world, &stand);
-            if self.is_off(&stand, sway, UNTOLD) {
+            if self.is_off(&stand, sway, UNTOLD_MARGIN) {
                 self.begin_stumble(&stand, sway * stand.omega);
             }
             return false;
@@ -200,11 +175,12 @@ impl Character {
         let outside = support.outside(body.capture());
         let off = (body.velocity - body.wish).length();
         // Who walks is fastest as a foot comes down.
-        let calm = CALM + GAIT * body.wish.length();
-        if support.outside(body.center + body.velocity / body.omega - body.goes_on()) <= MARGIN && off < calm
+        let calm = CAUGHT_SPEED + CAUGHT_SHARE * body.wish.length();
+        if support.outside(body.center + body.velocity / body.omega - body.goes_on()) <= CAPTURE_MARGIN
+            && off < calm
         {
             stumble.caught = true;
-        } else if outside > MARGIN {
+        } else if outside > CAPTURE_MARGIN {
             if stumble.steps >= self.def.in_world.most_steps {
                 return true;
             }
@@ -216,7 +192,9 @@ impl Character {
     /// Has a foot that is on its way come down where it does most, and puts it down at once where the other one must step.
     fn aim(&self, world: &World, body: &Pendulum, stumble: &mut Stumble, foot: usize) {
         let Footing::Swinging { from, to, time, lasts, home: false } = stumble.feet[foot] else { return };
-        let Some(stance) = stumble.feet[1 - foot].planted().filter(|_| time < AIMS * lasts) else { return };
+        let Some(stance) = stumble.feet[1 - foot].planted().filter(|_| time < AIMS_UNTIL * lasts) else {
+            return;
+        };
         let mut print = self.print(body, foot, to, stance, lasts - time);
         let mut lasts = lasts;
         if from == to {
@@ -238,7 +216,7 @@ impl Character {
         let plans = plans.filter_map(|(foot, lasts)| {
             let (from, stance) = (stumble.feet[foot].planted()?, stumble.feet[1 - foot].planted()?);
             let print = self.print(body, foot, from, stance, lasts);
-            let cost = print.miss + STRAINS * print.strain + HURRY * (STEP_TIMES[0] - lasts);
+            let cost = print.miss + STRAIN_COST * print.strain + HURRY * (STEP_TIMES[0] - lasts);
             Some((cost, foot, from, print.at, lasts))
         });
         let Some((_, foot, from, at, lasts)) = plans.reduce(|a, b| if b.0 < a.0 { b } else { a }) else {
@@ -269,7 +247,8 @@ impl Character {
         let floor = place.translation.y;
         let own = self.bodies();
         let over = Vec3::new(at.x, floor, at.z);
-        let ground = ground::below(world, over, HIGHEST, Some(own)).filter(|y| (y - floor).abs() < HIGHEST);
+        let ground =
+            ground::below(world, over, STEP_RANGE, Some(own)).filter(|y| (y - floor).abs() < STEP_RANGE);
         Transform::new(translation + Vec3::Y * (ground.unwrap_or(floor) + feet.ankle_height), rotation)
     }
 
@@ -281,7 +260,7 @@ impl Character {
 
     /// Ground under the feet that are down, left and right, by their ankles.
     fn support(&self, ankles: [Option<Transform>; 2]) -> Support {
-        let mut support = Support::new(RIM * self.def.ragdoll.height);
+        let mut support = Support::new(SOLE_RIM * self.def.ragdoll.height);
         for (foot, ankle) in ankles.into_iter().enumerate() {
             if let Some(ankle) = ankle {
                 support.add(self.sole(ankle, foot));
@@ -372,13 +351,13 @@ impl Character {
                     let share = smoothstep((time + seconds) / lasts);
                     let (from, to) = (at(from), if home { clips } else { at(to) });
                     let way = from.translation * (1.0 - share) + to.translation * share;
-                    let wide = min((to.translation - from.translation).length() / WIDE, 1.0);
+                    let wide = min((to.translation - from.translation).length() / WIDE_STEP, 1.0);
                     let up = 4.0 * share * (1.0 - share) * lift * wide;
                     Transform::new(way + Vec3::Y * up, from.rotation.nlerp(to.rotation, share))
                 }
             }
         });
-        hold_feet(&def.rig, feet.pelvis, &feet.legs, &goals, SINKS * def.ragdoll.height, pose, model);
+        hold_feet(&def.rig, feet.pelvis, &feet.legs, &goals, PELVIS_SINKS * def.ragdoll.height, pose, model);
     }
 }
 

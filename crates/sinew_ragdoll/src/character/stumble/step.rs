@@ -5,21 +5,11 @@
 //! comes down `u T / (exp(ω T) − 1)` before it lets it go on at the speed `u` with steps of the time `T`.
 
 use super::support::level;
+use crate::character::tuning::{BRAKES, FEET_APART, FOOT_SPEED, STEP_OUT, STEP_REACH, STRIDE_TIME};
 use sinew_math::{Rotation, Vec3, clamp, max, min, trig};
 
 /// Seconds that a step takes: as long as it may, and shorter ones where they catch more.
 pub(super) const STEP_TIMES: [f32; 4] = [0.3, 0.26, 0.22, 0.18];
-/// Seconds in which a foot that is in the air is put down at once.
-pub(super) const DROP_TIME: f32 = 0.1;
-/// Seconds of a step of a steady walk.
-const STRIDE_TIME: f32 = 0.28;
-/// Least way between the feet across, and farthest of a foot from the body, over its height.
-const APART: f32 = 0.08;
-const REACH: f32 = 0.3;
-/// Mean speed of a foot at most, over the height of the body, 1/s: a quick step of a person takes 0.2 s for 0.6 m.
-const SWIFT: f32 = 1.7;
-/// Way of a foot to its own side of the capture point, over the height of the body.
-const OUT: f32 = 0.015;
 
 /// A body that falls over, level but for the heights that ω is made of.
 #[derive(Clone, Copy, Debug)]
@@ -55,8 +45,7 @@ impl Pendulum {
 
     /// Place on which it presses best to come to that velocity.
     pub fn brake(&self) -> Vec3 {
-        const FIRM: f32 = 1.5;
-        level(self.center) + (self.velocity - self.wish) * (FIRM / self.omega)
+        level(self.center) + (self.velocity - self.wish) * (BRAKES / self.omega)
     }
 
     /// Change of its velocity within a moment in which it presses on `on`.
@@ -79,20 +68,20 @@ impl Pendulum {
         let capture = on + (away + self.velocity / self.omega) * grown;
         let side = if foot == 0 { 1.0 } else { -1.0 };
         let across = self.heading * (Vec3::X * side);
-        let wanted = capture - self.goes_on() + across * (OUT * self.height);
+        let wanted = capture - self.goes_on() + across * (STEP_OUT * self.height);
         let mut at = wanted;
         // On its own side of the other foot.
         let apart = (at - stance).dot(across);
-        at += across * max(APART * self.height - apart, 0.0);
+        at += across * max(FEET_APART * self.height - apart, 0.0);
         let reach = at - center;
         let far = reach.length();
-        at = center + reach * min(REACH * self.height / max(far, 1e-6), 1.0);
+        at = center + reach * min(STEP_REACH * self.height / max(far, 1e-6), 1.0);
         let way = at - level(from);
         let far = way.length();
-        at = level(from) + way * min(SWIFT * self.height * seconds / max(far, 1e-6), 1.0);
+        at = level(from) + way * min(FOOT_SPEED * self.height * seconds / max(far, 1e-6), 1.0);
         let apart = (at - stance).dot(across);
-        at += across * clamp(APART * self.height - apart, 0.0, APART * self.height);
-        let strain = max((center - level(stance)).length() - REACH * self.height, 0.0);
+        at += across * clamp(FEET_APART * self.height - apart, 0.0, FEET_APART * self.height);
+        let strain = max((center - level(stance)).length() - STEP_REACH * self.height, 0.0);
         Print { at, miss: (at - wanted).length(), strain }
     }
 }
@@ -146,6 +135,6 @@ mod tests {
         let stance = Vec3::new(-0.1, 0.0, 0.0);
         let body = pushed(Vec3::X * -1.0, Vec3::ZERO);
         let print = body.print(0, -stance, stance, stance, STRIDE_TIME);
-        assert!(print.at.x >= stance.x + APART * 1.75 - 1e-4 && print.miss > 0.2, "{print:?}");
+        assert!(print.at.x >= stance.x + FEET_APART * 1.75 - 1e-4 && print.miss > 0.2, "{print:?}");
     }
 }

@@ -1,0 +1,182 @@
+//! Constants of behaviour of what tells who is what in a rig: numbers that an engineer would turn.
+//!
+//! Each says its unit and space, what a larger and a smaller one does, and the tests
+//! (`crates/sinew_anim/tests/it`) where that is to be seen; consequences without a figure are judgement, not measured.
+
+// roles/anatomy.rs
+
+/// Share of all skin from which a joint named as a control counts as a bone, 0 to 1.
+///
+/// It need not be enough for a body: a hoof too small for one must still go with its leg. Larger: hoofs stay behind. Smaller: stray
+/// weights make bones of controls. Shown by the tests of `wild`.
+pub(crate) const CONTROL_SKIN: f32 = 5e-4;
+
+/// Least lead of both feet together, in heights of the body, that tells forward against what left and right are named.
+///
+/// Half of what a human's have. Larger: swapped names turn figures round. Smaller: toes that hardly lead do. Shown by the tests of
+/// `hints`.
+pub(crate) const FEET_AGAINST_NAMES: f32 = 0.04;
+
+/// Least distance of both elbows together behind the arms, in heights of the body, to tell more than feet that hardly do.
+///
+/// Larger: T-poses without feet have no front. Smaller: straight arms decide by noise. Shown by the tests of `hints`.
+pub(crate) const ELBOWS_BEHIND: f32 = 0.03;
+
+/// Least correlation of the feet's height with their speed, 0 to 1, that tells which way they walk.
+///
+/// Larger: shuffling walks tell nothing. Smaller: dances do. Shown by the tests of `hints`.
+pub(crate) const STEP_CORRELATION: f32 = 0.25;
+
+// roles/bind.rs
+
+/// Distance of two joints in one place, as a share of the body's size.
+///
+/// Larger: fingertips coincide. Smaller: helpers of an exporter count as bones. Shown by the tests of `rigs`.
+pub(crate) const COINCIDENT: f32 = 1e-3;
+
+// roles/gait.rs
+
+/// Poses a second at which a clip is looked at for its gait, 1/s.
+///
+/// Larger: slower. Smaller: a run's swing falls between them. Shown by the tests of `hints`.
+pub(crate) const GAIT_RATE: f32 = 24.0;
+
+/// Least length of a clip of walking, seconds.
+///
+/// Larger: short cycles are not seen. Smaller: poses count as clips. Shown by the tests of `hints`.
+pub(crate) const SHORTEST_WALK: f32 = 0.2;
+
+/// Least variance of the swing of one leg against the other over that of the swing together, a ratio.
+///
+/// Larger: a walk with a sway has no legs. Smaller: hops have. Shown by the tests of `hints`.
+pub(crate) const IN_TURNS: f32 = 4.0;
+
+/// Largest ratio of the variances of two limbs that swing as a pair.
+///
+/// Larger: one arm that strikes is a pair of legs. Smaller: a limp is none. Shown by the tests of `hints`.
+pub(crate) const SWINGS_ALIKE: f32 = 3.0;
+
+/// Least swing of legs, root mean square, as a share of the body's height.
+///
+/// Larger: short steps are none. Smaller: breathing is one. Shown by the tests of `hints`.
+pub(crate) const LEAST_SWING: f32 = 0.03;
+
+// roles/graph.rs
+
+/// Farthest that a foot beside the body begins from the skin of the leaf to which it belongs, as a share of the skin's size.
+///
+/// Larger: a foot goes to the wrong leg. Smaller: it stays alone. Shown by the tests of `wild`.
+pub(crate) const FOOT_AT_SKIN: f32 = 0.06;
+
+/// Farthest that a foot which hangs on the root is from the end of its leg, as a share of the skin's size.
+///
+/// Larger: targets of IK are feet. Smaller: feet with a gap stay behind. Shown by the tests of `wild`.
+pub(crate) const FOOT_AT_END: f32 = 0.01;
+
+/// Largest difference of the distances of twins from the root, as a share of the skin's size.
+///
+/// Larger: any two are twins. Smaller: rigs that were not mirrored exactly have none. Shown by the tests of `creatures`.
+pub(crate) const TWIN_PLACE: f32 = 0.025;
+
+/// Least area of skin that a twin moves, as a share of the other's.
+///
+/// Larger: legs of uneven meshes are no twins. Smaller: a leg and a finger are. Shown by the tests of `creatures`.
+pub(crate) const TWIN_AREA: f32 = 0.6;
+
+// roles/humanoid.rs
+
+/// Least distance along a forearm of the nearer of two joints, as a share of the other's, that makes them fingers.
+///
+/// Larger: a thumb that begins early is none. Smaller: a twist bone is one. Shown by the tests of `roles`.
+pub(crate) const FORKED: f32 = 0.8;
+
+/// Largest spread of the fingers' beginnings, as a share of their distance from the joint that carries them, that makes that place
+/// the wrist.
+///
+/// Larger: palms are lost. Smaller: fingers hang on the forearm. Shown by the tests of `roles`.
+pub(crate) const AT_WRIST: f32 = 0.15;
+
+/// Longest palm, as a share of the forearm's length, also of a figure with large hands.
+///
+/// Larger: forearms are palms. Smaller: large hands are forearms. Shown by the tests of `roles`.
+pub(crate) const LONGEST_PALM: f32 = 0.7;
+
+/// Largest difference of the heights of two joints that are as high, as a share of the body's height.
+///
+/// Larger: knees are as high as ankles. Smaller: rounding decides. Shown by the tests of `roles`.
+pub(crate) const AS_HIGH: f32 = 0.02;
+
+/// Lowest hips of a figure with a large head, as a share of its height.
+///
+/// Larger: dolls have no legs. Smaller: feet are legs. Shown by the tests of `roles`.
+pub(crate) const LOWEST_HIP: f32 = 0.1;
+
+// roles/keep.rs
+
+/// Least share of all skin for a body of a creature, 0 to 1.
+///
+/// Larger: ends of tails and legs go stiff. Smaller: ears and claws are bodies. Shown by the tests of `creatures`.
+pub(crate) const LEAST_BODY_SKIN: f32 = 0.004;
+
+/// Least share of all skin for a part of the spine of its own, 0 to 1.
+///
+/// Larger: snakes go stiff. Smaller: short vertebrae make weak joints. Shown by the tests of `creatures`.
+pub(crate) const LEAST_SPINE_SKIN: f32 = 0.02;
+
+/// Shortest clavicle that is a body, as a share of the height.
+///
+/// Larger: shoulders do not give. Smaller: bodies that nothing collides with. Shown by the tests of `roles`.
+pub(crate) const LEAST_CLAVICLE: f32 = 0.05;
+
+// roles/props.rs
+
+/// Least longest side of a prop with a body of its own, as a share of the skin's.
+///
+/// Larger: swords stick in the floor. Smaller: buttons have bodies. Shown by the tests of `rig_variants` of the ragdolls.
+pub(crate) const LEAST_PROP: f32 = 0.1;
+
+/// Least distance outside the box of its carrier's skin at which a vertex sticks out, as a share of the skin's size.
+///
+/// Larger: hats are part of the head. Smaller: collars are props. Shown by the tests of `rig_variants` of the ragdolls.
+pub(crate) const PROP_BEYOND: f32 = 0.05;
+
+/// Least share of a prop's vertices that stick out, 0 to 1.
+///
+/// Larger: a shield held near is none. Smaller: a belt is one. Shown by the tests of `rig_variants` of the ragdolls.
+pub(crate) const PROP_SHARE: f32 = 0.1;
+
+/// Confidence that a thing which sticks out is carried, 0 to 1.
+///
+/// It is said and decides nothing. No scene shows it.
+pub(crate) const PROP_CONFIDENCE: f32 = 0.5;
+
+// roles/symmetry.rs
+
+/// Farthest that a joint may be from its mirror image, as a share of the size of the skin.
+///
+/// Larger: planes are found where there are none. Smaller: sculpted figures have none. Shown by the tests of `creatures`.
+pub(crate) const MIRROR_TOLERANCE: f32 = 0.025;
+
+// roles/units.rs
+
+/// Weight of the unit in which the program that wrote the file writes, in the measure of a unit's rarity.
+///
+/// Larger: giants of a program that writes metres are believed. Smaller: its habit counts for nothing. Shown by the tests of `hints`.
+pub(crate) const UNIT_BY_EXPORTER: f32 = 1.0;
+
+/// Weight of a unit that all files beside it have, in the measure of [`UNIT_BY_EXPORTER`].
+///
+/// Larger: one bad file of a kit follows the others. Smaller: files of one kit come out in different sizes. Shown by the tests of
+/// `hints`.
+pub(crate) const UNIT_BY_KIN: f32 = 2.0;
+
+/// Height of a human as a share of the free height under a door, 0 to 1.
+///
+/// Doors of 2.05 m are for 1.75 m. Larger or smaller: figures that a door tells the size of grow or shrink with it. Shown by the
+/// tests of `hints`.
+pub(crate) const UNDER_DOOR: f32 = 0.85;
+
+/// Speed of strides in square roots of gravity and the length of the legs, between a walk's 3.6 and a run's 2.3 strides.
+///
+/// Larger or smaller: figures without other hints shrink or grow by its square. Shown by the tests of `hints`.
+pub(crate) const STRIDE_SPEED: f32 = 3.0;

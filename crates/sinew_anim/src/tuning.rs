@@ -1,0 +1,123 @@
+//! Constants of behaviour of animations: numbers that an engineer would turn.
+//!
+//! Each says its unit and space, what a larger and a smaller one does, and the tests
+//! (`crates/sinew_anim/tests/it`) where that is to be seen; consequences without a figure are judgement, not measured.
+
+// animator/mod.rs
+
+/// Sum of weights in layer 0 below which the rest pose makes up for what is missing (see [`crate::BlendOptions`]), 0 to 1.
+///
+/// Larger: a track that fades in begins at the rest pose. Smaller: what is left of a faded track is blown up to a whole pose. Shown
+/// by the tests of `animators`.
+pub(crate) const FILL_BELOW: f32 = 0.1;
+
+// animator/track.rs
+
+/// Fastest that a track goes, forward or backward, clip seconds per second.
+///
+/// An update passes as many laps, and fires as many events, as that makes: larger, it may take as long as it likes; smaller, a clip
+/// cannot be rushed through. Shown by the tests of `animators`.
+pub const MAX_SPEED: f32 = 1_000.0;
+
+// cleanup/foot_slide.rs
+
+/// Largest share of its length that a leg is stretched to, below 1.
+///
+/// Larger: a knee snaps straight. Smaller: the pelvis goes down where the leg would have reached. Shown by the tests of `cleanup`.
+pub(crate) const LEG_REACH: f32 = 0.996;
+
+/// Time over which the pelvis goes down and up again for a foot out of reach, seconds.
+///
+/// Larger: it is low for long. Smaller: it jerks. Shown by the tests of `cleanup`.
+pub(crate) const PELVIS_TIME: f32 = 0.1;
+
+// clip/reduce.rs
+
+/// Share of the bound on the error, 0 to 1, that is good enough to stop looking for fewer keys.
+///
+/// Larger: more rounds for a few keys less. Smaller: clips with more keys than the bound asks for. Shown by the tests of `reduce`.
+pub(crate) const REDUCED_ENOUGH: f32 = 0.75;
+
+/// Share of the bound on the error that each channel may use to begin with, 0 to 1.
+///
+/// Errors of different joints hardly ever add up. Larger or smaller: one more round until the share is found. Shown by the tests of
+/// `reduce`.
+pub(crate) const CHANNEL_SHARE: f32 = 0.55;
+
+/// Share of the bound on the error that the next round aims at, from [`REDUCED_ENOUGH`] to 1.
+///
+/// Larger: rounds that overshoot are lost. Smaller: more keys. Shown by the tests of `reduce`.
+pub(crate) const REDUCTION_AIM: f32 = 0.9;
+
+// clip/root_motion.rs
+
+/// Longest time between samples of root motion, seconds; in between it goes in a straight line.
+///
+/// Larger: turns are cut short. Smaller: longer tracks. Shown by the tests of `root_motion`.
+pub(crate) const ROOT_SAMPLING: f32 = 1.0 / 60.0;
+
+// learned_limits.rs
+
+/// Share of the frames that learned limits take in, 0 to 1.
+///
+/// Larger: single frames of a capture widen them. Smaller: what a clip does is cut off. Shown by the tests of `learned_limits`.
+pub const COVERAGE: f32 = 0.995;
+
+/// Least turn that shows a hinge, radians.
+///
+/// Larger: hinges that hardly move are balls. Smaller: noise is a hinge. Shown by the tests of `learned_limits`.
+pub(crate) const LEAST_HINGE: f32 = 0.2;
+
+/// Turn about other axes than its own that a hinge may have, as a share of its range.
+///
+/// Larger: a ball that swings one way is taken for a hinge. Smaller: captured knees are balls. Shown by the tests of
+/// `learned_limits`.
+pub(crate) const HINGE_PLAY: f32 = 0.1;
+
+// legs.rs
+
+/// Place of the ball of a foot in front of an ankle whose rig has no toes, in lengths of the leg.
+///
+/// That of a human is 0.13 to 0.16. Larger: heels are lifted too early. Smaller: feet stand on their heels. Shown by the tests of
+/// `retarget`.
+pub(crate) const BALL_AHEAD: f32 = 0.14;
+
+// playback/inertial.rs
+
+/// Least share of its time that an offset may die away in, 0 to 1.
+///
+/// Smaller: an offset that already runs home stops with a jerk. Larger: it swings past. Shown by the tests of `transitions`.
+pub(crate) const SHORTEST_DECAY: f32 = 1.0 / 3.0;
+
+// retarget/align.rs
+
+/// Cosine of the angle between two reference poses, 30°, up to which both are taken to stand upright.
+///
+/// A larger angle: an A-pose is bent to a slouch. A smaller one: stances keep what is only the actor's pose of calibration. Shown by
+/// the tests of `mocap`.
+pub(crate) const SAME_UPRIGHT: f32 = 0.866;
+
+/// Cosine of the angle of a leg's bones to the vertical, 25°, up to which it stands and its foot is flat on the floor.
+///
+/// A larger angle: feet of crouching rest poses are turned flat. A smaller one: those of standing ones are not. Shown by the tests of
+/// `retarget`.
+pub(crate) const LEG_STANDS: f32 = 0.906;
+
+// retarget/mod.rs
+
+/// Time by which a foot is held longer than the actor's at either end, seconds.
+///
+/// A foot on its way down hardly moves on. Larger: steps stick. Smaller: feet slide as they land. Shown by the tests of `retarget`.
+pub(crate) const FOOT_HOLD: f32 = 0.02;
+
+/// Time over which the height of the body is matched to the floor, seconds.
+///
+/// Larger: feet sink as a step begins. Smaller: the body bobs. Shown by the tests of `retarget`.
+pub(crate) const FLOOR_TIME: f32 = 0.12;
+
+// retarget/reference.rs
+
+/// Cosine of the angles, 32°, that trunk and legs may be off the vertical in a pose that is clearly standing.
+///
+/// A larger angle: a crouch is the reference. A smaller one: no frame of a capture is. Shown by the tests of `mocap`.
+pub(crate) const CLEARLY_STANDING: f32 = 0.85;

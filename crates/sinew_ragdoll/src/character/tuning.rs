@@ -1,0 +1,501 @@
+//! Constants of behaviour of characters: animated, limp, getting up, stumbling: numbers that an engineer would turn.
+//!
+//! Each says its unit and space, what a larger and a smaller one does, and the tests
+//! (`crates/sinew_ragdoll/tests/it`) where that is to be seen; consequences without a figure are judgement, not measured.
+
+// character/animate.rs
+
+/// Largest speed at which the height of a character's origin follows the ground, m/s: a step of a stair takes a few frames.
+///
+/// Larger: it jerks up a stair. Smaller: it wades in the steps. Shown by the tests of `slopes`.
+pub(crate) const CLIMB_SPEED: f32 = 1.2;
+
+// character/blows.rs
+
+/// Time for which a limb that was struck gives way, seconds.
+///
+/// Larger: it hangs. Smaller: a blow is not seen. Shown by the tests of `blows`.
+pub(crate) const FLINCH_TIME: f32 = 0.12;
+
+/// Half-life of a struck limb's coming back, seconds.
+///
+/// Larger: it floats home. Smaller: it snaps. Shown by the tests of `blows`.
+pub(crate) const FLINCH_HALF_LIFE: f32 = 0.08;
+
+/// Largest share of their strength, 0 to 1, that a blow takes from the legs of a character that steps.
+///
+/// Larger: it kneels before its foot is down. Smaller: legs like poles. Shown by the tests of `stumble`.
+pub(crate) const LEGS_WEAKEN: f32 = 0.2;
+
+/// Largest share of its strength, 0 to 1, that a blow takes from the trunk of a character that steps.
+///
+/// Larger: it folds. Smaller: it steps like a board. Shown by the tests of `stumble`.
+pub(crate) const TRUNK_WEAKENS: f32 = 0.5;
+
+/// Number of half-lives after which a limb is as the clips have it again.
+///
+/// Larger: it counts as flinching for longer. Smaller: it jumps at the end. Shown by the tests of `blows`.
+pub(crate) const RETURNED_AFTER: f32 = 6.0;
+
+// character/feet.rs
+
+/// Natural frequency with which feet follow the ground, critically damped, rad/s: a step of a stair asks for as much of a leg as a
+/// transition within 0.2 s.
+///
+/// Larger: legs jerk. Smaller: feet sink in and float. Shown by the tests of `slopes`.
+pub(crate) const FEET_QUICKNESS: f32 = 12.0;
+
+/// Farthest that ground may be up or down for a foot to stand on it, metres.
+///
+/// Larger: legs reach into holes. Smaller: feet hang over steps. Shown by the tests of `slopes`.
+pub(crate) const FOOT_RANGE: f32 = 0.32;
+
+/// Distance up or down below which ground is the floor of the clip, metres.
+///
+/// Larger: feet off the ground. Smaller: noise of meshes moves legs. Shown by the tests of `slopes`.
+pub(crate) const FOOT_FLOOR: f32 = 2e-3;
+
+/// Height and speed below which a foot has nothing left to come back from, metres and m/s.
+///
+/// Larger: it jumps at the end. Smaller: work for nothing. Shown by the tests of `pops`.
+pub(crate) const FOOT_HOME: f32 = 1e-5;
+
+/// Ratio of the times in which a body stands upright and its feet are planted.
+///
+/// Larger: feet jerk. Smaller: they slide while it rises. Shown by the tests of `slopes`.
+pub(crate) const PLANTED_SOONER: f32 = 2.0;
+
+/// Rise or fall of ground along a foot, a slope, from which on it is an edge.
+///
+/// Larger: feet tilt on edges. Smaller: they are level on slopes. Shown by the tests of `slopes`.
+pub(crate) const FOOT_EDGE: f32 = 0.6;
+
+/// Largest tilt of a foot, radians.
+///
+/// Larger: broken ankles. Smaller: feet in steep ground. Shown by the tests of `slopes`.
+pub(crate) const MOST_TILT: f32 = 0.6;
+
+/// Height above a foot from which the ground is sought, metres.
+///
+/// Larger: a table over it is its ground. Smaller: steps are seen late. Shown by the tests of `slopes`.
+pub(crate) const FOOT_SEARCH: f32 = 0.5;
+
+/// Speed from which on a character has its feet where its clips have them, m/s.
+///
+/// Larger: feet stick as it goes. Smaller: they slide as it stands. Shown by the tests of `slopes`.
+pub(crate) const WALKS_FROM: f32 = 0.3;
+
+/// Place of the ball in front of an ankle without toes, in lengths of the leg.
+///
+/// As that of the animations. Shown by the tests of `slopes`.
+pub(crate) const BALL_AHEAD: f32 = 0.14;
+
+// character/get_up.rs
+
+/// Time in which the bodies' pose dies away in a get-up clip, seconds.
+///
+/// Larger: limbs through the floor. Smaller: a jerk. Shown by the tests of `pops`.
+pub(crate) const INTO_GET_UP: f32 = 0.35;
+
+/// Time in which the bodies' pose dies away in the looped clip, without one to get up by, seconds.
+///
+/// Larger: it floats up. Smaller: it jumps up. Shown by the tests of `pops`.
+pub(crate) const INTO_STANDING: f32 = 0.8;
+
+/// Time in which the end of a get-up clip dies away in the looped one, seconds.
+///
+/// Larger: feet slide. Smaller: a jerk. Shown by the tests of `pops`.
+pub(crate) const INTO_LOOP: f32 = 0.3;
+
+/// Share of a get-up clip, to its end, in which a body that lay on a slope stands upright, 0 to 1.
+///
+/// Larger: hands leave the ground. Smaller: it swings upright. Shown by the tests of `slopes`.
+pub(crate) const STRAIGHTENS: f32 = 0.6;
+
+/// Height of a mover over a body that lies, as a share of its own.
+///
+/// Larger: it does not fit under what the body lies under. Shown by the tests of `in_world`.
+pub(crate) const LYING_MOVER: f32 = 0.0;
+
+/// Height above the pelvis from which the ground is sought, metres.
+///
+/// Larger: what it lies under is its ground. Smaller: a pelvis sunk in a slope finds none. Shown by the tests of `slopes`.
+pub(crate) const ABOVE_PELVIS: f32 = 0.3;
+
+// character/ground.rs
+
+/// Highest step that a walking character climbs, metres.
+///
+/// Larger: it climbs tables. Smaller: it stops at stairs. Shown by the tests of `travel`.
+pub(crate) const HIGHEST_STEP: f32 = 0.45;
+
+/// Depth down to which the ground is sought, metres.
+///
+/// Larger: slower over holes. Smaller: what stands high has none. Shown by the tests of `character`.
+pub(crate) const GROUND_DEPTH: f32 = 100.0;
+
+/// Depth under a pelvis down to which the ground that bears it is sought, metres.
+///
+/// Larger: what lies over an edge gets up on the floor below. Smaller: large figures bear themselves on nothing. Shown by the tests
+/// of `slopes`.
+pub(crate) const LIES_ON: f32 = 1.0;
+
+/// Height above a point of a body that lies from which the ground is sought, metres.
+///
+/// As [`ABOVE_PELVIS`].
+pub(crate) const LYING_SEARCH: f32 = 0.3;
+
+/// Slope from which on steeper ground counts as if it were not, radians.
+///
+/// Larger: a character gets up leaning. Smaller: it gets up through the ground. Shown by the tests of `slopes`.
+pub(crate) const STEEPEST_GROUND: f32 = 0.6;
+
+/// Slope below which ground counts as level, radians.
+///
+/// Larger: feet off gentle slopes. Smaller: work for nothing. Shown by the tests of `slopes`.
+pub(crate) const LEVEL_GROUND: f32 = 0.02;
+
+// character/hit_bodies.rs
+
+/// Way of a body within a step beyond which it was put elsewhere, metres.
+///
+/// Larger: what was put strikes all on its way. Smaller: what is fast strikes nothing. Shown by the tests of `in_world`.
+pub(crate) const TELEPORTED: f32 = 1.0;
+
+// character/in_world.rs
+
+/// Speed that a blow gives to the whole of a character that it fells, m/s.
+///
+/// Larger: it stands through more. Smaller: a touch fells it. Shown by the tests of `in_world`.
+pub(crate) const FELLING_SPEED: f32 = 0.6;
+
+/// Radius of a mover over its height.
+///
+/// Larger: it does not fit through doors. Smaller: arms in walls. Shown by the tests of `in_world`.
+pub(crate) const MOVER_RADIUS: f32 = 0.17;
+
+// character/limp.rs
+
+/// Time between the poses ahead of now that the hand-over takes velocities from, seconds: short against any motion, long against
+/// rounding.
+///
+/// Larger: speeds of the step to come. Smaller: noise. Shown by the tests of `hand_over`.
+pub(crate) const HAND_OVER_TIME: f32 = 1.0 / 1000.0;
+
+/// Time in which what no body moves comes to rest, seconds.
+///
+/// Larger: fingers go on moving on what lies. Smaller: they freeze. Shown by the tests of `pops`.
+pub(crate) const LINGERS: f32 = 0.25;
+
+/// Time in which joints take on the friction of a limp body, seconds.
+///
+/// Larger: it falls like water. Smaller: joints jerk at the hand-over. Shown by the tests of `hand_over`.
+pub(crate) const SLACKENS: f32 = 0.2;
+
+/// Speed below which a body lies still, m/s: the contract's 2 cm/s.
+///
+/// Larger: it gets up while it slides. Smaller: it waits. Shown by the tests of `character`.
+pub(crate) const STILL_LINEAR: f32 = 0.02;
+
+/// Angular speed below which a body lies still, rad/s: the contract's.
+///
+/// As [`STILL_LINEAR`].
+pub(crate) const STILL_ANGULAR: f32 = 0.05;
+
+/// Time that all bodies must be still, seconds: the contract's.
+///
+/// Larger: it waits. Smaller: it gets up at a turning point. Shown by the tests of `character`.
+pub(crate) const STILL_TIME: f32 = 0.5;
+
+/// Depth in what stands from which on a body does not lie yet, metres: it is pushed out, for which it has no speed of its own.
+///
+/// Larger: what is stuck counts as at rest. Smaller: what rests within the slop does not. Shown by the tests of `falls`.
+pub(crate) const SUNK: f32 = 5e-3;
+
+// character/mirror.rs
+
+/// Largest distance of a joint from the mirror image of its counterpart in the bind pose, as a share of the body's height.
+///
+/// Larger: mirrored clips look askew. Smaller: there are none. Shown by the tests of `character`.
+pub(crate) const MIRROR_TOLERANCE: f32 = 0.03;
+
+/// Distance from its rest beyond which a joint counts as moved along, as a share of its distance from its parent.
+///
+/// Larger: sliding joints stay behind in mirrored clips. Smaller: rounding counts. Shown by the tests of `character`.
+pub(crate) const MOVED: f32 = 1e-3;
+
+// character/moves.rs
+
+/// Share of a get-up clip in which it may begin, 0 to 1.
+///
+/// Larger: it may begin nearly upright. Smaller: what sits lies down first. Shown by the tests of `character`.
+pub(crate) const MAY_BEGIN: f32 = 0.4;
+
+/// Time between the moments at which a get-up clip may begin, seconds.
+///
+/// Larger: worse matches. Smaller: slower. Shown by the tests of `character`.
+pub(crate) const STARTS_APART: f32 = 1.0 / 15.0;
+
+/// Time between the poses of a clip whose root motion is moved to the pelvis, seconds.
+///
+/// Larger: steps are cut short. Smaller: larger clips. Shown by the tests of `travel`.
+pub(crate) const ROOT_FRAME: f64 = 1.0 / 60.0;
+
+/// Time between the poses of a mirrored clip, seconds: getting up is slow.
+///
+/// As [`ROOT_FRAME`].
+pub(crate) const MIRRORED_FRAME: f64 = 1.0 / 30.0;
+
+// character/pose_similarity.rs
+
+/// Weight of a stick's end that shows how the trunk is turned, over the mean body's share of the mass.
+///
+/// Larger: limbs count for nothing. Smaller: it gets up from its back by the clip for its belly. Shown by the tests of `character`.
+pub(crate) const STICK_WEIGHT: f32 = 1.5;
+
+/// Length of a stick that shows how the trunk is turned, over the height of the body.
+///
+/// As [`STICK_WEIGHT`].
+pub(crate) const STICK: f32 = 0.2;
+
+// character/powered.rs
+
+/// Largest force of the pin of a powered body, over its weight.
+///
+/// Larger: puppets on strings. Smaller: arms lag. Shown by the tests of `lives`.
+pub(crate) const PIN_HELPS: f32 = 1.0;
+
+/// Largest force of the pin of a powered leg, over its weight: feet would drag.
+///
+/// Larger: feet push what they meet. Smaller: they drag. Shown by the tests of `lives`.
+pub(crate) const PIN_STEPS: f32 = 4.0;
+
+/// Largest force of the pin of a powered pelvis, over the weight of the whole.
+///
+/// Larger: nothing fells it. Smaller: it sags. Shown by the tests of `lives`.
+pub(crate) const PIN_BEARS: f32 = 1.0;
+
+/// Largest torque of the pin of a powered pelvis over the weight of the whole, metres.
+///
+/// Larger: nothing tips it. Smaller: it leans. Shown by the tests of `lives`.
+pub(crate) const PIN_TURNS: f32 = 0.3;
+
+/// Half-life of a powered body's coming back to the clips, seconds.
+///
+/// Larger: it floats home. Smaller: it snaps. Shown by the tests of `lives`.
+pub(crate) const POWERED_HALF_LIFE: f32 = 0.1;
+
+/// Distance of the pelvis of a powered character from its clips', over its height, beyond which it falls.
+///
+/// Larger: it is dragged along. Smaller: a push fells it. Shown by the tests of `lives`.
+pub(crate) const FALLS_BEYOND: f32 = 0.3;
+
+/// Turn of the pelvis of a powered character from its clips' beyond which it falls, radians.
+///
+/// As [`FALLS_BEYOND`].
+pub(crate) const FALLS_TURNED: f32 = 1.0;
+
+// character/prepare.rs
+
+/// Time in which a body is brought to where a get-up clip begins where its trunk has to be turned, seconds.
+///
+/// Larger: it lies for long. Smaller: it is thrown over. Shown by the tests of `character`.
+pub(crate) const TIME_TO_ROLL: f32 = 1.5;
+
+/// Time in which a body is brought to where a get-up clip begins where its trunk lies right, seconds.
+///
+/// As [`TIME_TO_ROLL`].
+pub(crate) const TIME_TO_PULL: f32 = 0.5;
+
+/// Time in which half of the strength to roll over is there, seconds.
+///
+/// Larger: slow rolls. Smaller: a jerk. Shown by the tests of `character`.
+pub(crate) const PREPARES_HALF_LIFE: f32 = 0.1;
+
+/// Frequency of the pin that turns a trunk over, Hz.
+///
+/// Larger: it flips. Smaller: it does not come round in time. Shown by the tests of `character`.
+pub(crate) const ROLL_HERTZ: f32 = 2.0;
+
+/// Largest torque of what rolls a body over, on each part of the trunk, over its weight times its height: 90 N·m of a man.
+///
+/// Larger: it throws off what lies on it. Smaller: it stays as it lies. Shown by the tests of `character`.
+pub(crate) const ROLL_STRENGTH: f32 = 0.07;
+
+// character/stumble/mod.rs
+
+/// Time of a step that only brings a foot home, seconds.
+///
+/// Larger: slow. Smaller: feet snap. Shown by the tests of `stumble`.
+pub(crate) const HOME_TIME: f32 = 0.25;
+
+/// Share of a step until which its goal may change, 0 to 1.
+///
+/// Larger: feet dart aside at the end. Smaller: they land where the fall was foreseen at first. Shown by the tests of `stumble`.
+pub(crate) const AIMS_UNTIL: f32 = 0.7;
+
+/// Height of a step over that of the body.
+///
+/// Larger: marches. Smaller: feet drag. Shown by the tests of `stumble`.
+pub(crate) const LIFT: f32 = 0.05;
+
+/// Half the width of a sole over the height of the body.
+///
+/// Larger: it balances on edges. Smaller: steps for nothing. Shown by the tests of `stumble`.
+pub(crate) const SOLE_RIM: f32 = 0.023;
+
+/// Farthest that the pelvis is lowered over the height of the body.
+///
+/// Larger: squats. Smaller: feet do not reach. Shown by the tests of `stumble`.
+pub(crate) const PELVIS_SINKS: f32 = 0.12;
+
+/// Distance of a capture point from the feet that asks for a step, metres.
+///
+/// Larger: it falls before it steps. Smaller: it steps for nothing. Shown by the tests of `stumble`.
+pub(crate) const CAPTURE_MARGIN: f32 = 0.01;
+
+/// Distance of a capture point from the feet that asks for a first step where nothing was told of a push, metres.
+///
+/// As [`CAPTURE_MARGIN`].
+pub(crate) const UNTOLD_MARGIN: f32 = 0.08;
+
+/// Velocity beside the one that it is to have at which a character is caught, m/s.
+///
+/// Larger: it stands still while it sways. Smaller: it steps on. Shown by the tests of `stumble`.
+pub(crate) const CAUGHT_SPEED: f32 = 0.15;
+
+/// Share of the velocity that it is to have by which a character that is caught may be off besides, 0 to 1.
+///
+/// As [`CAUGHT_SPEED`].
+pub(crate) const CAUGHT_SHARE: f32 = 0.35;
+
+/// Distance by which a step may miss its place for a second less of its time, metres per second.
+///
+/// Larger: hasty steps. Smaller: late ones. Shown by the tests of `stumble`.
+pub(crate) const HURRY: f32 = 0.2;
+
+/// Distance by which a step may miss its place for a metre less by which the foot that stands is left behind too far, a ratio.
+///
+/// Larger: short steps. Smaller: splits. Shown by the tests of `stumble`.
+pub(crate) const STRAIN_COST: f32 = 3.0;
+
+/// Distance from where it should be at which a foot in the air is put down for the other to step, over the height of the body.
+///
+/// Larger: steps that do not catch. Smaller: feet patter. Shown by the tests of `stumble`.
+pub(crate) const HOPELESS: f32 = 0.04;
+
+/// Way of a foot over which it is lifted all of [`LIFT`], metres.
+///
+/// Larger: feet drag. Smaller: short steps march. Shown by the tests of `stumble`.
+pub(crate) const WIDE_STEP: f32 = 0.2;
+
+/// Rate at which what was caught takes on the velocity that it is to have, 1/s.
+///
+/// Larger: a jerk. Smaller: it drifts. Shown by the tests of `stumble`.
+pub(crate) const RESUMES: f32 = 10.0;
+
+/// Height of an ankle above its height on the floor at which a foot is in the air, metres.
+///
+/// Larger: what hops stands. Smaller: rough ground throws it. Shown by the tests of `stumble`.
+pub(crate) const AIRBORNE: f32 = 0.04;
+
+/// Time without ground after which there is nothing to step on, seconds.
+///
+/// Larger: it steps in the air. Smaller: a kerb fells it. Shown by the tests of `stumble`.
+pub(crate) const FLIES_AFTER: f32 = 0.15;
+
+/// Farthest that ground may be up or down to be stepped on, metres.
+///
+/// Larger: it steps onto tables. Smaller: stairs fell it. Shown by the tests of `stumble`.
+pub(crate) const STEP_RANGE: f32 = 0.4;
+
+// character/stumble/step.rs
+
+/// Time in which a foot that is in the air is put down at once, seconds.
+///
+/// Larger: it falls meanwhile. Smaller: a stamp. Shown by the tests of `stumble`.
+pub(crate) const DROP_TIME: f32 = 0.1;
+
+/// Time of a step of a steady walk, seconds.
+///
+/// Larger: long steps. Smaller: feet patter. Shown by the tests of `stumble`.
+pub(crate) const STRIDE_TIME: f32 = 0.28;
+
+/// Least way between the feet across, over the height of the body.
+///
+/// Larger: a straddle. Smaller: feet cross. Shown by the tests of `stumble`.
+pub(crate) const FEET_APART: f32 = 0.08;
+
+/// Farthest of a foot from the body, over its height.
+///
+/// Larger: splits. Smaller: it falls where a step would catch it. Shown by the tests of `stumble`.
+pub(crate) const STEP_REACH: f32 = 0.3;
+
+/// Largest mean speed of a foot over the height of the body, 1/s: a quick step of a person takes 0.2 s for 0.6 m.
+///
+/// Larger: feet flash. Smaller: it falls where a step would catch it. Shown by the tests of `stumble`.
+pub(crate) const FOOT_SPEED: f32 = 1.7;
+
+/// Way of a foot to its own side of the capture point, over the height of the body.
+///
+/// Larger: it sways from side to side. Smaller: it tips over its own foot. Shown by the tests of `stumble`.
+pub(crate) const STEP_OUT: f32 = 0.015;
+
+/// Way by which the foot leads the capture point to brake, in ways of the velocity that is too much over the pendulum's frequency.
+///
+/// Larger: it swings back. At 1 or below: it never stops. Shown by the tests of `stumble`.
+pub(crate) const BRAKES: f32 = 1.5;
+
+// character/travel.rs
+
+/// Distance from where it began nearer than which a clip that ends there stays in its place, metres.
+///
+/// Larger: slow walks stay. Smaller: idle clips creep. Shown by the tests of `travel`.
+pub(crate) const STAYS_WITHIN: f32 = 0.02;
+
+/// Turn from where it began below which a clip that ends there stays in its place, radians.
+///
+/// As [`STAYS_WITHIN`].
+pub(crate) const STAYS_TURNED: f32 = 0.02;
+
+/// Turn of a lap below which it goes straight on, radians.
+///
+/// Larger: wide circles are lines. Smaller: the middle of a circle is rounded away. Shown by the tests of `travel`.
+pub(crate) const STRAIGHT: f32 = 1e-4;
+
+// character/walk.rs
+
+/// Rate at which what a step of a stair lifts a character dies away, 1/s: the eye follows within a few frames.
+///
+/// Larger: it jerks. Smaller: it wades in the steps. Shown by the tests of `in_world`.
+pub(crate) const STEP_SETTLES: f32 = 14.0;
+
+/// Farthest that a character is shown from its mover, metres.
+///
+/// Larger: it floats after a drop. Smaller: high steps jerk. Shown by the tests of `in_world`.
+pub(crate) const MOST_OVER: f32 = 0.4;
+
+/// Rise of the ground over the way, a slope, from which on it is a step.
+///
+/// Larger: steps jerk. Smaller: slopes are smoothed, and feet sink in. Shown by the tests of `in_world`.
+pub(crate) const STEP_SLOPE: f32 = 1.2;
+
+/// Rate at which the pace of the looped clip follows the speed, 1/s.
+///
+/// Larger: legs jerk. Smaller: feet slide. Shown by the tests of `in_world`.
+pub(crate) const PACE_RATE: f32 = 10.0;
+
+/// Speed below which a character begins to stand, m/s.
+///
+/// Larger: slow walks slide. Smaller: it walks on the spot. Shown by the tests of `in_world`.
+pub(crate) const STANDS_BELOW: f32 = 0.35;
+
+/// Acceleration of what stands on its own feet, m/s²: shoes give way beyond it.
+///
+/// Larger: starts without weight. Smaller: it answers late. Shown by the tests of `in_world`.
+pub(crate) const PICKS_UP: f32 = 5.0;
+
+/// Largest speed of a clip over its own.
+///
+/// Larger: legs whirl. Smaller: feet slide. Shown by the tests of `in_world`.
+pub(crate) const FASTEST_PACE: f32 = 2.0;

@@ -1,0 +1,376 @@
+//! Constants of behaviour of building, judging and driving ragdolls: numbers that an engineer would turn.
+//!
+//! Each says its unit and space, what a larger and a smaller one does, and the tests
+//! (`crates/sinew_ragdoll/tests/it`) where that is to be seen; consequences without a figure are judgement, not measured.
+
+// build/report.rs
+
+/// Least widening of limits that is worth a note, radians (1°).
+///
+/// Larger: a bind pose beyond its limits is passed over. Smaller: notes on every rig. Shown by the tests of `build_limits`.
+pub(crate) const NOTED_WIDENING: f32 = 0.017;
+
+// build/takes.rs
+
+/// Least time between the frames of a clip that a build looks at, seconds.
+///
+/// Larger: quick motions teach no limits. Smaller: slower builds. Shown by the tests of `learned`.
+pub(crate) const FRAME_TIME: f64 = 1.0 / 30.0;
+
+// drive/level.rs
+
+/// Lowest frequency of a drive that is more than nothing, Hz.
+///
+/// Larger: fading drives let go at once. Smaller: springs that move nothing are solved. Shown by the tests of `drive`.
+pub(crate) const LEAST_HERTZ: f32 = 0.02;
+
+/// Number of half-lives after which a body on its way to its key pose is keyed.
+///
+/// Larger: it lags longer. Smaller: it jumps. Shown by the tests of `drive`.
+pub(crate) const KEYED_AFTER: f32 = 5.0;
+
+// drive/mod.rs
+
+/// Speed that a hit must give the whole ragdoll to take all strength from the muscles where it struck, m/s.
+///
+/// Larger: hits leave no trace. Smaller: a touch makes a limb hang. Shown by the tests of `blows`.
+pub(crate) const NUMBING_SPEED: f32 = 0.2;
+
+/// Share of its weakness that one joint hands on to the next, 0 to 1.
+///
+/// Larger: the whole body gives way. Smaller: only the joint that was struck. Shown by the tests of `blows`.
+pub(crate) const WEAKNESS_FALLOFF: f32 = 0.5;
+
+/// Share of strength, or of a pin's force, below which there is none.
+///
+/// Larger: fading drives end with a jerk. Smaller: they are solved for longer. Shown by the tests of `drive`.
+pub(crate) const NO_STRENGTH: f32 = 1e-3;
+
+// drive/target.rs
+
+/// Angle kept free before a stop by the target of a motor, radians.
+///
+/// Larger: poses at a limit are not reached. Smaller: motor and stop fight. Shown by the tests of `drive`.
+pub(crate) const STOP_ROOM: f32 = 0.01;
+
+// drive/torque.rs
+
+/// Torque of a creature's joint over what hangs on it, a ratio.
+///
+/// Larger: stiff creatures. Smaller: they sag under their own weight. Shown by the tests of `drive`.
+pub(crate) const CREATURE_STRENGTH: f32 = 3.0;
+
+/// Acceleration of free fall that strengths are for, m/s².
+///
+/// Standard gravity; larger or smaller: muscles and the friction of limp creatures with it. Shown by the tests of `drive`.
+pub(crate) const GRAVITY: f32 = 9.81;
+
+// filter/mod.rs
+
+/// Overlap in the bind pose that is let be, metres: about the solver's slop.
+///
+/// Larger: pairs push each other when limp. Smaller: pairs that only touch stop colliding. Shown by the tests of `filter`.
+pub const TOLERATED: f32 = 0.005;
+
+/// Least factor on a shape's cross-section that lets a pair collide, below 1.
+///
+/// Larger: more pairs pass through each other. Smaller: thin limbs inside thick skin. Shown by the tests of `filter`.
+pub(crate) const LEAST_SCALE: f32 = 0.86;
+
+/// Factor by which a shape's cross-section is shrunk at a time, below 1.
+///
+/// Larger: more tries. Smaller: shapes thinner than they need be. Shown by the tests of `filter`.
+pub(crate) const SCALE_STEP: f32 = 0.975;
+
+/// Share of the poses within the limits, 0 to 1, from which on a pair that overlaps in them overlaps always.
+///
+/// Larger: pairs collide that are never apart, and jitter. Smaller: hands pass through thighs. Shown by the tests of `filter`.
+pub(crate) const ALWAYS: f32 = 0.9;
+
+/// Share of the poses within the limits, 0 to 1, below which a pair that overlaps in the bind pose is only bound so.
+///
+/// Larger: pairs that mostly overlap collide. Smaller: arms bound at the hips pass through them. Shown by the tests of `filter`.
+pub(crate) const SELDOM: f32 = 0.1;
+
+/// Share of the clips' poses, 0 to 1, in which limbs that are never apart overlap.
+///
+/// Larger: limbs that clips hold together fight. Smaller: limbs pass through each other. Shown by the tests of `filter`.
+pub(crate) const MOSTLY: f32 = 0.5;
+
+/// Share of the clips' poses, 0 to 1, in which other parts may overlap and still collide.
+///
+/// Their meeting is no sight that a fall needs. Larger: parts fight that clips let overlap. Smaller: one bad frame lets them pass.
+/// Shown by the tests of `filter`.
+pub(crate) const A_FEW: f32 = 0.02;
+
+// fit/frame.rs
+
+/// Cosine of the angle, 35°, between a surface's long axis and its bone within which the bone's direction is taken for the shape.
+///
+/// A larger angle: shapes askew to their skin. A smaller one: limbs that are not parallel to their bones. Shown by the tests of
+/// `build`.
+pub(crate) const ALONG_BONE: f32 = 0.819;
+
+/// Least ratio of a surface's largest variance to the next that makes a long axis.
+///
+/// Larger: feet point along their bones. Smaller: axes of round parts by noise. Shown by the tests of `build`.
+pub(crate) const ELONGATED: f32 = 1.5;
+
+/// Largest volume of a trunk's tilted box over the upright one's that is worth tilting it.
+///
+/// Larger: askew trunks. Smaller: boxes far larger than bent backs. Shown by the tests of `build`.
+pub(crate) const WORTH_TILTING: f32 = 0.75;
+
+/// Largest volume of the box in another frame over that in the preferred one for which the other is taken.
+///
+/// Larger: frames change with a vertex. Smaller: loose boxes. Shown by the tests of `build`.
+pub(crate) const CLEARLY_SMALLER: f32 = 0.9;
+
+// fit/mod.rs
+
+/// Least half side or radius of a shape, metres.
+///
+/// Larger: fingers and ears of small figures are clubs. Smaller: thin shapes fall through edges. Shown by the tests of `build`.
+pub(crate) const LEAST_HALF: f32 = 0.0075;
+
+/// Factor on the fitted cross-section, so that contacts lie inside the skin rather than outside.
+///
+/// Larger: figures float. Smaller: they sink. Shown by the tests of `skin`.
+pub(crate) const SHRINK: f32 = 0.97;
+
+/// Share of a bone's length by which its shape may pass each of its joints: two neighbours then overlap by at most a quarter of it.
+///
+/// Larger: neighbours of neighbours meet. Smaller: gaps at knees and elbows. Shown by the tests of `build`.
+pub(crate) const PAST_JOINT: f32 = 0.125;
+
+/// Length of a shape over its twin's from which on it has something in it that is not the body's.
+///
+/// Larger: a sword in a hand is a part of it. Smaller: uneven sculpting is mended away. Shown by the tests of `rig_variants`.
+pub(crate) const BURDENED: f32 = 1.6;
+
+/// Ratio of the volumes of twins from which on both get the shape that fits better.
+///
+/// Larger: lopsided bodies. Smaller: what is really different is made alike. Shown by the tests of `build`.
+pub(crate) const UNLIKE: f32 = 1.3;
+
+/// Factor on the error of a shape that is not of the kind that suits the part.
+///
+/// It must be clearly nearer to the skin. Larger: tables decide. Smaller: odd shapes for a few vertices. Shown by the tests of
+/// `build`.
+pub(crate) const UNUSUAL: f32 = 1.0 / 0.6;
+
+/// Factor on the error of a tapered capsule for a limb, which is as easy to live with as a capsule.
+///
+/// Larger: only capsules. Smaller: tapered ones that are none. Shown by the tests of `build`.
+pub(crate) const TAPERED: f32 = 1.0 / 0.9;
+
+/// Factor on the error of a hull: it costs several times a box's collisions.
+///
+/// Larger: no hulls. Smaller: slow falls. Shown by the tests of `build`.
+pub(crate) const INTRICATE: f32 = 3.0;
+
+// fit/patch.rs
+
+/// Number of samples that describe a patch of skin, about.
+///
+/// Larger: slower fits. Smaller: shapes depend on how the mesh is cut. Shown by the tests of `rig_variants`.
+pub(crate) const SAMPLES: f32 = 400.0;
+
+/// Least share of the area that a bone moves, weight by weight, that is all of its flesh, 0 to 1.
+///
+/// Larger: wide selections with the neighbours' skin. Smaller: thin shapes where skin is shared. Shown by the tests of `build`.
+pub(crate) const LEAST_AREA: f32 = 0.4;
+
+// fit/round.rs
+
+/// Length of a capsule's cylinder over its radius below which it is a ball.
+///
+/// Larger: heads are balls. Smaller: capsules of no length. Shown by the tests of `build`.
+pub(crate) const BALL: f32 = 0.1;
+
+/// Largest difference of the radii of a tapered capsule over the distance of their middles: a cone of 20°.
+///
+/// Larger: balls with a tip. Smaller: calves are capsules. Shown by the tests of `build`.
+pub(crate) const STEEPEST: f32 = 0.35;
+
+// fit/solid.rs
+
+/// Weight of being far from the middle beside being far out along a direction, and by how much directions are askew, in half sides of
+/// the box.
+///
+/// All points of a flat side are equally far out along it. The one nearest to a corner stands for them, and of two mirror images
+/// always the same: what decided was the last bit of their places, and the same skin in another unit had a hull of half the volume.
+/// Larger: hulls miss what sticks out. Smaller: rounding decides. Shown by the tests of `rig_variants`.
+pub(crate) const TOWARD_CORNERS: f32 = 1e-3;
+
+// fit/surface.rs
+
+/// Least pull of a bone on a triangle for it to be looked at, 0 to 1.
+///
+/// Larger: skin near joints is nobody's. Smaller: slower fits. Shown by the tests of `build`.
+pub(crate) const LEAST_PULL: f32 = 0.05;
+
+/// Size of the parts into which a triangle that several bones move is cut, as a share of the character's height.
+///
+/// Larger: coarse meshes give other shapes than fine ones. Smaller: slower fits. Shown by the tests of `rig_variants`.
+pub(crate) const FINEST: f32 = 0.03;
+
+/// Largest number of parts into which a side of a triangle is cut.
+///
+/// Larger: slow fits of figures with few triangles. Smaller: as a larger [`FINEST`]. Shown by the tests of `rig_variants`.
+pub(crate) const MOST_CUTS: f32 = 8.0;
+
+// limits/friction.rs
+
+/// Least torque with which a creature's limp joint resists, as a share of that which gravity has on what it carries.
+///
+/// The table's torques give human joints 3 % (spine) to 36 % (elbow) of theirs; but they are a human's, and on a fish of four tonnes
+/// half a per cent, with which it stands on its nose and sways for ten seconds. With a tenth a column of nine metres still sways for
+/// five; with a fifth all creatures at hand are asleep 2.2 s after they are calm. Larger: stiff falls. Shown by the tests of `falls`.
+pub(crate) const SHARE_OF_LOAD: f32 = 0.2;
+
+// limits/learned.rs
+
+/// Angle by which twist and hinges may go beyond what was seen, radians (10°).
+///
+/// Larger: limits of the clips' own are lost. Smaller: a fall is stopped where no clip went by chance. Shown by the tests of
+/// `learned`.
+pub(crate) const TWIST_MARGIN: f32 = 0.174_532_92;
+
+/// Least motion of a joint to learn from, and narrowest range, radians (5°).
+///
+/// Larger: anatomy decides more often. Smaller: joints lock where clips hold still. Shown by the tests of `learned`.
+pub(crate) const LEAST_RANGE: f32 = 0.087_266_46;
+
+/// Angle beyond the clips by which anatomical limits are widened for them, radians (1°): half of what a limit may be overshot by.
+///
+/// Larger: limits wider than they need be. Smaller: a character begins beyond its limit. Shown by the tests of `learned`.
+pub(crate) const BEYOND_CLIPS: f32 = 0.017_453_292;
+
+// limits/mod.rs
+
+/// Share of the muscles' largest torque that a limp joint resists with.
+///
+/// Larger: falls like a doll of clay. Smaller: limbs flail. Shown by the tests of `falls`.
+pub(crate) const FRICTION_SHARE: f32 = 0.02;
+
+/// Room that a bind pose has to every limit, radians (2°).
+///
+/// Larger: wider limits than anatomy's. Smaller: what is bound at a limit overshoots it at once. Shown by the tests of
+/// `build_limits`.
+pub(crate) const BIND_MARGIN: f32 = 0.034_906_585;
+
+/// Cosine of the bend, 10°, of a bone in the bind pose from which on it shows its hinge's axis itself.
+///
+/// A larger bend: knees of A-poses bend askew. A smaller one: noise is an axis. Shown by the tests of `build_limits`.
+pub(crate) const BENT: f32 = 0.984_8;
+
+/// Cosine of the angle, 50°, from the anatomical axis within which the axis that a bend shows is believed.
+///
+/// A larger angle: knees that bend sideways. A smaller one: turned-out legs bend askew. Shown by the tests of `build_limits`.
+pub(crate) const BELIEVED: f32 = 0.642_8;
+
+/// Largest half-angle to which a swing is widened, radians (170°).
+///
+/// Larger: limits that are none. Smaller: odd bind poses lie beyond. Shown by the tests of `build_limits`.
+pub(crate) const WIDEST_SWING: f32 = 2.967;
+
+// limits/sample.rs
+
+/// Half-axes of the square of random swings over those of the ellipse that they stay in: √½, less a margin.
+///
+/// Larger: random poses beyond their limits. Smaller: all near the middle. Shown by the tests of `filter`.
+pub(crate) const INSCRIBED: f32 = 0.7;
+
+// masses/inertia.rs
+
+/// Largest ratio of a body's principal moments.
+///
+/// Larger: thin bodies spin up about their long axis faster than a substep resolves. Smaller: limbs turn as heavily as boxes.
+/// Shown by the tests of `build`.
+pub(crate) const LARGEST_MOMENTS: f32 = 8.0;
+
+// masses/mod.rs
+
+/// Share of a fitted box that flesh fills, 0 to 1.
+///
+/// Larger or smaller: creatures without a closed skin are heavier or lighter. Shown by the tests of `volume`.
+pub(crate) const BOX_FILL: f32 = 0.55;
+
+/// Share of a fitted capsule that flesh fills, 0 to 1.
+///
+/// As [`BOX_FILL`].
+pub(crate) const CAPSULE_FILL: f32 = 0.8;
+
+/// Least share of the total mass for a body, 0 to 1.
+///
+/// The solver wants ratios below about 1000. Larger: fingers as heavy as hands. Smaller: joints that take more sweeps. Shown by the
+/// tests of `build`.
+pub(crate) const LEAST_MASS: f32 = 0.001;
+
+/// Least share of the trunk's length for a body of it, 0 to 1.
+///
+/// Larger: even spines. Smaller: vertebrae without mass between heavy ones. Shown by the tests of `build`.
+pub(crate) const LEAST_TRUNK: f32 = 0.1;
+
+// masses/volume.rs
+
+/// Least share of the lines that meet the skin on which it closes, 0 to 1.
+///
+/// Larger: figures with open necks weigh by their shapes. Smaller: cloaks enclose air. Shown by the tests of `volume`.
+pub(crate) const CLOSED: f32 = 0.6;
+
+/// Density of what lives, kg/m³: that of water, nearly.
+///
+/// Larger or smaller: creatures weigh more or less. Shown by the tests of `volume`.
+pub(crate) const FLESH: f32 = 1000.0;
+
+/// Density of a machine with the air in it, kg/m³: cars have 200, tanks 1000.
+///
+/// Larger or smaller: machines weigh more or less. Shown by the tests of `volume`.
+pub(crate) const MACHINE: f32 = 500.0;
+
+// ragdoll.rs
+
+/// Largest half-angle to which a swing is widened for the pose in which a ragdoll is spawned, radians (175°).
+///
+/// Larger: limits that are none. Smaller: a character begins beyond its limit. Shown by the tests of `hand_over`.
+pub(crate) const WIDEST_SPAWNED: f32 = 3.054;
+
+// skin/mod.rs
+
+/// Least share of a vertex's weight for the vertex to be a body's own, 0 to 1.
+///
+/// Larger: fewer vertices are judged. Smaller: skin between two bodies must be near to both. Shown by the tests of `skin`.
+pub(crate) const OWN_WEIGHT: f32 = 0.25;
+
+// skin/sides.rs
+
+/// Largest distance of a pivot from its twin's mirror image, as a share of the size.
+///
+/// Larger: any two are twins. Smaller: sculpted figures have none. Shown by the tests of `skin`.
+pub(crate) const MIRRORED: f32 = 0.05;
+
+/// Largest distance from the plane of symmetry of a pivot without twin, as a share of the size.
+///
+/// Larger: narrow legs have none. Smaller: spines are searched for twins. Shown by the tests of `skin`.
+pub(crate) const MIDDLE: f32 = 0.02;
+
+/// Farthest that a body whose skin is linked to no other's may be from the one that it hangs on, as a share of the size.
+///
+/// Larger: floating parts are passed over. Smaller: figures of loose parts are torn. Shown by the tests of `skin`.
+pub(crate) const LOOSE: f32 = 0.2;
+
+// skin/stretch.rs
+
+/// Percentile of the stretch of all sides in all poses, as a share: one in a thousand is longer.
+///
+/// The contract's `edge_stretch_p999`. Larger: single seams decide. Smaller: torn parts are missed. Shown by the tests of `skin`.
+pub(crate) const STRETCH_PERCENTILE: f32 = 0.999;
+
+// skin/surface.rs
+
+/// Largest difference of the weights of the two ends of a side that cannot stretch it.
+///
+/// Larger: sides are missed. Smaller: rounding of files is looked at. Shown by the tests of `skin`.
+pub(crate) const SAME_WEIGHTS: f32 = 1e-3;
