@@ -6,7 +6,7 @@ pub(in crate::solver) mod faces;
 pub(in crate::solver) mod fields;
 pub(crate) mod groups;
 pub(in crate::solver) mod growth;
-mod outside;
 pub(crate) mod solution;
 mod store;
 pub(in crate::solver) mod tally;
+mod user_forces;

@@ -4,7 +4,7 @@ mod bounce;
 mod disk;
 pub(crate) mod lcp;
 mod placed;
-mod refind;
+mod refresh;
 mod row;
 mod visit;
 

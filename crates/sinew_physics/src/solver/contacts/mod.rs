@@ -15,14 +15,14 @@ mod memory;
 mod place;
 mod prepare;
 mod record;
-mod refind;
+mod refresh;
 mod store;
 mod visit;
 mod write;
 
 pub(super) use prepare::{OfStep, placed};
 pub(super) use record::Added;
-pub(super) use refind::Substep;
+pub(super) use refresh::Substep;
 
 use crate::runner::TaskRunner;
 use crate::slices::SharedRows;
@@ -37,7 +37,7 @@ use chunks::{Parted, parted, shared};
 use color::Coloring;
 use conjugate::Conjugate;
 use record::{Extra, Record};
-use refind::Found;
+use refresh::Found;
 use sinew_math::dispatch::{self};
 use sinew_math::lanes::Lanes;
 use sinew_math::max;

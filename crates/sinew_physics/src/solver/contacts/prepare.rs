@@ -7,7 +7,7 @@ use super::color::{Coloring, Edge};
 use super::geometry::{Cores, Geometry};
 use super::place::{respond, take_inertias};
 use super::record::{Extra, Record};
-use super::refind::Found;
+use super::refresh::Found;
 use super::write::write;
 use crate::body::material::ContactMaterial;
 use crate::collide::MAX_POINTS;

@@ -2,7 +2,7 @@
 
 use super::Contacts;
 use super::block::{Block, Memory, NONE, Rolling};
-use super::refind::Found;
+use super::refresh::Found;
 use crate::contact::{ContactMemory, PointImpulse};
 use crate::solver::boundary::solution::SolvedContact;
 use crate::solver::contacts::classes::Class;
