@@ -23,7 +23,7 @@ pub mod motion;
 pub mod obj;
 mod parts;
 pub mod ragdoll;
-mod surface;
+mod triangles;
 pub mod world;
 
 pub use bvh::{BvhDocument, BvhEnds, BvhOptions, BvhText, BvhWriteOptions, read_bvh, write_bvh};

@@ -2,7 +2,7 @@
 
 use crate::container::json::{At, number, numbers};
 use crate::error::{Result, quoted};
-use crate::surface;
+use crate::triangles;
 use serde_json::{Map, Value};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{Hull, MassProperties, Shape};
@@ -111,9 +111,9 @@ pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
         }
         "half_space" => (Shape::HalfSpace, &[]),
         "hull" => (Shape::Hull(Arc::new(read_hull(at)?)), &["points"]),
-        "mesh" => (surface::read_mesh(at)?, &["vertices", "triangles"]),
+        "mesh" => (triangles::read_mesh(at)?, &["vertices", "triangles"]),
         "height_field" => {
-            (surface::read_height_field(at)?, &["columns", "rows", "spacing", "heights", "holes"])
+            (triangles::read_height_field(at)?, &["columns", "rows", "spacing", "heights", "holes"])
         }
         other => {
             let other = quoted(other);
@@ -186,8 +186,8 @@ pub(crate) fn write_shape(shape: &Shape, object: &mut Map<String, Value>) {
             put("radius", number(radius));
         }
         Shape::HalfSpace => put("type", "half_space".into()),
-        Shape::Mesh(ref mesh) => surface::write_mesh(mesh, object),
-        Shape::HeightField(ref field) => surface::write_height_field(field, object),
+        Shape::Mesh(ref mesh) => triangles::write_mesh(mesh, object),
+        Shape::HeightField(ref field) => triangles::write_height_field(field, object),
         Shape::Hull(ref hull) => {
             put("type", "hull".into());
             put("points", hull.vertices().iter().map(|v| numbers(&v.to_array())).collect());

@@ -60,8 +60,8 @@ pub struct SwingTwistLimit {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitState {
     /// Room left, radians; negative when violated.
-    pub room: f32,
-    /// Gradient of `room` in frame A's axes: `room` grows at the rate `axis · ω`, ω the angular velocity of B relative
+    pub slack: f32,
+    /// Gradient of `slack` in frame A's axes: `slack` grows at the rate `axis · ω`, ω the angular velocity of B relative
     /// to A. Of length 1 for small swings, longer for large ones.
     pub axis: Vec3,
 }
@@ -97,10 +97,10 @@ impl SwingTwistLimit {
         self.place_in_cone(swing).state()
     }
 
-    /// State of the swing stop if it has less room than `reach`, radians.
+    /// State of the swing stop if it has less slack than `reach`, radians.
     pub fn swing_within(&self, swing: Rotation, reach: f32) -> Option<LimitState> {
         let place = self.place_in_cone(swing);
-        (place.room < reach).then(|| place.state())
+        (place.slack < reach).then(|| place.state())
     }
 
     fn place_in_cone(&self, swing: Rotation) -> PlaceInCone {
@@ -111,8 +111,8 @@ impl SwingTwistLimit {
         let a = crate::max(if u.y < 0.0 { -self.swing_y.lo } else { self.swing_y.hi }, 1e-4);
         let b = crate::max(if u.z < 0.0 { -self.swing_z.lo } else { self.swing_z.hi }, 1e-4);
         let normal = crate::normalize_or(Vec3::new(0.0, u.y / (a * a), u.z / (b * b)), u);
-        let room = (self.cone_angle(u.y, u.z) - angle) * normal.dot(u);
-        PlaceInCone { half, cos: swing.w, angle, u, normal, room }
+        let slack = (self.cone_angle(u.y, u.z) - angle) * normal.dot(u);
+        PlaceInCone { half, cos: swing.w, angle, u, normal, slack }
     }
 
     /// States of the lower and the upper twist stop for the joint rotation `a⁻¹ b`.
@@ -123,17 +123,17 @@ impl SwingTwistLimit {
 
     /// States of the twist stops for the swing and the twist of the joint rotation.
     pub fn states_of_twist(&self, swing: Rotation, twist: Rotation) -> [LimitState; 2] {
-        twist_states(self.room_of_twist(twist), swing)
+        twist_states(self.slack_of_twist(twist), swing)
     }
 
-    /// States of the lower and the upper twist stop if one of them has less room than `reach`, radians.
+    /// States of the lower and the upper twist stop if one of them has less slack than `reach`, radians.
     pub fn twist_within(&self, swing: Rotation, twist: Rotation, reach: f32) -> Option<[LimitState; 2]> {
-        let room = self.room_of_twist(twist);
-        (room[0] < reach || room[1] < reach).then(|| twist_states(room, swing))
+        let slack = self.slack_of_twist(twist);
+        (slack[0] < reach || slack[1] < reach).then(|| twist_states(slack, swing))
     }
 
     /// Room below and above the twist, radians.
-    fn room_of_twist(&self, twist: Rotation) -> [f32; 2] {
+    fn slack_of_twist(&self, twist: Rotation) -> [f32; 2] {
         // Measured from the middle of the range and wrapped, so that ranges near ±π have no jump inside.
         let middle = self.twist.center();
         let half = 0.5 * (self.twist.hi - self.twist.lo);
@@ -143,20 +143,20 @@ impl SwingTwistLimit {
 
     /// Angle by which the joint rotation `a⁻¹ b` is beyond the limits, radians: the larger of swing and twist excess.
     pub fn overshoot(&self, joint: Rotation) -> f32 {
-        let mut worst = -self.swing_state(joint).room;
+        let mut worst = -self.swing_state(joint).slack;
         for state in self.twist_states(joint) {
-            worst = crate::max(worst, -state.room);
+            worst = crate::max(worst, -state.slack);
         }
         crate::max(worst, 0.0)
     }
 }
 
-/// States of the twist stops with so much room. The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b); the divisor is held off 0 near a
+/// States of the twist stops with so much slack. The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b); the divisor is held off 0 near a
 /// swing of half a turn.
 fn twist_states([below, above]: [f32; 2], swing: Rotation) -> [LimitState; 2] {
     let x_b = swing * Vec3::X;
     let axis = (Vec3::X + x_b) / crate::max(1.0 + x_b.x, 0.05);
-    [LimitState { room: below, axis }, LimitState { room: above, axis: -axis }]
+    [LimitState { slack: below, axis }, LimitState { slack: above, axis: -axis }]
 }
 
 /// Place of a swing in the cone of its limit.
@@ -169,7 +169,7 @@ struct PlaceInCone {
     u: Vec3,
     /// Outward normal of the cone's ellipse where the swing meets it.
     normal: Vec3,
-    room: f32,
+    slack: f32,
 }
 
 impl PlaceInCone {
@@ -181,7 +181,7 @@ impl PlaceInCone {
         let turning = if angle > 1e-4 { angle / crate::max(sin, 0.1) } else { 1.0 };
         let x_b = Vec3::new(cos, sin * u.z, -sin * u.y);
         let axis = u.cross(x_b) * (turning * normal.dot(tangent)) - u * normal.dot(u);
-        LimitState { room: self.room, axis }
+        LimitState { slack: self.slack, axis }
     }
 }
 
@@ -208,15 +208,15 @@ mod tests {
     use super::*;
     use crate::Random;
 
-    /// Rate of `room` by differences, for angular velocity `w` of B in A's axes.
-    fn rate(room: impl Fn(Rotation) -> f32, joint: Rotation, w: Vec3) -> f32 {
+    /// Rate of `slack` by differences, for angular velocity `w` of B in A's axes.
+    fn rate(slack: impl Fn(Rotation) -> f32, joint: Rotation, w: Vec3) -> f32 {
         let h = 1e-3;
-        let at = |h: f32| room(Rotation::from_scaled_axis(w * h) * joint);
+        let at = |h: f32| slack(Rotation::from_scaled_axis(w * h) * joint);
         (at(h) - at(-h)) / (2.0 * h)
     }
 
     #[test]
-    fn gradients_are_those_of_the_room() {
+    fn gradients_are_those_of_the_slack() {
         let limit = SwingTwistLimit {
             swing_y: Range::degrees(-75.0, 60.0),
             swing_z: Range::degrees(-30.0, 40.0),
@@ -230,15 +230,15 @@ mod tests {
             let swing = limit.swing_state(joint);
             let (axis, _) = SwingTwistLimit::angles(joint);
             // The normal jumps where the sides of the cone meet, and the distance is exact at the stop alone.
-            if swing.room.abs() < 0.02 && axis.y.abs() > 0.05 && axis.z.abs() > 0.05 {
-                let measured = rate(|q| limit.swing_state(q).room, joint, w);
+            if swing.slack.abs() < 0.02 && axis.y.abs() > 0.05 && axis.z.abs() > 0.05 {
+                let measured = rate(|q| limit.swing_state(q).slack, joint, w);
                 assert!((measured - swing.axis.dot(w)).abs() < 0.06, "{measured} for {}", swing.axis.dot(w));
                 swings += 1;
             }
             if axis.length() < 2.0 {
                 for (side, stop) in limit.twist_states(joint).into_iter().enumerate() {
-                    if stop.room.abs() < 1.0 {
-                        let measured = rate(|q| limit.twist_states(q)[side].room, joint, w);
+                    if stop.slack.abs() < 1.0 {
+                        let measured = rate(|q| limit.twist_states(q)[side].slack, joint, w);
                         assert!(
                             (measured - stop.axis.dot(w)).abs() < 0.02,
                             "{measured} for {}",

@@ -144,7 +144,7 @@ impl LimitedJoint {
         match self.limit {
             Limit::Ball(limit) => {
                 let [below, above] = limit.twist_states(joint);
-                [worse(0.0, -limit.swing_state(joint).room), worse(worse(0.0, -below.room), -above.room)]
+                [worse(0.0, -limit.swing_state(joint).slack), worse(worse(0.0, -below.slack), -above.slack)]
             }
             Limit::Hinge(range) => {
                 let excess = range.map_or(0.0, |range| {

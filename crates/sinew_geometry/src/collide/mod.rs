@@ -23,14 +23,14 @@ pub(crate) mod placed;
 pub(crate) mod polytope;
 mod reduce;
 mod round_sphere;
-mod surface;
+mod triangles;
 
 use crate::convex::support::{Core, Posed};
 use crate::shape::Shape;
 pub use manifold::{MAX_POINTS, Manifold, ManifoldPoint, SeparationCache};
 use placed::{PlacedBox, PlacedCapsule, PlacedSphere, Plane};
 use sinew_math::{Transform, Vec3};
-pub use surface::{Half, MAX_PARTS, Motion, Patch, Scratch, collide_surface, is_on_face, name_as_face};
+pub use triangles::{Half, MAX_PARTS, Motion, Patch, Scratch, collide_surface, is_on_face, name_as_face};
 
 /// Fills `out` with the contact of two placed shapes: the normal points from `a` to `b`, every point has a
 /// separation of at most `margin` (metres, ≥ 0). No points if the shapes are further apart than that, if both are

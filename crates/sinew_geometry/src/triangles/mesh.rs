@@ -2,7 +2,7 @@
 
 use super::Triangle;
 use super::build::{self, Dropped, Sheet};
-use super::tree::Tree;
+use super::bvh::Tree;
 use crate::boxes::Aabb;
 use sinew_math::{StableHasher, Vec3};
 

@@ -4,16 +4,16 @@
 //! a body touches of them is found in `collide/surface`.
 
 mod build;
+mod bvh;
 mod height_field;
 mod mesh;
 mod saved;
-mod tree;
 mod triangle;
 
 pub use build::Dropped;
+pub(crate) use bvh::{Branch, DEPTH, Tree};
 pub use height_field::{HeightField, HeightFieldDef, HeightFieldError};
 pub use mesh::{MAX_COORDINATE, MAX_TRIANGLES, Mesh, MeshError};
-pub(crate) use tree::{Branch, DEPTH, Tree};
 pub use triangle::{Part, Triangle, closest_on_triangle, normal};
 
 use crate::boxes::{Aabb, Overlap};

@@ -44,7 +44,7 @@ impl Velocity {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rest {
     /// Seconds for which it has been in its place.
-    Awake { calm: f32 },
+    Awake { rest_time: f32 },
     /// All bodies with the same number wake together.
     Asleep { island: u32 },
 }
@@ -94,7 +94,7 @@ pub(crate) struct Body {
     /// Set when its state became non-finite: it was rolled back and takes no further part.
     pub quarantined: bool,
     /// The user changed it since the last step.
-    pub stirred: bool,
+    pub changed: bool,
     pub user_data: u64,
 }
 
@@ -177,12 +177,12 @@ impl Body {
             gravity_scale: def.gravity_scale,
             shapes,
             surfaces,
-            rest: Rest::Awake { calm: 0.0 },
+            rest: Rest::Awake { rest_time: 0.0 },
             sleeping: def.sleeping,
             quality: def.quality,
             place: world_from_body * body_from_principal,
             quarantined: false,
-            stirred: false,
+            changed: false,
             user_data: def.user_data,
         }
     }
@@ -303,7 +303,7 @@ impl Body {
 
     /// It is awake, and the time for which it has been calm begins anew.
     pub fn disturb(&mut self) {
-        self.rest = Rest::Awake { calm: 0.0 };
+        self.rest = Rest::Awake { rest_time: 0.0 };
         self.place = self.world_from_principal;
     }
 
@@ -314,7 +314,7 @@ impl Body {
 
     /// May start or end a contact: it moves, or was changed.
     pub fn can_touch(&self) -> bool {
-        if self.stirred {
+        if self.changed {
             return true;
         }
         match self.kind {

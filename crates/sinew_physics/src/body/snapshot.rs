@@ -110,9 +110,9 @@ pub(crate) fn save_body(w: &mut Writer, body: &Body) {
         save_shape(w, shape);
     }
     match body.rest {
-        Rest::Awake { calm } => {
+        Rest::Awake { rest_time } => {
             w.u8(0);
-            w.f32(calm);
+            w.f32(rest_time);
         }
         Rest::Asleep { island } => {
             w.u8(1);
@@ -157,7 +157,7 @@ pub(crate) fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Bo
     let surfaces = load_list(r, 29, load_surface)?;
     let shapes = load_list(r, 33, |r| load_shape(r, library, surfaces.len()))?;
     let rest = match r.u8()? {
-        0 => Rest::Awake { calm: r.f32()? },
+        0 => Rest::Awake { rest_time: r.f32()? },
         1 => Rest::Asleep { island: r.u32()? },
         _ => return Err(r.error("a body neither awake nor asleep").into()),
     };
@@ -193,7 +193,7 @@ pub(crate) fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Bo
         quality,
         place,
         quarantined,
-        stirred: false,
+        changed: false,
         user_data,
     })
 }

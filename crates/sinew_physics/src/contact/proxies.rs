@@ -344,15 +344,15 @@ impl Proxies {
     }
 
     /// Takes note of who can touch something in this step, and of how far all have moved. [`follow`](Self::follow) comes
-    /// before. What was `stirred`, comes to be able to touch, or no longer is, is to be looked for anew.
-    pub fn take_stock(&mut self, bodies: &Arena<Body>, movers: impl Iterator<Item = u32>, stirred: &[u32]) {
+    /// before. What was `changed`, comes to be able to touch, or no longer is, is to be looked for anew.
+    pub fn take_stock(&mut self, bodies: &Arena<Body>, movers: impl Iterator<Item = u32>, changed: &[u32]) {
         self.stamp += 1;
         core::mem::swap(&mut self.lively, &mut self.lively_before);
         self.lively.clear();
         for index in movers.filter(|&index| bodies.at(index).can_touch()) {
             self.enliven(index);
         }
-        for &index in stirred {
+        for &index in changed {
             self.enliven(index);
             self.soil(index);
         }

@@ -18,7 +18,7 @@ pub(crate) struct ContactTracking {
     pub sensed: Touches,
     pub hits: OpenHits,
     /// Bodies that were changed since the last step: what they touch is looked for anew even if nothing moves.
-    pub stirred: Vec<u32>,
+    pub changed: Vec<u32>,
     /// No part of the snapshot.
     pub modifiers: Modifiers,
 }
@@ -28,8 +28,8 @@ impl ContactTracking {
         self.touching.save(w);
         self.sensed.save(w);
         self.hits.save(w);
-        w.count(self.stirred.len());
-        for &index in &self.stirred {
+        w.count(self.changed.len());
+        for &index in &self.changed {
             w.u32(index);
         }
     }
@@ -37,13 +37,13 @@ impl ContactTracking {
     /// Marks the bodies that were changed.
     pub fn load(r: &mut Reader<'_>, bodies: &mut Arena<Body>) -> Result<Self, ReadError> {
         let (touching, sensed, hits) = (Touches::load(r)?, Touches::load(r)?, OpenHits::load(r)?);
-        let mut stirred = Vec::new();
+        let mut changed = Vec::new();
         for _ in 0..r.count(4)? {
             let index = body_index(r, bodies)?;
-            bodies.at_mut(index).stirred = true;
-            stirred.push(index);
+            bodies.at_mut(index).changed = true;
+            changed.push(index);
         }
-        Ok(Self { touching, sensed, hits, stirred, modifiers: Modifiers::default() })
+        Ok(Self { touching, sensed, hits, changed, modifiers: Modifiers::default() })
     }
 
     /// A contact is dropped: what it told of ends.
@@ -58,8 +58,8 @@ impl ContactTracking {
 
     /// The step has looked at what was changed.
     pub fn settle(&mut self, bodies: &mut Arena<Body>) {
-        for index in self.stirred.drain(..) {
-            bodies.at_mut(index).stirred = false;
+        for index in self.changed.drain(..) {
+            bodies.at_mut(index).changed = false;
         }
     }
 }

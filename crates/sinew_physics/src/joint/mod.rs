@@ -192,8 +192,8 @@ impl Joint {
             }
         }
         if let Some(Softness::Stiffness { stiffness, .. }) = self.drive.limit_softness {
-            for stop in stops(&self.kind, pose).into_iter().flatten().filter(|stop| stop.room < 0.0) {
-                sum += 0.5 * stiffness * stop.room * stop.room;
+            for stop in stops(&self.kind, pose).into_iter().flatten().filter(|stop| stop.slack < 0.0) {
+                sum += 0.5 * stiffness * stop.slack * stop.slack;
             }
         }
         sum

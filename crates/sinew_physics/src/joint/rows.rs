@@ -360,13 +360,13 @@ pub(crate) struct Stop {
     /// Number of its memory among the joint's limits.
     pub limit: usize,
     /// Metres or radians left; negative when violated.
-    pub room: f32,
-    /// Gradient of the room in frame A: rotation for the first two limits, translation for the others.
+    pub slack: f32,
+    /// Gradient of the slack in frame A: rotation for the first two limits, translation for the others.
     pub axis: Vec3,
 }
 
 impl Stop {
-    /// Rate of the room.
+    /// Rate of the slack.
     pub fn row(&self, kind: &JointKind, pose: &JointPose) -> Row {
         let axis = pose.rotation_a * self.axis;
         if turns(self.limit) {
@@ -391,7 +391,7 @@ pub(crate) fn stops(kind: &JointKind, pose: &JointPose) -> [Option<Stop>; MAX_ST
     out
 }
 
-/// The stops of a joint in the order of their places, but for those that have no less room than `reach`, of translation and of
+/// The stops of a joint in the order of their places, but for those that have no less slack than `reach`, of translation and of
 /// rotation: these may be left out, with what their axes cost.
 #[inline]
 pub(crate) fn each_stop(
@@ -403,13 +403,13 @@ pub(crate) fn each_stop(
     let (cone, twist_range) = rotation_limits(kind);
     if cone.is_some() || twist_range.is_some() {
         let (swing, twist) = pose.relative().swing_twist(Vec3::X);
-        if let Some(LimitState { room, axis }) = cone.and_then(|limit| limit.swing_within(swing, turn)) {
-            put(0, Stop { limit: 0, room, axis });
+        if let Some(LimitState { slack, axis }) = cone.and_then(|limit| limit.swing_within(swing, turn)) {
+            put(0, Stop { limit: 0, slack, axis });
         }
         if let Some(states) = twist_range.and_then(|range| twist_only(range).twist_within(swing, twist, turn))
         {
-            for (place, LimitState { room, axis }) in (1..).zip(states) {
-                put(place, Stop { limit: 1, room, axis });
+            for (place, LimitState { slack, axis }) in (1..).zip(states) {
+                put(place, Stop { limit: 1, slack, axis });
             }
         }
     } else if let JointKind::Hinge { limit: Some(range) } = kind {
@@ -417,8 +417,8 @@ pub(crate) fn each_stop(
         let half = 0.5 * (range.hi - range.lo);
         let angle = wrap(hinge_angle(pose.relative()) - range.center());
         if half - angle.abs() < turn {
-            put(1, Stop { limit: 1, room: half + angle, axis: Vec3::X });
-            put(2, Stop { limit: 1, room: half - angle, axis: -Vec3::X });
+            put(1, Stop { limit: 1, slack: half + angle, axis: Vec3::X });
+            put(2, Stop { limit: 1, slack: half - angle, axis: -Vec3::X });
         }
     }
     for (i, range) in linear_limits(kind).into_iter().enumerate() {
@@ -430,8 +430,8 @@ pub(crate) fn each_stop(
         };
         let (below, above) = (at - range.lo, range.hi - at);
         if below < slide || above < slide {
-            put(3 + 2 * i, Stop { limit: 2 + i, room: below, axis });
-            put(4 + 2 * i, Stop { limit: 2 + i, room: above, axis: -axis });
+            put(3 + 2 * i, Stop { limit: 2 + i, slack: below, axis });
+            put(4 + 2 * i, Stop { limit: 2 + i, slack: above, axis: -axis });
         }
     }
 }
@@ -478,7 +478,7 @@ fn twist_only(twist: Range) -> SwingTwistLimit {
 
 /// Largest angle by which a joint is beyond its limits of rotation, radians; 0 inside.
 pub(crate) fn overshoot(kind: &JointKind, pose: &JointPose) -> f32 {
-    let beyond = |stop: &Stop| if turns(stop.limit) { -stop.room } else { 0.0 };
+    let beyond = |stop: &Stop| if turns(stop.limit) { -stop.slack } else { 0.0 };
     let stops = stops(kind, pose);
     stops.iter().flatten().map(beyond).fold(0.0, sinew_math::max)
 }
@@ -493,8 +493,9 @@ pub(crate) fn anchor_gap(kind: &JointKind, pose: &JointPose) -> f32 {
     each_locked(kind, &locks, pose, |direction, error, _| {
         square += if direction < TWIST { error * error } else { 0.0 };
     });
-    for stop in stops(kind, pose).into_iter().flatten().filter(|stop| !turns(stop.limit) && stop.room < 0.0) {
-        square += stop.room * stop.room;
+    for stop in stops(kind, pose).into_iter().flatten().filter(|stop| !turns(stop.limit) && stop.slack < 0.0)
+    {
+        square += stop.slack * stop.slack;
     }
     square.sqrt()
 }

@@ -20,7 +20,7 @@ const LOST_ONE_IN: usize = 16;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Near {
     /// Around each obstacle, with room to move.
-    rooms: Vec<Aabb>,
+    fat_bounds: Vec<Aabb>,
     /// Position of each particle when its list was made, world, metres.
     origins: Vec<Vec3>,
     /// Least distance of all that a particle's list leaves out from its surface at its origin, metres; `None` if it has no list.
@@ -65,15 +65,15 @@ impl Near {
         &self.obstacles[start..self.ends[i]]
     }
 
-    /// True if each obstacle is in its room.
+    /// True if each obstacle is in its fat bounds.
     fn holds(&self, placed: &[Placed]) -> bool {
-        self.rooms.len() == placed.len()
-            && self.rooms.iter().zip(placed).all(|(room, placed)| room.contains(&placed.bounds))
+        self.fat_bounds.len() == placed.len()
+            && self.fat_bounds.iter().zip(placed).all(|(fat, placed)| fat.contains(&placed.bounds))
     }
 
-    fn make_rooms(&mut self, placed: &[Placed]) {
-        self.rooms.clear();
-        self.rooms.extend(placed.iter().map(|placed| {
+    fn make_fat_bounds(&mut self, placed: &[Placed]) {
+        self.fat_bounds.clear();
+        self.fat_bounds.extend(placed.iter().map(|placed| {
             let way = (placed.end.translation - placed.start.translation).length();
             placed.bounds.expand(LIST_ROOM + LIST_ITERATIONS * way)
         }));
@@ -84,8 +84,8 @@ impl Near {
         let start = self.obstacles.len();
         self.reaches[i] = (start < self.most).then_some(reach);
         self.origins[i] = at;
-        for (index, room) in self.rooms.iter().enumerate() {
-            if distance_at_least(room, at) - radius > reach {
+        for (index, fat) in self.fat_bounds.iter().enumerate() {
+            if distance_at_least(fat, at) - radius > reach {
                 continue;
             }
             if self.obstacles.len() == self.most {
@@ -123,7 +123,7 @@ impl ParticleGroup {
                 return;
             }
         }
-        self.near.make_rooms(&self.placed);
+        self.near.make_fat_bounds(&self.placed);
         self.near.obstacles.clear();
         for i in 0..self.positions.len() {
             let time = LIST_ITERATIONS * h;

@@ -72,7 +72,7 @@ mod pair;
 mod place;
 mod probe;
 mod rays;
-mod surface;
+mod triangles;
 
 pub use cast::{BodyHit, ShapeCast};
 pub use filter::{BodyKinds, QueryFilter, Sensors};

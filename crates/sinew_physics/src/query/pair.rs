@@ -1,7 +1,7 @@
 //! A probe against one shape of the world: the one place where questions meet pairs of shapes.
 
 use super::probe::Probe;
-use super::surface;
+use super::triangles;
 use crate::body::shape::Shape;
 use crate::boxes::Penetration;
 use crate::convex::{Gap, ShapeHit, cast_shape, gap};
@@ -15,7 +15,7 @@ pub(super) fn gap_within(
     within: f32,
 ) -> Option<Gap> {
     match shape.surface() {
-        Some(surface) => surface::gap_within(&surface, world_from_shape, probe, within),
+        Some(surface) => triangles::gap_within(&surface, world_from_shape, probe, within),
         None => gap(shape, world_from_shape, &probe.shape, &probe.world_from_shape),
     }
 }
@@ -39,7 +39,7 @@ pub(super) fn cast(
     way: Vec3,
 ) -> Option<ShapeHit> {
     match shape.surface() {
-        Some(surface) => surface::cast(&surface, world_from_shape, probe, way),
+        Some(surface) => triangles::cast(&surface, world_from_shape, probe, way),
         None => cast_shape(&probe.shape, &probe.world_from_shape, way, shape, world_from_shape),
     }
 }

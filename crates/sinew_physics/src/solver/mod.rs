@@ -272,9 +272,9 @@ impl IslandSolver {
             if !self.predict_contacts() && !tightened {
                 break;
             }
-            let stirred = self.sweep_again(runner);
+            let changed = self.sweep_again(runner);
             self.limit_inner_turn();
-            torn = self.correct_positions(stirred);
+            torn = self.correct_positions(changed);
         }
         self.fall_back_to_rigid(torn);
         if self.coupling == Coupling::Turns {

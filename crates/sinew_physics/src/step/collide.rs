@@ -102,7 +102,7 @@ pub(crate) fn ask(a: &Body, b: &Body, asked: &mut Asked, ahead: f32, dt: f32) {
 /// Finds how fast a contact comes in, and what it does.
 fn weigh(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     contact.approach = approach_of(a, b, &contact.manifold);
-    if contact.is_plain && !a.stirred && !b.stirred {
+    if contact.is_plain && !a.changed && !b.changed {
         (contact.effect, contact.one_way) = (Effect::Push, false);
     } else {
         rule(contact, a, b, dt);

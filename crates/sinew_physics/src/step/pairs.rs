@@ -47,7 +47,7 @@ impl BroadPhase {
     ) {
         activity.return_contacts(contacts);
         self.proxies.follow(bodies, activity.movers(), dt);
-        self.proxies.take_stock(bodies, activity.movers(), &meetings.stirred);
+        self.proxies.take_stock(bodies, activity.movers(), &meetings.changed);
         self.near.update(&mut self.proxies, bodies, filter);
         self.sort_out(bodies, meetings, contacts, activity);
         bear(contacts, &mut self.born);

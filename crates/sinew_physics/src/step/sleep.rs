@@ -49,7 +49,7 @@ pub(crate) fn sleep(
 /// For how long a body has been calm, seconds; if it is not, less than any time.
 fn count(body: &mut Body, calm: bool, dt: f32) -> f32 {
     match &mut body.rest {
-        Rest::Awake { calm: time } if calm => {
+        Rest::Awake { rest_time: time } if calm => {
             *time += dt;
             *time
         }

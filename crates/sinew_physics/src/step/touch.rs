@@ -66,7 +66,7 @@ fn wake_touched(bodies: &mut Arena<Body>, activity: &mut Activity, pair: &[Conta
         match body.kind {
             BodyKind::Dynamic if body.is_active() => activity.wake(bodies, touched),
             BodyKind::Kinematic if !body.velocity.is_zero() => activity.disturb(bodies, touched),
-            BodyKind::Static | BodyKind::Kinematic if body.stirred && is_deep(bodies, pair) => {
+            BodyKind::Static | BodyKind::Kinematic if body.changed && is_deep(bodies, pair) => {
                 activity.wake(bodies, touched);
             }
             _ => {}

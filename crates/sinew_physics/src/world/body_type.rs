@@ -49,7 +49,7 @@ impl World {
             principal_from_body = body_from_principal.inverse();
         }
         let was_static = body.kind == BodyKind::Static;
-        self.stir(id);
+        self.mark_changed(id);
         let body = self.bodies.at_mut(id.index);
         body.kind = kind;
         (body.force, body.torque) = (Vec3::ZERO, Vec3::ZERO);

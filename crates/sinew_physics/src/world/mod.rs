@@ -179,7 +179,7 @@ impl World {
         for joint in joints {
             self.remove_joint(joint);
         }
-        self.meetings.stirred.retain(|&index| index != id.index);
+        self.meetings.changed.retain(|&index| index != id.index);
         for contact in self.contacts.extract_if(.., |contact| contact.key.has(id.index)) {
             self.meetings.part(&self.bodies, &contact);
         }
@@ -307,7 +307,7 @@ impl World {
     pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
         assert!(world_from_body.is_finite(), "a body's pose is finite");
         self.expect_mut(id).set_world_from_body(world_from_body);
-        self.stir(id);
+        self.mark_changed(id);
         // What it bore where it was says nothing of where it is.
         let returned = self.activity.returned_mut();
         for contact in self.contacts.iter_mut().chain(returned).filter(|contact| contact.key.has(id.index)) {
@@ -344,7 +344,7 @@ impl World {
         body.velocity = velocity;
         match body.kind {
             // Where it has come to nothing has looked yet.
-            BodyKind::Kinematic if stops => self.stir(id),
+            BodyKind::Kinematic if stops => self.mark_changed(id),
             _ => self.wake_body(id.index),
         }
         if self.bodies.at(id.index).can_touch() {

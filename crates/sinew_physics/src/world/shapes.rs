@@ -153,7 +153,7 @@ impl World {
         change(&mut changed);
         // Before anything is changed: it may panic.
         let weight = weight(&changed, mass);
-        self.stir(id);
+        self.mark_changed(id);
         if goes(number) {
             self.movers.forget(id);
         }

@@ -158,7 +158,7 @@ impl World {
     #[track_caller]
     fn change_surface(&mut self, id: ShapeId, change: impl FnOnce(&mut Surface)) {
         self.expect_shape(id);
-        self.stir(id.body);
+        self.mark_changed(id.body);
         let body = self.bodies.at_mut(id.body.index);
         let mut surface = *body.surface(id.shape as usize);
         change(&mut surface);
@@ -173,7 +173,7 @@ impl World {
 
     /// Has the next step look anew at what a body touches, whatever moves; it and its neighbours wake.
     #[track_caller]
-    pub(crate) fn stir(&mut self, id: BodyId) {
+    pub(crate) fn mark_changed(&mut self, id: BodyId) {
         self.look_anew(id);
         self.wake_neighbors(id.index);
     }
@@ -182,8 +182,8 @@ impl World {
     #[track_caller]
     pub(crate) fn look_anew(&mut self, id: BodyId) {
         let body = self.expect_mut(id);
-        if !core::mem::replace(&mut body.stirred, true) {
-            self.meetings.stirred.push(id.index);
+        if !core::mem::replace(&mut body.changed, true) {
+            self.meetings.changed.push(id.index);
         }
         self.activity.recall(id.index);
     }

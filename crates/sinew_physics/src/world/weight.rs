@@ -36,7 +36,7 @@ impl World {
         assert!(finite, "a body's mass, centre and inertia are finite");
         let (moments, body_from_principal) = principal_frame(&properties);
         expect_solid(properties.mass, moments);
-        self.stir(id);
+        self.mark_changed(id);
         let body = self.bodies.at_mut(id.index);
         if body.kind == BodyKind::Dynamic {
             (body.mass, body.inertia) = (properties.mass, moments);

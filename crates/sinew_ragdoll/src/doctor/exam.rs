@@ -148,7 +148,7 @@ pub(super) fn beyond(kind: &JointKind, seen: Rotation) -> Beyond {
 
 /// Angle by which the swing alone is outside the cone, radians.
 pub(super) fn swing_excess(limit: &SwingTwistLimit, seen: Rotation) -> f32 {
-    max(0.0, -limit.swing_state(seen).room)
+    max(0.0, -limit.swing_state(seen).slack)
 }
 
 /// Angle by which the child of a joint can turn about an axis of its own joint frame from `bind`, the joint's rotation there,

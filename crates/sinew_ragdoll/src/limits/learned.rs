@@ -167,7 +167,7 @@ impl Cone<'_> {
     fn beyond(&self, turn: Rotation) -> f32 {
         match self.twisting {
             Twist::Free => self.anatomical.overshoot(turn),
-            Twist::Locked => max(-self.anatomical.swing_state(turn).room, 0.0),
+            Twist::Locked => max(-self.anatomical.swing_state(turn).slack, 0.0),
         }
     }
 

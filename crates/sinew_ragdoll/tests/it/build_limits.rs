@@ -161,7 +161,7 @@ fn shoulders_reach_the_same_places_from_any_bind_pose() {
         let JointKind::Ball { limit: Some(limit) } = plan.def.kind else { panic!("a ball joint") };
         let now = bones.direction(arm, None);
         let turned = Rotation::from_arc(now, direction) * parent * bind;
-        -limit.swing_state(parent.inverse() * turned).room
+        -limit.swing_state(parent.inverse() * turned).slack
     };
     for side in [Side::Left, Side::Right] {
         let out = if side == Side::Left { Vec3::X } else { -Vec3::X };
@@ -215,7 +215,7 @@ fn every_bind_pose_is_inside_its_limits() {
             let (joint, _) = at_bind(&bones, &plan);
             let beyond = match plan.def.kind {
                 JointKind::Ball { limit: Some(limit) } => limit.overshoot(joint),
-                JointKind::Universal { limit: Some(limit) } => -limit.swing_state(joint).room,
+                JointKind::Universal { limit: Some(limit) } => -limit.swing_state(joint).slack,
                 JointKind::Hinge { limit: Some(limit) } => limit.excess(hinge_angle(joint)),
                 _ => 0.0,
             };

@@ -43,7 +43,7 @@ fn joint_turn(joint: &RagdollJointDef, parent: Rotation, child: Rotation) -> Rot
 fn beyond(joint: &RagdollJointDef, turn: Rotation) -> f32 {
     match joint.kind {
         JointKind::Ball { limit: Some(limit) } => limit.overshoot(turn),
-        JointKind::Universal { limit: Some(limit) } => max(-limit.swing_state(turn).room, 0.0),
+        JointKind::Universal { limit: Some(limit) } => max(-limit.swing_state(turn).slack, 0.0),
         JointKind::Hinge { limit: Some(limit) } => {
             let middle = limit.center();
             limit.excess(middle + wrap(hinge_angle(turn) - middle))

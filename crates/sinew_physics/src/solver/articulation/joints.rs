@@ -190,7 +190,7 @@ impl IslandSolver {
             let mut most = 0.0;
             for i in range.clone() {
                 let change = largest(&self.scratch.dv[i]);
-                self.contacts.stir(i, change);
+                self.contacts.note_change(i, change);
                 most = max(most, change);
             }
             self.dirty.mark(tree as u32, most);

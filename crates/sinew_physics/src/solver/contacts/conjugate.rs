@@ -220,7 +220,7 @@ impl Contacts {
         }
         if share != 0.0 {
             for (i, &change) in changes.iter().enumerate() {
-                self.stir(i, change);
+                self.note_change(i, change);
                 moved(i, change);
             }
         }

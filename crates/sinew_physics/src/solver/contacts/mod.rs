@@ -64,7 +64,7 @@ pub(crate) struct Contacts {
     /// Motion of each body since the step began: translation, then rotation.
     moved: Vec<Vec6>,
     /// Per body: how much its velocity has changed in the pass.
-    stir: Vec<f32>,
+    pass_change: Vec<f32>,
     /// Angle through which each body has turned in the step so far, radians.
     turned: Vec<f32>,
     found: Vec<Found>,
@@ -364,8 +364,8 @@ impl Contacts {
         if pass == Pass::Relax && velocities.iter().any(whirls) {
             self.each(RaiseFloor { velocities, h });
         }
-        self.stir.clear();
-        self.stir.resize(velocities.len(), 0.0);
+        self.pass_change.clear();
+        self.pass_change.resize(velocities.len(), 0.0);
         self.start_conjugate();
     }
 
@@ -378,10 +378,11 @@ impl Contacts {
     ) -> Swept {
         let is_backward = sweeps.order == Order::ToAndFro && !done.is_multiple_of(2);
         let order = if is_backward { Order::ToAndFro } else { Order::Forward };
-        let (mut stir, mut rolling) = (core::mem::take(&mut self.stir), core::mem::take(&mut self.rolling));
+        let (mut pass_change, mut rolling) =
+            (core::mem::take(&mut self.pass_change), core::mem::take(&mut self.rolling));
         let visitor = Sweep {
             velocities: shared(velocities),
-            stir: shared(&mut stir),
+            pass_change: shared(&mut pass_change),
             rolling: shared(&mut rolling),
             pass,
             step: self.conjugate.step,
@@ -393,7 +394,7 @@ impl Contacts {
             visited_bytes: 0,
         };
         let Sweep { largest, energy, visits, visited_bytes, .. } = self.each_parted(runner, order, visitor);
-        (self.stir, self.rolling) = (stir, rolling);
+        (self.pass_change, self.rolling) = (pass_change, rolling);
         self.tally.visits += visits;
         self.tally.visited_bytes += visited_bytes;
         Swept { largest, energy }
@@ -411,9 +412,9 @@ impl Contacts {
 
     /// A body's velocity has changed by something else than contacts.
     #[inline(always)]
-    pub fn stir(&mut self, body: usize, change: f32) {
-        if let Some(stir) = self.stir.get_mut(body) {
-            *stir += change;
+    pub fn note_change(&mut self, body: usize, change: f32) {
+        if let Some(pass_change) = self.pass_change.get_mut(body) {
+            *pass_change += change;
         }
     }
 

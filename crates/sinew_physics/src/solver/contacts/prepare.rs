@@ -62,7 +62,7 @@ impl Contacts {
             list.clear();
             list.reserve(bodies);
         }
-        for list in [&mut self.stir, &mut self.turned] {
+        for list in [&mut self.pass_change, &mut self.turned] {
             list.clear();
             list.reserve(bodies);
         }

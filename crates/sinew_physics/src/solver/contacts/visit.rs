@@ -12,7 +12,7 @@ use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 pub(super) struct Sweep<'a> {
     pub velocities: SharedRows<'a, Vec6>,
     /// Sum of the changes of each body's velocity in this pass, m/s or rad/s.
-    pub stir: SharedRows<'a, f32>,
+    pub pass_change: SharedRows<'a, f32>,
     pub rolling: SharedRows<'a, Rolling>,
     pub pass: Pass,
     /// Share of the blocks in conjugate steps.
@@ -37,7 +37,7 @@ impl Sweep<'_> {
         let mut now = 0.0;
         for k in 0..WIDTH {
             let [a, b] = [block.bodies[0][k], block.bodies[1][k]];
-            now += self.stir.get((a & !HELD) as usize) + self.stir.get((b & !HELD) as usize);
+            now += self.pass_change.get((a & !HELD) as usize) + self.pass_change.get((b & !HELD) as usize);
         }
         let wakes = now - block.seen >= self.tolerance;
         if wakes {
@@ -78,7 +78,7 @@ impl Sweep<'_> {
         }
         for end in 0..2 {
             ends[end].scatter(&mut self.velocities, &block.bodies[end]);
-            self.stir(&block.bodies[end], changes[end]);
+            self.note_change(&block.bodies[end], changes[end]);
         }
     }
 
@@ -92,12 +92,12 @@ impl Sweep<'_> {
     }
 
     #[inline(always)]
-    fn stir<L: Lanes>(&mut self, bodies: &[u32; WIDTH], change: L) {
+    fn note_change<L: Lanes>(&mut self, bodies: &[u32; WIDTH], change: L) {
         let mut by = [0.0; WIDTH];
         change.store(&mut by);
         for k in 0..WIDTH {
             if bodies[k] & HELD == 0 {
-                *self.stir.get_mut(bodies[k] as usize) += by[k];
+                *self.pass_change.get_mut(bodies[k] as usize) += by[k];
                 self.largest = sinew_math::max(self.largest, by[k]);
             }
         }

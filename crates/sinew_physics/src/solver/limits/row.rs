@@ -21,11 +21,11 @@ pub(super) enum Hardness {
     /// A stop that a foreseen pose asks for: linearised at the end of the substep rather than at its start, to reach at
     /// least this rate; lives through `solve` only.
     Predicted(f32),
-    /// A spring that pushes while there is no room, with this share of its damping.
+    /// A spring that pushes while there is no slack, with this share of its damping.
     Soft(Softness, f32),
 }
 
-/// A limit near its stop: `J v ≥ −room/h`.
+/// A limit near its stop: `J v ≥ −slack/h`.
 #[derive(Clone, Debug)]
 pub(in crate::solver) struct LimitRow {
     pub joint: u32,
@@ -33,9 +33,9 @@ pub(in crate::solver) struct LimitRow {
     pub(super) stop: usize,
     pub(super) limit: usize,
     /// Radians or metres.
-    pub(super) room: f32,
+    pub(super) slack: f32,
     pub(super) hardness: Hardness,
-    /// Gradient of the room, world axes.
+    /// Gradient of the slack, world axes.
     pub(super) axis: Vec3,
     pub row: Row,
     /// Index of the block that it is in.
@@ -63,7 +63,7 @@ impl LimitRow {
             joint: index as u32,
             stop: place,
             limit: stop.limit,
-            room: stop.room,
+            slack: stop.slack,
             hardness,
             axis: joint.pose.rotation_a * stop.axis,
             row: stop.row(&joint.geometry.kind, &joint.pose),
@@ -104,7 +104,7 @@ impl LimitRow {
 
     /// Room that it should have at the end of a substep, radians or metres: none, or less where it must come back from far beyond.
     pub(super) fn allowed(&self, h: f32) -> f32 {
-        min(self.room + self.most_push() * h, 0.0)
+        min(self.slack + self.most_push() * h, 0.0)
     }
 
     /// Fastest rate with which it pushes back, rad/s or m/s.
@@ -125,7 +125,7 @@ impl LimitRow {
         }
         let [a, b] = [joint.a, joint.b].map(|body| angular(&velocities[body as usize]));
         let turn2 = max(a.length_squared(), b.length_squared()) * (h * h);
-        let ahead = self.room + h * (b - a).dot(self.axis);
+        let ahead = self.slack + h * (b - a).dot(self.axis);
         self.allowed(h) - ahead + LIMIT_BEND * turn2 >= LIMIT_SLACK_ANGLE
     }
 
@@ -145,7 +145,7 @@ impl LimitRow {
     pub fn threshold(&self, pass: Pass, h: f32) -> f32 {
         match self.hardness {
             Hardness::Soft(..) if pass != Pass::Solve => f32::NEG_INFINITY,
-            Hardness::Soft(..) => -self.room / h,
+            Hardness::Soft(..) => -self.slack / h,
             _ => self.wanted(pass, f32::NEG_INFINITY, h),
         }
     }
@@ -158,9 +158,9 @@ impl LimitRow {
         let new = match self.hardness {
             Hardness::Soft(softness, damped) => {
                 let (stiffness, damping) = softness.of_mass(1.0 / self.effective);
-                // Implicit: λ = −h (k (room + h v) + c v), never pulling.
+                // Implicit: λ = −h (k (slack + h v) + c v), never pulling.
                 let gain = h * (h * stiffness + damped * damping);
-                let pull = gain * rate + h * stiffness * self.room + self.impulse;
+                let pull = gain * rate + h * stiffness * self.slack + self.impulse;
                 self.impulse - pull / (1.0 + gain * self.effective)
             }
             _ => self.impulse + (self.wanted(pass, rate, h) - rate) / self.effective,
@@ -181,9 +181,9 @@ impl LimitRow {
     pub(super) fn wanted(&self, pass: Pass, rate: f32, h: f32) -> f32 {
         match (pass, self.hardness) {
             (Pass::Solve, Hardness::Predicted(rate)) => rate,
-            (Pass::Solve, _) if self.room < 0.0 => min(-self.room / h, self.most_push()),
-            (Pass::Solve, _) => -self.room / h,
-            _ => clamp(rate, min(-self.room / h, 0.0), 0.0),
+            (Pass::Solve, _) if self.slack < 0.0 => min(-self.slack / h, self.most_push()),
+            (Pass::Solve, _) => -self.slack / h,
+            _ => clamp(rate, min(-self.slack / h, 0.0), 0.0),
         }
     }
 }

@@ -36,18 +36,18 @@ impl IslandSolver {
             let (soft, zone) = (joint.drive.limit_softness, joint.drive.soft_zone);
             let looked_for = [reach[0], max(reach[1], zone.map_or(0.0, |zone| zone.width))];
             each_stop(&joint.geometry.kind, &joint.pose, looked_for, |place, stop| {
-                if stop.room < reach[usize::from(turns(stop.limit))] {
+                if stop.slack < reach[usize::from(turns(stop.limit))] {
                     let hardness = soft.map_or(Hardness::Hard, |soft| Hardness::Soft(soft, 1.0));
                     let axis = joint.pose.rotation_a * stop.axis;
                     let impulse = share(joint.limit_impulse[stop.limit], axis);
                     let impulse = if soft.is_some() { 0.0 } else { impulse };
                     limits.push(LimitRow::new((index, joint), place, &stop, hardness, impulse));
                 }
-                let zone = zone.filter(|zone| turns(stop.limit) && stop.room < zone.width);
+                let zone = zone.filter(|zone| turns(stop.limit) && stop.slack < zone.width);
                 if let (Some(zone), None) = (zone, soft) {
-                    let early = Stop { room: stop.room - zone.width, ..stop };
+                    let early = Stop { slack: stop.slack - zone.width, ..stop };
                     // Damping comes with depth: all of it at once would be a blow at the zone's edge.
-                    let depth = min(-early.room / zone.width, 1.0);
+                    let depth = min(-early.slack / zone.width, 1.0);
                     let hardness = Hardness::Soft(zone.softness, depth);
                     limits.push(LimitRow::new((index, joint), place, &early, hardness, 0.0));
                 }
@@ -79,13 +79,13 @@ impl IslandSolver {
                 looked_at = row.joint;
                 let [a, b] = [joint.a, joint.b].map(|body| &poses[body as usize]);
                 let pose = JointPose::new(&joint.geometry, a, b);
-                // What is to be beyond has no room.
+                // What is to be beyond has no slack.
                 there = [None; MAX_STOPS];
                 each_stop(&joint.geometry.kind, &pose, [0.0; 2], |place, stop| there[place] = Some(stop));
                 predicted = Some(pose);
             }
             let (Some(predicted), Some(stop)) = (&predicted, &there[row.stop]) else { continue };
-            let beyond = row.allowed(self.h) - stop.room;
+            let beyond = row.allowed(self.h) - stop.slack;
             if beyond < row.slack() {
                 continue;
             }
@@ -116,7 +116,7 @@ impl IslandSolver {
     pub(in crate::solver) fn stops_push_back(&self) -> bool {
         self.limits.iter().any(|row| {
             let soft = matches!(row.hardness, Hardness::Soft(..));
-            !soft && row.room < 0.0 && row.impulse > 0.0
+            !soft && row.slack < 0.0 && row.impulse > 0.0
         })
     }
 

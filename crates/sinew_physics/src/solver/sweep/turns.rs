@@ -73,7 +73,7 @@ impl Kernel for TurnOfTrees<'_> {
                     None => L::load(&before[i]) + L::load(&dv[i]),
                 };
                 let change = (now - L::load(&velocities[i])).abs();
-                contacts.stir(i, largest_of(change));
+                contacts.note_change(i, largest_of(change));
                 most = L::max(most, change);
                 moved = L::max(moved, (now - L::load(&swept[i])).abs());
                 now.store(&mut velocities[i]);
@@ -98,7 +98,7 @@ impl Kernel for NoteStir<'_> {
     fn run<L: Lanes>(self) {
         let Self { before, velocities, contacts } = self;
         for (i, (now, before)) in velocities.iter().zip(before).enumerate() {
-            contacts.stir(i, largest_of((L::load(now) - L::load(before)).abs()));
+            contacts.note_change(i, largest_of((L::load(now) - L::load(before)).abs()));
         }
     }
 }
@@ -245,7 +245,7 @@ impl IslandSolver {
         self.note_limits();
         let Self { contacts, velocities, scratch, dirty, trees, limits, .. } = self;
         let mut tree = 0;
-        let stir = |body: usize, change: f32| {
+        let note_change = |body: usize, change: f32| {
             while trees.get(tree).is_some_and(|links| body >= links.end) {
                 tree += 1;
             }
@@ -254,7 +254,7 @@ impl IslandSolver {
             }
             dirty.mark(tree as u32, change);
         };
-        contacts.after_conjugate(energy, (velocities, &mut scratch.limits), runner, stir);
+        contacts.after_conjugate(energy, (velocities, &mut scratch.limits), runner, note_change);
         for (row, impulse) in limits.iter_mut().zip(&scratch.limits) {
             let change = row.apply(impulse - row.impulse);
             dirty.mark_limits(row.block, change);

@@ -125,7 +125,7 @@ fn spring_square(kind: &JointKind, locks: &[bool; 6], seen: &Transform, rest: &T
 fn beyond_square(kind: &JointKind, seen: &Transform) -> f32 {
     let square = |room: f32| min(room, 0.0) * min(room, 0.0);
     let outside = |range: Range, x: f32| square(x - range.lo) + square(range.hi - x);
-    let cone = |limit: &SwingTwistLimit| square(limit.swing_state(seen.rotation).room);
+    let cone = |limit: &SwingTwistLimit| square(limit.swing_state(seen.rotation).slack);
     let twist = |range: Range| twist_square(range, seen.rotation);
     match kind {
         JointKind::Ball { limit: Some(limit) } => cone(limit) + twist(limit.twist),
@@ -154,7 +154,7 @@ fn beyond_square(kind: &JointKind, seen: &Transform) -> f32 {
 fn twist_square(range: Range, rotation: Rotation) -> f32 {
     let free = Range::symmetric(core::f32::consts::PI);
     let limit = SwingTwistLimit { swing_y: free, swing_z: free, twist: range };
-    limit.twist_states(rotation).iter().map(|state| min(state.room, 0.0) * min(state.room, 0.0)).sum()
+    limit.twist_states(rotation).iter().map(|state| min(state.slack, 0.0) * min(state.slack, 0.0)).sum()
 }
 
 #[test]

@@ -56,7 +56,7 @@ impl Kernel for TurnOfBatch<'_, '_> {
             let mut changes = [0.0; WIDTH];
             change.store(&mut changes);
             for (first, change) in batch.first.iter().zip(changes).take(batch.lanes) {
-                contacts.stir(first + i, change);
+                contacts.note_change(first + i, change);
             }
         }
         let mut all: [Eight; 2] = [[0.0; WIDTH]; 2];
