@@ -110,8 +110,10 @@ impl BodyForces {
         Ok(forces)
     }
 
+    #[track_caller]
     pub fn place(&self, id: ForceId) -> usize {
-        self.list.binary_search_by_key(&id.number, |&(number, _)| number).expect("the force is there")
+        let place = self.list.binary_search_by_key(&id.number, |&(number, _)| number);
+        place.unwrap_or_else(|_| panic!("{id:?} is not there"))
     }
 
     /// Their sum in the given pose of the body's principal frame.

@@ -103,19 +103,33 @@ pub(crate) struct Body {
 const SMALLEST_MOMENT: f32 = 1e-3;
 
 /// Panics if a number is not finite, a shape is not valid, or a half-space is to move.
+#[track_caller]
 fn check(def: &BodyDef) {
-    assert!(def.position.is_finite() && def.rotation.is_finite(), "a body's pose is finite");
+    assert!(
+        def.position.is_finite() && def.rotation.is_finite(),
+        "a body's pose is finite, not {:?} and {:?}",
+        def.position,
+        def.rotation
+    );
     assert!(
         def.linear_velocity.is_finite() && def.angular_velocity.is_finite(),
-        "a body's velocity is finite"
+        "a body's velocity is finite, not {:?} and {:?}",
+        def.linear_velocity,
+        def.angular_velocity
     );
     assert!(
         def.linear_damping.is_finite() && def.angular_damping.is_finite() && def.gravity_scale.is_finite(),
-        "a body's damping and gravity scale are finite"
+        "a body's damping and gravity scale are finite, not {} and {} and {}",
+        def.linear_damping,
+        def.angular_damping,
+        def.gravity_scale
     );
     if let Some(MassProperties { mass, center, inertia }) = &def.mass {
         let finite = mass.is_finite() && center.is_finite() && inertia.is_finite();
-        assert!(finite, "a body's mass, centre and inertia are finite");
+        assert!(
+            finite,
+            "a body's mass, centre and inertia are finite, not {mass} and {center:?} and {inertia:?}"
+        );
     }
     for shape in &def.shapes {
         if let Err(what) = shape.check() {
@@ -373,7 +387,7 @@ fn mass_of_shapes(shapes: &[ShapeDef]) -> MassProperties {
 #[track_caller]
 pub(crate) fn expect_solid(mass: f32, moments: Vec3) {
     let solid = mass > 0.0 && mass < f32::INFINITY && moments.z > 0.0 && moments.is_finite();
-    assert!(solid, "a dynamic body has positive, finite mass and inertia");
+    assert!(solid, "a dynamic body has positive, finite mass and inertia, not {mass} kg and {moments:?}");
 }
 
 /// Principal moments (largest first) and the frame they belong to.

@@ -334,17 +334,25 @@ impl JointDef {
 
     /// # Panics
     /// If a number is not finite (but for infinite caps and strengths), negative where it may not be, or a range empty.
+    #[track_caller]
     pub(crate) fn check(&self) {
-        assert!(self.frame_a.is_finite() && self.frame_b.is_finite(), "a joint's frames are finite");
+        assert!(
+            self.frame_a.is_finite() && self.frame_b.is_finite(),
+            "a joint's frames are finite, not {:?} and {:?}",
+            self.frame_a,
+            self.frame_b
+        );
         assert!(
             self.friction_torque >= 0.0 && self.friction_torque < f32::INFINITY,
-            "a joint's friction torque is at least 0 and finite"
+            "a joint's friction torque is at least 0 and finite, not {}",
+            self.friction_torque
         );
         assert!(
             self.strength.force >= 0.0 && self.strength.torque >= 0.0,
-            "a joint's strength is at least 0"
+            "a joint's strength is at least 0, not {:?}",
+            self.strength
         );
-        assert!(self.kind.ranges_are_valid(), "a joint's ranges are not empty");
+        assert!(self.kind.ranges_are_valid(), "a joint's ranges are not empty, as in {:?}", self.kind);
         let zone = self.soft_zone.map(|zone| zone.softness);
         let spring = self.spring.map(|spring| spring.softness);
         let motor = self.motor.and_then(|motor| match motor.gains {
@@ -352,14 +360,23 @@ impl JointDef {
             Gains::Position(softness) => Some(softness),
         });
         for softness in [self.weld, self.limit_softness, zone, spring, motor].into_iter().flatten() {
-            assert!(softness.is_valid(), "a spring's numbers are at least 0 and finite");
+            assert!(softness.is_valid(), "a spring's numbers are at least 0 and finite, not {softness:?}");
         }
         assert!(
             self.soft_zone.is_none_or(|zone| zone.width >= 0.0 && zone.width < f32::INFINITY),
-            "a soft zone's width is at least 0 and finite"
+            "a soft zone's width is at least 0 and finite, as in {:?}",
+            self.soft_zone
         );
-        assert!(self.spring.is_none_or(|spring| spring.rest.is_finite()), "a spring's rest pose is finite");
-        assert!(self.motor.is_none_or(|motor| motor.is_valid()), "a motor's numbers are finite");
+        assert!(
+            self.spring.is_none_or(|spring| spring.rest.is_finite()),
+            "a spring's rest pose is finite, as in {:?}",
+            self.spring
+        );
+        assert!(
+            self.motor.is_none_or(|motor| motor.is_valid()),
+            "a motor's numbers are finite, as in {:?}",
+            self.motor
+        );
     }
 }
 

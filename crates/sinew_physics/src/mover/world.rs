@@ -63,14 +63,14 @@ impl World {
     /// Velocity with which a mover is to walk from now on, m/s, beside that of the ground; its part along up does nothing.
     #[track_caller]
     pub fn set_mover_walk(&mut self, id: MoverId, velocity: Vec3) {
-        assert!(velocity.is_finite(), "a velocity is finite");
+        assert!(velocity.is_finite(), "a velocity is finite, not {velocity:?} ({id:?})");
         self.expect_mover(id).walk = velocity;
     }
 
     /// Throws a mover: it leaves the ground with this velocity, m/s.
     #[track_caller]
     pub fn set_mover_velocity(&mut self, id: MoverId, velocity: Vec3) {
-        assert!(velocity.is_finite(), "a velocity is finite");
+        assert!(velocity.is_finite(), "a velocity is finite, not {velocity:?} ({id:?})");
         let mover = self.expect_mover(id);
         mover.ground = None;
         mover.velocity = velocity;
@@ -80,14 +80,17 @@ impl World {
     /// rises by `speed² / 2g`.
     #[track_caller]
     pub fn mover_jump(&mut self, id: MoverId, speed: f32) {
-        assert!((0.0..f32::INFINITY).contains(&speed), "the speed of a jump is finite and not negative");
+        assert!(
+            (0.0..f32::INFINITY).contains(&speed),
+            "the speed of a jump is finite and not negative, not {speed:?} ({id:?})"
+        );
         self.expect_mover(id).jump = speed;
     }
 
     /// Puts a mover with its feet somewhere, at rest. It does not sweep what lies between.
     #[track_caller]
     pub fn set_mover_position(&mut self, id: MoverId, position: Vec3) {
-        assert!(position.is_finite(), "a mover's position is finite");
+        assert!(position.is_finite(), "a mover's position is finite, not {position:?} ({id:?})");
         let mover = self.expect_mover(id);
         (mover.position, mover.previous) = (position, position);
         (mover.ground, mover.velocity) = (None, Vec3::ZERO);
@@ -101,7 +104,7 @@ impl World {
     pub fn set_mover_height(&mut self, id: MoverId, height: f32) -> bool {
         let now = self.mover(id);
         let fits = height >= 2.0 * now.def.radius && height < f32::INFINITY;
-        assert!(fits, "a mover's height is at least twice its radius");
+        assert!(fits, "a mover's height is at least twice its radius, not {height} ({id:?})");
         if height > now.def.height && !self.has_room(id, height) {
             return false;
         }

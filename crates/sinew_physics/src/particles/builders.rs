@@ -13,7 +13,11 @@ impl GroupDef {
     /// # Panics
     /// If there is no such particle.
     pub fn hold(&mut self, particle: u32, target: AttachmentTarget) {
-        assert!((particle as usize) < self.particles.len(), "the particle is there");
+        assert!(
+            (particle as usize) < self.particles.len(),
+            "the particle is there, not {particle} of {}",
+            self.particles.len()
+        );
         self.attachments.push(AttachmentDef { particle, target });
     }
 
@@ -242,7 +246,12 @@ impl ClothDef {
     /// # Panics
     /// If there are no columns or rows.
     pub fn build(&self) -> Cloth {
-        assert!(self.columns > 0 && self.rows > 0, "cloth has columns and rows");
+        assert!(
+            self.columns > 0 && self.rows > 0,
+            "cloth has columns and rows, not {} by {}",
+            self.columns,
+            self.rows
+        );
         let (columns, rows) = (self.columns, self.rows);
         let mut cloth = Cloth { group: GroupDef::default(), columns, rows };
         let cell_mass = self.mass / (columns * rows) as f32;
@@ -353,7 +362,7 @@ impl BlobDef {
     /// # Panics
     /// If there are more than 5 subdivisions.
     pub fn build(&self) -> Blob {
-        assert!(self.subdivisions <= 5, "a blob has at most five subdivisions");
+        assert!(self.subdivisions <= 5, "a blob has at most five subdivisions, not {}", self.subdivisions);
         let (directions, triangles) = super::geodesic::sphere(self.subdivisions);
         let mass = self.mass / directions.len() as f32;
         let particle = |d: &Vec3| ParticleDef {

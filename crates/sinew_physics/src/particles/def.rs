@@ -60,8 +60,11 @@ impl SpringDef {
     /// # Panics
     /// If the ratio is negative or not finite, or a mass is not positive.
     pub fn damped(self, ratio: f32, masses: [f32; 2]) -> Self {
-        assert!((0.0..f32::INFINITY).contains(&ratio), "a damping ratio is finite and not negative");
-        assert!(masses.iter().all(|m| *m > 0.0), "masses are positive");
+        assert!(
+            (0.0..f32::INFINITY).contains(&ratio),
+            "a damping ratio is finite and not negative, not {ratio}"
+        );
+        assert!(masses.iter().all(|m| *m > 0.0), "masses are positive, not {masses:?}");
         let inverse = 1.0 / masses[0] + 1.0 / masses[1];
         let damping = if inverse > 0.0 { 2.0 * ratio * (self.stiffness / inverse).sqrt() } else { 0.0 };
         Self { damping, ..self }

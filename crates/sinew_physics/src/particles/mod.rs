@@ -330,10 +330,10 @@ impl ParticleGroup {
     /// # Panics
     /// If there is no such particle, or the impulse or what comes of it is not finite.
     pub fn apply_impulse(&mut self, particle: u32, impulse: Vec3) {
-        assert!(impulse.is_finite(), "an impulse is finite");
+        assert!(impulse.is_finite(), "an impulse is finite, not {impulse:?}");
         let i = particle as usize;
         let velocity = self.velocities[i] + impulse / self.masses[i];
-        assert!(velocity.is_finite(), "an impulse makes a finite velocity");
+        assert!(velocity.is_finite(), "an impulse makes a finite velocity, not {velocity:?}");
         self.velocities[i] = velocity;
     }
 
@@ -342,7 +342,7 @@ impl ParticleGroup {
     /// # Panics
     /// If there is no such particle, or the velocity is not finite.
     pub fn set_velocity(&mut self, particle: u32, velocity: Vec3) {
-        assert!(velocity.is_finite(), "a velocity is finite");
+        assert!(velocity.is_finite(), "a velocity is finite, not {velocity:?}");
         self.velocities[particle as usize] = velocity;
     }
 
@@ -351,7 +351,7 @@ impl ParticleGroup {
     /// # Panics
     /// If there is no such particle, or the position is not finite.
     pub fn set_position(&mut self, particle: u32, position: Vec3) {
-        assert!(position.is_finite(), "a position is finite");
+        assert!(position.is_finite(), "a position is finite, not {position:?}");
         self.positions[particle as usize] = position;
         self.previous[particle as usize] = position;
     }
@@ -362,7 +362,10 @@ impl ParticleGroup {
     /// If there is no such particle, or a number is not finite.
     pub fn correct(&mut self, particle: u32, by: Vec3, h: f32) {
         let velocity = by / h;
-        assert!(by.is_finite() && h.is_finite() && velocity.is_finite(), "a particle's way is finite");
+        assert!(
+            by.is_finite() && h.is_finite() && velocity.is_finite(),
+            "a particle's way is finite, not {by:?} and {h:?} and {velocity:?}"
+        );
         self.positions[particle as usize] += by;
         self.velocities[particle as usize] += velocity;
     }

@@ -126,7 +126,8 @@ impl<'a> Substep<'a> {
     }
 
     fn place(&self, id: GroupId) -> usize {
-        self.places.group(id).filter(|&place| place < self.taken.len()).expect("the group is there")
+        let place = self.places.group(id).filter(|&place| place < self.taken.len());
+        place.unwrap_or_else(|| panic!("{id:?} is not there"))
     }
 
     fn expect(&self, id: BodyId) -> &'a Body {
@@ -158,7 +159,10 @@ impl<'a> Substep<'a> {
 
     /// A force or an impulse at a world point, as one at the centre of mass.
     fn at(&self, id: BodyId, force: Vec3, point: Vec3) -> Vec6 {
-        assert!(force.is_finite() && point.is_finite(), "what is applied to a body is finite");
+        assert!(
+            force.is_finite() && point.is_finite(),
+            "what is applied to a body is finite, not {force:?} and {point:?} ({id:?})"
+        );
         join(force, (point - self.center_of_mass(id)).cross(force))
     }
 
@@ -203,7 +207,7 @@ impl Forces<'_> {
 
     /// Torque (N·m) for this substep.
     pub fn apply_torque(&mut self, id: BodyId, torque: Vec3) {
-        assert!(torque.is_finite(), "a torque is finite");
+        assert!(torque.is_finite(), "a torque is finite, not {torque:?} ({id:?})");
         self.add(id, &join(Vec3::ZERO, torque));
     }
 

@@ -37,7 +37,7 @@ impl World {
         }
         let moves = kind != BodyKind::Static;
         let endless = body.shapes.iter().any(|shape| shape.shape == Shape::HalfSpace);
-        assert!(!(moves && endless), "half-spaces are static bodies");
+        assert!(!(moves && endless), "half-spaces are static bodies ({id:?})");
         let mut weight =
             if body.kind == BodyKind::Dynamic { Some((body.mass, body.inertia)) } else { body.laid_by };
         let mut principal_from_body = body.principal_from_body;

@@ -212,7 +212,7 @@ impl World {
     fn joint_at(&self, a: BodyId, b: BodyId, anchor: Vec3, axis: Vec3, kind: JointKind) -> JointDef {
         let (axis, anchor) = (finite(axis), finite(anchor));
         let length = axis.length();
-        assert!(length > 0.0 && length < f32::INFINITY, "a joint's axis is not zero");
+        assert!(length > 0.0 && length < f32::INFINITY, "a joint's axis has a length, not {length:?}");
         let world_from_joint = Transform::new(anchor, Rotation::from_arc(Vec3::X, axis / length));
         JointDef::new(a, b, self.transform(a), self.transform(b), world_from_joint, kind)
     }
@@ -220,6 +220,6 @@ impl World {
 
 #[track_caller]
 fn finite(v: Vec3) -> Vec3 {
-    assert!(v.is_finite(), "a joint's anchor and axis are finite");
+    assert!(v.is_finite(), "a joint's anchor and axis are finite, not {v:?}");
     v
 }

@@ -11,7 +11,10 @@ impl World {
     /// static and kinematic bodies.
     #[track_caller]
     pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
-        assert!(impulse.is_finite() && point.is_finite(), "an impulse is finite");
+        assert!(
+            impulse.is_finite() && point.is_finite(),
+            "an impulse is finite, not {impulse:?} and {point:?} ({id:?})"
+        );
         self.wake_body(id.index);
         let body = self.expect_mut(id);
         let arm = point - body.center();
@@ -29,7 +32,7 @@ impl World {
     /// Angular impulse (N·m·s): `Δω = I⁻¹ L`.
     #[track_caller]
     pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Vec3) {
-        assert!(impulse.is_finite(), "an impulse is finite");
+        assert!(impulse.is_finite(), "an impulse is finite, not {impulse:?} ({id:?})");
         self.wake_body(id.index);
         let body = self.expect_mut(id);
         body.velocity.angular += finite_change(impulse, |impulse| body.inverse_inertia_mul(impulse));
@@ -39,7 +42,10 @@ impl World {
     /// mass as it lies now.
     #[track_caller]
     pub fn apply_force(&mut self, id: BodyId, force: Vec3, point: Vec3) {
-        assert!(force.is_finite() && point.is_finite(), "a force is finite");
+        assert!(
+            force.is_finite() && point.is_finite(),
+            "a force is finite, not {force:?} and {point:?} ({id:?})"
+        );
         let torque = (point - self.center_of_mass(id)).cross(force);
         self.apply_wrench(id, Wrench { force, torque });
     }
@@ -47,14 +53,14 @@ impl World {
     /// Force (N) at the centre of mass for the next step.
     #[track_caller]
     pub fn apply_force_at_center(&mut self, id: BodyId, force: Vec3) {
-        assert!(force.is_finite(), "a force is finite");
+        assert!(force.is_finite(), "a force is finite, not {force:?} ({id:?})");
         self.apply_wrench(id, Wrench { force, torque: Vec3::ZERO });
     }
 
     /// Torque (N·m) for the next step.
     #[track_caller]
     pub fn apply_torque(&mut self, id: BodyId, torque: Vec3) {
-        assert!(torque.is_finite(), "a torque is finite");
+        assert!(torque.is_finite(), "a torque is finite, not {torque:?} ({id:?})");
         self.apply_wrench(id, Wrench { force: Vec3::ZERO, torque });
     }
 
@@ -75,7 +81,7 @@ impl World {
     #[track_caller]
     #[doc(alias = "constant force")]
     pub fn add_force(&mut self, body: BodyId, def: &ForceDef) -> ForceId {
-        assert!(def.is_finite(), "a force is finite");
+        assert!(def.is_finite(), "a force is finite, not {def:?} ({body:?})");
         self.wake_body(body.index);
         let forces = &mut self.expect_mut(body).forces;
         let number = forces.next;
@@ -89,7 +95,7 @@ impl World {
     /// # Panics
     /// If a number is not finite, or the force is not there.
     pub fn set_force(&mut self, id: ForceId, def: &ForceDef) {
-        assert!(def.is_finite(), "a force is finite");
+        assert!(def.is_finite(), "a force is finite, not {def:?} ({id:?})");
         self.wake_body(id.body().index);
         let forces = &mut self.expect_mut(id.body()).forces;
         let place = forces.place(id);
@@ -146,8 +152,14 @@ impl World {
     /// If a number is not finite, or the mass not positive.
     #[track_caller]
     pub fn apply_bullet_impact(&mut self, id: BodyId, mass: f32, velocity: Vec3, point: Vec3) -> Vec3 {
-        assert!(mass > 0.0 && mass < f32::INFINITY, "a bullet's mass is positive and finite");
-        assert!(velocity.is_finite() && point.is_finite(), "a bullet's velocity and place are finite");
+        assert!(
+            mass > 0.0 && mass < f32::INFINITY,
+            "a bullet's mass is positive and finite, not {mass:?} ({id:?})"
+        );
+        assert!(
+            velocity.is_finite() && point.is_finite(),
+            "a bullet's velocity and place are finite, not {velocity:?} and {point:?} ({id:?})"
+        );
         let body = self.expect(id);
         let arm = point - body.center();
         let turn = skew(arm);

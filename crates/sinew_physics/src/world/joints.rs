@@ -28,8 +28,13 @@ impl World {
     #[track_caller]
     pub fn add_joint(&mut self, def: &JointDef) -> JointId {
         let (a, b) = (self.expect(def.body_a), self.expect(def.body_b));
-        assert!(def.body_a != def.body_b, "a joint holds two bodies");
-        assert!(a.kind == BodyKind::Dynamic || b.kind == BodyKind::Dynamic, "a joint needs a dynamic body");
+        assert!(def.body_a != def.body_b, "a joint holds two bodies, not {:?} twice", def.body_a);
+        assert!(
+            a.kind == BodyKind::Dynamic || b.kind == BodyKind::Dynamic,
+            "a joint needs a dynamic body: neither {:?} nor {:?} is one",
+            def.body_a,
+            def.body_b
+        );
         let (ia, ib) = (def.body_a.index, def.body_b.index);
         let joint = Joint::new(def, ia, ib, a.principal_from_body, b.principal_from_body);
         let id = self.joints.insert(joint);
@@ -102,7 +107,7 @@ impl World {
     /// If it names other bodies, or a number is not valid.
     #[track_caller]
     pub fn set_joint(&mut self, id: JointId, def: &JointDef) {
-        assert!(self.joint_bodies(id) == (def.body_a, def.body_b), "a joint keeps its bodies");
+        assert!(self.joint_bodies(id) == (def.body_a, def.body_b), "a joint keeps its bodies ({id:?})");
         let from_body = |body: BodyId| self.expect(body).principal_from_body;
         let (a, b) = (from_body(def.body_a), from_body(def.body_b));
         self.expect_joint_mut(id).redefine(def, a, b);
@@ -116,7 +121,10 @@ impl World {
     /// If a number is not valid.
     #[track_caller]
     pub fn set_motor(&mut self, id: JointId, motor: Option<Motor>) {
-        assert!(motor.is_none_or(|motor| motor.is_valid()), "a motor's numbers are finite");
+        assert!(
+            motor.is_none_or(|motor| motor.is_valid()),
+            "a motor's numbers are finite, as in {motor:?} ({id:?})"
+        );
         if self.expect_joint(id).drive.motor != motor {
             self.expect_joint_mut(id).set_motor(motor);
             self.wake_joint(id);
@@ -130,7 +138,10 @@ impl World {
     /// If it is negative or not finite.
     #[track_caller]
     pub fn set_joint_friction(&mut self, id: JointId, torque: f32) {
-        assert!((0.0..f32::INFINITY).contains(&torque), "friction is not negative, and finite");
+        assert!(
+            (0.0..f32::INFINITY).contains(&torque),
+            "friction is not negative, and finite, not {torque:?} ({id:?})"
+        );
         if self.expect_joint(id).drive.friction != torque {
             self.expect_joint_mut(id).drive.friction = torque;
             self.wake_joint(id);

@@ -173,7 +173,7 @@ impl World {
         let held = |target| matches!(target, AttachmentTarget::Body { body, .. } if body == id);
         let attached =
             self.groups.iter().any(|(_, group)| group.attachments().iter().any(|a| held(a.target)));
-        assert!(!attached, "no particles are attached to a body that is taken out");
+        assert!(!attached, "no particles are attached to a body that is taken out ({id:?})");
         self.wake_neighbors(id.index);
         let joints: Vec<JointId> = self.joints_of(id).collect();
         for joint in joints {
@@ -305,7 +305,7 @@ impl World {
     #[doc(alias = "teleport")]
     #[doc(alias = "set_position")]
     pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
-        assert!(world_from_body.is_finite(), "a body's pose is finite");
+        assert!(world_from_body.is_finite(), "a body's pose is finite, not {world_from_body:?} ({id:?})");
         self.expect_mut(id).set_world_from_body(world_from_body);
         self.mark_changed(id);
         // What it bore where it was says nothing of where it is.
@@ -335,7 +335,10 @@ impl World {
     #[doc(alias = "set_linvel")]
     #[doc(alias = "set_angvel")]
     pub fn set_velocity(&mut self, id: BodyId, velocity: Velocity) {
-        assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "a velocity is finite");
+        assert!(
+            velocity.linear.is_finite() && velocity.angular.is_finite(),
+            "a velocity is finite, not {velocity:?} ({id:?})"
+        );
         let body = self.expect_mut(id);
         if body.kind == BodyKind::Static {
             return;

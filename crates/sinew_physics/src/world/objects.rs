@@ -27,7 +27,7 @@ impl World {
     pub fn object<T: PhysicsObject>(&self, id: ObjectId) -> &T {
         let object = self.objects.arena.expect(id);
         let object: &dyn Any = object.as_ref();
-        object.downcast_ref().expect("the object is of this type")
+        object.downcast_ref().unwrap_or_else(|| panic!("{id:?} is no {}", core::any::type_name::<T>()))
     }
 
     /// An object, to be changed.
@@ -38,7 +38,7 @@ impl World {
     pub fn object_mut<T: PhysicsObject>(&mut self, id: ObjectId) -> &mut T {
         let object = self.objects.arena.expect_mut(id);
         let object: &mut dyn Any = object.as_mut();
-        object.downcast_mut().expect("the object is of this type")
+        object.downcast_mut().unwrap_or_else(|| panic!("{id:?} is no {}", core::any::type_name::<T>()))
     }
 
     /// All objects, by index.

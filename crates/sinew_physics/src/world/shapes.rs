@@ -131,10 +131,13 @@ impl World {
     #[track_caller]
     fn check_shape(&self, body: BodyId, def: &ShapeDef) {
         if let Err(what) = def.check() {
-            panic!("a body's shape is valid: {what}");
+            panic!("a body's shape is valid: {what} ({body:?})");
         }
         let is_endless = def.shape == Shape::HalfSpace;
-        assert!(self.expect(body).kind == BodyKind::Static || !is_endless, "half-spaces are static bodies");
+        assert!(
+            self.expect(body).kind == BodyKind::Static || !is_endless,
+            "half-spaces are static bodies ({body:?})"
+        );
         self.expect_modifier(def.rule);
     }
 

@@ -74,7 +74,7 @@ impl World {
     /// # Panics
     /// If it is not finite.
     pub fn set_gravity(&mut self, gravity: Vec3) {
-        assert!(gravity.is_finite(), "gravity is finite");
+        assert!(gravity.is_finite(), "gravity is finite, not {gravity:?}");
         if gravity != core::mem::replace(&mut self.def.gravity, gravity) {
             for id in self.body_ids().collect::<Vec<_>>() {
                 self.wake_body(id.index);

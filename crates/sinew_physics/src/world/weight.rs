@@ -33,7 +33,7 @@ impl World {
     pub fn set_mass(&mut self, id: BodyId, properties: MassProperties) {
         let finite =
             properties.mass.is_finite() && properties.center.is_finite() && properties.inertia.is_finite();
-        assert!(finite, "a body's mass, centre and inertia are finite");
+        assert!(finite, "a body's mass, centre and inertia are finite, not {properties:?} ({id:?})");
         let (moments, body_from_principal) = principal_frame(&properties);
         expect_solid(properties.mass, moments);
         self.mark_changed(id);
@@ -98,7 +98,7 @@ impl World {
     /// If it is not finite.
     #[track_caller]
     pub fn set_linear_damping(&mut self, id: BodyId, damping: f32) {
-        assert!(damping.is_finite(), "a body's damping is finite");
+        assert!(damping.is_finite(), "a body's damping is finite, not {damping:?} ({id:?})");
         self.expect_mut(id).linear_damping = damping;
     }
 
@@ -114,7 +114,7 @@ impl World {
     /// If it is not finite.
     #[track_caller]
     pub fn set_angular_damping(&mut self, id: BodyId, damping: f32) {
-        assert!(damping.is_finite(), "a body's damping is finite");
+        assert!(damping.is_finite(), "a body's damping is finite, not {damping:?} ({id:?})");
         self.expect_mut(id).angular_damping = damping;
     }
 
@@ -130,7 +130,7 @@ impl World {
     /// If it is not finite.
     #[track_caller]
     pub fn set_gravity_scale(&mut self, id: BodyId, scale: f32) {
-        assert!(scale.is_finite(), "a body's gravity scale is finite");
+        assert!(scale.is_finite(), "a body's gravity scale is finite, not {scale:?} ({id:?})");
         if core::mem::replace(&mut self.expect_mut(id).gravity_scale, scale) != scale {
             self.wake_body(id.index);
         }
@@ -168,8 +168,11 @@ impl World {
     #[doc(alias = "kinematic target")]
     #[track_caller]
     pub fn move_to(&mut self, id: BodyId, world_from_body: Transform, seconds: f32) {
-        assert!(world_from_body.is_finite(), "a body's pose is finite");
-        assert!(seconds > 0.0 && seconds < f32::INFINITY, "a time is positive and finite");
+        assert!(world_from_body.is_finite(), "a body's pose is finite, not {world_from_body:?} ({id:?})");
+        assert!(
+            seconds > 0.0 && seconds < f32::INFINITY,
+            "a time is positive and finite, not {seconds:?} ({id:?})"
+        );
         let body = self.expect(id);
         let from = body.world_from_principal;
         let Transform { translation, rotation } = world_from_body;
@@ -178,7 +181,10 @@ impl World {
             linear: (to.translation - from.translation) / seconds,
             angular: from.rotation.angular_velocity_to(to.rotation, seconds),
         };
-        assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "a velocity is finite");
+        assert!(
+            velocity.linear.is_finite() && velocity.angular.is_finite(),
+            "a velocity is finite, not {velocity:?} ({id:?})"
+        );
         self.set_velocity(id, velocity);
     }
 }

@@ -143,8 +143,13 @@ pub struct Baked {
 /// # Panics
 /// If a number is not finite, `fps` is below 1, the key bound is negative, or a hit names a body that is not there.
 pub fn bake(input: &BakeInput<'_>) -> Baked {
-    assert!(input.seconds.is_finite() && input.fps >= 1.0, "a bake has a length and a frame rate");
-    assert!(input.hits.iter().all(|hit| hit.time.is_finite()), "hits have a time");
+    assert!(
+        input.seconds.is_finite() && input.fps >= 1.0,
+        "a bake has a length and a frame rate, not {} s and {} frames a second",
+        input.seconds,
+        input.fps
+    );
+    assert!(input.hits.iter().all(|hit| hit.time.is_finite()), "hits have a time: {:?}", input.hits);
     let mut run = Run::new(input);
     let mut frames = Frames::new(input);
     frames.add_until(&run);
