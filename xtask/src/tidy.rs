@@ -52,15 +52,26 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
 
 /// `cargo xtask tidy`.
 #[derive(clap::Args)]
-pub struct Tidy {}
+pub struct Tidy {
+    /// Print what the crates' houses are like, too
+    #[arg(long)]
+    table: bool,
+}
 
 impl Tidy {
+    /// Without the table.
+    pub const CHECK: Self = Self { table: false };
+
     /// Prints what breaks a rule, one line each.
     ///
     /// # Errors
     /// If anything does, or the repository cannot be read.
     pub fn run(&self) -> Result<()> {
-        let findings = check(&Repo::read()?);
+        let repo = Repo::read()?;
+        if self.table {
+            println!("{}", table(&repo));
+        }
+        let findings = check(&repo);
         for finding in &findings {
             println!("{finding}");
         }
@@ -70,6 +81,17 @@ impl Tidy {
         }
         Ok(())
     }
+}
+
+/// A row for each crate: files and how they hang together, and names at its root.
+fn table(repo: &Repo) -> String {
+    let mut text = "crate              files  flat  circle  back up  names\n".to_owned();
+    for circles::House { name, files, flat, circle } in circles::houses(repo) {
+        let back = rooms::arrows_back_up(name).map_or("–".to_owned(), |arrows| arrows.to_string());
+        let names = public::offered(repo, name);
+        text += &format!("{name:<18} {files:5} {flat:5} {circle:7} {back:>8} {names:6}\n");
+    }
+    text
 }
 
 fn check(repo: &Repo) -> Vec<Finding> {

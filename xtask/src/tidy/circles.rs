@@ -39,6 +39,29 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     findings
 }
 
+/// What a crate's house is like.
+pub struct House<'a> {
+    pub name: &'a str,
+    /// Files of its source, tests left out.
+    pub files: usize,
+    /// Of those, beside `lib.rs`.
+    pub flat: usize,
+    /// Files of the largest circle; 1 if there is none.
+    pub circle: usize,
+}
+
+/// The crates, by name.
+pub fn houses(repo: &Repo) -> Vec<House<'_>> {
+    let crates: BTreeSet<&str> = repo.rust_files().filter_map(File::crate_of_source).collect();
+    let house = |name| {
+        let source = Source::read(repo, name);
+        let circle = circles(&source.arrows()).iter().map(Vec::len).max().unwrap_or(1);
+        let flat = source.modules.iter().filter(|module| !module.inside.contains('/')).count();
+        House { name, files: source.modules.len(), flat, circle }
+    };
+    crates.into_iter().map(house).collect()
+}
+
 /// The modules of one crate, tests left out.
 struct Source<'a> {
     modules: Vec<Module<'a>>,

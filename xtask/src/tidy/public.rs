@@ -10,6 +10,12 @@ const LIST: &str = "xtask/public.txt";
 /// Crates that no one adds as a library.
 const BINARIES: &[&str] = &["sinew_cli", "sinew_scenes"];
 
+/// Number of names that a crate offers at its root.
+pub fn offered(repo: &Repo, name: &str) -> usize {
+    let of_crate = |line: &&str| line.split_once(' ').is_some_and(|(of, _)| of == name);
+    repo.file(LIST).map_or(0, |list| list.text.lines().filter(of_crate).count())
+}
+
 /// The roots of the libraries offer what the list says, and each type's name is its own.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let Some(list) = repo.file(LIST) else { return Vec::new() };

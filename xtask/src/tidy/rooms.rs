@@ -48,6 +48,17 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("crates/sinew_physics/src/world/explosions.rs", "query"),
 ];
 
+/// Most arrows back up.
+const EXCEPTIONS_MAX: usize = 10;
+const _: () = assert!(EXCEPTIONS.len() <= EXCEPTIONS_MAX, "too many arrows back up");
+
+/// Number of arrows back up in a crate; `None` if it has no rooms.
+pub fn arrows_back_up(name: &str) -> Option<usize> {
+    let source = format!("crates/{name}/");
+    let has_rooms = ROOMS.iter().any(|&(with_rooms, _)| with_rooms == name);
+    has_rooms.then(|| EXCEPTIONS.iter().filter(|(file, _)| file.starts_with(&source)).count())
+}
+
 /// Every arrow between rooms goes down, but for the exceptions, which are all needed and few.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     check_rooms(repo, ROOMS, EXCEPTIONS)

@@ -97,26 +97,20 @@ impl<'a> Scene<'a> {
         let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
         let parents: Vec<Option<JointIdx>> = rig.joints.iter().map(|joint| joint.parent).collect();
         let mut readings = read_names(&names, &parents);
+        let mut graph = Graph::of(rig, bound, |_| true)?;
+        let mut symmetry = Symmetry::find(&graph, bound.size());
+        let trust = Trust::of(&graph, &symmetry, &readings);
+        let is_named = rig.joints.iter().any(|joint| !joint.name.is_empty());
+        notes.extend(trust.note().filter(|_| is_named));
+        trust.forget(&mut readings);
         settle_duplicates(&mut readings, &names, |joint| {
             (bound.area[joint] > 0.0).then(|| ancestors(rig, joint).count())
         });
         settle_trunk(&mut readings, &parents, |joint| bound.area[joint] > 0.0);
-        let mut graph = Graph::of(rig, bound, |_| true)?;
-        let mut symmetry = Symmetry::find(&graph, bound.size());
-        let (agreeing, pairs) = mirrored_names(&graph, &symmetry, &readings);
-        let trusted = if pairs > 0 { 10 * agreeing >= 6 * pairs } else { sides_pair_up(&readings) };
-        if !trusted {
-            if pairs > 0 && rig.joints.iter().any(|joint| !joint.name.is_empty()) {
-                notes.push(format!(
-                    "names of only {agreeing} of {pairs} mirrored pairs match: names are ignored"
-                ));
-            }
-            readings = vec![Reading::default(); readings.len()];
-        }
         for &(role, joint) in known {
             (readings[joint].part, readings[joint].side) = (part_of(role), role.side());
         }
-        if trusted {
+        if !matches!(trust, Trust::Nothing { .. }) {
             // A control that moves skin which nothing above it moves is a part of the body, whatever its name.
             let fair = CONTROL_SKIN * bound.area.iter().sum::<f32>();
             let is_bone = |joint: JointIdx| {
@@ -491,16 +485,59 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Number of mirrored pairs whose names mirror each other, and number of all mirrored pairs.
-fn mirrored_names(graph: &Graph, symmetry: &Symmetry, readings: &[Reading]) -> (usize, usize) {
-    let (mut agreeing, mut pairs) = (0, 0);
-    for (i, node) in graph.nodes.iter().enumerate() {
-        let Some(other) = symmetry.other(i).filter(|&k| k > i) else { continue };
-        let (a, b) = (&readings[node.joint], &readings[graph.nodes[other].joint]);
-        pairs += 1;
-        agreeing += usize::from(a.key == b.key && a.side.is_some() && a.side.map(Side::mirror) == b.side);
+/// Belief in the names of a rig, by what those of mirrored pairs have in common.
+enum Trust {
+    /// Names mirror each other.
+    All,
+    /// Both of a pair have one name, but for numbers ("Leg.1", "Leg.2"): words of the midline and of what is no part of the body count.
+    Words,
+    /// Names do not match: so many of all pairs do.
+    Nothing { agreeing: usize, pairs: usize },
+}
+
+impl Trust {
+    fn of(graph: &Graph, symmetry: &Symmetry, readings: &[Reading]) -> Self {
+        let (mut agreeing, mut alike, mut pairs) = (0, 0, 0);
+        for (i, node) in graph.nodes.iter().enumerate() {
+            let Some(other) = symmetry.other(i).filter(|&k| k > i) else { continue };
+            let (a, b) = (&readings[node.joint], &readings[graph.nodes[other].joint]);
+            pairs += 1;
+            if a.key == b.key {
+                agreeing += usize::from(a.side.is_some() && a.side.map(Side::mirror) == b.side);
+                alike += usize::from(a.side.is_none() && b.side.is_none() && !a.key.is_empty());
+            }
+        }
+        let most = |count: usize| 10 * count >= 6 * pairs;
+        if pairs == 0 && sides_pair_up(readings) || pairs > 0 && most(agreeing) {
+            Self::All
+        } else if pairs > 0 && most(alike) {
+            Self::Words
+        } else {
+            Self::Nothing { agreeing, pairs }
+        }
     }
-    (agreeing, pairs)
+
+    fn note(&self) -> Option<String> {
+        let &Self::Nothing { agreeing, pairs } = self else { return None };
+        (pairs > 0)
+            .then(|| format!("names of only {agreeing} of {pairs} mirrored pairs match: names are ignored"))
+    }
+
+    /// Drops what is not believed.
+    fn forget(&self, readings: &mut [Reading]) {
+        use Part::{Appendix, Beast, Head, Neck, Spine, Tail};
+        let keeps = |reading: &Reading| match self {
+            Self::All => true,
+            Self::Words => {
+                matches!(reading.part, Some(Appendix | Beast | Head | Neck | Spine | Tail))
+            }
+            Self::Nothing { .. } => false,
+        };
+        readings
+            .iter_mut()
+            .filter(|reading| !keeps(reading))
+            .for_each(|reading| *reading = Reading::default());
+    }
 }
 
 /// True if nearly every part with a side is named on the other, too: for a bind pose in which no mirror finds its image.

@@ -28,6 +28,11 @@ impl Body {
     }
 
     fn analyzed(&self) -> RigAnalysis {
+        let names: Vec<String> = (0..self.0.len()).map(|i| i.to_string()).collect();
+        self.analyzed_as(&names)
+    }
+
+    fn analyzed_as(&self, names: &[String]) -> RigAnalysis {
         let place = |i: usize| self.0[i].1;
         let bone = |i: usize| {
             let next = (0..self.0.len()).find(|&k| self.0[k].0 == Some(i));
@@ -35,7 +40,6 @@ impl Body {
             (i, place(i), next.map_or(place(i) + (place(i) - on) * 0.5, place))
         };
         let bones: Vec<_> = (0..self.0.len()).map(bone).collect();
-        let names: Vec<String> = (0..self.0.len()).map(|i| i.to_string()).collect();
         analyze(&rig_of(names.iter().map(String::as_str), &|i| self.0[i].0, &place, &bones)).expect("a skin")
     }
 }
@@ -103,4 +107,31 @@ fn birds_insects_snakes_and_carts_are_what_they_are() {
         cart.pair(chassis, &[[0.6, 0.3, z]]);
     }
     assert_eq!(limbs("cart", &cart.analyzed()), [1; 4], "each wheel by itself");
+}
+
+/// Pairs that a number tells apart say nothing of left and right; head and tail are called so all the same.
+#[test]
+fn numbered_pairs_leave_head_and_tail_their_names() {
+    let mut raptor = Body::default();
+    let body = raptor.line(None, &[[0.0, 0.5, 0.0]]);
+    raptor.line(Some(body), &[[0.0, 0.52, 0.1], [0.0, 0.6, 0.2], [0.0, 0.64, 0.26]]);
+    raptor.line(Some(body), &[[0.0, 0.5, -0.15], [0.0, 0.49, -0.4], [0.0, 0.48, -0.7], [0.0, 0.47, -1.0]]);
+    raptor.pair(body, &[[0.1, 0.45, 0.0], [0.1, 0.25, 0.06], [0.1, 0.04, -0.02]]);
+    let names = |left: &str, right: &str| {
+        let trunk = ["Body", "Torso", "Neck", "Head", "Back", "Tail1", "Tail2", "Tail3"].map(str::to_owned);
+        let leg = |side: &str| ["Leg", "LowLeg", "Foot"].map(|part| format!("{part}{side}"));
+        [trunk.to_vec(), leg(left).to_vec(), leg(right).to_vec()].concat()
+    };
+    let role = |found: &RigAnalysis, joint: usize| {
+        found.kept.iter().find(|bone| bone.joint == joint).map(|bone| bone.role).expect("a body")
+    };
+    for [left, right] in [[".L", ".R"], [".1", ".2"], [".2", ".1"], ["", ".001"]] {
+        let found = raptor.analyzed_as(&names(left, right));
+        assert!(!found.humanoid);
+        assert!(matches!(role(&found, 3), Role::SpineSegment(3)), "{left} {right}: {:?}", role(&found, 3));
+        assert!(matches!(role(&found, 5), Role::TailSegment(1)), "{left} {right}: {:?}", role(&found, 5));
+        assert!(matches!(role(&found, 8), Role::LimbSegment { .. }), "{left} {right}: {:?}", role(&found, 8));
+    }
+    // By shape alone the long end is the trunk: it is the names that tell.
+    assert!(matches!(role(&raptor.analyzed(), 5), Role::SpineSegment(_)));
 }

@@ -236,6 +236,13 @@ fn a_mass_that_no_body_has_is_no_good() {
         assert!(first.contains(mass) && first.contains("--mass the mass"), "{length}: {first}");
         let given = bake(&["--mass", "70"]);
         assert!(!given["reasons"].to_string().contains("--mass the mass") && !in_notes(&given));
+        let definition = folder.path("worm.sinew.json");
+        sinew(&["ragdoll", "build", &file, "-o", &definition, "--json"]).json();
+        let baked = bake(&["--ragdoll", &definition]);
+        assert_ne!(baked["verdict"], "good", "{length}: {kg} kg");
+        let first = baked["reasons"][0].as_str().expect("a reason");
+        assert!(first.contains(mass) && first.contains("--mass of `ragdoll build`"), "{length}: {first}");
+        assert!(notes(&baked).iter().any(|note| note == first));
         assert!(in_notes(&sinew(&["ragdoll", "doctor", &file, "--json"]).json()));
         assert!(in_notes(
             &sinew(&["ragdoll", "export", &file, "--as", "mjcf", "-o", &model, "--json"]).json()

@@ -208,8 +208,7 @@ impl Bake {
         }
     }
 
-    /// The character, and the definition that was given or what a build gives, with the doubt about a mass that was guessed and what is to
-    /// be said of it all.
+    /// The character, and the definition that was given or what a build gives, with the doubt about its mass and what is to be said of it all.
     fn character(
         &self,
         textures: Textures,
@@ -228,7 +227,13 @@ impl Bake {
         };
         let file = CharacterFile::load(&self.character, textures)?;
         let def = read_definition(path, &file)?;
-        Ok((file, def, None, Vec::new()))
+        // Nobody knows whether its mass was guessed or given.
+        let mut doubt = Doubt::of(&def);
+        if let Some(doubt) = &mut doubt {
+            doubt.reason += "; --height, --unit or --mass of `ragdoll build` sets it";
+        }
+        let notes = doubt.iter().map(|doubt| doubt.reason.clone()).collect();
+        Ok((file, def, doubt, notes))
     }
 
     /// Name of the new clip: as the user says, else `sinew`, with a number where the file has that already.
