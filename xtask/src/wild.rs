@@ -79,10 +79,12 @@ impl Wild {
     }
 }
 
-/// Roles right of all, per file that the table of the tests of `sinew_anim` knows: it is the only home of what is right.
+/// Roles right of all, per file that the table of the tests of `sinew_anim` knows: it is the only home of what is right. Built like the program, so
+/// that nothing is compiled twice.
 fn roles(out: &Path) -> Result<Value> {
     let path = out.join("roles.json");
-    let test = ["test", "--package", "sinew_anim", "--test", "it", "wild::roles_of_rigs_from_the_wild"];
+    let test =
+        ["test", "--release", "--package", "sinew_anim", "--test", "it", "wild::roles_of_rigs_from_the_wild"];
     command::run(command::cargo(&test).env("SINEW_WILD_ROLES", &path))?;
     let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
     serde_json::from_str(&text).with_context(|| path.display().to_string())
