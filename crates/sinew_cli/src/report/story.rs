@@ -25,7 +25,7 @@ pub fn phases(def: &CharacterDef, events: &[(f32, CharacterEvent)]) -> Vec<Phase
             CharacterEvent::Settled { since } => add(since, "lies still"),
             CharacterEvent::Preparing { rolls: true } => add(time, "rolls over"),
             CharacterEvent::Preparing { rolls: false } | CharacterEvent::GettingUp { .. } => {
-                add(time, "gets up")
+                add(time, "gets up");
             }
             CharacterEvent::Up => add(time, &upright(def)),
             CharacterEvent::Stumbled => add(time, "stumbles"),
