@@ -2,7 +2,7 @@
 
 use super::{Character, Event};
 use sinew_math::{Rotation, Transform, Vec3, max};
-use sinew_physics::{BodyId, BodyKind, Velocity, World};
+use sinew_physics::{BodyId, BodyKind, World};
 
 /// Way of a body within a step beyond which it was put elsewhere, metres.
 const PUT: f32 = 1.0;
@@ -25,9 +25,8 @@ impl Character {
         }
         let dt = world.def().dt();
         let presence = self.presence.as_ref().expect("it was there");
-        for (index, (&id, body)) in presence.bodies.iter().zip(&self.def.ragdoll.bodies).enumerate() {
-            let target = ahead(before.get(index).copied(), now[index], body.mass.center);
-            lead(world, id, body.mass.center, target, dt);
+        for (index, (&id, &pose)) in presence.bodies.iter().zip(&now).enumerate() {
+            world.move_to(id, ahead(before.get(index).copied(), pose), dt);
         }
         before.clone_from(&now);
         self.scratch.after = now;
@@ -113,20 +112,12 @@ impl Character {
 }
 
 /// Pose that a body comes to that goes on as it went.
-fn ahead(before: Option<Transform>, now: Transform, center: Vec3) -> Transform {
+fn ahead(before: Option<Transform>, now: Transform) -> Transform {
     let Some(before) = before else { return now };
-    let way = now.point(center) - before.point(center);
+    let way = now.translation - before.translation;
     if way.length() > PUT {
         return now;
     }
     let turn: Rotation = now.rotation * before.rotation.inverse();
-    let rotation = (turn * now.rotation).normalize();
-    Transform::new(now.point(center) + way - rotation * center, rotation)
-}
-
-/// Takes a kinematic body to where it is wanted, exactly within the step.
-fn lead(world: &mut World, id: BodyId, center: Vec3, wanted: Transform, dt: f32) {
-    let angular = world.transform(id).rotation.angular_velocity_to(wanted.rotation, dt);
-    let linear = (wanted.point(center) - world.center_of_mass(id)) / dt;
-    world.set_velocity(id, Velocity { linear, angular });
+    Transform::new(now.translation + way, turn * now.rotation)
 }
