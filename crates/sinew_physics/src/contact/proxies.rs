@@ -470,7 +470,7 @@ impl Proxies {
         }
     }
 
-    /// How far those moved that are to be looked for anew is not known.
+    /// Forgets the motion of what is to be looked for anew.
     fn forget_strides(&mut self, bodies: &Arena<Body>) {
         for at in 0..self.soiled.len() {
             let index = self.soiled[at];
