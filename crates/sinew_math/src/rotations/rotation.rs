@@ -291,7 +291,14 @@ impl Rotation {
     /// The constant angular velocity (rad/s, world axes) that turns `self` into `later` within `dt` seconds, the short way:
     /// the logarithm of what is between them over `dt`, at most `π/dt`. `dt` is not 0.
     pub fn angular_velocity_to(self, later: Self, dt: f32) -> Vec3 {
-        (later * self.inverse()).to_scaled_axis() / dt
+        let turn = (later * self.inverse()).positive();
+        let square = turn.vector().length_squared();
+        if square > 0.01 {
+            return turn.to_scaled_axis() / dt;
+        }
+        // asin(s) / s: what is left out is 3e-10 of it.
+        let series = 1.0 + square * (1.0 / 6.0 + square * (3.0 / 40.0 + square * (15.0 / 336.0)));
+        turn.vector() * (2.0 * series / dt)
     }
 
     /// `self * v` without what the quaternion's length is off from 1 by. After normalising, that is up to 1e-7 and on the

@@ -70,7 +70,7 @@ fn side(bodies: &Arena<Body>, index: u32, shape: u32) -> PairSide {
 }
 
 /// Contacts push something dynamic. A sensor sees whatever it or the other may move to; two sensors do not see each other.
-fn kinds_meet([a, b]: [(BodyKind, Sensing); 2]) -> bool {
+pub(crate) fn kinds_meet([a, b]: [(BodyKind, Sensing); 2]) -> bool {
     let either = |kind: BodyKind| a.0 == kind || b.0 == kind;
     match (a.1, b.1) {
         (Sensing::Sensor, Sensing::Sensor) => false,

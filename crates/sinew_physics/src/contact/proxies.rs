@@ -9,10 +9,13 @@ use crate::body::surface::Surface;
 use crate::body::{Body, Velocity};
 use crate::boxes::Aabb;
 use crate::contact::ContactKey;
-use crate::contact::tuning::{BOUNDS_EXCESS, BOUNDS_ROOM, BOUNDS_STEPS, BOUNDS_STEPS_ALONE, MARGIN};
+use crate::contact::filter::kinds_meet;
+use crate::contact::tuning::{
+    BOUNDS_EXCESS, BOUNDS_ROOM, BOUNDS_ROOM_LED, BOUNDS_STEPS, BOUNDS_STEPS_ALONE, BOUNDS_STEPS_LED, MARGIN,
+};
 use crate::tree::{Item, PAD, Sweep, Tree};
 use core::ops::ControlFlow;
-use sinew_math::{Transform, Vec3, max, max3, min3};
+use sinew_math::{Transform, Vec3, max, max3, min, min3};
 use std::collections::BTreeMap;
 
 /// Bodies with fewer shapes are put into a tree one by one.
@@ -36,14 +39,12 @@ pub(crate) struct Proxies {
     homes: Vec<Option<Home>>,
     /// Static bodies of a single shape, by index: rays meet many, and a body is spread over several lines of the cache.
     lone: Vec<Option<Placed>>,
-    /// Bounds of each leaf of `moving` within the coming step, world, metres.
+    /// Bounds of each leaf of `moving` within the coming step, world, metres; [`UNKNOWN`] where nobody needed them.
     reach: Vec<Aabb>,
     /// By the first leaf of each body that may move.
     traces: Vec<Trace>,
     /// By index of the body.
     strides: Vec<Stride>,
-    /// Bodies whose strides are not none.
-    strode: Vec<u32>,
     /// Bodies that could touch something when pairs were looked for last, and when that was.
     lively: Vec<u32>,
     lively_before: Vec<u32>,
@@ -65,14 +66,24 @@ pub(crate) struct Proxies {
 #[derive(Clone, Copy, Debug, Default)]
 struct Stride {
     /// Motion of its centre since pairs were last looked for, and of its points besides; without end if it was put
-    /// somewhere.
+    /// somewhere. None at all unless `stamp` is the present one.
     shift: Vec3,
     turned: f32,
+    stamp: u64,
     /// Motion in the coming step, at its present velocity.
     ahead: Vec3,
     spin: f32,
     /// Room by which its bounds are larger for that, metres.
     grown: f32,
+}
+
+impl Stride {
+    /// Notes the motion in a step of `dt` seconds of a body that reaches so far from its centre, metres.
+    fn set_ahead(&mut self, Velocity { linear, angular }: Velocity, arm: f32, dt: f32) {
+        self.ahead = linear * dt;
+        self.spin = angular.length() * arm * dt;
+        self.grown = (linear.length() + angular.length() * arm) * dt;
+    }
 }
 
 /// Relative motion of two bodies, metres: a bound for any two of their points.
@@ -94,7 +105,13 @@ struct Trace {
     /// As in [`Stride`].
     shift: Vec3,
     turned: f32,
+    /// Way that its centre may go until a ball around it, which holds all of it at rest, may leave its bounds in the tree, metres: of a
+    /// kinematic body.
+    free: f32,
 }
+
+/// Bounds that were not worked out.
+const UNKNOWN: Aabb = Aabb { min: Vec3::NAN, max: Vec3::NAN };
 
 impl Trace {
     /// Trace of a body that was put where it is.
@@ -104,6 +121,7 @@ impl Trace {
         velocity: Velocity { linear: Vec3::ZERO, angular: Vec3::ZERO },
         shift: Vec3::ZERO,
         turned: f32::INFINITY,
+        free: f32::NEG_INFINITY,
     };
 }
 
@@ -263,7 +281,7 @@ impl Proxies {
         let Some(home) = self.homes[index as usize] else { return };
         self.refresh(index, body);
         for shape in (0..home.count).filter(|&shape| is_bounded(body, shape)) {
-            self.cover(home, shape, &self.needed(home, body, shape), Vec3::ZERO);
+            self.cover(home, shape, &self.needed(home, body, shape), Vec3::ZERO, BOUNDS_ROOM);
         }
         self.soil(index);
     }
@@ -271,6 +289,9 @@ impl Proxies {
     /// A body has other surfaces than before.
     pub fn refresh(&mut self, index: u32, body: &Body) {
         self.lone[index as usize] = lone(body);
+        if let Some(home) = self.home(index).filter(|home| home.moves && home.count > 0) {
+            self.traces[home.first as usize].free = f32::NEG_INFINITY;
+        }
     }
 
     /// All bodies may be others than before: keeps what fits.
@@ -302,54 +323,43 @@ impl Proxies {
         self.traces.fill(Trace::NONE);
     }
 
-    /// Works out where the `movers`, all that moves, may be within a step of `dt` seconds, and lets the tree follow.
+    /// Works out where the `movers` may be within a step of `dt` seconds, and lets the tree follow.
     pub fn follow(&mut self, bodies: &Arena<Body>, movers: impl Iterator<Item = u32>, dt: f32) {
-        self.mend(false);
-        self.mend(true);
-        let same_step = core::mem::replace(&mut self.dt, dt) == dt;
+        let same_step = self.begin(dt);
         for index in movers {
             let body = bodies.at(index);
-            let Some(home) = self.homes[index as usize].filter(|home| home.count > 0 && body.can_touch())
-            else {
-                continue;
-            };
-            let trace = &mut self.traces[home.first as usize];
-            if same_step && trace.pose == body.world_from_principal && trace.velocity == body.velocity {
-                continue;
-            }
-            // Where it was is not known of what was put somewhere.
-            let arm = if trace.arm >= 0.0 { trace.arm } else { body.reach() };
-            let (shift, turned) = way(&trace.pose, &body.world_from_principal, arm);
-            let (shift, turned) = (trace.shift + shift, trace.turned + turned);
-            let is_known = shift.is_finite() && turned >= 0.0;
-            let (shift, turned) = if is_known { (shift, turned) } else { (Vec3::ZERO, f32::INFINITY) };
-            let Body { world_from_principal: pose, velocity, .. } = *body;
-            *trace = Trace { arm, pose, velocity, shift, turned };
-            let stride = &mut self.strides[index as usize];
-            stride.ahead = velocity.linear * dt;
-            stride.spin = velocity.angular.length() * arm * dt;
-            stride.grown = (velocity.linear.length() + velocity.angular.length() * arm) * dt;
-            let motion = stride.grown;
-            let ahead = stride.ahead;
-            for shape in 0..home.count {
-                let is_alone = body.surface(shape as usize).filter.meets_none();
-                let way = ahead * if is_alone { BOUNDS_STEPS_ALONE } else { BOUNDS_STEPS };
-                let reach = grown(body, shape, motion);
-                self.reach[(home.first + shape) as usize] = reach;
-                if self.cover(home, shape, &thick(&reach), way) {
-                    self.stray.push(home.first + shape);
-                }
+            if let Some(home) = self.home(index).filter(|home| home.count > 0 && body.can_touch()) {
+                self.foresee(index, home, body, same_step);
             }
         }
     }
 
-    /// Takes note of who can touch something in this step, and of how far all have moved. [`follow`](Self::follow) comes
-    /// before. What was `changed`, comes to be able to touch, or no longer is, is to be looked for anew.
-    pub fn take_stock(&mut self, bodies: &Arena<Body>, movers: impl Iterator<Item = u32>, changed: &[u32]) {
+    /// Works out where the `movers`, all that moves, may be within a step of `dt` seconds, and takes note of who can touch something in it and
+    /// of how far all have moved. What was `changed`, comes to be able to touch, or no longer is, is to be looked for anew.
+    pub fn take_stock(
+        &mut self,
+        bodies: &Arena<Body>,
+        movers: impl Iterator<Item = u32>,
+        changed: &[u32],
+        dt: f32,
+    ) {
+        let same_step = self.begin(dt);
         self.stamp += 1;
         core::mem::swap(&mut self.lively, &mut self.lively_before);
         self.lively.clear();
-        for index in movers.filter(|&index| bodies.at(index).can_touch()) {
+        for index in movers {
+            let body = bodies.at(index);
+            let Some(home) = self.home(index).filter(|_| body.can_touch()) else { continue };
+            if home.count > 0 && body.kind == BodyKind::Kinematic {
+                self.foresee_led(index, home, body);
+            } else if home.count > 0 {
+                self.foresee(index, home, body, same_step);
+                let (trace, stride) =
+                    (&mut self.traces[home.first as usize], &mut self.strides[index as usize]);
+                stride.shift = core::mem::take(&mut trace.shift);
+                stride.turned = core::mem::take(&mut trace.turned);
+                stride.stamp = self.stamp;
+            }
             self.enliven(index);
         }
         for &index in changed {
@@ -366,9 +376,88 @@ impl Proxies {
             // Cheaper from the other side.
             self.all_loose = true;
         }
-        self.stride(bodies);
+        self.forget_strides(bodies);
     }
 
+    /// Trees in good order for a step of `dt` seconds; true if the last was as long.
+    fn begin(&mut self, dt: f32) -> bool {
+        self.mend(false);
+        self.mend(true);
+        core::mem::replace(&mut self.dt, dt) == dt
+    }
+
+    /// Works out where a body that forces move may be within the step, and lets the tree follow.
+    fn foresee(&mut self, index: u32, home: Home, body: &Body, same_step: bool) {
+        let trace = &mut self.traces[home.first as usize];
+        if same_step && trace.pose == body.world_from_principal && trace.velocity == body.velocity {
+            return;
+        }
+        // Where it was is not known of what was put somewhere.
+        let arm = if trace.arm >= 0.0 { trace.arm } else { body.reach() };
+        let (shift, turned) = way(&trace.pose, &body.world_from_principal, arm);
+        let (shift, turned) = (trace.shift + shift, trace.turned + turned);
+        let is_known = shift.is_finite() && turned >= 0.0;
+        let (shift, turned) = if is_known { (shift, turned) } else { (Vec3::ZERO, f32::INFINITY) };
+        let Body { world_from_principal: pose, velocity, .. } = *body;
+        *trace = Trace { arm, pose, velocity, shift, turned, free: f32::NEG_INFINITY };
+        self.strides[index as usize].set_ahead(velocity, arm, self.dt);
+        self.reach_out(index, home, body, BOUNDS_STEPS, BOUNDS_ROOM);
+    }
+
+    /// The same of a kinematic body, of which there may be many that meet nobody: as long as the tree has bounds for a small one that hold a
+    /// ball around it, nothing else is worked out, and how far it moved counts as not known.
+    fn foresee_led(&mut self, index: u32, home: Home, body: &Body) {
+        let (trace, stride) = (&mut self.traces[home.first as usize], &mut self.strides[index as usize]);
+        let arm = if trace.arm >= 0.0 { trace.arm } else { body.reach() };
+        stride.set_ahead(body.velocity, arm, self.dt);
+        (stride.turned, stride.stamp) = (f32::INFINITY, self.stamp);
+        let grown = stride.grown;
+        if home.count > 1 || arm > 2.0 * BOUNDS_ROOM_LED {
+            *trace = Trace { arm, ..Trace::NONE };
+            return self.reach_out(index, home, body, BOUNDS_STEPS, BOUNDS_ROOM);
+        }
+        let mut free = trace.free;
+        if free < grown {
+            // Should it come to be dynamic, nothing is known of how it moved.
+            *trace = Trace { arm, ..Trace::NONE };
+            free = self.free(home.first, body, arm);
+        }
+        if free >= grown {
+            self.reach[home.first as usize] = UNKNOWN;
+        } else {
+            let room = BOUNDS_ROOM_LED + min(arm, BOUNDS_ROOM_LED);
+            self.reach_out(index, home, body, BOUNDS_STEPS_LED, room);
+            free = self.free(home.first, body, arm);
+        }
+        // It goes as its velocity says; what may be rounded there is less than its turning, which is taken off besides.
+        let far = body.center().abs();
+        let gone = grown * (1.0 + SLACK) + BLUR * (far.x + far.y + far.z + arm);
+        self.traces[home.first as usize].free = free - gone;
+    }
+
+    /// Way that the centre of a body may go until a ball around it leaves its bounds in the tree, metres; negative if it does.
+    fn free(&self, leaf: u32, body: &Body, arm: f32) -> f32 {
+        let ball = thick(&Aabb::around(body.center(), Vec3::splat(arm + MARGIN)));
+        let own = self.moving.tree.bounds(leaf);
+        let spare = min3(ball.min - own.min, own.max - ball.max);
+        min(spare.x, min(spare.y, spare.z))
+    }
+
+    /// Works out the bounds of a body within the step. Where the tree must change it gets `room` (m) around and `steps` of motion ahead.
+    fn reach_out(&mut self, index: u32, home: Home, body: &Body, steps: f32, room: f32) {
+        let Stride { grown: motion, ahead, .. } = self.strides[index as usize];
+        for shape in 0..home.count {
+            let is_alone = body.surface(shape as usize).filter.meets_none();
+            let way = ahead * if is_alone { BOUNDS_STEPS_ALONE } else { steps };
+            let reach = grown(body, shape, motion);
+            self.reach[(home.first + shape) as usize] = reach;
+            if self.cover(home, shape, &thick(&reach), way, room) {
+                self.stray.push(home.first + shape);
+            }
+        }
+    }
+
+    #[inline]
     fn enliven(&mut self, index: u32) {
         let Some(home) = &mut self.homes[index as usize] else { return };
         let before = core::mem::replace(&mut home.lively, self.stamp);
@@ -381,17 +470,13 @@ impl Proxies {
         }
     }
 
-    fn stride(&mut self, bodies: &Arena<Body>) {
-        for index in self.strode.drain(..) {
-            let stride = &mut self.strides[index as usize];
-            (stride.shift, stride.turned) = (Vec3::ZERO, 0.0);
-        }
+    /// Forgets the motion of what is to be looked for anew.
+    fn forget_strides(&mut self, bodies: &Arena<Body>) {
         for at in 0..self.soiled.len() {
             let index = self.soiled[at];
             let (Some(home), Some(body)) = (self.home(index), bodies.try_at(index)) else { continue };
             let stride = &mut self.strides[index as usize];
-            stride.turned = f32::INFINITY;
-            self.strode.push(index);
+            (stride.shift, stride.turned, stride.stamp) = (Vec3::ZERO, f32::INFINITY, self.stamp);
             if !home.moves {
                 // What is static may have been given one, which counts when points are looked for.
                 stride.ahead = body.velocity.linear * self.dt;
@@ -404,21 +489,15 @@ impl Proxies {
                 }
             }
         }
-        for at in 0..self.lively.len() {
-            let index = self.lively[at];
-            let Some(home) = self.home(index).filter(|home| home.moves && home.count > 0) else { continue };
-            let trace = &mut self.traces[home.first as usize];
-            let stride = &mut self.strides[index as usize];
-            stride.shift = core::mem::take(&mut trace.shift);
-            stride.turned = max(stride.turned, core::mem::take(&mut trace.turned));
-            self.strode.push(index);
-        }
     }
 
     /// Relative motion of two bodies, metres.
     pub fn closing(&self, key: ContactKey) -> Closing {
-        let [p, q] = [key.a, key.b].map(|body| &self.strides[body as usize]);
-        let moved = (p.shift - q.shift).length() * (1.0 + SLACK) + (p.turned + q.turned);
+        let [(p, p_turned), (q, q_turned)] = [key.a, key.b].map(|body| {
+            let stride = &self.strides[body as usize];
+            if stride.stamp == self.stamp { (stride.shift, stride.turned) } else { (Vec3::ZERO, 0.0) }
+        });
+        let moved = (p - q).length() * (1.0 + SLACK) + (p_turned + q_turned);
         Closing { moved, ahead: self.ahead(key) }
     }
 
@@ -461,8 +540,8 @@ impl Proxies {
         }
     }
 
-    /// Pairs of a loose shape and another whose bounds in the trees overlap its own, of which one can touch something: each at
-    /// least once, in no order. [`take_stock`](Self::take_stock) comes before.
+    /// Pairs of a loose shape and another whose bounds in the trees overlap its own, of which one can touch something and whose kinds let them
+    /// meet (another kind has a body looked for anew): each at least once, in no order. [`take_stock`](Self::take_stock) comes before.
     pub fn search(&mut self, bodies: &Arena<Body>, mut visit: impl FnMut((Owner, Leaf), (Owner, Leaf))) {
         if self.all_loose {
             for &index in &self.lively {
@@ -514,12 +593,16 @@ impl Proxies {
             return;
         }
         let bounds = self.wide_bounds(body, owner, leaf);
+        let sensing = body.surface(owner.shape as usize).sensing;
         let mut meet = |other: Owner, its: Leaf| {
             // Two that move and are both looked for find each other.
             let is_found = leaf.moves() && its.moves() && its.at() < leaf.at() && self.is_asking(other, its);
+            let its_body = bodies.at(other.body);
+            let its_sensing = its_body.surface(other.shape as usize).sensing;
             if other.body != owner.body
                 && !is_found
-                && (body.can_touch() || bodies.at(other.body).can_touch())
+                && (body.can_touch() || its_body.can_touch())
+                && kinds_meet([(body.kind, sensing), (its_body.kind, its_sensing)])
             {
                 visit((owner, leaf), (other, its));
             }
@@ -583,7 +666,9 @@ impl Proxies {
     fn grown_bounds(&self, bodies: &Arena<Body>, key: ContactKey, leaves: [Leaf; 2]) -> [(Aabb, f32); 2] {
         let grown = |leaf: Leaf, body: u32, shape: u32| {
             if leaf.moves() {
-                (self.reach[leaf.at()], self.strides[body as usize].grown)
+                let (reach, motion) = (self.reach[leaf.at()], self.strides[body as usize].grown);
+                let reach = if reach.min.x.is_nan() { grown(bodies.at(body), shape, motion) } else { reach };
+                (reach, motion)
             } else {
                 (grown(bodies.at(body), shape, 0.0), 0.0)
             }
@@ -729,11 +814,11 @@ impl Proxies {
 
     /// Sees to it that the bounds of a shape in its tree hold these, with room to spare if they have to be changed: most of it
     /// along the `way` that it is expected to go, metres. Tells whether they had to be.
-    fn cover(&mut self, home: Home, shape: u32, needed: &Aabb, way: Vec3) -> bool {
+    fn cover(&mut self, home: Home, shape: u32, needed: &Aabb, way: Vec3, room: f32) -> bool {
         let leaf = home.first + shape;
         let tree = &mut self.layer_mut(home.moves).tree;
         let own = tree.bounds(leaf);
-        let room = if home.moves { BOUNDS_ROOM } else { 0.0 };
+        let room = if home.moves { room } else { 0.0 };
         // What comes to rest needs less room than what fell.
         let fits =
             own.contains(needed) && needed.expand(BOUNDS_EXCESS * (room + way.length())).contains(&own);

@@ -16,6 +16,19 @@ pub(crate) const MARGIN: f32 = 0.02;
 /// order of work; shown by `cargo xtask bench --trace wave_pile`.
 pub(crate) const BOUNDS_ROOM: f32 = 0.04;
 
+/// Room that the fat bounds of small kinematic bodies have beyond what they need, metres: of those of one shape that reach no farther than
+/// twice that.
+///
+/// Most of them are parts of characters, which swing to and fro and meet nobody: as long as they stay within this room nothing but their
+/// place is looked at. Larger: more candidate pairs, rays go through more boxes. Smaller: more leaves move. Changes no result but the order of
+/// work; shown by `walkers_step` of `cargo xtask bench --counts`.
+pub(crate) const BOUNDS_ROOM_LED: f32 = 0.3;
+
+/// Steps of motion at the present velocity that the fat bounds of small kinematic bodies have room for ahead, a number.
+///
+/// Larger: longer bounds, more candidate pairs. Smaller: more leaves move. Shown as [`BOUNDS_ROOM_LED`].
+pub(crate) const BOUNDS_STEPS_LED: f32 = 12.0;
+
 /// Steps of motion at the present velocity that fat bounds have room for ahead, a number.
 ///
 /// Larger: longer bounds, more candidate pairs. Smaller: what moves asks the tree anew more often. Shown by `cargo xtask bench --trace

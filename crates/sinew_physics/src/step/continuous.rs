@@ -45,7 +45,8 @@ pub(crate) fn continuous(
             }
         }
     }
-    broad.proxies.follow(bodies, activity.movers(), context.dt);
+    // What is kinematic went as it was foreseen when the step began.
+    broad.proxies.follow(bodies, activity.active(), context.dt);
 }
 
 /// Radius of the largest ball about the centre of mass that surely lies inside a body of one shape; 0 if none.

@@ -46,8 +46,7 @@ impl BroadPhase {
         dt: f32,
     ) {
         activity.return_contacts(contacts);
-        self.proxies.follow(bodies, activity.movers(), dt);
-        self.proxies.take_stock(bodies, activity.movers(), &meetings.changed);
+        self.proxies.take_stock(bodies, activity.movers(), &meetings.changed, dt);
         self.near.update(&mut self.proxies, bodies, filter);
         self.sort_out(bodies, meetings, contacts, activity);
         bear(contacts, &mut self.born);
@@ -216,12 +215,13 @@ mod tests {
 
     use super::*;
     use crate::body::def::{BodyDef, BodyKind, WorldDef};
-    use crate::body::shape::{Filter, Shape, ShapeDef};
+    use crate::body::shape::{Filter, Sensing, Shape, ShapeDef};
     use crate::boxes::{Aabb, Overlap};
     use crate::contact::proxies::Owner;
     use crate::contact::tuning::MARGIN;
     use crate::id::{BodyId, ShapeId};
     use crate::{MassUpdate, Velocity, World};
+    use core::ops::ControlFlow;
     use sinew_math::{Random, Reader, Transform, Vec3, Writer};
 
     /// Cases: a hundredth unless `SINEW_FULL` is set.
@@ -274,7 +274,11 @@ mod tests {
         };
         let body_from_shape = Transform::new(random.in_cube() * size, random.rotation());
         let filter = Filter { layers: 1 << random.index(2), mask: random.index(4) as u32, group: 0 };
-        ShapeDef { body_from_shape, filter, ..ShapeDef::new(shape) }
+        ShapeDef { body_from_shape, filter, sensing: some_sensing(random), ..ShapeDef::new(shape) }
+    }
+
+    fn some_sensing(random: &mut Random) -> Sensing {
+        if random.unit() < 0.2 { Sensing::Sensor } else { Sensing::Solid }
     }
 
     fn add(world: &mut World, random: &mut Random, range: f32) -> BodyId {
@@ -297,7 +301,7 @@ mod tests {
         let Some(&id) = ids.get(random.index(ids.len().max(1))) else { return };
         let shapes = world.bodies.at(id.index).shapes.len();
         let shape = ShapeId { body: id, shape: random.index(shapes) as u32 };
-        match random.index(11) {
+        match random.index(12) {
             0 => world.remove_body(id),
             1 | 2 => drop(add(world, random, range)),
             3 => world.set_transform(id, Transform::new(random.in_cube() * range, random.rotation())),
@@ -310,6 +314,7 @@ mod tests {
                 let kinds = [BodyKind::Static, BodyKind::Kinematic, BodyKind::Dynamic];
                 world.set_kind(id, kinds[random.index(3)]);
             }
+            10 => world.set_sensing(shape, some_sensing(random)),
             _ => {
                 let other = ids[random.index(ids.len())];
                 if other != id {
@@ -336,6 +341,20 @@ mod tests {
         tried.len()
     }
 
+    /// Checks that queries between two steps come by every shape where it is.
+    fn check_bounds(world: &World, case: usize) {
+        for (index, body) in world.bodies.iter() {
+            for shape in (0..body.shapes.len()).filter(|&i| body.shapes[i].shape != Shape::HalfSpace) {
+                let bounds = body.shapes[shape].shape.aabb(&body.world_from_shape(shape));
+                let own = Owner { body: index, shape: shape as u32 };
+                let found = world.broad.proxies.overlapping(&bounds, |owner| {
+                    if owner == own { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                });
+                assert!(found.is_break(), "case {case}: shape {own:?} is outside of its bounds");
+            }
+        }
+    }
+
     #[test]
     fn pairs_are_those_that_trying_all_finds() {
         let mut random = Random::new(11);
@@ -352,7 +371,8 @@ mod tests {
                     change(&mut world, &mut random, range);
                 }
                 if random.unit() < 0.3 {
-                    world.step();
+                    (0..1 + random.index(8)).for_each(|_| world.step());
+                    check_bounds(&world, case);
                 }
                 if random.unit() < 0.1 {
                     let mut w = Writer::new();

@@ -162,7 +162,7 @@ impl World {
     /// ```
     ///
     /// # Panics
-    /// If the pose is not finite, or the time not positive and finite.
+    /// If the velocity would not be finite, or the time is not positive and finite.
     #[doc(alias = "set_next_kinematic_position")]
     #[doc(alias = "MoveKinematic")]
     #[doc(alias = "kinematic target")]
@@ -173,18 +173,23 @@ impl World {
             seconds > 0.0 && seconds < f32::INFINITY,
             "a time is positive and finite, not {seconds:?} ({id:?})"
         );
-        let body = self.expect(id);
+        let body = self.expect_mut(id);
         let from = body.world_from_principal;
-        let Transform { translation, rotation } = world_from_body;
-        let to = Transform::new(translation, rotation.normalize()) * body.principal_from_body.inverse();
+        let turned = (world_from_body.rotation * body.principal_from_body.rotation.inverse()).normalize();
+        let center = world_from_body.translation - turned * body.principal_from_body.translation;
         let velocity = Velocity {
-            linear: (to.translation - from.translation) / seconds,
-            angular: from.rotation.angular_velocity_to(to.rotation, seconds),
+            linear: (center - from.translation) / seconds,
+            angular: from.rotation.angular_velocity_to(turned, seconds),
         };
         assert!(
             velocity.linear.is_finite() && velocity.angular.is_finite(),
             "a velocity is finite, not {velocity:?} ({id:?})"
         );
-        self.set_velocity(id, velocity);
+        if body.kind == BodyKind::Kinematic && !body.velocity.is_zero() && !velocity.is_zero() {
+            // It goes on otherwise, and nothing else about it is another.
+            body.velocity = velocity;
+        } else {
+            self.set_velocity(id, velocity);
+        }
     }
 }

@@ -91,8 +91,10 @@ impl Character {
         place: Transform,
         out: &mut Vec<Transform>,
     ) {
-        let model = &mut self.scratch.model;
-        sinew_anim::local_to_model(&self.def.rig, pose, &Affine::IDENTITY, model);
-        self.def.mapping().bodies_from_model(model, place, out);
+        let (mapping, scratch) = (self.def.mapping(), &mut self.scratch);
+        if !mapping.bodies_from_pose(pose, place, &mut scratch.frames, out) {
+            sinew_anim::local_to_model(&self.def.rig, pose, &Affine::IDENTITY, &mut scratch.model);
+            mapping.bodies_from_model(&scratch.model, place, out);
+        }
     }
 }

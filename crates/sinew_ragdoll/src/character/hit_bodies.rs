@@ -3,7 +3,7 @@
 use super::{Character, CharacterEvent};
 use crate::character::tuning::TELEPORTED;
 use sinew_math::{Rotation, Transform, Vec3, max};
-use sinew_physics::{BodyId, BodyKind, Velocity, World};
+use sinew_physics::{BodyId, BodyKind, World};
 
 impl Character {
     /// Has the hit bodies go where the pose will be at the end of the next step, as far as it goes on as it did.
@@ -23,9 +23,8 @@ impl Character {
         }
         let dt = world.def().dt();
         let presence = self.presence.as_ref().expect("it was there");
-        for (index, (&id, body)) in presence.bodies.iter().zip(&self.def.ragdoll.bodies).enumerate() {
-            let target = ahead(before.get(index).copied(), now[index], body.mass.center);
-            lead(world, id, body.mass.center, target, dt);
+        for (index, (&id, &pose)) in presence.bodies.iter().zip(&now).enumerate() {
+            world.move_to(id, ahead(before.get(index).copied(), pose), dt);
         }
         before.clone_from(&now);
         self.scratch.after = now;
@@ -111,20 +110,12 @@ impl Character {
 }
 
 /// Pose that a body comes to that goes on as it went.
-fn ahead(before: Option<Transform>, now: Transform, center: Vec3) -> Transform {
+fn ahead(before: Option<Transform>, now: Transform) -> Transform {
     let Some(before) = before else { return now };
-    let way = now.point(center) - before.point(center);
+    let way = now.translation - before.translation;
     if way.length() > TELEPORTED {
         return now;
     }
     let turn: Rotation = now.rotation * before.rotation.inverse();
-    let rotation = (turn * now.rotation).normalize();
-    Transform::new(now.point(center) + way - rotation * center, rotation)
-}
-
-/// Takes a kinematic body to where it is wanted, exactly within the step.
-fn lead(world: &mut World, id: BodyId, center: Vec3, wanted: Transform, dt: f32) {
-    let angular = world.transform(id).rotation.angular_velocity_to(wanted.rotation, dt);
-    let linear = (wanted.point(center) - world.center_of_mass(id)) / dt;
-    world.set_velocity(id, Velocity { linear, angular });
+    Transform::new(now.translation + way, turn * now.rotation)
 }

@@ -128,6 +128,7 @@ struct Scratch {
     resting: Pose,
     wanted: Vec<LocalTransform>,
     model: Vec<Affine>,
+    frames: Vec<(Transform, f32)>,
     points: Vec<Vec3>,
     before: Vec<Transform>,
     after: Vec<Transform>,

@@ -3,10 +3,37 @@
 use super::{CharacterDef, HitBodies, Locomotion, MotionSet, Toughness};
 use crate::def::RagdollDef;
 use crate::doctor::scaled;
-use sinew_math::{Affine, Transform};
+use sinew_anim::{Animator, LocalTransform, local_to_model};
+use sinew_math::{Affine, Transform, Vec3, max, max3};
 use sinew_physics::Yields;
 
+/// Moments of a clip at which its limbs are looked at.
+const MOMENTS: u16 = 64;
+
 impl CharacterDef {
+    /// Radius of a mover that keeps all of its bodies on this side of a wall while its looped clip plays, metres: how far they get from its
+    /// vertical axis, seen from above. 0 without such a clip. The default mover is narrower, since it is to pass doors: who goes as its clips
+    /// do has a hand in a wall for part of each swing.
+    pub fn swept_radius(&self) -> f32 {
+        let Some(looped) = self.motions().looped else { return 0.0 };
+        let duration = self.set().clip(self.clip(looped)).clip.duration();
+        let (mut model, mut bodies, mut farthest) = (Vec::new(), Vec::new(), 0.0);
+        for moment in 0..MOMENTS {
+            let mut animator = Animator::new(self.set());
+            self.play_looped(&mut animator, duration * f32::from(moment) / f32::from(MOMENTS));
+            animator.update(self.set(), 0.0);
+            let pose: Vec<LocalTransform> = animator.pose().iter().collect();
+            local_to_model(&self.rig, &pose, &Affine::IDENTITY, &mut model);
+            self.mapping().bodies_from_model(&model, Transform::IDENTITY, &mut bodies);
+            for (pose, body) in bodies.iter().zip(&self.ragdoll.bodies) {
+                let bounds = body.shape.aabb(pose);
+                let far = max3(-bounds.min, bounds.max);
+                farthest = max(farthest, Vec3::new(far.x, 0.0, far.z).length());
+            }
+        }
+        farthest
+    }
+
     /// The same kind of character, larger by `factor` (1: as it is): a child, a giant. Lengths and the speed of its walk grow by it, masses and forces by its
     /// third power, torques by its fourth. One definition serves all characters of that size.
     ///

@@ -40,7 +40,7 @@ impl Drives {
                 world.set_kind(id, if keyed { BodyKind::Kinematic } else { BodyKind::Dynamic });
             }
             if keyed {
-                lead(world, id, def.bodies[body].mass.center, targets[body], dt);
+                world.move_to(id, targets[body], dt);
             }
             self.pin(world, id, body, def.bodies[body].mass.center, targets[body], velocities[body]);
         }
@@ -153,13 +153,6 @@ impl Drives {
         self.ground = Some(ground);
         ground
     }
-}
-
-/// Takes a kinematic body to where it is wanted, exactly within the step.
-fn lead(world: &mut World, id: BodyId, center: Vec3, wanted: Transform, dt: f32) {
-    let angular = world.transform(id).rotation.angular_velocity_to(wanted.rotation, dt);
-    let linear = (wanted.point(center) - world.center_of_mass(id)) / dt;
-    world.set_velocity(id, Velocity { linear, angular });
 }
 
 /// The motor of a joint; `None` while it has no strength, or nothing to move.

@@ -56,8 +56,13 @@ pub struct Mapping {
     /// Model space (file units) to character space (metres).
     character_from_model: Affine,
     model_from_character: Affine,
+    /// The rigid part of that, metres, and metres per file unit.
+    place_of_model: Transform,
+    unit_scale: f32,
     /// Per body: its joint, and the body's frame in the bone's rigid frame, metres.
     bones: Vec<(JointIdx, Transform)>,
+    /// Joints with a body, and all above them, ascending, each with its parent.
+    bearing: Vec<(JointIdx, Option<JointIdx>)>,
     /// Per joint of the rig.
     driven: Vec<Option<Driven>>,
     /// The pelvis first.
@@ -89,7 +94,10 @@ impl Mapping {
             free: free(rig, def, &driven, keeps),
             character_from_model,
             model_from_character: character_from_model.inverse(),
+            place_of_model: def.character_from_model,
+            unit_scale: def.unit_scale,
             bones: bones.collect(),
+            bearing: bearing(rig, def),
             driven,
             carriers,
             heads,
@@ -138,6 +146,38 @@ impl Mapping {
         }));
     }
 
+    /// World pose of every body for local transforms of all joints, as [`bodies_from_model`](Self::bodies_from_model) has it but for rounding, at
+    /// a quarter of its cost: `bodies` is cleared and filled. False, and nothing useful in it, if a joint that bodies hang on is not scaled
+    /// alike along all axes. `frames` is memory.
+    ///
+    /// # Panics
+    /// If `pose` is shorter than the rig has joints.
+    pub fn bodies_from_pose(
+        &self,
+        pose: &[LocalTransform],
+        world_from_character: Transform,
+        frames: &mut Vec<(Transform, f32)>,
+        bodies: &mut Vec<Transform>,
+    ) -> bool {
+        bodies.clear();
+        frames.resize(pose.len(), (Transform::IDENTITY, 1.0));
+        let root = (world_from_character * self.place_of_model, self.unit_scale);
+        for &(joint, parent) in &self.bearing {
+            let (local, above) = (&pose[joint], parent.map_or(&root, |parent| &frames[parent]));
+            let scale = local.scale.x;
+            if !(scale > 0.0 && scale == local.scale.y && scale == local.scale.z) {
+                return false;
+            }
+            let place = above.0.point(local.translation * above.1);
+            let frame = (Transform::new(place, above.0.rotation * local.rotation), above.1 * scale);
+            frames[joint] = frame;
+        }
+        for (joint, bone_from_body) in &self.bones {
+            bodies.push(frames[*joint].0 * *bone_from_body);
+        }
+        true
+    }
+
     /// Rigid frame of a bone in character space, metres.
     fn bone(&self, model: &Affine) -> Transform {
         (self.character_from_model * *model).to_rigid()
@@ -171,6 +211,21 @@ fn with_scale_of(like: &LocalTransform, local_affine: &Affine) -> LocalTransform
         rotation: Rotation::from_mat3_lossy(&columns).toward(like.rotation),
         scale: s,
     }
+}
+
+/// Joints with a body, and all above them, ascending, each with its parent.
+fn bearing(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, Option<JointIdx>)> {
+    let mut bears = vec![false; rig.joints.len()];
+    for body in &def.bodies {
+        let mut at = Some(body.joint);
+        while let Some(joint) = at.filter(|&joint| !core::mem::replace(&mut bears[joint], true)) {
+            at = rig.joints[joint].parent;
+        }
+    }
+    (0..rig.joints.len())
+        .filter(|&joint| bears[joint])
+        .map(|joint| (joint, rig.joints[joint].parent))
+        .collect()
 }
 
 /// Body that each joint of the rig follows, and what it takes from it; `None` for a joint without one.

@@ -123,6 +123,32 @@ fn limbs_stay_on_this_side_of_a_wall_that_is_walked_against() {
     assert!(character.world_from_character().translation.z > 1.65, "it stands at the wall");
 }
 
+/// Who goes as its clips do walks on the spot where a wall stops it, a hand in it as it swings ahead, unless its mover is as wide as its limbs sweep.
+#[test]
+fn a_mover_as_wide_as_the_limbs_sweep_keeps_them_out_of_a_wall() {
+    let deepest = |wide: bool| {
+        let mut def = walker();
+        let radius = def.swept_radius();
+        assert!((0.4..0.7).contains(&radius), "{radius} m");
+        if wide {
+            def.in_world.mover.as_mut().expect("it has one").radius = radius;
+        }
+        let mut world = level();
+        let half_extents = Vec3::new(3.0, 2.0, 0.2);
+        world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at(Vec3::new(0.0, 2.0, 2.2)));
+        let mut character = Character::spawn(&mut world, &shared(def), Transform::IDENTITY);
+        let mut deepest = f32::NEG_INFINITY;
+        for _ in 0..300 {
+            run(&mut world, &mut character, 1);
+            deepest = places(&character).iter().map(|at| at.z - 2.0).fold(deepest, max);
+        }
+        deepest
+    };
+    let (narrow, wide) = (deepest(false), deepest(true));
+    assert!(narrow > 0.0 && narrow < 0.06, "{narrow} m in the wall");
+    assert!(wide < 0.005, "{wide} m in the wall");
+}
+
 #[test]
 fn thresholds_decide_between_flinch_and_fall() {
     let fells = |toughness: Toughness, size: f32| {

@@ -208,6 +208,26 @@ fn it_pushes_a_crate_as_hard_as_its_mover_may() {
     assert!(way.abs() < 0.02 && fastest < 0.1, "{way} m, {fastest} m/s");
 }
 
+/// 300 kg that slide into it at a walking pace take it along; a ghost would let them through.
+#[test]
+fn a_crate_that_comes_pushes_it() {
+    let mut world = level();
+    let mut character = Character::spawn(&mut world, &shared(walker()), Transform::IDENTITY);
+    character.set_move(Vec3::ZERO);
+    let load = load(&mut world, 300.0, 0.4, Vec3::new(0.0, 0.4, -1.0));
+    let mut nearest = f32::INFINITY;
+    for _ in 0..180 {
+        // Somebody shoves it on.
+        world.set_velocity(load, Velocity { linear: Vec3::Z * 0.4, ..Velocity::default() });
+        run(&mut world, &mut character, 1);
+        nearest = sinew_math::min(nearest, place(&character).z - world.transform(load).translation.z);
+    }
+    let (went, crate_went) = (place(&character).z, world.transform(load).translation.z + 1.0);
+    assert!(crate_went > 0.5, "the crate went {crate_went} m");
+    assert!(went > 0.3 && nearest > 0.4, "it was pushed {went} m, its middle {nearest} m from the crate's");
+    assert!(matches!(character.state(), State::Animated | State::Flinching), "{:?}", character.state());
+}
+
 #[test]
 fn it_falls_off_a_cliff() {
     let def = shared(walker());
@@ -425,10 +445,14 @@ fn it_gets_up_where_nobody_stands_on_it() {
     run(&mut world, &mut fallen, 45);
     let pelvis = world.center_of_mass(fallen.bodies()[0]);
     let mut other = Character::spawn(&mut world, &def, Transform::from_translation(pelvis.with_y(0.0)));
-    other.set_move(Vec3::ZERO);
     let mut least = f32::INFINITY;
     let mut up_after = None;
     for step in 0..900 {
+        if step < 420 {
+            // It stays on it, however that rolls.
+            let way = (world.center_of_mass(fallen.bodies()[0]) - place(&other)).with_y(0.0);
+            other.set_move(way * 3.0);
+        }
         if step == 420 {
             assert_ne!(fallen.state(), State::Animated, "somebody stands on it");
             assert!(fallen.mover().is_none());

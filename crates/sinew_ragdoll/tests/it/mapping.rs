@@ -128,3 +128,28 @@ fn a_pose_seen_from_elsewhere_stays_where_it_is() {
         }
     }
 }
+
+/// Bodies straight from a pose and those from its model are the same, whatever uniform scales its joints have.
+#[test]
+fn bodies_of_a_pose_are_those_of_its_model() {
+    let mut random = Random::new(11);
+    for def in [walker(), in_centimetres_and_z_up()] {
+        let (mut frames, mut quick, mut slow) = (Vec::new(), Vec::new(), Vec::new());
+        for k in 0..20 {
+            let mut pose = walking(&def, 0.05 * k as f32);
+            for local in &mut pose {
+                local.rotation = local.rotation * Rotation::from_scaled_axis(random.in_cube());
+                local.scale *= 0.9 + 0.2 * random.unit();
+            }
+            assert!(def.mapping().bodies_from_pose(&pose, somewhere(), &mut frames, &mut quick));
+            def.mapping().bodies_from_model(&model_of(&def, &pose), somewhere(), &mut slow);
+            assert_eq!(quick.len(), slow.len());
+            for (quick, slow) in quick.iter().zip(&slow) {
+                assert!((quick.translation - slow.translation).length() < 2e-5);
+                assert!(quick.rotation.angle_to(slow.rotation) < 1e-3);
+            }
+            pose[def.ragdoll.bodies[0].joint].scale.x *= 1.1;
+            assert!(!def.mapping().bodies_from_pose(&pose, somewhere(), &mut frames, &mut quick));
+        }
+    }
+}

@@ -16,7 +16,7 @@ use crate::character::tuning::{
 };
 use sinew_anim::ik::hold_feet;
 use sinew_anim::{LocalTransform, local_to_model, smoothstep};
-use sinew_math::{ReadError, Reader, Transform, Vec3, Writer, max, min, trig};
+use sinew_math::{Affine, ReadError, Reader, Transform, Vec3, Writer, max, min, trig};
 use sinew_physics::World;
 use step::{Pendulum, Print, STEP_TIMES};
 use support::{Support, level};
@@ -298,7 +298,8 @@ impl Character {
         wanted.clear();
         wanted.extend(self.animator.pose().iter());
         let mut bodies = core::mem::take(&mut self.scratch.before);
-        self.bodies_of(&wanted, place, &mut bodies);
+        local_to_model(&def.rig, &wanted, &Affine::IDENTITY, &mut self.scratch.model);
+        def.mapping().bodies_from_model(&self.scratch.model, place, &mut bodies);
         let weighed = bodies.iter().zip(&def.ragdoll.bodies);
         let sum =
             weighed.fold(Vec3::ZERO, |sum, (pose, body)| sum + pose.point(body.mass.center) * body.mass.mass);
