@@ -20,6 +20,7 @@ pub mod rig;
 pub mod roles;
 pub mod set;
 pub mod skinning;
+pub mod springs;
 
 pub use animator::{Animator, Easing, EndAction, MAX_SPEED, Track, TrackDef, TrackId, Transition};
 pub use built::{BuildError, BuildOptions, BuiltClip, ClipError, Cursor, Fill};
@@ -47,3 +48,4 @@ pub use roles::{
 };
 pub use set::{AnimatedClip, AnimationSet, ClipId, MaskId};
 pub use skinning::{skin_palette, skin_vertices};
+pub use springs::{SpringBone, SpringChain, SpringCollider, SpringLimit, Springs, guess_springs};
