@@ -18,6 +18,7 @@ pub mod ragdoll;
 pub mod rig_match;
 pub mod settings;
 pub mod skin;
+pub mod springs;
 
 pub use bake::{BakeInput, Baked, Hit, HitEffect, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
@@ -37,3 +38,4 @@ pub use ragdoll::{BodySettings, BodyState, Ragdoll};
 pub use rig_match::RigMismatch;
 pub use settings::{Settings, SettingsError, build_moving, build_with};
 pub use skin::{Flaw, FlawKind, SkinMeter, SkinQuality, measure_skin};
+pub use springs::{SpringRig, SpringStep, SpringSwing};
