@@ -51,7 +51,7 @@ pub const HAIR: SpringBone = SpringBone {
 
 const COLOR: [f32; 4] = [0.10, 0.05, 0.03, 1.0];
 /// Half a link's thickness, metres.
-const THIN: f32 = 0.014;
+const THIN: f32 = 0.02;
 
 /// Rig of the mannequin with hair, its springs of `settings` in it and a ball for the head as their collider.
 ///

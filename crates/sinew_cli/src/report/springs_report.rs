@@ -19,7 +19,7 @@ pub struct SpringsReport {
 }
 
 impl SpringsReport {
-    /// Of a character.
+    /// Springs of a character.
     pub fn of(character: &CharacterDef) -> Self {
         let springs = character.springs();
         let name = |&joint: &JointIdx| character.rig.joints[joint].name.clone();

@@ -117,7 +117,7 @@ pub struct CharacterDef {
     bind: Vec<Affine>,
     /// Feet that it stands on, if it is a humanoid.
     feet: Option<Feet>,
-    /// What it wears that swings.
+    /// Hair and the like, which swing.
     springs: SpringRig,
     motions: MotionSet,
     /// Clips and stances made of the motions.

@@ -66,10 +66,10 @@ pub struct Settings {
 /// Source of the springs that a character wears.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SpringSource {
-    /// Those that the file states. Default.
+    /// Springs that the file states. Default.
     #[default]
     File,
-    /// Those that the file states, and where it states none what names of joints tell ([`guess_springs`](sinew_anim::guess_springs)).
+    /// Springs that the file states, and where it states none what names of joints tell ([`guess_springs`](sinew_anim::guess_springs)).
     Names,
     /// None.
     None,

@@ -5,6 +5,7 @@ use sinew_math::{Affine, Vec3, clamp, max, normalize_or};
 use sinew_physics::{BodyId, NearestTo, World};
 
 /// Way out of a collider: unit direction, and how far the surface of a ball is from it, metres; negative: so deep in it.
+#[derive(Clone, Copy)]
 pub(super) struct Gap {
     pub direction: Vec3,
     pub distance: f32,

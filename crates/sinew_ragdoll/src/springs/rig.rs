@@ -101,12 +101,8 @@ impl SpringRig {
                 }
             }
         }
-        let used: Vec<bool> = springs
-            .chains
-            .iter()
-            .enumerate()
-            .map(|(c, _)| bone_at.iter().flatten().any(|&(chain, _)| chain == c))
-            .collect();
+        let mut used = vec![false; springs.chains.len()];
+        bone_at.iter().flatten().for_each(|&(chain, _)| used[chain] = true);
         let node_of = it.add_nodes(rig, springs, &bone_at, &used);
         it.add_bones(mapping, springs, &bone_at);
         let mut kept: Vec<Option<usize>> = Vec::with_capacity(springs.colliders.len());
@@ -187,25 +183,24 @@ impl SpringRig {
         let character = mapping.character_from_model();
         let place = |node: &Node| character.point(bind_model[node.joint].translation);
         // Per node: its anchor, and how far it may be from there.
-        let mut ways: Vec<Option<(usize, f32)>> = Vec::with_capacity(self.nodes.len());
+        let mut ways: Vec<(usize, f32)> = Vec::with_capacity(self.nodes.len());
         for (k, node) in self.nodes.iter().enumerate() {
-            let way = match node.parent {
-                Some(parent) if node.swings => ways[parent]
-                    .map(|(anchor, way)| (anchor, way + (place(node) - place(&self.nodes[parent])).length())),
-                _ => Some((k, 0.0)),
-            };
-            ways.push(way);
+            ways.push(match node.parent.filter(|_| node.swings) {
+                Some(parent) => {
+                    let (anchor, way) = ways[parent];
+                    (anchor, way + (place(node) - place(&self.nodes[parent])).length())
+                }
+                None => (k, 0.0),
+            });
         }
+        let mut farthest = vec![0.0; self.nodes.len()];
         for bone in &self.bones {
-            let Some((anchor, way)) = ways[bone.node] else { continue };
+            let (anchor, way) = ways[bone.node];
             let bind = &bind_model[self.nodes[bone.node].joint];
             let length = character.vector(bind.vector(bone.tail)).length();
-            let reach = way + length + bone.radius;
-            match self.anchors.iter_mut().find(|(node, _)| *node == anchor) {
-                Some((_, farthest)) => *farthest = max(*farthest, reach),
-                None => self.anchors.push((anchor, reach)),
-            }
+            farthest[anchor] = max(farthest[anchor], way + length + bone.radius);
         }
+        self.anchors = farthest.into_iter().enumerate().filter(|(_, reach)| *reach > 0.0).collect();
     }
 
     /// Bodies that each bone may meet: not those that its tip touches in the bind pose.

@@ -39,7 +39,7 @@ impl Reference {
         for chain in &springs.chains {
             for bone in &chain.bones {
                 let (at, turn) = it.world[bone.joint];
-                let tail = it.into_center(chain.center, at + turn * d(bone.tail));
+                let tail = it.seen_from_center(chain.center, at + turn * d(bone.tail));
                 it.tails.push((tail, tail));
             }
         }
@@ -58,11 +58,11 @@ impl Reference {
         }
     }
 
-    fn into_center(&self, center: Option<usize>, point: DVec3) -> DVec3 {
+    fn seen_from_center(&self, center: Option<usize>, point: DVec3) -> DVec3 {
         center.map_or(point, |c| self.world[c].1.inverse() * (point - self.world[c].0))
     }
 
-    fn from_center(&self, center: Option<usize>, point: DVec3) -> DVec3 {
+    fn in_world(&self, center: Option<usize>, point: DVec3) -> DVec3 {
         center.map_or(point, |c| self.world[c].0 + self.world[c].1 * point)
     }
 
@@ -81,8 +81,8 @@ impl Reference {
                 let axis = d(bone.tail).normalize();
                 let length = d(bone.tail).length();
                 let (current, previous) = self.tails[index];
-                let current = self.from_center(chain.center, current);
-                let previous = self.from_center(chain.center, previous);
+                let current = self.in_world(chain.center, current);
+                let previous = self.in_world(chain.center, previous);
                 let inertia = (current - previous) * (1.0 - f64::from(bone.drag));
                 let stiffness = delta_time * (local * axis) * f64::from(bone.stiffness);
                 let external = delta_time * d(bone.gravity);
@@ -100,7 +100,7 @@ impl Reference {
                     }
                 }
                 self.tails[index] =
-                    (self.into_center(chain.center, next), self.into_center(chain.center, current));
+                    (self.seen_from_center(chain.center, next), self.seen_from_center(chain.center, current));
                 let to = local.inverse() * (next - world_position).normalize();
                 self.world[bone.joint] = (world_position, local * DQuat::from_rotation_arc(axis, to));
                 // What hangs on it follows.
