@@ -20,6 +20,7 @@ pub mod rig;
 pub mod roles;
 pub mod set;
 pub mod skinning;
+pub mod springs;
 mod tuning;
 
 pub use animator::{Animator, Easing, EndAction, Track, TrackDef, TrackId, Transition};
@@ -48,4 +49,5 @@ pub use roles::{
 };
 pub use set::{AnimatedClip, AnimationSet, ClipId, MaskId};
 pub use skinning::{skin_palette, skin_vertices};
+pub use springs::{SpringBone, SpringChain, SpringCollider, SpringLimit, Springs, guess_springs};
 pub use tuning::MAX_SPEED;

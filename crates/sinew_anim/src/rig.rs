@@ -1,5 +1,6 @@
 //! Parts of a character: joints, skins, meshes.
 
+use crate::springs::Springs;
 use sinew_math::{Affine, Rotation, Vec2, Vec3};
 
 /// Index of a joint in [`Rig::joints`].
@@ -113,4 +114,6 @@ pub struct Rig {
     pub textures: Vec<TextureImage>,
     /// Roles that the file itself states (VRM humanoid): VRM 1 bone name and joint.
     pub stated_roles: Vec<(String, JointIdx)>,
+    /// Springs that the file itself states (VRM).
+    pub springs: Springs,
 }

@@ -18,6 +18,7 @@ pub mod ragdoll;
 pub mod rig_match;
 pub mod settings;
 pub mod skin;
+pub mod springs;
 mod tuning;
 
 pub use bake::{BakeHit, BakeInput, Baked, HitEffect, bake};
@@ -38,3 +39,4 @@ pub use ragdoll::{BodySettings, BodyState, Ragdoll};
 pub use rig_match::RigMismatch;
 pub use settings::{Settings, SettingsError, build_moving, build_with};
 pub use skin::{Flaw, FlawKind, SkinMeter, SkinQuality, measure_skin};
+pub use springs::{SpringRig, SpringStep, SpringSwing};

@@ -6,6 +6,7 @@ pub mod cabin;
 pub mod crowd;
 pub mod demo;
 mod framework;
+pub mod maned;
 pub use sinew::mannequin;
 mod parts;
 pub mod scenes;

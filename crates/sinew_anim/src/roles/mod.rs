@@ -29,6 +29,8 @@ pub use characters::characters;
 pub use correct::{Correction, CorrectionError};
 pub use gait::Gait;
 pub use hints::Hints;
+pub(crate) use names::words;
+
 pub use role::{HUMANOID_ROLES, Role, Side};
 
 use crate::rig::{JointIdx, LocalTransform, Rig};

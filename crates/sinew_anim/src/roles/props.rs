@@ -78,8 +78,10 @@ fn props(rig: &Rig, bound: &Bound, kept: &Kept, owner: &[Option<usize>]) -> Vec<
             moves_skin[parent] = true;
         }
     }
+    let swings = swings(rig);
     let is_held = |joint: JointIdx, carrier: usize| {
-        owner[joint] == Some(carrier) && kept.bones[carrier].joint != joint && !moves_skin[joint]
+        let is_joint_of_carrier = kept.bones[carrier].joint == joint;
+        owner[joint] == Some(carrier) && !is_joint_of_carrier && !moves_skin[joint] && !swings[joint]
     };
     let mut props: Vec<Prop> = Vec::new();
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
@@ -158,4 +160,15 @@ fn insert(rig: &Rig, bound: &Bound, kept: &mut Kept, roles: &mut [Option<RoleGue
         bind_model: bound.model[joint],
         is_prop: true,
     });
+}
+
+/// True for joints that the file's springs move: what hangs there is hair or cloth, and nothing that is held fast.
+fn swings(rig: &Rig) -> Vec<bool> {
+    let mut swings = vec![false; rig.joints.len()];
+    let bones = rig.springs.chains.iter().flat_map(|chain| &chain.bones);
+    bones.for_each(|bone| swings[bone.joint] = true);
+    for joint in 0..swings.len() {
+        swings[joint] |= rig.joints[joint].parent.is_some_and(|parent| swings[parent]);
+    }
+    swings
 }

@@ -6,10 +6,12 @@ use crate::input::ragdoll_file::RagdollFile;
 use crate::input::settings_arg::SettingsArg;
 use crate::report::Report;
 use crate::report::skin_report::SkinReport;
+use crate::report::springs_report::proposal;
 use crate::report::table::{Table, counted, shown};
 use serde_json::{Value, json};
 use sinew::formats::{Textures, write_ragdoll};
 use sinew::ragdoll::doctor::{Code, Finding, Severity};
+use sinew::ragdoll::settings::SpringSource;
 use sinew::ragdoll::{BuildOptions, Flaw, Repair, cure, doctor, drop_test};
 use std::path::PathBuf;
 
@@ -75,6 +77,11 @@ impl RagdollDoctor {
         }
         if let Some(character) = &character {
             repair.skin = skin_flaws(&repair, character);
+            let rig = &character.document.rig;
+            if rig.springs.is_empty() {
+                let springs = SpringSource::Names.springs(rig, character.analysis.up_axis);
+                notes.extend(proposal(rig, &springs, &repair.def));
+            }
         }
         let findings = match &self.output {
             None => doctor(&repair),

@@ -5,6 +5,7 @@ pub(crate) mod progress;
 pub(crate) mod quality_report;
 pub(crate) mod ragdoll_report;
 pub(crate) mod skin_report;
+pub(crate) mod springs_report;
 pub(crate) mod story;
 pub(crate) mod table;
 

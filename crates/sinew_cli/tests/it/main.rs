@@ -13,6 +13,7 @@ mod readme;
 mod refusals;
 mod scenes;
 mod sinew;
+mod springs;
 mod units;
 mod usage;
 mod view;

@@ -30,6 +30,7 @@ mod mesh;
 mod meshopt;
 mod scene;
 mod source;
+mod springs;
 mod vrm;
 mod write;
 
@@ -132,7 +133,7 @@ pub fn no_files(path: &str) -> Result<Vec<u8>> {
 /// # Errors
 /// Bytes that are no glTF 2.0, an index or range outside its list, numbers that are not finite, a node that is its own
 /// ancestor, a required extension that is not understood, a compressed view or mesh whose stream is broken, a missing
-/// external buffer. Numbers that are not finite in normals, texture coordinates and colours, and in weights, are mended
+/// external buffer, a spring that names what is not there. Numbers that are not finite in normals, texture coordinates and colours, and in weights, are mended
 /// with a warning.
 pub fn read_gltf(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<'_>) -> Result<Document> {
     let (container, json_bytes, bin, other_chunks) = unwrap_container(bytes)?;
@@ -152,6 +153,7 @@ pub fn read_gltf(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<'_>)
     scene.rig.textures = materials.textures;
     warnings.append(&mut materials.warnings);
     scene.rig.stated_roles = vrm::stated_roles(root, &scene.joint_of_node);
+    scene.rig.springs = springs::read(&source, &scene, &mut warnings)?;
     let (clips, events) = animation::read_all(&source, &scene.joint_of_node)?;
     Ok(Document {
         rig: scene.rig,

@@ -19,7 +19,8 @@
 //!   },
 //!   "ignore": ["Flag"],
 //!   "disable_pairs": [["leftHand", "leftUpperLeg"]],
-//!   "enable_pairs": [["leftUpperLeg", "rightUpperLeg"]]
+//!   "enable_pairs": [["leftUpperLeg", "rightUpperLeg"]],
+//!   "springs": "names"
 //! }
 //! ```
 //!
@@ -29,7 +30,8 @@
 //! sides; ranges are the left one's, mirrored on the right) or by the name of the rig's joint. Of a bone: the `role` that it has
 //! whatever shape and names say (only by the joint's name), `body` (`keep` or `drop`), `shape` (`box`, `capsule`, `sphere`), `scale` of it, `mass` in kg, `type` and `limits_deg` of the joint to its
 //! parent as in [ragdoll files](super), each range by itself, and `friction_torque` in N·m. Joints that `ignore` names are no part
-//! of the body, with all that hangs below them.
+//! of the body, with all that hangs below them. `springs` that the character wears are those that the `file` states, where it states
+//! none those that `names` of joints tell of, or `none`.
 
 use super::{read_range, read_up_axis};
 use crate::container::json::{self, At};
@@ -37,13 +39,13 @@ use crate::error::{Error, Result, quoted};
 use sinew_anim::Role;
 use sinew_math::Range;
 use sinew_ragdoll::settings::{
-    BodyWish, BoneSettings, JointWish, Settings, ShapeWish, Unit, nearest, role_named,
+    BodyWish, BoneSettings, JointWish, Settings, ShapeWish, SpringSource, Unit, nearest, role_named,
 };
 use sinew_ragdoll::{LimitSource, Sex, ShapeChoice};
 
 const VERSION: usize = 1;
 
-const ROOT_KEYS: [&str; 14] = [
+const ROOT_KEYS: [&str; 15] = [
     "sinew",
     "version",
     "comment",
@@ -58,6 +60,7 @@ const ROOT_KEYS: [&str; 14] = [
     "ignore",
     "disable_pairs",
     "enable_pairs",
+    "springs",
 ];
 
 const BONE_KEYS: [&str; 9] =
@@ -91,6 +94,7 @@ pub fn read_ragdoll_settings(bytes: &[u8]) -> Result<Settings> {
         ignore: read_names(root, "ignore")?,
         disable: read_pairs(root, "disable_pairs")?,
         enable: read_pairs(root, "enable_pairs")?,
+        springs: word(root, "springs", &SPRINGS)?,
     };
     if let Some(bones) = root.get("bones")? {
         let object = bones.value().as_object().ok_or_else(|| bones.malformed("must be an object"))?;
@@ -103,6 +107,9 @@ pub fn read_ragdoll_settings(bytes: &[u8]) -> Result<Settings> {
 
 const SHAPES: [(&str, ShapeChoice); 3] =
     [("auto", ShapeChoice::Auto), ("box", ShapeChoice::Box), ("capsule", ShapeChoice::Capsule)];
+
+const SPRINGS: [(&str, SpringSource); 3] =
+    [("file", SpringSource::File), ("names", SpringSource::Names), ("none", SpringSource::None)];
 
 const LIMITS: [(&str, LimitSource); 2] = [("anatomy", LimitSource::Anatomy), ("clips", LimitSource::Clips)];
 

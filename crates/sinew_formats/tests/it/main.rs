@@ -26,5 +26,6 @@ mod obj;
 mod ragdoll;
 mod ragdoll_settings;
 mod rigs;
+mod springs;
 mod world;
 mod write;

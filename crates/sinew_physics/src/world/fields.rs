@@ -100,6 +100,16 @@ impl World {
         load.wrench.force
     }
 
+    /// Velocity of the air at a place, m/s, world: that of all winds there, each as strong as its region has it there; 0 without
+    /// any. For what is no body and no particle of the world.
+    pub fn air_velocity(&self, point: Vec3) -> Vec3 {
+        let nanoseconds = self.fields_now().nanoseconds;
+        self.fields.iter().fold(Vec3::ZERO, |sum, (_, field)| match &field.kind {
+            FieldKind::Wind(wind) => sum + wind.at(point, nanoseconds) * field.region.weight(point),
+            _ => sum,
+        })
+    }
+
     /// Energy of all that is in a field that acts everywhere, J: uniform and point gravity, attraction, and what it took to
     /// push water aside. Others have none: those that brake take it, and a user's function may have none. Nor has a field in a
     /// region.

@@ -8,7 +8,10 @@ use crate::drive::DriveMode;
 use crate::hand_over::SpeedBound;
 use crate::mapping::Mapping;
 use crate::ragdoll::BodySettings;
-use sinew_anim::{AnimationSet, Animator, Clip, ClipId, LocalTransform, Rig, TrackDef, TrackId, rest_pose};
+use crate::springs::SpringRig;
+use sinew_anim::{
+    AnimationSet, Animator, Clip, ClipId, LocalTransform, Rig, Springs, TrackDef, TrackId, rest_pose,
+};
 use sinew_math::Affine;
 use std::sync::Arc;
 
@@ -114,13 +117,15 @@ pub struct CharacterDef {
     bind: Vec<Affine>,
     /// Feet that it stands on, if it is a humanoid.
     feet: Option<Feet>,
+    /// Hair and the like, which swing.
+    springs: SpringRig,
     motions: MotionSet,
     /// Clips and stances made of the motions.
     moves: Arc<Moves>,
 }
 
 impl CharacterDef {
-    /// A character without motions. `bind_model` is `RigAnalysis::bind_model`.
+    /// A character without motions, with the springs that the rig states ([`set_springs`](Self::set_springs)). `bind_model` is `RigAnalysis::bind_model`.
     ///
     /// # Panics
     /// As [`Mapping::new`].
@@ -129,6 +134,7 @@ impl CharacterDef {
         let root = mapping.character_from_model();
         let bind: Vec<Affine> = bind_model.iter().map(|&bind| root * bind).collect();
         Self {
+            springs: SpringRig::new(&rig, &ragdoll, &mapping, bind_model, &rig.springs),
             feet: Feet::of(&rig, &ragdoll, &bind),
             moves: Arc::new(Moves::none(&rig, &ragdoll, &mapping)),
             in_world: InWorld::of(&ragdoll),
@@ -163,6 +169,26 @@ impl CharacterDef {
         self.moves = Arc::new(Moves::new(self, &motions)?);
         self.motions = motions;
         Ok(())
+    }
+
+    /// Gives it other springs than those of its rig, or none. Characters that are there already are of the definition before.
+    ///
+    /// # Panics
+    /// If they name a joint or a collider that is not there.
+    pub fn set_springs(&mut self, springs: &Springs) {
+        let bind_model = self.bind_model();
+        self.springs = SpringRig::new(&self.rig, &self.ragdoll, &self.mapping, &bind_model, springs);
+    }
+
+    /// Springs of this kind of character.
+    pub fn springs(&self) -> &SpringRig {
+        &self.springs
+    }
+
+    /// Bind pose of every joint in model space.
+    pub(super) fn bind_model(&self) -> Vec<Affine> {
+        let model_from_character = self.mapping.character_from_model().inverse();
+        self.bind.iter().map(|&bind| model_from_character * bind).collect()
     }
 
     /// Motions of this kind of character.

@@ -184,7 +184,7 @@ impl Character {
         let HitBodies::Present(yields) = self.def.in_world.hit_bodies else { return };
         let def = self.def.clone();
         let mut poses = Vec::new();
-        let pose = self.pose().to_vec();
+        let pose = self.pose_without_springs().to_vec();
         self.bodies_of(&pose, self.world_from_character, &mut poses);
         let at = |&world_from_body: &Transform| BodyState { world_from_body, velocity: Velocity::default() };
         let states: Vec<BodyState> = poses.iter().map(at).collect();

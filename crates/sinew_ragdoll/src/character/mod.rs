@@ -50,6 +50,7 @@ mod stumble;
 mod travel;
 mod tuning;
 mod walk;
+mod wear;
 
 pub(crate) use limp::{is_still, is_sunk, touches_world};
 pub(crate) use tuning::STILL_TIME;
@@ -65,6 +66,7 @@ pub use powered::{Part, Preset};
 use crate::drive::Drives;
 use crate::mapping::Physical;
 use crate::ragdoll::Ragdoll;
+use crate::springs::SpringSwing;
 use in_world::Presence;
 use memory::{Planting, Preparation, Rising, Shown, Stillness};
 use sinew_anim::{Animator, Inertia, LocalTransform, Pose};
@@ -85,6 +87,9 @@ pub struct Character {
     planting: Planting,
     /// The pose with the feet planted, while they are.
     planted: Vec<LocalTransform>,
+    /// Springs that it wears, and the pose with them; empty of a character that wears none.
+    swing: SpringSwing,
+    swung: Vec<LocalTransform>,
     /// Speed over the ground in the last step, m/s.
     speed: f32,
     world_from_character: Transform,
@@ -151,6 +156,8 @@ impl Character {
             lean: Vec3::ZERO,
             planting: Planting::default(),
             planted: Vec::new(),
+            swing: SpringSwing::new(),
+            swung: Vec::new(),
             speed: 0.0,
             climbing: 0.0,
             earlier: Earlier { pose: pose.clone(), world_from_character },
@@ -192,8 +199,13 @@ impl Character {
         &self.drives
     }
 
-    /// Local transform of every joint of the rig; nodes above the pelvis are at rest (see [`crate::mapping`]).
+    /// Local transform of every joint of the rig, springs and all; nodes above the pelvis are at rest (see [`crate::mapping`]).
     pub fn pose(&self) -> &[LocalTransform] {
+        if self.swung.is_empty() { self.pose_without_springs() } else { &self.swung }
+    }
+
+    /// [`pose`](Self::pose) as clips and bodies have it, with all springs at rest.
+    pub fn pose_without_springs(&self) -> &[LocalTransform] {
         if self.planting.is_over() { &self.pose } else { &self.planted }
     }
 
@@ -237,6 +249,7 @@ impl Character {
         if !self.is_frozen() {
             self.follow(world);
             self.settle_detail(world);
+            self.wear(world);
         }
         self.told = self.events.len();
     }

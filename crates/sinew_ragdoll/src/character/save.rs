@@ -7,6 +7,7 @@ use super::stumble::Stumble;
 use super::{Character, Earlier, State};
 use crate::drive::Drives;
 use crate::ragdoll::Ragdoll;
+use crate::springs::SpringSwing;
 use sinew_anim::{Animator, Inertia, LocalTransform, TrackId};
 use sinew_math::{ReadError, Reader, Writer};
 use sinew_physics::{BodyId, JointId, MoverId};
@@ -15,6 +16,8 @@ use sinew_physics::{BodyId, JointId, MoverId};
 const MAGIC: &[u8; 8] = b"sinew-c\x04";
 /// Bit of a state: the character has its share of a world.
 const IN_WORLD: u8 = 0x80;
+/// Bit of a state: its springs follow at the end.
+const WEARS: u8 = 0x40;
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
 
@@ -30,7 +33,9 @@ impl Character {
             State::Flinching => 4,
             State::Powered => 5,
         };
-        w.u8(if self.presence.is_some() { state | IN_WORLD } else { state });
+        let in_world = if self.presence.is_some() { IN_WORLD } else { 0 };
+        let wears = if self.def.springs().is_empty() { 0 } else { WEARS };
+        w.u8(state | in_world | wears);
         w.transform(self.world_from_character);
         w.f32(self.climbing);
         w.vec3(self.lean);
@@ -66,6 +71,9 @@ impl Character {
             w.f32(self.flinching);
             w.f32(self.speed);
         }
+        if wears != 0 {
+            self.swing.save(self.def.springs(), w);
+        }
     }
 
     /// Brings back a saved state of a character of the same definition. Its bodies are those of the world's snapshot
@@ -78,7 +86,7 @@ impl Character {
             return Err(ReadError { at: 0, what: "is not a character of this version" });
         }
         let tag = r.u8()?;
-        let state = match tag & !IN_WORLD {
+        let state = match tag & !(IN_WORLD | WEARS) {
             0 => State::Animated,
             1 => State::Limp,
             2 => State::GettingUp,
@@ -106,8 +114,11 @@ impl Character {
         let presence =
             if tag & IN_WORLD != 0 { Some(Presence::load(r, self.def.ragdoll.bodies.len())?) } else { None };
         let (flinching, speed) = if presence.is_some() { (r.f32()?, r.f32()?) } else { (0.0, self.speed) };
+        let springs = self.def.springs();
+        let swing = if tag & WEARS != 0 { SpringSwing::load(springs, r)? } else { SpringSwing::new() };
         let has_bodies = !matches!(state, State::Animated | State::GettingUp);
         let fits = pose.len() == joints
+            && springs.is_empty() == (tag & WEARS == 0)
             && earlier.pose.len() == joints
             && has_bodies == ragdoll.is_some()
             && (state != State::Preparing || !self.def.moves().get_ups.is_empty())
@@ -127,6 +138,12 @@ impl Character {
         }
         if !planting.is_over() {
             self.show_planted();
+        }
+        self.swing = swing;
+        self.swung.clear();
+        if !self.swing.turns().is_empty() {
+            self.swung = self.pose_without_springs().to_vec();
+            self.show_springs();
         }
         self.keep_shown();
         self.events.clear();

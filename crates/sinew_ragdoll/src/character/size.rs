@@ -34,16 +34,15 @@ impl CharacterDef {
         farthest
     }
 
-    /// The same kind of character, larger by `factor` (1: as it is): a child, a giant. Lengths and the speed of its walk grow by it, masses and forces by its
+    /// The same kind of character, larger by `factor` (1: as it is): a child, a giant. Lengths, the speed of its walk and those of its springs grow by it, masses and forces by its
     /// third power, torques by its fourth. One definition serves all characters of that size.
     ///
     /// # Panics
     /// If the factor is not above 0 and finite.
     pub fn scaled(&self, factor: f32) -> Self {
         assert!(factor > 0.0 && factor < f32::INFINITY, "a factor of a size is above 0 and finite");
-        let bind: Vec<Affine> =
-            self.bind().iter().map(|&bind| self.mapping().character_from_model().inverse() * bind).collect();
-        let mut def = Self::new(self.rig.clone(), larger(&self.ragdoll, factor), &bind);
+        let mut def = Self::new(self.rig.clone(), larger(&self.ragdoll, factor), &self.bind_model());
+        def.set_springs(self.springs().source());
         def.after_settling = self.after_settling;
         def.getting_ready = self.getting_ready;
         def.falling = self.falling;

@@ -55,7 +55,8 @@ impl Character {
         }
     }
 
-    /// Puts it elsewhere at once, standing; what lies between is not asked. A character that lies is brought there as it lies.
+    /// Puts it elsewhere at once, standing; what lies between is not asked. A character that lies is brought there as it lies, and springs as
+    /// they swing; [`reset_springs`](Self::reset_springs) starts those over.
     ///
     /// # Panics
     /// If the place is not finite.
@@ -77,6 +78,7 @@ impl Character {
             world.set_velocity(body, velocity);
         }
         self.scratch.posed.clear();
+        self.swing.carry(self.def.springs(), moved);
         let Some(presence) = &mut self.presence else { return };
         presence.before.iter_mut().for_each(|pose| *pose = moved * *pose);
         (presence.air, presence.over, presence.velocity) = (0.0, 0.0, Vec3::ZERO);

@@ -71,6 +71,8 @@ pub struct Mapping {
     carriers: Vec<JointIdx>,
     /// Joints that no body moves and that move none themselves.
     free: Vec<JointIdx>,
+    /// Per joint of the rig: a body moves it, or one that hangs on it.
+    moves_bodies: Vec<bool>,
 }
 
 impl Mapping {
@@ -90,8 +92,10 @@ impl Mapping {
         let heads = heads::find(rig, def);
         let (driven, carriers) = (driven(rig, def), heads::carriers(rig, &heads));
         let keeps = |joint: JointIdx| carriers.contains(&joint) || heads.iter().any(|h| h.joint == joint);
+        let moves_bodies = moves_bodies(rig, &driven);
         Self {
-            free: free(rig, def, &driven, keeps),
+            free: free(rig, def, &driven, &moves_bodies, keeps),
+            moves_bodies,
             character_from_model,
             model_from_character: character_from_model.inverse(),
             place_of_model: def.character_from_model,
@@ -128,6 +132,11 @@ impl Mapping {
     /// True if the joint is above the pelvis: in a flat pose it is at rest.
     pub fn carries(&self, joint: JointIdx) -> bool {
         self.carriers.binary_search(&joint).is_ok()
+    }
+
+    /// True if a body moves the joint, or one that hangs on it: what it does is physics.
+    pub fn moves_bodies(&self, joint: JointIdx) -> bool {
+        self.moves_bodies[joint]
     }
 
     /// World pose of every body for a model pose: `bodies` is cleared and filled.
@@ -257,31 +266,36 @@ fn driven(rig: &Rig, def: &RagdollDef) -> Vec<Option<Driven>> {
     driven
 }
 
+/// True per joint if it, or one that hangs on it, is driven.
+fn moves_bodies(rig: &Rig, driven: &[Option<Driven>]) -> Vec<bool> {
+    let mut moves: Vec<bool> = driven.iter().map(Option::is_some).collect();
+    for joint in (0..moves.len()).rev() {
+        if let Some(parent) = rig.joints[joint].parent.filter(|_| moves[joint]) {
+            moves[parent] = true;
+        }
+    }
+    moves
+}
+
 /// Joints that no body moves and that no driven joint hangs on, but for those of feet, and but for what `keeps` says.
 fn free(
     rig: &Rig,
     def: &RagdollDef,
     driven: &[Option<Driven>],
+    moves_bodies: &[bool],
     keeps: impl Fn(JointIdx) -> bool,
 ) -> Vec<JointIdx> {
     let is_foot = |body: usize| {
         let role = &def.bodies[body].role;
         role.ends_with("Foot") || role.ends_with("Toes")
     };
-    let mut carries_body = vec![false; rig.joints.len()];
-    for joint in (0..rig.joints.len()).rev() {
-        carries_body[joint] |= driven[joint].is_some();
-        if let Some(parent) = rig.joints[joint].parent.filter(|_| carries_body[joint]) {
-            carries_body[parent] = true;
-        }
-    }
     let mut on: Vec<Option<usize>> = Vec::with_capacity(rig.joints.len());
     for (joint, node) in rig.joints.iter().enumerate() {
         let own = driven[joint].map(|driven| driven.body);
         on.push(own.or_else(|| node.parent.and_then(|parent| on[parent])));
     }
     let is_free = |&joint: &JointIdx| {
-        !carries_body[joint] && !keeps(joint) && on[joint].is_some_and(|body| !is_foot(body))
+        !moves_bodies[joint] && !keeps(joint) && on[joint].is_some_and(|body| !is_foot(body))
     };
     (0..rig.joints.len()).filter(is_free).collect()
 }

@@ -32,7 +32,7 @@ use crate::fit::ShapeChoice;
 use crate::limits::LimitSource;
 use crate::masses::de_leva::Sex;
 use sinew_anim::roles::{RigAnalysis, Role};
-use sinew_anim::{Rig, Take};
+use sinew_anim::{Rig, Springs, Take, guess_springs};
 use sinew_math::{Range, Vec3};
 
 /// Changes that are wanted to the build. The default changes nothing.
@@ -59,6 +59,31 @@ pub struct Settings {
     pub disable: Vec<[String; 2]>,
     /// Pairs of bones that shall collide, whatever the build thinks.
     pub enable: Vec<[String; 2]>,
+    /// Source of the springs that the character wears; `None`: what the file states. The build of bodies does not ask for it.
+    pub springs: Option<SpringSource>,
+}
+
+/// Source of the springs that a character wears.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SpringSource {
+    /// Springs that the file states. Default.
+    #[default]
+    File,
+    /// Springs that the file states, and where it states none what names of joints tell ([`guess_springs`](sinew_anim::guess_springs)).
+    Names,
+    /// None.
+    None,
+}
+
+impl SpringSource {
+    /// Springs of a rig whose axis `up` points up, unit.
+    pub fn springs(self, rig: &Rig, up: Vec3) -> Springs {
+        match self {
+            Self::None => Springs::default(),
+            Self::Names if rig.springs.is_empty() => guess_springs(rig, up),
+            Self::File | Self::Names => rig.springs.clone(),
+        }
+    }
 }
 
 /// Length of the file's unit.

@@ -24,6 +24,7 @@ mod rollback;
 mod settings;
 mod skin;
 mod slopes;
+mod springs;
 mod stumble;
 mod travel;
 mod variants;

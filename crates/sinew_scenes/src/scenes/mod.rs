@@ -147,6 +147,7 @@ const REGISTRY: &[Scene] = &[
     characters::walking::ROOT_WALK,
     characters::walking::UNEVEN_GROUND,
     characters::mocap::RETARGET,
+    characters::hair::HAIR_RATES,
 ];
 
 /// Scenes that need a file of the user's, and so are in no list.

@@ -34,6 +34,7 @@ const BLIND_TO_GRAVITY: &[&str] = &[
     "root_walk",
     "uneven_ground",
     "retarget",
+    "hair",
     "crowd",
 ];
 
@@ -226,6 +227,7 @@ scenes!(
         root_walk,
         uneven_ground,
         retarget,
+        hair,
         crowd,
     ],
     large: [chain_100_links, joint_grid, net, ragdoll_pile],

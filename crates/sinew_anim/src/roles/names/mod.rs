@@ -7,6 +7,8 @@ use super::role::Side;
 use lexicon::Word;
 use tokens::{Token, tokens};
 
+pub(crate) use tokens::words;
+
 /// Part of the body that a name speaks of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {

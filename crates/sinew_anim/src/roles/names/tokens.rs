@@ -103,7 +103,7 @@ fn cut_glued_prefix(split: &mut [Vec<String>]) {
 /// Words in lower case, split at punctuation, at digits, at camel humps ("LHipJoint": l, hip, joint) and between Latin
 /// and other letters; namespaces and numbers are dropped. Where humps leave what is no word, and without them it is one or several
 /// ("UPPERarm", "fOOT"), case says nothing.
-fn words(name: &str) -> Vec<String> {
+pub(crate) fn words(name: &str) -> Vec<String> {
     let bare = name.rsplit([':', '|']).find(|part| !part.is_empty()).unwrap_or(name);
     let chars: Vec<char> = bare.chars().map(half_width).collect();
     let mut runs = vec![Vec::new()];

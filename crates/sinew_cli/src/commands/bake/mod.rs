@@ -18,6 +18,7 @@ use crate::input::settings_arg::{SettingsArg, unit_note};
 use crate::render::film::{FLOOR_HALF_SIZE, Film, View, body_models};
 use crate::report::Report;
 use crate::report::skin_report::{SkinReport, skin_json};
+use crate::report::springs_report::SpringsReport;
 use crate::report::table::shown;
 use actor::actor;
 use aim::aim;
@@ -32,6 +33,7 @@ use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::bake::KEY_BOUND;
 use sinew::ragdoll::quality::Doubt;
+use sinew::ragdoll::settings::SpringSource;
 use sinew::ragdoll::{BakeInput, BuildOptions, HitEffect, RagdollDef};
 use sinew_picture::Sun;
 use std::path::{Path, PathBuf};
@@ -87,6 +89,12 @@ pub struct Bake {
     no_builtin_motions: bool,
     #[command(flatten)]
     settings: SettingsArg,
+    /// Leave hair, tails and what else the file has springs for as clips and bodies have them
+    #[arg(long)]
+    no_springs: bool,
+    /// Let what is called hair, ear, tail, skirt, ribbon, breast or cape swing where the file states no springs
+    #[arg(long, conflicts_with = "no_springs")]
+    guess_springs: bool,
     /// Push a bone: joint name or role, impulse in N·s along the world's axes (+Y up), time in seconds; repeatable. A role
     /// without a body means the nearest one that has
     #[arg(long = "hit", value_name = "BONE=IX,IY,IZ@T", allow_hyphen_values = true)]
@@ -144,6 +152,8 @@ impl Bake {
         let motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
         let place = self.place(&bodies, ragdoll.height)?;
         let (character, gets_up_by) = actor(&file, ragdoll, motions, !self.no_builtin_motions)?;
+        let springs = SpringsReport::of(&character);
+        notes.extend(springs.notes());
         let character = Arc::new(character);
         let aimed = self.hits.iter().map(|hit| aim(hit, &character, &file, &mut notes));
         let hits = aimed.collect::<Result<Vec<_>>>()?;
@@ -171,6 +181,7 @@ impl Bake {
         notes.extend(self.write(&file, &fall)?);
         let mut report = self.report(&file, &fall, &once(notes));
         report.json["skin"] = skin_json(&skin.figures);
+        report.json["springs"] = springs.to_json();
         Ok(report)
     }
 
@@ -216,7 +227,8 @@ impl Bake {
     ) -> Result<(CharacterFile, RagdollDef, Option<Doubt>, Vec<String>)> {
         let Some(path) = &self.ragdoll else {
             let door = || self.world.as_ref().and_then(|_| door(world));
-            let (file, settings) = self.settings.load_into(&self.character, textures, door)?;
+            let (mut file, settings) = self.settings.load_into(&self.character, textures, door)?;
+            self.wear(&mut file, settings.settings.springs);
             let (def, _) = settings.build(&file, &BuildOptions::default())?;
             let guess = file.analysis.unit_guess.as_ref().filter(|guess| !guess.is_sure);
             let mut notes: Vec<String> = guess.map(unit_note).into_iter().collect();
@@ -225,7 +237,8 @@ impl Bake {
             notes.extend(doubt.iter().map(|doubt| doubt.reason.clone()));
             return Ok((file, def, doubt, notes));
         };
-        let file = CharacterFile::load(&self.character, textures)?;
+        let mut file = CharacterFile::load(&self.character, textures)?;
+        self.wear(&mut file, None);
         let def = read_definition(path, &file)?;
         // Nobody knows whether its mass was guessed or given.
         let mut doubt = Doubt::of(&def);
@@ -234,6 +247,17 @@ impl Bake {
         }
         let notes = doubt.iter().map(|doubt| doubt.reason.clone()).collect();
         Ok((file, def, doubt, notes))
+    }
+
+    /// Gives the character the springs that are asked for: by an option, else by the settings.
+    fn wear(&self, file: &mut CharacterFile, setting: Option<SpringSource>) {
+        let source = match (self.no_springs, self.guess_springs) {
+            (true, _) => SpringSource::None,
+            (_, true) => SpringSource::Names,
+            _ => setting.unwrap_or_default(),
+        };
+        let rig = &mut file.document.rig;
+        rig.springs = source.springs(rig, file.analysis.up_axis);
     }
 
     /// Name of the new clip: as the user says, else `sinew`, with a number where the file has that already.

@@ -6,6 +6,7 @@ use crate::failure::Result;
 use crate::input::motion::Motion;
 use crate::input::settings_arg::assumed;
 use crate::report::ragdoll_report::axis_name;
+use crate::report::springs_report::{colliders_json, springs_json, springs_table};
 use crate::report::table::{Table, counted, shown};
 use crate::report::{Report, number};
 use clips::{ClipFacts, clip_table, event_table};
@@ -14,7 +15,7 @@ use sinew::formats::MotionOptions;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Show what is in a file: joints, clips, events, units, and which joint is which bone, with confidence
+/// Show what is in a file: joints, clips, events, springs, units, and which joint is which bone, with confidence
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -62,6 +63,8 @@ impl Content<'_> {
             "humanoid": analysis.map(|analysis| analysis.humanoid),
             "joints": joints,
             "clips": self.clips.iter().map(ClipFacts::to_json).collect::<Vec<_>>(),
+            "springs": springs_json(&file.rig),
+            "spring_colliders": colliders_json(&file.rig),
             "notes": self.notes(),
             "warnings": self.warnings(),
         })
@@ -107,6 +110,11 @@ impl Content<'_> {
         if let Some(events) = event_table(&self.clips) {
             text += "\nEvents\n";
             text += &events.to_text();
+        }
+        if !rig.springs.is_empty() {
+            let colliders = counted(rig.springs.colliders.len(), "collider", "colliders");
+            let _ = writeln!(text, "\nSprings, {colliders}");
+            text += &springs_table(rig).to_text();
         }
         if !rig.joints.is_empty() {
             text += "\nJoints\n";

@@ -1,0 +1,162 @@
+//! Springs where the file states none: by the names of joints.
+
+use super::{LimitKind, SpringBone, SpringChain, SpringLimit, Springs};
+use crate::rig::{JointIdx, Rig};
+use crate::roles::words;
+use sinew_math::{Rotation, Vec3};
+
+/// Kind of thing that swings, and how.
+struct Material {
+    /// Words of names, lower case.
+    words: &'static [&'static str],
+    /// Stiffness over the mean length of the chain's bones, 1/s: the rate at which a light spring closes on its rest pose.
+    rate: f32,
+    /// Gravity over stiffness.
+    sag: f32,
+    drag: f32,
+    /// Most turn of a bone from its rest pose, radians.
+    cone: f32,
+}
+
+/// Kinds, the first whose word a name has. Rates are those of avatars drawn for VRM (stiffness about 1 m/s on bones of 6 to 10 cm);
+/// what is drawn standing free of gravity, such as ears, sags not at all.
+const MATERIALS: [Material; 6] = [
+    Material {
+        words: &[
+            "hair", "hairs", "bang", "bangs", "braid", "ponytail", "pigtail", "twintail", "ahoge", "beard",
+            "kami", "髪",
+        ],
+        rate: 12.0,
+        sag: 0.2,
+        drag: 0.4,
+        cone: 1.2,
+    },
+    Material { words: &["ear", "ears", "耳"], rate: 25.0, sag: 0.0, drag: 0.4, cone: 0.5 },
+    Material { words: &["tail", "尾", "尻尾"], rate: 12.0, sag: 0.1, drag: 0.4, cone: 0.8 },
+    Material {
+        words: &["skirt", "dress", "coat", "cape", "cloak", "スカート"],
+        rate: 10.0,
+        sag: 0.4,
+        drag: 0.5,
+        cone: 1.0,
+    },
+    Material {
+        words: &[
+            "ribbon",
+            "strap",
+            "scarf",
+            "string",
+            "tassel",
+            "lace",
+            "antenna",
+            "feather",
+            "whisker",
+            "リボン",
+        ],
+        rate: 10.0,
+        sag: 0.3,
+        drag: 0.4,
+        cone: 1.2,
+    },
+    Material {
+        words: &["breast", "breasts", "bust", "boob", "chichi", "胸"],
+        rate: 30.0,
+        sag: 0.0,
+        drag: 0.5,
+        cone: 0.25,
+    },
+];
+
+/// Radius of a tip over the mean length of its chain's bones.
+const RADIUS: f32 = 0.15;
+
+/// Springs by the names of joints: hair, ears, tails, skirts, coats and capes, ribbons and straps, breasts, for files that state none.
+/// `up` is the file's axis that points up, unit. Chains run along children of one kind; a joint without a child ends one and does not
+/// swing, for nobody knows how long it is. They meet the body of the character.
+pub fn guess_springs(rig: &Rig, up: Vec3) -> Springs {
+    let material: Vec<Option<usize>> = rig.joints.iter().map(|joint| material_of(&joint.name)).collect();
+    let mut children: Vec<Vec<JointIdx>> = vec![Vec::new(); rig.joints.len()];
+    for (joint, node) in rig.joints.iter().enumerate() {
+        if let Some(parent) = node.parent {
+            children[parent].push(joint);
+        }
+    }
+    let mut taken = vec![false; rig.joints.len()];
+    let mut chains = Vec::new();
+    for root in 0..rig.joints.len() {
+        let Some(kind) = material[root].filter(|_| !taken[root]) else { continue };
+        let mut bones: Vec<(JointIdx, Vec3)> = Vec::new();
+        let mut at = root;
+        loop {
+            taken[at] = true;
+            let same = children[at].iter().copied().find(|&child| material[child] == Some(kind));
+            let Some(next) = same.or_else(|| children[at].first().copied()) else { break };
+            let tail = rig.joints[next].rest.translation;
+            if tail.length() > 0.0 {
+                bones.push((at, tail));
+            }
+            if same.is_none() {
+                break;
+            }
+            at = next;
+        }
+        if !bones.is_empty() {
+            chains.push(chain(&rig.joints[root].name, &bones, &MATERIALS[kind], up));
+        }
+    }
+    Springs { chains, colliders: Vec::new() }
+}
+
+fn chain(name: &str, bones: &[(JointIdx, Vec3)], material: &Material, up: Vec3) -> SpringChain {
+    let length = bones.iter().map(|(_, tail)| tail.length()).sum::<f32>() / bones.len() as f32;
+    let stiffness = material.rate * length;
+    let bone = |&(joint, tail): &(JointIdx, Vec3)| SpringBone {
+        joint,
+        tail,
+        stiffness,
+        gravity: up * (-material.sag * stiffness),
+        drag: material.drag,
+        radius: RADIUS * length,
+        limit: Some(SpringLimit {
+            kind: LimitKind::Cone { angle: material.cone },
+            rotation: Rotation::IDENTITY,
+        }),
+    };
+    SpringChain {
+        name: name.to_owned(),
+        bones: bones.iter().map(bone).collect(),
+        center: None,
+        colliders: Vec::new(),
+        hits_body: true,
+    }
+}
+
+/// Index of the first kind whose word the name has; joints that only mark an end or move others are of none.
+fn material_of(name: &str) -> Option<usize> {
+    let words = words(name);
+    if words.iter().any(|word| matches!(word.as_str(), "end" | "ik" | "ctrl" | "control" | "target" | "nub"))
+    {
+        return None;
+    }
+    MATERIALS.iter().position(|material| words.iter().any(|word| material.words.contains(&word.as_str())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_tell_what_swings() {
+        let of = |name: &str| material_of(name).map(|kind| MATERIALS[kind].words[0]);
+        assert_eq!(of("J_Sec_Hair1_01"), Some("hair"));
+        assert_eq!(of("Ear2.L"), Some("ear"));
+        assert_eq!(of("b_Tail01_012"), Some("tail"));
+        assert_eq!(of("skirt_front_1"), Some("skirt"));
+        assert_eq!(of("breast.R"), Some("breast"));
+        assert_eq!(of("リボン_左"), Some("ribbon"));
+        // What only has the letters, and what is no more than a mark.
+        for name in ["LeftForeArm", "Rear_Leg", "Ear4.L_end", "mixamorig:Head", "tailor", "IK_hair"] {
+            assert_eq!(of(name), None, "{name}");
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Springs of a rig: hair, tails, ears, straps, skirts, as the file states them (`VRMC_springBone`, VRM 0's secondary
+//! animation) or as they are guessed from names ([`guess_springs`]).
+//!
+//! Plain data: `sinew_ragdoll::springs` moves them. The laws, units and names are those of
+//! [VRMC_springBone 1.0](https://github.com/vrm-c/vrm-specification/tree/master/specification/VRMC_springBone-1.0),
+//! so that a file's numbers come through unchanged.
+
+mod guess;
+
+pub use guess::guess_springs;
+
+use crate::rig::JointIdx;
+use sinew_math::{Rotation, Vec3};
+
+/// Springs of a character. Default: none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Springs {
+    /// Chains, each of bones that swing one below the other.
+    pub chains: Vec<SpringChain>,
+    /// Colliders that chains refer to by index.
+    pub colliders: Vec<SpringCollider>,
+}
+
+impl Springs {
+    /// True if nothing swings.
+    pub fn is_empty(&self) -> bool {
+        self.chains.is_empty()
+    }
+
+    /// Number of bones of all chains.
+    pub fn bone_count(&self) -> usize {
+        self.chains.iter().map(|chain| chain.bones.len()).sum()
+    }
+}
+
+/// Chain of bones that swing, and what they come up against.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SpringChain {
+    /// Name in the file, or `""`.
+    pub name: String,
+    /// Bones, from the root to the tip; no joint is in two chains.
+    pub bones: Vec<SpringBone>,
+    /// Joint in whose space inertia is felt; `None`: the world. It is above the chain.
+    pub center: Option<JointIdx>,
+    /// Indices into [`Springs::colliders`].
+    pub colliders: Vec<usize>,
+    /// True: the bodies of the character's own ragdoll are colliders, too. Default false, for a file names what is to collide.
+    pub hits_body: bool,
+}
+
+/// Bone that swings about its joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringBone {
+    /// Joint that turns.
+    pub joint: JointIdx,
+    /// Place of the bone's tip in the joint's own space, file units. Zero: it does not swing.
+    pub tail: Vec3,
+    /// Speed toward the rest pose that the spring gives the tip, file units a second, ≥ 0.
+    pub stiffness: f32,
+    /// Speed that gravity gives the tip, file units a second, the file's axes.
+    pub gravity: Vec3,
+    /// Share of the tip's motion that a sixtieth of a second takes, 0..=1.
+    pub drag: f32,
+    /// Radius of the tip against colliders, file units, ≥ 0.
+    pub radius: f32,
+    /// Limit of its turn from the rest pose.
+    pub limit: Option<SpringLimit>,
+}
+
+impl Default for SpringBone {
+    /// Defaults of VRMC_springBone: stiffness 1, drag 0.5, neither gravity nor radius nor limit; joint 0, and no length.
+    fn default() -> Self {
+        Self {
+            joint: 0,
+            tail: Vec3::ZERO,
+            stiffness: 1.0,
+            gravity: Vec3::ZERO,
+            drag: 0.5,
+            radius: 0.0,
+            limit: None,
+        }
+    }
+}
+
+/// Limit of the direction of a bone (`VRMC_springBone_limit`).
+///
+/// Directions are seen in a frame whose +Y is the bone at rest: the joint's axes, turned the shortest way so that +Y comes
+/// to lie along the bone, then by [`rotation`](Self::rotation).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringLimit {
+    /// Shape of what is allowed.
+    pub kind: LimitKind,
+    /// Turn of the frame, in the frame.
+    pub rotation: Rotation,
+}
+
+/// Shape of a limit, angles in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LimitKind {
+    /// Within this angle of +Y.
+    Cone {
+        /// 0..=π.
+        angle: f32,
+    },
+    /// In the plane at right angles to X, within this angle of +Y.
+    Hinge {
+        /// 0..=π.
+        angle: f32,
+    },
+    /// Within a turn about X, and an elevation out of the plane at right angles to X.
+    Spherical {
+        /// Most turn about X, 0..=π.
+        phi: f32,
+        /// Most elevation, 0..=π/2.
+        theta: f32,
+    },
+}
+
+/// Shape that tips of springs are kept out of, or in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringCollider {
+    /// Joint that carries it.
+    pub joint: JointIdx,
+    /// Shape, in the joint's own space.
+    pub shape: ColliderShape,
+}
+
+/// Shape of a collider in the space of its joint, file units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ColliderShape {
+    /// A ball.
+    Sphere {
+        /// Middle.
+        offset: Vec3,
+        /// ≥ 0.
+        radius: f32,
+        /// Side on which tips stay.
+        keeps: Side,
+    },
+    /// A capsule.
+    Capsule {
+        /// Middle of the cap at one end.
+        offset: Vec3,
+        /// Middle of the cap at the other.
+        tail: Vec3,
+        /// ≥ 0.
+        radius: f32,
+        /// Side on which tips stay.
+        keeps: Side,
+    },
+    /// A plane without end; tips stay on the side that its normal points to.
+    Plane {
+        /// Point of it.
+        offset: Vec3,
+        /// Unit.
+        normal: Vec3,
+    },
+}
+
+/// Side of a collider's surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// Out of it. Default.
+    #[default]
+    Outside,
+    /// Within it.
+    Inside,
+}

@@ -1,0 +1,184 @@
+//! Springs of VRM files, both versions, and files that lie about them.
+
+use crate::data::shared_data;
+use sinew_anim::springs::{ColliderShape, LimitKind, Side};
+use sinew_anim::{SpringCollider, Springs};
+use sinew_formats::{Document, ReadOptions, Result, load_gltf, no_files, read_gltf, read_ragdoll_settings};
+use sinew_math::{Rotation, Vec3};
+use sinew_ragdoll::settings::SpringSource;
+
+/// Six nodes: a body with a head, a strand of three on the head, and a place beside it.
+const NODES: &str = r#""asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[
+    {"name":"body","children":[1]},{"name":"head","translation":[0,1,0],"children":[2,5]},
+    {"name":"a","translation":[0,0.1,0],"rotation":[0,0,1,0],"children":[3]},
+    {"name":"b","translation":[0,0.2,0],"children":[4]},{"name":"c","translation":[0,0.3,0]},
+    {"name":"side","translation":[0.5,0,0]}]"#;
+
+fn read(extensions: &str) -> Result<Document> {
+    let json = format!("{{{NODES},\"extensions\":{extensions}}}");
+    read_gltf(json.as_bytes(), ReadOptions::default(), &mut no_files)
+}
+
+fn springs(extensions: &str) -> Springs {
+    read(extensions).unwrap().rig.springs
+}
+
+#[test]
+fn version_1_with_extended_colliders_and_limits() {
+    let springs = springs(
+        r#"{"VRMC_springBone":{"specVersion":"1.0",
+        "colliders":[
+            {"node":1,"shape":{"sphere":{"offset":[0,0.1,0],"radius":0.2}}},
+            {"node":0,"shape":{"capsule":{"radius":0.1,"tail":[0,0,1]}}},
+            {"node":1,"shape":{"sphere":{"offset":[0,-10000,0]}},"extensions":{"VRMC_springBone_extended_collider":
+                {"specVersion":"1.0","shape":{"sphere":{"radius":0.5,"inside":true}}}}},
+            {"node":1,"shape":{"sphere":{}},"extensions":{"VRMC_springBone_extended_collider":
+                {"specVersion":"1.0","shape":{"plane":{"offset":[0,0,1],"normal":[0,2,0]}}}}}],
+        "colliderGroups":[{"colliders":[0,1]},{"name":"more","colliders":[1,3,2]}],
+        "springs":[{"name":"hair","center":0,"colliderGroups":[0,1],"joints":[
+            {"node":2,"stiffness":0.7,"gravityPower":0.5,"gravityDir":[0,0,-1],"dragForce":0.3,"hitRadius":0.02,
+             "extensions":{"VRMC_springBone_limit":{"limit":{"cone":{"angle":0.8,"rotation":[0,0,2,0]}}}}},
+            {"node":3},{"node":4}]}]}}"#,
+    );
+    let [chain] = &springs.chains[..] else { panic!("{springs:?}") };
+    assert_eq!((chain.name.as_str(), chain.center, chain.hits_body), ("hair", Some(0), false));
+    assert_eq!(chain.colliders, [0, 1, 3, 2], "each once, in the order of the groups");
+    let [a, b] = chain.bones[..] else { panic!("the last joint is an end only") };
+    assert_eq!((a.joint, a.stiffness, a.drag, a.radius), (2, 0.7, 0.3, 0.02));
+    assert_eq!((a.gravity, a.tail), (Vec3::new(0.0, 0.0, -0.5), Vec3::new(0.0, 0.2, 0.0)));
+    let limit = a.limit.unwrap();
+    assert_eq!(
+        (limit.kind, limit.rotation.angle_to(Rotation::from_xyzw(0.0, 0.0, 1.0, 0.0))),
+        (LimitKind::Cone { angle: 0.8 }, 0.0)
+    );
+    // Defaults of the schema.
+    assert_eq!((b.stiffness, b.drag, b.radius, b.gravity, b.limit), (1.0, 0.5, 0.0, Vec3::ZERO, None));
+    let sphere = |offset, radius, keeps| ColliderShape::Sphere { offset, radius, keeps };
+    let due = [
+        (1, sphere(Vec3::Y * 0.1, 0.2, Side::Outside)),
+        (0, ColliderShape::Capsule { offset: Vec3::ZERO, tail: Vec3::Z, radius: 0.1, keeps: Side::Outside }),
+        (1, sphere(Vec3::ZERO, 0.5, Side::Inside)),
+        (1, ColliderShape::Plane { offset: Vec3::Z, normal: Vec3::Y }),
+    ];
+    assert_eq!(springs.colliders, due.map(|(joint, shape)| SpringCollider { joint, shape }));
+}
+
+#[test]
+fn limits_of_springs_hold_for_their_joints() {
+    let limited = |limit: &str| {
+        let springs = springs(&format!(
+            r#"{{"VRMC_springBone":{{"springs":[{{"extensions":{{"VRMC_springBone_limit":{limit}}},
+            "joints":[{{"node":2}},{{"node":4}}]}}]}}}}"#
+        ));
+        // A joint between the two is passed over: the tip is that of the next one named.
+        let tail = springs.chains[0].bones[0].tail;
+        assert!((tail - Vec3::new(0.0, 0.5, 0.0)).length() < 1e-6, "{tail}");
+        springs.chains[0].bones[0].limit.unwrap().kind
+    };
+    let pi = core::f32::consts::PI;
+    assert_eq!(limited(r#"{"hinge":{"angle":9}}"#), LimitKind::Hinge { angle: pi });
+    let spherical = LimitKind::Spherical { phi: 1.0, theta: pi / 2.0 };
+    assert_eq!(limited(r#"{"limit":{"spherical":{"phi":1,"theta":2}}}"#), spherical);
+}
+
+#[test]
+fn version_0_swings_all_that_hangs_on_a_root() {
+    let springs = springs(
+        r#"{"VRM":{"secondaryAnimation":{
+        "boneGroups":[{"comment":"hair","stiffiness":2,"gravityPower":0.5,"gravityDir":{"x":0,"y":-1,"z":0.5},
+            "dragForce":0.4,"center":-1,"hitRadius":0.03,"bones":[2,-1,3],"colliderGroups":[0]}],
+        "colliderGroups":[{"node":1,"colliders":[{"offset":{"x":0.1,"y":0.2,"z":0.3},"radius":0.1}]}]}}}"#,
+    );
+    let [chain] = &springs.chains[..] else { panic!("its second root hangs on the first: {springs:?}") };
+    assert_eq!((chain.name.as_str(), chain.center, &chain.colliders[..]), ("hair", None, &[0][..]));
+    let joints: Vec<usize> = chain.bones.iter().map(|bone| bone.joint).collect();
+    assert_eq!(joints, [2, 3, 4]);
+    // Unity's z points the other way.
+    assert_eq!(chain.bones[0].gravity, Vec3::new(0.0, -0.5, -0.25));
+    assert_eq!((chain.bones[0].stiffness, chain.bones[0].drag, chain.bones[0].radius), (2.0, 0.4, 0.03));
+    // Seven centimetres beyond the last.
+    assert!((chain.bones[2].tail - Vec3::new(0.0, 0.07, 0.0)).length() < 1e-6, "{}", chain.bones[2].tail);
+    let offset = Vec3::new(0.1, 0.2, -0.3);
+    let shape = ColliderShape::Sphere { offset, radius: 0.1, keeps: Side::Outside };
+    assert_eq!(springs.colliders, [SpringCollider { joint: 1, shape }]);
+}
+
+#[test]
+fn what_lies_is_told_with_its_place() {
+    let version_1 = |what: &str| format!("{{\"VRMC_springBone\":{{{what}}}}}");
+    let version_0 = |what: &str| format!("{{\"VRM\":{{\"secondaryAnimation\":{{{what}}}}}}}");
+    for (extensions, what, place) in [
+        (version_1(r#""springs":3"#), "must be an array", "springs"),
+        (version_1(r#""springs":[{"joints":[{"node":99}]}]"#), "out of range", "joints[0].node"),
+        (version_1(r#""springs":[{"joints":[{}]}]"#), "`node` is missing", "joints[0]"),
+        (version_1(r#""springs":[{"colliderGroups":[0]}]"#), "out of range", "colliderGroups[0]"),
+        (version_1(r#""colliderGroups":[{"colliders":[0]}]"#), "out of range", "colliders[0]"),
+        (version_1(r#""colliders":[{"node":1,"shape":{}}]"#), "must have a sphere", "colliders[0].shape"),
+        (version_1(r#""colliders":[{"node":1,"shape":{"sphere":{"radius":-1}}}]"#), "negative", "radius"),
+        (
+            version_1(r#""springs":[{"joints":[{"node":2,"stiffness":1e99},{"node":3}]}]"#),
+            "too large",
+            "stiffness",
+        ),
+        (version_1(r#""springs":[{"center":-1}]"#), "whole number", "center"),
+        (version_0(r#""boneGroups":[{"bones":[77]}]"#), "out of range", "bones[0]"),
+        (version_0(r#""boneGroups":[{"gravityDir":[0,1,0]}]"#), "must be an object", "gravityDir"),
+    ] {
+        let error = read(&extensions).expect_err(&extensions);
+        assert!(error.what.contains(what) && error.where_.contains(place), "{extensions}: {error}");
+    }
+}
+
+#[test]
+fn what_cannot_swing_is_left_out_with_a_warning() {
+    // A joint that does not hang on the one before it, and one that is in two springs.
+    let document = read(
+        r#"{"VRMC_springBone":{"springs":[{"joints":[{"node":2},{"node":3},{"node":5}]},
+        {"joints":[{"node":2},{"node":3},{"node":4}]}]}}"#,
+    )
+    .unwrap();
+    let joints: Vec<Vec<usize>> =
+        document.rig.springs.chains.iter().map(|c| c.bones.iter().map(|b| b.joint).collect()).collect();
+    assert_eq!(joints, [[2], [3]]);
+    assert_eq!(document.warnings.len(), 2, "{:?}", document.warnings);
+    assert!(document.warnings[0].contains("must hang on") && document.warnings[0].contains("joints[2]"));
+    assert!(document.warnings[1].contains("another spring"));
+}
+
+#[test]
+fn groups_that_multiply_are_refused() {
+    // A few kilobytes that would name millions of colliders.
+    let colliders = vec![r#"{"node":1,"shape":{"sphere":{}}}"#; 2000].join(",");
+    let members: Vec<String> = (0..2000).map(|index| index.to_string()).collect();
+    let group = format!(r#"{{"colliders":[{}]}}"#, members.join(","));
+    let groups = vec!["0"; 3000].join(",");
+    let spring = format!(r#"{{"colliderGroups":[{groups}],"joints":[{{"node":2}},{{"node":3}}]}}"#);
+    let many = vec![spring; 40].join(",");
+    let error = read(&format!(
+        r#"{{"VRMC_springBone":{{"colliders":[{colliders}],"colliderGroups":[{group}],"springs":[{many}]}}}}"#
+    ))
+    .expect_err("1.9 GB of references");
+    assert!(error.what.contains("more than the size of the file"), "{error}");
+}
+
+#[test]
+fn settings_name_the_source() {
+    let read = |word: &str| {
+        let json = format!(r#"{{"sinew":"ragdoll-settings","version":1,"springs":"{word}"}}"#);
+        read_ragdoll_settings(json.as_bytes())
+    };
+    assert_eq!(read("names").unwrap().springs, Some(SpringSource::Names));
+    assert_eq!(read("none").unwrap().springs, Some(SpringSource::None));
+    let error = read("name").unwrap_err();
+    assert!(error.what.contains("did you mean `names`?"), "{error}");
+}
+
+#[test]
+fn shared_avatars_are_read() {
+    let Some(folder) = shared_data() else { return };
+    let springs =
+        |name: &str| load_gltf(&folder.join("rigs").join(name), ReadOptions::default()).unwrap().rig.springs;
+    // One bone group without bones; none.
+    assert_eq!(springs("CoolLoops_mixamorig_vrm0.vrm"), Springs::default());
+    assert_eq!(springs("vrm1_unskinned_humanoid.vrm"), Springs::default());
+}

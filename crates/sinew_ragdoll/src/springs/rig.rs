@@ -1,0 +1,254 @@
+//! Springs as they are stepped: in metres, joints that matter alone, parents first.
+
+use super::limit::Limit;
+use crate::def::RagdollDef;
+use crate::mapping::Mapping;
+use sinew_anim::springs::{ColliderShape, Springs};
+use sinew_anim::{JointIdx, Rig};
+use sinew_math::{Affine, Transform, Vec3, max, normalize_or};
+use sinew_physics::Shape;
+
+/// Joint that springs hang on, swing with, or carry colliders.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Node {
+    pub joint: JointIdx,
+    /// Index among the nodes; smaller than its own.
+    pub parent: Option<usize>,
+    /// Bone that turns it.
+    pub bone: Option<usize>,
+    /// It swings, or something above it does.
+    pub swings: bool,
+}
+
+/// Bone that swings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bone {
+    pub node: usize,
+    pub chain: usize,
+    /// Tip in the joint's space, file units, and its direction there.
+    pub tail: Vec3,
+    pub axis: Vec3,
+    /// m/s toward the rest pose.
+    pub stiffness: f32,
+    /// m/s, character axes: where the character stands does not turn it.
+    pub gravity: Vec3,
+    pub drag: f32,
+    /// Metres.
+    pub radius: f32,
+    pub limit: Option<Limit>,
+}
+
+/// Chain of bones.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Chain {
+    /// Node in whose space inertia is felt.
+    pub center: Option<usize>,
+    /// Indices of colliders, those that are there.
+    pub colliders: Vec<usize>,
+    pub hits_body: bool,
+}
+
+/// Collider on a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Collider {
+    pub node: usize,
+    pub shape: ColliderShape,
+}
+
+/// Springs of a kind of character, ready to be stepped. Immutable.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SpringRig {
+    source: Springs,
+    pub(super) nodes: Vec<Node>,
+    /// By node, ascending, so that what hangs on a bone comes after it.
+    pub(super) bones: Vec<Bone>,
+    pub(super) chains: Vec<Chain>,
+    pub(super) colliders: Vec<Collider>,
+    /// A collider hangs on what swings.
+    pub(super) swinging_colliders: bool,
+    /// Shapes of the ragdoll's bodies, for chains that meet them.
+    pub(super) bodies: Vec<Shape>,
+    /// Bits of the first 64 bodies that each bone is clear of when at rest in the bind pose, and so may meet.
+    pub(super) meets: Vec<u64>,
+    /// Nodes that chains hang on, each with the farthest that a tip comes from it, metres.
+    pub(super) anchors: Vec<(usize, f32)>,
+    left_out: Vec<JointIdx>,
+}
+
+impl SpringRig {
+    /// Springs of a rig with a ragdoll, `bind_model` its bind pose in model space. Bones are left out ([`left_out`](Self::left_out)) whose joints a
+    /// body moves, or carry what one moves, are named twice, hang on nothing, or have no length.
+    ///
+    /// # Panics
+    /// If a joint or collider is named that is not there.
+    pub fn new(
+        rig: &Rig,
+        ragdoll: &RagdollDef,
+        mapping: &Mapping,
+        bind_model: &[Affine],
+        springs: &Springs,
+    ) -> Self {
+        let mut it = Self { source: springs.clone(), ..Self::default() };
+        let mut bone_at: Vec<Option<(usize, usize)>> = vec![None; rig.joints.len()];
+        for (c, chain) in springs.chains.iter().enumerate() {
+            for (b, bone) in chain.bones.iter().enumerate() {
+                let hangs = rig.joints[bone.joint].parent.is_some() && bone.tail.length() > 0.0;
+                let is_free = !mapping.moves_bodies(bone.joint) && bone_at[bone.joint].is_none();
+                if hangs && is_free {
+                    bone_at[bone.joint] = Some((c, b));
+                } else {
+                    it.left_out.push(bone.joint);
+                }
+            }
+        }
+        let mut used = vec![false; springs.chains.len()];
+        bone_at.iter().flatten().for_each(|&(chain, _)| used[chain] = true);
+        let node_of = it.add_nodes(rig, springs, &bone_at, &used);
+        it.add_bones(mapping, springs, &bone_at);
+        let mut kept: Vec<Option<usize>> = Vec::with_capacity(springs.colliders.len());
+        for collider in &springs.colliders {
+            let node = node_of[collider.joint];
+            kept.push(node.map(|_| it.colliders.len()));
+            it.colliders.extend(node.map(|node| Collider { node, shape: collider.shape }));
+        }
+        it.chains = springs
+            .chains
+            .iter()
+            .map(|chain| Chain {
+                center: chain.center.and_then(|joint| node_of[joint]),
+                colliders: chain.colliders.iter().filter_map(|&collider| kept[collider]).collect(),
+                hits_body: chain.hits_body,
+            })
+            .collect();
+        it.swinging_colliders = it.colliders.iter().any(|collider| it.nodes[collider.node].swings);
+        it.meet_bodies(ragdoll, mapping, bind_model);
+        it.add_anchors(mapping, bind_model);
+        it
+    }
+
+    /// Nodes: joints of bones, centres and colliders of chains that have a bone, and all above them. Gives the node of every joint.
+    fn add_nodes(
+        &mut self,
+        rig: &Rig,
+        springs: &Springs,
+        bone_at: &[Option<(usize, usize)>],
+        used: &[bool],
+    ) -> Vec<Option<usize>> {
+        let mut needed: Vec<bool> = bone_at.iter().map(Option::is_some).collect();
+        for chain in springs.chains.iter().zip(used).filter(|(_, used)| **used).map(|(chain, _)| chain) {
+            chain.center.iter().for_each(|&joint| needed[joint] = true);
+            chain.colliders.iter().for_each(|&c| needed[springs.colliders[c].joint] = true);
+        }
+        for joint in (0..needed.len()).rev() {
+            if let Some(parent) = rig.joints[joint].parent.filter(|_| needed[joint]) {
+                needed[parent] = true;
+            }
+        }
+        let mut node_of: Vec<Option<usize>> = vec![None; needed.len()];
+        let mut bones = 0;
+        for joint in (0..needed.len()).filter(|&joint| needed[joint]) {
+            let parent = rig.joints[joint].parent.and_then(|parent| node_of[parent]);
+            let bone = bone_at[joint].map(|_| bones);
+            bones += usize::from(bone.is_some());
+            let swings = bone.is_some() || parent.is_some_and(|parent| self.nodes[parent].swings);
+            node_of[joint] = Some(self.nodes.len());
+            self.nodes.push(Node { joint, parent, bone, swings });
+        }
+        node_of
+    }
+
+    fn add_bones(&mut self, mapping: &Mapping, springs: &Springs, bone_at: &[Option<(usize, usize)>]) {
+        let character = mapping.character_from_model();
+        let metres = character.linear.x_axis.length();
+        for (node, at) in self.nodes.iter().enumerate().filter(|(_, node)| node.bone.is_some()) {
+            let (chain, index) = bone_at[at.joint].expect("a bone's node has one");
+            let bone = &springs.chains[chain].bones[index];
+            let axis = normalize_or(bone.tail, Vec3::Y);
+            self.bones.push(Bone {
+                node,
+                chain,
+                tail: bone.tail,
+                axis,
+                stiffness: bone.stiffness * metres,
+                gravity: character.vector(bone.gravity),
+                drag: bone.drag,
+                radius: bone.radius * metres,
+                limit: bone.limit.map(|limit| Limit::new(&limit, axis)),
+            });
+        }
+    }
+
+    /// Anchors, with their reach along the bones as the bind pose has them.
+    fn add_anchors(&mut self, mapping: &Mapping, bind_model: &[Affine]) {
+        let character = mapping.character_from_model();
+        let place = |node: &Node| character.point(bind_model[node.joint].translation);
+        // Per node: its anchor, and how far it may be from there.
+        let mut ways: Vec<(usize, f32)> = Vec::with_capacity(self.nodes.len());
+        for (k, node) in self.nodes.iter().enumerate() {
+            ways.push(match node.parent.filter(|_| node.swings) {
+                Some(parent) => {
+                    let (anchor, way) = ways[parent];
+                    (anchor, way + (place(node) - place(&self.nodes[parent])).length())
+                }
+                None => (k, 0.0),
+            });
+        }
+        let mut farthest = vec![0.0; self.nodes.len()];
+        for bone in &self.bones {
+            let (anchor, way) = ways[bone.node];
+            let bind = &bind_model[self.nodes[bone.node].joint];
+            let length = character.vector(bind.vector(bone.tail)).length();
+            farthest[anchor] = max(farthest[anchor], way + length + bone.radius);
+        }
+        self.anchors = farthest.into_iter().enumerate().filter(|(_, reach)| *reach > 0.0).collect();
+    }
+
+    /// Bodies that each bone may meet: not those that its tip touches in the bind pose.
+    fn meet_bodies(&mut self, ragdoll: &RagdollDef, mapping: &Mapping, bind_model: &[Affine]) {
+        if !self.chains.iter().any(|chain| chain.hits_body) {
+            self.meets = vec![0; self.bones.len()];
+            return;
+        }
+        let (mut frames, bodies) = (Vec::new(), &ragdoll.bodies[..ragdoll.bodies.len().min(64)]);
+        mapping.bodies_from_model(bind_model, Transform::IDENTITY, &mut frames);
+        let character = mapping.character_from_model();
+        let clear = |bone: &Bone| {
+            let tip = character.point(bind_model[self.nodes[bone.node].joint].point(bone.tail));
+            bodies.iter().zip(&frames).enumerate().fold(0, |bits, (index, (body, frame))| {
+                let is_clear = body.shape.signed_distance(frame, tip).0 >= bone.radius;
+                bits | (u64::from(is_clear) << index)
+            })
+        };
+        self.meets = self
+            .bones
+            .iter()
+            .map(|bone| if self.chains[bone.chain].hits_body { clear(bone) } else { 0 })
+            .collect();
+        self.bodies = bodies.iter().map(|body| body.shape.clone()).collect();
+    }
+
+    /// Springs that this was made from.
+    pub fn source(&self) -> &Springs {
+        &self.source
+    }
+
+    /// Joints that swing, parents first.
+    pub fn joints(&self) -> impl ExactSizeIterator<Item = JointIdx> {
+        self.bones.iter().map(|bone| self.nodes[bone.node].joint)
+    }
+
+    /// Joints of bones that were left out.
+    pub fn left_out(&self) -> &[JointIdx] {
+        &self.left_out
+    }
+
+    /// True if a chain meets the bodies of the character.
+    pub fn meets_bodies(&self) -> bool {
+        !self.bodies.is_empty()
+    }
+
+    /// True if nothing swings.
+    pub fn is_empty(&self) -> bool {
+        self.bones.is_empty()
+    }
+}
