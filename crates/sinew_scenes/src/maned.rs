@@ -2,8 +2,8 @@
 
 use sinew::anim::springs::{ColliderShape, Side};
 use sinew::anim::{
-    Joint, JointIdx, LocalTransform, Mesh, Primitive, Rig, SpringBone, SpringChain, SpringCollider, Springs,
-    analyze,
+    Joint, JointIdx, LocalTransform, Primitive, Rig, RigMesh, SpringBone, SpringChain, SpringCollider,
+    Springs, analyze,
 };
 use sinew::math::Vec3;
 use sinew::ragdoll::{BuildOptions, CharacterDef, build};
@@ -81,7 +81,7 @@ fn grow(rig: &mut Rig, head: JointIdx, strand: &Strand, settings: &SpringBone) -
         if link < strand.links {
             bones.push(SpringBone { joint, tail: strand.link, ..*settings });
             let name = strand.name.to_owned();
-            rig.meshes.push(Mesh { name, joint, skin: None, primitives: vec![spindle(strand.link)] });
+            rig.meshes.push(RigMesh { name, joint, skin: None, primitives: vec![spindle(strand.link)] });
         }
         parent = joint;
     }
