@@ -121,3 +121,10 @@ pub(crate) const FLOOR_TIME: f32 = 0.12;
 ///
 /// A larger angle: a crouch is the reference. A smaller one: no frame of a capture is. Shown by the tests of `mocap`.
 pub(crate) const CLEARLY_STANDING: f32 = 0.85;
+
+// springs/guess.rs
+
+/// Radius of a spring's tip over the mean length of its chain's bones, a ratio.
+///
+/// Larger: hair stands off the head. Smaller: it sinks into what it lies on. Shown by the tests of `springs`.
+pub(crate) const SPRING_RADIUS: f32 = 0.15;

@@ -3,6 +3,7 @@
 use super::{LimitKind, SpringBone, SpringChain, SpringLimit, Springs};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::words;
+use crate::tuning::SPRING_RADIUS;
 use sinew_math::{Rotation, Vec3};
 
 /// Kind of thing that swings, and how.
@@ -67,9 +68,6 @@ const MATERIALS: [Material; 6] = [
     },
 ];
 
-/// Radius of a tip over the mean length of its chain's bones.
-const RADIUS: f32 = 0.15;
-
 /// Springs by the names of joints: hair, ears, tails, skirts, coats and capes, ribbons and straps, breasts, for files that state none.
 /// `up` is the file's axis that points up, unit. Chains run along children of one kind; a joint without a child ends one and does not
 /// swing, for nobody knows how long it is. They meet the body of the character.
@@ -116,7 +114,7 @@ fn chain(name: &str, bones: &[(JointIdx, Vec3)], material: &Material, up: Vec3) 
         stiffness,
         gravity: up * (-material.sag * stiffness),
         drag: material.drag,
-        radius: RADIUS * length,
+        radius: SPRING_RADIUS * length,
         limit: Some(SpringLimit {
             kind: LimitKind::Cone { angle: material.cone },
             rotation: Rotation::IDENTITY,

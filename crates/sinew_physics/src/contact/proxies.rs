@@ -771,6 +771,9 @@ impl Proxies {
             self.traces[first as usize..(first + home.count) as usize].fill(Trace::NONE);
             self.moving.tree.reserve(count);
             self.scratch.reserve(count);
+            // All may leave their room at once.
+            self.stray.reserve(count);
+            self.loose.reserve(count);
         }
         let unbounded = (0..count).filter(|&shape| !is_bounded(body, shape));
         self.unbounded.extend(unbounded.map(|shape| Owner { body: index, shape }));

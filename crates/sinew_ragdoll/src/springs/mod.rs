@@ -28,9 +28,8 @@ mod limit;
 mod rig;
 mod save;
 mod step;
+mod tuning;
 
 pub use rig::SpringRig;
 pub use step::{SpringStep, SpringSwing};
-
-/// Time between two ticks, seconds: that of the frames for which springs are authored.
-pub const TICK: f32 = 1.0 / 60.0;
+pub use tuning::TICK;

@@ -3,19 +3,14 @@
 use super::TICK;
 use super::collide::{Gap, Surroundings, gap};
 use super::rig::{Bone, SpringRig};
+use super::tuning::{ALIKE, SLIGHT_DRAG, SNAP};
 use sinew_anim::LocalTransform;
 use sinew_math::trig::pow;
 use sinew_math::{Affine, Mat3, Rotation, Transform, Vec3, direction, max, normalize_or};
 use sinew_physics::{BodyId, World};
 
-/// Distance from a tick, in ticks, within which a step ends at it: what sums of rounded steps are off by, and no more than 17 µs.
-const SNAP: f32 = 1e-3;
 /// Most ticks of one step: what takes longer than a second at once starts over from its last second.
 const MOST_TICKS: u32 = 60;
-/// Drag below which a part of a tick is taken for free of it: the exact form would lose its digits.
-const SLIGHT_DRAG: f32 = 1e-3;
-/// Most that the lengths of two steps in a row may differ by for the way between poses to be bent: a factor.
-const ALIKE: f32 = 4.0;
 /// Times that a tip is pushed out of the world within a tick: a corner has two sides.
 const PUSHES: usize = 2;
 
@@ -312,7 +307,7 @@ fn flight(way: Vec3, push: Vec3, drag: f32, rho: f32) -> Vec3 {
         return way * keeps + push;
     }
     if drag < SLIGHT_DRAG {
-        return way * rho + push * (0.5 * rho * (rho + 1.0));
+        return way * (keeps * rho) + push * (0.5 * rho * (rho + 1.0));
     }
     let steady = push / drag;
     let slowed = if keeps > 0.0 { keeps * (1.0 - pow(keeps, rho)) / drag } else { 0.0 };

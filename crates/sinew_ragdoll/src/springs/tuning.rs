@@ -1,0 +1,23 @@
+//! Constants of behaviour of springs: each with its unit, its reason, and what a larger and a smaller one does.
+
+/// Time between two ticks, seconds: that of the frames for which springs are authored.
+///
+/// It belongs to the format: stiffness, drag and gravity of a file are those of 60 frames a second. Shown by the tests of `springs`.
+pub const TICK: f32 = 1.0 / 60.0;
+
+/// Distance from a tick, in ticks, within which a step ends at it: what sums of rounded steps are off by, and no more than 17 µs.
+///
+/// Larger: a frame is shown early by as much. Smaller: rounding decides whether a tick is taken in this step or in the next. Shown by the
+/// tests of `springs` at 30 to 240 frames a second.
+pub(super) const SNAP: f32 = 1e-3;
+
+/// Drag below which a part of a tick is taken for free of it, a share of the speed: the exact form would lose its digits.
+///
+/// Larger: what is shown between ticks is off by as much of its way. Smaller: it is off by rounding. Shown by `hair`.
+pub(super) const SLIGHT_DRAG: f32 = 1e-3;
+
+/// Most that the lengths of two steps in a row may differ by for the way between poses to be bent, a factor.
+///
+/// Larger: a hitch of the host's clock bends the way after it. Smaller: a frame rate that wavers has corners in its ways. Shown by the tests of
+/// `springs` with uneven steps.
+pub(super) const ALIKE: f32 = 4.0;
