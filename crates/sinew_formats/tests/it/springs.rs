@@ -177,7 +177,7 @@ fn settings_name_the_source() {
 fn shared_avatars_are_read() {
     let Some(folder) = shared_data() else { return };
     let springs =
-        |name: &str| load_gltf(&folder.join("rigs").join(name), ReadOptions::default()).unwrap().rig.springs;
+        |name: &str| load_gltf(folder.join("rigs").join(name), ReadOptions::default()).unwrap().rig.springs;
     // One bone group without bones; none.
     assert_eq!(springs("CoolLoops_mixamorig_vrm0.vrm"), Springs::default());
     assert_eq!(springs("vrm1_unskinned_humanoid.vrm"), Springs::default());
