@@ -69,7 +69,7 @@ pub enum SpringSource {
     /// Springs that the file states. Default.
     #[default]
     File,
-    /// Springs that the file states, and where it states none what names of joints tell ([`guess_springs`](sinew_anim::guess_springs)).
+    /// Springs that the file states, and where it states none what names of joints tell ([`guess_springs`]).
     Names,
     /// None.
     None,
