@@ -39,12 +39,12 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     findings
 }
 
-/// What a crate's house is like.
+/// Figures of a crate's files and names, a row of the table.
 pub struct House<'a> {
     pub name: &'a str,
     /// Files of its source, tests left out.
     pub files: usize,
-    /// Of those, beside `lib.rs`.
+    /// Number of files that stand flat beside `lib.rs`.
     pub flat: usize,
     /// Files of the largest circle; 1 if there is none.
     pub circle: usize,

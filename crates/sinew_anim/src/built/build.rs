@@ -120,7 +120,7 @@ impl BuiltClip {
     /// [`sample`](crate::clip::sample::sample()). A channel that moves nothing takes no keys.
     ///
     /// # Errors
-    /// Where the clip breaks what [`Clip`] promises, with the channel and the key; see [`ClipBuildError`].
+    /// Channel and key at which the clip breaks what [`Clip`] promises; see [`ClipBuildError`].
     pub fn build(clip: &Clip, rig: &Rig, options: &ClipBuildOptions) -> Result<Self, ClipBuildError> {
         check(clip, rig)?;
         let mut base = match options.fill {
