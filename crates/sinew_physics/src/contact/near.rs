@@ -109,8 +109,8 @@ pub(crate) struct NearPairs {
     pub list: Vec<NearPair>,
     fresh: Vec<NearPair>,
     next: Vec<NearPair>,
-    /// Number that were found of shapes that strayed, and one for each time, since those went that do not overlap any more.
-    strayed: usize,
+    /// Number that were found of shapes whose bounds were enlarged, and one for each time, since those went that do not overlap any more.
+    enlarged: usize,
     /// Version of the filter that was asked last.
     filter_version: u64,
 }
@@ -118,7 +118,7 @@ pub(crate) struct NearPairs {
 impl NearPairs {
     /// Brings the list up to date.
     pub fn update(&mut self, proxies: &mut Proxies, bodies: &Arena<Body>, filter: PairFilter<'_>) {
-        if proxies.has_loose() {
+        if proxies.has_pending() {
             self.fresh.clear();
             let fresh = &mut self.fresh;
             proxies.search(bodies, |(p, leaf_p), (q, leaf_q)| {
@@ -128,12 +128,12 @@ impl NearPairs {
             });
             self.fresh.sort_unstable_by_key(|pair| pair.key);
             self.fresh.dedup_by_key(|pair| pair.key);
-            if proxies.only_strayed() && self.strayed + self.fresh.len() <= self.list.len() / 8 {
+            if proxies.only_enlarged() && self.enlarged + self.fresh.len() <= self.list.len() / 8 {
                 self.add(bodies, filter);
             } else {
                 self.merge(proxies, bodies, filter);
             }
-            proxies.fasten();
+            proxies.clear_pending();
         }
         // A function of the user's is asked in every step: that is what it was told.
         let asks = core::mem::replace(&mut self.filter_version, filter.version) != filter.version
@@ -147,7 +147,7 @@ impl NearPairs {
 
     /// Takes in what was not known. Others stay, although their bounds may not overlap any more.
     fn add(&mut self, bodies: &Arena<Body>, filter: PairFilter<'_>) {
-        self.strayed += self.fresh.len() + 1;
+        self.enlarged += self.fresh.len() + 1;
         let list = &mut self.list;
         self.fresh.retain(|pair| list.binary_search_by_key(&pair.key, |old| old.key).is_err());
         for pair in &mut self.fresh {
@@ -156,11 +156,11 @@ impl NearPairs {
         insert_sorted(list, &mut self.fresh, |pair| pair.key);
     }
 
-    /// Pairs of loose shapes go, unless they were found again: then they keep what they know.
+    /// Pairs of pending shapes go, unless they were found again: then they keep what they know.
     fn merge(&mut self, proxies: &Proxies, bodies: &Arena<Body>, filter: PairFilter<'_>) {
-        let prunes = self.strayed > 0;
-        let only_strayed = proxies.only_strayed();
-        self.strayed = 0;
+        let prunes = self.enlarged > 0;
+        let only_enlarged = proxies.only_enlarged();
+        self.enlarged = 0;
         self.next.clear();
         let mut fresh = self.fresh.iter().peekable();
         for old in &self.list {
@@ -169,8 +169,8 @@ impl NearPairs {
             }
             if let Some(pair) = fresh.next_if(|pair| pair.key == old.key) {
                 let known = NearPair { left: old.left, axis: old.axis, ..*pair };
-                self.next.push(if only_strayed { *old } else { known.met(bodies, filter) });
-            } else if !(old.leaves.iter().any(|&leaf| proxies.is_loose(leaf))
+                self.next.push(if only_enlarged { *old } else { known.met(bodies, filter) });
+            } else if !(old.leaves.iter().any(|&leaf| proxies.is_pending(leaf))
                 || prunes && proxies.are_parted(old.leaves))
             {
                 self.next.push(*old);

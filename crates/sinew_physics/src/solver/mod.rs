@@ -204,9 +204,9 @@ impl IslandSolver {
         self.drive_work = 0.0;
         self.pushed_from_outside = false;
         self.unconstrained.clear();
-        self.unconstrained.extend_from_slice(&self.velocities[..self.links.len()]);
+        self.unconstrained.extend_from_slice(&self.velocities[..moving]);
         self.contact_push.clear();
-        self.contact_push.resize(self.links.len(), Vec3::ZERO);
+        self.contact_push.resize(moving, Vec3::ZERO);
         // Only now, as an impulse among those of joints: a light body that has a motor's full push spins as it never will once its
         // joints hold, and the gyroscopic torque of that spin would do work of its own.
         self.push_saturated();

@@ -46,7 +46,7 @@ impl BroadPhase {
         dt: f32,
     ) {
         activity.return_contacts(contacts);
-        self.proxies.take_stock(bodies, activity.movers(), &meetings.changed, dt);
+        self.proxies.update_motion(bodies, activity.movers(), &meetings.changed, dt);
         self.near.update(&mut self.proxies, bodies, filter);
         self.sort_out(bodies, meetings, contacts, activity);
         bear(contacts, &mut self.born);

@@ -1,0 +1,76 @@
+//! One of the trees and whose its leaves are.
+
+use super::{FEW, Owner};
+use crate::tree::Tree;
+use std::collections::BTreeMap;
+
+/// A leaf of either tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Leaf(u32);
+
+impl Leaf {
+    const FIXED: u32 = 1 << 31;
+
+    pub(super) fn new(moves: bool, leaf: u32) -> Self {
+        Self(if moves { leaf } else { leaf | Self::FIXED })
+    }
+
+    pub(super) fn moves(self) -> bool {
+        self.0 & Self::FIXED == 0
+    }
+
+    pub(super) fn at(self) -> usize {
+        (self.0 & !Self::FIXED) as usize
+    }
+}
+
+/// A tree, and whose its leaves are.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Layer {
+    pub tree: Tree,
+    pub owners: Vec<Owner>,
+    /// True for each leaf whose pairs are being looked for anew.
+    pub is_pending: Vec<bool>,
+    /// Numbers of leaves that are not used, by how many there are in a row.
+    pub gaps: BTreeMap<u32, Vec<u32>>,
+}
+
+/// Leaves of a body: so many from `first` on, one for each shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Home {
+    pub first: u32,
+    pub count: u32,
+    pub moves: bool,
+    /// It is among those to be looked for anew.
+    pub dirty: bool,
+    /// When it last could touch something.
+    pub active: u64,
+}
+
+impl Home {
+    pub(super) fn leaf(&self, shape: u32) -> Leaf {
+        Leaf::new(self.moves, self.first + shape)
+    }
+}
+
+impl Layer {
+    /// Numbers for the shapes of a body; the first of them.
+    pub(super) fn claim(&mut self, body: u32, count: u32) -> u32 {
+        let first = match self.gaps.get_mut(&count).and_then(Vec::pop) {
+            Some(first) => first,
+            None => self.owners.len() as u32,
+        };
+        let end = (first + count) as usize;
+        if self.owners.len() < end {
+            if count as usize > FEW {
+                self.owners.reserve_exact(count as usize);
+            }
+            self.owners.resize(end, Owner { body, shape: 0 });
+            self.is_pending.resize(end, false);
+        }
+        for shape in 0..count {
+            self.owners[(first + shape) as usize] = Owner { body, shape };
+        }
+        first
+    }
+}

@@ -1,0 +1,279 @@
+//! Motion of bodies in a step, done and to come: bounds of their shapes within it, and the room in the tree that saves its upkeep.
+
+use super::{Home, Proxies, grown, thick};
+use crate::arena::Arena;
+use crate::body::def::BodyKind;
+use crate::body::{Body, Velocity};
+use crate::boxes::Aabb;
+use crate::contact::ContactKey;
+use crate::contact::tuning::{
+    BOUNDS_ROOM, BOUNDS_ROOM_LED, BOUNDS_STEPS, BOUNDS_STEPS_ALONE, BOUNDS_STEPS_LED, MARGIN,
+};
+use sinew_math::{Transform, Vec3, max, min, min3};
+
+/// Motion of a body in a step, metres.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Stride {
+    /// Motion of its centre since pairs were last looked for, and of its points besides; without end if it was put
+    /// somewhere. None at all unless `stamp` is the present one.
+    shift: Vec3,
+    turned: f32,
+    stamp: u64,
+    /// Motion in the coming step, at its present velocity.
+    ahead: Vec3,
+    spin: f32,
+    /// Room by which its bounds are larger for that, metres.
+    pub grown: f32,
+}
+
+impl Stride {
+    /// Notes the motion in a step of `dt` seconds of a body that reaches so far from its centre, metres.
+    fn set_ahead(&mut self, Velocity { linear, angular }: Velocity, arm: f32, dt: f32) {
+        self.ahead = linear * dt;
+        self.spin = angular.length() * arm * dt;
+        self.grown = (linear.length() + angular.length() * arm) * dt;
+    }
+}
+
+/// Relative motion of two bodies, metres: a bound for any two of their points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Closing {
+    /// By how much they may have come closer since pairs were last looked for.
+    pub moved: f32,
+    /// Largest gap within which points are looked for because of how fast they are, metres.
+    pub ahead: f32,
+}
+
+/// Pose and motion of a body when its bounds were last worked out.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Trace {
+    /// The body's reach: its shapes never change.
+    arm: f32,
+    pose: Transform,
+    velocity: Velocity,
+    /// As in [`Stride`].
+    shift: Vec3,
+    turned: f32,
+    /// Way that its centre may go until a ball around it, which holds all of it at rest, may leave its bounds in the tree, metres: of a
+    /// kinematic body.
+    pub free: f32,
+}
+
+/// Bounds that were not worked out.
+pub(super) const UNKNOWN: Aabb = Aabb { min: Vec3::NAN, max: Vec3::NAN };
+
+impl Trace {
+    /// Trace of a body that was put where it is.
+    pub const NONE: Self = Self {
+        arm: f32::NAN,
+        pose: Transform { translation: Vec3::NAN, ..Transform::IDENTITY },
+        velocity: Velocity { linear: Vec3::ZERO, angular: Vec3::ZERO },
+        shift: Vec3::ZERO,
+        turned: f32::INFINITY,
+        free: f32::NEG_INFINITY,
+    };
+}
+
+/// Share by which motion is taken as more than it is, and the same of the distance from the origin and of a body's size: what
+/// rounding may do to a bound and to the gap that it is taken from.
+const SLACK: f32 = 1e-3;
+const BLUR: f32 = 2e-6;
+
+/// Motion of a body's centre between two poses, and the most that any point within `arm` of it did besides, metres: by the chord of half the
+/// turn, twice as long as that of a quarter.
+fn way(from: &Transform, to: &Transform, arm: f32) -> (Vec3, f32) {
+    let (p, q) = (from.rotation, to.rotation.toward(from.rotation));
+    let turned = Vec3::new(q.x - p.x, q.y - p.y, q.z - p.z).length_squared() + (q.w - p.w) * (q.w - p.w);
+    let far = to.translation.abs();
+    let blur = BLUR * (far.x + far.y + far.z + arm);
+    (to.translation - from.translation, 2.0 * arm * turned.sqrt() * (1.0 + SLACK) + blur)
+}
+
+impl Proxies {
+    /// Works out where the `movers` may be within a step of `dt` seconds, and lets the tree follow.
+    pub fn follow(&mut self, bodies: &Arena<Body>, movers: impl Iterator<Item = u32>, dt: f32) {
+        let same_step = self.begin(dt);
+        for index in movers {
+            let body = bodies.at(index);
+            if let Some(home) = self.home(index).filter(|home| home.count > 0 && body.can_touch()) {
+                self.predict(index, home, body, same_step);
+            }
+        }
+    }
+
+    /// Works out where the `movers`, all that moves, may be within a step of `dt` seconds, and takes note of who can touch something in it and
+    /// of how far all have moved. What was `changed`, comes to be able to touch, or no longer is, is to be looked for anew.
+    pub fn update_motion(
+        &mut self,
+        bodies: &Arena<Body>,
+        movers: impl Iterator<Item = u32>,
+        changed: &[u32],
+        dt: f32,
+    ) {
+        let same_step = self.begin(dt);
+        self.stamp += 1;
+        core::mem::swap(&mut self.active, &mut self.active_before);
+        self.active.clear();
+        for index in movers {
+            let body = bodies.at(index);
+            let Some(home) = self.home(index).filter(|_| body.can_touch()) else { continue };
+            if home.count > 0 && body.kind == BodyKind::Kinematic {
+                self.predict_kinematic(index, home, body);
+            } else if home.count > 0 {
+                self.predict(index, home, body, same_step);
+                let (trace, stride) =
+                    (&mut self.traces[home.first as usize], &mut self.strides[index as usize]);
+                stride.shift = core::mem::take(&mut trace.shift);
+                stride.turned = core::mem::take(&mut trace.turned);
+                stride.stamp = self.stamp;
+            }
+            self.mark_active(index);
+        }
+        for &index in changed {
+            self.mark_active(index);
+            self.mark_dirty(index);
+        }
+        for at in 0..self.active_before.len() {
+            let index = self.active_before[at];
+            if self.home(index).is_some_and(|home| home.active != self.stamp) {
+                self.mark_dirty(index);
+            }
+        }
+        if self.dirty.len() > self.active.len() {
+            // Cheaper from the other side.
+            self.all_pending = true;
+        }
+        self.forget_motion(bodies);
+    }
+
+    /// Trees in good order for a step of `dt` seconds; true if the last was as long.
+    fn begin(&mut self, dt: f32) -> bool {
+        self.mend(false);
+        self.mend(true);
+        core::mem::replace(&mut self.dt, dt) == dt
+    }
+
+    /// Works out where a body that forces move may be within the step, and lets the tree follow.
+    fn predict(&mut self, index: u32, home: Home, body: &Body, same_step: bool) {
+        let trace = &mut self.traces[home.first as usize];
+        if same_step && trace.pose == body.world_from_principal && trace.velocity == body.velocity {
+            return;
+        }
+        // Where it was is not known of what was put somewhere.
+        let arm = if trace.arm >= 0.0 { trace.arm } else { body.reach() };
+        let (shift, turned) = way(&trace.pose, &body.world_from_principal, arm);
+        let (shift, turned) = (trace.shift + shift, trace.turned + turned);
+        let is_known = shift.is_finite() && turned >= 0.0;
+        let (shift, turned) = if is_known { (shift, turned) } else { (Vec3::ZERO, f32::INFINITY) };
+        let Body { world_from_principal: pose, velocity, .. } = *body;
+        *trace = Trace { arm, pose, velocity, shift, turned, free: f32::NEG_INFINITY };
+        self.strides[index as usize].set_ahead(velocity, arm, self.dt);
+        self.predict_bounds(index, home, body, BOUNDS_STEPS, BOUNDS_ROOM);
+    }
+
+    /// The same of a kinematic body, of which there may be many that meet nobody: as long as the tree has bounds for a small one that hold a
+    /// ball around it, nothing else is worked out, and how far it moved counts as not known.
+    fn predict_kinematic(&mut self, index: u32, home: Home, body: &Body) {
+        let (trace, stride) = (&mut self.traces[home.first as usize], &mut self.strides[index as usize]);
+        let arm = if trace.arm >= 0.0 { trace.arm } else { body.reach() };
+        stride.set_ahead(body.velocity, arm, self.dt);
+        (stride.turned, stride.stamp) = (f32::INFINITY, self.stamp);
+        let grown = stride.grown;
+        if home.count > 1 || arm > 2.0 * BOUNDS_ROOM_LED {
+            *trace = Trace { arm, ..Trace::NONE };
+            return self.predict_bounds(index, home, body, BOUNDS_STEPS, BOUNDS_ROOM);
+        }
+        let mut free = trace.free;
+        if free < grown {
+            // Should it come to be dynamic, nothing is known of how it moved.
+            *trace = Trace { arm, ..Trace::NONE };
+            free = self.free(home.first, body, arm);
+        }
+        if free >= grown {
+            self.reach[home.first as usize] = UNKNOWN;
+        } else {
+            let room = BOUNDS_ROOM_LED + min(arm, BOUNDS_ROOM_LED);
+            self.predict_bounds(index, home, body, BOUNDS_STEPS_LED, room);
+            free = self.free(home.first, body, arm);
+        }
+        // It goes as its velocity says; what may be rounded there is less than its turning, which is taken off besides.
+        let far = body.center().abs();
+        let gone = grown * (1.0 + SLACK) + BLUR * (far.x + far.y + far.z + arm);
+        self.traces[home.first as usize].free = free - gone;
+    }
+
+    /// Way that the centre of a body may go until a ball around it leaves its bounds in the tree, metres; negative if it does.
+    fn free(&self, leaf: u32, body: &Body, arm: f32) -> f32 {
+        let ball = thick(&Aabb::around(body.center(), Vec3::splat(arm + MARGIN)));
+        let own = self.moving.tree.bounds(leaf);
+        let spare = min3(ball.min - own.min, own.max - ball.max);
+        min(spare.x, min(spare.y, spare.z))
+    }
+
+    /// Works out the bounds of a body within the step. Where the tree must change it gets `room` (m) around and `steps` of motion ahead.
+    fn predict_bounds(&mut self, index: u32, home: Home, body: &Body, steps: f32, room: f32) {
+        let Stride { grown: motion, ahead, .. } = self.strides[index as usize];
+        for shape in 0..home.count {
+            let is_alone = body.surface(shape as usize).filter.meets_none();
+            let way = ahead * if is_alone { BOUNDS_STEPS_ALONE } else { steps };
+            let reach = grown(body, shape, motion);
+            self.reach[(home.first + shape) as usize] = reach;
+            if self.cover(home, shape, &thick(&reach), way, room) {
+                self.enlarged.push(home.first + shape);
+            }
+        }
+    }
+
+    #[inline]
+    fn mark_active(&mut self, index: u32) {
+        let Some(home) = &mut self.homes[index as usize] else { return };
+        let before = core::mem::replace(&mut home.active, self.stamp);
+        if before == self.stamp {
+            return;
+        }
+        self.active.push(index);
+        if before + 1 != self.stamp {
+            self.mark_dirty(index);
+        }
+    }
+
+    /// Forgets the motion of what is to be looked for anew.
+    fn forget_motion(&mut self, bodies: &Arena<Body>) {
+        for at in 0..self.dirty.len() {
+            let index = self.dirty[at];
+            let (Some(home), Some(body)) = (self.home(index), bodies.try_at(index)) else { continue };
+            let stride = &mut self.strides[index as usize];
+            (stride.shift, stride.turned, stride.stamp) = (Vec3::ZERO, f32::INFINITY, self.stamp);
+            if !home.moves {
+                // What is static may have been given one, which counts when points are looked for.
+                stride.ahead = body.velocity.linear * self.dt;
+            } else if home.count > 0 && !body.can_touch() {
+                // It rests, and nobody will work out its bounds.
+                (stride.ahead, stride.spin, stride.grown) = (Vec3::ZERO, 0.0, 0.0);
+                self.traces[home.first as usize] = Trace::NONE;
+                for shape in 0..home.count {
+                    self.reach[(home.first + shape) as usize] = grown(body, shape, 0.0);
+                }
+            }
+        }
+    }
+
+    /// Relative motion of two bodies, metres.
+    pub fn closing(&self, key: ContactKey) -> Closing {
+        let [(p, p_turned), (q, q_turned)] = [key.a, key.b].map(|body| {
+            let stride = &self.strides[body as usize];
+            if stride.stamp == self.stamp { (stride.shift, stride.turned) } else { (Vec3::ZERO, 0.0) }
+        });
+        let moved = (p - q).length() * (1.0 + SLACK) + (p_turned + q_turned);
+        Closing { moved, ahead: self.ahead(key) }
+    }
+
+    /// Largest gap within which points of two bodies are looked for because of how fast they are, metres: as far as they come
+    /// closer, or one of them comes, whichever is more, and what both turn.
+    pub fn ahead(&self, key: ContactKey) -> f32 {
+        let [p, q] = [key.a, key.b].map(|body| &self.strides[body as usize]);
+        let (p2, q2) = (p.ahead.length_squared(), q.ahead.length_squared());
+        let fastest = max((p.ahead - q.ahead).length_squared(), max(p2, q2));
+        (fastest.sqrt() + (p.spin + q.spin)) * (1.0 + SLACK)
+    }
+}
