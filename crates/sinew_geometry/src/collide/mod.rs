@@ -4,6 +4,7 @@
 //! order and turns the result round if need be. Inside, positions are relative to one of the two shapes, so that
 //! a contact far from the world's origin is as precise as one near it.
 
+mod arcs;
 mod axes;
 mod box_box;
 mod box_capsule;

@@ -2,6 +2,7 @@
 //! arcs cross on the Gauss map, since only they are faces of the Minkowski difference (Gregorius, "The Separating Axis Test
 //! between Convex Polyhedra", GDC 2013). Then the two faces or the two edges that meet.
 
+use super::arcs::{Arc, for_each_crossing};
 use super::axes::{
     Bridge, Faceted, PARALLEL_SINE, choose, choose_face, push, push_bridges, push_faces, tolerance,
 };
@@ -11,7 +12,7 @@ use super::manifold::{Manifold, SeparationCache};
 use super::placed::Segment;
 use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{MAX_VERTICES, Plane, Polytope};
-use sinew_math::{Vec3, min};
+use sinew_math::{Vec3, max, min};
 
 /// Two faces of hulls cut to each other have at most so many corners, but for slivers.
 const FACE_CORNERS: usize = MAX_VERTICES;
@@ -113,52 +114,20 @@ fn best_face(of: &Polytope<'_>, other: &Polytope<'_>, enough: f32, name: fn(usiz
     best
 }
 
-/// An edge with the normals of its faces.
-struct Arc {
-    from: Vec3,
-    along: Vec3,
-    normals: [Vec3; 2],
-}
-
-impl Arc {
-    fn new(of: &Polytope<'_>, side: usize) -> Self {
-        let [from, to] = of.edge(side).ends;
-        Self {
-            from,
-            along: to - from,
-            normals: of.topology.faces_of(side).map(|face| of.planes[face].normal),
-        }
-    }
-
-    /// The direction across both edges that points out of this one's polytope, not of unit length, if there the Minkowski
-    /// difference has a face: if this arc and the other's opposite cross. An edge of a triangle, between opposite normals, has
-    /// half a circle: its direction tells which half.
-    fn crossing(&self, other: &Self) -> Option<Vec3> {
-        let [c, d] = other.normals.map(|n| n.dot(self.along));
-        if c * d >= 0.0 {
-            return None;
-        }
-        let [a, b] = self.normals.map(|n| n.dot(other.along));
-        if a * b >= 0.0 || c * b >= 0.0 {
-            return None;
-        }
-        let across = self.along.cross(other.along);
-        Some(if c < 0.0 { -across } else { across })
-    }
-}
-
-/// The direction across an edge of each that separates best.
+/// The direction across an edge of each that separates best; of equal ones the first by the edges' numbers.
 fn best_edges(a: &Polytope<'_>, b: &Polytope<'_>) -> Option<Axis> {
     let mut best: Option<Axis> = None;
-    for i in a.topology.edge_numbers() {
-        let arc = Arc::new(a, i);
-        for j in b.topology.edge_numbers() {
-            let Some(axis) = edges(&arc, &Arc::new(b, j), AxisOf::Edges(i, j)) else { continue };
-            if best.is_none_or(|best| axis.separation > best.separation) {
-                best = Some(axis);
-            }
+    for_each_crossing(a, b, |arc, other| {
+        let of = AxisOf::Edges(arc.side, other.side);
+        let Some(axis) = edges(arc, other, of) else { return };
+        let is_better = best.is_none_or(|best| {
+            let comes_first = matches!(best.of, AxisOf::Edges(i, j) if (arc.side, other.side) < (i, j));
+            axis.separation > best.separation || axis.separation == best.separation && comes_first
+        });
+        if is_better {
+            best = Some(axis);
         }
-    }
+    });
     best
 }
 
@@ -198,35 +167,60 @@ impl Faceted for Polytope<'_> {
         push_faces::<FACE_CORNERS>(&reference, corners, best, margin, tolerance, out)
     }
 
-    /// Tries those corners and edges that reach far enough along `normal` to be within `margin` of the other solid.
+    /// Tries those corners and edges that may be as close as the closest found so far: what lies further from the other solid along
+    /// `normal` is further from it.
     fn push_closest(&self, b: &Self, normal: Vec3, margin: f32, tolerance: f32, out: &mut Manifold) {
         let a = self;
-        let (lowest, highest) = (-b.reach(-normal) - margin, a.reach(normal) + margin);
-        let of_a = |p: Vec3| p.dot(normal) >= lowest;
-        let of_b = |p: Vec3| p.dot(normal) <= highest;
-        let from_a = a.vertices.iter().enumerate().filter(|(_, p)| of_a(**p)).map(|(k, &on_a)| {
-            let feature = pair(feature::vertex(k), WHOLE);
-            Bridge { on_a, on_b: b.closest(on_a), feature }
-        });
-        let from_b = b.vertices.iter().enumerate().filter(|(_, p)| of_b(**p)).map(|(k, &on_b)| {
-            let feature = pair(WHOLE, feature::vertex(k));
-            Bridge { on_a: a.closest(on_b), on_b, feature }
-        });
-        let corners = from_a.chain(from_b);
-        let edges_b = || {
-            b.topology.edge_numbers().map(|j| (j, b.edge(j))).filter(|(_, e)| e.ends.into_iter().any(of_b))
+        let (top, bottom) = (a.reach(normal), -b.reach(-normal));
+        let size = (b.center - a.center).length();
+        // Rounding must leave out none of several that are equally close.
+        let slack = 1e-5 * (size + top.abs() + bottom.abs());
+        let from_a = |k: usize| {
+            let on_a = a.vertices[k];
+            Bridge { on_a, on_b: b.closest(on_a), feature: pair(feature::vertex(k), WHOLE) }
         };
-        let edges_a = a.topology.edge_numbers().map(|i| (i, a.edge(i)));
-        let edges = edges_a.filter(|(_, e)| e.ends.into_iter().any(of_a)).flat_map(|(i, edge_a)| {
-            edges_b().map(move |(j, edge_b)| {
+        let from_b = |k: usize| {
+            let on_b = b.vertices[k];
+            Bridge { on_a: a.closest(on_b), on_b, feature: pair(WHOLE, feature::vertex(k)) }
+        };
+        let deepest = from_a(a.support(normal)).shorter(from_b(b.support(-normal)));
+        let mut within = min(deepest.span().length() + slack, margin);
+        let mut best: Option<Bridge> = None;
+        let mut try_bridge = |bridge: Bridge, within: &mut f32| {
+            let shorter = best.map_or(bridge, |best| best.shorter(bridge));
+            *within = min(shorter.span().length() + slack, *within);
+            best = Some(shorter);
+        };
+        for k in 0..a.vertices.len() {
+            if bottom - a.vertices[k].dot(normal) <= within {
+                try_bridge(from_a(k), &mut within);
+            }
+        }
+        for k in 0..b.vertices.len() {
+            if b.vertices[k].dot(normal) - top <= within {
+                try_bridge(from_b(k), &mut within);
+            }
+        }
+        for (i, edge_a) in a.topology.edge_numbers().map(|i| (i, a.edge(i))) {
+            let highest = edge_a.ends.iter().fold(f32::NEG_INFINITY, |most, p| max(p.dot(normal), most));
+            if bottom - highest > within {
+                continue;
+            }
+            for (j, edge_b) in b.topology.edge_numbers().map(|j| (j, b.edge(j))) {
+                let lowest = edge_b.ends.iter().fold(f32::INFINITY, |least, p| min(p.dot(normal), least));
+                if lowest - highest > within {
+                    continue;
+                }
                 let (s, t) = edge_a.closest_to_segment(&edge_b);
                 let feature = pair(feature::half_edge(a.topology, i), feature::half_edge(b.topology, j));
-                Bridge { on_a: edge_a.at(s), on_b: edge_b.at(t), feature }
-            })
-        });
-        let Some(best) = corners.clone().chain(edges).reduce(Bridge::shorter) else { return };
-        let size = (b.center - a.center).length();
-        push_bridges::<CLOSEST>(best, corners, (size, normal), margin, tolerance, out);
+                try_bridge(Bridge { on_a: edge_a.at(s), on_b: edge_b.at(t), feature }, &mut within);
+            }
+        }
+        let Some(best) = best else { return };
+        let near = min(best.span().length() + tolerance + slack, margin);
+        let of_a = (0..a.vertices.len()).filter(|&k| bottom - a.vertices[k].dot(normal) <= near).map(from_a);
+        let of_b = (0..b.vertices.len()).filter(|&k| b.vertices[k].dot(normal) - top <= near).map(from_b);
+        push_bridges::<CLOSEST>(best, of_a.chain(of_b), (size, normal), margin, tolerance, out);
     }
 }
 
@@ -234,7 +228,7 @@ impl Faceted for Polytope<'_> {
 mod tests {
     use super::super::placed::PlacedBox;
     use super::*;
-    use crate::hull::{BoxPolytope, TrianglePolytope};
+    use crate::hull::{BoxPolytope, Hull, TrianglePolytope};
     use sinew_math::{Random, Transform};
 
     fn gap(a: &Polytope<'_>, b: &Polytope<'_>, n: Vec3) -> f32 {
@@ -281,5 +275,46 @@ mod tests {
             }
         }
         assert!(touching > 500 && faces > 100, "{touching} touch, {faces} with three points or more");
+    }
+
+    /// Of all corners and edges the closest are found, whatever is left out on the way.
+    #[test]
+    fn nothing_closer_is_left_out() {
+        let mut random = Random::new(8);
+        let mut apart = 0;
+        for case in 0..400 {
+            let corners = 4 + random.index(40);
+            let [a, b] = [Vec3::ZERO, random.direction() * random.range(1.0, 2.5)].map(|center| {
+                let points: Vec<Vec3> = (0..corners).map(|_| center + random.direction()).collect();
+                Hull::new(&points).expect("points on a ball")
+            });
+            let (a, b) = (a.polytope(), b.polytope());
+            let ways = [(&a, &b), (&b, &a)];
+            let corners =
+                ways.iter().flat_map(|(p, q)| p.vertices.iter().map(|&v| (q.closest(v) - v).length()));
+            let edges_a = a.topology.edge_numbers().map(|i| a.edge(i));
+            let edges = edges_a.flat_map(|e| b.topology.edge_numbers().map(move |j| (e, b.edge(j))));
+            let between = edges.map(|(e, f)| {
+                let (s, t) = e.closest_to_segment(&f);
+                (f.at(t) - e.at(s)).length()
+            });
+            let closest = corners.chain(between).fold(f32::INFINITY, min);
+            let axis =
+                [best_face(&a, &b, f32::INFINITY, AxisOf::FaceA)].into_iter().chain(best_edges(&a, &b));
+            let normal =
+                axis.reduce(|p, q| if q.separation > p.separation { q } else { p }).expect("a face").normal;
+            if gap(&a, &b, normal) <= 0.0 {
+                continue;
+            }
+            let mut out = Manifold::default();
+            a.push_closest(&b, normal, 10.0, 1e-4, &mut out);
+            let found = out.points().iter().fold(f32::INFINITY, |least, point| min(point.separation, least));
+            assert!((found - closest).abs() <= 1e-5, "case {case}: {found} for {closest}");
+            let mut none = Manifold::default();
+            a.push_closest(&b, normal, 0.9 * closest, 1e-4, &mut none);
+            assert_eq!(none.count, 0, "case {case}: beyond the margin");
+            apart += 1;
+        }
+        assert!(apart > 100, "{apart}");
     }
 }

@@ -1,0 +1,172 @@
+//! Edges of two polytopes that may be what meets: whose arcs on the Gauss map cross, eight at a time.
+
+use crate::hull::Polytope;
+use sinew_math::Vec3;
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
+
+/// Edges of one polytope that are held against eight of the other in one go.
+const CHUNK: usize = 64;
+
+/// An edge with the normals of its faces.
+#[derive(Clone, Copy)]
+pub(super) struct Arc {
+    /// Number of the half-edge that stands for it.
+    pub side: usize,
+    pub from: Vec3,
+    pub along: Vec3,
+    normals: [Vec3; 2],
+}
+
+impl Arc {
+    const NONE: Self = Self { side: 0, from: Vec3::ZERO, along: Vec3::ZERO, normals: [Vec3::ZERO; 2] };
+
+    pub fn new(of: &Polytope<'_>, side: usize) -> Self {
+        let [from, to] = of.edge(side).ends;
+        Self {
+            side,
+            from,
+            along: to - from,
+            normals: of.topology.faces_of(side).map(|face| of.planes[face].normal),
+        }
+    }
+
+    /// The direction across both edges that points out of this one's polytope, not of unit length, if there the Minkowski
+    /// difference has a face: if this arc and the other's opposite cross. An edge of a triangle, between opposite normals, has
+    /// half a circle: its direction tells which half.
+    pub fn crossing(&self, other: &Self) -> Option<Vec3> {
+        let [c, d] = other.normals.map(|n| n.dot(self.along));
+        if c * d >= 0.0 {
+            return None;
+        }
+        let [a, b] = self.normals.map(|n| n.dot(other.along));
+        if a * b >= 0.0 || c * b >= 0.0 {
+            return None;
+        }
+        let across = self.along.cross(other.along);
+        Some(if c < 0.0 { -across } else { across })
+    }
+}
+
+/// Calls `visit` with all pairs of an edge of each polytope whose arcs may cross, in no order that means anything.
+pub(super) fn for_each_crossing(a: &Polytope<'_>, b: &Polytope<'_>, mut visit: impl FnMut(&Arc, &Arc)) {
+    let mut left = b.topology.edge_numbers();
+    loop {
+        let (mut others, mut count) = ([Arc::NONE; CHUNK], 0);
+        for (other, side) in others.iter_mut().zip(left.by_ref()) {
+            *other = Arc::new(b, side);
+            count += 1;
+        }
+        if count == 0 {
+            return;
+        }
+        let mut sides = a.topology.edge_numbers();
+        loop {
+            let (mut arcs, mut lanes) = ([Arc::NONE; WIDTH], 0);
+            for (arc, side) in arcs.iter_mut().zip(sides.by_ref()) {
+                *arc = Arc::new(a, side);
+                lanes += 1;
+            }
+            if lanes == 0 {
+                break;
+            }
+            let crossed = dispatch::run(Cross { arcs: &ArcLanes::new(&arcs), others: &others[..count] });
+            for (other, mut bits) in others[..count].iter().zip(crossed) {
+                while bits != 0 {
+                    visit(&arcs[bits.trailing_zeros() as usize], other);
+                    bits &= bits - 1;
+                }
+            }
+        }
+    }
+}
+
+/// Eight arcs side by side: directions of the edges, then the normals on both sides.
+struct ArcLanes {
+    along: [[f32; WIDTH]; 3],
+    normals: [[[f32; WIDTH]; 3]; 2],
+}
+
+impl ArcLanes {
+    /// Arcs without normals cross none.
+    fn new(arcs: &[Arc; WIDTH]) -> Self {
+        let lanes = |of: fn(&Arc) -> Vec3| {
+            let rows = arcs.each_ref().map(|arc| of(arc).to_array());
+            core::array::from_fn(|axis| rows.map(|row| row[axis]))
+        };
+        Self {
+            along: lanes(|arc| arc.along),
+            normals: [lanes(|arc| arc.normals[0]), lanes(|arc| arc.normals[1])],
+        }
+    }
+}
+
+/// Signs by which [`Arc::crossing`] tells, of eight arcs and each of some others: bit `k` is lane `k`.
+struct Cross<'a> {
+    arcs: &'a ArcLanes,
+    others: &'a [Arc],
+}
+
+impl Kernel for Cross<'_> {
+    type Output = [u8; CHUNK];
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> [u8; CHUNK] {
+        let mut crossed = [0; CHUNK];
+        let along = load::<L>(&self.arcs.along);
+        let [m, n] = [load::<L>(&self.arcs.normals[0]), load::<L>(&self.arcs.normals[1])];
+        let zero = L::splat(0.0);
+        for (bits, other) in crossed.iter_mut().zip(self.others) {
+            let (c, d) = (splat::<L>(other.normals[0]).dot(along), splat::<L>(other.normals[1]).dot(along));
+            let edge = splat::<L>(other.along);
+            let (a, b) = (m.dot(edge), n.dot(edge));
+            *bits = !(L::ge(c * d, zero) | L::ge(a * b, zero) | L::ge(c * b, zero)).bits();
+        }
+        crossed
+    }
+}
+
+#[inline(always)]
+fn load<L: Lanes>(rows: &[[f32; WIDTH]; 3]) -> Vector3<L> {
+    Vector3::new(L::load(&rows[0]), L::load(&rows[1]), L::load(&rows[2]))
+}
+
+#[inline(always)]
+fn splat<L: Lanes>(v: Vec3) -> Vector3<L> {
+    Vector3::new(L::splat(v.x), L::splat(v.y), L::splat(v.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hull::Hull;
+    use sinew_math::Random;
+
+    /// The pairs that one by one cross are those that eight at a time do, each once.
+    #[test]
+    fn lanes_find_the_arcs_that_cross() {
+        let mut random = Random::new(12);
+        let mut found = 0;
+        for corners in [4, 5, 8, 20, 60, 120] {
+            let [a, b] = [0, 1].map(|_| {
+                let points: Vec<Vec3> = (0..corners).map(|_| random.direction()).collect();
+                Hull::new(&points).expect("points on a ball")
+            });
+            let (a, b) = (a.polytope(), b.polytope());
+            let mut expected = Vec::new();
+            for arc in a.topology.edge_numbers().map(|i| Arc::new(&a, i)) {
+                for other in b.topology.edge_numbers().map(|j| Arc::new(&b, j)) {
+                    if arc.crossing(&other).is_some() {
+                        expected.push((arc.side, other.side));
+                    }
+                }
+            }
+            let mut crossed = Vec::new();
+            for_each_crossing(&a, &b, |arc, other| crossed.push((arc.side, other.side)));
+            crossed.sort_unstable();
+            assert_eq!(crossed, expected, "{corners} corners");
+            found += crossed.len();
+        }
+        assert!(found > 300, "{found}");
+    }
+}
