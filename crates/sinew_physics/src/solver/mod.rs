@@ -461,7 +461,8 @@ impl IslandSolver {
             wanted.fill(true);
         }
         self.response.choose(&self.links, self.trees.len(), wanted);
-        self.loops.respond(&self.joints, &self.bodies, &self.links, &mut self.response);
+        let links = (&self.links[..], &mut self.batches);
+        self.loops.respond(&self.joints, &self.bodies, links, &mut self.response);
         self.response_cache.clear();
         self.limit_blocks.clear(self.trees.len());
         for rows in &mut self.manifolds {

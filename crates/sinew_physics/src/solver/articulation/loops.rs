@@ -3,6 +3,8 @@
 //! between trees, are solved by conjugate gradients on the same equations: `S p` is one pass through the trees, so a net
 //! that hangs by its ropes is carried at once, and each round takes energy out, however early it ends.
 
+use crate::joint::DIRECTIONS;
+use crate::solver::articulation::batches::Batches;
 use crate::solver::articulation::response::Response;
 use crate::solver::articulation::response_cache::ResponseCache;
 use crate::solver::articulation::tree::{self, Link, NONE};
@@ -106,7 +108,7 @@ impl Loops {
         &mut self,
         joints: &[SolverJoint],
         bodies: &[SolverBody],
-        links: &[Link],
+        (links, batches): (&[Link], &mut Batches),
         response: &mut Response,
     ) {
         self.inverses.clear();
@@ -121,9 +123,14 @@ impl Loops {
             };
             closure.rows = rows().count();
             closure.columns = self.columns.end();
-            for (joint, row) in rows() {
-                let [on_a, on_b] = [joint.rows.on_a(row), joint.rows.on_b(row)];
-                self.columns.add(response, links, [joint.a, joint.b], [&on_a, &on_b]);
+            for &joint in loops {
+                let joint = &joints[joint as usize];
+                let mut on = [[ZERO6; 2]; DIRECTIONS];
+                for (row, on) in on[..joint.rows.count].iter_mut().enumerate() {
+                    *on = [joint.rows.on_a(row), joint.rows.on_b(row)];
+                }
+                let on = on[..joint.rows.count].iter().map(<[Vec6; 2]>::each_ref);
+                self.columns.add(response, (links, batches), [joint.a, joint.b], on);
             }
             let members = response.members(closure.tree).len();
             let columns = self.columns.from(closure.columns);

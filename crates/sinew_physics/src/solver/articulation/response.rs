@@ -4,7 +4,7 @@
 use crate::solver::articulation::tree::{Link, NONE};
 use crate::spatial::{Mat6, Vec6, ZERO66, add_scaled, dot};
 use sinew_math::dispatch::{self, Kernel};
-use sinew_math::lanes::{LaneMask, Lanes};
+use sinew_math::lanes::Lanes;
 
 /// Links that answer to impulses: the bodies of each tree that carry rows, and their ancestors.
 #[derive(Clone, Debug, Default)]
@@ -94,35 +94,6 @@ impl Response {
         self.inverses.extend_from_slice(inverse);
     }
 
-    /// The sum of what two impulses make of a tree that both bodies are of: in the first list, and something else in the second. Both
-    /// are zero.
-    pub fn answer_both(&self, links: &[Link], bodies: [u32; 2], impulses: [&Vec6; 2], out: [&mut [Vec6]; 2]) {
-        let tree = &self.trees[links[bodies[0] as usize].tree as usize];
-        if tree.rows == 0 {
-            let range = tree.first..tree.first + tree.count;
-            let (members, above) = (&self.members[range.clone()], &self.above[range]);
-            let slots = bodies.map(|body| self.slot[body as usize] as usize);
-            dispatch::run(AnswerBoth { links, members, above, slots, impulses, out });
-            return;
-        }
-        let [first, second] = out;
-        self.answer(links, bodies[0], impulses[0], first);
-        self.answer(links, bodies[1], impulses[1], second);
-        for (sum, more) in first.iter_mut().zip(second) {
-            add_scaled(sum, more, 1.0);
-        }
-    }
-
-    /// Makes `out`, which is zero, the velocity changes of all members of the tree of a moving body from an impulse on it.
-    pub fn answer(&self, links: &[Link], body: u32, impulse: &Vec6, out: &mut [Vec6]) {
-        let tree = &self.trees[links[body as usize].tree as usize];
-        let range = tree.first..tree.first + tree.count;
-        let (members, above) = (&self.members[range.clone()], &self.above[range]);
-        let slot = self.slot[body as usize] as usize;
-        dispatch::run(Answer { links, members, above, slot, impulse, out });
-        self.close_answer(tree, slot, impulse, out);
-    }
-
     /// Makes columns, `stride` apart from each other, the velocity changes of all members of a tree from impulses: each column from those
     /// on one or two members, which are given with their places. They are zero.
     pub fn answer_all(
@@ -163,61 +134,6 @@ impl Response {
     }
 }
 
-/// Velocity changes of the members of a tree from an impulse on one of them: what it passes on goes up to the root, and from there the
-/// answers come down (Featherstone 2008, 7.3).
-struct Answer<'a> {
-    links: &'a [Link],
-    members: &'a [u32],
-    above: &'a [u32],
-    slot: usize,
-    impulse: &'a Vec6,
-    out: &'a mut [Vec6],
-}
-
-impl Kernel for Answer<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self { links, members, above, slot, impulse, out } = self;
-        let out = &mut out[..members.len()];
-        ascend::<L>(links, members, above, (slot, impulse), out);
-        for place in 0..members.len() {
-            descend::<L>(&links[members[place] as usize], above[place] as usize, place, slot, out);
-        }
-    }
-}
-
-/// The sum of the changes from impulses on two members, in the first list; in the second those from the second impulse.
-struct AnswerBoth<'a> {
-    links: &'a [Link],
-    members: &'a [u32],
-    above: &'a [u32],
-    slots: [usize; 2],
-    impulses: [&'a Vec6; 2],
-    out: [&'a mut [Vec6]; 2],
-}
-
-impl Kernel for AnswerBoth<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self { links, members, above, slots: [one, two], impulses, out: [first, second] } = self;
-        let (first, second) = (&mut first[..members.len()], &mut second[..members.len()]);
-        ascend::<L>(links, members, above, (one, impulses[0]), first);
-        ascend::<L>(links, members, above, (two, impulses[1]), second);
-        for place in 0..members.len() {
-            let (link, parent) = (&links[members[place] as usize], above[place] as usize);
-            descend::<L>(link, parent, place, one, first);
-            descend::<L>(link, parent, place, two, second);
-        }
-        for (sum, more) in first.iter_mut().zip(second) {
-            (L::load(sum) + L::load(more)).store(sum);
-        }
-    }
-}
-
 /// An impulse on a member of a tree, which is given by its place.
 pub(crate) type Push<'a> = Option<(usize, &'a Vec6)>;
 
@@ -233,7 +149,8 @@ impl AnswerLanes {
     const NONE: Self = Self { numbers: ZERO66, is_pushed: false };
 }
 
-/// Eight times [`Answer`], of impulses on one or two members.
+/// Velocity changes of the members of a tree from impulses on one or two of them, eight times side by side: what impulses pass on goes up to
+/// the root, and from there the answers come down (Featherstone 2008, 7.3).
 struct AnswerAll<'a> {
     links: &'a [Link],
     members: &'a [u32],
@@ -291,35 +208,4 @@ impl Kernel for AnswerAll<'_> {
             }
         }
     }
-}
-
-/// Passes an impulse on the member `slot` up to the root.
-#[inline(always)]
-fn ascend<L: Lanes>(
-    links: &[Link],
-    members: &[u32],
-    above: &[u32],
-    (slot, impulse): (usize, &Vec6),
-    out: &mut [Vec6],
-) {
-    out[slot] = *impulse;
-    let mut place = slot;
-    while place > 0 {
-        let through = links[members[place] as usize].passed_up::<L>(&out[place]);
-        place = above[place] as usize;
-        through.store(&mut out[place]);
-    }
-}
-
-/// The answer of a member, from the impulse on it and its parent's answer.
-#[inline(always)]
-fn descend<L: Lanes>(link: &Link, parent: usize, place: usize, slot: usize, out: &mut [Vec6]) {
-    // What has no impulse is beside the way to the root, or has nothing to answer to.
-    let none = L::splat(0.0);
-    let answers = place <= slot && !L::eq(L::load(&out[place]), none).all();
-    let mut v = if answers { link.alone::<L>(&out[place]) } else { none };
-    if place > 0 {
-        v = v + link.carried::<L>(&out[parent]);
-    }
-    v.store(&mut out[place]);
 }

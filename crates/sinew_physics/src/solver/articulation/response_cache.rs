@@ -94,11 +94,6 @@ impl ResponseCache {
         self.entries.clear();
     }
 
-    /// Place at which the next columns, of these bodies, will lie.
-    pub fn strip(&self, response: &Response, links: &[Link], bodies: [u32; 2]) -> CachedColumns {
-        CachedColumns { start: self.end(), stride: CoveredBodies::new(response, links, bodies).len() }
-    }
-
     /// Bytes that are filled.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.entries[..])
@@ -114,38 +109,32 @@ impl ResponseCache {
         &self.entries[start..]
     }
 
-    /// Appends the column of a row. Gives the velocity changes of the row's own bodies.
-    pub fn add(
+    /// Appends the columns of rows of two bodies, side by side: of each its Jacobian on A and on B.
+    pub(in crate::solver) fn add<'a>(
         &mut self,
         response: &Response,
-        links: &[Link],
+        (links, batches): (&[Link], &mut Batches),
         bodies: [u32; 2],
-        row: [&Vec6; 2],
-    ) -> [Vec6; 2] {
-        let reach = CoveredBodies::new(response, links, bodies);
-        let start = self.end();
-        let second =
-            reach.places[1].map_or(0, |place| if place < reach.members[0].len() { reach.len() } else { 0 });
-        self.entries.resize(start + reach.len() + second, ZERO6);
-        let column = &mut self.entries[start..];
-        let [a, b] = bodies;
-        let (on_a, on_b) = column.split_at_mut(reach.members[0].len());
-        match reach.places {
-            // Both in one tree: the second answer goes beside the first, to be added.
-            [Some(_), Some(place)] if place < on_a.len() => {
-                response.answer_both(links, bodies, row, [on_a, on_b]);
-                self.entries.truncate(start + reach.len());
+        rows: impl Iterator<Item = [&'a Vec6; 2]>,
+    ) -> CachedColumns {
+        let (start, stride) = (self.end(), CoveredBodies::new(response, links, bodies).len());
+        let mut rows = rows.map(|row| (bodies, row));
+        loop {
+            let (mut some, mut count) = ([(bodies, [&ZERO6; 2]); WIDTH], 0);
+            for (place, row) in some.iter_mut().zip(rows.by_ref()) {
+                *place = row;
+                count += 1;
             }
-            [of_a, of_b] => {
-                if of_a.is_some() {
-                    response.answer(links, a, row[0], on_a);
-                }
-                if of_b.is_some() {
-                    response.answer(links, b, row[1], on_b);
-                }
+            if count == 0 {
+                return CachedColumns { start, stride };
             }
+            self.add_all(response, (links, batches), &some[..count]);
         }
-        reach.places.map(|place| place.map_or(ZERO6, |place| self.entries[start + place]))
+    }
+
+    /// Entries of a column where its two bodies have these places: zero where they have none.
+    pub fn ends(&self, column: usize, places: [Option<usize>; 2]) -> [Vec6; 2] {
+        places.map(|place| place.map_or(ZERO6, |place| self.entries[column + place]))
     }
 
     /// Appends the columns of up to eight rows of two trees, or of one, side by side. Gives where the first lies, and how far each is from
@@ -154,7 +143,7 @@ impl ResponseCache {
         &mut self,
         response: &Response,
         (links, batches): (&[Link], &mut Batches),
-        rows: &[([u32; 2], &Row)],
+        rows: &[([u32; 2], [&Vec6; 2])],
     ) -> (usize, usize) {
         let reach = CoveredBodies::new(response, links, rows[0].0);
         let (start, stride) = (self.end(), reach.len());
@@ -168,8 +157,8 @@ impl ResponseCache {
                 link.and_then(|_| response.slot(body)).map(|slot| (slot, impulse))
             };
             let mut pushes = [[None; 2]; WIDTH];
-            for (pushes, &([a, b], row)) in pushes.iter_mut().zip(rows) {
-                *pushes = [on(a, &row.a), on(b, &row.b)];
+            for (pushes, &([a, b], [on_a, on_b])) in pushes.iter_mut().zip(rows) {
+                *pushes = [on(a, on_a), on(b, on_b)];
             }
             let (columns, pushes) = (&mut self.entries[first..], &pushes[..rows.len()]);
             if !batches.answer(tree, pushes, (columns, stride)) {

@@ -8,6 +8,7 @@ mod refresh;
 mod row;
 mod visit;
 
+use super::articulation::batches::Batches;
 use super::articulation::response::Response;
 use super::articulation::response_cache::{CachedColumns, ResponseCache};
 use super::articulation::tree::Link;
@@ -47,6 +48,9 @@ impl ContactImpulses {
         }
     }
 }
+
+/// Rows of a manifold at most: normals, tangents, twist, rolling.
+const MOST_ROWS: usize = MAX_POINTS + 2 + 1 + 3;
 
 /// World axes about which torques resist rolling.
 const AXES: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
@@ -260,33 +264,39 @@ impl ManifoldRows {
     }
 
     /// Computes the columns of its rows and what they answer to each other. Gives where the columns lie.
-    pub fn respond(
+    pub(in crate::solver) fn respond(
         &mut self,
         bodies: &[SolverBody],
-        links: &[Link],
+        (links, batches): (&[Link], &mut Batches),
         response: &Response,
         columns: &mut ResponseCache,
     ) -> CachedColumns {
         let pair = self.pair();
         let least =
             |row: &Row| REDUNDANCY * free_response(bodies, links.len(), [(pair.a, &row.a), (pair.b, &row.b)]);
-        let strip = columns.strip(response, links, [pair.a, pair.b]);
+        let mut rows = [Row::ZERO; MOST_ROWS];
+        rows[..self.count].copy_from_slice(&self.rows[..self.count]);
+        let (tangents, spin, roll) = (self.count, self.count + 2, self.count + 3);
+        rows[tangents..spin].copy_from_slice(&self.tangents);
+        rows[spin] = self.spin;
+        rows[roll..roll + 3].copy_from_slice(&AXES.map(Row::about));
+        let count = if self.material.rolling > 0.0 { roll + 3 } else { roll };
+        let bodies = [pair.a, pair.b];
+        let strip = columns.add(response, (links, batches), bodies, rows[..count].iter().map(Row::ends));
         self.columns = Some(strip);
-        let mut answer = |row: &Row| {
-            let [a, b] = columns.add(response, links, [pair.a, pair.b], [&row.a, &row.b]);
+        let places = ResponseCache::places(response, links, bodies);
+        let answer = |k: usize| {
+            let [a, b] = columns.ends(strip.column(k), places);
             Row { a, b }
         };
-        let mut answers = [Row::ZERO; MAX_POINTS];
-        for i in 0..self.count {
-            answers[i] = answer(&self.rows[i]);
-        }
-        for i in 0..self.count {
-            for j in 0..self.count {
-                self.k[i][j] = self.rows[i].dot(&answers[j]);
+        for j in 0..self.count {
+            let answer = answer(j);
+            for i in 0..self.count {
+                self.k[i][j] = self.rows[i].dot(&answer);
             }
-            self.k[i][i] += least(&self.rows[i]);
+            self.k[j][j] += least(&self.rows[j]);
         }
-        let across = self.tangents.map(|row| answer(&row));
+        let across = [answer(tangents), answer(tangents + 1)];
         for i in 0..2 {
             for j in 0..2 {
                 self.k_tangent[i][j] = self.tangents[i].dot(&across[j]);
@@ -294,12 +304,11 @@ impl ManifoldRows {
             self.k_tangent[i][i] += least(&self.tangents[i]);
         }
         self.k_spin_tangent = across.map(|answer| self.spin.dot(&answer));
-        self.k_spin = self.spin.dot(&answer(&self.spin)) + least(&self.spin);
+        self.k_spin = self.spin.dot(&answer(spin)) + least(&self.spin);
         if self.material.rolling > 0.0 {
-            let axes = AXES.map(|axis| {
-                let row = Row::about(axis);
-                let answer = answer(&row);
-                angular(&answer.b) - angular(&answer.a) + axis * least(&row)
+            let axes = [0, 1, 2].map(|axis| {
+                let answer = answer(roll + axis);
+                angular(&answer.b) - angular(&answer.a) + AXES[axis] * least(&rows[roll + axis])
             });
             self.k_roll = Mat3::from_cols(axes[0], axes[1], axes[2]);
         }

@@ -275,10 +275,11 @@ impl IslandSolver {
         let Self { limits, limit_blocks, joints, bodies, links, batches, response, response_cache, .. } =
             self;
         let block = &mut limit_blocks.blocks[at];
-        let mut rows = [([NONE; 2], &limits[block.limits[0] as usize].row); WIDTH];
+        let mut rows = [([NONE; 2], [&ZERO6; 2]); WIDTH];
         let mut count = 0;
         for k in lanes(new) {
-            rows[count] = (block.ends(k), &limits[block.limits[k] as usize].row);
+            let row = &limits[block.limits[k] as usize].row;
+            rows[count] = (block.ends(k), [&row.a, &row.b]);
             count += 1;
         }
         let (mut column, stride) = response_cache.add_all(response, (links, batches), &rows[..count]);

@@ -112,11 +112,12 @@ impl IslandSolver {
             if !self.dirty.wakes_manifold(i, now) {
                 continue;
             }
+            let Self { bodies, links, batches, response, response_cache, .. } = self;
             let rows = &mut self.manifolds[i];
             let strip = match rows.columns {
                 Some(strip) => strip,
                 None if rows.is_idle(&self.velocities, pass, self.h) => continue,
-                None => rows.respond(&self.bodies, &self.links, &self.response, &mut self.response_cache),
+                None => rows.respond(bodies, (links, batches), response, response_cache),
             };
             let bodies = [rows.a, rows.b];
             self.tally.visits += 1;
