@@ -277,7 +277,7 @@ mod tests {
         assert!(touching > 500 && faces > 100, "{touching} touch, {faces} with three points or more");
     }
 
-    /// Of all corners and edges the closest are found, whatever is left out on the way.
+    /// The closest of all corners and edges are found, whatever is left out on the way.
     #[test]
     fn nothing_closer_is_left_out() {
         let mut random = Random::new(8);
