@@ -139,7 +139,8 @@ pub fn python() -> Result<()> {
     let tests = folder.join("tests");
     copy(&source.join("tests"), &tests)?;
     run("pytest", &["-q", "."], &tests)?;
-    run("mypy", &["--strict", "-p", "sinew"], &tests)?;
+    let settings = source.join("pyproject.toml").display().to_string();
+    run("mypy", &["--config-file", &settings], &tests)?;
     run("python", &["-m", "mypy.stubtest", "sinew._sinew"], &tests)?;
     for (index, program) in printed(PYTHON_PAGES, "python")?.into_iter().enumerate() {
         let name = format!("page_{index}.py");

@@ -46,13 +46,13 @@ impl Character {
     }
 
     /// Simulates it: walking, hit, falling, getting up. Without a hit it goes limp after half a second.
-    #[pyo3(signature = (*, seconds=10.0, fps=30.0, hits=Vec::new(), limp_at=None, world=None, pose=None, phase=0.0, name="sinew"))]
+    #[pyo3(signature = (*, seconds=10.0, fps=30.0, hits=None, limp_at=None, world=None, pose=None, phase=0.0, name="sinew"))]
     fn bake(
         &self,
         py: Python<'_>,
         seconds: f32,
         fps: f32,
-        hits: Vec<Hit<'_>>,
+        hits: Option<Vec<Hit<'_>>>,
         limp_at: Option<f32>,
         world: Option<PathBuf>,
         pose: Option<&Bound<'_, PyAny>>,
@@ -60,6 +60,7 @@ impl Character {
         name: &str,
     ) -> PyResult<Bake> {
         check_length(seconds, fps)?;
+        let hits = hits.unwrap_or_default();
         let hits = hits.iter().map(|hit| self.hit(hit)).collect::<PyResult<Vec<_>>>()?;
         let bodies = match world {
             None => vec![BodyDef::fixed(Shape::HalfSpace)],

@@ -22,6 +22,9 @@ pub struct World {
     threads: Threads,
 }
 
+/// Ids of bodies or joints.
+type Ids<'py> = Bound<'py, PyArray1<u64>>;
+
 /// A body that is nowhere: of a ray that met none.
 const NOBODY: u64 = u64::MAX;
 
@@ -119,7 +122,7 @@ impl World {
         }
     }
 
-    fn bits<'py>(py: Python<'py>, ids: &[BodyId]) -> Bound<'py, PyArray1<u64>> {
+    fn bits<'py>(py: Python<'py>, ids: &[BodyId]) -> Ids<'py> {
         PyArray1::from_vec(py, ids.iter().map(|id| id.to_bits()).collect())
     }
 }
@@ -194,7 +197,7 @@ impl World {
         pose: Option<&Bound<'py, PyAny>>,
         poses: Option<&Bound<'py, PyAny>>,
         velocities: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, PyArray1<u64>>, Bound<'py, PyArray1<u64>>)> {
+    ) -> PyResult<(Ids<'py>, Ids<'py>)> {
         let def = &ragdoll.repair.def;
         let count = Some(def.bodies.len());
         let bind = def.bodies.iter().map(|body| body.character_from_body);
@@ -297,13 +300,13 @@ impl World {
 
     /// Ids of all bodies.
     #[getter]
-    fn body_ids<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
+    fn body_ids<'py>(&self, py: Python<'py>) -> Ids<'py> {
         Self::bits(py, &self.world.body_ids().collect::<Vec<_>>())
     }
 
     /// Ids of all joints.
     #[getter]
-    fn joint_ids<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
+    fn joint_ids<'py>(&self, py: Python<'py>) -> Ids<'py> {
         PyArray1::from_vec(py, self.world.joint_ids().map(JointId::to_bits).collect())
     }
 
@@ -402,7 +405,7 @@ impl World {
         kind: &str,
         size: Vec<f32>,
         pose: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray1<u64>>> {
+    ) -> PyResult<Ids<'py>> {
         let shape = shape(kind, &size)?;
         let pose = poses(&floats(pose, &[Some(7)], "pose")?, "pose")?[0];
         let mut bodies = Vec::new();

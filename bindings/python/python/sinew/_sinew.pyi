@@ -1,8 +1,27 @@
 from os import PathLike
-from typing import Literal, Sequence, TypedDict, final
+from typing import Literal, Sequence, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from .types import BuildReport, Contacts, DoctorReport, DropReport, Events, FallQuality, RayHits
+
+__all__ = [
+    "__version__",
+    "SinewError",
+    "FileError",
+    "CharacterFile",
+    "Ragdoll",
+    "Model",
+    "Character",
+    "Bake",
+    "World",
+    "BatchWorlds",
+    "load",
+    "mannequin",
+    "load_ragdoll",
+    "load_model",
+]
 
 __version__: str
 
@@ -18,64 +37,6 @@ class SinewError(Exception):
 
 class FileError(SinewError):
     """A file that cannot be read or written, or is not what it should be: the message names the file and the place."""
-
-class FallQuality(TypedDict):
-    energy_gain_max: float
-    work_in_j: float
-    joint_gap_max_m: float
-    joint_gap_p99_m: float
-    limit_overshoot_max_deg: float
-    limit_overshoot_p99_deg: float
-    penetration_max_m: float
-    penetration_rest_max_m: float
-    first_contact_s: float | None
-    settled_s: float | None
-    up_s: float | None
-    nan: int
-
-class BuildReport(TypedDict):
-    bodies: int
-    total_mass_kg: float
-    height_m: float
-    dropped_bones: list[str]
-    skin_error_m: float | None
-    notes: list[str]
-
-class Finding(TypedDict):
-    code: str
-    severity: str
-    bones: list[str]
-    cause: str
-    evidence: str
-    fix: str
-
-class DoctorReport(TypedDict):
-    findings: list[Finding]
-
-class DropReport(TypedDict):
-    verdict: str
-    reasons: list[str]
-    drop: FallQuality
-    wall: FallQuality
-
-class RayHits(TypedDict):
-    body: _Ids
-    fraction: _Floats
-    point: _Floats
-    normal: _Floats
-
-class Contacts(TypedDict):
-    a: _Ids
-    b: _Ids
-    position: _Floats
-    normal: _Floats
-    separation: _Floats
-    impulse: _Floats
-
-class Events(TypedDict):
-    begin: _Ids
-    end: _Ids
-    hit: _Ids
 
 def load(path: _Path) -> CharacterFile:
     """Reads a GLB, glTF, VRM or FBX with a skinned character, and the settings beside it."""
@@ -175,7 +136,7 @@ class Character:
         *,
         seconds: float = 10.0,
         fps: float = 30.0,
-        hits: Sequence[_Hit] = (),
+        hits: Sequence[_Hit] | None = None,
         limp_at: float | None = None,
         world: _Path | None = None,
         pose: ArrayLike | None = None,
