@@ -131,7 +131,7 @@ pub fn python() -> Result<()> {
     let wheel = wheels.first().context("maturin made no wheel")?.path();
     let with_extras = format!("sinew[gym,ray] @ file://{}", wheel.display());
     command::run(pip(&user).arg(with_extras))?;
-    command::run(pip(&user).args(["pytest", "mypy", "pyright", "matplotlib", "nbconvert", "ipykernel"]))?;
+    command::run(pip(&user).args(["pytest", "mypy", "matplotlib", "nbconvert", "ipykernel"]))?;
     let run = |program: &str, arguments: &[&str], place: &Path| {
         command::run(Command::new(user.join("bin").join(program)).args(arguments).current_dir(place))
     };

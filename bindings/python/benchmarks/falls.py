@@ -2,6 +2,8 @@
 """A data set of falls of the mannequin, made on workers of Ray: throughput beside one process, files read again, hashes beside single runs.
 
     python falls.py --out falls --count 10000 --workers 2
+
+Ray gives its workers a low priority; on a machine that has other work to do, RAY_worker_niceness=0 gives them that of one process.
 """
 
 import argparse

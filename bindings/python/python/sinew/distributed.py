@@ -213,7 +213,10 @@ def _spec(function: Function, tasks: Sequence[Task], chunk: int) -> Row:
 
 
 def _print(progress: Progress) -> None:
-    end = "\n" if progress.done == progress.total else "\r"
+    is_done = progress.done == progress.total
+    if not is_done and not sys.stderr.isatty():
+        return
+    end = "\n" if is_done else "\r"
     failed, deaths = progress.failed, progress.deaths
     print(f"{progress.done} of {progress.total}, {failed} failed, {deaths} workers died", end=end, file=sys.stderr)
 
