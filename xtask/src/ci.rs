@@ -2,7 +2,7 @@
 
 use crate::command::{self, Profile};
 use crate::golden::{self, Coverage};
-use crate::{bench, contract, new_user, spawns, targets, tidy};
+use crate::{bench, bindings, contract, new_user, spawns, targets, tidy};
 use anyhow::{Context, Result, anyhow, bail};
 use serde_json::Value;
 use std::fs;
@@ -15,7 +15,7 @@ use std::time::Instant;
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
     /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
-    /// SINEW_WORLDS, as in 100..200); definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the plugin for Bevy; instruction counts; the oldest compiler
+    /// SINEW_WORLDS, as in 100..200); definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the plugin for Bevy; the libraries for C and Python; instruction counts; the oldest compiler
     #[arg(long)]
     full: bool,
 }
@@ -58,6 +58,8 @@ impl Ci {
             check("peers", &peers);
             check("bevy", &bevy);
             check("new user of bevy", &new_user::bevy);
+            check("c", &bindings::c);
+            check("python", &bindings::python);
             check("counts", &bench::check_counts);
             check("oldest compiler", &oldest_compiler);
         }
@@ -71,13 +73,13 @@ impl Ci {
 
 /// Workspaces beside the root's. They are compiled only where it is worth the time, but always well formatted.
 const OTHER_WORKSPACES: &[&str] =
-    &["bench/peers", "bench/counts", "bench/kernels", "fuzz", "integrations/bevy_sinew"];
+    &["bench/peers", "bench/counts", "bench/kernels", "bindings", "fuzz", "integrations/bevy_sinew"];
 
 pub fn fmt() -> Result<()> {
     command::run(&mut command::cargo(&["fmt", "--all", "--check"]))?;
     for workspace in OTHER_WORKSPACES {
         let manifest = format!("{workspace}/Cargo.toml");
-        command::run(&mut command::cargo(&["fmt", "--manifest-path", &manifest, "--check"]))?;
+        command::run(&mut command::cargo(&["fmt", "--all", "--manifest-path", &manifest, "--check"]))?;
     }
     Ok(())
 }

@@ -1,7 +1,8 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | fuzz`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | bindings | fuzz`.
 #![forbid(unsafe_code)]
 
 mod bench;
+mod bindings;
 mod book;
 mod check;
 mod ci;
@@ -46,6 +47,8 @@ enum Task {
     Bench(bench::Bench),
     /// What README and guide print, built and run in an empty folder outside the workspace
     NewUser(new_user::NewUser),
+    /// The libraries for C and Python, built, installed and tried as their users have them
+    Bindings(bindings::Bindings),
     /// Bytes from nowhere against the readers, and clips against the runtime
     Fuzz(fuzz::Fuzz),
 }
@@ -65,6 +68,7 @@ fn run() -> anyhow::Result<ExitCode> {
         Task::Tidy(tidy) => tidy.run()?,
         Task::Golden(golden) => golden.run()?,
         Task::NewUser(user) => user.run()?,
+        Task::Bindings(bindings) => bindings.run()?,
         Task::Book(book) => book.run()?,
         Task::Ragdolls(ragdolls) => ragdolls.run()?,
         Task::Wild(wild) => wild.run()?,

@@ -54,7 +54,7 @@ pub fn bevy() -> Result<()> {
     project("bevy", BEVY_PAGE, &lines.map(by_path).collect::<String>(), &[])
 }
 
-fn read(page: &str) -> Result<String> {
+pub fn read(page: &str) -> Result<String> {
     fs::read_to_string(command::root().join(page)).with_context(|| page.to_owned())
 }
 
@@ -98,7 +98,7 @@ fn whole(program: &str) -> String {
 }
 
 /// Fenced blocks of a language, as they are printed: lines that only tests see are no part of them.
-fn blocks(text: &str, language: &str) -> Vec<String> {
+pub fn blocks(text: &str, language: &str) -> Vec<String> {
     let mut blocks = Vec::new();
     let mut open: Option<(bool, String)> = None;
     for line in text.lines() {

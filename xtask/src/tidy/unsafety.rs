@@ -11,6 +11,9 @@ const ALLOWED: &[&str] = &[
     "crates/sinew_physics/src/pool",
     "crates/sinew_physics/src/solver/contacts/chunks",
     "bench/peers/src/ffi",
+    "bindings/c/src",
+    "bindings/c/tests",
+    "bindings/python/src",
 ];
 
 /// `unsafe` stands only in the modules above. Every crate root forbids it, or, where the crate has one of those modules

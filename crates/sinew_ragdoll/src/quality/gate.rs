@@ -178,48 +178,48 @@ pub fn gate_on(def: &RagdollDef, spawns: core::ops::Range<u64>, runner: &dyn Tas
 pub fn random_fall(def: &RagdollDef, seed: u64) -> FallQuality {
     let mut random = Random::new(seed);
     let mut world = World::new(WorldDef::default());
-    terrain(&mut world, &mut random);
+    for body in random_ground(&mut random) {
+        world.add_body(&body);
+    }
     let states = posed(def, &mut random);
     let ragdoll = Ragdoll::spawn(&mut world, def, &states, &BodySettings::default());
     measure(&mut world, def, &ragdoll, SECONDS)
 }
 
-/// A floor, and on it nothing, a slope, a stair, or scattered boxes.
-fn terrain(world: &mut World, random: &mut Random) {
-    let mut add = |position: Vec3, rotation: Rotation, shape: Shape| {
-        world.add_body(&BodyDef {
-            kind: BodyKind::Static,
-            position,
-            rotation,
-            shapes: vec![ShapeDef::new(shape)],
-            ..BodyDef::default()
-        });
+/// A floor, and on it nothing, a slope, a stair, or scattered boxes: static bodies, none higher than 1.1 m but for slopes, which lean out
+/// of the floor.
+pub fn random_ground(random: &mut Random) -> Vec<BodyDef> {
+    let fixed = |position: Vec3, rotation: Rotation, shape: Shape| BodyDef {
+        kind: BodyKind::Static,
+        position,
+        rotation,
+        shapes: vec![ShapeDef::new(shape)],
+        ..BodyDef::default()
     };
-    add(Vec3::ZERO, Rotation::IDENTITY, Shape::HalfSpace);
-    let upright = |yaw: f32| Rotation::from_axis_angle(Vec3::Y, yaw);
+    let mut ground = vec![fixed(Vec3::ZERO, Rotation::IDENTITY, Shape::HalfSpace)];
     match random.index(4) {
         0 => {}
         1 => {
             let tilt = Rotation::from_axis_angle(random.direction(), random.range(0.0, 0.5));
-            add(Vec3::ZERO, tilt, Shape::Box { half_extents: Vec3::new(3.0, 0.3, 3.0) });
+            ground.push(fixed(Vec3::ZERO, tilt, Shape::Box { half_extents: Vec3::new(3.0, 0.3, 3.0) }));
         }
-        2 => {
-            for step in 0..6 {
-                let top = 0.17 * (6 - step) as f32;
-                let half_extents = Vec3::new(1.5, 0.5 * top, 0.15);
-                let position = Vec3::new(0.0, 0.5 * top, 0.3 * step as f32 - 0.6);
-                add(position, Rotation::IDENTITY, Shape::Box { half_extents });
-            }
-        }
+        2 => ground.extend((0..6).map(|step| {
+            let top = 0.17 * (6 - step) as f32;
+            let half_extents = Vec3::new(1.5, 0.5 * top, 0.15);
+            let position = Vec3::new(0.0, 0.5 * top, 0.3 * step as f32 - 0.6);
+            fixed(position, Rotation::IDENTITY, Shape::Box { half_extents })
+        })),
         _ => {
             for _ in 0..6 {
                 let half_extents =
                     Vec3::new(random.range(0.1, 0.5), random.range(0.05, 0.4), random.range(0.1, 0.5));
                 let position = Vec3::new(random.range(-1.0, 1.0), half_extents.y, random.range(-1.0, 1.0));
-                add(position, upright(random.range(-3.0, 3.0)), Shape::Box { half_extents });
+                let upright = Rotation::from_axis_angle(Vec3::Y, random.range(-3.0, 3.0));
+                ground.push(fixed(position, upright, Shape::Box { half_extents }));
             }
         }
     }
+    ground
 }
 
 /// A random pose within the limits, place and motion.

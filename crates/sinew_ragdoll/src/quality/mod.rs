@@ -19,7 +19,7 @@ mod plausible;
 mod verdict;
 
 pub use drop_test::{DropReport, Fallen, drop_test};
-pub use gate::{Bar, GateReport, Miss, gate, gate_on, random_fall, random_pose};
+pub use gate::{Bar, GateReport, Miss, gate, gate_on, random_fall, random_ground, random_pose};
 pub use meter::QualityMeter;
 pub use plausible::Doubt;
 pub use verdict::{Verdict, judge, judge_bake};

@@ -1,0 +1,247 @@
+//! Border to C: pointers in and out, errors, panics.
+
+use sinew_bindings::Failure;
+use std::cell::RefCell;
+use std::ffi::{CStr, CString, c_char};
+
+/// Outcome of a call.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SinewStatus {
+    /// It was done.
+    Ok = 0,
+    /// A pointer is null that must not be.
+    NullPointer = 1,
+    /// An id names nothing that is there: it was removed, or is of another world.
+    StaleId = 2,
+    /// A number, a size or a name cannot be.
+    BadArgument = 3,
+    /// A file cannot be read or written, or is not what it should be; the sentence names the file and the place.
+    BadFile = 4,
+    /// The bytes are no snapshot of this version; the world is as it was.
+    BadSnapshot = 5,
+    /// The buffer has too little room; the count that it needs was given.
+    TooSmall = 6,
+    /// A bug of the library. What was being changed is of no use any more and can only be freed.
+    Panic = 7,
+}
+
+/// Error of a call: its status and its sentence.
+#[derive(Debug)]
+pub struct CallError {
+    /// Status that the caller gets.
+    pub(crate) status: SinewStatus,
+    what: String,
+}
+
+pub(crate) type Outcome<T = ()> = Result<T, CallError>;
+
+/// The error of a status, with a sentence.
+pub(crate) fn error(status: SinewStatus, what: impl Into<String>) -> CallError {
+    CallError { status, what: what.into() }
+}
+
+impl From<Failure> for CallError {
+    fn from(failure: Failure) -> Self {
+        let status = if failure.is_of_file { SinewStatus::BadFile } else { SinewStatus::BadArgument };
+        error(status, failure.what)
+    }
+}
+
+thread_local! {
+    static LAST: RefCell<CString> = RefCell::default();
+}
+
+/// Runs what a call does; a panic becomes an error, and nothing is printed of it.
+pub(crate) fn guard(call: impl FnOnce() -> Outcome) -> SinewStatus {
+    let (status, what) = match caught(call) {
+        Ok(()) => (SinewStatus::Ok, String::new()),
+        Err(CallError { status, what }) => (status, what),
+    };
+    let what = CString::new(what.replace('\0', "?")).unwrap_or_default();
+    // A thread that ends may have no sentence left.
+    let _ = LAST.try_with(|last| last.replace(what));
+    status
+}
+
+/// Runs `call`; a panic becomes [`SinewStatus::Panic`].
+fn caught<T>(call: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
+    sinew_bindings::caught(call).unwrap_or_else(|what| Err(error(SinewStatus::Panic, what)))
+}
+
+/// Runs a call of the library that panics about its argument before it changes anything: that is the caller's mistake.
+pub(crate) fn refused<T>(call: impl FnOnce() -> T) -> Outcome<T> {
+    caught(|| Ok(call())).map_err(|panic| error(SinewStatus::BadArgument, panic.what))
+}
+
+/// Something that a panic leaves in a state of no use.
+pub(crate) struct Handle<T> {
+    it: T,
+    is_broken: bool,
+}
+
+impl<T> Handle<T> {
+    pub(crate) fn new(it: T) -> Self {
+        Self { it, is_broken: false }
+    }
+
+    /// The thing, to be looked at.
+    pub(crate) fn get(&self) -> Outcome<&T> {
+        self.check()?;
+        Ok(&self.it)
+    }
+
+    /// Changes the thing.
+    pub(crate) fn change<R>(&mut self, call: impl FnOnce(&mut T) -> Outcome<R>) -> Outcome<R> {
+        self.check()?;
+        self.is_broken = true;
+        let outcome = caught(|| call(&mut self.it));
+        self.is_broken = matches!(&outcome, Err(error) if error.status == SinewStatus::Panic);
+        outcome
+    }
+
+    fn check(&self) -> Outcome {
+        if self.is_broken {
+            return Err(error(SinewStatus::Panic, "an earlier call panicked: it can only be freed"));
+        }
+        Ok(())
+    }
+}
+
+fn null(name: &str) -> CallError {
+    error(SinewStatus::NullPointer, format!("{name} is null"))
+}
+
+/// What a pointer points to.
+///
+/// # Safety
+/// It is null or points to a `T` that nobody changes meanwhile.
+pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Outcome<&'a T> {
+    // SAFETY: as the caller promises.
+    unsafe { pointer.as_ref() }.ok_or_else(|| null(name))
+}
+
+/// What a pointer points to, to be changed.
+///
+/// # Safety
+/// It is null or points to a `T` that nobody else uses meanwhile.
+pub(crate) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &str) -> Outcome<&'a mut T> {
+    // SAFETY: as the caller promises.
+    unsafe { pointer.as_mut() }.ok_or_else(|| null(name))
+}
+
+/// Elements that a pointer points to; it may be null where there are none.
+///
+/// # Safety
+/// It is null or points to `count` elements that nobody changes meanwhile.
+pub(crate) unsafe fn elements<'a, T>(pointer: *const T, count: usize, name: &str) -> Outcome<&'a [T]> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check_count::<T>(count, name)?;
+    if pointer.is_null() {
+        return Err(null(name));
+    }
+    // SAFETY: as the caller promises, and no longer than memory can be.
+    Ok(unsafe { core::slice::from_raw_parts(pointer, count) })
+}
+
+fn check_count<T>(count: usize, name: &str) -> Outcome {
+    let most = isize::MAX as usize / size_of::<T>().max(1);
+    if count <= most {
+        Ok(())
+    } else {
+        Err(error(SinewStatus::BadArgument, format!("{count} {name} are too many")))
+    }
+}
+
+/// There is room for a value: asked before anything is changed that could not be told of.
+pub(crate) fn room<T>(pointer: *mut T, name: &str) -> Outcome {
+    if pointer.is_null() { Err(null(name)) } else { Ok(()) }
+}
+
+/// Writes a value where the caller wants it.
+///
+/// # Safety
+/// The pointer is null or points to room for a `T`.
+pub(crate) unsafe fn give<T>(pointer: *mut T, name: &str, value: T) -> Outcome {
+    room(pointer, name)?;
+    // SAFETY: as the caller promises; what was there may never have been a value, so it is not dropped.
+    unsafe { pointer.write(value) };
+    Ok(())
+}
+
+/// Writes values into a buffer, and their number; nothing but the number where there is too little room.
+///
+/// # Safety
+/// `buffer` is null or has room for `capacity` elements, `count` is null or points to a number.
+pub(crate) unsafe fn fill<T: Copy>(
+    values: &[T],
+    buffer: *mut T,
+    capacity: usize,
+    count: *mut usize,
+) -> Outcome {
+    // SAFETY: as the caller promises.
+    unsafe { give(count, "count", values.len()) }?;
+    if values.len() > capacity {
+        let what = format!("room for {capacity} of {}", values.len());
+        return Err(error(SinewStatus::TooSmall, what));
+    }
+    if values.is_empty() {
+        return Ok(());
+    }
+    room(buffer, "the buffer")?;
+    // SAFETY: as the caller promises; it is the caller's, so it does not overlap ours.
+    unsafe { core::ptr::copy_nonoverlapping(values.as_ptr(), buffer, values.len()) };
+    Ok(())
+}
+
+/// Text of the caller, UTF-8.
+///
+/// # Safety
+/// The pointer is null or points to text that ends with a zero.
+pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Outcome<&'a str> {
+    if pointer.is_null() {
+        return Err(null(name));
+    }
+    // SAFETY: as the caller promises.
+    let text = unsafe { CStr::from_ptr(pointer) }.to_str();
+    text.map_err(|_| error(SinewStatus::BadArgument, format!("{name} is not UTF-8")))
+}
+
+/// Puts a handle on the heap and gives its pointer.
+///
+/// # Safety
+/// As [`give`].
+pub(crate) unsafe fn give_handle<T>(pointer: *mut *mut T, name: &str, value: T) -> Outcome {
+    room(pointer, name)?;
+    // SAFETY: as the caller promises.
+    unsafe { give(pointer, name, Box::into_raw(Box::new(value))) }
+}
+
+/// Frees a handle; null is fine.
+///
+/// # Safety
+/// The pointer is null or came from [`give_handle`], and nobody uses it any more.
+pub(crate) unsafe fn free<T>(pointer: *mut T) {
+    if !pointer.is_null() {
+        guard(|| {
+            // SAFETY: as the caller promises.
+            drop(unsafe { Box::from_raw(pointer) });
+            Ok(())
+        });
+    }
+}
+
+/// Sentence on the last call of this thread that gave no `SINEW_STATUS_OK`, or "". It names the file and the place. It lives until the
+/// thread's next call.
+#[unsafe(no_mangle)]
+pub extern "C" fn sinew_last_error() -> *const c_char {
+    LAST.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
+}
+
+/// Version of the library, such as "0.1.0".
+#[unsafe(no_mangle)]
+pub extern "C" fn sinew_version() -> *const c_char {
+    concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
+}

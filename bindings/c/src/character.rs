@@ -1,0 +1,414 @@
+//! Characters: clips until something hits them, bodies while they fall, and up again.
+
+use crate::border::{
+    CallError, Handle, Outcome, SinewStatus, elements, error, exclusive, fill, free, give, give_handle,
+    guard, shared, text,
+};
+use crate::types::{SinewBodyId, SinewPose, SinewVec3};
+use crate::world::SinewWorld;
+use sinew::math::{Reader, Writer};
+use sinew::ragdoll::{Character, CharacterDef, State};
+use sinew_bindings::{CharacterFile, Wishes, embedded};
+use std::ffi::{CString, c_char};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Kind of a character: rig, ragdoll and motions, of which many can be in worlds.
+pub struct SinewCharacterDef {
+    def: Arc<CharacterDef>,
+    names: Vec<CString>,
+}
+
+/// Character in a world. It is stepped after the world: `sinew_world_step`, then `sinew_character_update`, one for one.
+pub struct SinewCharacter {
+    character: Handle<Character>,
+}
+
+/// State of a character: what decides its pose.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SinewCharacterState {
+    /// Clips.
+    Animated = 0,
+    /// Its bodies: it falls, or lies.
+    Limp = 1,
+    /// Its bodies, which are brought to where a get-up clip begins.
+    Preparing = 2,
+    /// A get-up clip.
+    GettingUp = 3,
+    /// Clips, but for a limb that was struck.
+    Flinching = 4,
+    /// Its bodies, drawn to its clips by muscles.
+    Powered = 5,
+}
+
+/// Transform of a joint in its parent, in the file's units.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SinewLocalTransform {
+    /// Position and rotation.
+    pub pose: SinewPose,
+    /// Scale along each axis.
+    pub scale: SinewVec3,
+}
+
+/// Reads a character (GLB, glTF, VRM, FBX) and builds its ragdoll. Where the file has no clip to get up by, a humanoid gets those that
+/// come with the library. A null path: the mannequin that comes with the library.
+///
+/// # Safety
+/// `path` is null or text, `def` is null or points to room for a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_def_load(
+    path: *const c_char,
+    def: *mut *mut SinewCharacterDef,
+) -> SinewStatus {
+    guard(|| {
+        let file = if path.is_null() {
+            embedded()
+        } else {
+            // SAFETY: as the caller promises.
+            CharacterFile::load(Path::new(unsafe { text(path, "path") }?))?
+        };
+        let (ragdoll, _) = file.build(&Wishes::default())?;
+        let made = file.character(&ragdoll, None)?;
+        let names = made
+            .rig
+            .joints
+            .iter()
+            .map(|joint| CString::new(joint.name.as_str()).unwrap_or_default())
+            .collect();
+        // SAFETY: likewise.
+        unsafe { give_handle(def, "def", SinewCharacterDef { def: Arc::new(made), names }) }
+    })
+}
+
+/// Frees a kind of character; characters that were made of it stay. Null is fine.
+///
+/// # Safety
+/// `def` is null or came from `sinew_character_def_load` and is not used any more.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_def_free(def: *mut SinewCharacterDef) {
+    // SAFETY: as the caller promises.
+    unsafe { free(def) }
+}
+
+/// Number of joints of its rig: of the transforms of a pose.
+///
+/// # Safety
+/// `def` is null or a kind of character, `count` is null or points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_def_joint_count(
+    def: *const SinewCharacterDef,
+    count: *mut usize,
+) -> SinewStatus {
+    // SAFETY: as the caller promises.
+    guard(|| unsafe { give(count, "count", shared(def, "def")?.names.len()) })
+}
+
+/// Name of a joint; it lives as long as the kind of character.
+///
+/// # Safety
+/// `def` is null or a kind of character, `name` is null or points to room for a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_def_joint_name(
+    def: *const SinewCharacterDef,
+    joint: usize,
+    name: *mut *const c_char,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let names = &unsafe { shared(def, "def") }?.names;
+        let named = names.get(joint);
+        let named = named
+            .ok_or_else(|| error(SinewStatus::BadArgument, format!("no joint {joint} of {}", names.len())))?;
+        // SAFETY: likewise.
+        unsafe { give(name, "name", named.as_ptr()) }
+    })
+}
+
+/// Puts a character into a world, animated, with bodies that rays find; it stands at a pose (+Y up, facing +Z).
+///
+/// # Safety
+/// `def` is null or a kind of character, `world` is null or a world that nobody else uses, `character` is null or room for a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_spawn(
+    def: *const SinewCharacterDef,
+    world: *mut SinewWorld,
+    pose: SinewPose,
+    character: *mut *mut SinewCharacter,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let (def, world) = unsafe { (&shared(def, "def")?.def, exclusive(world, "world")?) };
+        crate::border::room(character, "character")?;
+        let pose = pose.read("the pose")?;
+        let spawned = world.world.change(|world| Ok(Character::spawn(world, def, pose)))?;
+        // SAFETY: likewise.
+        unsafe { give_handle(character, "character", SinewCharacter { character: Handle::new(spawned) }) }
+    })
+}
+
+/// Takes a character out of its world and frees it. If it was in another one, or a body of it was removed, it is freed all the same,
+/// and the status says so.
+///
+/// # Safety
+/// `character` came from `sinew_character_spawn` and is not used any more; `world` is null or a world that nobody else uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_despawn(
+    character: *mut SinewCharacter,
+    world: *mut SinewWorld,
+) -> SinewStatus {
+    guard(|| {
+        crate::border::room(character, "character")?;
+        // SAFETY: as the caller promises.
+        let SinewCharacter { character } = *unsafe { Box::from_raw(character) };
+        let character = character.get()?.clone();
+        // SAFETY: likewise.
+        let world = &mut unsafe { exclusive(world, "world") }?.world;
+        is_here(&character, world.get()?)?;
+        world.change(|world| {
+            character.despawn(world);
+            Ok(())
+        })
+    })
+}
+
+/// Frees a character and leaves its bodies in the world, for one that is freed as well. Null is fine.
+///
+/// # Safety
+/// `character` is null or came from `sinew_character_spawn` and is not used any more.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_free(character: *mut SinewCharacter) {
+    // SAFETY: as the caller promises.
+    unsafe { free(character) }
+}
+
+/// Every body of the character is in the world.
+fn is_here(character: &Character, world: &sinew::physics::World) -> Outcome {
+    let gone = character.bodies().iter().find(|&&body| !world.contains(body));
+    match gone {
+        None => Ok(()),
+        Some(body) => Err(error(
+            SinewStatus::StaleId,
+            format!("the character's body {:#x} is not in this world", body.to_bits()),
+        )),
+    }
+}
+
+/// Changes character and world together.
+///
+/// # Safety
+/// Both are null or nobody else's.
+unsafe fn together<R>(
+    character: *mut SinewCharacter,
+    world: *mut SinewWorld,
+    call: impl FnOnce(&mut Character, &mut sinew::physics::World) -> Outcome<R>,
+) -> Outcome<R> {
+    // SAFETY: as the caller promises.
+    let (character, world) = unsafe { (exclusive(character, "character")?, exclusive(world, "world")?) };
+    is_here(character.character.get()?, world.world.get()?)?;
+    world.world.change(|world| character.character.change(|character| call(character, world)))
+}
+
+/// Follows the world by the step that it has just taken.
+///
+/// # Safety
+/// `character` and `world` are null or nobody else's.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_update(
+    character: *mut SinewCharacter,
+    world: *mut SinewWorld,
+) -> SinewStatus {
+    guard(|| {
+        let update = |character: &mut Character, world: &mut sinew::physics::World| {
+            character.update(world);
+            Ok(())
+        };
+        // SAFETY: as the caller promises.
+        unsafe { together(character, world, update) }
+    })
+}
+
+/// Hits a body, by its role ("chest") or its joint's name, with an impulse, N·s, world axes. It falls, or flinches if it stands that.
+///
+/// # Safety
+/// `character` and `world` are null or nobody else's, `body` is null or text.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_hit(
+    character: *mut SinewCharacter,
+    world: *mut SinewWorld,
+    body: *const c_char,
+    impulse: SinewVec3,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let name = unsafe { text(body, "body") }?;
+        let impulse = impulse.read("the impulse")?;
+        let hit = |character: &mut Character, world: &mut sinew::physics::World| {
+            let body = character.def().body_named(name).ok_or_else(|| no_body(character.def(), name))?;
+            character.hit(world, body, impulse);
+            Ok(())
+        };
+        // SAFETY: likewise.
+        unsafe { together(character, world, hit) }
+    })
+}
+
+fn no_body(def: &CharacterDef, name: &str) -> CallError {
+    let roles: Vec<&str> = def.ragdoll.bodies.iter().map(|body| body.role.as_str()).collect();
+    error(SinewStatus::BadArgument, format!("no body is called '{name}'; there are {}", roles.join(", ")))
+}
+
+/// Lets it fall, at the speed that it has.
+///
+/// # Safety
+/// `character` and `world` are null or nobody else's.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_go_limp(
+    character: *mut SinewCharacter,
+    world: *mut SinewWorld,
+) -> SinewStatus {
+    guard(|| {
+        let fall = |character: &mut Character, world: &mut sinew::physics::World| {
+            character.go_limp(world);
+            Ok(())
+        };
+        // SAFETY: as the caller promises.
+        unsafe { together(character, world, fall) }
+    })
+}
+
+/// State of the character.
+///
+/// # Safety
+/// `character` is null or one that nobody changes, `state` is null or points to room.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_state(
+    character: *const SinewCharacter,
+    state: *mut SinewCharacterState,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let now = match unsafe { shared(character, "character") }?.character.get()?.state() {
+            State::Animated => SinewCharacterState::Animated,
+            State::Limp => SinewCharacterState::Limp,
+            State::Preparing => SinewCharacterState::Preparing,
+            State::GettingUp => SinewCharacterState::GettingUp,
+            State::Flinching => SinewCharacterState::Flinching,
+            State::Powered => SinewCharacterState::Powered,
+        };
+        // SAFETY: likewise.
+        unsafe { give(state, "state", now) }
+    })
+}
+
+/// Ids of its bodies in the world, in the order of its ragdoll.
+///
+/// # Safety
+/// `character` is null or one that nobody changes; `ids` has room for `capacity`, `count` is null or points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_bodies(
+    character: *const SinewCharacter,
+    ids: *mut SinewBodyId,
+    capacity: usize,
+    count: *mut usize,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let bodies = unsafe { shared(character, "character") }?.character.get()?.bodies();
+        let bodies: Vec<SinewBodyId> = bodies.iter().map(|&body| body.into()).collect();
+        // SAFETY: likewise.
+        unsafe { fill(&bodies, ids, capacity, count) }
+    })
+}
+
+/// Transforms of all joints, each in its parent, in the order of the file.
+///
+/// # Safety
+/// `character` is null or one that nobody changes; `pose` has room for `capacity`, `count` is null or points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_pose(
+    character: *const SinewCharacter,
+    pose: *mut SinewLocalTransform,
+    capacity: usize,
+    count: *mut usize,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let now = unsafe { shared(character, "character") }?.character.get()?.pose();
+        let local = |local: &sinew::anim::LocalTransform| SinewLocalTransform {
+            pose: sinew::math::Transform::new(local.translation, local.rotation).into(),
+            scale: local.scale.into(),
+        };
+        let all: Vec<SinewLocalTransform> = now.iter().map(local).collect();
+        // SAFETY: likewise.
+        unsafe { fill(&all, pose, capacity, count) }
+    })
+}
+
+/// Matrix from the file's model space to the world, to be put above the pose: 3 rows of 4.
+///
+/// # Safety
+/// `character` is null or one that nobody changes, `matrix` is null or has room for 12 numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_world_from_model(
+    character: *const SinewCharacter,
+    matrix: *mut f32,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let affine = unsafe { shared(character, "character") }?.character.get()?.world_from_model();
+        let (m, t) = (affine.linear, affine.translation);
+        let rows = [
+            [m.x_axis.x, m.y_axis.x, m.z_axis.x, t.x],
+            [m.x_axis.y, m.y_axis.y, m.z_axis.y, t.y],
+            [m.x_axis.z, m.y_axis.z, m.z_axis.z, t.z],
+        ];
+        // SAFETY: likewise.
+        unsafe { fill(rows.as_flattened(), matrix, 12, &mut 0) }
+    })
+}
+
+/// Saves a character into a buffer, to go with the snapshot of its world; as `sinew_world_save`.
+///
+/// # Safety
+/// `character` is null or one that nobody changes; `bytes` has room for `capacity`, `size` is null or points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_save(
+    character: *const SinewCharacter,
+    bytes: *mut u8,
+    capacity: usize,
+    size: *mut usize,
+) -> SinewStatus {
+    guard(|| {
+        let mut w = Writer::new();
+        // SAFETY: as the caller promises.
+        unsafe { shared(character, "character") }?.character.get()?.save(&mut w);
+        // SAFETY: likewise.
+        unsafe { fill(w.as_bytes(), bytes, capacity, size) }
+    })
+}
+
+/// Brings back a saved character of the same kind. It is as it was if the bytes are none of one.
+///
+/// # Safety
+/// `character` is null or nobody else's, `bytes` has `size` of them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_character_load(
+    character: *mut SinewCharacter,
+    bytes: *const u8,
+    size: usize,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let (character, bytes) =
+            unsafe { (exclusive(character, "character")?, elements(bytes, size, "bytes")?) };
+        character.character.change(|character| {
+            let mut loaded = character.clone();
+            let outcome = loaded.load(&mut Reader::new(bytes));
+            outcome.map_err(|what| error(SinewStatus::BadSnapshot, what.to_string()))?;
+            *character = loaded;
+            Ok(())
+        })
+    })
+}

@@ -1,0 +1,187 @@
+//! Joints between bodies of a world.
+
+use crate::border::{Outcome, SinewStatus, error, exclusive, give, guard, refused, room, shared};
+use crate::types::{SinewBodyId, SinewJointId, SinewPose, SinewVec3};
+use crate::world::{SinewWorld, body};
+use sinew::math::{Range, Rotation, Transform, Vec3};
+use sinew::physics::{JointDef, JointId, JointKind, Motor, Softness, World};
+
+/// Kind of a joint.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SinewJointKind {
+    /// Turns freely about the anchor.
+    Ball = 0,
+    /// Turns about the axis. `range`: radians.
+    Hinge = 1,
+    /// Slides along the axis. `range`: metres.
+    Slider = 2,
+    /// Nothing is free.
+    Fixed = 3,
+    /// Rope or rod from the anchor of A to that of B. `range`: metres.
+    Distance = 4,
+}
+
+/// Joint to be added.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct SinewJointDef {
+    /// One of `SinewJointKind`.
+    pub kind: u32,
+    /// The first body.
+    pub a: SinewBodyId,
+    /// The other, not the same; one of both is dynamic.
+    pub b: SinewBodyId,
+    /// Where they meet, world, metres; of a distance the end at A.
+    pub anchor: SinewVec3,
+    /// Of a distance the end at B.
+    pub anchor_b: SinewVec3,
+    /// Axis of a hinge or a slider, world; not zero.
+    pub axis: SinewVec3,
+    /// 1 if a hinge or slider has a range, else 0; a distance always has one. The present pose is 0.
+    pub has_range: u32,
+    /// Least.
+    pub range_lo: f32,
+    /// Most.
+    pub range_hi: f32,
+}
+
+impl SinewJointDef {
+    fn read(&self, world: &World) -> Outcome<JointDef> {
+        let (a, b) = (body(world, self.a)?, body(world, self.b)?);
+        let (anchor, axis) = (self.anchor.read("the anchor")?, self.axis.read("the axis")?);
+        let bad = |what: &str| error(SinewStatus::BadArgument, what);
+        let is_axial = [SinewJointKind::Hinge as u32, SinewJointKind::Slider as u32].contains(&self.kind);
+        if is_axial && axis == Vec3::ZERO {
+            return Err(bad("the axis of a hinge or slider is zero"));
+        }
+        if self.has_range > 1 {
+            return Err(bad("has_range is 0 or 1"));
+        }
+        let range = Range { lo: self.range_lo, hi: self.range_hi };
+        let limit = (self.has_range == 1).then_some(range);
+        let def = match self.kind {
+            kind if kind == SinewJointKind::Ball as u32 => world.ball(a, b, anchor),
+            kind if kind == SinewJointKind::Hinge as u32 => {
+                JointDef { kind: JointKind::Hinge { limit }, ..world.hinge(a, b, anchor, axis) }
+            }
+            kind if kind == SinewJointKind::Slider as u32 => {
+                JointDef { kind: JointKind::Slider { limit }, ..world.slider(a, b, anchor, axis) }
+            }
+            kind if kind == SinewJointKind::Fixed as u32 => world.fixed(a, b),
+            kind if kind == SinewJointKind::Distance as u32 => {
+                world.distance(a, b, anchor, self.anchor_b.read("the anchor at B")?, range)
+            }
+            kind => return Err(bad(&format!("there is no joint of kind {kind}"))),
+        };
+        Ok(def)
+    }
+}
+
+fn joint(world: &World, id: SinewJointId) -> Outcome<JointId> {
+    let joint = JointId::from_bits(id.bits);
+    let is_there = world.contains_joint(joint);
+    if is_there { Ok(joint) } else { Err(error(SinewStatus::StaleId, format!("no joint {:#x}", id.bits))) }
+}
+
+/// Adds a joint; the bodies are where they are to be for it.
+///
+/// # Safety
+/// `world` is null or a world that nobody else uses, `def` null or a definition, `id` null or room for one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_add_joint(
+    world: *mut SinewWorld,
+    def: *const SinewJointDef,
+    id: *mut SinewJointId,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let (world, def) = unsafe { (exclusive(world, "world")?, shared(def, "def")?) };
+        room(id, "id")?;
+        let added = world.world.change(|world| {
+            let def = def.read(world)?;
+            refused(|| world.add_joint(&def))
+        })?;
+        // SAFETY: likewise.
+        unsafe { give(id, "id", added.into()) }
+    })
+}
+
+/// Takes a joint out.
+///
+/// # Safety
+/// `world` is null or a world that nobody else uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_remove_joint(world: *mut SinewWorld, id: SinewJointId) -> SinewStatus {
+    // SAFETY: as the caller promises.
+    guard(|| unsafe {
+        exclusive(world, "world")?.world.change(|world| {
+            let joint = joint(world, id)?;
+            world.remove_joint(joint);
+            Ok(())
+        })
+    })
+}
+
+/// Drives a joint toward a rotation of B in A (a hinge: about its axis, x), as a spring of so many Hz and damping ratio, with no more
+/// than a torque, N·m. 0 Hz: no motor.
+///
+/// # Safety
+/// `world` is null or a world that nobody else uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_drive_joint(
+    world: *mut SinewWorld,
+    id: SinewJointId,
+    target: SinewVec3,
+    hertz: f32,
+    damping_ratio: f32,
+    max_torque: f32,
+) -> SinewStatus {
+    // SAFETY: as the caller promises.
+    guard(|| unsafe {
+        let rotation = Rotation::from_scaled_axis(target.read("the target")?);
+        let softness = Softness::Frequency { hertz, damping_ratio };
+        let toward = Motor::toward(Transform::new(Vec3::ZERO, rotation), softness);
+        let motor = (hertz != 0.0).then_some(Motor { max_force: 0.0, max_torque, ..toward });
+        exclusive(world, "world")?.world.change(|world| {
+            let joint = joint(world, id)?;
+            refused(|| world.set_motor(joint, motor))
+        })
+    })
+}
+
+/// Distance of the joint's two anchors, metres: how far it has come apart.
+///
+/// # Safety
+/// `world` is null or a world that nobody changes, `gap` is null or points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_joint_gap(
+    world: *const SinewWorld,
+    id: SinewJointId,
+    gap: *mut f32,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let world = unsafe { shared(world, "world") }?.world.get()?;
+        // SAFETY: likewise.
+        unsafe { give(gap, "gap", world.joint_gap(joint(world, id)?)) }
+    })
+}
+
+/// Pose of B in A as the joint sees it: its rotation and its slide.
+///
+/// # Safety
+/// As `sinew_world_joint_gap`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_joint_pose(
+    world: *const SinewWorld,
+    id: SinewJointId,
+    pose: *mut SinewPose,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let world = unsafe { shared(world, "world") }?.world.get()?;
+        // SAFETY: likewise.
+        unsafe { give(pose, "pose", world.joint_transform(joint(world, id)?).into()) }
+    })
+}

@@ -1,0 +1,181 @@
+//! Questions to a world: rays, overlaps, contacts, events.
+
+use crate::border::{Outcome, SinewStatus, error, fill, give, guard, shared};
+use crate::types::{SinewBodyId, SinewPose, SinewShape, SinewVec3};
+use crate::world::SinewWorld;
+use sinew::physics::ray::Ray;
+use sinew::physics::{BodyId, OverlapWith, Probe, Shape};
+
+/// First hit of a ray.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SinewRayHit {
+    /// The body.
+    pub body: SinewBodyId,
+    /// World, metres.
+    pub point: SinewVec3,
+    /// Out of the body, unit length.
+    pub normal: SinewVec3,
+    /// Share of the ray before the hit, 0 to 1.
+    pub fraction: f32,
+}
+
+/// Point of a contact, as the last step left it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SinewContact {
+    /// The body with the smaller index.
+    pub a: SinewBodyId,
+    /// The other.
+    pub b: SinewBodyId,
+    /// Between the surfaces, world, metres.
+    pub position: SinewVec3,
+    /// From A to B, unit length.
+    pub normal: SinewVec3,
+    /// Gap, metres; negative if they overlap.
+    pub separation: f32,
+    /// All that it pushed in the step, N·s.
+    pub impulse: f32,
+}
+
+/// Two bodies.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SinewPair {
+    /// The body with the smaller index.
+    pub a: SinewBodyId,
+    /// The other.
+    pub b: SinewBodyId,
+}
+
+/// Kind of events.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SinewEventKind {
+    /// Bodies that began to touch.
+    Begin = 0,
+    /// Bodies that stopped; ids may be stale.
+    End = 1,
+    /// Bodies that came in fast and were stopped.
+    Hit = 2,
+}
+
+/// Casts a ray from `origin` as far as `way` goes. `found` is 1 and `hit` filled if it meets something, else 0.
+///
+/// # Safety
+/// `world` is null or a world that nobody changes; `hit` and `found` are null or have room.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_ray(
+    world: *const SinewWorld,
+    origin: SinewVec3,
+    way: SinewVec3,
+    hit: *mut SinewRayHit,
+    found: *mut u32,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let world = unsafe { shared(world, "world") }?.world.get()?;
+        let ray = Ray { origin: origin.read("the origin")?, direction: way.read("the way")? };
+        let first = world.query().first(&ray);
+        // SAFETY: likewise.
+        unsafe { give(found, "found", u32::from(first.is_some())) }?;
+        let Some(first) = first else { return Ok(()) };
+        let (point, normal) = (first.point.into(), first.normal.into());
+        // SAFETY: likewise.
+        unsafe {
+            give(hit, "hit", SinewRayHit { body: first.body.into(), point, normal, fraction: first.fraction })
+        }
+    })
+}
+
+/// Bodies that a shape at a pose would overlap, ascending.
+///
+/// # Safety
+/// `world` is null or a world that nobody changes; `ids` has room for `capacity`, `count` is null or points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_overlap(
+    world: *const SinewWorld,
+    shape: SinewShape,
+    pose: SinewPose,
+    ids: *mut SinewBodyId,
+    capacity: usize,
+    count: *mut usize,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let world = unsafe { shared(world, "world") }?.world.get()?;
+        let shape = shape.read()?;
+        if shape == Shape::HalfSpace {
+            return Err(error(SinewStatus::BadArgument, "a probe is bounded: no half-space"));
+        }
+        let mut bodies: Vec<BodyId> = Vec::new();
+        world.query().bodies(&OverlapWith(Probe::new(shape, pose.read("the pose")?)), &mut bodies);
+        bodies.sort_unstable();
+        let bodies: Vec<SinewBodyId> = bodies.into_iter().map(SinewBodyId::from).collect();
+        // SAFETY: likewise.
+        unsafe { fill(&bodies, ids, capacity, count) }
+    })
+}
+
+/// Points of all contacts, near ones that do not touch among them, in the order of pairs.
+///
+/// # Safety
+/// `world` is null or a world that nobody changes; `contacts` has room for `capacity`, `count` is null or points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_contacts(
+    world: *const SinewWorld,
+    contacts: *mut SinewContact,
+    capacity: usize,
+    count: *mut usize,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let world = unsafe { shared(world, "world") }?.world.get()?;
+        let mut all = Vec::new();
+        for contact in world.contacts() {
+            all.extend(contact.points().iter().map(|point| SinewContact {
+                a: contact.a.body.into(),
+                b: contact.b.body.into(),
+                position: point.position.into(),
+                normal: contact.normal.into(),
+                separation: point.separation,
+                impulse: point.impulse,
+            }));
+        }
+        // SAFETY: likewise.
+        unsafe { fill(&all, contacts, capacity, count) }
+    })
+}
+
+/// Events of the last step, of a kind (one of `SinewEventKind`), in the order of pairs.
+///
+/// # Safety
+/// `world` is null or a world that nobody changes; `pairs` has room for `capacity`, `count` is null or points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_events(
+    world: *const SinewWorld,
+    kind: u32,
+    pairs: *mut SinewPair,
+    capacity: usize,
+    count: *mut usize,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let events = unsafe { shared(world, "world") }?.world.get()?.events();
+        let pair = |a: BodyId, b: BodyId| SinewPair { a: a.into(), b: b.into() };
+        let all: Outcome<Vec<SinewPair>> = match kind {
+            kind if kind == SinewEventKind::Begin as u32 => {
+                Ok(events.begin.iter().map(|&(a, b)| pair(a, b)).collect())
+            }
+            kind if kind == SinewEventKind::End as u32 => {
+                Ok(events.end.iter().map(|&(a, b)| pair(a, b)).collect())
+            }
+            kind if kind == SinewEventKind::Hit as u32 => {
+                Ok(events.hits.iter().map(|hit| pair(hit.a.body, hit.b.body)).collect())
+            }
+            kind => Err(error(SinewStatus::BadArgument, format!("there are no events of kind {kind}"))),
+        };
+        // SAFETY: likewise.
+        unsafe { fill(&all?, pairs, capacity, count) }
+    })
+}

@@ -1,0 +1,55 @@
+//! State of a world as bytes, and its hash.
+
+use crate::border::{SinewStatus, elements, error, exclusive, fill, give, guard, shared};
+use crate::world::SinewWorld;
+use sinew::math::{Reader, Writer};
+
+/// Hash of all that decides the future: the same on every machine, for every number of threads.
+///
+/// # Safety
+/// `world` is null or a world that nobody changes, `hash` is null or points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_hash(world: *const SinewWorld, hash: *mut u64) -> SinewStatus {
+    // SAFETY: as the caller promises.
+    guard(|| unsafe { give(hash, "hash", shared(world, "world")?.world.get()?.hash()) })
+}
+
+/// Saves a world into a buffer; `size` is the number of bytes, also where the capacity is too small for them.
+///
+/// # Safety
+/// `world` is null or a world that nobody changes; `bytes` has room for `capacity`, `size` is null or points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_save(
+    world: *const SinewWorld,
+    bytes: *mut u8,
+    capacity: usize,
+    size: *mut usize,
+) -> SinewStatus {
+    guard(|| {
+        let mut w = Writer::new();
+        // SAFETY: as the caller promises.
+        unsafe { shared(world, "world") }?.world.get()?.save(&mut w);
+        // SAFETY: likewise.
+        unsafe { fill(w.as_bytes(), bytes, capacity, size) }
+    })
+}
+
+/// Brings back what was saved. The world is as it was if the bytes are none of a world.
+///
+/// # Safety
+/// `world` is null or a world that nobody else uses, `bytes` has `size` of them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_load(
+    world: *mut SinewWorld,
+    bytes: *const u8,
+    size: usize,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let (world, bytes) = unsafe { (exclusive(world, "world")?, elements(bytes, size, "bytes")?) };
+        world.world.change(|world| {
+            let loaded = world.load(&mut Reader::new(bytes));
+            loaded.map_err(|what| error(SinewStatus::BadSnapshot, what.to_string()))
+        })
+    })
+}

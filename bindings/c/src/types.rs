@@ -1,0 +1,209 @@
+//! Plain data that passes the border. Metres, kilograms, seconds, radians; +Y is up, right-handed.
+
+use crate::border::{Outcome, SinewStatus, error};
+use sinew::math::{Rotation, Transform, Vec3};
+use sinew::physics::{BodyId, BodyKind, JointId, Shape, Velocity};
+
+/// Three numbers.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SinewVec3 {
+    /// Along x.
+    pub x: f32,
+    /// Along y, which is up.
+    pub y: f32,
+    /// Along z.
+    pub z: f32,
+}
+
+/// Rotation as a unit quaternion; one that is not is made so. Four zeros are no rotation at all: the identity.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SinewRotation {
+    /// Coefficient of i.
+    pub x: f32,
+    /// Coefficient of j.
+    pub y: f32,
+    /// Coefficient of k.
+    pub z: f32,
+    /// Real part.
+    pub w: f32,
+}
+
+/// Rigid pose: rotated first, then moved.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SinewPose {
+    /// Metres.
+    pub position: SinewVec3,
+    /// Rotation.
+    pub rotation: SinewRotation,
+}
+
+/// Velocity of a centre of mass, m/s, and angular velocity, rad/s; world axes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SinewVelocity {
+    /// m/s.
+    pub linear: SinewVec3,
+    /// rad/s.
+    pub angular: SinewVec3,
+}
+
+/// Name of a body of a world. A removed body's is stale: using it is an error, never another body.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SinewBodyId {
+    /// Index and generation.
+    pub bits: u64,
+}
+
+/// Name of a joint of a world, as with bodies.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SinewJointId {
+    /// Index and generation.
+    pub bits: u64,
+}
+
+/// Kind of a body.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SinewBodyKind {
+    /// Moved by forces.
+    Dynamic = 0,
+    /// Moved by nothing.
+    Static = 1,
+    /// Moved as its velocity says; nothing pushes it.
+    Kinematic = 2,
+}
+
+/// Kind of a shape; which sizes of [`SinewShape`] it takes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SinewShapeKind {
+    /// `size`: half of each side.
+    Box = 0,
+    /// `size.x`: radius.
+    Sphere = 1,
+    /// Along y. `size.x`: radius; `size.y`: half the length without the caps.
+    Capsule = 2,
+    /// Along y. `size.x`: radius; `size.y`: half the length.
+    Cylinder = 3,
+    /// Along y, the apex up. `size.x`: radius of the base; `size.y`: half the height.
+    Cone = 4,
+    /// Everything below y = 0 of its frame, for static bodies. No sizes.
+    HalfSpace = 5,
+}
+
+/// Shape around its body's origin. `kind` is one of `SinewShapeKind`; a number, so that a wrong one is an error.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SinewShape {
+    /// One of `SinewShapeKind`.
+    pub kind: u32,
+    /// Metres, as the kind says.
+    pub size: SinewVec3,
+}
+
+impl From<Vec3> for SinewVec3 {
+    fn from(v: Vec3) -> Self {
+        Self { x: v.x, y: v.y, z: v.z }
+    }
+}
+
+impl From<Transform> for SinewPose {
+    fn from(pose: Transform) -> Self {
+        let q = pose.rotation;
+        Self { position: pose.translation.into(), rotation: SinewRotation { x: q.x, y: q.y, z: q.z, w: q.w } }
+    }
+}
+
+impl From<Velocity> for SinewVelocity {
+    fn from(velocity: Velocity) -> Self {
+        Self { linear: velocity.linear.into(), angular: velocity.angular.into() }
+    }
+}
+
+impl From<BodyId> for SinewBodyId {
+    fn from(id: BodyId) -> Self {
+        Self { bits: id.to_bits() }
+    }
+}
+
+impl From<JointId> for SinewJointId {
+    fn from(id: JointId) -> Self {
+        Self { bits: id.to_bits() }
+    }
+}
+
+impl SinewVec3 {
+    /// As the library has it.
+    pub(crate) fn read(self, name: &str) -> Outcome<Vec3> {
+        let v = Vec3::new(self.x, self.y, self.z);
+        if v.is_finite() { Ok(v) } else { Err(bad(format!("{name} is not finite: {v:?}"))) }
+    }
+}
+
+impl SinewRotation {
+    fn read(self, name: &str) -> Outcome<Rotation> {
+        let q = Rotation { x: self.x, y: self.y, z: self.z, w: self.w };
+        if !q.is_finite() {
+            return Err(bad(format!("{name} is not finite: {q:?}")));
+        }
+        let length = q.length();
+        if length == 0.0 {
+            return Ok(Rotation::IDENTITY);
+        }
+        // One that is a unit already keeps its bits, so that what was given can be given back.
+        Ok(if (length - 1.0).abs() < 1e-6 { q } else { q.normalize() })
+    }
+}
+
+impl SinewPose {
+    /// As the library has it.
+    pub(crate) fn read(self, name: &str) -> Outcome<Transform> {
+        Ok(Transform::new(self.position.read(name)?, self.rotation.read(name)?))
+    }
+}
+
+impl SinewVelocity {
+    /// As the library has it.
+    pub(crate) fn read(self, name: &str) -> Outcome<Velocity> {
+        Ok(Velocity { linear: self.linear.read(name)?, angular: self.angular.read(name)? })
+    }
+}
+
+impl SinewShape {
+    /// As the library has it, with sizes that can be.
+    pub(crate) fn read(self) -> Outcome<Shape> {
+        use SinewShapeKind as Kind;
+        let size = self.size.read("the size of a shape")?;
+        let (radius, half_height) = (size.x, size.y);
+        let shape = match self.kind {
+            kind if kind == Kind::Box as u32 => Shape::Box { half_extents: size },
+            kind if kind == Kind::Sphere as u32 => Shape::Sphere { radius },
+            kind if kind == Kind::Capsule as u32 => Shape::Capsule { half_height, radius },
+            kind if kind == Kind::Cylinder as u32 => Shape::Cylinder { half_height, radius },
+            kind if kind == Kind::Cone as u32 => Shape::Cone { half_height, radius },
+            kind if kind == Kind::HalfSpace as u32 => Shape::HalfSpace,
+            kind => return Err(bad(format!("there is no shape of kind {kind}"))),
+        };
+        shape.check().map_err(|what| bad(what.to_string()))?;
+        Ok(shape)
+    }
+}
+
+/// The kind of a body, from its number.
+pub(crate) fn body_kind(kind: u32) -> Outcome<BodyKind> {
+    match kind {
+        kind if kind == SinewBodyKind::Dynamic as u32 => Ok(BodyKind::Dynamic),
+        kind if kind == SinewBodyKind::Static as u32 => Ok(BodyKind::Static),
+        kind if kind == SinewBodyKind::Kinematic as u32 => Ok(BodyKind::Kinematic),
+        kind => Err(bad(format!("there is no body of kind {kind}"))),
+    }
+}
+
+fn bad(what: String) -> crate::border::CallError {
+    error(SinewStatus::BadArgument, what)
+}

@@ -1,0 +1,425 @@
+//! Worlds and their bodies.
+
+use crate::border::{
+    Handle, Outcome, SinewStatus, elements, error, exclusive, fill, free, give, give_handle, guard, refused,
+    room, shared,
+};
+use crate::types::{SinewBodyId, SinewPose, SinewShape, SinewVec3, SinewVelocity, body_kind};
+use sinew::math::Vec3;
+use sinew::physics::{
+    BodyDef, BodyId, Filter, MassProperties, Material, Quality, Serial, ShapeDef, Sleeping, TaskRunner,
+    Threads, World, WorldDef,
+};
+
+/// World with bodies and joints. One thread at a time may use it.
+pub struct SinewWorld {
+    pub(crate) world: Handle<World>,
+    /// Threads of the last step that had more than one.
+    threads: Option<Threads>,
+}
+
+/// Settings of a world; `sinew_world_def_default` fills it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct SinewWorldDef {
+    /// m/s². Default (0, -9.81, 0).
+    pub gravity: SinewVec3,
+    /// Length of a step, nanoseconds. Default 16,666,667, a sixtieth of a second.
+    pub step_nanoseconds: u64,
+    /// Substeps of a step, at least 1. Default 4.
+    pub substeps: u32,
+    /// Work that a step does: 0 fast, 1 balanced, 2 exact. Default 1.
+    pub quality: u32,
+    /// 1 if bodies at rest may fall asleep, else 0. Default 1.
+    pub sleeping: u32,
+}
+
+/// Body to be added; `sinew_body_def_default` fills it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct SinewBodyDef {
+    /// One of `SinewBodyKind`. Default dynamic.
+    pub kind: u32,
+    /// In the world.
+    pub pose: SinewPose,
+    /// m/s and rad/s.
+    pub velocity: SinewVelocity,
+    /// Shapes, all of them around the body's origin.
+    pub shapes: *const SinewShape,
+    /// Number of shapes.
+    pub shape_count: usize,
+    /// kg, spread as the shapes are; 0, the default: by `density`.
+    pub mass: f32,
+    /// kg/m³. Default 1,000.
+    pub density: f32,
+    /// Coulomb's coefficient, at least 0. Default 0.6.
+    pub friction: f32,
+    /// Share of the speed given back, 0 to 1. Default 0.
+    pub restitution: f32,
+    /// Bits of the layers that its shapes are on. Default 1.
+    pub layers: u32,
+    /// Bits of the layers that they meet. Default all.
+    pub mask: u32,
+    /// For the user.
+    pub user_data: u64,
+}
+
+/// Fills in the default settings of a world.
+///
+/// # Safety
+/// `def` is null or points to room for one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_def_default(def: *mut SinewWorldDef) -> SinewStatus {
+    guard(|| {
+        let WorldDef { gravity, step_nanoseconds, substeps, .. } = WorldDef::default();
+        let default =
+            SinewWorldDef { gravity: gravity.into(), step_nanoseconds, substeps, quality: 1, sleeping: 1 };
+        // SAFETY: as the caller promises.
+        unsafe { give(def, "def", default) }
+    })
+}
+
+/// Fills in the defaults of a body: dynamic, at the origin, without a shape.
+///
+/// # Safety
+/// `def` is null or points to room for one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_body_def_default(def: *mut SinewBodyDef) -> SinewStatus {
+    guard(|| {
+        let (material, filter, shape) =
+            (Material::DEFAULT, Filter::default(), ShapeDef::new(sinew::physics::Shape::HalfSpace));
+        let default = SinewBodyDef {
+            kind: 0,
+            pose: SinewPose::default(),
+            velocity: SinewVelocity::default(),
+            shapes: core::ptr::null(),
+            shape_count: 0,
+            mass: 0.0,
+            density: shape.density,
+            friction: material.friction,
+            restitution: material.restitution,
+            layers: filter.layers,
+            mask: filter.mask,
+            user_data: 0,
+        };
+        // SAFETY: as the caller promises.
+        unsafe { give(def, "def", default) }
+    })
+}
+
+impl SinewWorldDef {
+    fn read(&self) -> Outcome<WorldDef> {
+        let bad = |what: String| error(SinewStatus::BadArgument, what);
+        let quality = match self.quality {
+            0 => Quality::Fast,
+            1 => Quality::Balanced,
+            2 => Quality::Exact,
+            other => return Err(bad(format!("there is no quality {other}"))),
+        };
+        let sleeping = match self.sleeping {
+            0 => Sleeping::Off,
+            1 => Sleeping::On,
+            other => return Err(bad(format!("sleeping is 0 or 1, not {other}"))),
+        };
+        let def = WorldDef {
+            gravity: self.gravity.read("gravity")?,
+            step_nanoseconds: self.step_nanoseconds,
+            substeps: self.substeps,
+            quality,
+            sleeping,
+            ..WorldDef::default()
+        };
+        def.check().map_err(|what| bad(what.to_string()))?;
+        Ok(def)
+    }
+}
+
+impl SinewBodyDef {
+    /// # Safety
+    /// `shapes` is null or points to `shape_count` shapes.
+    unsafe fn read(&self) -> Outcome<BodyDef> {
+        // SAFETY: as the caller promises.
+        let shapes = unsafe { elements(self.shapes, self.shape_count, "shapes") }?;
+        let material =
+            Material { friction: self.friction, restitution: self.restitution, ..Material::DEFAULT };
+        let filter = Filter { layers: self.layers, mask: self.mask, group: 0 };
+        let shape = |shape: &SinewShape| -> Outcome<ShapeDef> {
+            Ok(ShapeDef { density: self.density, material, filter, ..ShapeDef::new(shape.read()?) })
+        };
+        let pose = self.pose.read("the pose")?;
+        let velocity = self.velocity.read("the velocity")?;
+        let mut def = BodyDef {
+            kind: body_kind(self.kind)?,
+            position: pose.translation,
+            rotation: pose.rotation,
+            linear_velocity: velocity.linear,
+            angular_velocity: velocity.angular,
+            shapes: shapes.iter().map(shape).collect::<Outcome<_>>()?,
+            user_data: self.user_data,
+            ..BodyDef::default()
+        };
+        if self.mass != 0.0 {
+            def.mass = Some(self.spread(&def)?);
+        }
+        Ok(def)
+    }
+
+    /// `mass` as the shapes have theirs.
+    fn spread(&self, def: &BodyDef) -> Outcome<MassProperties> {
+        if !(self.mass > 0.0 && self.mass < f32::INFINITY) {
+            return Err(error(
+                SinewStatus::BadArgument,
+                format!("a mass is positive and finite, not {} kg", self.mass),
+            ));
+        }
+        let by_density = refused(|| {
+            let mut world = World::new(WorldDef::default());
+            let shapes = def.shapes.iter().map(|shape| ShapeDef { density: 1.0, ..shape.clone() });
+            let id = world.add_body(&BodyDef { shapes: shapes.collect(), ..BodyDef::default() });
+            world.mass(id)
+        })?;
+        let factor = self.mass / by_density.mass;
+        Ok(MassProperties { mass: self.mass, inertia: by_density.inertia * factor, ..by_density })
+    }
+}
+
+impl SinewWorld {
+    pub(crate) fn of(world: World) -> Self {
+        Self { world: Handle::new(world), threads: None }
+    }
+}
+
+/// The body of an id, if it is there.
+pub(crate) fn body(world: &World, id: SinewBodyId) -> Outcome<BodyId> {
+    let body = BodyId::from_bits(id.bits);
+    if world.contains(body) {
+        Ok(body)
+    } else {
+        Err(error(SinewStatus::StaleId, format!("no body {:#x}", id.bits)))
+    }
+}
+
+/// Makes a world. `def` may be null: the defaults.
+///
+/// # Safety
+/// `def` is null or points to settings, `world` is null or points to room for a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_new(
+    def: *const SinewWorldDef,
+    world: *mut *mut SinewWorld,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let def = unsafe { def.as_ref() }.map_or_else(|| Ok(WorldDef::default()), SinewWorldDef::read)?;
+        // SAFETY: as the caller promises.
+        unsafe { give_handle(world, "world", SinewWorld::of(World::new(def))) }
+    })
+}
+
+/// Frees a world; null is fine.
+///
+/// # Safety
+/// `world` is null or came from `sinew_world_new` and is not used any more.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_free(world: *mut SinewWorld) {
+    // SAFETY: as the caller promises.
+    unsafe { free(world) }
+}
+
+/// Takes steps, on as many threads; the result does not depend on their number. 0 and 1: the caller's alone.
+///
+/// # Safety
+/// `world` is null or a world that nobody else uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_step(world: *mut SinewWorld, steps: u32, threads: u32) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let SinewWorld { world, threads: pool } = unsafe { exclusive(world, "world") }?;
+        let count = threads.min(256) as usize;
+        if count > 1 && pool.as_ref().is_none_or(|pool| pool.count() != count) {
+            *pool = Some(Threads::new(count));
+        }
+        let runner: &dyn TaskRunner = match pool {
+            Some(pool) if count > 1 => pool,
+            _ => &Serial,
+        };
+        world.change(|world| {
+            for _ in 0..steps {
+                world.step_with(runner, &sinew::physics::stage::NoProfiler);
+            }
+            Ok(())
+        })
+    })
+}
+
+/// Number of steps since the beginning.
+///
+/// # Safety
+/// `world` is null or a world that nobody changes, `steps` is null or points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_step_count(world: *const SinewWorld, steps: *mut u64) -> SinewStatus {
+    // SAFETY: as the caller promises.
+    guard(|| unsafe { give(steps, "steps", shared(world, "world")?.world.get()?.step_count()) })
+}
+
+/// Adds a body.
+///
+/// # Safety
+/// `world` is null or a world that nobody else uses, `def` null or a definition whose shapes are there, `id` null or room for one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_add_body(
+    world: *mut SinewWorld,
+    def: *const SinewBodyDef,
+    id: *mut SinewBodyId,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let (world, def) = unsafe { (exclusive(world, "world")?, shared(def, "def")?.read()?) };
+        room(id, "id")?;
+        let added = world.world.change(|world| refused(|| world.add_body(&def)))?;
+        // SAFETY: likewise.
+        unsafe { give(id, "id", added.into()) }
+    })
+}
+
+/// Takes a body out, with its joints.
+///
+/// # Safety
+/// `world` is null or a world that nobody else uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_remove_body(world: *mut SinewWorld, id: SinewBodyId) -> SinewStatus {
+    // SAFETY: as the caller promises.
+    guard(|| unsafe {
+        exclusive(world, "world")?.world.change(|world| {
+            let body = body(world, id)?;
+            refused(|| world.remove_body(body))
+        })
+    })
+}
+
+/// Ids of all bodies, ascending by index.
+///
+/// # Safety
+/// `world` is null or a world that nobody changes, `ids` has room for `capacity`, `count` is null or points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_bodies(
+    world: *const SinewWorld,
+    ids: *mut SinewBodyId,
+    capacity: usize,
+    count: *mut usize,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let world = unsafe { shared(world, "world") }?.world.get()?;
+        let all: Vec<SinewBodyId> = world.body_ids().map(SinewBodyId::from).collect();
+        // SAFETY: likewise.
+        unsafe { fill(&all, ids, capacity, count) }
+    })
+}
+
+/// Poses of bodies in the world, one for each id.
+///
+/// # Safety
+/// `world` is null or a world that nobody changes; `ids` and `poses` have `count` elements.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_poses(
+    world: *const SinewWorld,
+    ids: *const SinewBodyId,
+    count: usize,
+    poses: *mut SinewPose,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let (world, ids) = unsafe { (shared(world, "world")?.world.get()?, elements(ids, count, "ids")?) };
+        let pose = |&id: &SinewBodyId| Ok(world.transform(body(world, id)?).into());
+        let all: Vec<SinewPose> = ids.iter().map(pose).collect::<Outcome<_>>()?;
+        // SAFETY: likewise.
+        unsafe { fill(&all, poses, count, &mut 0) }
+    })
+}
+
+/// Velocities of bodies, one for each id.
+///
+/// # Safety
+/// As `sinew_world_poses`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_velocities(
+    world: *const SinewWorld,
+    ids: *const SinewBodyId,
+    count: usize,
+    velocities: *mut SinewVelocity,
+) -> SinewStatus {
+    guard(|| {
+        // SAFETY: as the caller promises.
+        let (world, ids) = unsafe { (shared(world, "world")?.world.get()?, elements(ids, count, "ids")?) };
+        let velocity = |&id: &SinewBodyId| Ok(world.velocity(body(world, id)?).into());
+        let all: Vec<SinewVelocity> = ids.iter().map(velocity).collect::<Outcome<_>>()?;
+        // SAFETY: likewise.
+        unsafe { fill(&all, velocities, count, &mut 0) }
+    })
+}
+
+/// Puts a body elsewhere, without a way between.
+///
+/// # Safety
+/// `world` is null or a world that nobody else uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_set_pose(
+    world: *mut SinewWorld,
+    id: SinewBodyId,
+    pose: SinewPose,
+) -> SinewStatus {
+    // SAFETY: as the caller promises.
+    guard(|| unsafe {
+        let pose = pose.read("the pose")?;
+        exclusive(world, "world")?.world.change(|world| {
+            let body = body(world, id)?;
+            world.set_transform(body, pose);
+            Ok(())
+        })
+    })
+}
+
+/// Sets the velocity of a body; a static one has none, whatever is asked.
+///
+/// # Safety
+/// `world` is null or a world that nobody else uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_set_velocity(
+    world: *mut SinewWorld,
+    id: SinewBodyId,
+    velocity: SinewVelocity,
+) -> SinewStatus {
+    // SAFETY: as the caller promises.
+    guard(|| unsafe {
+        let velocity = velocity.read("the velocity")?;
+        exclusive(world, "world")?.world.change(|world| {
+            let body = body(world, id)?;
+            world.set_velocity(body, velocity);
+            Ok(())
+        })
+    })
+}
+
+/// Pushes a dynamic body by an impulse, N·s, world axes, at a point in the world; at its centre of mass if `point` is null.
+///
+/// # Safety
+/// `world` is null or a world that nobody else uses, `point` is null or points to one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_world_push(
+    world: *mut SinewWorld,
+    id: SinewBodyId,
+    impulse: SinewVec3,
+    point: *const SinewVec3,
+) -> SinewStatus {
+    // SAFETY: as the caller promises.
+    guard(|| unsafe {
+        let impulse = impulse.read("the impulse")?;
+        let point: Option<Vec3> = point.as_ref().map(|point| point.read("the point")).transpose()?;
+        exclusive(world, "world")?.world.change(|world| {
+            let body = body(world, id)?;
+            world.apply_impulse(body, impulse, point.unwrap_or_else(|| world.center_of_mass(body)));
+            Ok(())
+        })
+    })
+}

@@ -1,0 +1,21 @@
+//! The committed header is the one that the sources give.
+
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn the_header_is_up_to_date() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let config = cbindgen::Config::from_file(here.join("cbindgen.toml")).expect("cbindgen.toml is one");
+    let made = cbindgen::Builder::new().with_crate(here).with_config(config).generate().expect("it is made");
+    let mut text = Vec::new();
+    made.write(&mut text);
+    // A heading of Rust's docs, which means this to a reader of C.
+    let text = String::from_utf8(text).expect("it is text").replace("// # Safety", "// The caller promises:");
+    let path = here.join("include/sinew.h");
+    if std::env::var_os("SINEW_BLESS").is_some() {
+        fs::write(&path, &text).expect("it is written");
+    }
+    let committed = fs::read_to_string(&path).unwrap_or_default();
+    assert!(committed == text, "include/sinew.h is out of date: run this test with SINEW_BLESS=1");
+}

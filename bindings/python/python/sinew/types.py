@@ -1,0 +1,91 @@
+"""Dicts that the package gives."""
+
+from typing import TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+_Floats = NDArray[np.float32]
+_Ids = NDArray[np.uint64]
+
+
+class FallQuality(TypedDict):
+    """Figures of a fall: metres, degrees, joules, seconds; docs/contract.md of the repository tells of each."""
+
+    energy_gain_max: float
+    work_in_j: float
+    joint_gap_max_m: float
+    joint_gap_p99_m: float
+    limit_overshoot_max_deg: float
+    limit_overshoot_p99_deg: float
+    penetration_max_m: float
+    penetration_rest_max_m: float
+    first_contact_s: float | None
+    settled_s: float | None
+    up_s: float | None
+    nan: int
+
+
+class BuildReport(TypedDict):
+    """Report of a build."""
+
+    bodies: int
+    total_mass_kg: float
+    height_m: float
+    dropped_bones: list[str]
+    skin_error_m: float | None
+    notes: list[str]
+
+
+class Finding(TypedDict):
+    """What is wrong with a ragdoll, why, and the cure."""
+
+    code: str
+    severity: str
+    bones: list[str]
+    cause: str
+    evidence: str
+    fix: str
+
+
+class DoctorReport(TypedDict):
+    """Findings of the doctor."""
+
+    findings: list[Finding]
+
+
+class DropReport(TypedDict):
+    """Verdict on a ragdoll that was dropped and thrown at a wall."""
+
+    verdict: str
+    reasons: list[str]
+    drop: FallQuality
+    wall: FallQuality
+
+
+class RayHits(TypedDict):
+    """First hit of each ray."""
+
+    body: _Ids
+    fraction: _Floats
+    point: _Floats
+    normal: _Floats
+
+
+class Contacts(TypedDict):
+    """Points of contact; world, metres, N·s."""
+
+    a: _Ids
+    b: _Ids
+    position: _Floats
+    normal: _Floats
+    separation: _Floats
+    impulse: _Floats
+
+
+class Events(TypedDict):
+    """Pairs of bodies, (n, 2)."""
+
+    begin: _Ids
+    end: _Ids
+    hit: _Ids

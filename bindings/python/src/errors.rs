@@ -1,0 +1,38 @@
+//! Errors as Python's exceptions.
+
+use pyo3::exceptions::{PyException, PyValueError};
+use pyo3::prelude::*;
+use sinew_bindings::{Failure, caught};
+
+pyo3::create_exception!(_sinew, SinewError, PyException, "A call that failed within Sinew.");
+pyo3::create_exception!(
+    _sinew,
+    FileError,
+    SinewError,
+    "A file that cannot be read or written, or is not what it should be: the message names the file and the place."
+);
+
+/// The exception of a failure.
+pub fn failed(failure: Failure) -> PyErr {
+    if failure.is_of_file { FileError::new_err(failure.what) } else { PyValueError::new_err(failure.what) }
+}
+
+/// The exception of a file that could not be read or written.
+pub fn of_file(error: sinew::formats::Error) -> PyErr {
+    failed(Failure::from(error))
+}
+
+/// An argument that cannot be.
+pub fn bad(what: impl Into<String>) -> PyErr {
+    PyValueError::new_err(what.into())
+}
+
+/// Runs a call that panics about its arguments before it changes anything: a `ValueError` with its sentence.
+pub fn refused<T>(call: impl FnOnce() -> T) -> PyResult<T> {
+    caught(call).map_err(bad)
+}
+
+/// Runs a call that must not panic: a bug is a `SinewError`, not the end of the interpreter.
+pub fn guarded<T>(call: impl FnOnce() -> T) -> PyResult<T> {
+    caught(call).map_err(SinewError::new_err)
+}

@@ -1,0 +1,55 @@
+"""The environment: its contract, its seeds, and that a controller is worth something in it."""
+
+import numpy as np
+import pytest
+
+gymnasium = pytest.importorskip("gymnasium")
+
+from sinew.vector_env import HumanoidVectorEnv, pd_baseline  # noqa: E402
+
+
+def standing(policy, push: float, count: int = 16, actions: int = 240) -> float:
+    """Share that has stayed up for 8 s."""
+    env = HumanoidVectorEnv(count, seconds=100.0, push=push)
+    observations, _ = env.reset(seed=5)
+    up = np.ones(count, bool)
+    for _ in range(actions):
+        observations, _, terminated, *_ = env.step(policy(env, observations))
+        up &= ~terminated
+    return float(up.mean())
+
+
+def test_it_keeps_to_the_contract_of_gymnasium():
+    env = HumanoidVectorEnv(3, seconds=0.5)
+    observations, info = env.reset(seed=1)
+    assert isinstance(env, gymnasium.vector.VectorEnv) and info == {}
+    assert env.observation_space.contains(observations)
+    still = np.zeros(env.action_space.shape, np.float32)
+    assert env.action_space.contains(still)
+    assert observations[:, 0] == pytest.approx(1.0) and observations[:, 2] == pytest.approx(1.0)
+    for step in range(15):
+        observations, rewards, terminated, truncated, _ = env.step(still)
+        assert env.observation_space.contains(observations) and rewards.shape == (3,)
+        assert truncated.all() == (step == 14) and not terminated.any()
+    observations, rewards, terminated, truncated, _ = env.step(still)
+    assert observations[:, 0] == pytest.approx(1.0, abs=0.01), "the next action begins a new episode"
+    assert not truncated.any()
+
+
+def test_the_seed_decides_everything():
+    ends = []
+    for seed, threads in [(1, 1), (1, 2), (2, 2)]:
+        env = HumanoidVectorEnv(4, threads=threads)
+        observations, _ = env.reset(seed=seed)
+        for _ in range(90):
+            observations, *_ = env.step(pd_baseline(env, observations))
+        ends.append(observations)
+    assert np.array_equal(ends[0], ends[1]) and not np.array_equal(ends[0], ends[2])
+
+
+def test_the_baseline_stands_where_noise_falls_and_a_push_fells_it():
+    rng = np.random.default_rng(0)
+    noise = standing(lambda env, _: rng.uniform(-1, 1, env.action_space.shape).astype(np.float32), push=0.0)
+    calm, pushed = standing(pd_baseline, push=0.0), standing(pd_baseline, push=100.0)
+    print(f"still up after 8 s: noise {noise}, baseline {calm}, pushed by up to 100 N·s {pushed}")
+    assert (noise, calm) == (0.0, 1.0) and pushed < 0.5
