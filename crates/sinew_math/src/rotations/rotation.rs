@@ -1,3 +1,4 @@
+use crate::lanes::Real;
 use crate::rotations::orthonormal::gram_schmidt;
 use crate::{Mat3, Vec3, any_orthonormal, direction, trig};
 use core::ops::Mul;
@@ -293,12 +294,22 @@ impl Rotation {
     pub fn angular_velocity_to(self, later: Self, dt: f32) -> Vec3 {
         let turn = (later * self.inverse()).positive();
         let square = turn.vector().length_squared();
-        if square > 0.01 {
+        if square > Self::SHORT_TURN {
             return turn.to_scaled_axis() / dt;
         }
-        // asin(s) / s: what is left out is 3e-10 of it.
-        let series = 1.0 + square * (1.0 / 6.0 + square * (3.0 / 40.0 + square * (15.0 / 336.0)));
-        turn.vector() * (2.0 * series / dt)
+        turn.vector() * (2.0 * Self::half_angle_over_sine(square) / dt)
+    }
+
+    /// Squared length of the vector part, that is of the sine of half the angle, up to which
+    /// [`half_angle_over_sine`](Self::half_angle_over_sine) holds: an angle of 0.2 rad.
+    pub const SHORT_TURN: f32 = 0.01;
+
+    /// Half of a rotation's angle (rad) over its sine `s`, from `s²`: the first terms of the series of `asin(s) / s`. Up to
+    /// [`SHORT_TURN`](Self::SHORT_TURN), 3e-10 is left out.
+    #[inline(always)]
+    pub fn half_angle_over_sine<R: Real>(square: R) -> R {
+        let [one, third, fifth, seventh] = [1.0, 1.0 / 6.0, 3.0 / 40.0, 15.0 / 336.0].map(R::splat);
+        one + square * (third + square * (fifth + square * seventh))
     }
 
     /// `self * v` without what the quaternion's length is off from 1 by. After normalising, that is up to 1e-7 and on the

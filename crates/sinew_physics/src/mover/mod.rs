@@ -189,7 +189,7 @@ pub(crate) fn movers(world: &mut World) {
     for index in 0..movers.all.slot_count() as u32 {
         if movers.all.try_at(index).is_some() {
             walk::advance(world, &mut movers, index, dt);
-            press::apply(world, &mut movers.presses);
+            press::apply(world, &mut movers.presses, dt);
         }
     }
     world.movers = movers;

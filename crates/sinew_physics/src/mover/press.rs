@@ -10,14 +10,22 @@ use crate::mover::tuning::{BEARING_COSINE, LEAVE_RATE, LEAVE_SPEED};
 use crate::world::World;
 use sinew_math::{Vec3, max, min};
 
-/// An impulse that a body gets from a mover.
+/// Impulse or force that a body gets from a mover.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Press {
     body: u32,
-    impulse: Vec3,
+    push: Push,
     point: Vec3,
     /// True if a body that sleeps wakes of it.
     wakes: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Push {
+    /// At once, N·s.
+    Impulse(Vec3),
+    /// In the course of the next step, newtons.
+    Force(Vec3),
 }
 
 /// A mover as what hits and is hit.
@@ -66,7 +74,8 @@ pub(super) fn meet(
         let Some(gap) = sight.gap(obstacle, center) else { continue };
         let room = gap.distance - mover.def.skin;
         if let Some(impulse) = hitter.meet(body, gap.normal, gap.on_a, room, dt) {
-            presses.push(Press { body: index, impulse: -gap.normal * impulse, point: gap.on_a, wakes: true });
+            let push = Push::Impulse(-gap.normal * impulse);
+            presses.push(Press { body: index, push, point: gap.on_a, wakes: true });
         }
     }
     hitter.velocity - before
@@ -98,33 +107,44 @@ impl Hitter {
     }
 }
 
-/// The weight of a mover on what bears it.
+/// The weight (N) of a mover on what bears it: a force, for an impulse as large would shoot off the hand of somebody who lies.
 pub(super) fn weigh(
     bodies: &Arena<Body>,
     mover: &Mover,
     is_new: bool,
-    impulse: f32,
+    weight: f32,
     presses: &mut Vec<Press>,
 ) {
     let Some(footing) = mover.ground else { return };
     let Bearer::Shape { body, .. } = footing.on else { return };
     if bodies.get(body).is_some_and(|body| body.kind == BodyKind::Dynamic) {
-        let impulse = -mover.def.up * impulse;
-        presses.push(Press { body: body.index, impulse, point: footing.point, wakes: is_new });
+        let push = Push::Force(-mover.def.up * weight);
+        presses.push(Press { body: body.index, push, point: footing.point, wakes: is_new });
     }
 }
 
-/// Gives bodies what movers press on them.
-pub(super) fn apply(world: &mut World, presses: &mut Vec<Press>) {
-    for &Press { body: index, impulse, point, wakes } in presses.iter() {
+/// Gives bodies what movers press on them, in a step of `dt` seconds.
+pub(super) fn apply(world: &mut World, presses: &mut Vec<Press>, dt: f32) {
+    for &Press { body: index, push, point, wakes } in presses.iter() {
         let body = world.bodies.at(index);
-        if !body.is_awake() && !wakes || !impulse.is_finite() {
+        if !body.is_awake() && !wakes {
             continue;
         }
         let id = world.bodies.id(index);
-        let before = world.body_energy(id).kinetic;
-        world.apply_impulse(id, impulse, point);
-        world.work.movers += world.body_energy(id).kinetic - before;
+        match push {
+            Push::Impulse(impulse) if impulse.is_finite() => {
+                let before = world.body_energy(id).kinetic;
+                world.apply_impulse(id, impulse, point);
+                world.work.movers += world.body_energy(id).kinetic - before;
+            }
+            Push::Force(force) if force.is_finite() => {
+                // On the way that the point is on.
+                let velocity = body.velocity.at(point - body.center());
+                world.work.movers += force.dot(velocity) * dt;
+                world.apply_force(id, force, point);
+            }
+            Push::Impulse(_) | Push::Force(_) => {}
+        }
     }
     presses.clear();
 }

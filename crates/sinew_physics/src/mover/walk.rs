@@ -151,7 +151,7 @@ impl<'a> Move<'a> {
         };
         mover.put(center);
         let is_new = mover.ground.map(|footing| footing.on) != stood;
-        let weight = max(-gravity.dot(up), 0.0) * mover.def.mass * self.dt;
+        let weight = max(-gravity.dot(up), 0.0) * mover.def.mass;
         weigh(self.sight.bodies, mover, is_new, weight, presses);
     }
 

@@ -11,7 +11,7 @@ mod contacts;
 pub(crate) mod flight;
 mod joint;
 mod limits;
-mod motion;
+pub(crate) mod motion;
 mod pass;
 mod piles;
 mod safeguards;

@@ -85,7 +85,7 @@ fn is_deep(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
 fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Activity) {
     for at in 0..activity.kinematic().len() {
         let mover = activity.kinematic()[at];
-        if bodies.at(mover).velocity.is_zero() {
+        if activity.joints_of.body(mover).is_empty() || bodies.at(mover).velocity.is_zero() {
             continue;
         }
         for at in 0..activity.joints_of.body(mover).len() {

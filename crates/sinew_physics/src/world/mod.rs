@@ -11,6 +11,7 @@ mod fields;
 mod forces;
 mod joints;
 mod library;
+mod move_to;
 mod moved;
 mod objects;
 mod pairs;

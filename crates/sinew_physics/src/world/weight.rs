@@ -2,7 +2,7 @@
 
 use crate::body::def::BodyKind;
 use crate::body::shape::MassProperties;
-use crate::body::{Velocity, expect_solid, principal_frame};
+use crate::body::{expect_solid, principal_frame};
 use crate::contact::recycled::Recycled;
 use crate::id::BodyId;
 use crate::world::World;
@@ -140,56 +140,5 @@ impl World {
     #[track_caller]
     pub fn set_user_data(&mut self, id: BodyId, user_data: u64) {
         self.expect_mut(id).user_data = user_data;
-    }
-
-    /// Gives a body the velocity with which it is at a pose (world) in `seconds`: for platforms and other kinematic bodies that are to be
-    /// somewhere, and push what is in the way. It goes on at that velocity until it is told otherwise; call it before each step
-    /// with the length of the step, [`WorldDef::dt`](crate::WorldDef::dt). It turns the short way.
-    ///
-    /// ```
-    /// use sinew_math::{Transform, Vec3};
-    /// use sinew_physics::{BodyDef, Shape, World, WorldDef};
-    ///
-    /// let mut world = World::new(WorldDef::default());
-    /// let lift = world.add_body(&BodyDef::kinematic(Shape::cuboid(Vec3::new(1.0, 0.1, 1.0))));
-    /// let dt = world.def().dt();
-    /// for floor in 1..=60 {
-    ///     world.move_to(lift, Transform::from_translation(Vec3::Y * 0.02 * floor as f32), dt);
-    ///     world.step();
-    /// }
-    /// assert!((world.transform(lift).translation.y - 1.2).abs() < 1e-4);
-    /// assert!((world.velocity(lift).linear.y - 1.2).abs() < 1e-3);
-    /// ```
-    ///
-    /// # Panics
-    /// If the velocity would not be finite, or the time is not positive and finite.
-    #[doc(alias = "set_next_kinematic_position")]
-    #[doc(alias = "MoveKinematic")]
-    #[doc(alias = "kinematic target")]
-    #[track_caller]
-    pub fn move_to(&mut self, id: BodyId, world_from_body: Transform, seconds: f32) {
-        assert!(world_from_body.is_finite(), "a body's pose is finite, not {world_from_body:?} ({id:?})");
-        assert!(
-            seconds > 0.0 && seconds < f32::INFINITY,
-            "a time is positive and finite, not {seconds:?} ({id:?})"
-        );
-        let body = self.expect_mut(id);
-        let from = body.world_from_principal;
-        let turned = (world_from_body.rotation * body.principal_from_body.rotation.inverse()).normalize();
-        let center = world_from_body.translation - turned * body.principal_from_body.translation;
-        let velocity = Velocity {
-            linear: (center - from.translation) / seconds,
-            angular: from.rotation.angular_velocity_to(turned, seconds),
-        };
-        assert!(
-            velocity.linear.is_finite() && velocity.angular.is_finite(),
-            "a velocity is finite, not {velocity:?} ({id:?})"
-        );
-        if body.kind == BodyKind::Kinematic && !body.velocity.is_zero() && !velocity.is_zero() {
-            // It goes on otherwise, and nothing else about it is another.
-            body.velocity = velocity;
-        } else {
-            self.set_velocity(id, velocity);
-        }
     }
 }

@@ -426,6 +426,48 @@ fn a_kinematic_body_is_where_it_was_to_move() {
     }
 }
 
+/// Near ones and far ones, turns short and long, bodies of every kind, that lay still or went already.
+#[test]
+fn many_are_led_with_the_bits_of_one() {
+    let mut random = Random::new(9);
+    let mut world = world();
+    let dt = world.def().dt();
+    let ids: Vec<BodyId> = (0..43)
+        .map(|i| {
+            let shape = ShapeDef {
+                body_from_shape: Transform::new(random.in_cube() * 0.3, random.rotation()),
+                ..ShapeDef::new(Shape::cuboid(Vec3::new(0.1, 0.2, 0.3)))
+            };
+            let id = world.add_body(&BodyDef::dynamic(shape).at(random.in_cube() * 40.0));
+            if i % 5 > 0 {
+                world.set_kind(id, BodyKind::Kinematic);
+            }
+            id
+        })
+        .collect();
+    for step in 0..20 {
+        let mut near = |from: Transform| {
+            let far = [0.0, 1e-6, 0.01, 1.0][random.index(4)];
+            let turn = Rotation::from_scaled_axis(random.in_cube() * [0.0, 1e-4, 0.1, 3.0][random.index(4)]);
+            let rotation = if random.unit() < 0.3 { random.rotation() } else { turn * from.rotation };
+            Transform::new(from.translation + random.in_cube() * far, rotation)
+        };
+        let before: Vec<Transform> = ids.iter().map(|&id| near(world.transform(id))).collect();
+        let now: Vec<Transform> = before.iter().map(|&before| near(before)).collect();
+        let mut other = reborn(&world);
+        for (&id, (&before, &now)) in ids.iter().zip(before.iter().zip(&now)) {
+            let turn = now.rotation * before.rotation.inverse();
+            let to = now.translation + (now.translation - before.translation);
+            other.move_to(id, Transform::new(to, turn * now.rotation), dt);
+        }
+        world.lead_all(&ids, &before, &now, dt);
+        assert_eq!(world.hash(), other.hash(), "step {step}");
+        world.step();
+        other.step();
+        assert_eq!(world.hash(), other.hash(), "step {step}");
+    }
+}
+
 /// A joint between two bodies about an axis.
 type Make = fn(&World, BodyId, BodyId, Vec3) -> JointDef;
 

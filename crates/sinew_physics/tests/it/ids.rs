@@ -55,7 +55,7 @@ fn every_setter_names_what_was_removed() {
     let (pose, shape) = (Transform::IDENTITY, ShapeDef::new(Shape::sphere(0.1)));
     let of_gone = ShapeId { body: gone, shape: 0 };
     type Call<'a> = &'a mut dyn FnMut(&mut World);
-    let calls: [Call<'_>; 16] = [
+    let calls: [Call<'_>; 17] = [
         &mut |w| w.set_linear_damping(gone, 0.1),
         &mut |w| w.set_angular_damping(gone, 0.1),
         &mut |w| w.set_gravity_scale(gone, 0.1),
@@ -64,6 +64,7 @@ fn every_setter_names_what_was_removed() {
         &mut |w| w.set_mass_of_shapes(gone),
         &mut |w| w.set_kind(gone, BodyKind::Static),
         &mut |w| w.move_to(gone, pose, 1.0),
+        &mut |w| w.lead_all(&[other, gone], &[pose; 2], &[pose; 2], 1.0),
         &mut |w| _ = w.add_shape(gone, &shape, MassUpdate::Keep),
         &mut |w| w.set_shape(of_gone, &shape, MassUpdate::Keep),
         &mut |w| w.remove_shape(of_gone, MassUpdate::Keep),
@@ -89,16 +90,19 @@ fn every_setter_refuses_bad_numbers() {
     let hash = world.hash();
     let bad = ShapeDef::new(Shape::sphere(-1.0));
     let mass = Shape::sphere(0.1).mass_properties(1.0);
-    let nowhere = Transform::from_translation(Vec3::NAN);
+    let (pose, nowhere) = (Transform::IDENTITY, Transform::from_translation(Vec3::NAN));
     type Call<'a> = &'a mut dyn FnMut(&mut World);
-    let calls: [Call<'_>; 11] = [
+    let calls: [Call<'_>; 14] = [
         &mut |w| w.set_linear_damping(ball, f32::NAN),
         &mut |w| w.set_angular_damping(ball, f32::INFINITY),
         &mut |w| w.set_gravity_scale(ball, f32::NAN),
         &mut |w| w.set_mass(ball, MassProperties { mass: 0.0, ..mass }),
         &mut |w| w.set_mass(ball, MassProperties { center: Vec3::NAN, ..mass }),
         &mut |w| w.move_to(ball, nowhere, 1.0),
-        &mut |w| w.move_to(ball, Transform::IDENTITY, 0.0),
+        &mut |w| w.move_to(ball, pose, 0.0),
+        &mut |w| w.lead_all(&[ball], &[nowhere], &[pose], 1.0),
+        &mut |w| w.lead_all(&[ball], &[pose], &[pose], -1.0),
+        &mut |w| w.lead_all(&[ball, other], &[pose], &[pose], 1.0),
         &mut |w| _ = w.add_shape(ball, &bad, MassUpdate::Keep),
         &mut |w| _ = w.add_hinge(ball, other, Vec3::ZERO, Vec3::ZERO),
         &mut |w| _ = w.add_ball(ball, other, Vec3::NAN),

@@ -5,11 +5,11 @@ use super::moves::{GetUp, Start};
 use super::pose_similarity::{PoseSimilarity, Stance};
 use super::{Character, CharacterEvent, State, ground};
 use crate::character::tuning::{
-    ABOVE_PELVIS, INTO_GET_UP, INTO_LOOP, INTO_STANDING, LYING_MOVER, STRAIGHTENS,
+    ABOVE_PELVIS, BEARS, BEARS_FOR, INTO_GET_UP, INTO_LOOP, INTO_STANDING, LYING_MOVER, ON_TOP, STRAIGHTENS,
 };
 use sinew_anim::{Animator, LoopMode, Pose, Track, TrackDef, TrackId, local_to_model, smoothstep};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
-use sinew_physics::World;
+use sinew_physics::{BodyContact, BodyId, BodyKind, Effect, World};
 
 /// A get-up clip, the moment of it that is most like the present pose, and how much that is.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +44,7 @@ impl Character {
         landmarks.stance(self.def.mapping(), model, self.world_from_character, points, bodies)
     }
 
-    /// Gives the pose back to the clips where nobody stands on it: it lies until they have gone.
+    /// Gives the pose back to the clips where nobody stands or lies on it: it lies until they have gone.
     pub(super) fn get_up_where_free(&mut self, world: &mut World) {
         let lies = self.stance();
         let moves = self.def.moves();
@@ -52,9 +52,9 @@ impl Character {
             Some(choice) => choice.pose_similarity.motion,
             None => moves.landmarks.compare(&moves.upright, &lies).motion,
         };
-        let is_taken = self.is_taken(world, place.translation);
+        let waits = self.is_taken(world, place.translation) || self.is_under(world);
         self.scratch.points = lies.points;
-        if !is_taken {
+        if !waits {
             self.get_up(world);
         }
     }
@@ -69,6 +69,35 @@ impl Character {
             let apart = own.radius + other.def().radius;
             is_level && away.x * away.x + away.z * away.z < apart * apart
         })
+    }
+
+    /// True if it bears what could go away by itself, and has not done so for too long: a kinematic body that stands on it, or dynamic
+    /// ones that press it down by more than it presses others. Of those who lie on each other these loads sum to none, so that one is
+    /// always free to get up.
+    fn is_under(&self, world: &World) -> bool {
+        let dt = world.def().dt();
+        if self.presence.is_none() || self.stillness.steps as f32 * dt > BEARS_FOR {
+            return false;
+        }
+        let own = self.bodies();
+        let weight = self.def.ragdoll.total_mass * world.def().gravity.length();
+        let load = |contact: &BodyContact, other: BodyId, sign: f32| match world.kind(other) {
+            BodyKind::Static => 0.0,
+            BodyKind::Kinematic => {
+                let is_on = contact.points().iter().any(|point| point.separation < 0.0);
+                if is_on && sign * contact.normal.y > ON_TOP { f32::INFINITY } else { 0.0 }
+            }
+            BodyKind::Dynamic => sign * (contact.normal.y * contact.impulse() + contact.friction.y),
+        };
+        let loads = world.contacts().filter(|contact| contact.effect == Effect::Push).map(|contact| {
+            let [a, b] = [contact.a.body, contact.b.body];
+            match (own.contains(&a), own.contains(&b)) {
+                (true, false) => load(&contact, b, 1.0),
+                (false, true) => load(&contact, a, -1.0),
+                _ => 0.0,
+            }
+        });
+        loads.sum::<f32>() > BEARS * weight * dt
     }
 
     /// Gives the pose back to the clips, by the moment of a get-up clip that is most like it.

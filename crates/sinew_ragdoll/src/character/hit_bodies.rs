@@ -2,7 +2,7 @@
 
 use super::{Character, CharacterEvent};
 use crate::character::tuning::TELEPORTED;
-use sinew_math::{Rotation, Transform, Vec3, max};
+use sinew_math::{Vec3, max};
 use sinew_physics::{BodyId, BodyKind, World};
 
 impl Character {
@@ -21,16 +21,17 @@ impl Character {
         } else {
             self.planted = pose;
         }
-        let dt = world.def().dt();
-        let presence = self.presence.as_ref().expect("it was there");
-        for (index, (&id, &pose)) in presence.bodies.iter().zip(&now).enumerate() {
-            world.move_to(id, ahead(before.get(index).copied(), pose), dt);
+        let presence = self.presence.as_mut().expect("it was there");
+        if before.len() != now.len() {
+            before.clone_from(&now);
         }
-        before.clone_from(&now);
-        self.scratch.after = now;
-        if let Some(presence) = &mut self.presence {
-            presence.before = before;
+        for (before, now) in before.iter_mut().zip(&now) {
+            if (now.translation - before.translation).length_squared() > TELEPORTED * TELEPORTED {
+                *before = *now;
+            }
         }
+        world.lead_all(&presence.bodies, &before, &now, world.def().dt());
+        (presence.before, self.scratch.after) = (now, before);
     }
 
     /// Flinches or falls by what struck its bodies in the last step.
@@ -107,15 +108,4 @@ impl Character {
         let closing = max(relative.dot(way), 0.0);
         way * (mass * whole / (mass + whole) * sinew_math::min(closing, comes))
     }
-}
-
-/// Pose that a body comes to that goes on as it went.
-fn ahead(before: Option<Transform>, now: Transform) -> Transform {
-    let Some(before) = before else { return now };
-    let way = now.translation - before.translation;
-    if way.length() > TELEPORTED {
-        return now;
-    }
-    let turn: Rotation = now.rotation * before.rotation.inverse();
-    Transform::new(now.translation + way, turn * now.rotation)
 }

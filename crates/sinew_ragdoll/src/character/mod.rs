@@ -39,6 +39,7 @@ mod limp;
 mod memory;
 mod mirror;
 mod moves;
+mod pass_on;
 mod pose_similarity;
 mod powered;
 mod prepare;

@@ -112,6 +112,28 @@ pub(crate) const INTO_LOOP: f32 = 0.3;
 /// Larger: hands leave the ground. Smaller: it swings upright. Shown by the tests of `slopes`.
 pub(crate) const STRAIGHTENS: f32 = 0.6;
 
+/// Sweeps through all joints, there and back, in which a blow is passed on, a number.
+///
+/// Larger: nothing changes but the time that it takes. Smaller: a hand whose shoulder was struck goes into the thigh within the step. Shown by
+/// `stumble::pushes_at_random`.
+pub(crate) const PASSES_ON: usize = 40;
+
+/// Load of others, less what it loads others with, under which a body that lies does not get up, as a share of its own weight: half of an arm.
+///
+/// Larger: it gets up under a limb of another, which is thrown off. Smaller: it waits for who but leans on it. Shown by
+/// `in_world::who_lies_on_top_gets_up_first`.
+pub(crate) const BEARS: f32 = 0.02;
+
+/// Upward component of the normal toward a kinematic body above which that stands on who lies, a cosine: 17° from level.
+///
+/// Larger: who kneels beside it and on it is lifted. Smaller: it waits for a lift beside it. Shown as [`BEARS`].
+pub(crate) const ON_TOP: f32 = 0.3;
+
+/// Time after its fall for which a body waits for such a load to go, seconds.
+///
+/// Larger: it lies long under a crate, which nobody takes away. Smaller: it throws off who takes long to get up. Shown as [`BEARS`].
+pub(crate) const BEARS_FOR: f32 = 20.0;
+
 /// Height of a mover over a body that lies, as a share of its own.
 ///
 /// Larger: it does not fit under what the body lies under. Shown by the tests of `in_world`.

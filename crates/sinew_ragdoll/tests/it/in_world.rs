@@ -1,10 +1,11 @@
 //! A character that its clips move is a thing of the world: walls, others, rays, balls, crates, cliffs and lifts.
 
 use crate::actor::{floor, shared, walker};
-use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, max};
+use core::f32::consts::PI;
+use sinew_math::{Random, Reader, Rotation, Transform, Vec3, Writer, max};
 use sinew_physics::ray::Ray;
 use sinew_physics::{
-    BodyDef, BodyId, BodyKind, Probe, Shape, ShapeCast, ShapeDef, Velocity, World, WorldDef,
+    BodyContact, BodyDef, BodyId, BodyKind, Probe, Shape, ShapeCast, ShapeDef, Velocity, World, WorldDef,
 };
 use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, HitBodies, State};
 use sinew_scenes::mannequin::WALK_SPEED;
@@ -471,4 +472,64 @@ fn it_gets_up_where_nobody_stands_on_it() {
     }
     assert!(up_after.is_some(), "it gets up once the other has gone: {:?}", fallen.state());
     assert!(least > -0.01, "they are in each other by {} m", -least);
+}
+
+/// Impulse up that bodies gave others in the last step, less what those gave them, N·s.
+fn lifts(world: &World, own: &[BodyId], others: &[BodyId]) -> f32 {
+    let up = |contact: BodyContact| {
+        let [a, b] = [contact.a.body, contact.b.body];
+        let up = contact.normal.y * contact.impulse() + contact.friction.y;
+        match (own.contains(&a) && others.contains(&b), own.contains(&b) && others.contains(&a)) {
+            (true, _) => up,
+            (_, true) => -up,
+            _ => 0.0,
+        }
+    };
+    world.contacts().map(up).sum()
+}
+
+/// Two that fell on each other: nobody gets up under a load, both come to stand, and nobody is shot away.
+#[test]
+fn who_lies_on_top_gets_up_first() {
+    let def = shared(walker());
+    for seed in 0..12 {
+        let mut random = Random::new(seed);
+        let mut world = level();
+        let share = 0.03 * def.ragdoll.total_mass * world.def().gravity.length() * world.def().dt();
+        let mut under = Character::spawn(&mut world, &def, Transform::IDENTITY);
+        run(&mut world, &mut under, 30);
+        under.go_limp(&mut world);
+        run(&mut world, &mut under, 50);
+        let aside = Vec3::new(random.range(-0.3, 0.3), 0.0, random.range(-0.3, 0.3));
+        let pelvis = world.center_of_mass(under.bodies()[0]).with_y(0.6) + aside;
+        let lies = Rotation::from_axis_angle(Vec3::Y, random.range(-PI, PI))
+            * Rotation::from_axis_angle(Vec3::X, 1.4);
+        let mut over = Character::new(def.clone(), Transform::new(pelvis, lies), 0.0);
+        over.enter(&mut world);
+        over.go_limp(&mut world);
+        let mut both = [under, over];
+        let (mut fastest, mut up) = (0.0, [None; 2]);
+        for step in 0..1200 {
+            world.step();
+            let load = lifts(&world, both[0].bodies(), both[1].bodies());
+            for (character, load) in both.iter_mut().zip([load, -load]) {
+                let speed = |&id: &BodyId| world.velocity(id).linear.length();
+                let was = character.state();
+                if step > 100 && was == State::Limp {
+                    fastest = character.bodies().iter().map(speed).fold(fastest, max);
+                }
+                character.update(&mut world);
+                let begins = was != State::GettingUp && character.state() == State::GettingUp;
+                assert!(!begins || load < share, "seed {seed}: it gets up under {load} N·s at {step}");
+            }
+            for (character, up) in both.iter().zip(&mut up) {
+                if character.state() == State::Animated {
+                    up.get_or_insert(step);
+                }
+            }
+        }
+        println!("seed {seed}: fastest limp {fastest:.2} m/s, up after {up:?} steps");
+        assert!(up.iter().all(Option::is_some), "seed {seed}: {:?}", both.map(|one| one.state()));
+        assert!(fastest < 10.0, "seed {seed}: thrown off at {fastest} m/s");
+    }
 }

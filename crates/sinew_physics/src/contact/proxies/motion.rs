@@ -116,7 +116,10 @@ impl Proxies {
         self.active.clear();
         for index in movers {
             let body = bodies.at(index);
-            let Some(home) = self.home(index).filter(|_| body.can_touch()) else { continue };
+            if !body.can_touch() {
+                continue;
+            }
+            let Some(home) = self.mark_active(index) else { continue };
             if home.count > 0 && body.kind == BodyKind::Kinematic {
                 self.predict_kinematic(index, home, body);
             } else if home.count > 0 {
@@ -127,7 +130,6 @@ impl Proxies {
                 stride.turned = core::mem::take(&mut trace.turned);
                 stride.stamp = self.stamp;
             }
-            self.mark_active(index);
         }
         for &index in changed {
             self.mark_active(index);
@@ -224,17 +226,19 @@ impl Proxies {
         }
     }
 
-    #[inline]
-    fn mark_active(&mut self, index: u32) {
-        let Some(home) = &mut self.homes[index as usize] else { return };
+    /// Notes that a body can touch something in this step; gives its leaves, if it has any.
+    #[inline(always)]
+    fn mark_active(&mut self, index: u32) -> Option<Home> {
+        let home = self.homes.get_mut(index as usize)?.as_mut()?;
         let before = core::mem::replace(&mut home.active, self.stamp);
-        if before == self.stamp {
-            return;
+        let home = *home;
+        if before != self.stamp {
+            self.active.push(index);
+            if before + 1 != self.stamp {
+                self.mark_dirty(index);
+            }
         }
-        self.active.push(index);
-        if before + 1 != self.stamp {
-            self.mark_dirty(index);
-        }
+        Some(home)
     }
 
     /// Forgets the motion of what is to be looked for anew.

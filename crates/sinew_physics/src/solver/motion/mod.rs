@@ -12,8 +12,9 @@ pub(in crate::solver) mod momentum;
 mod tests;
 mod turn;
 
+pub(crate) use turn::Turn;
 use turn::{MOST_SERIES, vectors};
-pub(super) use turn::{Turn, divided, middle_of_spin, narrow, over, times, widen, within};
+pub(super) use turn::{divided, middle_of_spin, narrow, over, times, widen, within};
 
 /// A field of eight bodies, one in each lane.
 macro_rules! field {

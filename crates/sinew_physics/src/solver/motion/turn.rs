@@ -44,7 +44,7 @@ impl<R: Real> Turn<R> {
     }
 
     #[inline(always)]
-    fn inverse(self) -> Self {
+    pub fn inverse(self) -> Self {
         Self { vector: -self.vector, real: self.real }
     }
 
