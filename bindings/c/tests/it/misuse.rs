@@ -44,12 +44,8 @@ fn def(shapes: &[SinewShape]) -> SinewBodyDef {
 fn add(world: &Owned) -> SinewBodyId {
     let (shapes, mut id) = ([ball()], SinewBodyId::default());
     // SAFETY: all of it is there.
-    assert_eq!(
-        unsafe { sinew_world_add_body(world.0, &def(&shapes), &mut id) },
-        SinewStatus::Ok,
-        "{}",
-        sentence()
-    );
+    let status = unsafe { sinew_world_add_body(world.0, &def(&shapes), &mut id) };
+    assert_eq!(status, SinewStatus::Ok, "{}", sentence());
     id
 }
 
