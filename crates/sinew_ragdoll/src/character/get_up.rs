@@ -54,7 +54,8 @@ impl Character {
         };
         let waits = self.is_taken(world, place.translation) || self.is_under(world);
         self.scratch.points = lies.points;
-        if !waits {
+        // Who was on it may have got up in this update, and touches nothing before the next step.
+        if core::mem::replace(&mut self.stillness.free, !waits) && !waits {
             self.get_up(world);
         }
     }

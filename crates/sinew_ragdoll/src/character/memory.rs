@@ -22,6 +22,8 @@ pub(super) struct Stillness {
     pub calm_steps: u32,
     pub settled: bool,
     pub touched: bool,
+    /// Nobody was on it when it last wanted to get up.
+    pub free: bool,
 }
 
 /// A body on its way to where a clip begins.

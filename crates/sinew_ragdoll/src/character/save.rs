@@ -52,6 +52,7 @@ impl Character {
         w.u32(self.stillness.calm_steps);
         w.bool(self.stillness.settled);
         w.bool(self.stillness.touched);
+        w.bool(self.stillness.free);
         self.drives.save(w);
         w.u32(self.preparation.get_up);
         w.u32(self.preparation.start);
@@ -105,8 +106,9 @@ impl Character {
         let earlier = Earlier { world_from_character: r.transform()?, pose: load_pose(r, joints)? };
         let base = load_pose(r, joints)?;
         let lingering = Inertia::load(r, joints)?;
-        let stillness =
-            Stillness { steps: r.u32()?, calm_steps: r.u32()?, settled: r.bool()?, touched: r.bool()? };
+        let (steps, calm_steps) = (r.u32()?, r.u32()?);
+        let (settled, touched, free) = (r.bool()?, r.bool()?, r.bool()?);
+        let stillness = Stillness { steps, calm_steps, settled, touched, free };
         let mut drives = Drives::new(&self.def.ragdoll);
         drives.load(r)?;
         let preparation = self.load_preparation(r)?;
