@@ -47,7 +47,7 @@ impl World {
                 out.line(a, b, DrawKind::Spring);
             }
         }
-        for contact in self.contacts_in_order().into_iter().filter(|contact| contact.touching) {
+        for contact in self.contacts_in_order().filter(|contact| contact.touching) {
             for point in contact.manifold.points() {
                 out.line(point.position, point.position + contact.manifold.normal * 0.1, DrawKind::Contact);
             }

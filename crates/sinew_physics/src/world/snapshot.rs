@@ -35,9 +35,8 @@ impl World {
         w.u32(self.sleepers);
         self.bodies.save(w, save_body);
         self.joints.save(w, |w, joint| joint.save(w));
-        let mut contacts = self.contacts_in_order();
         // Which pairs have none depends on how they came to where they are.
-        contacts.retain(|contact| !contact.is_idle());
+        let contacts: Vec<_> = self.contacts_in_order().filter(|contact| !contact.is_idle()).collect();
         w.count(contacts.len());
         contacts.into_iter().for_each(|contact| save_contact(w, contact));
         self.groups.save(w, |w, group| group.save(w));

@@ -64,7 +64,7 @@ impl World {
     /// All contacts, near ones that do not touch among them, in the order of pairs.
     pub fn contacts(&self) -> impl Iterator<Item = BodyContact> {
         let near = |contact: &&Contact| contact.manifold.count > 0;
-        self.contacts_in_order().into_iter().filter(near).map(|contact| self.body_contact(contact))
+        self.contacts_in_order().filter(near).map(|contact| self.body_contact(contact))
     }
 
     fn body_contact(&self, contact: &Contact) -> BodyContact {

@@ -127,10 +127,15 @@ impl World {
         own.chain(self.activity.contacts_of(index))
     }
 
-    /// All contacts, in order of their keys.
-    pub(crate) fn contacts_in_order(&self) -> Vec<&Contact> {
-        let mut all: Vec<&Contact> = self.contacts.iter().chain(self.activity.contacts()).collect();
-        all.sort_unstable_by_key(|contact| contact.key);
-        all
+    /// All contacts, in order of their keys: those of the step are, and those aside, few or none, are sorted and merged in.
+    pub(crate) fn contacts_in_order(&self) -> impl Iterator<Item = &Contact> {
+        let mut aside: Vec<&Contact> = self.activity.contacts().collect();
+        aside.sort_unstable_by_key(|contact| contact.key);
+        let (mut awake, mut aside) = (self.contacts.iter().peekable(), aside.into_iter().peekable());
+        core::iter::from_fn(move || match (awake.peek(), aside.peek()) {
+            (Some(one), Some(other)) if other.key < one.key => aside.next(),
+            (None, _) => aside.next(),
+            _ => awake.next(),
+        })
     }
 }

@@ -28,7 +28,10 @@ impl Character {
         let choice = choose(&moves.get_ups, &moves.landmarks, &lies).filter(|choice| {
             def.getting_ready == GettingReady::RollOver && !self.is_like(choice, lies.pelvis, AT_ONCE)
         });
-        let Some(choice) = choice else { return self.get_up_where_free(world) };
+        let Some(choice) = choice else {
+            self.scratch.points = lies.points;
+            return self.get_up_where_free(world);
+        };
         let rolls = trunk_off(&choice, lies.pelvis) > AT_ONCE[0];
         let index = |at: Option<usize>| at.unwrap_or_default() as u32;
         self.preparation = Preparation {
@@ -62,6 +65,7 @@ impl Character {
         let start = &get_up.starts[self.preparation.start as usize];
         let choice = Choice { get_up, start, pose_similarity: moves.landmarks.compare(&start.stance, &lies) };
         if self.preparation.seconds <= 0.0 || self.is_like(&choice, lies.pelvis, NEAR_ENOUGH) {
+            self.scratch.points = lies.points;
             return self.get_up_where_free(world);
         }
         self.draw(world, &choice);
