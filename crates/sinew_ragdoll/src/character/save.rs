@@ -106,9 +106,7 @@ impl Character {
         let earlier = Earlier { world_from_character: r.transform()?, pose: load_pose(r, joints)? };
         let base = load_pose(r, joints)?;
         let lingering = Inertia::load(r, joints)?;
-        let (steps, calm_steps) = (r.u32()?, r.u32()?);
-        let (settled, touched, free) = (r.bool()?, r.bool()?, r.bool()?);
-        let stillness = Stillness { steps, calm_steps, settled, touched, free };
+        let stillness = load_stillness(r)?;
         let mut drives = Drives::new(&self.def.ragdoll);
         drives.load(r)?;
         let preparation = self.load_preparation(r)?;
@@ -259,6 +257,12 @@ fn save_rising(w: &mut Writer, rising: Rising) {
             w.f32(seconds);
         }
     }
+}
+
+fn load_stillness(r: &mut Reader<'_>) -> Result<Stillness, ReadError> {
+    let (steps, calm_steps) = (r.u32()?, r.u32()?);
+    let (settled, touched, free) = (r.bool()?, r.bool()?, r.bool()?);
+    Ok(Stillness { steps, calm_steps, settled, touched, free })
 }
 
 fn load_rising(r: &mut Reader<'_>) -> Result<Rising, ReadError> {
