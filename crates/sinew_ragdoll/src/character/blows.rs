@@ -1,6 +1,5 @@
 //! Blows: what is below the threshold lets a limb give way, what is above fells.
 
-use super::pass_on::pass_on;
 use super::{Blow, Character, CharacterEvent, State, Toughness};
 use crate::character::tuning::{FLINCH_HALF_LIFE, FLINCH_TIME, LEGS_WEAKEN, RETURNED_AFTER, TRUNK_WEAKENS};
 use crate::drive::{DriveMode, Muscle};
@@ -62,16 +61,13 @@ impl Character {
 
     /// Gives a body an impulse, and what that did.
     fn push(&self, world: &mut World, body: usize, impulse: Vec3, point: Option<Vec3>) -> f32 {
-        let ragdoll = self.ragdoll.as_ref().expect("it has bodies");
-        let id = ragdoll.bodies[body];
+        let id = self.ragdoll.as_ref().expect("it has bodies").bodies[body];
         let before = world.body_energy(id).kinetic;
         match point {
             Some(point) => world.apply_impulse(id, impulse, point),
             None => world.apply_impulse_at_center(id, impulse),
         }
-        let work = world.body_energy(id).kinetic - before;
-        pass_on(world, &self.def.ragdoll, ragdoll);
-        work
+        world.body_energy(id).kinetic - before
     }
 
     /// Lets the limb that was struck give way.

@@ -39,7 +39,6 @@ mod limp;
 mod memory;
 mod mirror;
 mod moves;
-mod pass_on;
 mod pose_similarity;
 mod powered;
 mod prepare;

@@ -112,12 +112,6 @@ pub(crate) const INTO_LOOP: f32 = 0.3;
 /// Larger: hands leave the ground. Smaller: it swings upright. Shown by the tests of `slopes`.
 pub(crate) const STRAIGHTENS: f32 = 0.6;
 
-/// Sweeps through all joints, there and back, in which a blow is passed on, a number.
-///
-/// Larger: nothing changes but the time that it takes. Smaller: a hand whose shoulder was struck goes into the thigh within the step. Shown by
-/// `stumble::pushes_at_random`.
-pub(crate) const PASSES_ON: usize = 40;
-
 /// Load of others, less what it loads others with, under which a body that lies does not get up, as a share of its own weight: half of an arm.
 ///
 /// Larger: it gets up under a limb of another, which is thrown off. Smaller: it waits for who but leans on it. Shown by
