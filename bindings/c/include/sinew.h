@@ -161,9 +161,9 @@ typedef struct SinewJointDef {
   struct SinewBodyId a;
   // The other, not the same; one of both is dynamic.
   struct SinewBodyId b;
-  // Where they meet, world, metres; of a distance the end at A.
+  // Anchor of both bodies, world, metres; of a distance joint its end at A.
   struct SinewVec3 anchor;
-  // Of a distance the end at B.
+  // End of a distance joint at B, world, metres; of no use to others.
   struct SinewVec3 anchor_b;
   // Axis of a hinge or a slider, world; not zero.
   struct SinewVec3 axis;

@@ -112,7 +112,7 @@ fn null(name: &str) -> CallError {
     error(SinewStatus::NullPointer, format!("{name} is null"))
 }
 
-/// What a pointer points to.
+/// Target of a pointer.
 ///
 /// # Safety
 /// It is null or points to a `T` that nobody changes meanwhile.
@@ -121,7 +121,7 @@ pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Outcome<&'a
     unsafe { pointer.as_ref() }.ok_or_else(|| null(name))
 }
 
-/// What a pointer points to, to be changed.
+/// Target of a pointer, to be changed.
 ///
 /// # Safety
 /// It is null or points to a `T` that nobody else uses meanwhile.

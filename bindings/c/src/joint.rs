@@ -32,9 +32,9 @@ pub struct SinewJointDef {
     pub a: SinewBodyId,
     /// The other, not the same; one of both is dynamic.
     pub b: SinewBodyId,
-    /// Where they meet, world, metres; of a distance the end at A.
+    /// Anchor of both bodies, world, metres; of a distance joint its end at A.
     pub anchor: SinewVec3,
-    /// Of a distance the end at B.
+    /// End of a distance joint at B, world, metres; of no use to others.
     pub anchor_b: SinewVec3,
     /// Axis of a hinge or a slider, world; not zero.
     pub axis: SinewVec3,

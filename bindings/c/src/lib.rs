@@ -1,4 +1,4 @@
-//! Sinew for C: worlds, bodies, joints, questions, snapshots, ragdolls and characters behind opaque handles.
+//! Sinew for C: worlds, bodies, joints, queries, snapshots, ragdolls and characters behind opaque handles.
 //!
 //! The header is `include/sinew.h`, made of this file and those beside it by `cbindgen`; docs/c.md of the repository is its guide. No
 //! panic passes the border: every function gives a [`SinewStatus`], and [`sinew_last_error`] a sentence.
@@ -12,7 +12,7 @@ mod character;
 #[allow(unsafe_code)]
 mod joint;
 #[allow(unsafe_code)]
-mod question;
+mod query;
 #[allow(unsafe_code)]
 mod ragdoll;
 #[allow(unsafe_code)]
@@ -24,7 +24,7 @@ mod world;
 pub use border::*;
 pub use character::*;
 pub use joint::*;
-pub use question::*;
+pub use query::*;
 pub use ragdoll::*;
 pub use snapshot::*;
 pub use types::*;

@@ -23,7 +23,7 @@ pub struct Character {
     pub def: Arc<CharacterDef>,
 }
 
-/// What became of a character: poses, events, figures, and a clip.
+/// Outcome of a bake: poses, events, figures, and a clip.
 #[pyclass(frozen, module = "sinew")]
 pub struct Bake {
     file: Arc<CharacterFile>,

@@ -146,7 +146,7 @@ impl Ragdoll {
         Ok(dict)
     }
 
-    /// What is wrong with it: `{"findings": [{"code", "severity", "bones", "cause", "evidence", "fix"}]}`.
+    /// Findings of the doctor: `{"findings": [{"code", "severity", "bones", "cause", "evidence", "fix"}]}`.
     fn doctor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = py.detach(|| guarded(|| doctor(&self.repair)))?;
         let findings = PyList::empty(py);
@@ -216,7 +216,7 @@ impl Model {
         self.model.joints.iter().map(|joint| joint.name.as_str()).collect()
     }
 
-    /// What was left out or changed, a sentence each.
+    /// Notes on what was left out or changed, a sentence each.
     #[getter]
     fn notes(&self) -> Vec<&str> {
         self.model.notes.iter().map(String::as_str).collect()

@@ -1,4 +1,4 @@
-//! What a mistaken caller gets: a status and a sentence, never a crash, and a world that is as it was.
+//! Mistakes of callers: they get a status and a sentence, never a crash, and a world that is as it was.
 
 use sinew_c::*;
 use std::ffi::{CStr, CString};

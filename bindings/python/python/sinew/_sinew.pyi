@@ -103,7 +103,7 @@ class Ragdoll:
     @property
     def report(self) -> BuildReport: ...
     def doctor(self) -> DoctorReport:
-        """What is wrong with it."""
+        """Findings of the doctor."""
 
     def drop_test(self) -> DropReport:
         """Drops it and throws it at a wall."""
@@ -152,7 +152,7 @@ class Character:
 
 @final
 class Bake:
-    """What became of a character: poses, events, figures, and a clip."""
+    """Outcome of a bake: poses, events, figures, and a clip."""
 
     @property
     def times(self) -> _Floats: ...

@@ -200,7 +200,7 @@ def _survivors(function: Function, tasks: Sequence[Task], out: Path, chunk: int)
 
 
 def _spec(function: Function, tasks: Sequence[Task], chunk: int) -> Row:
-    """What a folder holds; a run goes on only with the same."""
+    """Contents of a folder; a run goes on only with the same."""
     named = f"{function.__module__}.{function.__qualname__}"
     listed = json.dumps([(task.file, task.seed, dict(task.settings)) for task in tasks], sort_keys=True)
     return {

@@ -38,7 +38,7 @@ class BuildReport(TypedDict):
 
 
 class Finding(TypedDict):
-    """What is wrong with a ragdoll, why, and the cure."""
+    """Finding of the doctor: what is wrong with a ragdoll, why, and the cure."""
 
     code: str
     severity: str

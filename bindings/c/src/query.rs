@@ -1,4 +1,4 @@
-//! Questions to a world: rays, overlaps, contacts, events.
+//! Queries of a world: rays, overlaps, contacts, events.
 
 use crate::border::{Outcome, SinewStatus, error, fill, give, guard, shared};
 use crate::types::{SinewBodyId, SinewPose, SinewShape, SinewVec3};
