@@ -601,3 +601,10 @@ pub(super) const MIDPOINT_TOLERANCE: f32 = 1e-12;
 /// Within a quarter of a turn, should the world's limit allow more: beyond `π/2` the tangent of the Cayley map changes sign. Smaller:
 /// fast spins are not on the midpoint. Sensible from 0.8 to 1.5. Shown by the tests of `solver/motion`.
 pub(super) const MOST_HALF_TURN: f32 = 1.2;
+
+/// Links from which on a strand is cut into eight pieces that go side by side.
+///
+/// A rope of 49 links takes a third of the instructions so; eight of a hundred links each take half as many again as they would whole.
+/// More: single ropes of some thirty links take what one of fifty does. Fewer: many short ones of one length take longer. Sensible from 16
+/// (two links in each piece) to 64. Shown by `hanging_rope`, `chain_100_links`.
+pub(super) const CUT_STRANDS: usize = 24;

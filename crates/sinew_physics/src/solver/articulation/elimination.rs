@@ -88,7 +88,7 @@ pub(crate) fn times<R: Real>(m: &Matrix<R>, v: Vector3<R>) -> Vector3<R> {
 }
 
 #[inline(always)]
-fn columns<R: Real>(m: &Matrix<R>) -> Matrix<R> {
+pub(crate) fn columns<R: Real>(m: &Matrix<R>) -> Matrix<R> {
     let [a, b, c] = *m;
     [Vector3::new(a.x, b.x, c.x), Vector3::new(a.y, b.y, c.y), Vector3::new(a.z, b.z, c.z)]
 }
@@ -135,7 +135,7 @@ impl<R: Real> Symmetric<R> {
     }
 
     #[inline(always)]
-    fn minus(&self, other: &Self) -> Self {
+    pub fn minus(&self, other: &Self) -> Self {
         let ([a, b, c, d, e, f], [g, h, i, j, k, l]) = (self.0, other.0);
         Self([a - g, b - h, c - i, d - j, e - k, f - l])
     }
@@ -159,7 +159,7 @@ impl<R: Real> Symmetric<R> {
 
     /// Inverse of a positive definite matrix by LDLᵀ; nothing along a pivot that is not safely positive.
     #[inline(always)]
-    fn inverse(&self) -> Self {
+    pub fn inverse(&self) -> Self {
         let [xx, xy, xz, yy, yz, zz] = self.0;
         let d0 = reciprocal(xx, xx);
         let (l10, l20) = (xy * d0, xz * d0);

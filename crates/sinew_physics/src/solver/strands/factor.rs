@@ -3,13 +3,15 @@
 use super::super::articulation::elimination::{Freedom, Inertia, Swivel, Symmetric, zero};
 use super::super::flight::{Eight, load, store};
 use super::super::motion::{narrow, widen};
-use super::link::{Hook, Link, load_turn};
+use super::joints::StrandEnds;
+use super::link::{Link, load_turn};
+use super::pieces::{all, handed_up, masked};
 use super::substep::Pace;
-use sinew_math::lanes::{Lanes, Vector3};
+use sinew_math::lanes::{Lanes, Real, Vector3};
 
 /// Arms of the joints at the present pose.
 #[inline(always)]
-pub(super) fn place_arms<L: Lanes>(links: &mut [Link]) {
+pub(super) fn place_arms<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>) {
     for i in 0..links.len() {
         let arm = load_turn::<L>(&links[i].rotation).turned(load(&links[i].anchor));
         store(arm, &mut links[i].arm);
@@ -18,31 +20,50 @@ pub(super) fn place_arms<L: Lanes>(links: &mut [Link]) {
             store(parent_arm, &mut links[i].parent_arm);
         }
     }
+    if let Some(cuts) = &mut ends.cuts {
+        cuts.place_arms(links, ends.hook, ends.tips);
+    }
 }
 
 /// Gaps of the joints, from their arms.
 #[inline(always)]
-pub(super) fn place_gaps<L: Lanes>(links: &mut [Link], hook: Option<&Hook>) {
+pub(super) fn place_gaps<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>) {
     for i in 0..links.len() {
         let (position, arm) = (load::<L>(&links[i].position), load::<L>(&links[i].arm));
-        let [parent, parent_arm] = match (i.checked_sub(1), hook) {
+        let [parent, parent_arm] = match (i.checked_sub(1), ends.hooks()) {
             (Some(parent), _) => [load(&links[parent].position), load(&links[i].parent_arm)],
             (None, Some(hook)) => [load(&hook.position), load(&hook.arm)],
             (None, None) => [position, arm],
         };
-        store((position - parent) + (arm - parent_arm), &mut links[i].gap);
+        let gap = (position - parent) + (arm - parent_arm);
+        store(masked(gap, ends.tips.within(all::<L>(), i)), &mut links[i].gap);
+    }
+    if let Some(cuts) = &ends.cuts {
+        cuts.place_gaps(links, ends.hook, ends.tips);
     }
 }
 
 /// The factor, from the end of the strand on, with geometric stiffness `h² k_g` of the joints' forces as far as it exceeds the
 /// inertia. All that a link feels of those below it is a mass at the joint, which depends on the direction.
 #[inline(always)]
-pub(super) fn factor<L: Lanes>(links: &mut [Link], is_held: bool, pace: &Pace) {
+pub(super) fn factor<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, pace: &Pace) {
+    factor_pieces::<L>(links, ends, pace);
+    if let Some(cuts) = &mut ends.cuts {
+        cuts.factor(links, ends.hook.is_some(), ends.tips);
+    }
+}
+
+#[inline(always)]
+fn factor_pieces<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>, pace: &Pace) {
     let (none, h2) = (L::splat(0.0), L::splat(pace.h * pace.h));
     let mut below = Below { mass: Symmetric::zero(), arm: zero::<L>(), stiffness: zero::<L>() };
+    let of_cut = if ends.cuts.is_some() { handed_up(stiffness_above(&links[0], h2)) } else { zero::<L>() };
     for (i, link) in links.iter_mut().enumerate().rev() {
-        let (arm, parent_arm, force) =
-            (load::<L>(&link.arm), load::<L>(&link.parent_arm), load::<L>(&link.force));
+        below.stiffness = ends.tips.below(i, below.stiffness, of_cut);
+        if i + 1 == ends.tips.place {
+            below.mass = within::<L>(below.mass, ends.tips.full_wide);
+        }
+        let (arm, force) = (load::<L>(&link.arm), load::<L>(&link.force));
         let pull = L::max(arm.dot(force), none) * h2;
         let inertia = load::<L>(&link.inertia);
         let excess = (load::<L>(&link.stiffness) * pull + below.stiffness) - inertia;
@@ -50,7 +71,7 @@ pub(super) fn factor<L: Lanes>(links: &mut [Link], is_held: bool, pace: &Pace) {
         store(excess, &mut link.excess);
         let tensor = load_turn::<L>(&link.rotation).rotated_diagonal(inertia + excess);
         let whole = at_anchor::<L>(tensor, L::load(&link.mass), arm, &below);
-        let is_jointed = i > 0 || is_held;
+        let is_jointed = i > 0 || ends.holds_first();
         let mut swivel = Swivel::at_anchor(if is_jointed { Freedom::Rotation } else { Freedom::All }, whole);
         let through = swivel.factor().mass;
         let (pivot, coupled) = swivel.pivots();
@@ -60,9 +81,27 @@ pub(super) fn factor<L: Lanes>(links: &mut [Link], is_held: bool, pace: &Pace) {
         }
         let passed = if is_jointed { through } else { swivel.inverse_mass() };
         keep::<L>(&passed, &mut link.passed);
-        let pull = L::max(-parent_arm.dot(force), none) * h2;
-        below = Below { mass: through, arm: parent_arm, stiffness: load::<L>(&link.parent_stiffness) * pull };
+        below = Below { mass: through, arm: load(&link.parent_arm), stiffness: stiffness_above(link, h2) };
     }
+}
+
+/// Moments that the pull of a link's joint adds to its parent, kg·m².
+#[inline(always)]
+fn stiffness_above<L: Lanes>(link: &Link, h2: L) -> Vector3<L> {
+    let pull = L::max(-load::<L>(&link.parent_arm).dot(load(&link.force)), L::splat(0.0)) * h2;
+    load::<L>(&link.parent_stiffness) * pull
+}
+
+/// In the lanes of the mask, and nothing elsewhere.
+#[inline(always)]
+fn within<L: Lanes>(
+    Symmetric(mut numbers): Symmetric<L::Wide>,
+    mask: <L::Wide as Real>::Mask,
+) -> Symmetric<L::Wide> {
+    for number in &mut numbers {
+        *number = number.masked(mask);
+    }
+    Symmetric(numbers)
 }
 
 /// Inertia that a link feels of those below it.

@@ -3,9 +3,48 @@
 use super::super::articulation::elimination::{times, transposed_times, zero};
 use super::super::flight::{Eight, load, store};
 use super::super::motion::Turn;
+use super::cuts::Cuts;
 use super::factor::kept;
 use super::link::{Hook, Link, load_turn, store_turn};
+use super::pieces::{Tips, all, masked, select, whole_max};
 use sinew_math::lanes::{Lanes, Vector3};
+
+/// Ends of strands: fixed bodies that hold them, or cuts that make pieces of one.
+pub(super) struct StrandEnds<'a, L: Lanes> {
+    /// In the first lane only, if the strand is cut.
+    pub hook: Option<&'a Hook>,
+    pub cuts: Option<&'a mut Cuts>,
+    pub tips: Tips<L>,
+}
+
+impl<'a, L: Lanes> StrandEnds<'a, L> {
+    /// True if the first link of every lane hangs on a fixed body.
+    #[inline(always)]
+    pub fn holds_first(&self) -> bool {
+        self.hook.is_some() && self.cuts.is_none()
+    }
+
+    /// True if a joint holds the first link of most lanes.
+    #[inline(always)]
+    pub fn joins_first(&self) -> bool {
+        self.hook.is_some() || self.cuts.is_some()
+    }
+
+    /// Impulses and angular impulses on the joints that are cut by the last links, about their centres, since it was last asked.
+    #[inline(always)]
+    pub fn take_given(&mut self) -> [Vector3<L>; 2] {
+        match &mut self.cuts {
+            Some(cuts) => cuts.take_given(),
+            None => [zero(), zero()],
+        }
+    }
+
+    /// Bodies that the first links of all lanes hang on.
+    #[inline(always)]
+    pub fn hooks(&self) -> Option<&'a Hook> {
+        if self.cuts.is_none() { self.hook } else { None }
+    }
+}
 
 /// Motions that joints are asked for.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -20,10 +59,19 @@ pub(super) enum Asked {
 
 /// From the end of the strand to its first link: what is asked of each joint, and what the links below push through it.
 #[inline(always)]
-pub(super) fn ascend<L: Lanes>(links: &mut [Link], is_held: bool, asked: Asked, h: f32) {
+pub(super) fn ascend<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, asked: Asked, h: f32) {
+    ascend_pieces::<L>(links, ends, asked, h);
+    if let Some(cuts) = &mut ends.cuts {
+        cuts.close(links, ends.hook.is_some(), ends.tips, (asked, h));
+    }
+}
+
+#[inline(always)]
+fn ascend_pieces<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>, asked: Asked, h: f32) {
     let rate = L::splat(1.0 / h);
     let (mut force, mut arm_below) = (zero::<L>(), zero::<L>());
     for i in (0..links.len()).rev() {
+        force = ends.tips.below(i, force, zero());
         let (before, rest) = links.split_at_mut(i);
         let link = &mut rest[0];
         let arm = load::<L>(&link.arm);
@@ -31,7 +79,7 @@ pub(super) fn ascend<L: Lanes>(links: &mut [Link], is_held: bool, asked: Asked, 
         store(torque, &mut link.left);
         force = force - times(&rows::<L>(&link.coupled), torque);
         let passed = kept::<L>(&link.passed);
-        if i == 0 && !is_held {
+        if i == 0 && !ends.holds_first() {
             store(passed.times(force), &mut link.asked);
             return;
         }
@@ -50,7 +98,7 @@ pub(super) fn ascend<L: Lanes>(links: &mut [Link], is_held: bool, asked: Asked, 
 
 /// Velocity of a body's anchor against that of its parent; fixed ones stand still.
 #[inline(always)]
-fn slide<L: Lanes>(link: &Link, parent: Option<&Link>) -> Vector3<L> {
+pub(super) fn slide<L: Lanes>(link: &Link, parent: Option<&Link>) -> Vector3<L> {
     let of_body = load::<L>(&link.velocity) + load::<L>(&link.spin).cross(load(&link.arm));
     match parent {
         Some(parent) => {
@@ -62,7 +110,7 @@ fn slide<L: Lanes>(link: &Link, parent: Option<&Link>) -> Vector3<L> {
 
 /// Answer of a link, from the answer of its parent.
 #[inline(always)]
-fn answer<L: Lanes>(link: &Link, [v, w]: [Vector3<L>; 2]) -> [Vector3<L>; 2] {
+pub(super) fn answer<L: Lanes>(link: &Link, [v, w]: [Vector3<L>; 2]) -> [Vector3<L>; 2] {
     let at = (v + w.cross(load(&link.parent_arm))) + load(&link.asked);
     let spin =
         kept::<L>(&link.pivot).times(load(&link.left)) - transposed_times(&rows::<L>(&link.coupled), at);
@@ -70,7 +118,7 @@ fn answer<L: Lanes>(link: &Link, [v, w]: [Vector3<L>; 2]) -> [Vector3<L>; 2] {
 }
 
 #[inline(always)]
-fn rows<L: Lanes>([x, y, z]: &[[Eight; 3]; 3]) -> [Vector3<L>; 3] {
+pub(super) fn rows<L: Lanes>([x, y, z]: &[[Eight; 3]; 3]) -> [Vector3<L>; 3] {
     [load(x), load(y), load(z)]
 }
 
@@ -83,55 +131,83 @@ pub(super) struct Left<L> {
 
 /// Down the strand in the lanes of the mask, for velocities alone.
 #[inline(always)]
-pub(super) fn descend<L: Lanes>(links: &mut [Link], is_held: bool, mask: L::Mask) -> Left<L> {
+pub(super) fn descend<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>, going: L::Mask) -> Left<L> {
     let none = L::splat(0.0);
     let mut left = Left { fastest: none, rate: none };
     let (mut answered, mut before) = ([zero::<L>(); 2], [zero::<L>(); 2]);
     for (i, link) in links.iter_mut().enumerate() {
         answered = answer(link, answered);
+        let mask = ends.tips.within(going, i);
         let velocity = load::<L>(&link.velocity) + masked(answered[0], mask);
         let spin = load::<L>(&link.spin) + masked(answered[1], mask);
         store(velocity, &mut link.velocity);
         store(spin, &mut link.spin);
         left.fastest = L::max(left.fastest, L::max(largest(velocity), largest(spin)));
-        if i > 0 || is_held {
+        if i > 0 || ends.holds_first() {
             let of_parent = before[0] + before[1].cross(load(&link.parent_arm));
             let rate = (velocity + spin.cross(load(&link.arm))) - of_parent;
-            left.rate = L::max(left.rate, largest(rate));
+            left.rate = L::max(left.rate, largest(masked(rate, ends.tips.within(all::<L>(), i))));
         }
         before = [velocity, spin];
+    }
+    if let Some(cuts) = &ends.cuts {
+        left.rate = L::max(left.rate, largest(cuts.slide(links, ends.hook.is_some(), ends.tips)));
+        left = Left { fastest: whole_max(left.fastest), rate: whole_max(left.rate) };
     }
     left
 }
 
 /// Goes down the strand in the lanes of the mask, and on to the poses that the velocities lead to. Gives the largest gap there, m.
 #[inline(always)]
-pub(super) fn descend_ahead<L: Lanes>(links: &mut [Link], hook: Option<&Hook>, mask: L::Mask, h: f32) -> L {
+pub(super) fn descend_ahead<L: Lanes>(
+    links: &mut [Link],
+    ends: &StrandEnds<'_, L>,
+    going: L::Mask,
+    h: f32,
+) -> L {
     let mut answered = [zero::<L>(); 2];
-    let mut parent = Parent::<L>::of_hook(hook);
+    let mut parent = Parent::<L>::of_hook(ends.hooks());
     let mut most = L::splat(0.0);
     for (i, link) in links.iter_mut().enumerate() {
         answered = answer(link, answered);
         let [velocity, spin] = [load::<L>(&link.velocity), load::<L>(&link.spin)];
+        let mask = ends.tips.within(going, i);
         store(velocity, &mut link.before_velocity);
         store(spin, &mut link.before_spin);
         store(velocity + masked(answered[0], mask), &mut link.velocity);
         store(spin + masked(answered[1], mask), &mut link.spin);
-        parent = look_ahead(link, parent, i > 0 || hook.is_some(), h);
-        most = L::max(most, largest(load::<L>(&link.gap)));
+        parent = look_ahead(link, parent, i > 0 || ends.holds_first(), h);
+        let gap = masked(load::<L>(&link.gap), ends.tips.within(all::<L>(), i));
+        store(gap, &mut link.gap);
+        most = L::max(most, largest(gap));
     }
-    most
+    look_ahead_of_cuts(links, ends, most)
+}
+
+/// Gaps at cuts, after those within pieces, of which the largest is `most`. Gives the largest of the strand.
+#[inline(always)]
+fn look_ahead_of_cuts<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>, most: L) -> L {
+    match &ends.cuts {
+        Some(cuts) => whole_max(L::max(most, largest(cuts.look_ahead(links, ends.hook, ends.tips)))),
+        None => most,
+    }
 }
 
 /// Takes the last correction back in the lanes of the mask.
 #[inline(always)]
-pub(super) fn take_back<L: Lanes>(links: &mut [Link], hook: Option<&Hook>, mask: L::Mask, h: f32) {
-    let mut parent = Parent::<L>::of_hook(hook);
+pub(super) fn take_back<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, mask: L::Mask, h: f32) {
+    let mut parent = Parent::<L>::of_hook(ends.hooks());
     for (i, link) in links.iter_mut().enumerate() {
         let (velocity, spin) = (load::<L>(&link.velocity), load::<L>(&link.spin));
         store(select(mask, load(&link.before_velocity), velocity), &mut link.velocity);
         store(select(mask, load(&link.before_spin), spin), &mut link.spin);
-        parent = look_ahead(link, parent, i > 0 || hook.is_some(), h);
+        parent = look_ahead(link, parent, i > 0 || ends.holds_first(), h);
+        let gap = masked(load::<L>(&link.gap), ends.tips.within(all::<L>(), i));
+        store(gap, &mut link.gap);
+    }
+    look_ahead_of_cuts(links, ends, L::splat(0.0));
+    if let Some(cuts) = &mut ends.cuts {
+        cuts.take_back::<L>();
     }
 }
 
@@ -179,14 +255,4 @@ fn look_ahead<L: Lanes>(link: &mut Link, parent: Parent<L>, is_jointed: bool, h:
 pub(super) fn largest<L: Lanes>(v: Vector3<L>) -> L {
     let v = v.abs();
     L::max(v.x, L::max(v.y, v.z))
-}
-
-#[inline(always)]
-fn masked<L: Lanes>(v: Vector3<L>, mask: L::Mask) -> Vector3<L> {
-    Vector3::new(v.x.masked(mask), v.y.masked(mask), v.z.masked(mask))
-}
-
-#[inline(always)]
-fn select<L: Lanes>(mask: L::Mask, a: Vector3<L>, b: Vector3<L>) -> Vector3<L> {
-    Vector3::new(L::select(mask, a.x, b.x), L::select(mask, a.y, b.y), L::select(mask, a.z, b.z))
 }

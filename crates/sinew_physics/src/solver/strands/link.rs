@@ -1,4 +1,4 @@
-//! A link of eight strands side by side.
+//! A link of eight strands, or of eight pieces of one, side by side.
 
 use super::super::flight::{Eight, ZERO, put, take};
 use super::super::motion::Turn;
@@ -155,16 +155,36 @@ impl Link {
         put(force, &mut self.force, lane);
     }
 
-    /// Lanes from `lanes` on are copies of the first, so that nothing in them takes longer than that.
-    pub fn fill(&mut self, lanes: usize) {
-        let fill = |row: &mut Eight| {
-            for lane in lanes..WIDTH {
-                row[lane] = row[0];
+    /// Empties a lane: a body at rest that nothing holds and nothing moves.
+    pub fn clear(&mut self, lane: usize) {
+        (self.bodies[lane], self.joints[lane]) = (NONE, NONE);
+        (self.mass[lane], self.linear_damping[lane], self.angular_damping[lane]) = (1.0, 0.0, 0.0);
+        for vector in self.vectors() {
+            put(Vec3::ZERO, vector, lane);
+        }
+        put(Vec3::ONE, &mut self.inertia, lane);
+        for (row, number) in self.rotation.iter_mut().zip([0.0, 0.0, 0.0, 1.0]) {
+            row[lane] = number;
+        }
+    }
+
+    /// Copies what was written into a lane of another.
+    #[cfg(test)]
+    pub fn copy_lane(&mut self, lane: usize, from: &Self, of: usize) {
+        self.mass[lane] = from.mass[of];
+        for (row, from) in self.rotation.iter_mut().zip(&from.rotation) {
+            row[lane] = from[of];
+        }
+        for (vector, from) in self.vectors().into_iter().zip(from.clone().vectors()) {
+            for (row, from) in vector.iter_mut().zip(from) {
+                row[lane] = from[of];
             }
-        };
-        [&mut self.mass, &mut self.linear_damping, &mut self.angular_damping].into_iter().for_each(fill);
-        self.rotation.iter_mut().for_each(fill);
-        for vector in [
+        }
+    }
+
+    /// Vectors that are written at the beginning of a step.
+    fn vectors(&mut self) -> [&mut [Eight; 3]; 11] {
+        [
             &mut self.inertia,
             &mut self.anchor,
             &mut self.parent_anchor,
@@ -176,7 +196,19 @@ impl Link {
             &mut self.velocity,
             &mut self.spin,
             &mut self.force,
-        ] {
+        ]
+    }
+
+    /// Lanes from `lanes` on are copies of the first, so that nothing in them takes longer than that.
+    pub fn fill(&mut self, lanes: usize) {
+        let fill = |row: &mut Eight| {
+            for lane in lanes..WIDTH {
+                row[lane] = row[0];
+            }
+        };
+        [&mut self.mass, &mut self.linear_damping, &mut self.angular_damping].into_iter().for_each(fill);
+        self.rotation.iter_mut().for_each(fill);
+        for vector in self.vectors() {
             vector.iter_mut().for_each(fill);
         }
     }
@@ -235,6 +267,11 @@ impl Hook {
         let frame = if first.is_b { &joint.frame_a } else { &joint.frame_b };
         put(translation, &mut self.position, lane);
         put(rotation * frame.translation, &mut self.arm, lane);
+    }
+
+    /// Centre of the fixed body and arm to the anchor in the first lane.
+    pub fn first(&self) -> [Vec3; 2] {
+        [take(&self.position, 0), take(&self.arm, 0)]
     }
 
     /// Fills the other lanes as for [links](Link::fill).

@@ -5,21 +5,27 @@
 //! directions a joint, no impulses from outside, and what one link hands to the next stays in registers. A strand that comes to where
 //! a safeguard of the islands would act has its step solved by them, from its beginning.
 
+mod cuts;
 mod factor;
 mod joints;
 mod link;
 mod motion;
 mod order;
+mod pieces;
 mod substep;
 
 use super::boundary::solution::{SolvedBody, SolvedJoint};
+use super::flight::Eight;
 use crate::context::StepContext;
 use crate::island::Island;
 use crate::joint::Joint;
 use crate::slices::for_each_mut;
 use crate::solver::sweep::choice::stretch_of;
+use crate::solver::tuning::CUT_STRANDS;
 use crate::solver::view::View;
 use crate::stage::Counter;
+use core::ops::Range;
+use cuts::Cuts;
 use link::{Hook, Link};
 use order::Order;
 use sinew_math::Vec3;
@@ -48,6 +54,12 @@ struct Bundle {
     links: Vec<Link>,
     is_held: bool,
     hook: Hook,
+    /// The lanes are the pieces of one strand.
+    is_cut: bool,
+    /// The joints between these.
+    cuts: Box<Cuts>,
+    /// 1 in the lanes whose last place is filled.
+    full: Eight,
     /// Length of its substeps over that of the world's.
     stretch: f32,
     /// Strands beside which the other lanes have last been filled.
@@ -59,7 +71,8 @@ struct Bundle {
 /// A strand that has been through the step.
 pub(crate) struct SolvedStrand<'a> {
     bundle: &'a Bundle,
-    lane: usize,
+    /// Its own, or those of its pieces.
+    lanes: Range<usize>,
     /// Number of its island.
     pub island: usize,
 }
@@ -77,9 +90,17 @@ impl Strands {
         }
         let (count, is_held, stretch) =
             (self.order.links.len(), self.order.is_held(), stretch_of(island, view));
+        if count >= CUT_STRANDS {
+            self.add_pieces(number, stretch, view);
+            return;
+        }
         let fits = |bundle: &Bundle| {
             let has_room = bundle.islands.len() < WIDTH;
-            has_room && bundle.links.len() == count && bundle.is_held == is_held && bundle.stretch == stretch
+            !bundle.is_cut
+                && has_room
+                && bundle.links.len() == count
+                && bundle.is_held == is_held
+                && bundle.stretch == stretch
         };
         let first = self.used.saturating_sub(OPEN);
         let place = self.bundles[first..self.used].iter().rposition(fits);
@@ -96,14 +117,42 @@ impl Strands {
         }
     }
 
-    /// Another bundle, of strands of so many links.
+    /// Adds the strand that was found as eight pieces.
+    fn add_pieces(&mut self, number: usize, stretch: f32, view: &View<'_>) {
+        let (count, is_held) = (self.order.links.len(), self.order.is_held());
+        let (least, longer) = (count / WIDTH, count % WIDTH);
+        let place = self.open(count.div_ceil(WIDTH));
+        let bundle = &mut self.bundles[place];
+        (bundle.is_held, bundle.stretch, bundle.filled) = (is_held, stretch, 0);
+        bundle.is_cut = true;
+        bundle.islands.push(number as u32);
+        if let Some(first) = self.order.links.first().filter(|_| is_held) {
+            bundle.hook.write(0, first, view);
+        }
+        let mut rest = &self.order.links[..];
+        for lane in 0..WIDTH {
+            let piece;
+            (piece, rest) = rest.split_at(least + usize::from(lane < longer));
+            for (link, placed) in bundle.links.iter_mut().zip(piece) {
+                link.write(lane, placed, view);
+            }
+            let is_full = piece.len() == bundle.links.len();
+            bundle.full[lane] = if is_full { 1.0 } else { 0.0 };
+            if let Some(last) = bundle.links.last_mut().filter(|_| !is_full) {
+                last.clear(lane);
+            }
+        }
+    }
+
+    /// Another bundle, of strands or pieces of so many links.
     fn open(&mut self, count: usize) -> usize {
         if self.used == self.bundles.len() {
-            self.bundles.push(Bundle::EMPTY);
+            self.bundles.push(Bundle::empty());
         }
         let bundle = &mut self.bundles[self.used];
         bundle.islands.clear();
         bundle.islands.reserve(WIDTH);
+        (bundle.is_cut, bundle.full) = (false, [1.0; WIDTH]);
         if bundle.links.len() != count {
             bundle.links.resize(count, Link::EMPTY);
             bundle.filled = 0;
@@ -120,7 +169,7 @@ impl Strands {
         });
         if context.profiler.is_counting() {
             for strand in self.solved() {
-                let links = strand.bundle.links.len() as u64;
+                let links = strand.links().count() as u64;
                 let (_, substeps) = view.pace.stretched(strand.bundle.stretch);
                 context.profiler.count(Counter::Bodies, links);
                 context.profiler.count(Counter::BodySubsteps, links * u64::from(substeps));
@@ -133,48 +182,72 @@ impl Strands {
     pub fn solved(&self) -> impl Iterator<Item = SolvedStrand<'_>> {
         self.bundles[..self.used].iter().flat_map(|bundle| {
             let done = (0..bundle.islands.len()).filter(|lane| bundle.left & 1 << lane == 0);
-            done.map(|lane| SolvedStrand { bundle, lane, island: bundle.islands[lane] as usize })
+            let lanes = |lane| if bundle.is_cut { 0..WIDTH } else { lane..lane + 1 };
+            done.map(move |lane| SolvedStrand {
+                bundle,
+                lanes: lanes(lane),
+                island: bundle.islands[lane] as usize,
+            })
         })
     }
 }
 
 impl Bundle {
-    const EMPTY: Self = Self {
-        islands: Vec::new(),
-        links: Vec::new(),
-        is_held: false,
-        hook: Hook::EMPTY,
-        stretch: 1.0,
-        filled: 0,
-        left: 0,
-    };
+    fn empty() -> Self {
+        Self {
+            islands: Vec::new(),
+            links: Vec::new(),
+            is_held: false,
+            hook: Hook::EMPTY,
+            is_cut: false,
+            cuts: Box::new(Cuts::EMPTY),
+            full: [1.0; WIDTH],
+            stretch: 1.0,
+            filled: 0,
+            left: 0,
+        }
+    }
 
     fn run(&mut self, pace: Pace) {
-        let lanes = self.islands.len();
-        if lanes > 1 && lanes != self.filled {
+        let lanes = if self.is_cut { WIDTH } else { self.islands.len() };
+        if !self.is_cut && lanes > 1 && lanes != self.filled {
             self.links.iter_mut().for_each(|link| link.fill(lanes));
             self.hook.fill(lanes);
             self.filled = lanes;
         }
         let hook = self.is_held.then_some(&self.hook);
-        let advance = Advance { links: &mut self.links, hook, pace, lanes };
+        let (links, cuts, full) = (&mut self.links[..], self.is_cut.then_some(&mut *self.cuts), &self.full);
+        let advance = Advance { links, hook, cuts, full, pace, lanes };
         self.left = if lanes > 1 { dispatch::run(advance) } else { dispatch::run(Alone(advance)) };
+    }
+
+    /// Number of links in a lane.
+    fn length(&self, lane: usize) -> usize {
+        self.links.len() - usize::from(self.full[lane] == 0.0)
     }
 }
 
 impl SolvedStrand<'_> {
     /// Poses and velocities after the step.
     pub fn bodies(&self) -> impl Iterator<Item = SolvedBody> {
-        self.bundle.links.iter().map(|link| link.body(self.lane))
+        self.links().map(|(link, lane)| link.body(lane))
     }
 
     /// State that its joints carry on.
     pub fn joints(&self) -> impl Iterator<Item = SolvedJoint> {
-        self.joint_links().map(|link| link.joint(self.lane))
+        self.joint_links().map(|(link, lane)| link.joint(lane))
     }
 
-    fn joint_links(&self) -> impl Iterator<Item = &Link> {
-        self.bundle.links.iter().filter(|link| link.joints[self.lane] != order::NONE)
+    fn joint_links(&self) -> impl Iterator<Item = (&Link, usize)> {
+        self.links().filter(|(link, lane)| link.joints[*lane] != order::NONE)
+    }
+
+    /// Links and their lanes, from the first on.
+    fn links(&self) -> impl Iterator<Item = (&Link, usize)> {
+        let bundle = self.bundle;
+        self.lanes
+            .clone()
+            .flat_map(move |lane| bundle.links[..bundle.length(lane)].iter().map(move |link| (link, lane)))
     }
 }
 

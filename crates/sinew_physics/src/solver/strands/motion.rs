@@ -1,7 +1,9 @@
 //! Forces to velocities, and velocities to poses with what the joints gave.
 
+use super::super::articulation::elimination::zero;
 use super::super::flight::{load, store};
 use super::super::motion::{divided, middle_of_spin, over, times, within};
+use super::joints::StrandEnds;
 use super::link::{Link, load_turn, store_turn};
 use super::substep::Pace;
 use sinew_math::lanes::{LaneMask, Lanes, Vector3};
@@ -52,14 +54,17 @@ pub(super) fn integrate_velocity<L: Lanes>(links: &mut [Link], pace: &Pace) -> K
 /// Velocities to the poses that were [foreseen](super::joints::descend_ahead); the impulses of the joints from the end of the strand
 /// on. Momenta go on with what they gave, spins follow from them.
 #[inline(always)]
-pub(super) fn integrate_position<L: Lanes>(links: &mut [Link], is_held: bool, pace: &Pace) {
-    let (none, rate) = (L::splat(0.0), L::splat(1.0 / pace.h));
-    let mut below = [Vector3::new(none, none, none); 2];
+pub(super) fn integrate_position<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, pace: &Pace) {
+    let rate = L::splat(1.0 / pace.h);
+    let of_cuts = ends.take_given();
+    let mut below = [zero::<L>(); 2];
     for (i, link) in links.iter_mut().enumerate().rev() {
+        let [force, torque] = below;
+        below = [ends.tips.below(i, force, of_cuts[0]), ends.tips.below(i, torque, of_cuts[1])];
         let given = gains::<L>(link);
         let momentum = load::<L>(&link.momentum) + given[1];
         let [force, torque] = [given[0] + below[0], given[1] + below[1]];
-        if i > 0 || is_held {
+        if i > 0 || ends.joins_first() {
             store(force * rate, &mut link.force);
             below = push::<L>(link, [force, torque]);
         }
@@ -76,17 +81,19 @@ pub(super) fn integrate_position<L: Lanes>(links: &mut [Link], is_held: bool, pa
 
 /// Notes what joints gave in `relax`. Gives the kinetic energy, J.
 #[inline(always)]
-pub(super) fn end_substep<L: Lanes>(links: &mut [Link], is_held: bool) -> L {
-    let none = L::splat(0.0);
-    let mut below = [Vector3::new(none, none, none); 2];
-    let mut twice = none;
+pub(super) fn end_substep<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>) -> L {
+    let of_cuts = ends.take_given();
+    let mut below = [zero::<L>(); 2];
+    let mut twice = L::splat(0.0);
     for (i, link) in links.iter_mut().enumerate().rev() {
+        let [force, torque] = below;
+        below = [ends.tips.below(i, force, of_cuts[0]), ends.tips.below(i, torque, of_cuts[1])];
         let (velocity, mass) = (load::<L>(&link.velocity), L::load(&link.mass));
         let (turn, inertia) = (load_turn::<L>(&link.rotation), load::<L>(&link.inertia));
         let spin = turn.turned_back(load(&link.spin));
         let momentum = times(spin, inertia);
         twice = twice + (mass * velocity.dot(velocity) + momentum.dot(spin));
-        if i > 0 || is_held {
+        if i > 0 || ends.joins_first() {
             let force = (velocity - load(&link.start_velocity)) * mass;
             let given = times(turn.turned_back(load::<L>(&link.spin) - load(&link.start_spin)), inertia);
             below = push::<L>(link, [force + below[0], turn.turned(given) + below[1]]);

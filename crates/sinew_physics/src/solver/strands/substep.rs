@@ -1,10 +1,12 @@
 //! The substeps of eight strands side by side.
 
-use super::super::flight::load;
+use super::super::flight::{Eight, load};
+use super::cuts::Cuts;
 use super::factor::{factor, place_arms, place_gaps};
-use super::joints::{Asked, ascend, descend, descend_ahead, largest, take_back};
+use super::joints::{Asked, StrandEnds, ascend, descend, descend_ahead, largest, take_back};
 use super::link::{Hook, Link};
 use super::motion::{Kinetic, end_substep, integrate_position, integrate_velocity, work_of_forces};
+use super::pieces::{Tips, all, whole_all, whole_max, whole_sum};
 use crate::solver::tuning::{
     CLOSING_SPEED, DIVERGED_SPEED, DIVERGED_SPIN, ENERGY_SLACK, MAX_INNER_TURN, POSITION_CORRECTIONS,
     POSITION_ROUNDING, POSITION_TOLERANCE, RATE_SHARE, REFINEMENTS, TORN,
@@ -29,8 +31,12 @@ pub(super) struct Advance<'a> {
     pub links: &'a mut [Link],
     /// Fixed bodies that hold the strands, if any do.
     pub hook: Option<&'a Hook>,
+    /// The joints between the lanes, if they are pieces of one strand.
+    pub cuts: Option<&'a mut Cuts>,
+    /// 1 in the lanes whose last place is filled.
+    pub full: &'a Eight,
     pub pace: Pace,
-    /// Strands there are, from the first lane on.
+    /// Strands or pieces there are, from the first lane on.
     pub lanes: usize,
 }
 
@@ -51,24 +57,27 @@ impl Kernel for Advance<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u8 {
-        let Self { links, hook, pace, lanes } = self;
-        let bounds = Bounds::of(links);
-        place_arms::<L>(links);
-        place_gaps::<L>(links, hook);
-        factor::<L>(links, hook.is_some(), &pace);
+        let Self { links, hook, cuts, full, pace, lanes } = self;
+        let mut ends = StrandEnds { hook, cuts, tips: Tips::<L>::new(full, links.len()) };
+        let bounds = Bounds::of(links, &ends);
+        place_arms(links, &mut ends);
+        place_gaps(links, &ends);
+        factor(links, &mut ends, &pace);
         let used = first_lanes::<L>(lanes);
         let mut sound = used;
         for _ in 0..pace.substeps {
             let kinetic = integrate_velocity::<L>(links, &pace);
-            sound = sound & solve::<L>(links, hook, &pace, kinetic, bounds, used);
-            integrate_position::<L>(links, hook.is_some(), &pace);
-            place_arms::<L>(links);
-            factor::<L>(links, hook.is_some(), &pace);
-            relax::<L>(links, hook.is_some(), pace.h, used);
-            let end = end_substep::<L>(links, hook.is_some());
+            let kinetic = Kinetic { before: ends.sum(kinetic.before), start: ends.sum(kinetic.start) };
+            sound = sound & solve(links, &mut ends, &pace, kinetic, bounds, used);
+            integrate_position(links, &mut ends, &pace);
+            place_arms(links, &mut ends);
+            factor(links, &mut ends, &pace);
+            relax(links, &mut ends, pace.h, used);
+            let end = end_substep(links, &mut ends);
+            let end = ends.sum(end);
             // Joints cannot give energy.
             let slack = L::max(kinetic.start, bounds.mass) * L::splat(ENERGY_SLACK);
-            sound = sound & L::le(end, kinetic.start + slack);
+            sound = ends.every(sound & L::le(end, kinetic.start + slack));
             if !sound.any() {
                 break;
             }
@@ -88,13 +97,13 @@ struct Bounds<L> {
 
 impl<L: Lanes> Bounds<L> {
     #[inline(always)]
-    fn of(links: &[Link]) -> Self {
+    fn of(links: &[Link], ends: &StrandEnds<'_, L>) -> Self {
         let mut bounds = Self { mass: L::splat(0.0), reach: L::splat(0.0) };
-        for link in links {
-            bounds.mass = bounds.mass + L::load(&link.mass);
+        for (i, link) in links.iter().enumerate() {
+            bounds.mass = bounds.mass + L::load(&link.mass).masked(ends.tips.within(all::<L>(), i));
             bounds.reach = L::max(bounds.reach, largest(load::<L>(&link.position)));
         }
-        bounds
+        Self { mass: ends.sum(bounds.mass), reach: ends.largest(bounds.reach) }
     }
 }
 
@@ -108,10 +117,24 @@ fn first_lanes<L: Lanes>(count: usize) -> L::Mask {
     L::lt(L::load(&numbers), L::splat(count as f32))
 }
 
-/// All lanes.
-#[inline(always)]
-fn all<L: Lanes>() -> L::Mask {
-    L::eq(L::splat(0.0), L::splat(0.0))
+impl<L: Lanes> StrandEnds<'_, L> {
+    /// The sum over a strand, of what its lanes have.
+    #[inline(always)]
+    fn sum(&self, of_lanes: L) -> L {
+        if self.cuts.is_some() { whole_sum(of_lanes) } else { of_lanes }
+    }
+
+    /// The largest of a strand, of what its lanes have.
+    #[inline(always)]
+    fn largest(&self, of_lanes: L) -> L {
+        if self.cuts.is_some() { whole_max(of_lanes) } else { of_lanes }
+    }
+
+    /// True where it is so in every lane of the strand.
+    #[inline(always)]
+    fn every(&self, in_lanes: L::Mask) -> L::Mask {
+        if self.cuts.is_some() { whole_all::<L>(in_lanes) } else { in_lanes }
+    }
 }
 
 /// Joints exactly, then SHAKE: a correction that does not halve the gap is the last one, and one that widens it is taken back. Gives
@@ -119,7 +142,7 @@ fn all<L: Lanes>() -> L::Mask {
 #[inline(always)]
 fn solve<L: Lanes>(
     links: &mut [Link],
-    hook: Option<&Hook>,
+    ends: &mut StrandEnds<'_, L>,
     pace: &Pace,
     kinetic: Kinetic<L>,
     bounds: Bounds<L>,
@@ -130,10 +153,11 @@ fn solve<L: Lanes>(
     for link in links.iter() {
         widest = L::max(widest, largest(load::<L>(&link.gap)));
     }
+    let widest = ends.largest(widest);
     // Joints that are open by more close over several substeps.
     let mut sound = L::le(widest, L::splat(CLOSING_SPEED * h));
-    ascend::<L>(links, hook.is_some(), Asked::Closed, h);
-    let mut error = descend_ahead::<L>(links, hook, all::<L>(), h);
+    ascend(links, ends, Asked::Closed, h);
+    let mut error = descend_ahead(links, ends, all::<L>(), h);
     sound = sound & turn_within::<L>(links, MAX_INNER_TURN / h);
     let tolerance = L::max(L::splat(POSITION_TOLERANCE), bounds.reach * L::splat(POSITION_ROUNDING));
     let mut going = used & L::ge(error, tolerance);
@@ -141,32 +165,32 @@ fn solve<L: Lanes>(
         if !going.any() {
             break;
         }
-        ascend::<L>(links, hook.is_some(), Asked::Corrected, h);
-        let left = descend_ahead::<L>(links, hook, going, h);
+        ascend(links, ends, Asked::Corrected, h);
+        let left = descend_ahead(links, ends, going, h);
         let worse = going & L::gt(left, error);
         if worse.any() {
-            take_back::<L>(links, hook, worse, h);
+            take_back(links, ends, worse, h);
         }
         let better = L::lt(left, L::splat(0.5) * error);
         error = L::select(going & !worse, left, error);
         going = going & better & L::ge(left, tolerance);
     }
     sound = sound & L::lt(error, L::splat(TORN)) & is_sane::<L>(links, pace);
-    if hook.is_some() {
+    if ends.hook.is_some() {
         // What hangs rises by what it has.
         let there = kinetic.before + L::max(kinetic.before, bounds.mass) * L::splat(ENERGY_SLACK);
-        sound = sound & L::le(-work_of_forces::<L>(links, pace), there);
+        sound = sound & L::le(-ends.sum(work_of_forces::<L>(links, pace)), there);
     }
     sound
 }
 
 /// RATTLE: joint velocities to zero at the new pose, by as many solves as masses that differ by far need.
 #[inline(always)]
-fn relax<L: Lanes>(links: &mut [Link], is_held: bool, h: f32, used: L::Mask) {
+fn relax<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, h: f32, used: L::Mask) {
     let mut going = used;
     for _ in 0..=REFINEMENTS {
-        ascend::<L>(links, is_held, Asked::Rest, h);
-        let left = descend::<L>(links, is_held, going);
+        ascend(links, ends, Asked::Rest, h);
+        let left = descend(links, ends, going);
         going = going & L::gt(left.rate, left.fastest * L::splat(RATE_SHARE));
         if !going.any() {
             break;
@@ -207,6 +231,10 @@ mod tests {
 
     const PACE: Pace = Pace { h: 1.0 / 240.0, substeps: 4, max_speed: 4000.0, max_spin: 377.0 };
 
+    fn advance<'a>(links: &'a mut [Link], hook: Option<&'a Hook>, lanes: usize) -> Advance<'a> {
+        Advance { links, hook, cuts: None, full: &[1.0; WIDTH], pace: PACE, lanes }
+    }
+
     /// Level strands that swing, each with masses and velocities of its own.
     fn random_links(count: usize) -> Vec<Link> {
         let mut random = Random::new(5);
@@ -245,7 +273,7 @@ mod tests {
         for hook in [Some(&Hook::EMPTY), None] {
             let step = |level: Level| {
                 let mut links = random_links(6);
-                let left = run_at(level, Advance { links: &mut links, hook, pace: PACE, lanes: WIDTH });
+                let left = run_at(level, advance(&mut links, hook, WIDTH));
                 assert_eq!(left, 0, "{level:?}");
                 links
             };
@@ -256,7 +284,7 @@ mod tests {
                 assert!((0..WIDTH).all(|lane| bits(&links, lane) == bits(&expected, lane)), "{level:?}");
             }
             let mut links = random_links(6);
-            let left = dispatch::run(Alone(Advance { links: &mut links, hook, pace: PACE, lanes: 1 }));
+            let left = dispatch::run(Alone(advance(&mut links, hook, 1)));
             assert_eq!((left, bits(&links, 0)), (0, bits(&expected, 0)));
         }
     }
@@ -264,14 +292,68 @@ mod tests {
     #[test]
     fn a_lane_whose_numbers_mean_nothing_is_left_and_disturbs_no_other() {
         let mut expected = random_links(4);
-        dispatch::run(Advance { links: &mut expected, hook: None, pace: PACE, lanes: WIDTH });
+        dispatch::run(advance(&mut expected, None, WIDTH));
         let mut links = random_links(4);
         put(Vec3::splat(f32::NAN), &mut links[2].velocity, 3);
         put(Vec3::X * 1e6, &mut links[1].position, 5);
-        let left = dispatch::run(Advance { links: &mut links, hook: None, pace: PACE, lanes: WIDTH });
+        let left = dispatch::run(advance(&mut links, None, WIDTH));
         assert_eq!(left, 1 << 3 | 1 << 5);
         for lane in [0, 1, 2, 4, 6, 7] {
             assert_eq!(bits(&links, lane), bits(&expected, lane), "{lane}");
+        }
+    }
+
+    /// Deals links of the first lane out to eight lanes.
+    fn cut(whole: &[Link]) -> (Vec<Link>, Eight) {
+        let (least, longer) = (whole.len() / WIDTH, whole.len() % WIDTH);
+        let mut links = vec![Link::EMPTY; whole.len().div_ceil(WIDTH)];
+        let (mut full, mut rest) = ([1.0; WIDTH], whole);
+        for lane in 0..WIDTH {
+            let piece;
+            (piece, rest) = rest.split_at(least + usize::from(lane < longer));
+            for (link, from) in links.iter_mut().zip(piece) {
+                link.copy_lane(lane, from, 0);
+            }
+            full[lane] = f32::from(u8::from(piece.len() == links.len()));
+        }
+        (links, full)
+    }
+
+    #[test]
+    fn a_strand_moves_as_its_pieces_do() {
+        for (count, hook) in [(24, Some(&Hook::EMPTY)), (29, Some(&Hook::EMPTY)), (26, None), (40, None)] {
+            let mut whole = random_links(count);
+            for link in &mut whole {
+                let slower = |row: &mut Eight| *row = row.map(|number| 0.1 * number);
+                link.velocity.iter_mut().chain(&mut link.spin).for_each(slower);
+            }
+            let (links, full) = cut(&whole);
+            let left = dispatch::run(Alone(advance(&mut whole, hook, 1)));
+            assert_eq!(left, 0, "{count} links");
+            let mut results = Vec::new();
+            for level in Level::available() {
+                let (mut links, mut cuts) = (links.clone(), Cuts::EMPTY);
+                let (cuts, full, lanes) = (Some(&mut cuts), &full, WIDTH);
+                let advance = Advance { links: &mut links, hook, cuts, full, pace: PACE, lanes };
+                assert_eq!(run_at(level, advance), 0, "{count} links, {level:?}");
+                results.push((0..WIDTH).map(|lane| bits(&links, lane)).collect::<Vec<_>>());
+                let mut whole = whole.iter();
+                for (lane, full) in full.iter().enumerate() {
+                    let length = links.len() - usize::from(*full == 0.0);
+                    for (link, expected) in links[..length].iter().zip(&mut whole) {
+                        for (of, from, most) in [
+                            (&link.position, &expected.position, 2e-5),
+                            (&link.velocity, &expected.velocity, 2e-3),
+                            (&link.spin, &expected.spin, 1e-2),
+                        ] {
+                            let off = (take(of, lane) - take(from, 0)).length();
+                            assert!(off < most, "{count} links, lane {lane}: {off}");
+                        }
+                    }
+                }
+                assert!(whole.next().is_none());
+            }
+            assert!(results.iter().all(|result| *result == results[0]), "{count} links");
         }
     }
 }
