@@ -177,6 +177,38 @@ fn joints_of_a_long_rope_carry_what_hangs_below_them() {
 }
 
 #[test]
+fn a_long_tangle_that_whirls_stays_closed() {
+    for (seed, links) in [(1, 41), (2, 42), (3, 64), (4, 71), (5, 90)] {
+        let mut random = Random::new(seed);
+        let mut world = World::new(WorldDef::default());
+        let (mut at, mut way, mut last) = (Vec3::ZERO, random.direction(), None);
+        let mut joints = Vec::new();
+        for _ in 0..links {
+            way = (way + random.direction() * 0.4).normalize();
+            let shape = ShapeDef {
+                density: random.range(500.0, 3000.0),
+                filter: Filter { mask: 0, ..Filter::default() },
+                ..ShapeDef::new(Shape::Sphere { radius: 0.05 })
+            };
+            let position = at + way * 0.15;
+            let body = world.add_body(&BodyDef { position, shapes: vec![shape], ..BodyDef::default() });
+            world.apply_impulse_at_center(body, random.direction() * world.mass(body).mass);
+            if let Some(last) = last {
+                let joint = ball(&world, last, body, at);
+                joints.push(world.add_joint(&joint));
+            }
+            (at, last) = (at + way * 0.3, Some(body));
+        }
+        let mut widest = 0.0;
+        for _ in 0..90 {
+            world.step();
+            widest = joints.iter().map(|&joint| world.joint_gap(joint)).fold(widest, f32::max);
+        }
+        assert!(widest < 2e-5, "{links} links: {widest} m");
+    }
+}
+
+#[test]
 fn a_joint_that_is_open_closes_as_in_an_island() {
     let [mut strand, mut island] = [(); 2].map(|()| World::new(WorldDef::default()));
     let [a, b] = [&mut strand, &mut island].map(|world| {

@@ -179,7 +179,10 @@ pub(super) fn descend_ahead<L: Lanes>(
         parent = look_ahead(link, parent, i > 0 || ends.holds_first(), h);
         let gap = masked(load::<L>(&link.gap), ends.tips.within(all::<L>(), i));
         store(gap, &mut link.gap);
-        most = L::max(most, largest(gap));
+        // At a cut it is as it was before.
+        if i > 0 || ends.cuts.is_none() {
+            most = L::max(most, largest(gap));
+        }
     }
     look_ahead_of_cuts(links, ends, most)
 }
