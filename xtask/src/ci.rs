@@ -93,7 +93,7 @@ fn peers() -> Result<()> {
     command::run(clippy.args(["--", "-D", "warnings"]))
 }
 
-/// The viewer's window opens, is pulled at and closes, on a display of its own; skips with a line where there is no driver.
+/// The viewer's window opens and is pulled at, on a display of its own; skips with a line where there is no driver.
 fn window() -> Result<()> {
     command::provide("Xvfb", "xvfb")?;
     command::provide("xdotool", "xdotool")?;

@@ -175,7 +175,7 @@ fn stages(app: &App, ui: &mut egui::Ui) {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.label(RichText::new(format!("{time:.3} ms")).monospace());
                 let share = (time / total) as f32;
-                let (rect, _) = ui.allocate_exact_size(egui::vec2(80.0, 8.0), Sense::hover());
+                let (rect, _) = ui.allocate_exact_size(egui::vec2(48.0, 8.0), Sense::hover());
                 ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(20, 22, 27));
                 let bar =
                     egui::Rect::from_min_size(rect.min, egui::vec2(rect.width() * share, rect.height()));
