@@ -15,7 +15,7 @@ use std::time::Instant;
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
     /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
-    /// SINEW_WORLDS, as in 100..200); definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the plugin for Bevy; the libraries for C and Python; instruction counts; the oldest compiler
+    /// SINEW_WORLDS, as in 100..200); definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the viewer's window; the plugin for Bevy; the libraries for C and Python; instruction counts; the oldest compiler
     #[arg(long)]
     full: bool,
 }
@@ -56,6 +56,7 @@ impl Ci {
             check("random worlds", &random_worlds);
             check("serde", &serde);
             check("peers", &peers);
+            check("window", &window);
             check("bevy", &bevy);
             check("new user of bevy", &new_user::bevy);
             check("c", &bindings::c);
@@ -90,6 +91,14 @@ fn peers() -> Result<()> {
         command::cargo(&["clippy", "--manifest-path", "bench/peers/Cargo.toml", "--all-targets"]);
     clippy.arg("--target-dir").arg(command::target().join("bench/check"));
     command::run(clippy.args(["--", "-D", "warnings"]))
+}
+
+/// The viewer's window opens and is pulled at, on a display of its own; skips with a line where there is no driver.
+fn window() -> Result<()> {
+    command::provide("Xvfb", "xvfb")?;
+    command::provide("xdotool", "xdotool")?;
+    let mut test = command::cargo(&["test", "--package", "sinew_cli", "--test", "it"]);
+    command::run(test.args(["--", "--ignored", "--nocapture", "--test-threads", "1", "window::"]))
 }
 
 /// The plugin for Bevy does what its tests say, without a window: with every feature, and compiles with none.
@@ -160,14 +169,16 @@ fn licences() -> Result<()> {
     command::run(&mut command::cargo(&["deny", "check", "licenses", "bans", "sources"]))
 }
 
-/// Everything compiles with the `rust-version` of the root manifest.
+/// Everything but the window, whose libraries ask for a newer one, compiles with the `rust-version` of the root manifest.
 fn oldest_compiler() -> Result<()> {
     let manifest = fs::read_to_string(command::root().join("Cargo.toml"))?;
     let version = manifest.lines().find_map(|line| line.strip_prefix("rust-version = "));
     let version = version.context("Cargo.toml: no rust-version")?.trim_matches('"');
     command::run(Command::new("rustup").args(["toolchain", "install", version, "--profile", "minimal"]))?;
     let mut check = Command::new("rustup");
-    check.args(["run", version, "cargo", "check", "--workspace"]).current_dir(command::root());
+    let workspace = ["check", "--workspace", "--exclude", "sinew_viewer"];
+    let without_window = ["--no-default-features", "--features", "sinew_cli/fbx"];
+    check.args(["run", version, "cargo"]).args(workspace).args(without_window).current_dir(command::root());
     command::run(check.env_remove("CARGO").arg("--target-dir").arg(command::target().join("oldest")))
 }
 

@@ -91,12 +91,13 @@ pub enum Profile {
     Release,
 }
 
-/// Builds the command line and gives the path of its binary.
+/// Builds the command line, without its window, and gives the path of its binary.
 ///
 /// # Errors
 /// If it does not compile.
 pub fn build_sinew(profile: Profile) -> Result<PathBuf> {
-    let mut command = cargo(&["build", "--package", "sinew_cli"]);
+    let mut command =
+        cargo(&["build", "--package", "sinew_cli", "--no-default-features", "--features", "fbx"]);
     if profile == Profile::Release {
         command.arg("--release");
     }

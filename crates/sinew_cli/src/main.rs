@@ -29,8 +29,7 @@ Start here:
   sinew ragdoll doctor character.glb          what is wrong with its ragdoll, and what mends it
   sinew boxes house.glb -o house.json         a world to fall in, from a mesh
   sinew convert walk.bvh --onto character.glb -o walking.glb   captured motion on your character
-
-Later releases bring: record, replay.";
+  sinew view                                  a window: look at scenes, pull, throw, pause";
 
 /// Physics for characters: give it a rigged file, and it falls, collides, is hit, gets up and walks on.
 #[derive(Parser)]

@@ -47,6 +47,33 @@ impl Camera {
     }
 }
 
+/// Axes of a camera's picture, unit, world space, and how far it reaches at a distance of 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureAxes {
+    /// To the right.
+    pub right: Vec3,
+    /// Up.
+    pub up: Vec3,
+    /// Into the picture.
+    pub forward: Vec3,
+    /// Half of the picture's width at depth 1.
+    pub half_width: f32,
+    /// Half of its height there.
+    pub half_height: f32,
+}
+
+impl Camera {
+    /// Axes of a picture `aspect` times as wide as it is high.
+    pub fn axes(&self, aspect: f32) -> PictureAxes {
+        let forward = normalize_or(self.target - self.position, -Vec3::Z);
+        // Straight up or down leaves no horizon to be level with: any right-hand side will do.
+        let right = normalize_or(forward.cross(Vec3::Y), Vec3::X);
+        let up = right.cross(forward);
+        let half_height = trig::tan(0.5 * clamp(self.fov_y, 0.01, 3.1));
+        PictureAxes { right, up, forward, half_width: half_height * aspect, half_height }
+    }
+}
+
 /// Distance from the eye at which a ball just fits into the field of view, metres.
 fn framing_distance(radius: f32, fov_y: f32) -> f32 {
     radius / trig::sin(0.5 * fov_y)
@@ -124,7 +151,7 @@ impl FollowCamera {
 }
 
 /// Nearest depth that is drawn, metres.
-pub(crate) const NEAR: f32 = 0.05;
+pub const NEAR: f32 = 0.05;
 
 /// A camera made ready for a picture of some size: world → clip space and pixel → ray.
 #[derive(Clone, Copy, Debug)]
@@ -139,12 +166,7 @@ pub(crate) struct View {
 
 impl View {
     pub(crate) fn new(camera: &Camera, width: u32, height: u32) -> Self {
-        let forward = normalize_or(camera.target - camera.position, -Vec3::Z);
-        // Straight up or down leaves no horizon to be level with: any right-hand side will do.
-        let right = normalize_or(forward.cross(Vec3::Y), Vec3::X);
-        let up = right.cross(forward);
-        // Half the picture's height and width at depth 1, metres.
-        let half_height = trig::tan(0.5 * clamp(camera.fov_y, 0.01, 3.1));
+        let PictureAxes { right, up, forward, half_height, .. } = camera.axes(1.0);
         let half_width = half_height * width as f32 / height as f32;
         Self {
             eye: camera.position,

@@ -19,9 +19,10 @@ mod scene;
 mod texture;
 pub mod world;
 
-pub use camera::{Camera, FollowCamera};
+pub use camera::{Camera, FollowCamera, NEAR, PictureAxes};
 pub use encode::{EncodeError, Movie, PictureFormat};
 pub use image::Image;
+pub use overlay::add_captions;
 pub use render::{Antialiasing, RenderSettings, Renderer};
 pub use scene::{
     Caption, Faces, Line, LineDepth, Model, Pattern, RenderMaterial, Scene, ShadowCasting, Sky, Sun,

@@ -93,6 +93,11 @@ fn hidden(samples: &Samples, x: i32, y: i32, nearness: f32) -> bool {
     on_it && samples.depth(x as usize, y as usize) > nearness
 }
 
+/// Writes text over a finished picture.
+pub fn add_captions(image: &mut Image, captions: &[Caption]) {
+    draw_captions(image, captions, &ColorTables::new());
+}
+
 pub(crate) fn draw_captions(image: &mut Image, captions: &[Caption], tables: &ColorTables) {
     for caption in captions {
         let scale = caption.scale.max(1) as i32;

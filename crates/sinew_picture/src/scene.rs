@@ -159,6 +159,18 @@ impl Caption {
     }
 }
 
+/// Share of the sky's brightness that falls on things. Less than all, as if much of it were hidden: shadows need to be dark to
+/// be read.
+const SKY_LIGHT: f32 = 0.55;
+
+impl Sky {
+    /// Linear light of the sky on a surface that faces up.
+    pub fn light_from_above(&self) -> [f32; 3] {
+        let Self { zenith, horizon, .. } = self;
+        core::array::from_fn(|i| (horizon[i] + (zenith[i] - horizon[i]) * 0.6) * SKY_LIGHT)
+    }
+}
+
 impl RenderMaterial {
     /// Solid, plain, of one linear colour.
     pub fn new(color: [f32; 3]) -> Self {

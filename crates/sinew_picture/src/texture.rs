@@ -49,6 +49,11 @@ impl Texture {
         Ok(Self { levels })
     }
 
+    /// Width, height and bytes of each level, full size first, each next half as large: 8-bit sRGB with alpha, rows from the top.
+    pub fn levels(&self) -> impl Iterator<Item = (u32, u32, &[u8])> {
+        self.levels.iter().map(|level| (level.width as u32, level.height as u32, level.rgba.as_slice()))
+    }
+
     /// Texels of the full picture.
     pub(crate) fn texels(&self) -> f32 {
         (self.levels[0].width * self.levels[0].height) as f32

@@ -115,14 +115,50 @@ fn links(world: &World, id: JointId) -> [[Vec3; 2]; 3] {
     [[from(body_a, a), a], [a, b], [b, from(body_b, b)]]
 }
 
-/// Adds the world's bodies, particles, springs, joints and what its objects draw to a scene.
-pub fn paint(world: &World, frame: &Frame, scene: &mut Scene) {
-    paint_all_but(world, &[], frame, scene);
+/// Receives what a world is painted with: a [`Scene`], or a renderer that draws many shapes of a kind at once. Colours are linear.
+pub trait Canvas {
+    /// The surface of a shape that has an end, in one colour.
+    fn solid(&mut self, shape: &Shape, world_from_shape: Transform, color: [f32; 3]);
+    /// A ball of `radius` metres of eight fields, every second one darker, as [`draw::ball`] makes it.
+    fn ball(&mut self, radius: f32, world_from_ball: Transform, color: [f32; 3]);
+    /// A round rod of `radius` between two points, metres, world space.
+    fn rod(&mut self, from: Vec3, to: Vec3, radius: f32, color: [f32; 3]);
+    /// Any other surface.
+    fn model(&mut self, model: Model);
+    /// A line over the surfaces.
+    fn line(&mut self, line: Line);
 }
 
-/// Adds what [`paint`] does, without bodies that something else shows, and their joints: those of a character that is drawn by
+impl Canvas for Scene {
+    fn solid(&mut self, shape: &Shape, world_from_shape: Transform, color: [f32; 3]) {
+        self.models.push(draw::shape(shape, world_from_shape, RenderMaterial::new(color)));
+    }
+
+    fn ball(&mut self, radius: f32, world_from_ball: Transform, color: [f32; 3]) {
+        self.models.push(draw::ball(radius, world_from_ball, RenderMaterial::new(color)));
+    }
+
+    fn rod(&mut self, from: Vec3, to: Vec3, radius: f32, color: [f32; 3]) {
+        self.models.push(draw::rod(from, to, radius, RenderMaterial::new(color)));
+    }
+
+    fn model(&mut self, model: Model) {
+        self.models.push(model);
+    }
+
+    fn line(&mut self, line: Line) {
+        self.lines.push(line);
+    }
+}
+
+/// Paints the world's bodies, particles, springs, joints and what its objects draw.
+pub fn paint(world: &World, frame: &Frame, canvas: &mut dyn Canvas) {
+    paint_all_but(world, &[], frame, canvas);
+}
+
+/// Paints what [`paint`] does, without bodies that something else shows, and their joints: those of a character that is drawn by
 /// its skin.
-pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, scene: &mut Scene) {
+pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, canvas: &mut dyn Canvas) {
     for (number, id) in world.body_ids().enumerate() {
         if shown.contains(&id) {
             continue;
@@ -131,13 +167,13 @@ pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, scene: &mut
             let wires = world
                 .shapes(id)
                 .flat_map(|(shape, place)| draw::wire(&shape, place, KINEMATIC, LineDepth::Tested));
-            scene.lines.extend(wires);
+            wires.for_each(|wire| canvas.line(wire));
         } else {
-            paint_body(world, id, number, frame, &mut scene.models);
+            paint_body(world, id, number, frame, canvas);
         }
     }
     for id in world.group_ids() {
-        paint_group(world.particles(id), frame, scene);
+        paint_group(world.particles(id), frame, canvas);
     }
     let is_shown = |id: &JointId| {
         let (a, b) = world.joint_bodies(*id);
@@ -145,25 +181,25 @@ pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, scene: &mut
     };
     let joints: Vec<_> =
         world.joint_ids().filter(|id| !is_shown(id)).flat_map(|id| links(world, id)).collect();
-    thin(&joints, JOINT, frame, scene);
+    thin(&joints, JOINT, frame, canvas);
     let mut lines = Lines::default();
     world.draw(&mut lines);
-    scene.lines.append(&mut lines.list);
+    lines.list.into_iter().for_each(|line| canvas.line(line));
 }
 
 /// Rods, or lines where they are too many.
-fn thin(segments: &[[Vec3; 2]], color: [f32; 3], frame: &Frame, scene: &mut Scene) {
+fn thin(segments: &[[Vec3; 2]], color: [f32; 3], frame: &Frame, canvas: &mut dyn Canvas) {
     let long = segments.iter().filter(|[from, to]| (*to - *from).length() > ROD * frame.radius);
     for &[from, to] in long {
         if segments.len() <= MOST_SOLID {
-            scene.models.push(draw::rod(from, to, ROD * frame.radius, RenderMaterial::new(color)));
+            canvas.rod(from, to, ROD * frame.radius, color);
         } else {
-            scene.lines.push(Line { from, to, color, depth: LineDepth::Tested });
+            canvas.line(Line { from, to, color, depth: LineDepth::Tested });
         }
     }
 }
 
-fn paint_body(world: &World, id: BodyId, number: usize, frame: &Frame, models: &mut Vec<Model>) {
+fn paint_body(world: &World, id: BodyId, number: usize, frame: &Frame, canvas: &mut dyn Canvas) {
     let kind = world.kind(id);
     let color = match kind {
         BodyKind::Static => STANDING,
@@ -174,16 +210,16 @@ fn paint_body(world: &World, id: BodyId, number: usize, frame: &Frame, models: &
     let smallest = SMALLEST * frame.radius;
     let mut seen = kind == BodyKind::Static;
     for (shape, place) in world.shapes(id) {
-        models.push(match shape {
-            Shape::Sphere { radius } => draw::ball(radius, place, RenderMaterial::new(color)),
-            Shape::HalfSpace => floor(&place, frame),
-            _ => draw::shape(&shape, place, RenderMaterial::new(color)),
-        });
+        match shape {
+            Shape::Sphere { radius } => canvas.ball(radius, place, color),
+            Shape::HalfSpace => canvas.model(floor(&place, frame)),
+            _ => canvas.solid(&shape, place, color),
+        }
         seen |= shape.bounding_radius() > smallest;
     }
     if !seen {
         let place = Transform::new(world.center_of_mass(id), world.transform(id).rotation);
-        models.push(draw::ball(smallest, place, RenderMaterial::new(color)));
+        canvas.ball(smallest, place, color);
     }
 }
 
@@ -211,19 +247,19 @@ fn round_length(length: f32) -> f32 {
     [5.0, 2.0].map(|step| step * decade).into_iter().find(|&size| size <= length).unwrap_or(decade)
 }
 
-fn paint_group(group: &ParticleGroup, frame: &Frame, scene: &mut Scene) {
+fn paint_group(group: &ParticleGroup, frame: &Frame, canvas: &mut dyn Canvas) {
     let positions = group.positions();
     if positions.len() <= MOST_SOLID {
         for (&position, &radius) in positions.iter().zip(group.radii()) {
             let alone = group.springs().is_empty();
             let radius = max(radius, SMALLEST * frame.radius * if alone { 1.0 } else { 0.5 });
             let place = Transform::from_translation(position);
-            scene.models.push(draw::shape(&Shape::Sphere { radius }, place, RenderMaterial::new(PARTICLE)));
+            canvas.solid(&Shape::Sphere { radius }, place, PARTICLE);
         }
     }
     let ends = |spring: &SpringDef| [spring.a, spring.b].map(|i| positions[i as usize]);
     let springs: Vec<_> = group.springs().iter().map(ends).collect();
-    thin(&springs, SPRING, frame, scene);
+    thin(&springs, SPRING, frame, canvas);
 }
 
 /// Lines of [`World::draw`], or of what else draws, that no surface shows.

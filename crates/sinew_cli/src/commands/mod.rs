@@ -7,10 +7,11 @@ mod convert;
 mod demo;
 mod events;
 mod inspect;
-mod later;
 mod ragdoll_build;
 mod ragdoll_doctor;
 mod ragdoll_export;
+mod record;
+mod replay;
 mod run;
 mod scenes;
 mod view;
@@ -18,7 +19,6 @@ mod view;
 use crate::failure::Result;
 use crate::report::Report;
 use clap::Subcommand;
-use later::Later;
 
 /// Commands of `sinew`.
 #[derive(Subcommand)]
@@ -37,10 +37,8 @@ pub enum Command {
     /// Work on events of clips: propose footsteps
     #[command(subcommand)]
     Events(events::Events),
-    #[command(hide = true, disable_help_flag = true)]
-    Record(Later),
-    #[command(hide = true, disable_help_flag = true)]
-    Replay(Later),
+    Record(record::Record),
+    Replay(replay::Replay),
 }
 
 /// Commands of `sinew ragdoll`.
@@ -67,8 +65,8 @@ impl Command {
             Self::View(command) => command.run(),
             Self::Convert(command) => command.run(),
             Self::Events(command) => command.run(),
-            Self::Record(_) => later::refuse("sinew record"),
-            Self::Replay(_) => later::refuse("sinew replay"),
+            Self::Record(command) => command.run(),
+            Self::Replay(command) => command.run(),
         }
     }
 }

@@ -10,6 +10,7 @@ mod export;
 mod manners;
 mod ragdoll;
 mod readme;
+mod recordings;
 mod refusals;
 mod scenes;
 mod sinew;
@@ -17,6 +18,7 @@ mod springs;
 mod units;
 mod usage;
 mod view;
+mod window;
 
 /// The reader of `docs/contract.md` that `cargo xtask` holds the demo's report against.
 #[path = "../../../../xtask/src/contract.rs"]

@@ -26,16 +26,10 @@ fn every_command_shows_an_example() {
 }
 
 #[test]
-fn what_later_releases_bring_is_told_from_a_typing_error() {
-    let commands: [&[&str]; 2] =
-        [&["record", "stairs", "-o", "r.sinewrec"], &["replay", "r.sinewrec", "--verify"]];
-    for arguments in commands {
-        let line = sinew(arguments).refusal(2).to_owned();
-        assert!(line.ends_with("' comes with a later release"), "{arguments:?}: {line}");
-    }
+fn a_typing_error_is_told() {
     let typing_error = sinew(&["vieww"]);
     assert_eq!(typing_error.code, Some(2));
-    assert!(!typing_error.stderr.contains("later release"), "{typing_error:?}");
+    assert!(typing_error.stderr.contains("view"), "{typing_error:?}");
 }
 
 #[test]

@@ -4,13 +4,9 @@ use crate::camera::View;
 use crate::color::ColorTables;
 use crate::pipeline::raster::NOTHING;
 use crate::pipeline::shadow::ShadowMap;
-use crate::scene::{Model, Pattern, RenderMaterial, Scene, Sky};
+use crate::scene::{Model, Pattern, RenderMaterial, Scene};
 use sinew::math::lanes::{Lanes, Real, Vector3, WIDTH};
 use sinew::math::{Vec2, Vec3, abs3, clamp, max, normalize_or};
-
-/// Share of the sky's brightness that falls on things. Less than all, as if much of it were hidden: shadows need to be dark to
-/// be read.
-const SKY_LIGHT: f32 = 0.55;
 
 /// Pixels that [`Shader::flat_span`] shades at once.
 pub(crate) const SPAN: usize = WIDTH;
@@ -246,9 +242,8 @@ impl<'a> Shader<'a> {
     /// Light of the sky on a surface.
     #[inline(always)]
     fn around(&self, normal: Vec3) -> [f32; 3] {
-        let Sky { zenith, horizon, ground, .. } = self.scene.sky;
-        let above = mix(horizon, zenith, 0.6).map(|channel| channel * SKY_LIGHT);
-        mix(ground, above, 0.5 + 0.5 * normal.y)
+        let sky = &self.scene.sky;
+        mix(sky.ground, sky.light_from_above(), 0.5 + 0.5 * normal.y)
     }
 }
 

@@ -3,9 +3,51 @@
 use super::instance::Instance;
 use super::setting::{Setting, Settings, Setup};
 
+/// Chapter of scenes: what they are about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Chapter {
+    /// Bodies that nothing touches.
+    FreeMotion,
+    /// Air, water, blasts.
+    Fields,
+    /// Pendulums, chains, nets.
+    Joints,
+    /// Friction, rolling, impacts.
+    Contacts,
+    /// Ropes, cloth, blobs.
+    Particles,
+    /// Stacks and heaps.
+    Piles,
+    /// Limp and driven figures.
+    Ragdolls,
+    /// Clips, movers, characters that live.
+    Characters,
+    /// Worlds to look around in.
+    Shows,
+}
+
+impl Chapter {
+    /// Title of the chapter.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::FreeMotion => "Free motion",
+            Self::Fields => "Fields",
+            Self::Joints => "Joints",
+            Self::Contacts => "Contacts",
+            Self::Particles => "Particles and springs",
+            Self::Piles => "Piles",
+            Self::Ragdolls => "Ragdolls",
+            Self::Characters => "Characters",
+            Self::Shows => "Shows",
+        }
+    }
+}
+
 /// A named scenario.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
+    /// Chapter that it stands in.
+    pub chapter: Chapter,
     /// Name of the scene for `sinew run`.
     pub name: &'static str,
     /// One line for people.

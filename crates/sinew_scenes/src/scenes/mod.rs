@@ -26,7 +26,7 @@ pub use crate::framework::actors::Figure;
 pub use crate::framework::camera_hint::{CameraHint, Trails};
 pub use crate::framework::instance::{Instance, Part, Script};
 pub use crate::framework::metric::{Expected, Metric};
-pub use crate::framework::scene::Scene;
+pub use crate::framework::scene::{Chapter, Scene};
 pub use crate::framework::setting::{Domain, Setting, SettingError, Settings};
 
 /// All scenes, closed forms first.

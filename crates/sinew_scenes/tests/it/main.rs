@@ -8,5 +8,6 @@ mod mjcf;
 mod mocap;
 mod motions;
 mod movers;
+mod recording;
 mod scenes;
 mod scenes_repeat;

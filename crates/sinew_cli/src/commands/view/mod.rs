@@ -1,6 +1,7 @@
-//! `sinew view`: a scene, a world file, or a file with a skeleton, a skin or a clip as a picture or a movie.
+//! `sinew view`: a window on a scene, or a scene, a world file, or a file with a skeleton, a skin or a clip as a picture or a movie.
 
 mod reel;
+mod window;
 
 use crate::commands::clip_choice::find_clip;
 use crate::failure::{Failure, Result};
@@ -22,20 +23,23 @@ use std::path::Path;
 /// Length of the movie of a world file, and when a picture of one is taken, seconds: things have fallen by then.
 const WORLD_SECONDS: f32 = 3.0;
 
-/// Draw a named scene, what happens in a world file, or a character or motion file, as a picture or a movie
+/// Open a window on scenes, or draw a scene, a world file, or a character or motion file as a picture or a movie
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
+  sinew view
+  sinew view stairs
   sinew view pendulum --picture pendulum.png --at 1.5
   sinew view stairs --movie stairs.gif --set impulse=50
   sinew view character.glb --clip Walk --movie walk.gif
   sinew view walk.bvh --picture walk.png
   sinew view house.json --picture house.png --at 0 --width 1280 --height 720
 
-A window comes with a later release. The same command draws the same bytes on every machine.")]
+Without --picture and --movie a window opens; ? in it shows all keys. Pictures need no driver: the same
+command draws the same bytes on every machine.")]
 pub struct View {
-    /// Name of a scene ('sinew scenes' lists them), a world file (.json), or a file with a skeleton, a skin or a clip (GLB, glTF,
-    /// VRM, VRMA, BVH, FBX, DeepMimic)
+    /// Name of a scene ('sinew scenes' lists them), a world file (.json), a recording (.sinewrec, in a window), or a file with a
+    /// skeleton, a skin or a clip (GLB, glTF, VRM, VRMA, BVH, FBX, DeepMimic)
     subject: Option<String>,
     /// The clip of a file, by name or words of it, or by number from 0; by default its first, in a file without clips the rest
     /// pose
@@ -56,6 +60,12 @@ pub struct View {
     /// Change a setting of the scene; repeatable
     #[arg(long = "set", value_name = "KEY=VALUE")]
     settings: Vec<String>,
+    /// The window starts without running
+    #[arg(long, conflicts_with_all = ["picture", "movie"])]
+    paused: bool,
+    /// The window's messages go to stderr as well
+    #[arg(long, conflicts_with_all = ["picture", "movie"])]
+    log: bool,
     /// Pixels across
     #[arg(long, value_name = "N", default_value_t = 640, value_parser = clap::value_parser!(u16).range(16..=4096))]
     width: u16,
@@ -67,10 +77,11 @@ pub struct View {
 impl View {
     /// Simulates, draws, writes.
     pub fn run(&self) -> Result<Report> {
-        let Some(name) = self.subject.as_deref().filter(|_| self.outputs().next().is_some()) else {
-            let line = "the window of 'sinew view' comes with a later release; \
-                        give a scene and --picture OUT or --movie OUT";
-            return Err(Failure::Usage(line.into()));
+        if self.outputs().next().is_none() {
+            return self.open();
+        }
+        let Some(name) = self.subject.as_deref() else {
+            return Err(Failure::Usage("a picture of what? name a scene or a file".into()));
         };
         if is_motion(name) {
             return self.show(Path::new(name));
@@ -177,7 +188,8 @@ impl<'a> Subject<'a> {
                     return Err(Failure::Usage("--set is for scenes; a world file has none".into()));
                 }
                 Some("sinewrec") => {
-                    let line = format!("'sinew view' of such a file comes with a later release: {name}");
+                    let line =
+                        format!("a recording is shown in a window, or played by 'sinew replay': {name}");
                     return Err(Failure::Usage(line));
                 }
                 _ => {}

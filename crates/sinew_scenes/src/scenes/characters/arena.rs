@@ -4,7 +4,7 @@ use crate::framework::actors::Figure;
 use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, cuboid, fixed, floor};
 use sinew::anim::local_to_model;
@@ -14,6 +14,7 @@ use sinew::ragdoll::{Character, CharacterDef, CharacterEvent, Preset, State};
 use std::sync::Arc;
 
 pub(in crate::scenes) const ARENA: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "arena",
     about: "powered mannequins push each other: they stand, step to catch themselves, or fall and get up",
     steps: 600,

@@ -4,7 +4,7 @@ use crate::framework::actors::{Actor, Cast, Figure, Gone};
 use crate::framework::camera_hint::CameraHint;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::mannequin::drills::{Cycle, running, walking};
 use crate::mannequin::{Path, RUN_SPEED, WALK_SPEED};
@@ -16,6 +16,7 @@ use sinew::physics::World;
 use std::sync::Arc;
 
 pub(in crate::scenes) const TWO_TRACKS: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "two_tracks",
     about: "the same walk in two tracks of different weights and slightly different speeds: they beat",
     steps: 660,
@@ -27,6 +28,7 @@ pub(in crate::scenes) const TWO_TRACKS: Scene = Scene {
 };
 
 pub(in crate::scenes) const WALK_RUN: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "walk_run",
     about: "a blend space of a walk and a run, kept in phase by their footfalls, at four speeds",
     steps: 360,

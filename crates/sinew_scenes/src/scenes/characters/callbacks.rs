@@ -4,7 +4,7 @@ use crate::framework::actors::{Actor, Cast, Figure, Gone, mark_floor};
 use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::mannequin::Path;
 use crate::mannequin::drills::{PUNCH_ARRIVES, punch, walking};
@@ -15,6 +15,7 @@ use sinew::physics::{BodyId, DebugDraw, Material, World};
 use std::sync::Arc;
 
 pub(in crate::scenes) const FOOTSTEPS: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "footsteps",
     about: "a walk whose footfalls call back: faster, standing still, backward, each exactly once",
     steps: 400,
@@ -23,6 +24,7 @@ pub(in crate::scenes) const FOOTSTEPS: Scene = Scene {
 };
 
 pub(in crate::scenes) const PUNCH: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "punch",
     about: "a punch calls back when the fist arrives, and says how hard: a ball flies off its post",
     steps: 90,

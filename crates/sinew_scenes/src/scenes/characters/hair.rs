@@ -4,7 +4,7 @@ use crate::framework::actors::{Actor, Cast, Figure, Gone};
 use crate::framework::camera_hint::CameraHint;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::Setup;
 use crate::maned::{HAIR, maned};
 use crate::mannequin::drills::running;
@@ -17,6 +17,7 @@ use sinew::ragdoll::{CharacterDef, SpringStep, SpringSwing};
 use std::sync::Arc;
 
 pub(in crate::scenes) const HAIR_RATES: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "hair",
     about: "a runner's hair at 30, 60, 144 and 240 frames a second: the curves lie on each other",
     steps: 240,

@@ -5,7 +5,7 @@ use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
 use crate::framework::performance::Performance;
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::mannequin::{WALK_SPEED, mannequin};
 use crate::parts::floor;
@@ -16,6 +16,7 @@ use sinew::physics::World;
 use std::sync::Arc;
 
 pub(in crate::scenes) const RETARGET: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "retarget",
     about: "a walk retargeted from the mannequin onto a child of 0.8 m and a giant of 14 m",
     steps: 240,
@@ -25,6 +26,7 @@ pub(in crate::scenes) const RETARGET: Scene = Scene {
 
 /// Needs a file of the user's.
 pub(in crate::scenes) const MOCAP: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "mocap",
     about: "a captured motion on the mannequin, a child of 0.8 m and a giant of 14 m",
     steps: 300,

@@ -3,7 +3,7 @@
 use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, cuboid, fixed, floor, ghost};
 use sinew::math::{Rotation, Transform, Vec3, max};
@@ -13,6 +13,7 @@ use sinew::physics::{
 };
 
 pub(in crate::scenes) const COURSE: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "mover_course",
     about: "movers climb stairs and a ramp, push a crate, ride a turntable and a belt, and jump",
     steps: 420,

@@ -4,7 +4,7 @@ use crate::framework::actors::Figure;
 use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, cuboid, fixed, floor};
 use sinew::anim::local_to_model;
@@ -14,6 +14,7 @@ use sinew::ragdoll::{Character, CharacterDef, CharacterEvent, HitBodies, State};
 use std::sync::Arc;
 
 pub(in crate::scenes) const STREET: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "street",
     about: "mannequins with movers walk among crates, push them, flinch and fall when hit, ride a lift and jump",
     steps: 600,

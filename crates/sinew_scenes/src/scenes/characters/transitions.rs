@@ -5,7 +5,7 @@ use crate::framework::actors::{Actor, Cast, Figure, Gone};
 use crate::framework::camera_hint::CameraHint;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::mannequin::drills::{punch, running};
 use crate::parts::floor;
@@ -15,6 +15,7 @@ use sinew::physics::World;
 use std::sync::Arc;
 
 pub(in crate::scenes) const TRANSITION: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "transition",
     about: "from a run to a boxer's guard by a cut, a crossfade and inertialisation: how hard it jerks",
     steps: 120,

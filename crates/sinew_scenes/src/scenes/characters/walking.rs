@@ -4,7 +4,7 @@ use crate::framework::actors::{Actor, Cast, Figure, Gone, mark_floor};
 use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::mannequin::drills::{Cycle, walking};
 use crate::mannequin::{Path, WALK_SPEED};
@@ -21,6 +21,7 @@ use sinew::physics::{
 use std::sync::Arc;
 
 pub(in crate::scenes) const ROOT_WALK: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "root_walk",
     about: "root motion leads a kinematic capsule round a circle, and no foot slides more than in its clip",
     steps: 604,
@@ -29,6 +30,7 @@ pub(in crate::scenes) const ROOT_WALK: Scene = Scene {
 };
 
 pub(in crate::scenes) const UNEVEN_GROUND: Scene = Scene {
+    chapter: Chapter::Characters,
     name: "uneven_ground",
     about: "a walk made for a flat floor goes over waves, beside one without inverse kinematics",
     steps: 300,

@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{ball, cuboid, fallen, fixed, ghost, tilt};
 use sinew::math::{Rotation, Vec3, max, trig};
@@ -10,6 +10,7 @@ use sinew::physics::boxes::{Cuboid, Penetration, SurfacePoint};
 use sinew::physics::{BodyDef, BodyId, DebugDraw, DrawKind, Obb, Shape, World};
 
 pub(in crate::scenes) const AABB_VS_OBB: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "aabb_vs_obb",
     about: "a box turns, its bounds along the axes swell and shrink, and its oriented box does not",
     steps: 360,
@@ -109,6 +110,7 @@ impl Script for Turning {
 }
 
 pub(in crate::scenes) const POINT_IN_OBB: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "point_in_obb",
     about: "probes fall through a tilted box that asks how deep they are in it, and which way is out",
     steps: 48,

@@ -3,7 +3,7 @@
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::framework::turn::Turn;
 use crate::parts::{GRAVITY, ball, body, floor, tilt};
@@ -11,6 +11,7 @@ use sinew::math::{Vec3, trig};
 use sinew::physics::{BodyDef, BodyId, Material, Shape, ShapeId, World};
 
 pub(in crate::scenes) const COIN: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "coin",
     about: "a leaning coin rolls round on its rim at the rate of a closed form, sinks and comes to rest flat",
     steps: 600,

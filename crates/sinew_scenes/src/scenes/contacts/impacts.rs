@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::weightless_world;
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, ball, floor, hook, join, made_of, tilt};
@@ -20,6 +20,7 @@ fn elastic_ball(mass: f32, radius: f32, position: Vec3) -> BodyDef {
 }
 
 pub(in crate::scenes) const ELASTIC_PAIRS: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "elastic_pairs",
     about: "balls of 1 kg hit balls of 1, 3 and 100 kg head-on and lose nothing; one hits a row of four",
     steps: 60,
@@ -97,6 +98,7 @@ impl Script for ElasticPairs {
 }
 
 pub(in crate::scenes) const NEWTONS_CRADLE: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "newtons_cradle",
     about: "five steel balls on rods: as many leave on one side as come in on the other, and as high",
     steps: 300,
@@ -174,6 +176,7 @@ impl Script for Cradle {
 }
 
 pub(in crate::scenes) const BOUNCING_BALLS: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "bouncing_balls",
     about: "49 balls fall from 5 m and lose nothing: how far their energy strays (SimBenchmark)",
     steps: 500,

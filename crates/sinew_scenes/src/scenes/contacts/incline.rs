@@ -2,13 +2,14 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, ball, body, cuboid, fixed, made_of, tilt};
 use sinew::math::{Vec3, trig};
 use sinew::physics::{BodyDef, BodyId, Material, Shape, World};
 
 pub(in crate::scenes) const HOLDS: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "incline_holds",
     about: "a box pushed up a slope below its friction angle comes to a stop, and stays",
     steps: 600,
@@ -25,6 +26,7 @@ pub(in crate::scenes) const HOLDS: Scene = Scene {
 };
 
 pub(in crate::scenes) const SLIDES: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "incline_slides",
     about: "a box on a slope above its friction angle slides down at g (sin − μ cos)",
     steps: 240,
@@ -37,6 +39,7 @@ pub(in crate::scenes) const SLIDES: Scene = Scene {
 };
 
 pub(in crate::scenes) const ROLLS: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "incline_rolls",
     about: "a ball on a slope rolls down at 5/7 g sin, whatever the friction that makes it roll",
     steps: 240,

@@ -3,13 +3,14 @@
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{ball, cuboid, fixed, floor};
 use sinew::math::{Vec3, max};
 use sinew::physics::{BodyId, World};
 
 pub(in crate::scenes) const BLOCK_OVERHANG: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "block_overhang",
     about: "stacks of 2 to 10 planks lean out over a table: they stand at 98 % of the harmonic series, fall at 102 %",
     steps: 300,

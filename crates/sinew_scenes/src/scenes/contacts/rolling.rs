@@ -2,13 +2,14 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, ball, cuboid, floor, made_of};
 use sinew::math::Vec3;
 use sinew::physics::{BodyId, Material, Sleeping, World, WorldDef};
 
 pub(in crate::scenes) const SLIDE_TO_ROLL: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "slide_to_roll",
     about: "a ball pushed along the floor slides until friction has made it roll, at 5/7 of its speed",
     steps: 150,
@@ -108,6 +109,7 @@ impl Script for SlideToRoll {
 }
 
 pub(in crate::scenes) const ROLLING_BALLS: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "rolling_balls",
     about: "a box with 25 balls on it is pulled askew: it slides on the floor, and they roll on it (SimBenchmark)",
     steps: 400,

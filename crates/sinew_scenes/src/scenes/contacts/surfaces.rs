@@ -2,13 +2,14 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, ball, body, cuboid, fixed, floor, made_of, tilt};
 use sinew::math::{Vec3, max, trig};
 use sinew::physics::{BodyId, ContactRule, Material, OneWay, Sensing, Shape, ShapeId, Velocity, World};
 
 pub(in crate::scenes) const STATIC_FRICTION: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "static_friction",
     about: "half a degree below the angle of static friction a block holds, half a degree above it slides with less",
     steps: 300,
@@ -20,6 +21,7 @@ pub(in crate::scenes) const STATIC_FRICTION: Scene = Scene {
 };
 
 pub(in crate::scenes) const CONVEYOR: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "conveyor",
     about: "a belt that starts carries a box to its speed at μ g",
     steps: 180,
@@ -31,6 +33,7 @@ pub(in crate::scenes) const CONVEYOR: Scene = Scene {
 };
 
 pub(in crate::scenes) const ONE_WAY: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "one_way",
     about: "a ball thrown up through a one-way platform lands on it",
     steps: 240,
@@ -39,6 +42,7 @@ pub(in crate::scenes) const ONE_WAY: Scene = Scene {
 };
 
 pub(in crate::scenes) const SENSORS: Scene = Scene {
+    chapter: Chapter::Contacts,
     name: "sensors",
     about: "a gate notices when a falling ball comes in and when it goes out",
     steps: 150,

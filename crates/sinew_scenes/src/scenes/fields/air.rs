@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, ball, cuboid, ghost, hook, join};
 use core::f32::consts::PI;
@@ -51,6 +51,7 @@ impl Work {
 }
 
 pub(in crate::scenes) const WIND: Scene = Scene {
+    chapter: Chapter::Fields,
     name: "wind",
     about: "wind carries a plate and a particle along, and tilts a ball on a string",
     steps: 600,
@@ -135,6 +136,7 @@ impl Script for Windy {
 }
 
 pub(in crate::scenes) const TERMINAL_VELOCITY: Scene = Scene {
+    chapter: Chapter::Fields,
     name: "terminal_velocity",
     about: "balls fall through still air and through a viscous medium until weight and drag are even",
     steps: 600,

@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, ball, cuboid, fixed, ghost};
 use core::f32::consts::PI;
@@ -10,6 +10,7 @@ use sinew::math::{Vec3, max};
 use sinew::physics::{BodyDef, BodyId, Explosion, Occlusion, World};
 
 pub(in crate::scenes) const EXPLOSION: Scene = Scene {
+    chapter: Chapter::Fields,
     name: "explosion",
     about: "a blast throws balls by their distance; one behind a wall and one out of reach stay",
     steps: 90,

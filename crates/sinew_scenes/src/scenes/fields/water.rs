@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, ball, body, cuboid, ghost, tilt};
 use sinew::math::Vec3;
@@ -10,6 +10,7 @@ use sinew::physics::field::WaterPlane;
 use sinew::physics::{BodyDef, BodyId, Buoyancy, FieldDef, FieldKind, Shape, World};
 
 pub(in crate::scenes) const FLOAT: Scene = Scene {
+    chapter: Chapter::Fields,
     name: "float",
     about: "a box, a ball and a capsule float as deep as they are dense; a stone sinks at its steady speed",
     steps: 600,

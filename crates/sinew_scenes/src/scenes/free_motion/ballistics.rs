@@ -3,13 +3,14 @@
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{ball, fallen, floor, made_of};
 use sinew::math::{Vec3, max};
 use sinew::physics::{BodyId, Material, World};
 
 pub(in crate::scenes) const FREE_FALL: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "free_fall",
     about: "a ball falls through empty space: the integrator's own formula, to the last digits",
     steps: 600,
@@ -22,6 +23,7 @@ pub(in crate::scenes) const FREE_FALL: Scene = Scene {
 };
 
 pub(in crate::scenes) const PROJECTILE: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "projectile",
     about: "a ball thrown without drag flies along its parabola",
     steps: 120,
@@ -61,6 +63,7 @@ impl Script for Thrown {
 }
 
 pub(in crate::scenes) const BOUNCE: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "bounce",
     about: "a ball dropped on a floor comes back to the square of its restitution of the height",
     steps: 300,

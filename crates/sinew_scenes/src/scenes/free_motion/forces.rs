@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::weightless_world;
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, ball, cuboid, floor, ghost, hook, join, made_of};
@@ -10,6 +10,7 @@ use sinew::math::{Transform, Vec3, max};
 use sinew::physics::{BodyDef, BodyId, ForceDef, Material, World};
 
 pub(in crate::scenes) const TWO_MEN: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "two_men",
     about: "two men push a cart together and against each other: forces add up as vectors",
     steps: 120,
@@ -87,6 +88,7 @@ impl Script for TwoMen {
 }
 
 pub(in crate::scenes) const PUSH: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "push_centre_off_centre",
     about: "a push beside the centre moves a ball as one through it does, and turns it besides",
     steps: 60,
@@ -165,6 +167,7 @@ impl Script for Pushed {
 }
 
 pub(in crate::scenes) const BULLET: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "bullet",
     about: "a bullet lodges in three blocks: free, struck beside the centre, and hung as a ballistic pendulum",
     steps: 90,

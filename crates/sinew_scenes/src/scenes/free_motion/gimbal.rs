@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::weightless_world;
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{ball, ghost, hinge, hook};
@@ -11,6 +11,7 @@ use sinew::math::{EulerConvention, EulerOrder, Rotation, Sym3, Transform, Vec3, 
 use sinew::physics::{BodyDef, BodyId, JointId, MassProperties, Motor, Shape, ShapeDef, Velocity, World};
 
 pub(in crate::scenes) const GIMBAL: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "gimbal",
     about: "bodies in three rings are pitched into gimbal lock and lose a freedom; one without rings does not",
     steps: 180,

@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::Setup;
 use crate::framework::setting::weightless_world;
 use crate::parts::{ball, ghost};
@@ -22,6 +22,7 @@ fn star(mass: f32, radius: f32, position: Vec3, linear_velocity: Vec3) -> BodyDe
 }
 
 pub(in crate::scenes) const KEPLER: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "kepler",
     about: "a planet and a particle on ellipses about a centre: period, energy, angular momentum and axis stay",
     steps: 1140,
@@ -132,6 +133,7 @@ impl Script for Kepler {
 }
 
 pub(in crate::scenes) const SUN_EARTH: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "sun_earth",
     about: "Sun and Earth pull each other with the same force; their accelerations differ by their masses",
     steps: 120,
@@ -229,6 +231,7 @@ impl Script for SunEarth {
 }
 
 pub(in crate::scenes) const THREE_BODIES: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "three_bodies",
     about: "three equal bodies chase each other on a figure of eight",
     steps: 380,

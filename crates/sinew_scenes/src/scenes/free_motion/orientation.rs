@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::weightless_world;
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{ball, cuboid, fixed, ghost};
@@ -14,6 +14,7 @@ use sinew::math::{
 use sinew::physics::{BodyDef, BodyId, BodyKind, MassProperties, Shape, ShapeDef, Velocity, World};
 
 pub(in crate::scenes) const MATRIX_DRIFT: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "matrix_drift",
     about: "a matrix that turns along with a body step by step grows; mended after each step it stays a rotation",
     steps: 600,
@@ -112,6 +113,7 @@ impl Script for Drift {
 }
 
 pub(in crate::scenes) const VERSOR: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "versor",
     about: "the quotient of two vectors turns and stretches one into the other, and takes a body along",
     steps: 480,
@@ -196,6 +198,7 @@ impl Script for Journey {
 }
 
 pub(in crate::scenes) const HELPERS: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "quaternion_helpers",
     about: "one turn by each of five operations: from axis and angle, from matrix, normalise, inverse, to matrix",
     steps: 60,

@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::weightless_world;
 use crate::framework::setting::{Setting, Setup};
 use crate::framework::support::Support;
@@ -12,6 +12,7 @@ use sinew::math::{Rotation, Sym3, Vec3, max, trig};
 use sinew::physics::{BodyDef, BodyId, JointId, MassProperties, Momentum, Shape, ShapeDef, World};
 
 pub(in crate::scenes) const DZHANIBEKOV: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "dzhanibekov",
     about: "a box spun about its middle axis turns over, again and again, when Euler's equations say so",
     steps: 700,
@@ -104,6 +105,7 @@ impl Script for Flips {
 }
 
 pub(in crate::scenes) const SYMMETRIC_TOP: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "symmetric_top",
     about: "a free disc spins and wobbles: its angular velocity circles its axis at (I3 − I1) / I1 times its spin",
     steps: 600,
@@ -178,6 +180,7 @@ impl Script for Wobble {
 }
 
 pub(in crate::scenes) const SPINNING_TOP: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "spinning_top",
     about: "a fast top on a pivot does not fall: it goes round slowly, at the rate of its weight's torque",
     steps: 420,

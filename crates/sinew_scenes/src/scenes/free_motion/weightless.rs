@@ -3,7 +3,7 @@
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
 use crate::framework::ragdolls::ragdoll_of_mannequin;
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::weightless_world;
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{ball, cuboid, join, thin_rod, tilt};
@@ -12,6 +12,7 @@ use sinew::physics::{BodyId, JointId, Momentum, Velocity, World};
 use sinew::ragdoll::{BodySettings, BodyState, Ragdoll};
 
 pub(in crate::scenes) const ZERO_GRAVITY_PILE: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "zero_gravity_pile",
     about: "balls and boxes collide in free space, and the sum of their momenta stays",
     steps: 1000,
@@ -58,6 +59,7 @@ impl Script for Pile {
 }
 
 pub(in crate::scenes) const SPIN_DOUBLE: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "spin_double",
     about: "two joined rods spin in free space, and their angular momentum stays",
     steps: 600,
@@ -66,6 +68,7 @@ pub(in crate::scenes) const SPIN_DOUBLE: Scene = Scene {
 };
 
 pub(in crate::scenes) const SPIN_TRIPLE: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "spin_triple",
     about: "three joined rods spin in free space, and their angular momentum stays",
     steps: 600,
@@ -74,6 +77,7 @@ pub(in crate::scenes) const SPIN_TRIPLE: Scene = Scene {
 };
 
 pub(in crate::scenes) const SPIN_RAGDOLL: Scene = Scene {
+    chapter: Chapter::FreeMotion,
     name: "spin_ragdoll",
     about: "the mannequin, limp, spins in free space, and its angular momentum stays",
     steps: 600,

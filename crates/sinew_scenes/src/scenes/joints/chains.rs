@@ -3,7 +3,7 @@
 use crate::blueprint::{Blueprint, chain_100_links, chain_hang, chain_swing, hanging_rope, heavy_rope};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::framework::support::Support;
 use crate::parts::GRAVITY;
@@ -11,6 +11,7 @@ use sinew::math::{Vec3, max};
 use sinew::physics::{BodyId, BodyKind, JointId, World};
 
 pub(in crate::scenes) const SWING_1000: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "chain_swing_1000",
     about: "1,000 kg on a chain of 1 kg links swing from the horizontal, and no joint opens",
     steps: 600,
@@ -19,6 +20,7 @@ pub(in crate::scenes) const SWING_1000: Scene = Scene {
 };
 
 pub(in crate::scenes) const SWING_100: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "chain_swing_100",
     about: "100 kg on a chain of 1 kg links swing from the horizontal, and no joint opens",
     steps: 600,
@@ -27,6 +29,7 @@ pub(in crate::scenes) const SWING_100: Scene = Scene {
 };
 
 pub(in crate::scenes) const HANG_1000: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "chain_hang_1000",
     about: "1,000 kg hang on a chain of 1 kg links",
     steps: 600,
@@ -35,6 +38,7 @@ pub(in crate::scenes) const HANG_1000: Scene = Scene {
 };
 
 pub(in crate::scenes) const HANG_100: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "chain_hang_100",
     about: "100 kg hang on a chain of 1 kg links",
     steps: 600,
@@ -43,6 +47,7 @@ pub(in crate::scenes) const HANG_100: Scene = Scene {
 };
 
 pub(in crate::scenes) const LINKS_100: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "chain_100_links",
     about: "100 kg on each of ten chains of 100 links of 1 kg swing from the horizontal",
     steps: 600,
@@ -51,6 +56,7 @@ pub(in crate::scenes) const LINKS_100: Scene = Scene {
 };
 
 pub(in crate::scenes) const HEAVY_ROPE: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "heavy_rope",
     about: "1,800 kg on a rope of 1 kg links swing from the horizontal",
     steps: 600,
@@ -59,6 +65,7 @@ pub(in crate::scenes) const HEAVY_ROPE: Scene = Scene {
 };
 
 pub(in crate::scenes) const HANGING_ROPE: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "hanging_rope",
     about: "200 kg hang on a rope of 48 links of 1 kg",
     steps: 600,

@@ -2,13 +2,14 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, ball, floor, ghost, hinge, hook, thin_rod_between};
 use sinew::math::{Range, Transform, Vec3, max, trig};
 use sinew::physics::{BodyId, JointDef, JointId, JointKind, JointState, Motor, Strength, Velocity, World};
 
 pub(in crate::scenes) const LINKAGE: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "linkage",
     about: "four bars in a loop, a motor on a slider-crank, a joint that breaks, a rope and a rod",
     steps: 600,

@@ -2,13 +2,14 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, hinge, hook, thin_rod};
 use sinew::math::{Rotation, Transform, Vec3, max, min, trig};
 use sinew::physics::{JointDef, JointId, Motor, Softness, World};
 
 pub(in crate::scenes) const ARM: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "motor_arm",
     about: "motors hold arms against gravity, swing arms to a goal, and push no harder than they may",
     steps: 600,

@@ -3,13 +3,14 @@
 use crate::blueprint::{Blueprint, joint_grid_of, net};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::framework::support::Support;
 use sinew::math::max;
 use sinew::physics::{JointId, World};
 
 pub(in crate::scenes) const JOINT_GRID: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "joint_grid",
     about: "balls joined to a net hang from its upper edge",
     steps: 100,
@@ -18,6 +19,7 @@ pub(in crate::scenes) const JOINT_GRID: Scene = Scene {
 };
 
 pub(in crate::scenes) const NET: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "net",
     about: "a net with a weight hangs from its upper corners and swings",
     steps: 600,

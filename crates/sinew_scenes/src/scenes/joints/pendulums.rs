@@ -2,13 +2,14 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, agm, ball, ghost, hook, join, thin_rod, tilt};
 use sinew::math::{Vec3, max, trig};
 use sinew::physics::{BodyId, JointId, World};
 
 pub(in crate::scenes) const PENDULUM: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "pendulum",
     about: "a ball on a massless rod of 1 m: its period against the elliptic integral",
     steps: 1200,
@@ -126,6 +127,7 @@ impl Script for Pendulums {
 }
 
 pub(in crate::scenes) const DOUBLE_PENDULUM: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "double_pendulum",
     about: "two rods let go from the horizontal keep their energy for a minute",
     steps: 3600,
@@ -135,6 +137,7 @@ pub(in crate::scenes) const DOUBLE_PENDULUM: Scene = Scene {
 };
 
 pub(in crate::scenes) const TRIPLE_PENDULUM: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "triple_pendulum",
     about: "three rods let go from the horizontal keep their energy for a minute",
     steps: 3600,

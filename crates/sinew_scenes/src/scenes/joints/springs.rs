@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, cuboid, floor};
 use sinew::math::{Vec3, max, min};
@@ -12,6 +12,7 @@ use sinew::physics::particles::{
 use sinew::physics::{BodyId, GroupId, World};
 
 pub(in crate::scenes) const SPRING: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "spring",
     about: "a mass on a spring comes to rest where the spring is stretched by m g / k",
     steps: 600,
@@ -20,6 +21,7 @@ pub(in crate::scenes) const SPRING: Scene = Scene {
 };
 
 pub(in crate::scenes) const SPRING_CHAIN: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "spring_chain",
     about: "each spring of a hanging chain is stretched by all that hangs below it",
     steps: 900,
@@ -28,6 +30,7 @@ pub(in crate::scenes) const SPRING_CHAIN: Scene = Scene {
 };
 
 pub(in crate::scenes) const SPRINGS_RATIO: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "springs_ratio",
     about: "springs of 1,000 and of 1,000,000 N/m in one hanging chain are each as long as they should be",
     steps: 900,
@@ -106,6 +109,7 @@ fn fastest(group: &ParticleGroup) -> f32 {
 }
 
 pub(in crate::scenes) const ROPE_ON_BOX: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "rope_on_box",
     about: "a rope falls over a box and comes to hang over its edges",
     steps: 600,

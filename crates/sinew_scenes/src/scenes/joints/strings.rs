@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::GRAVITY;
 use sinew::math::{Vec3, min, trig};
@@ -10,6 +10,7 @@ use sinew::physics::particles::{GroupDef, ParticleDef, RopeDef, SpringDef};
 use sinew::physics::{GroupId, World};
 
 pub(in crate::scenes) const CATENARY: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "catenary",
     about: "a rope between two hooks comes to hang as a catenary",
     steps: 600,
@@ -84,6 +85,7 @@ impl Script for Hanging {
 }
 
 pub(in crate::scenes) const CHAIN_MODES: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "chain_modes",
     about: "masses between springs swing at the frequencies of the chain's modes",
     steps: 600,

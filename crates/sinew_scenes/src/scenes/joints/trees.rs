@@ -3,13 +3,14 @@
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, body, cuboid, floor, ghost, hook};
 use sinew::math::{Random, Range, Rotation, Transform, Vec3, max, trig};
 use sinew::physics::{BodyDef, BodyId, JointDef, JointId, JointKind, MassProperties, Shape, Velocity, World};
 
 pub(in crate::scenes) const HEAVY_FOOT: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "heavy_foot",
     about: "69 kg land on a foot of 1 kg at 3 m/s, and it does not sink in",
     steps: 600,
@@ -96,6 +97,7 @@ impl Script for Stand {
 }
 
 pub(in crate::scenes) const MASS_RATIO: Scene = Scene {
+    chapter: Chapter::Joints,
     name: "mass_ratio",
     about: "trees of light and of heavy rods, one hung up and one falling, hold together",
     steps: 300,

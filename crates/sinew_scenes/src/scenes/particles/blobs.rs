@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, ball, floor, made_of};
 use sinew::math::{Vec3, max, min};
@@ -10,6 +10,7 @@ use sinew::physics::particles::{BlobDef, ParticleGroup};
 use sinew::physics::{BodyId, GroupId, Material, World};
 
 pub(in crate::scenes) const BLOB: Scene = Scene {
+    chapter: Chapter::Particles,
     name: "blob",
     about: "a ball of skin and air falls on the floor, is flattened, and comes to rest as full as it was",
     steps: 300,
@@ -100,6 +101,7 @@ fn extent(group: &ParticleGroup) -> (f32, f32) {
 }
 
 pub(in crate::scenes) const STEEL_VS_BASKETBALL: Scene = Scene {
+    chapter: Chapter::Particles,
     name: "steel_vs_basketball",
     about: "a steel ball and a basketball of the same size fall side by side: one strikes in no time, one is flattened",
     steps: 90,

@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::GRAVITY;
 use sinew::math::{Vec3, max};
@@ -10,6 +10,7 @@ use sinew::physics::particles::{Cloth, ClothDef};
 use sinew::physics::{GroupId, World};
 
 pub(in crate::scenes) const CLOTH: Scene = Scene {
+    chapter: Chapter::Particles,
     name: "cloth",
     about: "a cloth swings down and comes to hang by two corners, stretched by next to nothing",
     steps: 480,

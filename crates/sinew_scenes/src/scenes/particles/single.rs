@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, cuboid, fixed, made_of, tilt};
 use sinew::math::{Vec3, max, trig};
@@ -10,6 +10,7 @@ use sinew::physics::particles::{GroupDef, ParticleDef};
 use sinew::physics::{BodyDef, GroupId, Material, World};
 
 pub(in crate::scenes) const PARTICLE: Scene = Scene {
+    chapter: Chapter::Particles,
     name: "particle",
     about: "a particle falls and bounces, one slides down a slope, one rests, all on oriented boxes",
     steps: 120,
@@ -114,6 +115,7 @@ impl Script for Three {
 }
 
 pub(in crate::scenes) const FAST_PARTICLE: Scene = Scene {
+    chapter: Chapter::Particles,
     name: "fast_particle",
     about: "particles fly about at 100 m/s in a room with walls of 5 cm, and none leaves it",
     steps: 60,

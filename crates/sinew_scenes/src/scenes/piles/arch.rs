@@ -5,7 +5,7 @@ use crate::framework::camera_hint::CameraHint;
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::framework::stand::{Bars, Stand};
 use crate::parts::{GRAVITY, ball, hook};
@@ -15,6 +15,7 @@ use sinew::physics::{
 };
 
 pub(in crate::scenes) const ARCH: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "arch",
     about: "stones without mortar stand as an arch under blocks; its piers say that the thrust stays within the stones",
     steps: 600,

@@ -3,13 +3,14 @@
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, ball, cuboid, floor, hook, join, tilt};
 use sinew::math::{Transform, Vec3, max, trig};
 use sinew::physics::{BodyId, World};
 
 pub(in crate::scenes) const STACK: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "stack",
     about: "boxes on top of each other, the last one let fall, stand and fall asleep",
     steps: 600,
@@ -21,6 +22,7 @@ pub(in crate::scenes) const STACK: Scene = Scene {
 };
 
 pub(in crate::scenes) const PYRAMID: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "pyramid",
     about: "a wall of boxes, one fewer in each row, the last one let fall, stands and falls asleep",
     steps: 600,
@@ -83,6 +85,7 @@ impl Script for Standing {
 }
 
 pub(in crate::scenes) const DOMINOES: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "dominoes",
     about: "a ball on a rod strikes the first of a row of dominoes, and all of them fall",
     steps: 360,

@@ -4,13 +4,14 @@ use crate::blueprint::{box_rain_of, ragdoll_pile};
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::framework::stand::deepest;
 use sinew::math::max;
 use sinew::physics::{BodyId, BodyKind, JointId, World};
 
 pub(in crate::scenes) const PILE: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "ragdoll_pile",
     about: "100 figures of 15 bodies fall into a heap, and no joint opens or bends too far",
     steps: 600,
@@ -19,6 +20,7 @@ pub(in crate::scenes) const PILE: Scene = Scene {
 };
 
 pub(in crate::scenes) const RAIN: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "box_rain",
     about: "boxes of all sizes fall into a pit: none is lost, none ends deep in another",
     steps: 400,

@@ -4,7 +4,7 @@ use crate::blueprint::{self, Blueprint, arch, loads};
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::framework::stand::{center, deepest, shift};
 use crate::parts::{ball, ghost};
@@ -24,7 +24,7 @@ const SETTINGS: &[Setting] = &[
 
 /// Scene of something that stands, beside copies of it that bear loads.
 const fn laden(name: &'static str, about: &'static str, build: fn(&Setup<'_>) -> Instance) -> Scene {
-    Scene { name, about, steps: STEPS, settings: SETTINGS, build }
+    Scene { chapter: Chapter::Piles, name, about, steps: STEPS, settings: SETTINGS, build }
 }
 
 pub(in crate::scenes) const JENGA: Scene = laden(

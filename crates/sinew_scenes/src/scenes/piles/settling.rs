@@ -4,13 +4,14 @@ use crate::blueprint::{self, Blueprint};
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::Setup;
 use crate::framework::stand::deepest;
 use sinew::math::max;
 use sinew::physics::{BodyId, JointId, World};
 
 pub(in crate::scenes) const RAGDOLLS: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "ragdolls",
     about: "8 figures fall from 14 m onto tilted boxes and the ground, and sleep no later than in Box3D",
     steps: 600,
@@ -19,6 +20,7 @@ pub(in crate::scenes) const RAGDOLLS: Scene = Scene {
 };
 
 pub(in crate::scenes) const WAVE_PILE: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "wave_pile",
     about: "100 balls, capsules and boxes fall onto waves, and sleep no later than in Box3D",
     steps: 600,
@@ -27,6 +29,7 @@ pub(in crate::scenes) const WAVE_PILE: Scene = Scene {
 };
 
 pub(in crate::scenes) const MESH_DROP: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "mesh_drop",
     about: "400 sticks fall spinning onto waves, and sleep no later than in Box3D",
     steps: 400,
@@ -35,6 +38,7 @@ pub(in crate::scenes) const MESH_DROP: Scene = Scene {
 };
 
 pub(in crate::scenes) const ROCKS: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "rocks",
     about: "64 rocks pour onto waves, none goes through, and all sleep",
     steps: 600,

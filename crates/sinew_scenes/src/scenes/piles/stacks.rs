@@ -4,7 +4,7 @@ use crate::blueprint::{self, Blueprint};
 use crate::framework::flight::Flight;
 use crate::framework::instance::Instance;
 use crate::framework::metric::Expected;
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::framework::stand::{Bars, Stand};
 use crate::parts::ball;
@@ -12,6 +12,7 @@ use sinew::math::Vec3;
 use sinew::physics::{World, WorldDef};
 
 pub(in crate::scenes) const MASS_RATIO: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "stack_mass_ratio",
     about: "10 boxes of one size, each ten times as heavy as the one that it stands on, stay where they are",
     steps: 600,
@@ -36,6 +37,7 @@ pub(in crate::scenes) const MASS_RATIO: Scene = Scene {
 };
 
 pub(in crate::scenes) const SIZE_RATIO: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "stack_ratio",
     about: "6 boxes, each twice as large as the one that it stands on, so eight times as heavy, stay where they are",
     steps: 600,
@@ -49,6 +51,7 @@ pub(in crate::scenes) const SIZE_RATIO: Scene = Scene {
 };
 
 pub(in crate::scenes) const JENGA: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "jenga",
     about: "a tower of blocks of 75 × 25 × 15 mm, three to a level, laid crosswise, stands and falls asleep",
     steps: 600,
@@ -63,6 +66,7 @@ pub(in crate::scenes) const JENGA: Scene = Scene {
 };
 
 pub(in crate::scenes) const CARDS: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "cards",
     about: "a house of cards 0.4 m long and 2 mm thick stands and falls asleep",
     steps: 600,
@@ -74,6 +78,7 @@ pub(in crate::scenes) const CARDS: Scene = Scene {
 };
 
 pub(in crate::scenes) const LARGE_PYRAMID: Scene = Scene {
+    chapter: Chapter::Piles,
     name: "large_pyramid",
     about: "a wall of unit cubes side by side, one fewer in each row, stands for 1,000 steps",
     steps: 1000,

@@ -5,7 +5,7 @@ use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
 use crate::framework::ragdolls::{bind_pose, placed, ragdoll_of_mannequin, spawn_at};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::mannequin::{Mannequin, mannequin};
 use crate::parts::{GRAVITY, cuboid, fixed, floor};
@@ -19,6 +19,7 @@ use sinew::ragdoll::{
 };
 
 pub(in crate::scenes) const POWERED: Scene = Scene {
+    chapter: Chapter::Ragdolls,
     name: "powered",
     about: "the mannequin, pinned by its pelvis over a stand, holds its pose with its muscles; one arm is limp",
     steps: 480,
@@ -27,6 +28,7 @@ pub(in crate::scenes) const POWERED: Scene = Scene {
 };
 
 pub(in crate::scenes) const HIT_REACTION: Scene = Scene {
+    chapter: Chapter::Ragdolls,
     name: "hit_reaction",
     about: "the mannequin walks on the spot, led by pins and muscles, and is hit on a hand: the arm gives way and returns",
     steps: 480,

@@ -4,7 +4,7 @@ use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
 use crate::framework::ragdolls::{ragdoll_of_mannequin, spawn_at};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::floor;
 use sinew::math::{Random, Vec3, max};
@@ -13,6 +13,7 @@ use sinew::ragdoll::quality::random_pose;
 use sinew::ragdoll::{QualityMeter, Ragdoll, RagdollDef};
 
 pub(in crate::scenes) const POSES: Scene = Scene {
+    chapter: Chapter::Ragdolls,
     name: "ragdoll_poses",
     about: "the mannequin falls limp in random poses, comes to rest and falls asleep",
     steps: 600,

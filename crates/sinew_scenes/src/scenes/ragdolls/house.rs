@@ -3,7 +3,7 @@
 use super::limp::Limp;
 use crate::framework::instance::Instance;
 use crate::framework::ragdolls::{bind_pose, placed, ragdoll_of_mannequin};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use sinew::formats::TriangleMesh;
 use sinew::math::{Rotation, Vec3};
@@ -13,6 +13,7 @@ use sinew::ragdoll::RagdollDef;
 
 /// Not listed: it is about files that are not ours.
 pub(in crate::scenes) const HOUSE: Scene = Scene {
+    chapter: Chapter::Ragdolls,
     name: "house",
     about: "a character runs out of a house's door, limp, and falls down its steps",
     steps: 720,

@@ -5,7 +5,7 @@ use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
 use crate::framework::ragdolls::{bind_pose, ragdoll_of_mannequin, spawn_at};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{cuboid, fixed, floor};
 use sinew::math::{Rotation, Vec3, max, min};
@@ -13,6 +13,7 @@ use sinew::physics::{BodyId, World};
 use sinew::ragdoll::{QualityMeter, Ragdoll, RagdollDef};
 
 pub(in crate::scenes) const DROP: Scene = Scene {
+    chapter: Chapter::Ragdolls,
     name: "ragdoll_drop",
     about: "the mannequin falls limp on the floor and comes to rest",
     steps: 600,
@@ -25,6 +26,7 @@ pub(in crate::scenes) const DROP: Scene = Scene {
 };
 
 pub(in crate::scenes) const WALL: Scene = Scene {
+    chapter: Chapter::Ragdolls,
     name: "ragdoll_wall",
     about: "the mannequin is thrown at a wall: nothing stretches, nothing explodes",
     steps: 480,
@@ -33,6 +35,7 @@ pub(in crate::scenes) const WALL: Scene = Scene {
 };
 
 pub(in crate::scenes) const WALL_FAST: Scene = Scene {
+    chapter: Chapter::Ragdolls,
     name: "ragdoll_wall_fast",
     about: "the mannequin is thrown at a wall twice as fast",
     steps: 480,
@@ -48,6 +51,7 @@ const fn speed_to_wall(default: f32) -> Setting {
 const WALL_SPEED: f32 = 15.0;
 
 pub(in crate::scenes) const STAIRS: Scene = Scene {
+    chapter: Chapter::Ragdolls,
     name: "stairs",
     about: "the mannequin runs out onto the cabin's stairs, limp, and is pushed in the back",
     steps: 900,

@@ -3,7 +3,7 @@
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use sinew::formats::mjcf::{MjcfInstance, MjcfModel};
 use sinew::math::{Transform, Vec3, max};
@@ -11,6 +11,7 @@ use sinew::physics::{BodyId, BodyKind, JointId, World};
 
 /// Not listed: it is about a file that is not ours.
 pub(in crate::scenes) const DROP: Scene = Scene {
+    chapter: Chapter::Ragdolls,
     name: "mjcf_drop",
     about: "MuJoCo's humanoid falls on its face and on its back, and rests as high as in MuJoCo",
     steps: 600,

@@ -6,7 +6,7 @@ use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::Part;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::floor;
 use sinew::anim::local_to_model;
@@ -16,6 +16,7 @@ use sinew::ragdoll::{Character, CharacterDef, State};
 use std::sync::Arc;
 
 pub(in crate::scenes) const CROWD: Scene = Scene {
+    chapter: Chapter::Ragdolls,
     name: "crowd",
     about: "mannequins walk together, are hit in waves, fall over each other, and all get up again",
     steps: 900,

@@ -3,7 +3,7 @@
 use crate::cabin::{Prop, Site};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, body, fixed};
 use sinew::math::{Vec3, clamp, max, trig};
@@ -13,6 +13,7 @@ use sinew::physics::{BodyDef, GroupId, Mesh, Shape, World};
 use std::sync::Arc;
 
 pub(in crate::scenes) const CABIN: Scene = Scene {
+    chapter: Chapter::Shows,
     name: "cabin",
     about: "balls rain on the cabin's boxes, or with mesh=1 on its render mesh: how far apart, and how fast",
     steps: 300,

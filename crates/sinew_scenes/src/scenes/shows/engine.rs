@@ -2,7 +2,7 @@
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::Setup;
 use crate::parts::{GRAVITY, ball, cuboid, fallen, floor, ghost, hook, join, level_rod};
 use core::f64::consts::PI;
@@ -12,6 +12,7 @@ use sinew::physics::particles::RopeDef;
 use sinew::physics::{BodyId, Corrections, ObjectId, PhysicsObject, World};
 
 pub(in crate::scenes) const FRAME_RATES: Scene = Scene {
+    chapter: Chapter::Shows,
     name: "frame_rates",
     about: "a world at 24, 30, 60 and 144 frames a second and at uneven ones: the same bits after every second",
     steps: 240,
@@ -140,6 +141,7 @@ impl Script for FrameRates {
 }
 
 pub(in crate::scenes) const TAUTOCHRONE: Scene = Scene {
+    chapter: Chapter::Shows,
     name: "tautochrone",
     about: "beads on cycloids, wires of a kind of the user's own: as fast down from any height",
     steps: 600,

@@ -4,7 +4,7 @@ use crate::blueprint::waves::Waves;
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
-use crate::framework::scene::Scene;
+use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{body, cuboid, fixed, floor, made_of, tilt};
 use sinew::math::{Rotation, Vec3, max};
@@ -12,6 +12,7 @@ use sinew::physics::{BodyDef, BodyId, Hull, Material, Shape, World};
 use std::sync::Arc;
 
 pub(in crate::scenes) const SHOWROOM: Scene = Scene {
+    chapter: Chapter::Shows,
     name: "showroom",
     about: "one of every shape falls on a half-space, a box, a mesh and a height field, and rests at its height",
     steps: 300,

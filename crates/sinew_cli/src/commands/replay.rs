@@ -1,0 +1,133 @@
+//! `sinew replay`: a recording is played again, and held against what was recorded or against another.
+
+use crate::failure::{Failure, Result};
+use crate::report::Report;
+use crate::report::progress::Progress;
+use serde_json::json;
+use sinew::formats::read_bytes;
+use sinew::math::Transform;
+use sinew_scenes::recording::{Difference, Recording, Replay as Player, compare};
+use std::path::{Path, PathBuf};
+
+/// Play a recording again: whether it comes to the same states, and where two recordings part
+#[derive(clap::Args)]
+#[command(after_help = "\
+Example:
+  sinew replay stairs.sinewrec
+  sinew replay stairs.sinewrec --verify
+  sinew replay mine.sinewrec --diff theirs.sinewrec
+
+Only the version that made a recording is known to have the same bits.")]
+pub struct Replay {
+    /// A recording
+    file: PathBuf,
+    /// Fail (exit code 1) at the first step that comes to another state than was recorded
+    #[arg(long)]
+    verify: bool,
+    /// The first step and body in which it differs from another recording; exit code 1 if there is one
+    #[arg(long, value_name = "OTHER.sinewrec")]
+    diff: Option<PathBuf>,
+}
+
+/// Reads a recording.
+fn load(path: &Path) -> Result<Recording> {
+    let name = path.display().to_string();
+    Ok(Recording::read(&read_bytes(path)?).map_err(|error| error.with_file(name))?)
+}
+
+impl Replay {
+    /// Plays it.
+    pub fn run(&self) -> Result<Report> {
+        let name = self.file.display().to_string();
+        let recording = load(&self.file)?;
+        if let Some(other) = &self.diff {
+            return self.against(&recording, other);
+        }
+        let scene = recording.scene.clone();
+        let made_by = recording.made_by.clone();
+        let is_ours = made_by == env!("CARGO_PKG_VERSION");
+        let mut player = Player::start(recording).map_err(|error| error.with_file(&name))?;
+        let steps = player.recording().steps.len();
+        let progress = Progress::new("replaying", steps);
+        let mut diverged = None;
+        while let Some(step) = player.step() {
+            progress.step();
+            if step.found != step.recorded {
+                diverged = Some(step.step);
+                break;
+            }
+        }
+        if let (Some(step), true) = (diverged, self.verify) {
+            let why = if is_ours {
+                "the same version".to_owned()
+            } else {
+                format!("version {made_by}, and this is {}", env!("CARGO_PKG_VERSION"))
+            };
+            let what = format!("comes to another state than was recorded by {why}");
+            return Err(Failure::at(name, what, format!("step {step}")));
+        }
+        let hash = format!("{:016x}", player.instance().world().hash());
+        let outcome = match diverged {
+            Some(step) => format!("differs from what was recorded from step {step} on"),
+            None => "every state is as recorded".to_owned(),
+        };
+        let text =
+            format!("{scene}, recorded by version {made_by}: {steps} steps, {outcome}; state {hash}\n");
+        let json = json!({
+            "scene": scene,
+            "made_by": made_by,
+            "steps": steps,
+            "diverged_at": diverged,
+            "hash": hash,
+        });
+        Ok(Report { json, text })
+    }
+
+    /// The first difference of the recording and another.
+    fn against(&self, recording: &Recording, other: &Path) -> Result<Report> {
+        let name = self.file.display().to_string();
+        let others = load(other)?;
+        let Some(difference) = compare(recording, &others) else {
+            let steps = recording.steps.len();
+            let text = format!("{steps} steps, all equal\n");
+            let json = json!({
+                "scene": recording.scene,
+                "made_by": recording.made_by,
+                "steps": steps,
+                "diverged_at": null,
+                "hash": null,
+            });
+            return Ok(Report { json, text });
+        };
+        let (what, place) = told(&difference);
+        Err(Failure::at(name, format!("{what} {}", other.display()), place))
+    }
+}
+
+/// A difference as a line, up to the other's name, and its place.
+fn told(difference: &Difference) -> (String, String) {
+    match difference {
+        Difference::Scene => ("has another scene or other settings than".to_owned(), String::new()),
+        Difference::Length { common } => {
+            ("is equal as far as both go, but not as long as".to_owned(), format!("step {common}"))
+        }
+        Difference::State { step, body: None } => {
+            ("differs, though in the pose of no body, from".to_owned(), format!("step {step}"))
+        }
+        Difference::State { step, body: Some((id, [mine, theirs])) } => {
+            let apart = (mine.translation - theirs.translation).length();
+            let turned = mine.rotation.angle_to(theirs.rotation).to_degrees();
+            let at = |place: &Transform| {
+                let at = place.translation;
+                format!("({:.4}, {:.4}, {:.4})", at.x, at.y, at.z)
+            };
+            let what = format!(
+                "differs first in body {}, at {} and {}, {apart:.3e} m and {turned:.3e}° apart, from",
+                id.to_bits() as u32,
+                at(mine),
+                at(theirs)
+            );
+            (what, format!("step {step}"))
+        }
+    }
+}

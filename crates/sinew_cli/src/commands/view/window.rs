@@ -1,0 +1,46 @@
+//! The window of `sinew view`.
+
+use super::View;
+use crate::failure::{Failure, Result};
+use crate::report::Report;
+
+impl View {
+    /// Opens the window, until it is closed.
+    #[cfg(feature = "viewer")]
+    pub(super) fn open(&self) -> Result<Report> {
+        use crate::input::scene_choice::choose;
+        use serde_json::json;
+        use sinew_scenes::scenes::find;
+        use sinew_viewer::{Options, Preferences, Subject, open};
+        use std::path::Path;
+
+        let subject = match self.subject.as_deref() {
+            None => None,
+            Some(name) if find(name).is_some() || Path::new(name).extension().is_none() => {
+                let (scene, settings) = choose(name, &self.settings)?;
+                Some(Subject::Scene(scene, Box::new(settings), self.settings.clone()))
+            }
+            Some(_) if !self.settings.is_empty() => {
+                return Err(Failure::Usage("--set is for scenes; a file has none".into()));
+            }
+            Some(name) => Some(Subject::file(Path::new(name))?),
+        };
+        let title = subject.as_ref().map(Subject::title);
+        let options = Options {
+            subject,
+            paused: self.paused,
+            log: self.log,
+            preferences: Preferences::path(),
+            size: None,
+        };
+        open(options).map_err(|error| Failure::of_file(title.clone().unwrap_or("view".into()), error))?;
+        Ok(Report { json: json!({"subject": title, "outputs": []}), text: String::new() })
+    }
+
+    /// Says that there is none.
+    #[cfg(not(feature = "viewer"))]
+    pub(super) fn open(&self) -> Result<Report> {
+        let line = "this 'sinew' was built without its window: give a scene and --picture OUT or --movie OUT";
+        Err(Failure::Usage(line.into()))
+    }
+}

@@ -1,0 +1,161 @@
+//! The window under Xvfb with a software driver: it opens, shows a scene, is pulled at by a mouse, writes pictures.
+//!
+//! Ignored unless asked for: `cargo xtask ci --full` runs it. Without Xvfb, xdotool or a driver it says that it skipped.
+#![cfg(feature = "viewer")]
+
+use crate::sinew::{Folder, command};
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
+
+/// Patience with a software driver on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(90);
+
+/// A display of its own; killed at the end.
+struct Display {
+    server: Child,
+    name: String,
+}
+
+impl Display {
+    /// Starts one; `None` without Xvfb or xdotool.
+    fn start() -> Option<Self> {
+        let has = |program: &str| {
+            let found =
+                Command::new(program).arg("-version").stdout(Stdio::null()).stderr(Stdio::null()).status();
+            found.is_ok()
+        };
+        if !has("xdotool") {
+            println!("skipped: no xdotool here (Debian's package `xdotool`)");
+            return None;
+        }
+        let server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "1400x900x24", "-nolisten", "tcp"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn();
+        let Ok(mut server) = server else {
+            println!("skipped: no Xvfb here (Debian's package `xvfb`)");
+            return None;
+        };
+        let mut number = String::new();
+        let out = server.stdout.as_mut().expect("stdout is piped");
+        BufReader::new(out.take(16)).read_line(&mut number).expect("it tells its number");
+        Some(Self { server, name: format!(":{}", number.trim()) })
+    }
+
+    fn xdotool(&self, arguments: &[&str]) {
+        let done = Command::new("xdotool").args(arguments).env("DISPLAY", &self.name).output();
+        let done = done.expect("xdotool starts");
+        assert!(done.status.success(), "xdotool {arguments:?}: {}", String::from_utf8_lossy(&done.stderr));
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        // It may have ended already.
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+/// The viewer as a process, and what it says; killed at the end.
+struct Viewer {
+    process: Child,
+    lines: Receiver<String>,
+}
+
+impl Viewer {
+    fn start(display: &Display, folder: &Folder, arguments: &[&str]) -> Self {
+        let mut command = command(arguments);
+        let mut process = command
+            .env("DISPLAY", &display.name)
+            .env_remove("WAYLAND_DISPLAY")
+            .env("XDG_CONFIG_HOME", folder.path("config"))
+            .current_dir(folder.path(""))
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the binary starts");
+        let stderr = BufReader::new(process.stderr.take().expect("stderr is piped"));
+        let (told, lines) = channel();
+        std::thread::spawn(move || {
+            for line in stderr.lines().map_while(Result::ok) {
+                if told.send(line).is_err() {
+                    return;
+                }
+            }
+        });
+        Self { process, lines }
+    }
+
+    /// The next line with these words.
+    fn wait_for(&self, words: &str) -> String {
+        let mut heard = Vec::new();
+        loop {
+            let line = self.lines.recv_timeout(PATIENCE);
+            let line = line.unwrap_or_else(|_| panic!("nothing said `{words}`, but {heard:#?}"));
+            if line.contains(words) {
+                return line;
+            }
+            heard.push(line);
+        }
+    }
+}
+
+impl Drop for Viewer {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+#[test]
+#[ignore = "opens a window: cargo xtask ci --full"]
+fn a_window_opens_and_is_pulled_at() {
+    let Some(display) = Display::start() else { return };
+    if let Err(error) = sinew_viewer::Gpu::open() {
+        return println!("skipped: {error}");
+    }
+    let folder = Folder::new("window");
+    let viewer = Viewer::start(&display, &folder, &["view", "free_fall", "--paused", "--log"]);
+    viewer.wait_for("drawn by");
+    // Without a window manager nobody gives it the keyboard.
+    display.xdotool(&["search", "--name", "Sinew", "windowfocus"]);
+    display.xdotool(&["mousemove", "620", "357"]);
+    let picture = || {
+        display.xdotool(&["key", "F12"]);
+        let line = viewer.wait_for("wrote");
+        let name = line.strip_prefix("wrote ").expect("the name follows").to_owned();
+        let bytes = std::fs::read(folder.path(&name)).expect("the picture is there");
+        assert!(bytes.starts_with(b"\x89PNG"));
+        (name, bytes)
+    };
+    let (name, before) = picture();
+    assert_eq!(name, "sinew-free_fall-0.png");
+    // Of a single body that falls the middle of the picture is the body.
+    display.xdotool(&["mousedown", "1"]);
+    display.xdotool(&["mousemove", "632", "350"]);
+    viewer.wait_for("holds body");
+    // Presses within one frame of a slow driver are one, so it takes no more steps than these.
+    for i in 1..=12 {
+        let (x, y) = ((620 + 14 * i).to_string(), (357 - 8 * i).to_string());
+        display.xdotool(&["mousemove", &x, &y, "key", "n"]);
+    }
+    display.xdotool(&["mouseup", "1"]);
+    viewer.wait_for("let go");
+    let (name, after) = picture();
+    assert_ne!(name, "sinew-free_fall-0.png", "it has taken steps");
+    assert_ne!(before, after, "it was pulled");
+}
+
+#[test]
+#[ignore = "opens a display: cargo xtask ci --full"]
+fn a_file_that_is_none_is_a_line() {
+    let Some(display) = Display::start() else { return };
+    let folder = Folder::new("window-file");
+    let file = folder.file("no.glb", "nothing");
+    let viewer = Viewer::start(&display, &folder, &["view", &file, "--log"]);
+    let line = viewer.wait_for("no.glb");
+    assert!(line.starts_with("error: "), "{line}");
+}

@@ -1,0 +1,107 @@
+//! A character of a file, limp: it falls on a floor and lies there, drawn by its skin.
+
+use crate::framework::actors::Figure;
+use crate::framework::instance::{Instance, Script};
+use crate::framework::metric::{Expected, Metric};
+use crate::parts::{GRAVITY, floor};
+use sinew::anim::{Rig, RigAnalysis, local_to_model};
+use sinew::math::{Affine, ReadError, Reader, Rotation, Transform, Vec3, Writer};
+use sinew::physics::{BodyId, World, WorldDef};
+use sinew::ragdoll::{
+    AfterSettling, BuildError, BuildOptions, BuildReport, Character, CharacterDef, QualityMeter, build,
+};
+use std::sync::Arc;
+
+/// Height of the soles above the floor at the start, as a share of the character's height.
+const HEIGHT: f32 = 0.4;
+/// Lean forward at the start, radians: one that stands upright would not fall over.
+const LEAN: f32 = 0.35;
+
+/// A character that falls limp on a floor, and the report on its ragdoll. The fall begins at once, in the rest pose of the file.
+///
+/// # Errors
+/// If no ragdoll can be built.
+pub fn fall_of(rig: Rig, analysis: &RigAnalysis) -> Result<(Instance, BuildReport), BuildError> {
+    let (ragdoll, report) = build(&rig, analysis, &BuildOptions::default())?;
+    let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    def.after_settling = AfterSettling::StayDown;
+    let def = Arc::new(def);
+    let mut world = World::new(WorldDef { gravity: Vec3::NEG_Y * GRAVITY, ..WorldDef::default() });
+    world.add_body(&floor());
+    let lean = Rotation::from_axis_angle(Vec3::X, LEAN);
+    let height = HEIGHT * def.ragdoll.height;
+    let mut character = Character::new(def.clone(), Transform::new(Vec3::Y * height, lean), 0.0);
+    character.go_limp(&mut world);
+    let mut meter = QualityMeter::new(&def.ragdoll, SECONDS);
+    meter.went_limp();
+    meter.before_step(&world);
+    let mut fallen = Fallen { def, character, meter, model: Vec::new() };
+    fallen.show();
+    Ok((Instance::new(world, fallen), report))
+}
+
+/// Length of a fall for which the meter has memory from the start, seconds.
+const SECONDS: f32 = 10.0;
+
+/// The character on its way down.
+struct Fallen {
+    def: Arc<CharacterDef>,
+    character: Character,
+    meter: QualityMeter,
+    /// World from joint.
+    model: Vec<Affine>,
+}
+
+impl Fallen {
+    fn show(&mut self) {
+        let root = self.character.world_from_model();
+        local_to_model(&self.def.rig, self.character.pose(), &root, &mut self.model);
+    }
+}
+
+impl Script for Fallen {
+    fn before_step(&mut self, world: &mut World) {
+        self.meter.before_step(world);
+    }
+
+    fn after_step(&mut self, world: &mut World) {
+        if let Some(ragdoll) = self.character.ragdoll() {
+            self.meter.after_step(world, ragdoll);
+        }
+        self.character.update(world);
+        self.show();
+    }
+
+    fn save(&self, out: &mut Writer) {
+        self.character.save(out);
+    }
+
+    fn load(&mut self, bytes: &mut Reader<'_>) -> Result<(), ReadError> {
+        self.character.load(bytes)?;
+        self.show();
+        Ok(())
+    }
+
+    /// The bars of a drop.
+    fn metrics(&self, _: &World) -> Vec<Metric> {
+        let q = self.meter.quality();
+        vec![
+            Metric::new("joint_gap_p99_m", q.joint_gap_p99_m, Expected::AtMost(1e-3)),
+            Metric::new("joint_gap_max_m", q.joint_gap_max_m, Expected::AtMost(5e-3)),
+            Metric::new("limit_overshoot_p99_deg", q.limit_overshoot_p99_deg, Expected::AtMost(2.0)),
+            Metric::new("limit_overshoot_max_deg", q.limit_overshoot_max_deg, Expected::AtMost(4.0)),
+            Metric::new("nonadjacent_overlap_max_m", q.nonadjacent_overlap_max_m, Expected::AtMost(0.01)),
+            Metric::new("penetration_max_m", q.penetration_max_m, Expected::Anything),
+            Metric::awaited("settled_s", q.settled_s, Expected::Anything),
+            Metric::awaited("asleep_s", q.asleep_s, Expected::AtMost(6.0)),
+        ]
+    }
+
+    fn figures(&self) -> Vec<Figure<'_>> {
+        vec![Figure { rig: &self.def.rig, world_from_joint: &self.model }]
+    }
+
+    fn bodies_of_figures(&self) -> Vec<BodyId> {
+        self.character.ragdoll().map(|ragdoll| ragdoll.bodies.clone()).unwrap_or_default()
+    }
+}

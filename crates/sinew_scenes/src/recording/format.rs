@@ -1,0 +1,201 @@
+//! The file: operations, hashes and key frames, field by field.
+
+use super::hands::Operation;
+use sinew::formats::Error;
+use sinew::math::{ReadError, Reader, Transform, Writer};
+use sinew::physics::BodyId;
+
+/// First bytes of the file.
+const MAGIC: &[u8; 8] = b"sinewrec";
+/// Version of the format. What is added later comes with a higher one.
+pub const FORMAT: u32 = 1;
+
+/// Record of what was done to a scene, and of what became of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recording {
+    /// Version of Sinew that made it: only this one is known to have the same bits.
+    pub made_by: String,
+    /// Name of the scene.
+    pub scene: String,
+    /// Its settings that were not at their defaults, `key=value`.
+    pub settings: Vec<String>,
+    /// Length of a step, seconds.
+    pub dt: f32,
+    /// All steps, in order.
+    pub steps: Vec<RecordedStep>,
+    /// Poses at times, in the order of their steps; the first is the start.
+    pub key_frames: Vec<KeyFrame>,
+}
+
+/// A step of a recording.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordedStep {
+    /// Done before the step.
+    pub operations: Vec<Operation>,
+    /// Hash of the world's state after it.
+    pub hash: u64,
+}
+
+/// Poses of all bodies at a time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KeyFrame {
+    /// Steps that have been taken.
+    pub step: u64,
+    /// World from body, for each body in the order of ids.
+    pub bodies: Vec<(BodyId, Transform)>,
+}
+
+impl Recording {
+    /// The bytes of the file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut out = Writer::new();
+        out.raw(MAGIC);
+        out.u32(FORMAT);
+        out.text(&self.made_by);
+        out.text(&self.scene);
+        out.count(self.settings.len());
+        self.settings.iter().for_each(|setting| out.text(setting));
+        out.f32(self.dt);
+        out.count(self.steps.len());
+        for step in &self.steps {
+            out.u64(step.hash);
+            out.count(step.operations.len());
+            // Each in a block: a reader passes over the kinds that it does not know.
+            step.operations.iter().for_each(|operation| out.block(|out| write_operation(out, operation)));
+        }
+        out.count(self.key_frames.len());
+        for frame in &self.key_frames {
+            out.u64(frame.step);
+            out.count(frame.bodies.len());
+            for (body, place) in &frame.bodies {
+                out.u64(body.to_bits());
+                out.transform(*place);
+            }
+        }
+        out.into_bytes()
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// Bytes that are no recording, end too early, or come from a later format.
+    pub fn read(bytes: &[u8]) -> Result<Self, Error> {
+        if bytes.get(..MAGIC.len()) != Some(MAGIC) {
+            return Err(Error::malformed("is no recording", "byte 0"));
+        }
+        let mut reader = Reader::new(&bytes[MAGIC.len()..]);
+        let format = reader.u32().map_err(wrong)?;
+        if format != FORMAT {
+            let what = format!("is a recording of format {format}; this version reads {FORMAT}");
+            return Err(Error::unsupported(what, "byte 8"));
+        }
+        let recording = Self::read_fields(&mut reader).map_err(wrong)?;
+        reader.finish().map_err(wrong)?;
+        Ok(recording)
+    }
+
+    fn read_fields(reader: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut recording =
+            Self { made_by: reader.text()?.to_owned(), scene: reader.text()?.to_owned(), ..Self::default() };
+        for _ in 0..reader.count(4)? {
+            recording.settings.push(reader.text()?.to_owned());
+        }
+        recording.dt = reader.f32()?;
+        if !(recording.dt > 0.0 && recording.dt < 10.0) {
+            return Err(reader.error("a step of no length"));
+        }
+        for _ in 0..reader.count(12)? {
+            let mut step = RecordedStep { hash: reader.u64()?, operations: Vec::new() };
+            for _ in 0..reader.count(5)? {
+                step.operations.extend(read_operation(&mut reader.block()?)?);
+            }
+            recording.steps.push(step);
+        }
+        for _ in 0..reader.count(12)? {
+            let step = reader.u64()?;
+            let mut bodies = Vec::new();
+            for _ in 0..reader.count(36)? {
+                bodies.push((BodyId::from_bits(reader.u64()?), transform(reader)?));
+            }
+            recording.key_frames.push(KeyFrame { step, bodies });
+        }
+        Ok(recording)
+    }
+}
+
+/// A pose that can be drawn.
+fn transform(reader: &mut Reader<'_>) -> Result<Transform, ReadError> {
+    let place = reader.transform()?;
+    let rotation = place.rotation;
+    let is_sound = place.translation.is_finite() && rotation.vector().is_finite() && rotation.w.is_finite();
+    if is_sound { Ok(place) } else { Err(reader.error("a pose that is not finite")) }
+}
+
+fn wrong(error: ReadError) -> Error {
+    Error::malformed(error.what, format!("byte {}", error.at + MAGIC.len()))
+}
+
+/// Kinds of operations in the file. Never used again for something else.
+mod kind {
+    pub const GRAB: u8 = 1;
+    pub const LEAD: u8 = 2;
+    pub const RELEASE: u8 = 3;
+    pub const PUSH: u8 = 4;
+    pub const THROW: u8 = 5;
+    pub const PUT: u8 = 6;
+}
+
+fn write_operation(out: &mut Writer, operation: &Operation) {
+    match *operation {
+        Operation::Grab { body, point } => {
+            out.u8(kind::GRAB);
+            out.u64(body.to_bits());
+            out.vec3(point);
+        }
+        Operation::Lead { to } => {
+            out.u8(kind::LEAD);
+            out.vec3(to);
+        }
+        Operation::Release => out.u8(kind::RELEASE),
+        Operation::Push { body, impulse, point } => {
+            out.u8(kind::PUSH);
+            out.u64(body.to_bits());
+            out.vec3(impulse);
+            out.vec3(point);
+        }
+        Operation::Throw { position, velocity, radius, density } => {
+            out.u8(kind::THROW);
+            out.vec3(position);
+            out.vec3(velocity);
+            out.f32(radius);
+            out.f32(density);
+        }
+        Operation::Put { position, half_extents, density } => {
+            out.u8(kind::PUT);
+            out.vec3(position);
+            out.vec3(half_extents);
+            out.f32(density);
+        }
+    }
+}
+
+/// `None` for a kind that this version does not know.
+fn read_operation(reader: &mut Reader<'_>) -> Result<Option<Operation>, ReadError> {
+    let body = |reader: &mut Reader<'_>| reader.u64().map(BodyId::from_bits);
+    Ok(Some(match reader.u8()? {
+        kind::GRAB => Operation::Grab { body: body(reader)?, point: reader.vec3()? },
+        kind::LEAD => Operation::Lead { to: reader.vec3()? },
+        kind::RELEASE => Operation::Release,
+        kind::PUSH => Operation::Push { body: body(reader)?, impulse: reader.vec3()?, point: reader.vec3()? },
+        kind::THROW => Operation::Throw {
+            position: reader.vec3()?,
+            velocity: reader.vec3()?,
+            radius: reader.f32()?,
+            density: reader.f32()?,
+        },
+        kind::PUT => {
+            Operation::Put { position: reader.vec3()?, half_extents: reader.vec3()?, density: reader.f32()? }
+        }
+        _ => return Ok(None),
+    }))
+}

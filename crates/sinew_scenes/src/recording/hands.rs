@@ -1,0 +1,218 @@
+//! Hands of a person in a running scene.
+
+use sinew::math::{Transform, Vec3, max};
+use sinew::physics::{
+    BodyDef, BodyId, BodyKind, JointCollision, JointDef, JointId, JointKind, Motor, Shape, ShapeDef, SixDof,
+    Softness, World,
+};
+
+/// Deed of a person in a running scene, between two steps. Lengths in metres, world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operation {
+    /// Takes hold of a body at a point.
+    Grab {
+        /// The body; nothing happens if it is not there or does not move.
+        body: BodyId,
+        /// Point at which it is held.
+        point: Vec3,
+    },
+    /// Pulls what is held toward a point.
+    Lead {
+        /// The point.
+        to: Vec3,
+    },
+    /// Lets go.
+    Release,
+    /// Strikes a body.
+    Push {
+        /// The body; nothing happens if it is not there or does not move.
+        body: BodyId,
+        /// N·s.
+        impulse: Vec3,
+        /// Point at which it strikes.
+        point: Vec3,
+    },
+    /// Throws a ball.
+    Throw {
+        /// Its middle.
+        position: Vec3,
+        /// m/s.
+        velocity: Vec3,
+        /// Metres, above 0.
+        radius: f32,
+        /// kg/m³, above 0.
+        density: f32,
+    },
+    /// Puts a box into the world.
+    Put {
+        /// Its middle.
+        position: Vec3,
+        /// Half of each side, metres, above 0.
+        half_extents: Vec3,
+        /// kg/m³, above 0.
+        density: f32,
+    },
+}
+
+/// Frequency at which what hangs together swings on the hand that holds it, Hz: lower lags behind the hand, higher jerks.
+const HERTZ: f32 = 2.5;
+/// Force of a hand, in weights of what hangs together on it (at 9.81 m/s²): lower cannot lift what lies under other things, higher
+/// tears at joints.
+const STRENGTH: f32 = 12.0;
+/// Weight of a kilogram, N.
+const WEIGHT: f32 = 9.81;
+
+/// Hands of a person in a world: what they hold. Plain data beside the world; what they do to it is in its snapshot.
+#[derive(Clone, Debug, Default)]
+pub struct Hands {
+    grip: Option<Grip>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Grip {
+    hand: BodyId,
+    joint: JointId,
+    body: BodyId,
+    /// In the body.
+    held: Vec3,
+    pull: Pull,
+}
+
+/// Spring of a hand, whose force has an end.
+#[derive(Clone, Copy, Debug)]
+struct Pull {
+    /// N.
+    max_force: f32,
+    softness: Softness,
+}
+
+impl Pull {
+    /// On what weighs so much, kg: critically damped.
+    fn on(mass: f32) -> Self {
+        let omega = HERTZ * core::f32::consts::TAU;
+        let softness = Softness::Stiffness { stiffness: mass * omega * omega, damping: 2.0 * mass * omega };
+        Self { max_force: STRENGTH * WEIGHT * mass, softness }
+    }
+
+    fn toward(self, to: Vec3) -> Motor {
+        let target = Transform::from_translation(to);
+        Motor { max_force: self.max_force, max_torque: 0.0, ..Motor::toward(target, self.softness) }
+    }
+}
+
+impl Hands {
+    /// Does it to the world. What makes no sense there (a body that is gone, numbers that are not finite) does nothing.
+    pub fn apply(&mut self, world: &mut World, operation: &Operation) {
+        if !operation.is_sound() {
+            return;
+        }
+        match *operation {
+            Operation::Grab { body, point } => self.grab(world, body, point),
+            Operation::Lead { to } => self.lead(world, to),
+            Operation::Release => self.release(world),
+            Operation::Push { body, impulse, point } => {
+                if moves(world, body) {
+                    world.apply_impulse(body, impulse, point);
+                }
+            }
+            Operation::Throw { position, velocity, radius, density } => {
+                let ball = ShapeDef { density, ..ShapeDef::new(Shape::Sphere { radius }) };
+                let mut def = BodyDef::dynamic(ball).at(position);
+                def.linear_velocity = velocity;
+                world.add_body(&def);
+            }
+            Operation::Put { position, half_extents, density } => {
+                let cuboid = ShapeDef { density, ..ShapeDef::new(Shape::Box { half_extents }) };
+                world.add_body(&BodyDef::dynamic(cuboid).at(position));
+            }
+        }
+    }
+
+    /// Ends of the spring between what is held and where it is pulled, metres, world space.
+    pub fn spring(&self, world: &World) -> Option<[Vec3; 2]> {
+        let grip = self.grip.filter(|grip| world.contains(grip.body) && world.contains_joint(grip.joint))?;
+        let to = world.joint(grip.joint).motor?.target.translation;
+        Some([world.transform(grip.body).point(grip.held), to])
+    }
+
+    fn grab(&mut self, world: &mut World, body: BodyId, point: Vec3) {
+        self.release(world);
+        if !moves(world, body) {
+            return;
+        }
+        let pull = Pull::on(mass_together(world, body));
+        let hand = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
+        let held = world.transform(body).inverse().point(point);
+        let frame = Transform::from_translation(held);
+        let kind = JointKind::SixDof(SixDof::FREE);
+        let joint = world.add_joint(&JointDef {
+            motor: Some(pull.toward(point)),
+            collision: JointCollision::Enabled,
+            ..JointDef::between(hand, body, Transform::IDENTITY, frame, kind)
+        });
+        self.grip = Some(Grip { hand, joint, body, held, pull });
+    }
+
+    fn lead(&mut self, world: &mut World, to: Vec3) {
+        if let Some(grip) = self.grip.filter(|grip| world.contains_joint(grip.joint)) {
+            world.set_motor(grip.joint, Some(grip.pull.toward(to)));
+        }
+    }
+
+    fn release(&mut self, world: &mut World) {
+        if let Some(grip) = self.grip.take()
+            && world.contains(grip.hand)
+        {
+            world.remove_body(grip.hand);
+        }
+    }
+}
+
+fn moves(world: &World, body: BodyId) -> bool {
+    world.contains(body) && world.kind(body) == BodyKind::Dynamic
+}
+
+/// Mass of a body and of all that hangs on it by joints, kg.
+fn mass_together(world: &World, body: BodyId) -> f32 {
+    let (mut found, mut next) = (vec![body], 0);
+    while let Some(&body) = found.get(next) {
+        next += 1;
+        for joint in world.joints_of(body) {
+            let (a, b) = world.joint_bodies(joint);
+            for other in [a, b] {
+                if moves(world, other) && !found.contains(&other) {
+                    found.push(other);
+                }
+            }
+        }
+    }
+    max(found.into_iter().map(|body| world.mass(body).mass).sum(), 1e-6)
+}
+
+impl Operation {
+    /// The same on the body of that number in whatever world: ids know the world that they are of, and another one plays the recording.
+    pub(super) fn of_any_world(mut self) -> Self {
+        if let Self::Grab { body, .. } | Self::Push { body, .. } = &mut self {
+            *body = BodyId::from_bits(body.to_bits());
+        }
+        self
+    }
+
+    /// True if its numbers are finite, no farther than 10⁶ m, and its sizes above 0.
+    fn is_sound(&self) -> bool {
+        let near = |v: Vec3| v.to_array().into_iter().all(|x| x.abs() < 1e6);
+        let positive = |x: f32| x > 1e-4 && x < 1e6;
+        match *self {
+            Self::Grab { point, .. } => near(point),
+            Self::Lead { to } => near(to),
+            Self::Release => true,
+            Self::Push { impulse, point, .. } => near(impulse) && near(point),
+            Self::Throw { position, velocity, radius, density } => {
+                near(position) && near(velocity) && positive(radius) && positive(density)
+            }
+            Self::Put { position, half_extents, density } => {
+                near(position) && half_extents.to_array().into_iter().all(positive) && positive(density)
+            }
+        }
+    }
+}

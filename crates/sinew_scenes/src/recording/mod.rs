@@ -1,0 +1,30 @@
+//! Recordings: what was done to a scene, and what became of it, step by step.
+//!
+//! A recording holds the scene with its settings, the [`Operation`]s before each step, the hash of the world's state after each,
+//! and at times the poses of all bodies. The version that made it replays it to the same bits and so finds the first step where
+//! anything differs; any other version can still show the poses.
+//!
+//! ```
+//! use sinew_scenes::recording::{Recorder, Recording, Replay};
+//!
+//! let mut recorder = Recorder::start("pendulum", &[])?;
+//! for _ in 0..60 {
+//!     recorder.step();
+//! }
+//! let bytes = recorder.finish().to_bytes();
+//! let mut replay = Replay::start(Recording::read(&bytes)?)?;
+//! while let Some(step) = replay.step() {
+//!     assert_eq!(step.found, step.recorded);
+//! }
+//! # Ok::<(), sinew::formats::Error>(())
+//! ```
+
+mod compare;
+mod format;
+mod hands;
+mod record;
+
+pub use compare::{Difference, compare};
+pub use format::{FORMAT, KeyFrame, RecordedStep, Recording};
+pub use hands::{Hands, Operation};
+pub use record::{Recorder, Replay, ReplayedStep};

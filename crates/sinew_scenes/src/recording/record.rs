@@ -1,0 +1,168 @@
+//! Making recordings, and playing them again.
+
+use super::format::{KeyFrame, RecordedStep, Recording};
+use super::hands::{Hands, Operation};
+use crate::framework::instance::Instance;
+use crate::scenes::find;
+use sinew::formats::Error;
+use sinew::physics::stage::{NoProfiler, Profiler};
+use sinew::physics::{Serial, TaskRunner, World};
+
+/// Steps between key frames.
+const KEY_FRAME_STEPS: u64 = 30;
+
+/// A scene that runs, and the recording of it.
+pub struct Recorder {
+    instance: Instance,
+    hands: Hands,
+    recording: Recording,
+    /// For the step that comes next.
+    operations: Vec<Operation>,
+}
+
+/// A scene with settings, `key=value` each, ready to run.
+fn instance_of(scene: &str, settings: &[String]) -> Result<Instance, Error> {
+    let refused = |what: String| Error::unsupported(what, "scene");
+    let scene = find(scene).ok_or_else(|| refused(format!("no scene '{scene}'")))?;
+    let mut values = scene.settings();
+    for setting in settings {
+        values.assign(setting).map_err(|error| refused(error.to_string()))?;
+    }
+    values.check().map_err(|error| refused(error.to_string()))?;
+    Ok(scene.start(&values))
+}
+
+impl Recorder {
+    /// Starts a scene by name, with settings `key=value`.
+    ///
+    /// # Errors
+    /// If there is no such scene, or it refuses a setting.
+    pub fn start(scene: &str, settings: &[String]) -> Result<Self, Error> {
+        Ok(Self::of(instance_of(scene, settings)?, scene, settings))
+    }
+
+    /// Recorder of an instance that has not taken a step yet, made from that scene with those settings.
+    pub fn of(instance: Instance, scene: &str, settings: &[String]) -> Self {
+        let world = instance.world();
+        let recording = Recording {
+            made_by: env!("CARGO_PKG_VERSION").to_owned(),
+            scene: scene.to_owned(),
+            settings: settings.to_vec(),
+            dt: world.def().dt(),
+            steps: Vec::new(),
+            key_frames: vec![key_frame(world)],
+        };
+        Self { instance, hands: Hands::default(), recording, operations: Vec::new() }
+    }
+
+    /// The scene as it runs.
+    pub fn instance(&self) -> &Instance {
+        &self.instance
+    }
+
+    /// Hands, and so what they hold.
+    pub fn hands(&self) -> &Hands {
+        &self.hands
+    }
+
+    /// Does something to the scene now; it is recorded for the step that comes next.
+    pub fn apply(&mut self, operation: Operation) {
+        self.hands.apply(self.instance.world_mut(), &operation);
+        self.operations.push(operation.of_any_world());
+    }
+
+    /// One step on the calling thread.
+    pub fn step(&mut self) {
+        self.step_with(&Serial, &NoProfiler);
+    }
+
+    /// One step with the host's threads and stage times.
+    pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
+        self.instance.step_with(runner, profiler);
+        let world = self.instance.world();
+        let operations = core::mem::take(&mut self.operations);
+        self.recording.steps.push(RecordedStep { operations, hash: world.hash() });
+        if world.step_count() % KEY_FRAME_STEPS == 0 {
+            self.recording.key_frames.push(key_frame(world));
+        }
+    }
+
+    /// The recording so far.
+    pub fn recording(&self) -> &Recording {
+        &self.recording
+    }
+
+    /// The recording, with the poses at its end.
+    pub fn finish(mut self) -> Recording {
+        let end = key_frame(self.instance.world());
+        if self.recording.key_frames.last().is_none_or(|last| last.step != end.step) {
+            self.recording.key_frames.push(end);
+        }
+        self.recording
+    }
+}
+
+fn key_frame(world: &World) -> KeyFrame {
+    let bodies = world.body_ids().map(|id| (id, world.transform(id))).collect();
+    KeyFrame { step: world.step_count(), bodies }
+}
+
+/// A recording that is played again, by doing the same anew.
+pub struct Replay {
+    instance: Instance,
+    hands: Hands,
+    recording: Recording,
+}
+
+/// A step that was played again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ReplayedStep {
+    /// Steps taken, this one included.
+    pub step: u64,
+    /// Hash of the state that was recorded.
+    pub recorded: u64,
+    /// Hash of the state that it came to now.
+    pub found: u64,
+}
+
+impl Replay {
+    /// Starts at the recording's first step.
+    ///
+    /// # Errors
+    /// If this version has no such scene, or it refuses a setting.
+    pub fn start(recording: Recording) -> Result<Self, Error> {
+        let instance = instance_of(&recording.scene, &recording.settings)?;
+        Ok(Self { instance, hands: Hands::default(), recording })
+    }
+
+    /// The scene as it runs.
+    pub fn instance(&self) -> &Instance {
+        &self.instance
+    }
+
+    /// Hands, and so what they hold.
+    pub fn hands(&self) -> &Hands {
+        &self.hands
+    }
+
+    /// The recording that is played.
+    pub fn recording(&self) -> &Recording {
+        &self.recording
+    }
+
+    /// Takes the next step; `None` at the end.
+    pub fn step(&mut self) -> Option<ReplayedStep> {
+        self.step_with(&Serial, &NoProfiler)
+    }
+
+    /// Takes the next step with the host's threads and stage times; `None` at the end.
+    pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) -> Option<ReplayedStep> {
+        let taken = self.instance.world().step_count();
+        let step = self.recording.steps.get(usize::try_from(taken).ok()?)?;
+        for operation in &step.operations {
+            self.hands.apply(self.instance.world_mut(), operation);
+        }
+        self.instance.step_with(runner, profiler);
+        Some(ReplayedStep { step: taken + 1, recorded: step.hash, found: self.instance.world().hash() })
+    }
+}

@@ -1,0 +1,140 @@
+//! Recordings: the same again, what differs first, files of others.
+
+use sinew::math::{Random, Vec3};
+use sinew::physics::stage::NoProfiler;
+use sinew::physics::{BodyKind, Threads};
+use sinew_scenes::recording::{Difference, KeyFrame, Operation, Recorder, Recording, Replay, compare};
+
+/// A stack that is pulled, struck and shot at; `harder` changes one push.
+fn played(harder: f32) -> Recording {
+    let mut recorder = Recorder::start("stack", &[]).expect("there is such a scene");
+    let world = recorder.instance().world();
+    let body = world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic).last().expect("it moves");
+    let point = world.center_of_mass(body);
+    for step in 0..90 {
+        match step {
+            5 => recorder.apply(Operation::Grab { body, point }),
+            6..30 => recorder
+                .apply(Operation::Lead { to: point + Vec3::new(0.05, 0.02, 0.01) * (step - 5) as f32 }),
+            30 => recorder.apply(Operation::Release),
+            40 => recorder.apply(Operation::Push { body, impulse: Vec3::X * harder, point }),
+            50 => recorder.apply(Operation::Throw {
+                position: Vec3::new(-3.0, 1.0, 0.0),
+                velocity: Vec3::X * 12.0,
+                radius: 0.15,
+                density: 800.0,
+            }),
+            60 => recorder.apply(Operation::Put {
+                position: Vec3::new(0.0, 4.0, 0.0),
+                half_extents: Vec3::splat(0.2),
+                density: 500.0,
+            }),
+            _ => {}
+        }
+        recorder.step();
+    }
+    recorder.finish()
+}
+
+#[test]
+fn a_recording_comes_to_the_same_states_on_any_number_of_threads() {
+    let recording = Recording::read(&played(1.0).to_bytes()).expect("what we write we read");
+    assert_eq!(recording, played(1.0));
+    assert_eq!(recording.key_frames.iter().map(|frame| frame.step).collect::<Vec<_>>(), [0, 30, 60, 90]);
+    let mut replay = Replay::start(recording.clone()).expect("it starts");
+    let threads = Threads::new(2);
+    let mut steps = 0;
+    while let Some(step) = replay.step_with(&threads, &NoProfiler) {
+        steps += 1;
+        assert_eq!((step.step, step.found), (steps, step.recorded));
+    }
+    assert_eq!(steps, 90);
+    // Hands have done something: the pulled body left its place, the ball and the box are there.
+    let KeyFrame { bodies, .. } = &recording.key_frames[3];
+    assert_eq!(bodies.len(), recording.key_frames[0].bodies.len() + 2);
+}
+
+#[test]
+fn the_first_difference_is_found() {
+    let (a, b) = (played(1.0), played(1.001));
+    assert_eq!(compare(&a, &a), None);
+    let Some(Difference::State { step, body: Some((id, [mine, theirs])) }) = compare(&a, &b) else {
+        panic!("{:?}", compare(&a, &b));
+    };
+    // Pushed before the 41st step, it is elsewhere after it.
+    assert_eq!(step, 41);
+    assert!(mine != theirs && (mine.translation - theirs.translation).length() < 1e-3, "{id:?}");
+    let short = Recording { steps: a.steps[..50].to_vec(), ..a.clone() };
+    assert_eq!(compare(&a, &short), Some(Difference::Length { common: 50 }));
+    let other = Recording { scene: "pendulum".into(), ..a.clone() };
+    assert_eq!(compare(&a, &other), Some(Difference::Scene));
+    // What cannot be played again is compared by its key frames: here of a scene that no longer exists.
+    let [gone, moved] = [&a, &b].map(|it| Recording { scene: "long_gone".into(), ..it.clone() });
+    let Some(Difference::State { step: 41, body: Some(_) }) = compare(&gone, &moved) else {
+        panic!("{:?}", compare(&gone, &moved));
+    };
+}
+
+#[test]
+fn a_tampered_hash_is_told_at_its_step() {
+    let mut recording = played(1.0);
+    recording.steps[17].hash ^= 1;
+    let mut replay = Replay::start(recording).expect("it starts");
+    let wrong = std::iter::from_fn(|| replay.step()).find(|step| step.found != step.recorded);
+    assert_eq!(wrong.map(|step| step.step), Some(18));
+}
+
+/// A file of format 1 as an earlier version wrote it, with an operation of a kind that nobody knows. It must be readable for ever.
+const KEPT: &str = "\
+    73696e6577726563 01000000 05000000302e302e31 09000000667265655f66616c6c 00000000 8988883c \
+    01000000 efcdab8967452301 02000000 01000000 03 03000000 c80102 \
+    01000000 0000000000000000 01000000 0100000000000000 \
+    0000803f 00000040 00004040 00000000 00000000 00000000 0000803f";
+
+#[test]
+fn a_kept_file_is_read() {
+    let digits: Vec<u8> = KEPT.bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
+    let byte =
+        |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).expect("ASCII"), 16).expect("hexadecimal");
+    let bytes: Vec<u8> = digits.chunks(2).map(byte).collect();
+    let recording = Recording::read(&bytes).expect("it is read");
+    assert_eq!((recording.made_by.as_str(), recording.scene.as_str()), ("0.0.1", "free_fall"));
+    assert_eq!(recording.steps[0].operations, [Operation::Release]);
+    assert_eq!(recording.steps[0].hash, 0x0123_4567_89ab_cdef);
+    assert_eq!(recording.key_frames[0].bodies[0].1.translation, Vec3::new(1.0, 2.0, 3.0));
+    let mut replay = Replay::start(recording).expect("the scene is still there");
+    let step = replay.step().expect("one step");
+    assert_ne!(step.found, step.recorded);
+    let refused = |bytes: &[u8]| Recording::read(bytes).expect_err("it is refused").to_string();
+    assert_eq!(refused(b"nothing of the kind"), "is no recording (byte 0)");
+    let later = [&bytes[..8], &[9, 0, 0, 0], &bytes[12..]].concat();
+    assert_eq!(refused(&later), "is a recording of format 9; this version reads 1 (byte 8)");
+}
+
+/// Any bytes are read or refused, and what is read is played without a panic.
+#[test]
+fn hostile_files_are_refused() {
+    let bytes = played(1.0).to_bytes();
+    for end in 0..bytes.len().min(600) {
+        assert!(Recording::read(&bytes[..end]).is_err(), "cut at {end}");
+    }
+    let mut random = Random::new(7);
+    let mut refused = 0;
+    for _ in 0..300 {
+        let mut bytes = bytes.clone();
+        for _ in 0..4 {
+            let place = random.index(bytes.len());
+            bytes[place] = random.index(256) as u8;
+        }
+        let Ok(recording) = Recording::read(&bytes) else {
+            refused += 1;
+            continue;
+        };
+        if let Ok(mut replay) = Replay::start(recording) {
+            for _ in 0..70 {
+                replay.step();
+            }
+        }
+    }
+    assert!(refused > 0, "some mutations are seen");
+}

@@ -1,0 +1,81 @@
+//! Hints of the first minute, all keys, and the line that says what just happened.
+
+use super::{App, style};
+use egui::{Align2, Color32, FontId, Grid, RichText};
+
+/// Hints of the first minute.
+const HINTS: [&str; 3] = [
+    "Drag a body with the left button; drag the background to look around",
+    "Press B to throw a ball, Space to pause, R to start again",
+    "Choose a scene at the left, or drop a file on the window; ? shows all keys",
+];
+
+/// Keys and what they do.
+const KEYS: [(&str, &str); 16] = [
+    ("left drag", "on a body: pull it; on the background: look around"),
+    ("right drag", "look around"),
+    ("middle drag, Shift + drag", "shift the view"),
+    ("wheel", "nearer, farther"),
+    ("W A S D, Q E", "fly; with Shift faster"),
+    ("F", "see all of the scene"),
+    ("Space", "run, pause"),
+    ("N, .", "one step"),
+    ("R", "start again"),
+    ("B", "throw a ball at what the mouse points at"),
+    ("1 to 7", "layers"),
+    ("/", "search scenes; Enter opens the first"),
+    ("P, F12", "write a picture of the window"),
+    ("drop a file", "character (GLB, VRM, FBX), world (.json), recording (.sinewrec)"),
+    ("?, F1", "this help"),
+    ("Escape", "close it"),
+];
+
+/// Hints and the last message, over the picture.
+pub(super) fn overlay(app: &App, ui: &mut egui::Ui) {
+    let area = app.area;
+    let font = FontId::proportional(14.0);
+    let mut lines: Vec<String> = Vec::new();
+    if app.shows_hints {
+        lines.extend(HINTS.iter().map(ToString::to_string));
+    }
+    for (row, line) in lines.iter().enumerate() {
+        plate(
+            ui,
+            area.left_top() + egui::vec2(16.0, 16.0 + 28.0 * row as f32),
+            Align2::LEFT_TOP,
+            line,
+            &font,
+        );
+    }
+    if let Some((message, _)) = &app.message {
+        plate(ui, area.left_bottom() + egui::vec2(16.0, -16.0), Align2::LEFT_BOTTOM, message, &font);
+    }
+    if !app.running {
+        plate(ui, area.right_top() + egui::vec2(-16.0, 16.0), Align2::RIGHT_TOP, "paused", &font);
+    }
+}
+
+/// A line of text on a dark plate, readable over any picture.
+fn plate(ui: &egui::Ui, at: egui::Pos2, align: Align2, text: &str, font: &FontId) {
+    let galley =
+        ui.painter().layout(text.to_owned(), font.clone(), Color32::WHITE, 0.8 * ui.max_rect().width());
+    let rect = align.anchor_size(at, galley.size());
+    ui.painter().rect_filled(rect.expand2(egui::vec2(8.0, 4.0)), 4.0, Color32::from_black_alpha(170));
+    ui.painter().galley(rect.min, galley, Color32::WHITE);
+}
+
+/// All keys.
+pub(super) fn window(app: &mut App, ctx: &egui::Context) {
+    let mut open = app.shows_help;
+    let window = egui::Window::new("Keys").open(&mut open).collapsible(false).resizable(false);
+    window.anchor(Align2::CENTER_CENTER, [0.0, 0.0]).show(ctx, |ui| {
+        Grid::new("keys").num_columns(2).spacing([24.0, 7.0]).show(ui, |ui| {
+            for (key, what) in KEYS {
+                ui.label(RichText::new(key).strong());
+                ui.label(RichText::new(what).color(style::FAINT));
+                ui.end_row();
+            }
+        });
+    });
+    app.shows_help = open;
+}

@@ -1,0 +1,219 @@
+//! The panel at the right: what the scene is about, its settings, figures, layers, stages and state.
+
+use super::{App, style};
+use crate::layers::Layer;
+use crate::session::Subject;
+use crate::stage_times::STAGES;
+use egui::{Color32, RichText, ScrollArea, Sense, Slider, Stroke};
+use sinew_scenes::scenes::{Domain, Expected, Metric};
+use std::collections::VecDeque;
+
+/// Width of the panel, points.
+const WIDTH: f32 = 290.0;
+
+/// Shows it.
+pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
+    let panel = egui::Panel::right("inspector").resizable(true).default_size(WIDTH).frame(style::panel());
+    panel.show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
+            ui.heading(app.session.subject().title().replace('_', " "));
+            ui.label(RichText::new(app.session.subject().about()).color(style::FAINT));
+            ui.add_space(6.0);
+            settings(app, ui);
+            let report = app.session.report();
+            if !report.is_empty() {
+                section(ui, "Report", true, |ui| {
+                    report.iter().for_each(|line| {
+                        ui.label(line);
+                    })
+                });
+            }
+            section(ui, "Figures", true, |ui| figures(app, ui));
+            section(ui, "Layers", true, |ui| layers(app, ui));
+            section(ui, "Time by stage", true, |ui| stages(app, ui));
+            section(ui, "State", true, |ui| state(app, ui));
+        });
+    });
+}
+
+fn section(ui: &mut egui::Ui, title: &str, open: bool, add: impl FnOnce(&mut egui::Ui)) {
+    egui::CollapsingHeader::new(RichText::new(title).strong()).default_open(open).show(ui, add);
+}
+
+/// Sliders of the scene's settings, and its start with them.
+fn settings(app: &mut App, ui: &mut egui::Ui) {
+    let Subject::Scene(scene, current, _) = app.session.subject().clone() else { return };
+    let declared = scene.settings().declared();
+    if declared.is_empty() {
+        return;
+    }
+    let mut starts = false;
+    section(ui, "Settings", true, |ui| {
+        for setting in declared {
+            let Some((_, value)) = app.sliders.iter_mut().find(|(key, _)| *key == setting.key) else {
+                continue;
+            };
+            ui.label(
+                RichText::new(format!("{}: {}", setting.key, setting.about)).small().color(style::FAINT),
+            );
+            ui.spacing_mut().slider_width = 170.0;
+            starts |= match setting.domain {
+                Domain::Number(lo, hi) => ui.add(Slider::new(value, lo..=hi)).drag_stopped(),
+                Domain::Whole(lo, hi) => {
+                    ui.add(Slider::new(value, f32::from(lo)..=f32::from(hi)).integer()).drag_stopped()
+                }
+                _ => {
+                    ui.label(RichText::new("a file: give it by --set").small());
+                    false
+                }
+            };
+        }
+        let differs = app.sliders.iter().any(|&(key, value)| current.get(key).to_bits() != value.to_bits());
+        starts |= differs && ui.button("Start with these").clicked();
+    });
+    if starts {
+        let numbers =
+            declared.iter().filter(|it| matches!(it.domain, Domain::Number(..) | Domain::Whole(..)));
+        let value = |key: &str| app.sliders.iter().find(|(it, _)| *it == key).map(|it| it.1);
+        let changed = numbers
+            .filter_map(|it| Some((it, value(it.key)?)))
+            .filter(|(it, value)| it.default.to_bits() != value.to_bits());
+        let assignments: Vec<String> = changed.map(|(it, value)| format!("{}={value}", it.key)).collect();
+        match Subject::scene(scene.name, &assignments) {
+            Ok(subject) => app.open(subject),
+            Err(line) => app.tell(line),
+        }
+    }
+}
+
+fn figures(app: &App, ui: &mut egui::Ui) {
+    let metrics = app.session.instance().metrics();
+    // What a scene expects holds once it has run its course.
+    let is_over = match app.session.subject() {
+        Subject::Scene(scene, ..) => app.session.world().step_count() >= u64::from(scene.steps),
+        _ => true,
+    };
+    for (index, metric) in metrics.iter().enumerate() {
+        let value = metric.value.map_or("not yet".to_owned(), digits);
+        let color = match (metric.expected, metric.is_met()) {
+            (Expected::Anything, _) => style::FAINT,
+            (_, true) => style::GOOD,
+            (_, false) if is_over => style::BAD,
+            (_, false) => style::FAINT,
+        };
+        ui.horizontal(|ui| {
+            ui.label(metric.name);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.label(RichText::new(value).monospace().color(color));
+            });
+        });
+        let bar = match metric.expected {
+            Expected::Near { value, .. } => format!("closed form {}", digits(value)),
+            Expected::AtMost(most) => format!("at most {}", digits(most)),
+            Expected::Anything => String::new(),
+        };
+        if !bar.is_empty() {
+            ui.label(RichText::new(bar).small().color(style::FAINT));
+        }
+        if let Some(history) = app.history.get(index) {
+            plot(ui, history, metric);
+        }
+    }
+}
+
+/// The way of a figure, and the line that it should come to.
+fn plot(ui: &mut egui::Ui, history: &VecDeque<f64>, metric: &Metric) {
+    let known: Vec<(usize, f64)> =
+        history.iter().enumerate().filter(|(_, it)| it.is_finite()).map(|(i, &it)| (i, it)).collect();
+    let (Some(&(first, _)), true) = (known.first(), known.len() > 1) else { return };
+    let wanted = match metric.expected {
+        Expected::Near { value, .. } | Expected::AtMost(value) => Some(value),
+        Expected::Anything => None,
+    };
+    let all = || known.iter().map(|it| it.1).chain(wanted);
+    let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+    // What hardly moves is drawn as what stands still.
+    if high - low < 1e-9 * high.abs().max(1e-9) {
+        return;
+    }
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(ui.available_width(), 34.0), Sense::hover());
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 3.0, Color32::from_rgb(20, 22, 27));
+    let inner = rect.shrink(4.0);
+    let y = |value: f64| inner.bottom() - inner.height() * ((value - low) / (high - low)) as f32;
+    let span = (history.len() - 1 - first).max(1) as f32;
+    if let Some(wanted) = wanted {
+        painter.hline(inner.x_range(), y(wanted), Stroke::new(1.0, Color32::from_rgb(110, 118, 130)));
+    }
+    let at = |&(i, value): &(usize, f64)| {
+        egui::pos2(inner.left() + inner.width() * (i - first) as f32 / span, y(value))
+    };
+    painter.line(known.iter().map(at).collect(), Stroke::new(1.5, style::ACCENT));
+}
+
+fn layers(app: &mut App, ui: &mut egui::Ui) {
+    for (number, layer) in Layer::ALL.into_iter().enumerate() {
+        let mut on = app.layers.contains(&layer);
+        if ui.checkbox(&mut on, format!("{}  {}", number + 1, layer.name())).changed() {
+            app.toggle(layer);
+        }
+    }
+}
+
+fn stages(app: &App, ui: &mut egui::Ui) {
+    let times = app.session.times().milliseconds();
+    let total: f64 = times.iter().sum();
+    let mut sorted: Vec<_> =
+        STAGES.into_iter().zip(times).filter(|(_, time)| *time > 0.005 * total).collect();
+    sorted.sort_by(|a, b| b.1.total_cmp(&a.1));
+    if sorted.is_empty() {
+        ui.label(RichText::new("no step yet").color(style::FAINT));
+    }
+    for (stage, time) in sorted {
+        ui.horizontal(|ui| {
+            ui.label(format!("{stage:?}"));
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.label(RichText::new(format!("{time:.3} ms")).monospace());
+                let share = (time / total) as f32;
+                let (rect, _) = ui.allocate_exact_size(egui::vec2(48.0, 8.0), Sense::hover());
+                ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(20, 22, 27));
+                let bar =
+                    egui::Rect::from_min_size(rect.min, egui::vec2(rect.width() * share, rect.height()));
+                ui.painter().rect_filled(bar, 2.0, style::ACCENT);
+            });
+        });
+    }
+}
+
+fn state(app: &App, ui: &mut egui::Ui) {
+    let world = app.session.world();
+    let awake = world.body_ids().filter(|&id| world.is_awake(id)).count();
+    let energy = world.energy();
+    for (name, value) in [
+        ("steps", world.step_count().to_string()),
+        ("bodies", format!("{} ({awake} awake)", world.body_ids().count())),
+        ("joints", world.joint_ids().count().to_string()),
+        ("energy", format!("{:.4} J", energy.kinetic + energy.potential)),
+        ("hash", format!("{:016x}", world.hash())),
+    ] {
+        ui.horizontal(|ui| {
+            ui.label(name);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.label(RichText::new(value).monospace());
+            });
+        });
+    }
+    if let Some(step) = app.session.diverged() {
+        ui.label(RichText::new(format!("differs from the recording from step {step} on")).color(style::BAD));
+    }
+}
+
+/// Five digits.
+fn digits(x: f64) -> String {
+    let size = x.abs();
+    if size != 0.0 && !(1e-3..1e5).contains(&size) {
+        return format!("{x:.3e}");
+    }
+    let decimals = [1.0, 10.0, 100.0, 1000.0].iter().filter(|&&bound| size < bound).count();
+    format!("{x:.decimals$}")
+}

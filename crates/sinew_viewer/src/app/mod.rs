@@ -1,0 +1,402 @@
+//! The viewer without its window: what is shown, what hands do, the panels around it.
+
+mod browser;
+mod help;
+mod inspector;
+mod mouse;
+mod style;
+mod transport;
+
+use crate::layers::Layer;
+use crate::preferences::Preferences;
+use crate::session::{Session, Subject};
+use crate::stage::Stage;
+use crate::view::{self, Orbit};
+use egui::{Key, Rect, Vec2};
+use mouse::Mouse;
+use sinew::math::Vec3;
+use sinew_picture::Camera;
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Longest that a frame may step, so that the window stays awake in scenes that are slower than real time.
+const MOST_STEPPING: Duration = Duration::from_millis(60);
+/// Longest stretch of real time that a frame makes up for, seconds.
+const LONGEST_FRAME: f64 = 0.1;
+/// Time that a message is shown.
+const MESSAGE: Duration = Duration::from_secs(6);
+/// Values of a metric that its plot shows.
+const HISTORY: usize = 600;
+
+/// Start of a viewer.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Shown first; by default the demo of a first minute.
+    pub subject: Option<Subject>,
+    /// True to start without running.
+    pub paused: bool,
+    /// True to print each message to stderr as well.
+    pub log: bool,
+    /// File in which choices are kept from one start to the next; `None` keeps none.
+    pub preferences: Option<PathBuf>,
+    /// Size of the window, points.
+    pub size: Option<[f32; 2]>,
+}
+
+/// Scene of the first minute: a figure falls down stairs.
+const FIRST: &str = "stairs";
+
+/// The viewer without its window.
+pub struct App {
+    session: Session,
+    orbit: Orbit,
+    running: bool,
+    /// Simulated over real time.
+    speed: f32,
+    /// Real time that has not been stepped yet, seconds of simulation.
+    pending: f64,
+    last_frame: Option<Instant>,
+    frame_time: f32,
+    layers: Vec<Layer>,
+    search: String,
+    focuses_search: bool,
+    /// Settings of the scene as its sliders have them.
+    sliders: Vec<(&'static str, f32)>,
+    /// Values of each metric so far.
+    history: Vec<VecDeque<f64>>,
+    message: Option<(String, Instant)>,
+    shows_help: bool,
+    /// Seen since the start, until something is done.
+    shows_hints: bool,
+    mouse: Mouse,
+    area: Rect,
+    /// True once the camera has been set for the size that the picture really has.
+    is_framed: bool,
+    /// Sessions that were started.
+    starts: u64,
+    log: bool,
+    preferences: Option<PathBuf>,
+    wants_screenshot: bool,
+    wants_to_close: bool,
+}
+
+impl App {
+    /// A viewer of the subject, or of the demo.
+    ///
+    /// # Errors
+    /// One line: the subject cannot be started.
+    pub fn new(options: Options) -> Result<Self, String> {
+        let preferences = options.preferences.as_deref().map(Preferences::load).unwrap_or_default();
+        let shows_hints = options.subject.is_none();
+        let subject = match options.subject {
+            Some(subject) => subject,
+            None => Subject::scene(FIRST, &[])?,
+        };
+        let mut session = Session::start(subject).map_err(|error| error.to_string())?;
+        session.set_threads(preferences.threads);
+        let mut app = Self {
+            orbit: Orbit { target: Vec3::ZERO, yaw: 0.0, pitch: 0.0, distance: 1.0 },
+            session,
+            running: !options.paused,
+            speed: 1.0,
+            pending: 0.0,
+            last_frame: None,
+            frame_time: 0.0,
+            layers: preferences.layers,
+            search: String::new(),
+            focuses_search: false,
+            sliders: Vec::new(),
+            history: Vec::new(),
+            message: None,
+            shows_help: false,
+            shows_hints,
+            mouse: Mouse::default(),
+            area: Rect::from_min_size(Default::default(), Vec2::new(640.0, 360.0)),
+            is_framed: false,
+            starts: 0,
+            log: options.log,
+            preferences: options.preferences,
+            wants_screenshot: false,
+            wants_to_close: false,
+        };
+        app.begin();
+        Ok(app)
+    }
+
+    /// Session that is shown.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// Camera as it stands.
+    pub fn camera(&self) -> Camera {
+        self.orbit.camera()
+    }
+
+    /// Content of the picture.
+    pub fn stage(&self) -> Stage<'_> {
+        view::stage(&self.session, &self.camera(), &self.layers)
+    }
+
+    /// The line that is shown, if there is one.
+    pub fn message(&self) -> Option<&str> {
+        self.message.as_ref().map(|(line, _)| line.as_str())
+    }
+
+    /// Place in the window, points, at which a point of the world (metres) is seen; `None` behind the eye.
+    pub fn on_screen(&self, point: Vec3) -> Option<egui::Pos2> {
+        let camera = self.camera();
+        let axes = camera.axes(self.area.width() / self.area.height());
+        let way = point - camera.position;
+        let depth = way.dot(axes.forward);
+        let x = 0.5 + 0.5 * way.dot(axes.right) / (depth * axes.half_width);
+        let y = 0.5 - 0.5 * way.dot(axes.up) / (depth * axes.half_height);
+        (depth > 0.0).then(|| self.area.min + Vec2::new(x * self.area.width(), y * self.area.height()))
+    }
+
+    /// Key of what is shown: another one for each start.
+    pub(crate) fn subject_key(&self) -> u64 {
+        self.starts
+    }
+
+    /// Part of the window that is the picture, points.
+    pub fn area(&self) -> Rect {
+        self.area
+    }
+
+    /// True if the next frame differs from this one by itself.
+    pub fn is_moving(&self) -> bool {
+        self.running || self.mouse.is_busy() || self.message.is_some()
+    }
+
+    /// True once, if a picture of the window was asked for.
+    pub fn takes_screenshot(&mut self) -> bool {
+        std::mem::take(&mut self.wants_screenshot)
+    }
+
+    /// True if it is to end.
+    pub fn is_closing(&self) -> bool {
+        self.wants_to_close
+    }
+
+    /// Shows a line for a while.
+    pub fn tell(&mut self, line: impl Into<String>) {
+        let line = line.into();
+        if self.log {
+            eprintln!("{line}");
+        }
+        self.message = Some((line, Instant::now()));
+    }
+
+    /// Shows another subject, from its start. What cannot be started is a message.
+    pub fn open(&mut self, subject: Subject) {
+        let threads = self.session.threads();
+        match Session::start(subject) {
+            Ok(session) => {
+                self.session = session;
+                self.session.set_threads(threads);
+                self.begin();
+                self.tell(format!("opened {}", self.session.subject().title()));
+            }
+            Err(error) => self.tell(error.to_string()),
+        }
+    }
+
+    /// Shows a file that was dropped on the window. What cannot be read is a message.
+    pub fn open_file(&mut self, path: &Path) {
+        match Subject::file(path) {
+            Ok(subject) => self.open(subject),
+            Err(error) => self.tell(error.to_string()),
+        }
+    }
+
+    /// Begins with a new session: its camera, its sliders, its plots.
+    fn begin(&mut self) {
+        self.starts += 1;
+        self.pending = 0.0;
+        self.mouse = Mouse::default();
+        self.is_framed = false;
+        self.history.clear();
+        self.sliders = match self.session.subject() {
+            Subject::Scene(scene, settings, _) => {
+                let declared = scene.settings().declared().iter();
+                declared.map(|setting| (setting.key, settings.get(setting.key))).collect()
+            }
+            _ => Vec::new(),
+        };
+        self.frame();
+    }
+
+    /// Turns the camera to all that the scene is about.
+    fn frame(&mut self) {
+        let instance = self.session.instance();
+        let aspect = self.area.width().max(1.0) / self.area.height().max(1.0);
+        self.orbit = Orbit::framing(&view::bounds(instance), instance.camera_hint().direction, aspect);
+    }
+
+    fn restart(&mut self) {
+        let subject = self.session.subject().clone();
+        let orbit = self.orbit;
+        self.open(subject);
+        // Who looks closely at something wants to see it again from there.
+        self.orbit = orbit;
+        self.is_framed = true;
+    }
+
+    fn step(&mut self) {
+        if !self.session.step() {
+            self.running = false;
+            let line = match self.session.diverged() {
+                Some(step) => format!("end of the recording; its state differs from step {step} on"),
+                None => "end of the recording; every state was as recorded".to_owned(),
+            };
+            self.tell(line);
+        }
+        let metrics = self.session.instance().metrics();
+        self.history.resize_with(metrics.len(), VecDeque::new);
+        for (history, metric) in self.history.iter_mut().zip(&metrics) {
+            if history.len() == HISTORY {
+                history.pop_front();
+            }
+            history.push_back(metric.value.unwrap_or(f64::NAN));
+        }
+    }
+
+    /// Steps as much as real time has gone on.
+    pub fn advance(&mut self) {
+        let now = Instant::now();
+        let passed = self.last_frame.map_or(0.0, |last| (now - last).as_secs_f64());
+        self.last_frame = Some(now);
+        self.frame_time += (passed as f32 - self.frame_time) * 0.1;
+        if !self.running {
+            return;
+        }
+        let dt = f64::from(self.session.world().def().dt());
+        self.pending += passed.min(LONGEST_FRAME) * f64::from(self.speed);
+        while self.running && self.pending >= dt {
+            self.step();
+            self.pending -= dt;
+            if now.elapsed() > MOST_STEPPING {
+                self.pending = 0.0;
+            }
+        }
+    }
+
+    /// The panels, and what is done in them and in the picture between.
+    pub fn ui(&mut self, ui: &mut egui::Ui) {
+        style::apply(ui.ctx());
+        self.keys(ui);
+        browser::show(self, ui);
+        transport::show(self, ui);
+        inspector::show(self, ui);
+        egui::CentralPanel::no_frame().show(ui, |ui| {
+            let area = ui.max_rect();
+            if area != self.area {
+                self.area = area;
+                if !self.is_framed {
+                    self.is_framed = true;
+                    self.frame();
+                }
+            }
+            mouse::act(self, ui);
+            help::overlay(self, ui);
+        });
+        help::window(self, ui.ctx());
+        if self.message.as_ref().is_some_and(|(_, since)| since.elapsed() > MESSAGE) {
+            self.message = None;
+        }
+    }
+
+    fn keys(&mut self, ui: &egui::Ui) {
+        let ctx = ui.ctx();
+        if ctx.egui_wants_keyboard_input() {
+            return;
+        }
+        let pressed = |key: Key| ctx.input(|input| input.key_pressed(key));
+        let typed = |text: &str| {
+            ctx.input(|input| {
+                input.events.iter().any(|event| matches!(event, egui::Event::Text(it) if it == text))
+            })
+        };
+        if pressed(Key::Space) {
+            self.running = !self.running;
+        }
+        if pressed(Key::N) || typed(".") {
+            self.running = false;
+            self.step();
+        }
+        if pressed(Key::R) {
+            self.restart();
+        }
+        if pressed(Key::F) {
+            self.frame();
+        }
+        if pressed(Key::B) {
+            mouse::throw(self, ui);
+        }
+        if pressed(Key::P) || pressed(Key::F12) {
+            self.wants_screenshot = true;
+        }
+        if typed("?") || pressed(Key::F1) {
+            self.shows_help = !self.shows_help;
+        }
+        if typed("/") {
+            self.focuses_search = true;
+        }
+        if pressed(Key::Escape) {
+            self.shows_help = false;
+            self.shows_hints = false;
+        }
+        for (key, layer) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7]
+            .into_iter()
+            .zip(Layer::ALL)
+        {
+            if pressed(key) {
+                self.toggle(layer);
+            }
+        }
+        self.fly(ctx);
+    }
+
+    /// Moves the camera while keys are held.
+    fn fly(&mut self, ctx: &egui::Context) {
+        let (seconds, fast) = ctx.input(|input| (input.stable_dt.min(0.1), input.modifiers.shift));
+        let held = |key: Key| ctx.input(|input| f32::from(u8::from(input.key_down(key))));
+        let way =
+            Vec3::new(held(Key::D) - held(Key::A), held(Key::E) - held(Key::Q), held(Key::W) - held(Key::S));
+        if way != Vec3::ZERO {
+            self.orbit.shift(way * (seconds * if fast { 2.4 } else { 0.8 }));
+            ctx.request_repaint();
+        }
+    }
+
+    fn toggle(&mut self, layer: Layer) {
+        match self.layers.iter().position(|&on| on == layer) {
+            Some(place) => {
+                self.layers.remove(place);
+            }
+            None => self.layers.push(layer),
+        }
+    }
+
+    /// Keeps the choices for the next start, if they are to be kept. What cannot be written is no fault worth a line.
+    pub fn keep_preferences(&self) {
+        if let Some(path) = &self.preferences {
+            let kept = Preferences { layers: self.layers.clone(), threads: self.session.threads() };
+            kept.save(path);
+        }
+    }
+
+    /// Writes the recording of the scene so far into the working folder.
+    fn save_recording(&mut self) {
+        let Some(recording) = self.session.recording() else {
+            return self.tell("only scenes can be recorded");
+        };
+        let name = format!("{}-{}.sinewrec", recording.scene, recording.steps.len());
+        match sinew::formats::write_atomic(&name, &recording.to_bytes()) {
+            Ok(()) => self.tell(format!("wrote {name}")),
+            Err(error) => self.tell(error.to_string()),
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Hands in the picture: grab, pull, throw; turn, shift and near the camera.
+
+use super::App;
+use egui::{PointerButton, Pos2, Sense};
+use sinew::math::Vec3;
+use sinew::physics::ray::Ray;
+use sinew::physics::{BodyHit, BodyKinds, QueryFilter};
+use sinew_scenes::recording::Operation;
+
+/// Radius of a ball that is thrown, metres.
+const BALL: f32 = 0.12;
+/// Density of water, kg/m³: such a ball weighs 7 kg.
+const DENSITY: f32 = 1000.0;
+/// Speed at which it is thrown, m/s.
+const THROW: f32 = 14.0;
+/// Turn of the camera by a point of the mouse's way, radians.
+const TURN: f32 = 0.0065;
+
+/// State of the mouse.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Mouse {
+    /// Distance along the view at which something is held, metres.
+    held: Option<f32>,
+}
+
+impl Mouse {
+    pub fn is_busy(self) -> bool {
+        self.held.is_some()
+    }
+}
+
+/// Does what the mouse does in the picture.
+pub(super) fn act(app: &mut App, ui: &mut egui::Ui) {
+    let response = ui.allocate_rect(app.area, Sense::click_and_drag());
+    if response.drag_started_by(PointerButton::Primary)
+        && let Some(at) = ui.input(|input| input.pointer.press_origin())
+    {
+        grab(app, at);
+    }
+    if let (Some(depth), Some(at)) = (app.mouse.held, response.interact_pointer_pos()) {
+        let to = at_depth(app, &ray(app, at), depth);
+        app.session.apply(Operation::Lead { to });
+    }
+    if app.mouse.held.is_some() && !ui.input(|input| input.pointer.primary_down()) {
+        app.mouse.held = None;
+        app.session.apply(Operation::Release);
+        app.tell("let go");
+    }
+    let shift = ui.input(|input| input.modifiers.shift);
+    let turns = response.dragged_by(PointerButton::Primary) && app.mouse.held.is_none()
+        || response.dragged_by(PointerButton::Secondary);
+    let delta = response.drag_delta();
+    if response.dragged_by(PointerButton::Middle) || turns && shift {
+        let by = 1.0 / app.area.height().max(1.0);
+        app.orbit.shift(Vec3::new(-delta.x * by, delta.y * by, 0.0));
+    } else if turns {
+        app.orbit.turn(-delta.x * TURN, delta.y * TURN);
+    }
+    if response.hovered() {
+        let scroll = ui.input(|input| input.smooth_scroll_delta.y);
+        if scroll != 0.0 {
+            app.orbit.zoom((-0.0022 * scroll).exp2());
+        }
+    }
+}
+
+/// Throws a ball from the eye at what the mouse points at, or straight ahead.
+pub(super) fn throw(app: &mut App, ui: &egui::Ui) {
+    let at = ui.input(|input| input.pointer.hover_pos()).filter(|at| app.area.contains(*at));
+    let ray = ray(app, at.unwrap_or(app.area.center()));
+    let way = ray.direction.normalize();
+    // A world of another size has balls of its size.
+    let size = (app.orbit.distance / 6.0).clamp(0.2, 20.0);
+    let position = ray.origin + way * (2.5 * BALL * size);
+    let velocity = way * (THROW * size.sqrt());
+    app.session.apply(Operation::Throw { position, velocity, radius: BALL * size, density: DENSITY });
+    app.tell("threw a ball");
+}
+
+fn ray(app: &App, at: Pos2) -> Ray {
+    let (area, at) = (app.area, at - app.area.min);
+    app.orbit.ray(at.x / area.width(), at.y / area.height(), area.width() / area.height())
+}
+
+/// Distance along the view of a point, metres.
+fn depth(app: &App, point: Vec3) -> f32 {
+    let camera = app.camera();
+    (point - camera.position).dot(camera.axes(1.0).forward)
+}
+
+/// Point of a ray at a distance along the view.
+fn at_depth(app: &App, ray: &Ray, depth: f32) -> Vec3 {
+    let way = ray.direction.normalize();
+    ray.origin + way * (depth / way.dot(app.camera().axes(1.0).forward).max(1e-3))
+}
+
+fn grab(app: &mut App, at: Pos2) {
+    if !app.session.is_live() {
+        return;
+    }
+    let ray = ray(app, at);
+    let world = app.session.world();
+    let solid = world.query().filter(QueryFilter::of(BodyKinds::DYNAMIC | BodyKinds::STATIC));
+    let Some(BodyHit { body, point, .. }) = solid.first(&ray) else { return };
+    if world.kind(body) != sinew::physics::BodyKind::Dynamic {
+        return;
+    }
+    app.mouse.held = Some(depth(app, point));
+    app.shows_hints = false;
+    app.session.apply(Operation::Grab { body, point });
+    app.tell(format!("holds body {} at {:.2} {:.2} {:.2}", body.to_bits() as u32, point.x, point.y, point.z));
+}

@@ -1,0 +1,50 @@
+//! The bar below: run, pause, step, how fast, and what it costs.
+
+use super::{App, style};
+use egui::{RichText, Slider};
+
+/// Shows it.
+pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
+    egui::Panel::bottom("transport").frame(style::panel()).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            let label = if app.running { "Pause" } else { "Run" };
+            if ui.button(label).on_hover_text("Space").clicked() {
+                app.running = !app.running;
+            }
+            if ui.button("Step").on_hover_text("N").clicked() {
+                app.running = false;
+                app.step();
+            }
+            if ui.button("Restart").on_hover_text("R").clicked() {
+                app.restart();
+            }
+            ui.separator();
+            ui.label(RichText::new("speed").color(style::FAINT));
+            ui.add(Slider::new(&mut app.speed, 0.02..=2.0).logarithmic(true).max_decimals(2).suffix(" ×"));
+            ui.separator();
+            ui.label(RichText::new("threads").color(style::FAINT));
+            let mut threads = app.session.threads();
+            let most = std::thread::available_parallelism().map_or(1, usize::from);
+            if ui.add(egui::DragValue::new(&mut threads).range(1..=most)).changed() {
+                app.session.set_threads(threads);
+            }
+            ui.separator();
+            let world = app.session.world();
+            ui.label(format!("{:7.2} s", world.time()));
+            let step = 1e3 * app.session.step_time().as_secs_f64();
+            ui.label(format!("{step:.2} ms a step")).on_hover_text("wall time of the last step");
+            if app.running {
+                ui.label(format!("{:.0} fps", 1.0 / app.frame_time.max(1e-3)));
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if ui.button("?").on_hover_text("All keys").clicked() {
+                    app.shows_help = !app.shows_help;
+                }
+                if ui.button("Save recording").on_hover_text("What was done and what became of it").clicked()
+                {
+                    app.save_recording();
+                }
+            });
+        });
+    });
+}

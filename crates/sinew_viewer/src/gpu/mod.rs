@@ -1,0 +1,16 @@
+//! The graphics card: a device, meshes on it, pictures by it.
+
+mod device;
+mod lists;
+mod meshes;
+mod offscreen;
+mod pipelines;
+mod renderer;
+mod samples;
+
+pub use device::{Gpu, GpuError};
+pub use offscreen::Offscreen;
+pub(crate) use offscreen::{read_back, rows_of};
+pub use renderer::StageRenderer;
+pub use samples::Target;
+pub(crate) use samples::texture;

@@ -1,0 +1,91 @@
+//! The viewer without a window, for tests and pictures of it: events in, pictures out.
+
+use crate::app::App;
+use crate::gpu::{Gpu, GpuError};
+use crate::painter::Painter;
+use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, Vec2, pos2};
+use sinew_picture::Image;
+
+/// A viewer without a window.
+pub struct Headless {
+    app: App,
+    ctx: egui::Context,
+    painter: Painter,
+    size: [u32; 2],
+    events: Vec<Event>,
+    frames: u32,
+}
+
+impl Headless {
+    /// A viewer of a size in pixels, one for each point.
+    pub fn new(app: App, gpu: Gpu, size: [u32; 2]) -> Self {
+        let painter = Painter::new(gpu, wgpu::TextureFormat::Rgba8Unorm, size);
+        Self { app, ctx: egui::Context::default(), painter, size, events: Vec::new(), frames: 0 }
+    }
+
+    /// The viewer.
+    pub fn app(&self) -> &App {
+        &self.app
+    }
+
+    /// The viewer, to be told what no event tells.
+    pub fn app_mut(&mut self) -> &mut App {
+        &mut self.app
+    }
+
+    /// Presses and releases a key before the next frame.
+    pub fn key(&mut self, key: egui::Key) {
+        for pressed in [true, false] {
+            self.events.push(Event::Key {
+                key,
+                physical_key: None,
+                pressed,
+                repeat: false,
+                modifiers: Modifiers::NONE,
+            });
+        }
+    }
+
+    /// Types text before the next frame.
+    pub fn text(&mut self, text: &str) {
+        self.events.push(Event::Text(text.to_owned()));
+    }
+
+    /// Moves the mouse to a point, in points from the upper left corner.
+    pub fn move_to(&mut self, x: f32, y: f32) {
+        self.events.push(Event::PointerMoved(pos2(x, y)));
+    }
+
+    /// Presses or releases the left button there.
+    pub fn button(&mut self, x: f32, y: f32, pressed: bool) {
+        self.events.push(Event::PointerButton {
+            pos: pos2(x, y),
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+    }
+
+    /// One frame: takes what happened since the last one; a picture of it.
+    ///
+    /// # Errors
+    /// If the picture does not come back from the card.
+    pub fn frame(&mut self) -> Result<Image, GpuError> {
+        let [width, height] = self.size.map(|side| side as f32);
+        self.frames += 1;
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, Vec2::new(width, height))),
+            // Time goes by the frames, so that a test has the same one whenever it runs.
+            time: Some(f64::from(self.frames) / 60.0),
+            events: std::mem::take(&mut self.events),
+            focused: true,
+            ..RawInput::default()
+        };
+        let (app, ctx) = (&mut self.app, &self.ctx);
+        let output = ctx.run_ui(input, |ui| app.ui(ui));
+        let panels = self.painter.panels(ctx, output);
+        let image = self.painter.picture(app, &panels);
+        self.painter.finish(&panels);
+        image
+    }
+}

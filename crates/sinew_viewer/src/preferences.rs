@@ -1,0 +1,52 @@
+//! Choices of a person that are kept from one start to the next.
+
+use crate::layers::Layer;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// Choices of a person.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Preferences {
+    /// Layers that are on.
+    pub layers: Vec<Layer>,
+    /// Threads that steps run on, at least 1.
+    pub threads: usize,
+}
+
+impl Default for Preferences {
+    fn default() -> Self {
+        Self { layers: Vec::new(), threads: 1 }
+    }
+}
+
+impl Preferences {
+    /// The file in which they are kept: `sinew/viewer.json` in the folder that the system has for such; `None` without one.
+    pub fn path() -> Option<PathBuf> {
+        let folder = |name: &str| std::env::var_os(name).filter(|path| !path.is_empty()).map(PathBuf::from);
+        let config = folder("XDG_CONFIG_HOME")
+            .or_else(|| folder("APPDATA"))
+            .or_else(|| folder("HOME").map(|home| home.join(".config")))?;
+        Some(config.join("sinew").join("viewer.json"))
+    }
+
+    /// Reads them; what is not there or not understood is at its default.
+    pub fn load(path: &Path) -> Self {
+        let bytes = std::fs::read(path).unwrap_or_default();
+        let value: Value = serde_json::from_slice(&bytes).unwrap_or_default();
+        let named = |name: &Value| Layer::ALL.into_iter().find(|layer| Some(layer.name()) == name.as_str());
+        let layers = value["layers"].as_array().into_iter().flatten().filter_map(named).collect();
+        let threads = value["threads"].as_u64().unwrap_or(1).clamp(1, 64) as usize;
+        Self { layers, threads }
+    }
+
+    /// Writes them, as far as that is possible.
+    pub fn save(&self, path: &Path) {
+        let layers: Vec<&str> = self.layers.iter().map(|layer| layer.name()).collect();
+        let value = json!({"sinew": "viewer", "version": 1, "layers": layers, "threads": self.threads});
+        if let Some(folder) = path.parent() {
+            // Where nothing can be kept, the next start has the defaults.
+            let _ = std::fs::create_dir_all(folder);
+        }
+        let _ = sinew::formats::write_atomic(path, format!("{value:#}\n").as_bytes());
+    }
+}

@@ -1,0 +1,181 @@
+//! A running scene as a stage, and a camera that a person moves.
+
+use crate::layers::{self, Layer};
+use crate::session::Session;
+use crate::stage::Stage;
+use sinew::math::{Rotation, Vec3, clamp, max, min, normalize_or, trig};
+use sinew::physics::boxes::Aabb;
+use sinew::physics::ray::Ray;
+use sinew_picture::world::{self, Canvas, Frame, Kinematic, Lines};
+use sinew_picture::{Camera, Line, LineDepth, Scene, Sky, Sun};
+use sinew_scenes::scenes::Instance;
+
+/// Smallest distance between the camera and what it turns around, metres.
+const NEAREST: f32 = 0.1;
+/// Largest, metres.
+const FARTHEST: f32 = 20_000.0;
+/// Steepest look up or down, radians: straight down has no horizon.
+const STEEPEST: f32 = 1.54;
+/// Field of view, radians (45°): wider than in pictures, since one looks about.
+const FOV: f32 = core::f32::consts::FRAC_PI_4;
+/// Part of the world that a ray from the eye looks at, metres.
+const SIGHT: f32 = 1e5;
+
+/// Bounds of what a scene is about, world space, metres.
+pub fn bounds(instance: &Instance) -> Aabb {
+    let mut lines = Lines::default();
+    instance.draw(&mut lines);
+    let joints = instance.figures().into_iter().flat_map(|figure| figure.world_from_joint);
+    let joints = joints.map(|joint| joint.translation).map(|at| Aabb { min: at, max: at });
+    let all = world::subject(instance.world()).into_iter().chain(lines.bounds()).chain(joints);
+    let all = instance.camera_hint().bounds.or(all.reduce(|a, b| a.merge(&b)));
+    let all = all.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE));
+    let is_sound = all.min.is_finite() && all.max.is_finite();
+    if is_sound { all } else { Aabb::around(Vec3::ZERO, Vec3::ONE) }
+}
+
+/// Camera that turns around a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orbit {
+    /// The point, metres, world space.
+    pub target: Vec3,
+    /// From +z toward +x, radians.
+    pub yaw: f32,
+    /// Up, radians.
+    pub pitch: f32,
+    /// From the point to the camera, metres.
+    pub distance: f32,
+}
+
+impl Orbit {
+    /// Sees bounds as a scene's hint says, in a picture `aspect` times as wide as it is high.
+    pub fn framing(bounds: &Aabb, direction: Vec3, aspect: f32) -> Self {
+        let bounds = bounds.expand(max(0.1 * (bounds.max - bounds.min).length(), 0.05));
+        let camera = Camera::framing_box(&bounds, direction, aspect);
+        let way = normalize_or(direction, Vec3::Z);
+        // The wider view needs less distance.
+        let nearer = trig::tan(0.5 * camera.fov_y) / trig::tan(0.5 * FOV);
+        let distance = (camera.position - camera.target).length() * nearer * 1.1;
+        let pitch = trig::asin(clamp(way.y, -1.0, 1.0));
+        Self {
+            target: camera.target,
+            yaw: trig::atan2(way.x, way.z),
+            pitch: clamp(pitch, -STEEPEST, STEEPEST),
+            distance: clamp(distance, NEAREST, FARTHEST),
+        }
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> Camera {
+        Camera { position: self.target + self.back() * self.distance, target: self.target, fov_y: FOV }
+    }
+
+    /// From the point to the camera, unit.
+    fn back(&self) -> Vec3 {
+        let (sin_yaw, cos_yaw) = trig::sin_cos(self.yaw);
+        let (sin, cos) = trig::sin_cos(self.pitch);
+        Vec3::new(sin_yaw * cos, sin, cos_yaw * cos)
+    }
+
+    /// Turns by angles, radians.
+    pub fn turn(&mut self, yaw: f32, pitch: f32) {
+        self.yaw += yaw;
+        self.pitch = clamp(self.pitch + pitch, -STEEPEST, STEEPEST);
+    }
+
+    /// Moves with its point: to the right, up and forward as the camera sees them, in units of the distance.
+    pub fn shift(&mut self, by: Vec3) {
+        let axes = self.camera().axes(1.0);
+        self.target += (axes.right * by.x + axes.up * by.y + axes.forward * by.z) * self.distance;
+    }
+
+    /// Goes nearer (below 1) or farther by a factor.
+    pub fn zoom(&mut self, factor: f32) {
+        self.distance = clamp(self.distance * factor, NEAREST, FARTHEST);
+    }
+
+    /// Ray through a point of the picture (0 to 1, from the upper left corner), as far as one can see.
+    pub fn ray(&self, x: f32, y: f32, aspect: f32) -> Ray {
+        let camera = self.camera();
+        let axes = camera.axes(aspect);
+        let direction = axes.forward
+            + axes.right * (axes.half_width * (2.0 * x - 1.0))
+            + axes.up * (axes.half_height * (1.0 - 2.0 * y));
+        Ray { origin: camera.position, direction: direction.normalize() * SIGHT }
+    }
+}
+
+/// The stage of a session as it stands now.
+pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Stage<'a> {
+    let instance = session.instance();
+    let around = bounds(instance);
+    let distance = (camera.position - camera.target).length();
+    let size = 0.5 * (around.max - around.min).length();
+    // Neither finer than what is near nor wider than what is there.
+    let radius = clamp(distance * 0.5, 0.05, max(size, 1.0));
+    let mut stage = Stage {
+        scene: Scene {
+            sun: Sun { shadow_radius: clamp(1.2 * distance, 1.0, max(2.0 * size, 8.0)), ..Sun::default() },
+            sky: Sky { haze_distance: max(45.0, 12.0 * max(size, distance)), ..Sky::default() },
+            ..Scene::default()
+        },
+        ..Stage::default()
+    };
+    let shows_skins = !layers.contains(&Layer::Bones);
+    let (figures, bodies) =
+        if shows_skins { (instance.figures(), instance.bodies_of_figures()) } else { Default::default() };
+    let kinematic = if figures.is_empty() { Kinematic::Solid } else { Kinematic::Wire };
+    world::paint_all_but(
+        instance.world(),
+        &bodies,
+        &Frame { center: camera.target, radius, kinematic },
+        &mut stage,
+    );
+    stage.figures = figures;
+    let mut lines = Lines::default();
+    instance.draw(&mut lines);
+    stage.scene.lines.append(&mut lines.list);
+    layers::draw(instance.world(), layers, &mut stage.scene.lines);
+    if let Some([from, to]) = session.hands().spring(instance.world()) {
+        stage.scene.lines.push(Line { from, to, color: [0.9, 0.1, 0.5], depth: LineDepth::OnTop });
+        stage.ball(0.012 * distance, sinew::math::Transform::new(to, Rotation::IDENTITY), [0.9, 0.1, 0.5]);
+    }
+    if !has_floor(session) {
+        add_grid(&around, &mut stage);
+    }
+    stage
+}
+
+/// True if something endless or wide stands below.
+fn has_floor(session: &Session) -> bool {
+    use sinew::physics::{BodyKind, Shape};
+    let world = session.world();
+    let mut shapes =
+        world.body_ids().filter(|&id| world.kind(id) == BodyKind::Static).flat_map(|id| world.shapes(id));
+    shapes.any(|(shape, _)| !matches!(shape, Shape::Sphere { .. } | Shape::Capsule { .. }))
+}
+
+/// Lines of a level grid below what floats free, so that one sees where down is and how far things are.
+fn add_grid(around: &Aabb, stage: &mut Stage<'_>) {
+    let size = max((around.max - around.min).max_element(), 0.5);
+    let mut cell = 0.01;
+    while cell * 10.0 < size {
+        cell *= 10.0;
+    }
+    let y = around.min.y - 0.02 * size;
+    let count = 10;
+    let snap = |x: f32| (x / cell).round() * cell;
+    let center = Vec3::new(snap(around.center().x), y, snap(around.center().z));
+    let reach = cell * min((size / cell).ceil() * 1.5, count as f32);
+    let reach = (reach / cell).ceil() * cell;
+    let steps = (2.0 * reach / cell).round() as i32;
+    for i in 0..=steps {
+        let offset = i as f32 * cell - reach;
+        let color = if i == steps / 2 { [0.30, 0.33, 0.37] } else { [0.48, 0.53, 0.58] };
+        for (along, across) in [(Vec3::X, Vec3::Z), (Vec3::Z, Vec3::X)] {
+            let middle = center + across * offset;
+            let (from, to) = (middle - along * reach, middle + along * reach);
+            stage.scene.lines.push(Line { from, to, color, depth: LineDepth::Tested });
+        }
+    }
+}

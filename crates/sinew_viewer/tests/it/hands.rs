@@ -1,0 +1,115 @@
+//! The viewer without a window: keys, search, hands, pictures of it.
+
+use crate::pictures::{gpu, look};
+use egui::Key;
+use sinew_picture::Image;
+use sinew_viewer::{App, Headless, Options, Subject};
+
+const SIZE: [u32; 2] = [1280, 760];
+
+fn viewer(scene: &str) -> Option<Headless> {
+    let subject = Some(Subject::scene(scene, &[]).expect("there is such a scene"));
+    let app = App::new(Options { subject, paused: true, ..Options::default() }).expect("it starts");
+    Some(Headless::new(app, gpu()?, SIZE))
+}
+
+/// Frames until the panels have found their sizes.
+fn settled(viewer: &mut Headless) -> Image {
+    (0..3).map(|_| viewer.frame().expect("the card draws")).last().expect("three frames")
+}
+
+#[test]
+fn scenes_and_panels() {
+    let Some(mut viewer) = viewer("pendulum") else { return };
+    for _ in 0..20 {
+        viewer.key(Key::N);
+        viewer.app_mut().advance();
+        viewer.frame().expect("the card draws");
+    }
+    let image = settled(&mut viewer);
+    look("panels", &image);
+    assert_eq!(viewer.app().session().world().step_count(), 20);
+    viewer.text("?");
+    let help = settled(&mut viewer);
+    look("help", &help);
+    assert_ne!(help, image);
+}
+
+#[test]
+fn the_search_opens_a_scene() {
+    let Some(mut viewer) = viewer("pendulum") else { return };
+    settled(&mut viewer);
+    viewer.text("/");
+    settled(&mut viewer);
+    viewer.text("dominoes");
+    look("search", &settled(&mut viewer));
+    viewer.key(Key::Enter);
+    settled(&mut viewer);
+    assert_eq!(viewer.app().session().subject().title(), "dominoes");
+    look("dominoes", &settled(&mut viewer));
+}
+
+/// A drag pulls the body under the mouse, is recorded, and the recording replays to the same bits.
+#[test]
+fn a_drag_pulls_a_body_and_is_recorded() {
+    let Some(mut viewer) = viewer("stack") else { return };
+    settled(&mut viewer);
+    let world = viewer.app().session().world();
+    let body = world.body_ids().filter(|&id| world.mass(id).mass > 0.0).last().expect("something moves");
+    let before = world.transform(body).translation;
+    let at = viewer.app().on_screen(before).expect("it is seen");
+    viewer.move_to(at.x, at.y);
+    viewer.frame().expect("the card draws");
+    viewer.button(at.x, at.y, true);
+    viewer.frame().expect("the card draws");
+    for i in 1..=40 {
+        viewer.move_to(at.x + 3.0 * i as f32, at.y - 2.0 * i as f32);
+        viewer.key(Key::N);
+        viewer.frame().expect("the card draws");
+    }
+    look("drag", &viewer.frame().expect("the card draws"));
+    viewer.button(at.x + 120.0, at.y - 80.0, false);
+    viewer.frame().expect("the card draws");
+    let session = viewer.app().session();
+    let moved = (session.world().transform(body).translation - before).length();
+    assert!(moved > 0.1, "it has moved by {moved} m");
+    let recording = session.recording().expect("a scene is recorded");
+    assert!(recording.steps.iter().any(|step| !step.operations.is_empty()));
+    let mut replay = sinew_scenes::recording::Replay::start(recording.clone()).expect("it starts");
+    let mut steps = 0;
+    while let Some(step) = replay.step() {
+        assert_eq!(step.found, step.recorded, "step {}", step.step);
+        steps += 1;
+    }
+    assert_eq!(steps, 40);
+}
+
+#[test]
+fn a_ball_is_thrown_and_layers_are_drawn() {
+    let Some(mut viewer) = viewer("ragdoll_drop") else { return };
+    let plain = settled(&mut viewer);
+    let bodies = viewer.app().session().world().body_ids().count();
+    viewer.key(Key::B);
+    viewer.frame().expect("the card draws");
+    assert_eq!(viewer.app().session().world().body_ids().count(), bodies + 1);
+    for _ in 0..30 {
+        viewer.key(Key::N);
+        viewer.frame().expect("the card draws");
+    }
+    for key in [Key::Num1, Key::Num2, Key::Num3] {
+        viewer.key(key);
+    }
+    let layered = settled(&mut viewer);
+    look("layers", &layered);
+    assert_ne!(plain, layered);
+}
+
+/// A file that cannot be shown is a line, and the viewer goes on.
+#[test]
+fn a_bad_file_is_a_line() {
+    let Some(mut viewer) = viewer("pendulum") else { return };
+    viewer.app_mut().open_file("nowhere.json".as_ref());
+    assert_eq!(viewer.app().message(), Some("nowhere.json: no such file"));
+    assert_eq!(viewer.app().session().subject().title(), "pendulum");
+    look("message", &settled(&mut viewer));
+}

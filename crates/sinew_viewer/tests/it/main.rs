@@ -1,0 +1,4 @@
+//! Integration tests of the viewer: pictures by the driver that is there, panels and hands without a window, a window under Xvfb.
+
+mod hands;
+mod pictures;
