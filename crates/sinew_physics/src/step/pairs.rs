@@ -10,12 +10,15 @@ use crate::contact::proxies::Proxies;
 use crate::contact::recycled::Recycled;
 use crate::contact::tracking::ContactTracking;
 use crate::contact::{Contact, ContactKey};
+use crate::step::blows::Blows;
 
 /// The trees, and what pairs are found with.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BroadPhase {
     pub proxies: Proxies,
     pub near: NearPairs,
+    /// What joints are about to pass on.
+    pub blows: Blows,
     /// Pairs without a contact that are so near that they may have points, in order.
     pub asked: Vec<Asked>,
     /// Contacts that begin, in order.
@@ -47,6 +50,7 @@ impl BroadPhase {
     ) {
         activity.return_contacts(contacts);
         self.proxies.update_motion(bodies, activity.movers(), &meetings.changed, dt);
+        self.blows.widen(&mut self.proxies, bodies);
         self.near.update(&mut self.proxies, bodies, filter);
         self.sort_out(bodies, meetings, contacts, activity);
         bear(contacts, &mut self.born);
