@@ -435,7 +435,8 @@ mod tests {
                 if pair.meets && !asked && !known {
                     let (a, b) = (bodies.at(pair.key.a), bodies.at(pair.key.b));
                     let mut asked = Asked::new(place, pair);
-                    crate::step::collide::ask(a, b, &mut asked, f32::INFINITY, def.dt());
+                    let ahead = crate::contact::proxies::Ahead { most: f32::INFINITY, blow: 0.0 };
+                    crate::step::collide::ask(a, b, &mut asked, ahead, def.dt());
                     let found = asked.manifold;
                     assert_eq!(found.count, 0, "{:?} with {} left: {found:?}", pair.key, pair.left);
                     count += 1;

@@ -25,7 +25,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
                 section(ui, "Report", true, |ui| {
                     report.iter().for_each(|line| {
                         ui.label(line);
-                    })
+                    });
                 });
             }
             section(ui, "Figures", true, |ui| figures(app, ui));
