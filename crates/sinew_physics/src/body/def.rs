@@ -53,14 +53,13 @@ pub enum Quality {
     Exact,
 }
 
-/// Permission for bodies and particles at rest to fall asleep.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Permission for bodies at rest to fall asleep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Sleeping {
-    /// Sleep comes to what is at rest. Default.
-    #[default]
+    /// Bodies at rest fall asleep.
     On,
-    /// It goes on being simulated.
+    /// They go on being simulated.
     Off,
 }
 

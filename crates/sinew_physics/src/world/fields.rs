@@ -178,8 +178,5 @@ impl World {
                 self.wake_body(index);
             }
         }
-        for (_, group) in self.groups.iter_mut().filter(|(_, group)| def.reaches_group(group)) {
-            group.wake();
-        }
     }
 }
