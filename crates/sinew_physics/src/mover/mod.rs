@@ -3,7 +3,6 @@
 //! The stage `movers` is the last of a step: bodies have come to where they are, and each mover in order of its id moves among
 //! them. `docs/mover.md` has the order of a move and the settings by symptom.
 
-mod crowd;
 mod def;
 mod obstacle;
 mod planes;
@@ -22,7 +21,6 @@ use crate::body::Body;
 use crate::body::material::Material;
 use crate::id::{BodyId, Lineage, MoverId};
 use crate::world::World;
-use crowd::Crowd;
 use obstacle::Obstacle;
 use press::Press;
 use sinew_math::Vec3;
@@ -147,7 +145,6 @@ impl Mover {
 #[derive(Default)]
 pub(crate) struct Movers {
     pub all: Arena<Mover>,
-    crowd: Crowd,
     obstacles: Vec<Obstacle>,
     presses: Vec<Press>,
 }
@@ -189,7 +186,6 @@ pub(crate) fn movers(world: &mut World) {
     }
     let mut movers = core::mem::take(&mut world.movers);
     let dt = world.def.dt();
-    movers.crowd.sort(&movers.all);
     for index in 0..movers.all.slot_count() as u32 {
         if movers.all.try_at(index).is_some() {
             walk::advance(world, &mut movers, index, dt);

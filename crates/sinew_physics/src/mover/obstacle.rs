@@ -125,10 +125,10 @@ impl<'a> Surroundings<'a> {
     }
 }
 
-/// Gathers what a mover may meet within `region`, of movers those of `others`.
+/// Gathers what a mover may meet within `region`.
 pub(super) fn gather(
     world: &World,
-    (movers, others): (&Arena<Mover>, impl Iterator<Item = u32>),
+    movers: &Arena<Mover>,
     index: u32,
     region: &Aabb,
     obstacles: &mut Vec<Obstacle>,
@@ -139,13 +139,12 @@ pub(super) fn gather(
         gather_shape(world, mover, (owner.body, owner.shape), region, obstacles);
         ControlFlow::<()>::Continue(())
     });
-    for other in others {
-        let at = movers.at(other);
+    for (other, at) in movers.iter() {
         if other == index || !mover.def.filter.meets(at.def.filter) {
             continue;
         }
         let (half, radius, center) = (at.half_height(), at.def.radius, at.center());
-        let around = at.half_extents();
+        let around = abs3(at.def.up * half) + Vec3::splat(radius);
         let bounds = Aabb { min: center - around, max: center + around };
         if bounds.overlaps(region) {
             let form = Form::Capsule { center, half, radius };
