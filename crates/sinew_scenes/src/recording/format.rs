@@ -84,13 +84,13 @@ impl Recording {
             return Err(Error::malformed("is no recording", "byte 0"));
         }
         let mut reader = Reader::new(&bytes[MAGIC.len()..]);
-        let format = reader.u32().map_err(wrong)?;
+        let format = reader.u32().map_err(|error| wrong(&error))?;
         if format != FORMAT {
             let what = format!("is a recording of format {format}; this version reads {FORMAT}");
             return Err(Error::unsupported(what, "byte 8"));
         }
-        let recording = Self::read_fields(&mut reader).map_err(wrong)?;
-        reader.finish().map_err(wrong)?;
+        let recording = Self::read_fields(&mut reader).map_err(|error| wrong(&error))?;
+        reader.finish().map_err(|error| wrong(&error))?;
         Ok(recording)
     }
 
@@ -131,7 +131,7 @@ fn transform(reader: &mut Reader<'_>) -> Result<Transform, ReadError> {
     if is_sound { Ok(place) } else { Err(reader.error("a pose that is not finite")) }
 }
 
-fn wrong(error: ReadError) -> Error {
+fn wrong(error: &ReadError) -> Error {
     Error::malformed(error.what, format!("byte {}", error.at + MAGIC.len()))
 }
 

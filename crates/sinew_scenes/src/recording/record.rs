@@ -82,7 +82,7 @@ impl Recorder {
         let world = self.instance.world();
         let operations = core::mem::take(&mut self.operations);
         self.recording.steps.push(RecordedStep { operations, hash: world.hash() });
-        if world.step_count() % KEY_FRAME_STEPS == 0 {
+        if world.step_count().is_multiple_of(KEY_FRAME_STEPS) {
             self.recording.key_frames.push(key_frame(world));
         }
     }
