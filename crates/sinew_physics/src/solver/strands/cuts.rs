@@ -38,14 +38,14 @@ impl Cuts {
 
     /// From the centre of the last link of each piece to the joint below it.
     #[inline(always)]
-    pub fn arm<L: Lanes>(&self) -> Vector3<L> {
+    fn arm<L: Lanes>(&self) -> Vector3<L> {
         load(&self.arm)
     }
 
     /// Arms of the joints' upper bodies at the present pose.
     #[inline(always)]
     pub fn place_arms<L: Lanes>(&mut self, links: &mut [Link], hook: Option<&Hook>, tips: Tips<L>) {
-        let [last, before] = [&links[tips.place], &links[tips.place - 1]].map(|link| &link.rotation);
+        let [last, before] = tips.of(links).map(|link| &link.rotation);
         let arm = turn_above::<L>(last, before, tips).turned(load(&links[0].parent_anchor));
         store(arm, &mut links[0].parent_arm);
         let [_, first] = hook.map_or([Vec3::ZERO; 2], Hook::first);
@@ -56,7 +56,7 @@ impl Cuts {
     /// Gaps at the present poses.
     #[inline(always)]
     pub fn place_gaps<L: Lanes>(&self, links: &mut [Link], hook: Option<&Hook>, tips: Tips<L>) {
-        let [last, before] = [&links[tips.place], &links[tips.place - 1]].map(|link| &link.position);
+        let [last, before] = tips.of(links).map(|link| &link.position);
         let [first, _] = hook.map_or([Vec3::ZERO; 2], Hook::first);
         let above = handed_down(tips.pick(load(last), load(before)), first);
         let link = &mut links[0];
@@ -67,7 +67,7 @@ impl Cuts {
     /// Gaps at the poses that velocities lead to. Gives them.
     #[inline(always)]
     pub fn look_ahead<L: Lanes>(&self, links: &mut [Link], hook: Option<&Hook>, tips: Tips<L>) -> Vector3<L> {
-        let [last, before] = [&links[tips.place], &links[tips.place - 1]];
+        let [last, before] = tips.of(links);
         let turn = turn_above::<L>(&last.ahead_rotation, &before.ahead_rotation, tips);
         let [position, arm] = hook.map_or([Vec3::ZERO; 2], Hook::first);
         let above = handed_down(tips.pick(load(&last.ahead), load(&before.ahead)), position);
@@ -83,7 +83,7 @@ impl Cuts {
     /// Velocities with which the joints open; nothing in the first lane of a free strand.
     #[inline(always)]
     pub fn slide<L: Lanes>(&self, links: &[Link], is_held: bool, tips: Tips<L>) -> Vector3<L> {
-        let [last, before] = [&links[tips.place], &links[tips.place - 1]];
+        let [last, before] = tips.of(links);
         let velocity = tips.pick(load(&last.velocity), load(&before.velocity));
         let spin = tips.pick(load(&last.spin), load(&before.spin));
         let above = handed_down(velocity + spin.cross(self.arm()), Vec3::ZERO);

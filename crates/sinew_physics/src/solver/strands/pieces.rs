@@ -1,6 +1,7 @@
 //! Lanes that hold the pieces of one strand: what is in the last place of each, what goes from one to the next, and what counts for all.
 
 use super::super::flight::{Eight, ZERO, load, put, store};
+use super::link::Link;
 use sinew_math::Vec3;
 use sinew_math::lanes::{LaneMask, Lanes, Real, Vector3, WIDTH};
 
@@ -39,6 +40,12 @@ impl<L: Lanes> Tips<L> {
         } else {
             of_link
         }
+    }
+
+    /// Links in the last place and in the one before: a lane's last link is in one of them. There are two places at least.
+    #[inline(always)]
+    pub fn of(self, links: &[Link]) -> [&Link; 2] {
+        [&links[self.place], &links[self.place - 1]]
     }
 
     /// Vector of the last link of each piece, from what is in the last place and in the one before.
