@@ -5,15 +5,15 @@ use sinew::anim::Rig;
 use sinew_scenes::mannequin::mannequin;
 use std::process::Command;
 
-/// Most memory that a refusal may take, KiB.
-const MEMORY_KIB: u32 = 64 * 1024;
+/// Most memory that a refusal may take, KiB, beside the code of the program, which is large with a window in it.
+const MEMORY_KIB: u32 = 40 * 1024;
 
 /// Runs `sinew` where the system denies it more memory than that, if the system can.
 fn frugal(arguments: &[&str]) -> Run {
     if !cfg!(target_os = "linux") {
         return sinew(arguments);
     }
-    let limited = format!("ulimit -v {MEMORY_KIB} && exec \"$0\" \"$@\"");
+    let limited = format!("ulimit -d {MEMORY_KIB} && exec \"$0\" \"$@\"");
     let mut shell = Command::new("sh");
     shell.args(["-c", &limited]).arg(command(arguments).get_program()).args(arguments);
     Run::of(&mut shell)
