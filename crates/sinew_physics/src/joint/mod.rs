@@ -16,7 +16,7 @@ pub(crate) use incidence::Incidence;
 use rows::locked_count;
 pub(crate) use rows::{
     DIRECTIONS, JointGeometry, JointPose, JointRows, MAX_LIMITS, MAX_STOPS, Row, Stop, TWIST, anchor_gap,
-    displacement, each_stop, locked_error, open_directions, open_row, overshoot, stops, turns,
+    displacement, each_stop, locked_error, locks, open_directions, open_row, overshoot, stops, turns,
 };
 use sinew_math::{Transform, Vec3};
 

@@ -3,6 +3,7 @@
 //! The stage `movers` is the last of a step: bodies have come to where they are, and each mover in order of its id moves among
 //! them. `docs/mover.md` has the order of a move and the settings by symptom.
 
+mod crowd;
 mod def;
 mod obstacle;
 mod planes;
@@ -21,6 +22,7 @@ use crate::body::Body;
 use crate::body::material::Material;
 use crate::id::{BodyId, Lineage, MoverId};
 use crate::world::World;
+use crowd::Crowd;
 use obstacle::Obstacle;
 use press::Press;
 use sinew_math::Vec3;
@@ -145,6 +147,7 @@ impl Mover {
 #[derive(Default)]
 pub(crate) struct Movers {
     pub all: Arena<Mover>,
+    crowd: Crowd,
     obstacles: Vec<Obstacle>,
     presses: Vec<Press>,
 }
@@ -186,6 +189,7 @@ pub(crate) fn movers(world: &mut World) {
     }
     let mut movers = core::mem::take(&mut world.movers);
     let dt = world.def.dt();
+    movers.crowd.sort(&movers.all);
     for index in 0..movers.all.slot_count() as u32 {
         if movers.all.try_at(index).is_some() {
             walk::advance(world, &mut movers, index, dt);

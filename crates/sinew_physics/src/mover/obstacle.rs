@@ -125,10 +125,10 @@ impl<'a> Surroundings<'a> {
     }
 }
 
-/// Gathers what a mover may meet within `region`.
+/// Gathers what a mover may meet within `region`, of movers those of `others`.
 pub(super) fn gather(
     world: &World,
-    movers: &Arena<Mover>,
+    (movers, others): (&Arena<Mover>, impl Iterator<Item = u32>),
     index: u32,
     region: &Aabb,
     obstacles: &mut Vec<Obstacle>,
@@ -139,12 +139,13 @@ pub(super) fn gather(
         gather_shape(world, mover, (owner.body, owner.shape), region, obstacles);
         ControlFlow::<()>::Continue(())
     });
-    for (other, at) in movers.iter() {
+    for other in others {
+        let at = movers.at(other);
         if other == index || !mover.def.filter.meets(at.def.filter) {
             continue;
         }
         let (half, radius, center) = (at.half_height(), at.def.radius, at.center());
-        let around = abs3(at.def.up * half) + Vec3::splat(radius);
+        let around = at.half_extents();
         let bounds = Aabb { min: center - around, max: center + around };
         if bounds.overlaps(region) {
             let form = Form::Capsule { center, half, radius };

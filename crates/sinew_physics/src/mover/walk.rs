@@ -1,5 +1,6 @@
 //! One move of one mover, in order.
 
+use super::crowd::Crowd;
 use super::obstacle::{Obstacle, Owner, Surroundings, gather};
 use super::press::{Press, meet, weigh};
 use super::sweep::{Course, Manner, Touch};
@@ -22,25 +23,26 @@ struct Move<'a> {
 
 /// Moves one mover by one step.
 pub(super) fn advance(world: &World, movers: &mut Movers, index: u32, dt: f32) {
-    let Movers { all, obstacles, presses } = movers;
+    let Movers { all, crowd, obstacles, presses } = movers;
     let mut mover = all.at(index).clone();
     mover.previous = mover.position;
     mover.refresh_ground(&world.bodies);
     let carried = mover.carried(&world.bodies, dt);
     mover.accelerate(dt);
     let gravity = world.def.gravity * mover.def.gravity_scale;
-    look_around(world, all, index, (&mover, carried, gravity, dt), obstacles);
+    look_around(world, (all, crowd), index, (&mover, carried, gravity, dt), obstacles);
     {
         let steps = Move::new(world, all, obstacles, &mover, dt);
         steps.run(&mut mover, carried, gravity, presses);
     }
+    crowd.note(all.at(index).center(), mover.center());
     *all.at_mut(index) = mover;
 }
 
 /// Gathers what may be met in this step.
 fn look_around(
     world: &World,
-    movers: &Arena<Mover>,
+    (movers, crowd): (&Arena<Mover>, &Crowd),
     index: u32,
     (mover, carried, gravity, dt): (&Mover, Vec3, Vec3, f32),
     obstacles: &mut Vec<Obstacle>,
@@ -51,7 +53,7 @@ fn look_around(
     let margin =
         LOOK_AHEAD + jump + 2.0 * def.step_height + 0.5 * def.radius + 4.0 * def.skin + 0.3 * way.length();
     let bounds = Surroundings::new(&world.bodies, &[], mover).bounds(center, way, margin);
-    gather(world, movers, index, &bounds, obstacles);
+    gather(world, (movers, crowd.near(&bounds)), index, &bounds, obstacles);
 }
 
 impl Mover {

@@ -127,7 +127,8 @@ impl World {
         let (center, skin) = (grown.center(), grown.def.skin);
         let bounds = Surroundings::new(&self.bodies, &[], &grown).bounds(center, Vec3::ZERO, skin);
         let mut obstacles = Vec::new();
-        gather(self, &self.movers.all, id.index, &bounds, &mut obstacles);
+        let all = &self.movers.all;
+        gather(self, (all, all.iter().map(|(other, _)| other)), id.index, &bounds, &mut obstacles);
         let sight = Surroundings::new(&self.bodies, &obstacles, &grown);
         let low = Surroundings::new(&self.bodies, &obstacles, self.mover(id));
         // What it touches already it may go on touching.

@@ -36,6 +36,7 @@ use crate::solver::tuning::PREDICTIONS;
 pub(crate) use crate::solver::view::{Grading, Pace, View};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, linear};
 use articulation::batches::Batches;
+use articulation::drives::MotorImpulse;
 use articulation::elimination::Inertia;
 use articulation::loops::Loops;
 use articulation::pins::Pins;
@@ -174,6 +175,8 @@ struct Scratch {
     started: Vec<Vec6>,
     loads: piles::loads::Scratch,
     pieces: Vec<articulation::piece::Piece>,
+    /// Of the substep, until its work is known.
+    motor_impulses: Vec<MotorImpulse>,
     build: boundary::growth::Scratch,
 }
 
@@ -351,6 +354,7 @@ impl IslandSolver {
         }
         self.end_limits();
         self.end_loops();
+        self.add_motor_work();
         self.release_motors();
         self.add_relax_reactions();
     }

@@ -8,6 +8,7 @@ use crate::body::shape::Sensing;
 use crate::body::surface::Surface;
 use crate::collide::{Manifold, Motion, SeparationCache, collide_again};
 use crate::contact::parts::Parts;
+use crate::contact::proxies::Ahead;
 use crate::contact::recycled::Recycled;
 use crate::contact::tuning::SPECULATIVE_SLOPS;
 use crate::contact::{Contact, ContactKey, Effect, slop};
@@ -49,7 +50,10 @@ pub(crate) fn collide(
     if !contacts.iter().any(|contact| contact.has_surface) {
         return;
     }
-    parts.update(bodies, contacts, context, |contact| surface_motion(bodies, contact, context.dt));
+    let proxies = &broad.proxies;
+    parts.update(bodies, contacts, context, |contact| {
+        surface_motion(bodies, contact, proxies.ahead(contact.key), context.dt)
+    });
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
         if contact.has_surface && (a.can_touch() || b.can_touch()) {
@@ -58,10 +62,10 @@ pub(crate) fn collide(
     });
 }
 
-/// Brings the manifold of two convex shapes to where they are. Points are looked for within `ahead` (m)
+/// Brings the manifold of two convex shapes to where they are. Points are looked for within `ahead`
 /// at most because of how fast they are.
-fn renew(contact: &mut Contact, a: &Body, b: &Body, ahead: f32, dt: f32) {
-    let is_slow = ahead < contact.kept.least_margin();
+fn renew(contact: &mut Contact, a: &Body, b: &Body, ahead: Ahead, dt: f32) {
+    let is_slow = ahead.most < contact.kept.least_margin();
     if is_slow && contact.kept.renew([a, b], contact.kept.least_margin(), &mut contact.manifold) {
         return;
     }
@@ -93,7 +97,7 @@ fn meet(
 }
 
 /// A contact of a pair that had none, if it has points now; `ahead` as in [`margin`].
-pub(crate) fn ask(a: &Body, b: &Body, asked: &mut Asked, ahead: f32, dt: f32) {
+pub(crate) fn ask(a: &Body, b: &Body, asked: &mut Asked, ahead: Ahead, dt: f32) {
     let (margin, slop) = margin(a, b, asked.key, ahead, dt);
     meet(a, b, asked.key, margin, &mut asked.parting, &mut asked.manifold);
     asked.kept = Recycled::new([a, b], asked.key, (margin, slop), &asked.manifold);
@@ -110,11 +114,11 @@ fn weigh(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
 }
 
 /// Margin up to which points of two shapes are looked for, and their slop, metres. Because of how fast the two are it is no
-/// more than `ahead`, which may be far too much.
-fn margin(a: &Body, b: &Body, key: ContactKey, ahead: f32, dt: f32) -> (f32, f32) {
+/// more than `ahead.most`, which may be far too much.
+fn margin(a: &Body, b: &Body, key: ContactKey, ahead: Ahead, dt: f32) -> (f32, f32) {
     let slop = slop(smallest_extent(a, b, key));
     let least = SPECULATIVE_SLOPS * slop;
-    if ahead < least {
+    if ahead.most < least {
         return (least, slop);
     }
     // Beside their approach: two that move together may not do so any more once one of them is hit.
@@ -122,7 +126,7 @@ fn margin(a: &Body, b: &Body, key: ContactKey, ahead: f32, dt: f32) -> (f32, f32
     let approach = max((va - vb).length(), max(va.length(), vb.length()))
         + a.velocity.angular.length() * a.reach()
         + b.velocity.angular.length() * b.reach();
-    (max(least, approach * dt), slop)
+    (max(least, approach * dt + ahead.blow), slop)
 }
 
 /// Smallest extent of the two shapes, metres.
@@ -132,7 +136,7 @@ pub(crate) fn smallest_extent(a: &Body, b: &Body, key: ContactKey) -> f32 {
 }
 
 /// Motion of a pair of which one is a surface, the other toward the surface; `None` of other pairs, and of those at rest.
-fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Motion> {
+fn surface_motion(bodies: &Arena<Body>, contact: &Contact, ahead: Ahead, dt: f32) -> Option<Motion> {
     let key = contact.key;
     let (a, b) = (bodies.at(key.a), bodies.at(key.b));
     if !a.can_touch() && !b.can_touch() {
@@ -152,7 +156,7 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Mo
     Some(Motion {
         velocity: speed(mover) - speed(ground),
         dt,
-        margin: margin(a, b, key, f32::INFINITY, dt).0,
+        margin: margin(a, b, key, Ahead { most: f32::INFINITY, ..ahead }, dt).0,
     })
 }
 

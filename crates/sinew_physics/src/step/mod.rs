@@ -1,5 +1,6 @@
 //! One step, in order. `docs/step.md` has a heading for each stage.
 
+mod blows;
 pub(crate) mod collide;
 pub(crate) mod continuous;
 pub(crate) mod finalize;
@@ -31,6 +32,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
 
     stage(Stage::Pairs, &mut || {
         activity.wake_struck(bodies, groups, &broad.proxies, def);
+        broad.blows.find(bodies, joints, activity);
         broad.update(bodies, parted.filter(joints), meetings, contacts, activity, context.dt);
     });
     stage(Stage::Collide, &mut || collide::collide(bodies, broad, contacts, parts, context));

@@ -10,12 +10,15 @@ use crate::contact::proxies::Proxies;
 use crate::contact::recycled::Recycled;
 use crate::contact::tracking::ContactTracking;
 use crate::contact::{Contact, ContactKey};
+use crate::step::blows::Blows;
 
 /// The trees, and what pairs are found with.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BroadPhase {
     pub proxies: Proxies,
     pub near: NearPairs,
+    /// What joints are about to pass on.
+    pub blows: Blows,
     /// Pairs without a contact that are so near that they may have points, in order.
     pub asked: Vec<Asked>,
     /// Contacts that begin, in order.
@@ -47,6 +50,7 @@ impl BroadPhase {
     ) {
         activity.return_contacts(contacts);
         self.proxies.update_motion(bodies, activity.movers(), &meetings.changed, dt);
+        self.blows.widen(&mut self.proxies, bodies);
         self.near.update(&mut self.proxies, bodies, filter);
         self.sort_out(bodies, meetings, contacts, activity);
         bear(contacts, &mut self.born);
@@ -431,7 +435,8 @@ mod tests {
                 if pair.meets && !asked && !known {
                     let (a, b) = (bodies.at(pair.key.a), bodies.at(pair.key.b));
                     let mut asked = Asked::new(place, pair);
-                    crate::step::collide::ask(a, b, &mut asked, f32::INFINITY, def.dt());
+                    let ahead = crate::contact::proxies::Ahead { most: f32::INFINITY, blow: 0.0 };
+                    crate::step::collide::ask(a, b, &mut asked, ahead, def.dt());
                     let found = asked.manifold;
                     assert_eq!(found.count, 0, "{:?} with {} left: {found:?}", pair.key, pair.left);
                     count += 1;

@@ -37,3 +37,15 @@ pub(super) const YIELDING_DEPTH: f32 = 0.01;
 ///
 /// Larger: the end of a touch is told of late. Smaller: what trembles tells of begin and end again and again. Shown by the tests of `events`.
 pub(super) const LINGER: f32 = 0.1;
+
+/// Speed from which anchors of a joint that part tell of a blow, m/s.
+///
+/// Joints leave less to the next step. Larger: a limb goes into another by a step of that. Smaller: pairs are looked for that do not meet. Shown
+/// by `stumble::pushes_at_random`.
+pub(super) const BLOW_SPEED: f32 = 0.3;
+
+/// Joints in a row through which a blow is followed to what it may drive into something, a number.
+///
+/// From the pelvis to a hand there are five. Larger: more pairs are looked at in steps after a blow. Smaller: the hand of a figure that is struck at its trunk
+/// is in the thigh by the end of the step. Shown as [`BLOW_SPEED`].
+pub(super) const BLOW_PASSES: usize = 6;

@@ -12,7 +12,7 @@ use crate::hand_over::body_velocity;
 use crate::ragdoll::BodyState;
 use sinew_anim::{Animator, Motion, Pose};
 use sinew_math::{Transform, Vec3, min};
-use sinew_physics::{BodyId, ContactRule, Velocity, World};
+use sinew_physics::{BodyId, BodyKind, ContactRule, Velocity, World};
 
 impl Character {
     /// Lets the bodies take over, at the pose and the speed that the animation has now. Nothing happens if they did
@@ -76,6 +76,7 @@ impl Character {
             State::Preparing => false,
             State::Animated | State::Limp | State::GettingUp => return,
         };
+        self.slow_led(world);
         self.let_go(world);
         self.state = State::Limp;
         self.stillness = Stillness { touched: !powered, ..Stillness::default() };
@@ -89,6 +90,18 @@ impl Character {
             self.slacken(world);
         }
         self.events.push(CharacterEvent::WentLimp);
+    }
+
+    /// Gives bodies that clips lead the velocities that they have in the clips: with those that bring them to their place within a step, which a mover
+    /// that takes a kerb has put up by the height of it, they would be thrown once they are let go.
+    fn slow_led(&mut self, world: &mut World) {
+        self.look_ahead(world);
+        let ragdoll = self.ragdoll.as_ref().expect("it has bodies");
+        for (&id, &velocity) in ragdoll.bodies.iter().zip(&self.scratch.velocities) {
+            if world.kind(id) == BodyKind::Kinematic {
+                world.set_velocity(id, velocity);
+            }
+        }
     }
 
     /// Takes all drives off the bodies but those of a fall.
@@ -179,8 +192,8 @@ impl Character {
         }
     }
 
-    /// Drives the bodies, for the next step, toward the pose that the clips will have then.
-    pub(super) fn drive_toward_clips(&mut self, world: &mut World) {
+    /// Poses of the bodies in the clips at the end of the next step, in `scratch.after`, and their velocities on the way there, in `scratch.velocities`.
+    fn look_ahead(&mut self, world: &World) {
         let mut targets = core::mem::take(&mut self.scratch.after);
         let mut before = core::mem::take(&mut self.scratch.before);
         let mut ahead = self.sent_ahead();
@@ -199,9 +212,15 @@ impl Character {
         let velocities = before.iter().zip(&targets).zip(&self.def.ragdoll.bodies).map(velocity);
         self.scratch.velocities.clear();
         self.scratch.velocities.extend(velocities);
-        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
-        self.drives.apply(world, &self.def.ragdoll, ragdoll, &targets, &self.scratch.velocities);
         (self.scratch.before, self.scratch.after) = (before, targets);
+    }
+
+    /// Drives the bodies, for the next step, toward the pose that the clips will have then.
+    pub(super) fn drive_toward_clips(&mut self, world: &mut World) {
+        self.look_ahead(world);
+        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
+        let (targets, velocities) = (&self.scratch.after, &self.scratch.velocities);
+        self.drives.apply(world, &self.def.ragdoll, ragdoll, targets, velocities);
     }
 
     /// Waits until the bodies lie still.

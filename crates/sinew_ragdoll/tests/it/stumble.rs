@@ -197,7 +197,9 @@ fn pushes_at_random() {
     println!("{table}{quality:?}");
     assert_eq!(quality.nan, 0);
     assert!(quality.joint_gap_p99_m < 1e-3 && quality.joint_gap_max_m < 5e-3, "{quality:?}");
-    assert!(quality.limit_overshoot_p99_deg < 2.0, "{quality:?}");
+    assert!(quality.limit_overshoot_p99_deg < 2.0 && quality.limit_overshoot_max_deg < 4.0, "{quality:?}");
+    assert!(quality.nonadjacent_overlap_max_m < 0.01, "{quality:?}");
+    assert!(quality.energy_gain_max < 0.01, "{quality:?}");
     assert!(tallies[0].upright() >= 0.9, "{table}");
     assert!(tallies[1].upright() >= 0.6, "{table}");
 }

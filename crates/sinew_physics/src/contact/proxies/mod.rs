@@ -8,7 +8,7 @@ mod search;
 
 pub(crate) use layer::Leaf;
 use layer::{Home, Layer};
-pub(crate) use motion::Closing;
+pub(crate) use motion::{Ahead, Closing};
 use motion::{Stride, Trace};
 
 use crate::arena::Arena;

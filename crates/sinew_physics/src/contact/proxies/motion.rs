@@ -22,6 +22,8 @@ pub(super) struct Stride {
     /// Motion in the coming step, at its present velocity.
     ahead: Vec3,
     spin: f32,
+    /// Motion in the coming step that a blow may bring besides, in any direction.
+    blow: f32,
     /// Room by which its bounds are larger for that, metres.
     pub grown: f32,
 }
@@ -31,6 +33,7 @@ impl Stride {
     fn set_ahead(&mut self, Velocity { linear, angular }: Velocity, arm: f32, dt: f32) {
         self.ahead = linear * dt;
         self.spin = angular.length() * arm * dt;
+        self.blow = 0.0;
         self.grown = (linear.length() + angular.length() * arm) * dt;
     }
 }
@@ -42,6 +45,15 @@ pub(crate) struct Closing {
     pub moved: f32,
     /// Largest gap within which points are looked for because of how fast they are, metres.
     pub ahead: f32,
+}
+
+/// Gap within which points of two bodies are looked for because of how fast they are, metres.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ahead {
+    /// No farther than this.
+    pub most: f32,
+    /// Part of it for blows that joints are about to pass on.
+    pub blow: f32,
 }
 
 /// Pose and motion of a body when its bounds were last worked out.
@@ -212,6 +224,18 @@ impl Proxies {
         min(spare.x, min(spare.y, spare.z))
     }
 
+    /// Has points of a body looked for farther away in this step, as far as it comes at `speed` (m/s) in any direction beside the velocity
+    /// that it has.
+    pub fn widen(&mut self, index: u32, body: &Body, speed: f32) {
+        let Some(home) = self.home(index).filter(|home| home.count > 0 && body.can_touch()) else { return };
+        let (stride, way) = (&mut self.strides[index as usize], speed * self.dt);
+        stride.blow = way;
+        stride.grown += way;
+        // In the next step it is worked out anew, whatever its velocity is by then.
+        self.traces[home.first as usize].velocity.linear = Vec3::NAN;
+        self.predict_bounds(index, home, body, BOUNDS_STEPS, BOUNDS_ROOM);
+    }
+
     /// Works out the bounds of a body within the step. Where the tree must change it gets `room` (m) around and `steps` of motion ahead.
     fn predict_bounds(&mut self, index: u32, home: Home, body: &Body, steps: f32, room: f32) {
         let Stride { grown: motion, ahead, .. } = self.strides[index as usize];
@@ -253,7 +277,7 @@ impl Proxies {
                 stride.ahead = body.velocity.linear * self.dt;
             } else if home.count > 0 && !body.can_touch() {
                 // It rests, and nobody will work out its bounds.
-                (stride.ahead, stride.spin, stride.grown) = (Vec3::ZERO, 0.0, 0.0);
+                (stride.ahead, stride.spin, stride.blow, stride.grown) = (Vec3::ZERO, 0.0, 0.0, 0.0);
                 self.traces[home.first as usize] = Trace::NONE;
                 for shape in 0..home.count {
                     self.reach[(home.first + shape) as usize] = grown(body, shape, 0.0);
@@ -269,15 +293,16 @@ impl Proxies {
             if stride.stamp == self.stamp { (stride.shift, stride.turned) } else { (Vec3::ZERO, 0.0) }
         });
         let moved = (p - q).length() * (1.0 + SLACK) + (p_turned + q_turned);
-        Closing { moved, ahead: self.ahead(key) }
+        Closing { moved, ahead: self.ahead(key).most }
     }
 
-    /// Largest gap within which points of two bodies are looked for because of how fast they are, metres: as far as they come
-    /// closer, or one of them comes, whichever is more, and what both turn.
-    pub fn ahead(&self, key: ContactKey) -> f32 {
+    /// Gap within which points of two bodies are looked for because of how fast they are: as far as they come closer, or one of them comes,
+    /// whichever is more, what both turn, and what a blow may bring.
+    pub fn ahead(&self, key: ContactKey) -> Ahead {
         let [p, q] = [key.a, key.b].map(|body| &self.strides[body as usize]);
         let (p2, q2) = (p.ahead.length_squared(), q.ahead.length_squared());
         let fastest = max((p.ahead - q.ahead).length_squared(), max(p2, q2));
-        (fastest.sqrt() + (p.spin + q.spin)) * (1.0 + SLACK)
+        let blow = p.blow + q.blow;
+        Ahead { most: (fastest.sqrt() + (p.spin + q.spin)) * (1.0 + SLACK) + blow, blow }
     }
 }

@@ -14,6 +14,14 @@ use crate::solver::tuning::{
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, linear};
 use sinew_math::{Transform, clamp, max};
 
+/// Impulse of a motor within a substep, N·s or N·m·s.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct MotorImpulse {
+    joint: usize,
+    direction: usize,
+    impulse: f32,
+}
+
 impl Motor {
     /// Most force or torque in a direction.
     pub(crate) fn cap(&self, direction: usize) -> f32 {
@@ -286,7 +294,7 @@ impl IslandSolver {
         self.push_work = self.work_of_saturated();
         by_motors += self.push_work;
         self.drive_work += max(by_motors, 0.0) + given;
-        self.work.drives += self.work_of_motors();
+        self.note_motor_impulses();
     }
 
     /// Kinetic energy that the pushes of saturated motors bring, J: impulse times the mean of the rates before and after it. What they would
@@ -302,21 +310,49 @@ impl IslandSolver {
         sum
     }
 
-    /// On the way that the bodies are about to go, J: force times way. Kinetic and potential energy together rise by no more.
-    pub(in crate::solver) fn work_of_motors(&self) -> f32 {
-        let mut sum = 0.0;
-        for joint in self.joints.iter().filter(|joint| joint.drive.motor.is_some()) {
+    /// Impulses of motors in this substep, and the rates on the way that the bodies are about to go: joint, direction, impulse, rate.
+    fn each_motor_impulse(&self, mut see: impl FnMut(usize, usize, f32, f32)) {
+        for (j, joint) in self.joints.iter().enumerate().filter(|(_, joint)| joint.drive.motor.is_some()) {
             let rate = joint.rate(&self.velocities);
             for row in joint.rows.locked..joint.rows.count {
-                let before = joint.start_rate[joint.rows.direction(row)];
-                sum += joint.driven[row].impulse(before, rate[row]) * rate[row];
+                let direction = joint.rows.direction(row);
+                let impulse = joint.driven[row].impulse(joint.start_rate[direction], rate[row]);
+                see(j, direction, impulse, rate[row]);
             }
             for i in joint.motor_directions().filter(|&i| joint.saturated[i] != 0) {
                 let impulse = f32::from(joint.saturated[i]) * joint.motor_cap(i, self.h);
-                sum += impulse * joint.open_rate(i, &self.velocities);
+                see(j, i, impulse, joint.open_rate(i, &self.velocities));
             }
         }
+    }
+
+    /// On the way that the bodies are about to go, J: force times way. Kinetic and potential energy together rise by no more.
+    pub(in crate::solver) fn work_of_motors(&self) -> f32 {
+        let mut sum = 0.0;
+        self.each_motor_impulse(|_, _, impulse, rate| sum += impulse * rate);
         sum
+    }
+
+    /// Keeps the impulses of motors until [`add_motor_work`](Self::add_motor_work).
+    fn note_motor_impulses(&mut self) {
+        let mut noted = core::mem::take(&mut self.scratch.motor_impulses);
+        noted.clear();
+        self.each_motor_impulse(|joint, direction, impulse, _| {
+            noted.push(MotorImpulse { joint, direction, impulse });
+        });
+        self.scratch.motor_impulses = noted;
+    }
+
+    /// Adds the work of motors in this substep, J, at its end: impulse times the rate that bodies are left with. Kinetic and potential energy
+    /// together rise by that at most, less by half of what the change of velocity would hold by itself. In the rates between the passes are
+    /// the ways on which joints, stops and contacts close, too: a stop that pushes a limb back against its muscle would seem to draw work
+    /// out of it.
+    pub(in crate::solver) fn add_motor_work(&mut self) {
+        for &MotorImpulse { joint, direction, impulse } in &self.scratch.motor_impulses {
+            let joint = &self.joints[joint];
+            let rate = joint.open_rate(direction, &self.velocities);
+            self.work.drives += impulse * rate;
+        }
     }
 
     /// Energy that springs take, J, at `s` times the present velocities: the coefficients of `s²` and `s`.

@@ -92,6 +92,8 @@ impl IslandSolver {
         }
         s.pieces.clear();
         s.pieces.reserve(island.bodies.len());
+        s.motor_impulses.clear();
+        s.motor_impulses.reserve(DIRECTIONS * island.joints.len());
         for errors in [&mut s.errors, &mut s.errors_left] {
             errors.clear();
             errors.reserve(island.bodies.len());

@@ -1,0 +1,77 @@
+//! Blows that joints pass on within the step: an impulse moves one body at once, and what hangs on it only when joints are solved, after
+//! `pairs` has looked for what may meet.
+
+use super::tuning::{BLOW_PASSES, BLOW_SPEED};
+use crate::activity::Activity;
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::contact::proxies::Proxies;
+use crate::joint::{Joint, TWIST, locks};
+use sinew_math::max;
+
+/// Bodies that a blow is about to reach through their joints.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Blows {
+    reached: Vec<u32>,
+    /// Speed that the blow may bring, m/s, by index of the body; 0 for all between two steps.
+    speeds: Vec<f32>,
+}
+
+impl Blows {
+    /// Finds them by the anchors that part: joints left them with one velocity, and something struck one side since.
+    pub fn find(&mut self, bodies: &Arena<Body>, joints: &Arena<Joint>, activity: &Activity) {
+        let slots = bodies.slot_count();
+        self.speeds.resize(slots, 0.0);
+        self.reached.reserve(slots);
+        for (_, joint) in joints.iter() {
+            let speed = parting_speed(bodies, joint);
+            if speed > BLOW_SPEED {
+                self.reach(bodies, joint.a, speed);
+                self.reach(bodies, joint.b, speed);
+            }
+        }
+        let mut first = 0;
+        for _ in 0..BLOW_PASSES {
+            let last = self.reached.len();
+            for at in first..last {
+                let body = self.reached[at];
+                let speed = self.speeds[body as usize];
+                for &joint in activity.joints_of.body(body) {
+                    let joint = joints.at(joint);
+                    self.reach(bodies, joint.a + joint.b - body, speed);
+                }
+            }
+            first = last;
+        }
+    }
+
+    fn reach(&mut self, bodies: &Arena<Body>, body: u32, speed: f32) {
+        if !bodies.at(body).is_active() {
+            return;
+        }
+        let most = &mut self.speeds[body as usize];
+        if *most == 0.0 {
+            self.reached.push(body);
+        }
+        *most = max(*most, speed);
+    }
+
+    /// Has points of these bodies looked for as far away as the blow may take them.
+    pub fn widen(&mut self, proxies: &mut Proxies, bodies: &Arena<Body>) {
+        for index in self.reached.drain(..) {
+            let speed = core::mem::take(&mut self.speeds[index as usize]);
+            proxies.widen(index, bodies.at(index), speed);
+        }
+    }
+}
+
+/// Speed at which the anchors of a joint that holds them together part, m/s; 0 where nobody solves it.
+fn parting_speed(bodies: &Arena<Body>, joint: &Joint) -> f32 {
+    let [a, b] = [joint.a, joint.b].map(|index| bodies.at(index));
+    if !(a.is_active() || b.is_active()) || locks(&joint.kind)[..TWIST] != [true; TWIST] {
+        return 0.0;
+    }
+    let velocity = |body: &Body, anchor| body.velocity.at(body.world_from_principal.rotation * anchor);
+    let (p, q) = (velocity(a, joint.frame_a.translation), velocity(b, joint.frame_b.translation));
+    (p - q).length()
+}
