@@ -23,11 +23,16 @@ impl Blows {
         let slots = bodies.slot_count();
         self.speeds.resize(slots, 0.0);
         self.reached.reserve(slots);
-        for (_, joint) in joints.iter() {
-            let speed = parting_speed(bodies, joint);
-            if speed > BLOW_SPEED {
-                self.reach(bodies, joint.a, speed);
-                self.reach(bodies, joint.b, speed);
+        for body in activity.active() {
+            for &joint in activity.joints_of.body(body) {
+                let joint = joints.at(joint);
+                let other = joint.a + joint.b - body;
+                let is_seen = other < body && bodies.at(other).is_active();
+                let speed = if is_seen { 0.0 } else { parting_speed(bodies, joint) };
+                if speed > BLOW_SPEED {
+                    self.reach(bodies, joint.a, speed);
+                    self.reach(bodies, joint.b, speed);
+                }
             }
         }
         let mut first = 0;
@@ -65,10 +70,10 @@ impl Blows {
     }
 }
 
-/// Speed at which the anchors of a joint that holds them together part, m/s; 0 where nobody solves it.
+/// Speed at which the anchors of a joint that holds them together part, m/s; 0 where it does not.
 fn parting_speed(bodies: &Arena<Body>, joint: &Joint) -> f32 {
     let [a, b] = [joint.a, joint.b].map(|index| bodies.at(index));
-    if !(a.is_active() || b.is_active()) || locks(&joint.kind)[..TWIST] != [true; TWIST] {
+    if locks(&joint.kind)[..TWIST] != [true; TWIST] {
         return 0.0;
     }
     let velocity = |body: &Body, anchor| body.velocity.at(body.world_from_principal.rotation * anchor);
