@@ -1,9 +1,7 @@
 //! Movers in order along an axis, so that each looks at those near it alone.
 
-use super::Mover;
-use crate::arena::Arena;
 use crate::boxes::Aabb;
-use sinew_math::{Vec3, abs3, max, max3, min3};
+use sinew_math::{Vec3, max, max3, min3};
 
 /// All movers, by where their centres were when the stage began, along the axis on which they lie farthest apart.
 #[derive(Default)]
@@ -17,19 +15,17 @@ pub(super) struct Crowd {
 }
 
 impl Crowd {
-    /// Puts them in order.
-    pub fn sort(&mut self, movers: &Arena<Mover>) {
+    /// Puts them in order: the index, centre, and half extents of each.
+    pub fn sort<M: Iterator<Item = (u32, Vec3, Vec3)>>(&mut self, movers: impl Fn() -> M) {
         let (mut lo, mut hi, mut widest) = (Vec3::INFINITY, Vec3::NEG_INFINITY, Vec3::ZERO);
-        for (_, mover) in movers.iter() {
-            let center = mover.center();
-            (lo, hi) = (min3(lo, center), max3(hi, center));
-            widest = max3(widest, mover.half_extents());
+        for (_, center, half) in movers() {
+            (lo, hi, widest) = (min3(lo, center), max3(hi, center), max3(widest, half));
         }
         let spread = hi - lo;
         self.axis = (1..3).fold(0, |most, axis| if spread[axis] > spread[most] { axis } else { most });
         (self.widest, self.drift) = (widest[self.axis], 0.0);
         self.order.clear();
-        self.order.extend(movers.iter().map(|(index, mover)| (mover.center()[self.axis], index)));
+        self.order.extend(movers().map(|(index, center, _)| (center[self.axis], index)));
         self.order.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
     }
 
@@ -38,18 +34,11 @@ impl Crowd {
         self.drift = max(self.drift, (to[self.axis] - from[self.axis]).abs());
     }
 
-    /// Those that may reach into a region, and others.
+    /// Movers that may reach into a region, in the order along the axis; some do not.
     pub fn near(&self, region: &Aabb) -> impl Iterator<Item = u32> {
         let room = self.widest + self.drift;
         let (lo, hi) = (region.min[self.axis] - room, region.max[self.axis] + room);
         let first = self.order.partition_point(|&(at, _)| at < lo);
         self.order[first..].iter().take_while(move |&&(at, _)| at <= hi).map(|&(_, index)| index)
-    }
-}
-
-impl Mover {
-    /// Half of its bounds, metres.
-    pub(super) fn half_extents(&self) -> Vec3 {
-        abs3(self.def.up * self.half_height()) + Vec3::splat(self.def.radius)
     }
 }

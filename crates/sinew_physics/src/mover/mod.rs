@@ -25,7 +25,7 @@ use crate::world::World;
 use crowd::Crowd;
 use obstacle::Obstacle;
 use press::Press;
-use sinew_math::Vec3;
+use sinew_math::{Vec3, abs3};
 
 /// State of a mover.
 #[derive(Clone, Debug)]
@@ -118,6 +118,11 @@ impl Mover {
         0.5 * self.def.height - self.def.radius
     }
 
+    /// Half extents of its bounds, metres.
+    fn half_extents(&self) -> Vec3 {
+        abs3(self.def.up * self.half_height()) + Vec3::splat(self.def.radius)
+    }
+
     /// Velocity in the world, m/s; that of the ground is in it.
     pub fn velocity(&self) -> Vec3 {
         self.velocity + self.ground.map_or(Vec3::ZERO, |footing| footing.velocity)
@@ -189,11 +194,13 @@ pub(crate) fn movers(world: &mut World) {
     }
     let mut movers = core::mem::take(&mut world.movers);
     let dt = world.def.dt();
-    movers.crowd.sort(&movers.all);
+    let extents = |(index, mover): (u32, &Mover)| (index, mover.center(), mover.half_extents());
+    movers.crowd.sort(|| movers.all.iter().map(extents));
     for index in 0..movers.all.slot_count() as u32 {
-        if movers.all.try_at(index).is_some() {
+        if let Some(mover) = movers.all.try_at(index) {
+            world.work.movers += press::work_of_weight(&world.bodies, mover, world.def.gravity);
             walk::advance(world, &mut movers, index, dt);
-            press::apply(world, &mut movers.presses, dt);
+            press::apply(world, &mut movers.presses);
         }
     }
     world.movers = movers;

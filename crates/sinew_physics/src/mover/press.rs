@@ -107,24 +107,45 @@ impl Hitter {
     }
 }
 
-/// The weight (N) of a mover on what bears it: a force, for an impulse as large would shoot off the hand of somebody who lies.
+/// Weight of a mover on what bears it, newtons along its downward direction.
+fn weight_of(mover: &Mover, gravity: Vec3) -> f32 {
+    max(-(gravity * mover.def.gravity_scale).dot(mover.def.up), 0.0) * mover.def.mass
+}
+
+/// Dynamic body that bears a mover, and the point at which it does.
+fn bearer<'a>(bodies: &'a Arena<Body>, mover: &Mover) -> Option<(u32, &'a Body, Vec3)> {
+    let footing = mover.ground?;
+    let Bearer::Shape { body: id, .. } = footing.on else { return None };
+    let body = bodies.get(id).filter(|body| body.kind == BodyKind::Dynamic)?;
+    Some((id.index, body, footing.point))
+}
+
+/// The weight of a mover on what bears it: a force, for an impulse as large would shoot off the hand of somebody who lies.
 pub(super) fn weigh(
-    bodies: &Arena<Body>,
+    (bodies, gravity): (&Arena<Body>, Vec3),
     mover: &Mover,
     is_new: bool,
-    weight: f32,
     presses: &mut Vec<Press>,
 ) {
-    let Some(footing) = mover.ground else { return };
-    let Bearer::Shape { body, .. } = footing.on else { return };
-    if bodies.get(body).is_some_and(|body| body.kind == BodyKind::Dynamic) {
-        let push = Push::Force(-mover.def.up * weight);
-        presses.push(Press { body: body.index, push, point: footing.point, wakes: is_new });
+    if let Some((body, _, point)) = bearer(bodies, mover) {
+        let push = Push::Force(-mover.def.up * weight_of(mover, gravity));
+        presses.push(Press { body, push, point, wakes: is_new });
     }
 }
 
-/// Gives bodies what movers press on them, in a step of `dt` seconds.
-pub(super) fn apply(world: &mut World, presses: &mut Vec<Press>, dt: f32) {
+/// Work (J) that the weight of a mover did in the step just taken, by the way and the turn of the body that bore it: force and torque were the
+/// same all the time.
+pub(super) fn work_of_weight(bodies: &Arena<Body>, mover: &Mover, gravity: Vec3) -> f32 {
+    let Some((_, body, point)) = bearer(bodies, mover) else { return 0.0 };
+    let (from, to) = (body.previous, body.world_from_principal);
+    let force = -mover.def.up * weight_of(mover, gravity);
+    let torque = (point - from.translation).cross(force);
+    force.dot(to.translation - from.translation)
+        + torque.dot(from.rotation.angular_velocity_to(to.rotation, 1.0))
+}
+
+/// Gives bodies what movers press on them.
+pub(super) fn apply(world: &mut World, presses: &mut Vec<Press>) {
     for &Press { body: index, push, point, wakes } in presses.iter() {
         let body = world.bodies.at(index);
         if !body.is_awake() && !wakes {
@@ -137,12 +158,7 @@ pub(super) fn apply(world: &mut World, presses: &mut Vec<Press>, dt: f32) {
                 world.apply_impulse(id, impulse, point);
                 world.work.movers += world.body_energy(id).kinetic - before;
             }
-            Push::Force(force) if force.is_finite() => {
-                // On the way that the point is on.
-                let velocity = body.velocity.at(point - body.center());
-                world.work.movers += force.dot(velocity) * dt;
-                world.apply_force(id, force, point);
-            }
+            Push::Force(force) if force.is_finite() => world.apply_force(id, force, point),
             Push::Impulse(_) | Push::Force(_) => {}
         }
     }

@@ -153,8 +153,7 @@ impl<'a> Move<'a> {
         };
         mover.put(center);
         let is_new = mover.ground.map(|footing| footing.on) != stood;
-        let weight = max(-gravity.dot(up), 0.0) * mover.def.mass;
-        weigh(self.sight.bodies, mover, is_new, weight, presses);
+        weigh((self.sight.bodies, self.world.def.gravity), mover, is_new, presses);
     }
 
     fn level(&self) -> Manner {

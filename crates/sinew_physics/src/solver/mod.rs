@@ -175,7 +175,7 @@ struct Scratch {
     started: Vec<Vec6>,
     loads: piles::loads::Scratch,
     pieces: Vec<articulation::piece::Piece>,
-    /// Of the substep, until its work is known.
+    /// Impulses of motors in the substep, until their work is known.
     motor_impulses: Vec<MotorImpulse>,
     build: boundary::growth::Scratch,
 }

@@ -17,7 +17,7 @@ use crate::step::blows::Blows;
 pub(crate) struct BroadPhase {
     pub proxies: Proxies,
     pub near: NearPairs,
-    /// What joints are about to pass on.
+    /// Blows that joints are about to pass on.
     pub blows: Blows,
     /// Pairs without a contact that are so near that they may have points, in order.
     pub asked: Vec<Asked>,

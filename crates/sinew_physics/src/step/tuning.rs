@@ -40,8 +40,8 @@ pub(super) const LINGER: f32 = 0.1;
 
 /// Speed from which anchors of a joint that part tell of a blow, m/s.
 ///
-/// Joints leave less to the next step. Larger: a limb goes into another by a step of that. Smaller: pairs are looked for that do not meet. Shown
-/// by `stumble::pushes_at_random`.
+/// Joints leave less to the next step. Larger: a limb goes into another by a step of that. Smaller: pairs are looked for that do not meet.
+/// Shown by the tests of `stumble`.
 pub(super) const BLOW_SPEED: f32 = 0.3;
 
 /// Joints in a row through which a blow is followed to what it may drive into something, a number.
