@@ -231,6 +231,7 @@ pub enum JointState {
 #[doc(alias = "constraint")]
 #[doc(alias = "ImpulseJoint")]
 #[doc(alias = "GenericJoint")]
+#[must_use = "a joint is there once `World::add_joint` has it"]
 pub struct JointDef {
     /// First body (the parent, where there is one).
     pub body_a: BodyId,

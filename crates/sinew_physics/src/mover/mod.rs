@@ -52,7 +52,7 @@ pub(crate) struct Footing {
     on: Bearer,
     point: Vec3,
     normal: Vec3,
-    /// Velocity of the ground's surface there at the end of the step, m/s.
+    /// Velocity with which the ground takes the mover along, m/s: that of its surface there at the end of the step, or as near to it as friction comes.
     velocity: Vec3,
 }
 

@@ -7,7 +7,8 @@ use super::sweep::{Course, Manner, Touch};
 use super::{Bearer, Footing, Mover, Movers, surface_velocity};
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::mover::tuning::{BEHIND_EDGE, LOOK_AHEAD, OVER_EDGE, STOPPED_SHARE, WEDGED_SHARE};
+use crate::body::def::BodyKind;
+use crate::mover::tuning::{BEHIND_EDGE, GRIP, LOOK_AHEAD, OVER_EDGE, STOPPED_SHARE, WEDGED_SHARE};
 use crate::ray::Ray;
 use crate::world::World;
 use sinew_math::{Vec3, max, trig};
@@ -26,8 +27,8 @@ pub(super) fn advance(world: &World, movers: &mut Movers, index: u32, dt: f32) {
     let Movers { all, crowd, obstacles, presses } = movers;
     let mut mover = all.at(index).clone();
     mover.previous = mover.position;
-    mover.refresh_ground(&world.bodies);
-    let carried = mover.carried(&world.bodies, dt);
+    let slips = mover.refresh_ground(&world.bodies, dt);
+    let carried = mover.carried(&world.bodies, slips, dt);
     mover.accelerate(dt);
     let gravity = world.def.gravity * mover.def.gravity_scale;
     look_around(world, (all, crowd), index, (&mover, carried, gravity, dt), obstacles);
@@ -64,23 +65,30 @@ impl Mover {
         }
     }
 
-    /// The ground may have been taken out or changed its velocity.
-    fn refresh_ground(&mut self, bodies: &Arena<Body>) {
-        let Some(footing) = self.ground else { return };
-        if let Bearer::Shape { body, shape } = footing.on {
-            match bodies.get(body) {
-                Some(body) => {
-                    let velocity = surface_velocity(body, shape, footing.point);
-                    self.ground = Some(Footing { velocity, ..footing });
-                }
-                None => self.leave_ground(),
-            }
-        }
+    /// The ground may have been taken out or changed its velocity. A dynamic body takes the mover along by friction: what flies off under it
+    /// slips away, which is what the answer says.
+    fn refresh_ground(&mut self, bodies: &Arena<Body>, dt: f32) -> bool {
+        let Some(footing) = &mut self.ground else { return false };
+        let Bearer::Shape { body, shape } = footing.on else { return false };
+        let Some(body) = bodies.get(body) else {
+            self.leave_ground();
+            return false;
+        };
+        let change = surface_velocity(body, shape, footing.point) - footing.velocity;
+        let (length, most) = (change.length(), GRIP * dt);
+        let slips = body.kind == BodyKind::Dynamic && length > most;
+        footing.velocity += if slips { change * (most / length) } else { change };
+        slips
     }
 
-    /// Way on which what bears it takes it along in this step; its yaw follows.
-    fn carried(&mut self, bodies: &Arena<Body>, dt: f32) -> Vec3 {
-        let Some(Footing { on: Bearer::Shape { body, shape }, .. }) = self.ground else { return Vec3::ZERO };
+    /// Way on which what bears it takes it along in this step; its yaw follows, unless it slips.
+    fn carried(&mut self, bodies: &Arena<Body>, slips: bool, dt: f32) -> Vec3 {
+        let Some(Footing { on: Bearer::Shape { body, shape }, velocity, .. }) = self.ground else {
+            return Vec3::ZERO;
+        };
+        if slips {
+            return velocity * dt;
+        }
         let body = bodies.at(body.index);
         let runs = body.surface_velocity(shape as usize, self.position);
         self.yaw += (body.velocity.angular + runs.angular).dot(self.def.up) * dt;
@@ -179,10 +187,18 @@ impl<'a> Move<'a> {
             mover.velocity = kept / self.dt;
         }
         match footing {
-            Some(footing) => mover.ground = Some(footing),
+            Some(footing) => mover.ground = Some(self.taken_along(mover, footing)),
             None => mover.leave_ground(),
         }
         found
+    }
+
+    /// The footing with the velocity with which it takes a mover along that walks onto it or stays on it.
+    fn taken_along(&self, mover: &Mover, footing: Footing) -> Footing {
+        let (Some(before), Bearer::Shape { body, .. }) = (mover.ground, footing.on) else { return footing };
+        let is_dynamic = self.sight.bodies.at(body.index).kind == BodyKind::Dynamic;
+        let velocity = if is_dynamic { before.velocity } else { footing.velocity };
+        Footing { velocity, ..footing }
     }
 
     /// Up, along and down onto a tread that is no higher than a step over the feet.

@@ -4,7 +4,7 @@ use super::{Blow, Character, CharacterEvent, State, Toughness};
 use crate::character::tuning::{FLINCH_HALF_LIFE, FLINCH_TIME, LEGS_WEAKEN, RETURNED_AFTER, TRUNK_WEAKENS};
 use crate::drive::{DriveMode, Muscle};
 use sinew_math::Vec3;
-use sinew_physics::{BodyHit, World};
+use sinew_physics::{BodyHit, BodyKind, World};
 
 /// Muscles that hold a limb that was struck until it comes back.
 const GIVING: Muscle = Muscle { hertz: 3.0, damping_ratio: 1.0, strength: 0.5 };
@@ -30,22 +30,29 @@ impl Character {
         Some(self.strike(world, body, impulse, Some(hit.point)))
     }
 
-    pub(super) fn strike(
-        &mut self,
-        world: &mut World,
-        body: usize,
-        impulse: Vec3,
-        point: Option<Vec3>,
-    ) -> f32 {
+    fn strike(&mut self, world: &mut World, body: usize, impulse: Vec3, point: Option<Vec3>) -> f32 {
+        if self.react(world, body, impulse) { self.push(world, body, impulse, point) } else { 0.0 }
+    }
+
+    /// Flinches or falls by a blow that contacts brought to one of its bodies. A body that forces move has had the impulse with the contact.
+    pub(super) fn be_struck(&mut self, world: &mut World, body: usize, impulse: Vec3) {
+        let is_led = world.kind(self.bodies()[body]) != BodyKind::Dynamic;
+        if self.react(world, body, impulse) && is_led {
+            self.push(world, body, impulse, None);
+        }
+    }
+
+    /// Flinches or falls; false if no body may move by the blow.
+    fn react(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
         assert!(impulse.is_finite(), "an impulse is finite");
         assert!(body < self.def.ragdoll.bodies.len(), "there is such a body");
         if self.stands_blow(Blow { body, impulse }) {
-            return self.flinch(world, body, impulse, point);
+            return self.flinch(world, body, impulse);
         }
         self.go_limp(world);
         self.events.push(CharacterEvent::Hit { body });
         self.drives.hit(&self.def.ragdoll, body, impulse.length());
-        self.push(world, body, impulse, point)
+        true
     }
 
     fn stands_blow(&self, blow: Blow) -> bool {
@@ -70,17 +77,11 @@ impl Character {
         world.body_energy(id).kinetic - before
     }
 
-    /// Lets the limb that was struck give way.
-    pub(super) fn flinch(
-        &mut self,
-        world: &mut World,
-        body: usize,
-        impulse: Vec3,
-        point: Option<Vec3>,
-    ) -> f32 {
+    /// Lets the limb that was struck give way; false if none may.
+    pub(super) fn flinch(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
         if self.state == State::Animated && !self.gives_way() {
             self.events.push(CharacterEvent::Flinched { body });
-            return 0.0;
+            return false;
         }
         if self.state == State::Animated {
             self.take_bodies(world, DriveMode::Keyed);
@@ -99,7 +100,7 @@ impl Character {
             self.shove(world, impulse);
         }
         self.drive_bodies(world);
-        self.push(world, body, impulse, point)
+        true
     }
 
     /// Tenses the legs and the trunk of a character that stands: a blow takes less of their strength.

@@ -2,8 +2,8 @@
 
 use super::{Character, CharacterEvent};
 use crate::character::tuning::TELEPORTED;
-use sinew_math::{Vec3, max};
-use sinew_physics::{BodyId, BodyKind, World};
+use sinew_math::{Vec3, max, min};
+use sinew_physics::{BodyId, BodyKind, Hit, Velocity, World};
 
 impl Character {
     /// Has the hit bodies go where the pose will be at the end of the next step, as far as it goes on as it did.
@@ -34,6 +34,27 @@ impl Character {
         (presence.before, self.scratch.after) = (now, before);
     }
 
+    /// Has its bodies pass through the dynamic body that bears its mover, which presses it with its weight alone: feet that kicked a crate on
+    /// which they ride would drive it, and themselves with it, faster and faster.
+    pub(super) fn spare_bearer(&mut self, world: &mut World) {
+        let ground = self.mover().and_then(|mover| world.mover_ground(mover));
+        let bearer = ground.and_then(|ground| ground.shape).map(|shape| shape.body);
+        let bearer = bearer.filter(|&body| world.kind(body) == BodyKind::Dynamic);
+        let bearer = bearer.filter(|&body| self.held().all(|held| held != body));
+        let Some(presence) = self.presence.as_mut().filter(|presence| presence.bearer != bearer) else {
+            return;
+        };
+        let before = core::mem::replace(&mut presence.bearer, bearer).filter(|&body| world.contains(body));
+        for &own in self.bodies() {
+            if let Some(before) = before {
+                world.enable_pair(own, before);
+            }
+            if let Some(bearer) = bearer {
+                world.disable_pair(own, bearer);
+            }
+        }
+    }
+
     /// Flinches or falls by what struck its bodies in the last step.
     pub(super) fn feel(&mut self, world: &mut World) {
         let least = self.def.in_world.feels;
@@ -56,8 +77,8 @@ impl Character {
             match (own(hit.a.body), own(hit.b.body)) {
                 (Some(_), None) if stands(hit.b.body) => {}
                 (None, Some(_)) if stands(hit.a.body) => {}
-                (Some(body), None) => note(body, hit.normal * -hit.impulse),
-                (None, Some(body)) => note(body, hit.normal * hit.impulse),
+                (Some(body), None) => note(body, self.taken(world, hit, hit.a.body, -hit.normal)),
+                (None, Some(body)) => note(body, self.taken(world, hit, hit.b.body, hit.normal)),
                 _ => {}
             }
         }
@@ -70,7 +91,7 @@ impl Character {
         }
         if let Some((body, impulse)) = felt {
             self.events.push(CharacterEvent::Struck { body, impulse: impulse.length() });
-            self.strike(world, body, impulse, None);
+            self.be_struck(world, body, impulse);
         }
     }
 
@@ -93,6 +114,17 @@ impl Character {
         self.events = events;
     }
 
+    /// Impulse of a hit on one of its bodies, `way` being from the other to it, N·s: no more than what comes could bring to all of it, and to a led
+    /// body what comes by itself. A foot that comes down on a hand presses that to the ground however hard it is led.
+    fn taken(&self, world: &World, hit: &Hit, own: BodyId, way: Vec3) -> Vec3 {
+        let Velocity { linear, angular } = world.velocity(own);
+        let led = linear + angular.cross(hit.point - world.center_of_mass(own));
+        let shoves = if world.kind(own) == BodyKind::Dynamic { 0.0 } else { -led.dot(way) };
+        let bounce = hit.materials.iter().fold(1.0, |most, material| max(most, 1.0 + material.restitution));
+        let most = self.def.ragdoll.total_mass * bounce * max(hit.approach - shoves, 0.0);
+        way * min(hit.impulse, most)
+    }
+
     /// Impulse that a body that goes through one of its own would give it, if the two stopped each other: N·s.
     fn passing(&self, world: &World, own: BodyId, other: BodyId) -> Vec3 {
         let gone = !world.contains(other) || !world.contains(own);
@@ -106,6 +138,6 @@ impl Character {
         // What comes by itself, not what it walks into.
         let comes = max(world.velocity(other).linear.dot(way), 0.0);
         let closing = max(relative.dot(way), 0.0);
-        way * (mass * whole / (mass + whole) * sinew_math::min(closing, comes))
+        way * (mass * whole / (mass + whole) * min(closing, comes))
     }
 }

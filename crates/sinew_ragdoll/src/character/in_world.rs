@@ -126,6 +126,8 @@ impl InWorld {
 pub(super) struct Presence {
     /// While it stands.
     pub mover: Option<MoverId>,
+    /// Dynamic body that bears the mover, through which its own bodies pass.
+    pub bearer: Option<BodyId>,
     /// Hit bodies, which are the ragdoll's while it has one.
     pub bodies: Vec<BodyId>,
     /// Poses of the bodies a step ago as clips had them; empty: none.
@@ -191,7 +193,7 @@ impl Character {
         let rule = ContactRule::Yields(yields);
         let bodies = Ragdoll::spawn_kinematic(world, &def.ragdoll, &states, &def.body_settings, rule);
         if let Some(presence) = &mut self.presence {
-            presence.bodies = bodies;
+            (presence.bodies, presence.bearer) = (bodies, None);
         }
     }
 
@@ -270,5 +272,6 @@ impl Character {
         if let Some(mover) = mover.filter(|&mover| world.contains_mover(mover)) {
             world.remove_mover(mover);
         }
+        self.spare_bearer(world);
     }
 }

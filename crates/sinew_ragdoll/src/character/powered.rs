@@ -57,7 +57,7 @@ impl Character {
             (Preset::Animated, _) => {}
             (Preset::Flinching, State::Animated | State::Flinching) => {
                 for body in self.pelvis_children() {
-                    self.flinch(world, body, Vec3::ZERO, None);
+                    self.flinch(world, body, Vec3::ZERO);
                 }
             }
             (Preset::Flinching, _) => {}

@@ -13,7 +13,7 @@ use sinew_math::{ReadError, Reader, Writer};
 use sinew_physics::{BodyId, JointId, MoverId};
 
 /// First bytes; the last is the version.
-const MAGIC: &[u8; 8] = b"sinew-c\x04";
+const MAGIC: &[u8; 8] = b"sinew-c\x05";
 /// Bit of a state: the character has its share of a world.
 const IN_WORLD: u8 = 0x80;
 /// Bit of a state: its springs follow at the end.
@@ -181,6 +181,7 @@ impl Character {
 impl Presence {
     fn save(&self, w: &mut Writer) {
         w.u64(self.mover.map_or(u64::MAX, MoverId::to_bits));
+        w.u64(self.bearer.map_or(u64::MAX, BodyId::to_bits));
         w.count(self.bodies.len());
         self.bodies.iter().for_each(|body| w.u64(body.to_bits()));
         w.count(self.before.len());
@@ -207,9 +208,9 @@ impl Presence {
     }
 
     fn load(r: &mut Reader<'_>, most: usize) -> Result<Self, ReadError> {
-        let mover = r.u64()?;
-        let mut presence =
-            Self { mover: (mover != u64::MAX).then(|| MoverId::from_bits(mover)), ..Self::default() };
+        let mut id = || Ok::<_, ReadError>(Some(r.u64()?).filter(|&bits| bits != u64::MAX));
+        let (mover, bearer) = (id()?.map(MoverId::from_bits), id()?.map(BodyId::from_bits));
+        let mut presence = Self { mover, bearer, ..Self::default() };
         for _ in 0..r.count(8)? {
             presence.bodies.push(BodyId::from_bits(r.u64()?));
         }

@@ -506,6 +506,12 @@ pub(crate) const PACE_RATE: f32 = 10.0;
 /// Larger: slow walks slide. Smaller: it walks on the spot. Shown by the tests of `in_world`.
 pub(crate) const STANDS_BELOW: f32 = 0.35;
 
+/// Time in which the looped clip and that of standing change places at most, seconds.
+///
+/// Larger: who sets off slides. Smaller: arms and legs are flung to where the other clip has them, and kick what is near. Shown by the
+/// tests of `in_world`.
+pub(crate) const STANDS_IN: f32 = 0.2;
+
 /// Acceleration of what stands on its own feet, m/s²: shoes give way beyond it.
 ///
 /// Larger: starts without weight. Smaller: it answers late. Shown by the tests of `in_world`.

@@ -2,7 +2,7 @@
 
 use super::{Character, State};
 use crate::character::tuning::{
-    FASTEST_PACE, MOST_OVER, PACE_RATE, PICKS_UP, STANDS_BELOW, STEP_SETTLES, STEP_SLOPE,
+    FASTEST_PACE, MOST_OVER, PACE_RATE, PICKS_UP, STANDS_BELOW, STANDS_IN, STEP_SETTLES, STEP_SLOPE,
 };
 use sinew_anim::{ClipId, MotionTrack, TrackDef, TrackId, smoothstep};
 use sinew_math::{Rotation, Transform, Vec3, clamp, max, min, normalize_or, trig};
@@ -129,6 +129,7 @@ impl Character {
 
     /// Tells the mover where to go in the next step, and lets it grow to its height.
     pub(super) fn steer(&mut self, world: &mut World) {
+        self.spare_bearer(world);
         let Some(mover) = self.mover() else { return };
         let walk = match self.stumbling() {
             Some(stumble) => stumble.velocity,
@@ -182,7 +183,9 @@ impl Character {
         let idle = self.track_of(idle).unwrap_or_else(|| {
             self.animator.play(def.set(), &TrackDef { weight: 0.0, ..TrackDef::new(idle) })
         });
-        let share = smoothstep(clamp(pace / STANDS_BELOW, 0.0, 1.0));
+        let wanted = smoothstep(clamp(pace / STANDS_BELOW, 0.0, 1.0));
+        let now = self.animator.track(walk).map_or(wanted, |track| track.def().weight);
+        let share = clamp(wanted, now - dt / STANDS_IN, now + dt / STANDS_IN);
         self.animator.set_weight(walk, share);
         self.animator.set_weight(idle, 1.0 - share);
     }

@@ -1,7 +1,7 @@
 //! Pushes between movers and dynamic bodies.
 
 use super::{depth, level, settle};
-use sinew_math::{Reader, Rotation, Transform, Vec3, Writer};
+use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, max};
 use sinew_physics::*;
 
 fn crate_of(world: &mut World, mass: f32, at: Vec3, friction: f32) -> BodyId {
@@ -193,4 +193,30 @@ fn the_work_of_a_push_is_told() {
     let (way, speed) = (world.transform(load).translation.x, world.velocity(load).linear.length());
     let expected = 30.0 * (0.6 * 9.81 * way + 0.5 * speed * speed);
     assert!(way > 1.0 && (work / expected - 1.0).abs() < 0.05, "{work} J for {expected} over {way} m");
+}
+
+/// A seesaw: its energy rises by the work of the weight on it, on the way that it goes.
+#[test]
+fn the_work_of_its_weight_is_told_on_the_way_that_its_bearer_goes() {
+    let mut world = World::new(WorldDef::default());
+    let post = world.add_body(&BodyDef::fixed(Shape::Sphere { radius: 0.05 }).at(Vec3::new(-2.0, 0.0, 0.0)));
+    let half_extents = Vec3::new(0.5, 0.05, 0.5);
+    let mut def = BodyDef::dynamic(Shape::Box { half_extents }).at(Vec3::Y * 1.95);
+    def.shapes[0].density = 200.0 / (8.0 * 0.5 * 0.05 * 0.5);
+    let board = world.add_body(&def);
+    let hinge = world.hinge(post, board, Vec3::Y * 1.95, Vec3::Z);
+    world.add_joint(&hinge);
+    world.add_mover(&MoverDef::at(Vec3::new(0.3, 2.01, 0.0)));
+    let start = world.energy();
+    let (mut work, mut rise) = (0.0, 0.0);
+    for step in 1..=20 {
+        world.step();
+        work += world.work().movers;
+        let now = world.energy();
+        rise = now.kinetic - start.kinetic + now.potential - start.potential;
+        // The way of the first substep is a whole one at the end's speed.
+        let late = 0.3 * work / step as f32;
+        assert!(rise < work + 0.1 && work < rise + late + 0.1, "{rise} J more by {work} J in step {step}");
+    }
+    assert!(rise > 20.0, "it tipped: {rise} J");
 }

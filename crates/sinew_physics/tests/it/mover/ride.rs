@@ -162,3 +162,27 @@ fn a_mover_stands_on_another_and_a_filter_lets_it_through_walls() {
     }
     assert!(world.mover(high).position().x > 2.0);
 }
+
+/// A hand on which somebody stands is jerked away from under the soles: it slips, and he stands.
+#[test]
+fn what_is_jerked_away_under_it_slips() {
+    let mut world = level();
+    let half_extents = Vec3::new(0.2, 0.03, 0.2);
+    let mut def = BodyDef::dynamic(Shape::Box { half_extents }).at(Vec3::Y * 0.03);
+    def.shapes[0].density = 0.5 / (8.0 * 0.2 * 0.03 * 0.2);
+    let hand = world.add_body(&def);
+    let id = world.add_mover(&MoverDef::at(Vec3::new(0.05, 0.07, 0.0)));
+    settle(&mut world, id);
+    assert_eq!(world.mover_ground(id).and_then(|ground| ground.shape).map(|shape| shape.body), Some(hand));
+    let start = world.mover(id).position();
+    world.set_velocity(hand, Velocity { linear: Vec3::X * 40.0, angular: Vec3::Y * 40.0 });
+    let mut yaw = 0.0;
+    for step in 0..30 {
+        world.step();
+        let mover = world.mover(id);
+        yaw = sinew_math::max(yaw, mover.yaw().abs());
+        let went = (mover.position() - start) * Vec3::new(1.0, 0.0, 1.0);
+        assert!(went.length() < 0.05 && mover.velocity().length() < 1.0, "in step {step}: it went {went}");
+    }
+    assert!(yaw < 0.05, "it was turned by {yaw} rad");
+}
