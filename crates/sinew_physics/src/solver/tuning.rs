@@ -70,7 +70,7 @@ pub(super) const MAX_TREE: usize = 1024;
 ///
 /// Each is a resumed pass of sweeps. Sensible from 1 to 8. More: violent crashes cost more. Fewer: a limb that whirls leaves its cone
 /// on a side that no row faces. Shown by `ragdoll_wall_fast` and the test `humanoid::wall_hits`.
-pub(super) const PREDICTIONS: usize = 4;
+pub(super) const PREDICTIONS: usize = 8;
 
 // ---- Sweeps ----
 

@@ -550,3 +550,70 @@ fn who_lies_on_top_gets_up_first() {
     // Without waiting for each other: 8 of 12.
     assert!(struck <= 3, "{struck} of 12 are struck at more than 10 m/s");
 }
+
+/// Crates no higher than a step, over which it walks: its mover presses them, its feet do not kick them along with it.
+#[test]
+fn crates_that_it_walks_over_are_not_driven() {
+    let def = stander();
+    let mut random = Random::new(5);
+    for case in 0..30 {
+        let mut world = level();
+        let half = random.range(0.1, 0.17);
+        let at = Vec3::new(random.range(-0.2, 0.2), half, random.range(0.8, 1.6));
+        let load = load(&mut world, random.range(12.0, 30.0), half, at);
+        let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+        character.set_move(Vec3::Z * 1.2);
+        let (mut fastest, mut highest) = (0.0, 0.0);
+        for step in 0..360 {
+            // Now and then it stands on the crate for a while.
+            let stands = (60 + 2 * case..150 + 2 * case).contains(&step);
+            character.set_move(Vec3::Z * if stands { 0.0 } else { 1.2 });
+            run(&mut world, &mut character, 1);
+            fastest = max(fastest, world.velocity(load).linear.length());
+            highest = max(highest, place(&character).y);
+        }
+        assert!(fastest < 3.0, "case {case}: a crate of {half} m was driven to {fastest} m/s");
+        assert!(highest < 2.0 * half + 0.05, "case {case}: it was thrown to {highest} m");
+    }
+}
+
+/// Hands and the like under its feet: what does not come by itself is no blow, however hard a led foot presses it to the floor.
+#[test]
+fn what_it_treads_on_is_no_blow() {
+    let def = shared(walker());
+    let mut world = level();
+    for row in 0..8 {
+        for column in -2..=2 {
+            let at = Vec3::new(0.09 * column as f32, 0.04, 0.6 + 0.3 * row as f32);
+            load(&mut world, 0.5, 0.04, at);
+        }
+    }
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    character.set_move(Vec3::Z * 1.3);
+    for event in run(&mut world, &mut character, 200) {
+        let struck = if let CharacterEvent::Struck { impulse, .. } = event { impulse } else { 0.0 };
+        assert!(struck < 10.0, "half a kilogram struck it with {struck} N·s");
+    }
+    assert!(place(&character).z > 2.5 && character.state() != State::Limp);
+}
+
+/// From standing to a walk and back: the clips change places by and by, so that hit bodies do not strike out.
+#[test]
+fn it_sets_off_and_stops_without_a_jerk() {
+    let mut def = walker();
+    let motions = def.motions().clone();
+    def.set_motions(sinew_ragdoll::MotionSet { idle: Some(1), ..motions })
+        .expect("they could be played before");
+    let mut world = level();
+    let mut character = Character::spawn(&mut world, &shared(def), Transform::IDENTITY);
+    let mut fastest = 0.0;
+    for step in 0..360 {
+        character.set_move(if (60..240).contains(&step) { Vec3::Z * WALK_SPEED } else { Vec3::ZERO });
+        run(&mut world, &mut character, 1);
+        if step > 0 {
+            let speeds = character.bodies().iter().map(|&body| world.velocity(body).linear.length());
+            fastest = speeds.fold(fastest, max);
+        }
+    }
+    assert!(fastest < 8.0, "a hand or a foot goes at {fastest} m/s");
+}
