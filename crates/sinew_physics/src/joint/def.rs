@@ -308,7 +308,6 @@ impl JointDef {
     ///
     /// # Panics
     /// If it is of another kind: the limits of others are fields of their [kinds](JointKind).
-    #[must_use]
     #[track_caller]
     pub fn limited(self, range: Range) -> Self {
         let limit = Some(range);

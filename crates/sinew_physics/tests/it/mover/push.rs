@@ -1,7 +1,7 @@
 //! Pushes between movers and dynamic bodies.
 
 use super::{depth, level, settle};
-use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, max};
+use sinew_math::{Reader, Rotation, Transform, Vec3, Writer};
 use sinew_physics::*;
 
 fn crate_of(world: &mut World, mass: f32, at: Vec3, friction: f32) -> BodyId {
