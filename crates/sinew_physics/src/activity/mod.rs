@@ -6,6 +6,7 @@
 
 #[cfg(test)]
 mod check;
+mod groups;
 mod sleeping_contacts;
 mod slot_set;
 
@@ -18,6 +19,7 @@ use crate::contact::proxies::{Owner, Proxies};
 use crate::joint::{Incidence, Joint};
 use crate::particles::ParticleGroup;
 use core::ops::ControlFlow;
+pub(crate) use groups::{follow, lie_down, sleeping_partner};
 use sleeping_contacts::SleepingContacts;
 use slot_set::SlotSet;
 
@@ -148,7 +150,7 @@ impl Activity {
         def: &WorldDef,
     ) {
         let (speed, dt) = (def.sleep_thresholds.speed, def.dt());
-        for (_, group) in groups.iter().filter(|(_, group)| group.fastest() > speed) {
+        for (_, group) in groups.iter().filter(|(_, group)| group.is_awake() && group.fastest() > speed) {
             let bounds = group.bounds().expand(group.fastest() * dt);
             let mut struck = core::mem::take(&mut self.struck);
             let _ = proxies.overlapping(&bounds, |Owner { body: index, shape }| {

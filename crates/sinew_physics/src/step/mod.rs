@@ -31,6 +31,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
 
     stage(Stage::Pairs, &mut || {
         activity.wake_struck(bodies, groups, &broad.proxies, def);
+        activity.wake_groups(bodies, groups, &broad.proxies, objects.let_sleep(), context.dt);
         broad.update(bodies, parted.filter(joints), meetings, contacts, activity, context.dt);
     });
     stage(Stage::Collide, &mut || collide::collide(bodies, broad, contacts, parts, context));
@@ -53,7 +54,10 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     stage(Stage::Continuous, &mut || {
         continuous::continuous(islands, bodies, activity, broad, filter, context);
     });
-    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, activity, &fields, sleepers, def));
+    stage(Stage::Sleep, &mut || {
+        let may = objects.let_sleep();
+        sleep::sleep(islands, (bodies, groups), (activity, sleepers), &fields, may, def);
+    });
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, def.hit_speed, events));
     stage(Stage::Movers, &mut || mover::movers(world));
 }
