@@ -2,23 +2,25 @@
 
 use super::Activity;
 use crate::arena::Arena;
-use crate::body::def::{BodyKind, Sleeping};
+use crate::body::def::{BodyKind, Sleeping, WorldDef};
 use crate::body::{Body, Rest};
 use crate::contact::proxies::{Owner, Proxies};
 use crate::particles::{AttachmentTarget, ParticleGroup};
 use core::ops::ControlFlow;
-use sinew_math::max;
+use sinew_math::{Vec3, max, normalize_or};
 
 impl Activity {
-    /// Wakes sleeping groups that something comes to or pulls at, or that may not sleep, and bodies that sleep with a group that was woken.
+    /// Wakes sleeping groups that something comes to or pulls at, or that may not sleep, bodies that sleep with a group that was woken, and
+    /// bodies that lay on particles which have gone.
     pub fn wake_groups(
         &mut self,
         bodies: &mut Arena<Body>,
         groups: &mut Arena<ParticleGroup>,
         proxies: &Proxies,
         may: Sleeping,
-        dt: f32,
+        def: &WorldDef,
     ) {
+        let (dt, distance) = (def.dt(), def.sleep_thresholds.distance);
         let mut way = None;
         for (_, group) in groups.iter_mut() {
             if may == Sleeping::Off && !group.is_awake() {
@@ -35,7 +37,25 @@ impl Activity {
                 }
                 group.get_up();
             }
+            if group.is_awake() && group.strays(distance) {
+                self.wake_borne(bodies, group, distance, (proxies, def));
+                group.settle(distance);
+            }
         }
+    }
+
+    /// Wakes bodies that lay on particles which have gone from there by `distance` metres.
+    pub fn wake_borne(
+        &mut self,
+        bodies: &mut Arena<Body>,
+        group: &ParticleGroup,
+        distance: f32,
+        (proxies, def): (&Proxies, &WorldDef),
+    ) {
+        let down = normalize_or(def.gravity, Vec3::ZERO);
+        self.wake_met(bodies, group, (proxies, &group.left()), |shape, at| {
+            group.bore(shape, at, distance, down)
+        });
     }
 
     /// Longest way of any point of a body in a step, metres.

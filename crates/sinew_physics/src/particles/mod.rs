@@ -302,8 +302,13 @@ impl ParticleGroup {
     /// Around all particles, with their radii. Empty, with infinite corners the wrong way round, for a group without
     /// particles.
     pub fn bounds(&self) -> Aabb {
+        self.bounds_of(&self.positions)
+    }
+
+    /// Around its particles, if they were there.
+    fn bounds_of(&self, centers: &[Vec3]) -> Aabb {
         let mut bounds = Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
-        for (&center, &radius) in self.positions.iter().zip(&self.radii) {
+        for (&center, &radius) in centers.iter().zip(&self.radii) {
             bounds = bounds.merge(&Aabb::reaching(center, Vec3::splat(radius)));
         }
         bounds

@@ -1,11 +1,11 @@
 //! Rest of a particle group: how long it has lain still, and with whom it sleeps.
 
-use super::ParticleGroup;
+use super::{AttachmentTarget, ParticleGroup};
 use crate::body::def::{SleepThresholds, Sleeping};
 use crate::body::shape::Shape;
 use crate::boxes::Aabb;
 use crate::particles::contact::distance_at_least;
-use crate::particles::tuning::{BED_ROOM, RESTING_SPEED};
+use crate::particles::tuning::{BEARING, BED_ROOM, RESTING_SPEED, STRIKE_GAP};
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
 /// Awake, asleep with the island it fell asleep with, or woken since.
@@ -84,28 +84,30 @@ impl ParticleGroup {
     pub(crate) fn get_up(&mut self) {
         self.rest = GroupRest::default();
         self.bed = None;
-        self.places.copy_from_slice(&self.positions);
+    }
+
+    /// True if it holds bodies, which then rest no sooner than it does.
+    pub(crate) fn holds_bodies(&self) -> bool {
+        self.attachments.iter().any(|a| matches!(a.target, AttachmentTarget::Body { .. }))
     }
 
     /// Puts it to sleep as it is, under a number that no other islands have.
     pub(crate) fn fall_asleep(&mut self, island: u32, partner: Option<u32>) {
         self.rest = GroupRest::Asleep { island };
         self.velocities.fill(Vec3::ZERO);
+        self.places.copy_from_slice(&self.positions);
         self.begin_step();
         self.lie_down(partner);
     }
 
     /// Takes note of where it sleeps, or slept until it was woken, and of a body that fell asleep with it.
     pub(crate) fn lie_down(&mut self, partner: Option<u32>) {
-        self.bed = Some(Bed { partner, bounds: self.bounds().expand(BED_ROOM) });
+        self.bed = Some(Bed { partner, bounds: self.bounds_of(&self.places).expand(BED_ROOM) });
     }
 
     /// Counts the time for which it has been calm, seconds; if it is not, less than any time.
     pub(crate) fn count_rest(&mut self, may: Sleeping, thresholds: &SleepThresholds, dt: f32) -> f32 {
         let stays = all_within(&self.positions, &self.places, thresholds.distance);
-        if !stays {
-            self.places.copy_from_slice(&self.positions);
-        }
         let may = may == Sleeping::On && self.sleeping == Sleeping::On;
         let calm = may && stays && all_within(&self.positions, &self.drawn_from, RESTING_SPEED * dt);
         match &mut self.rest {
@@ -116,6 +118,43 @@ impl ParticleGroup {
             _ => {
                 self.rest = GroupRest::default();
                 f32::NEG_INFINITY
+            }
+        }
+    }
+
+    /// True if it has been calm for `time` seconds.
+    pub(crate) fn has_rested(&self, time: f32) -> bool {
+        matches!(self.rest, GroupRest::Awake { rest_time } if rest_time > 0.0 && rest_time >= time)
+    }
+
+    /// True if a particle is `distance` metres from where its time of rest began.
+    pub(crate) fn strays(&self, distance: f32) -> bool {
+        !all_within(&self.positions, &self.places, distance)
+    }
+
+    /// Around what touched the particles where the time of rest of each began.
+    pub(crate) fn left(&self) -> Aabb {
+        self.bounds_of(&self.places).expand(STRIKE_GAP)
+    }
+
+    /// True if a particle that has strayed by `distance` metres touched a shape at rest from below before; `down` is a unit vector.
+    pub(crate) fn bore(&self, shape: &Shape, at: &Transform, distance: f32, down: Vec3) -> bool {
+        let bounds = shape.aabb(at);
+        (0..self.positions.len()).any(|i| {
+            let (place, reach) = (self.places[i], self.radii[i] + STRIKE_GAP);
+            if is_within(self.positions[i], place, distance) || distance_at_least(&bounds, place) > reach {
+                return false;
+            }
+            let (away, outward) = shape.signed_distance(at, place);
+            away <= reach && outward.dot(down) > BEARING
+        })
+    }
+
+    /// Begins the time of rest of each particle that has strayed by `distance` metres anew.
+    pub(crate) fn settle(&mut self, distance: f32) {
+        for (position, place) in self.positions.iter().zip(&mut self.places) {
+            if !is_within(*position, *place, distance) {
+                *place = *position;
             }
         }
     }
@@ -137,7 +176,6 @@ impl ParticleGroup {
             GroupRest::Awake { rest_time } => {
                 out.u8(0);
                 out.f32(rest_time);
-                self.places.iter().for_each(|&place| out.vec3(place));
             }
             GroupRest::Asleep { island } => {
                 out.u8(1);
@@ -147,6 +185,10 @@ impl ParticleGroup {
                 out.u8(2);
                 out.u32(island);
             }
+        }
+        // Asleep, each particle is in its place.
+        if !matches!(self.rest, GroupRest::Asleep { .. }) {
+            self.places.iter().for_each(|&place| out.vec3(place));
         }
     }
 
@@ -159,11 +201,8 @@ impl ParticleGroup {
         self.rest = match input.u8()? {
             0 => {
                 let rest_time = input.f32()?;
-                for place in &mut self.places {
-                    *place = input.vec3()?;
-                }
-                if !(rest_time.is_finite() && self.places.iter().all(|place| place.is_finite())) {
-                    return Err(input.error("a time or a place of rest is not finite"));
+                if !rest_time.is_finite() {
+                    return Err(input.error("a time of rest is not finite"));
                 }
                 GroupRest::Awake { rest_time }
             }
@@ -171,11 +210,23 @@ impl ParticleGroup {
             2 => GroupRest::Roused { island: input.u32()? },
             _ => return Err(input.error("a group is neither awake nor asleep")),
         };
+        if !matches!(self.rest, GroupRest::Asleep { .. }) {
+            for place in &mut self.places {
+                *place = input.vec3()?;
+            }
+            if !self.places.iter().all(|place| place.is_finite()) {
+                return Err(input.error("a place of rest is not finite"));
+            }
+        }
         Ok(())
     }
 }
 
 /// True if each point is nearer than `distance` to that of the same index.
 fn all_within(points: &[Vec3], others: &[Vec3], distance: f32) -> bool {
-    points.iter().zip(others).all(|(point, other)| (*point - *other).length_squared() < distance * distance)
+    points.iter().zip(others).all(|(&point, &other)| is_within(point, other, distance))
+}
+
+fn is_within(point: Vec3, other: Vec3, distance: f32) -> bool {
+    (point - other).length_squared() < distance * distance
 }

@@ -31,7 +31,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
 
     stage(Stage::Pairs, &mut || {
         activity.wake_struck(bodies, groups, &broad.proxies, def);
-        activity.wake_groups(bodies, groups, &broad.proxies, objects.let_sleep(), context.dt);
+        activity.wake_groups(bodies, groups, &broad.proxies, objects.let_sleep(), def);
         broad.update(bodies, parted.filter(joints), meetings, contacts, activity, context.dt);
     });
     stage(Stage::Collide, &mut || collide::collide(bodies, broad, contacts, parts, context));

@@ -11,7 +11,7 @@ use crate::step::islands::Islands;
 use crate::step::tuning::{CREEP, HANGING_SPEED, HANGING_SPIN, PUSHED_SPEED};
 
 /// Counts the calm time of every body and particle group and puts islands to sleep. `sleepers` numbers them; `of_groups` permits
-/// groups to sleep: else they hold no body awake either.
+/// groups to sleep. A group keeps bodies awake that it holds; what it touches may rest before it.
 pub(crate) fn sleep(
     islands: &Islands,
     (bodies, groups): (&mut Arena<Body>, &mut Arena<ParticleGroup>),
@@ -44,15 +44,22 @@ pub(crate) fn sleep(
         for &index in resting {
             let group = groups.at_mut(index);
             let may = if fields.keep_group_awake(group) { Sleeping::Off } else { Sleeping::On };
-            least = sinew_math::min(least, group.count_rest(may, thresholds, def.dt()));
-        }
-        let rests = least >= thresholds.time && !(island.bodies.is_empty() && resting.is_empty());
-        if rests && def.sleeping == Sleeping::On {
-            activity.sleep(bodies, island.bodies, *sleepers);
-            for &index in resting {
-                groups.at_mut(index).fall_asleep(*sleepers, island.bodies.first().copied());
+            let calm = group.count_rest(may, thresholds, def.dt());
+            if group.holds_bodies() {
+                least = sinew_math::min(least, calm);
             }
-            *sleepers = sleepers.wrapping_add(1);
+        }
+        if least >= thresholds.time && def.sleeping == Sleeping::On {
+            activity.sleep(bodies, island.bodies, *sleepers);
+            let mut any = !island.bodies.is_empty();
+            for &index in resting {
+                let group = groups.at_mut(index);
+                if group.has_rested(thresholds.time) {
+                    group.fall_asleep(*sleepers, island.bodies.first().copied());
+                    any = true;
+                }
+            }
+            *sleepers = sleepers.wrapping_add(u32::from(any));
         }
     }
 }

@@ -207,13 +207,14 @@ impl World {
         id
     }
 
-    /// Takes a particle group out; what slept with it wakes.
+    /// Takes a particle group out; what slept with it or lay on it wakes.
     #[track_caller]
     pub fn remove_particles(&mut self, id: GroupId) {
         let group = self.groups.take(id);
         if let Some(partner) = sleeping_partner(&self.bodies, &group) {
             self.wake_body(partner);
         }
+        self.activity.wake_borne(&mut self.bodies, &group, 0.0, (&self.broad.proxies, &self.def));
     }
 
     /// A particle group.

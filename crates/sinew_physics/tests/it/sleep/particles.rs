@@ -1,8 +1,8 @@
 //! Particles and sleepers.
 
 use super::{Nap, linear, nap, run, slab};
-use crate::build::box_body;
-use sinew_math::{Reader, Vec3, Writer};
+use crate::build::{box_body, floor};
+use sinew_math::{Reader, Vec3, Writer, max};
 use sinew_physics::particles::{AttachmentTarget, ClothDef, GroupDef, ParticleDef, RopeDef};
 use sinew_physics::*;
 
@@ -203,4 +203,91 @@ fn a_world_taken_back_sleeps_and_wakes_the_same() {
     other.load(&mut Reader::new(&roused)).expect("it was saved");
     run(&mut other, 50);
     assert_eq!(other.hash(), expected, "from between the push and the step");
+}
+
+#[test]
+fn what_a_rope_swings_over_sleeps() {
+    let mut world = World::new(WorldDef::default());
+    floor(&mut world);
+    let at = Vec3::Y * 0.25;
+    let body = world.add_body(&box_body(Vec3::splat(0.25), at));
+    let middle = Vec3::new(0.0, 0.8, 0.02);
+    let rope = RopeDef {
+        from: middle - Vec3::X * 0.6,
+        to: middle + Vec3::X * 0.6,
+        links: 24,
+        mass: 1.0,
+        stiffness: 2000.0,
+        radius: 0.01,
+    };
+    let rope = world.add_particles(&rope.build().group);
+    run(&mut world, 300);
+    let group = world.particles(rope);
+    let fastest = group.velocities().iter().fold(0.0, |most, v| max(most, v.length()));
+    assert!(group.is_awake() && fastest > 0.01, "the rope still swings on it, at {fastest} m/s");
+    let way = (world.center_of_mass(body) - at).length();
+    assert!(!world.is_awake(body) && way < 1e-3, "the box has gone {way} m");
+}
+
+/// A net that is not calm and a ball that sleeps on it all the same.
+fn netted() -> (World, GroupId, BodyId) {
+    let mut world = World::new(WorldDef::default());
+    let mut net = ClothDef {
+        corner: Vec3::new(-0.5, 1.0, -0.5),
+        across: Vec3::X,
+        down: Vec3::Z,
+        columns: 10,
+        rows: 10,
+        mass: 0.5,
+        stretching: 2000.0,
+        shearing: 500.0,
+        bending: 1e-3,
+        damping_ratio: 1.0,
+        radius: 0.02,
+    }
+    .build();
+    net.group.hold_in_world(&(0..11).chain(110..121).collect::<Vec<_>>());
+    net.group.sleeping = Sleeping::Off;
+    let net = world.add_particles(&net.group);
+    run(&mut world, 240);
+    let group = world.particles(net);
+    let height = |(at, radius): (&Vec3, &f32)| {
+        let reach = radius + 0.1;
+        at.y + max(reach * reach - at.x * at.x - at.z * at.z, 0.0).sqrt()
+    };
+    let near = group.positions().iter().zip(group.radii()).filter(|(at, _)| at.x.hypot(at.z) < 0.1);
+    let ball = BodyDef {
+        position: Vec3::Y * near.map(height).fold(0.0, max),
+        shapes: vec![ShapeDef::new(Shape::Sphere { radius: 0.1 })],
+        ..BodyDef::default()
+    };
+    let ball = world.add_body(&ball);
+    world.put_to_sleep(ball);
+    run(&mut world, 60);
+    assert!(!world.is_awake(ball) && world.particles(net).is_awake());
+    (world, net, ball)
+}
+
+#[test]
+fn what_lay_on_particles_wakes_when_they_go() {
+    let (mut world, net, ball) = netted();
+    let at = world.center_of_mass(ball);
+    for pin in 0..22 {
+        let AttachmentTarget::World(place) = world.particles(net).attachments()[pin].target else {
+            panic!("pins are in the world");
+        };
+        world.particles_mut(net).move_pin(pin, place - Vec3::Y * 0.5);
+    }
+    run(&mut world, 30);
+    assert!(world.is_awake(ball), "the net went away below it");
+    assert!((world.center_of_mass(ball) - at).y < -0.1, "it falls after it");
+
+    let (mut world, net, ball) = netted();
+    world.remove_particles(net);
+    assert!(world.is_awake(ball), "the net is gone");
+
+    let (mut world, net, ball) = netted();
+    world.particles_mut(net).apply_impulse(115, Vec3::Y * 1e-4);
+    world.step();
+    assert!(!world.is_awake(ball), "nothing that it lies on has gone anywhere");
 }
