@@ -1,16 +1,20 @@
 //! Sinew, as it is in this repository.
 
 use crate::engine::{
-    BodyState, CharacterPose, Crowd, Description, Engine, OverlapTester, RayCaster, Simulation, Unsupported,
+    BodyState, CharacterPose, ClothSimulation, Crowd, Description, Engine, OverlapTester, ParticleState,
+    RayCaster, Simulation, Unsupported,
 };
-use crate::scenes::{BoxPair, BoxPairs, Field, PlacedBox, RayScene};
+use crate::scenes::{BoxPair, BoxPairs, ClothScene, Field, PlacedBox, RayScene};
 use core::ops::Range;
 use sinew::anim::Pose;
 use sinew::math::Transform;
 use sinew::physics::boxes::Obb;
 use sinew::physics::boxes::batch::Pairs;
+use sinew::physics::particles::{ClothDef, GroupDef};
 use sinew::physics::ray::Ray;
-use sinew::physics::{BodyDef, BodyHit, BodyId, BodyKind, Shape, ShapeDef, World, WorldDef};
+use sinew::physics::{
+    BodyDef, BodyHit, BodyId, BodyKind, GroupId, Shape, ShapeDef, Sleeping, World, WorldDef,
+};
 use sinew_scenes::blueprint::Blueprint;
 use sinew_scenes::crowd::CrowdScene;
 
@@ -51,6 +55,15 @@ impl Engine for Sinew {
         Ok(Box::new(SinewRays { world, rays: scene.rays.clone(), hits: vec![None; scene.rays.len()] }))
     }
 
+    fn build_cloth(&self, scene: &ClothScene) -> Result<Box<dyn ClothSimulation>, Unsupported> {
+        let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
+        for obstacle in scene.obstacles() {
+            world.add_body(&obstacle);
+        }
+        let cloth = world.add_particles(&cloth(scene));
+        Ok(Box::new(SinewCloth { world, cloth }))
+    }
+
     fn build_boxes(&self, pairs: &BoxPairs) -> Result<Box<dyn OverlapTester>, Unsupported> {
         Ok(Box::new(SinewBoxes::new(pairs)))
     }
@@ -89,6 +102,57 @@ impl Simulation for SinewWorld {
     fn is_awake(&self) -> bool {
         let moves = |id| self.world.kind(id) == BodyKind::Dynamic;
         self.bodies.iter().any(|&id| moves(id) && self.world.is_awake(id))
+    }
+}
+
+/// Stiffness of a square of the cloth along its threads and along its diagonals, N/m.
+const STRETCHING: f32 = 2e3;
+/// Bending stiffness per width, N·m: with it a bend resists as much as a distance over two cells does in Jolt's cloth.
+const BENDING: f32 = 1e-3;
+
+/// The scene as a [`ClothDef`] makes it: both threads, both diagonals of each cell, bends over two cells; two iterations per substep.
+fn cloth(scene: &ClothScene) -> GroupDef {
+    let last = scene.side - 1;
+    let cells = last as u32;
+    let corner = scene.position(0, 0);
+    let mut cloth = ClothDef {
+        corner,
+        across: scene.position(0, last) - corner,
+        down: scene.position(last, 0) - corner,
+        columns: cells,
+        rows: cells,
+        mass: scene.particle_mass * (cells * cells) as f32,
+        stretching: STRETCHING,
+        shearing: STRETCHING,
+        bending: BENDING,
+        damping_ratio: 0.0,
+        radius: scene.particle_radius,
+    }
+    .build();
+    for particle in &mut cloth.group.particles {
+        particle.mass = scene.particle_mass;
+    }
+    cloth.group.hold_in_world(&scene.pinned().map(|index| index as u32));
+    cloth.group.linear_damping = scene.damping;
+    cloth.group.material.friction = scene.friction;
+    cloth.group
+}
+
+struct SinewCloth {
+    world: World,
+    cloth: GroupId,
+}
+
+impl ClothSimulation for SinewCloth {
+    fn step(&mut self) {
+        self.world.step();
+    }
+
+    fn particles(&self, out: &mut Vec<ParticleState>) {
+        let cloth = self.world.particles(self.cloth);
+        let states = cloth.positions().iter().zip(cloth.velocities());
+        out.clear();
+        out.extend(states.map(|(&position, &velocity)| ParticleState { position, velocity }));
     }
 }
 

@@ -6,18 +6,23 @@
 
 #[cfg(test)]
 mod check;
+mod groups;
 mod sleeping_contacts;
 mod slot_set;
 
 use crate::arena::Arena;
 use crate::body::def::{BodyKind, WorldDef};
+use crate::body::shape::Shape;
 use crate::body::{Body, Rest, Velocity};
+use crate::boxes::Aabb;
 use crate::contact::Contact;
 use crate::contact::near::bear;
 use crate::contact::proxies::{Owner, Proxies};
 use crate::joint::{Incidence, Joint};
 use crate::particles::ParticleGroup;
 use core::ops::ControlFlow;
+pub(crate) use groups::{follow, lie_down, sleeping_partner};
+use sinew_math::Transform;
 use sleeping_contacts::SleepingContacts;
 use slot_set::SlotSet;
 
@@ -148,21 +153,31 @@ impl Activity {
         def: &WorldDef,
     ) {
         let (speed, dt) = (def.sleep_thresholds.speed, def.dt());
-        for (_, group) in groups.iter().filter(|(_, group)| group.fastest() > speed) {
+        for (_, group) in groups.iter().filter(|(_, group)| group.is_awake() && group.fastest() > speed) {
             let bounds = group.bounds().expand(group.fastest() * dt);
-            let mut struck = core::mem::take(&mut self.struck);
-            let _ = proxies.overlapping(&bounds, |Owner { body: index, shape }| {
-                let (body, shape) = (bodies.at(index), shape as usize);
-                let at = body.world_from_shape(shape);
-                let strikes = !body.is_awake()
-                    && body.surface(shape).is_wall_to(group.filter())
-                    && group.strikes(&body.shapes[shape].shape, &at, speed, dt);
-                struck.extend(strikes.then_some(index));
-                ControlFlow::<()>::Continue(())
-            });
-            struck.drain(..).for_each(|index| self.wake(bodies, index));
-            self.struck = struck;
+            self.wake_met(bodies, group, (proxies, &bounds), |shape, at| group.strikes(shape, at, speed, dt));
         }
+    }
+
+    /// Wakes sleeping bodies with a shape within bounds that a group meets as `meets` says.
+    fn wake_met(
+        &mut self,
+        bodies: &mut Arena<Body>,
+        group: &ParticleGroup,
+        (proxies, bounds): (&Proxies, &Aabb),
+        meets: impl Fn(&Shape, &Transform) -> bool,
+    ) {
+        let mut met = core::mem::take(&mut self.struck);
+        let _ = proxies.overlapping(bounds, |Owner { body: index, shape }| {
+            let (body, shape) = (bodies.at(index), shape as usize);
+            let is_met = !body.is_awake()
+                && body.surface(shape).is_wall_to(group.filter())
+                && meets(&body.shapes[shape].shape, &body.world_from_shape(shape));
+            met.extend(is_met.then_some(index));
+            ControlFlow::<()>::Continue(())
+        });
+        met.drain(..).for_each(|index| self.wake(bodies, index));
+        self.struck = met;
     }
 
     /// Puts bodies to sleep that wake together from now on, under a number that no others have.

@@ -53,13 +53,14 @@ pub enum Quality {
     Exact,
 }
 
-/// Permission for bodies at rest to fall asleep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Permission for bodies and particles at rest to fall asleep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Sleeping {
-    /// Bodies at rest fall asleep.
+    /// Sleep comes to what is at rest. Default.
+    #[default]
     On,
-    /// They go on being simulated.
+    /// It goes on being simulated.
     Off,
 }
 

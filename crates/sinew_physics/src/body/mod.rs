@@ -359,6 +359,11 @@ impl Body {
         0.5 * self.mass * self.velocity.linear.length_squared() + 0.5 * (w * self.inertia).dot(w)
     }
 
+    /// Most that a point of it moves at, roughly, m/s.
+    pub fn fastest_point(&self) -> f32 {
+        self.velocity.linear.length() + self.velocity.angular.length() * self.reach()
+    }
+
     /// Largest distance from the centre of mass to the surface, roughly: turns rad/s into m/s. 0 for static bodies,
     /// which do not turn (and may reach to infinity).
     pub fn reach(&self) -> f32 {

@@ -13,7 +13,7 @@
 //! **Sleep.** A field acts on what is awake. Adding, changing and removing one wakes what it reaches or reached. What lies
 //! still in a field that does not change may fall asleep in it, as under gravity; in one that changes by itself (wind with
 //! gusts, a user's function) it does not. Bodies that attract each other sleep and wake together, and not at all where there are
-//! particles, which do not sleep.
+//! particles; particles that are attracted do not sleep.
 //!
 //! A world without fields pays nothing for them.
 
@@ -66,7 +66,7 @@ pub(crate) struct Fields<'a> {
     pub step: u64,
     /// Time at the beginning of the step.
     pub nanoseconds: u64,
-    /// There are particles, which never sleep.
+    /// There are particles.
     particles: bool,
 }
 
@@ -111,6 +111,15 @@ impl<'a> Fields<'a> {
         })
     }
 
+    /// True if a particle of a group lies in a field that changes by itself, or attracts.
+    pub fn keep_group_awake(&self, group: &ParticleGroup) -> bool {
+        let mut fields = self.arena.iter();
+        fields.any(|(_, field)| {
+            let stirs = field.kind.changes_by_itself() || matches!(field.kind, FieldKind::Mutual(_));
+            stirs && field.reaches_group(group)
+        })
+    }
+
     /// Sleeper that is to wake next, as long as there is one: what attracts and is attracted wakes together.
     pub fn next_to_wake(&self, bodies: &Arena<Body>, activity: &Activity) -> Option<u32> {
         self.mutual().find_map(|(field, _)| {
@@ -127,6 +136,11 @@ impl FieldDef {
     /// True if it acts on something at all.
     pub(crate) fn reaches(&self, target: &Target<'_>) -> bool {
         target.is_on(self.layers) && self.region.weight(target.center()) > 0.0
+    }
+
+    /// True if it acts on a particle of a group.
+    pub(crate) fn reaches_group(&self, group: &ParticleGroup) -> bool {
+        (0..group.positions().len()).any(|i| self.reaches(&Target::of_particle(group, i)))
     }
 
     /// Strength where something is: 0 outside of its region and on other layers, 1 where it is full.

@@ -198,9 +198,17 @@ impl ParticleGroup {
 
     /// The nearest surface that each particle is on already, or is about to sink to; and how far away all others are.
     pub(super) fn find_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
+        // Nobody else touched anything in the iteration before.
+        for &i in &self.solved {
+            self.touches[i as usize] = None;
+        }
         for i in 0..self.positions.len() {
-            self.touches[i] = None;
             if self.attachment_of[i] == u32::MAX {
+                let sight = self.sight(i, h);
+                if let Some(beyond) = self.near.alone_within(i, sight) {
+                    (self.clearances[i], self.grips[i]) = (beyond, Grip::Off);
+                    continue;
+                }
                 self.find_contact(i, h, obstacles, bodies);
             }
             self.grips[i] = match self.grips[i] {
@@ -219,7 +227,7 @@ impl ParticleGroup {
     /// Gap that a particle may close by sinking, metres.
     fn contact_reach(&self, i: usize, h: f32) -> f32 {
         // Gravity included, and a share of the other forces.
-        2.0 * h * h * self.accelerations[i].length() + 0.05 * self.radii[i]
+        2.0 * h * h * self.pulls[i] + 0.05 * self.radii[i]
     }
 
     fn find_contact(&mut self, i: usize, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
@@ -283,9 +291,11 @@ impl ParticleGroup {
         }
     }
 
-    /// True if a particle surely meets nothing on its way of this length.
-    pub(super) fn is_clear(&self, i: usize, way: f32) -> bool {
-        self.attachment_of[i] != u32::MAX || self.clearances[i] > DETOUR * way
+    /// True if a particle surely meets nothing on its way.
+    pub(super) fn is_clear(&self, i: usize, way: Vec3) -> bool {
+        let clearance = self.clearances[i];
+        let beyond = clearance > 0.0 && clearance * clearance > DETOUR * DETOUR * way.length_squared();
+        beyond || self.attachment_of[i] != u32::MAX
     }
 
     /// The first obstacle on the way of a particle, given by where it begins and ends in the iteration, that it ends deeper
@@ -320,9 +330,10 @@ impl ParticleGroup {
     /// the solve does not know of.
     fn predict_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> bool {
         let mut found = false;
-        for i in 0..self.positions.len() {
+        for at in 0..self.solved.len() {
+            let i = self.solved[at] as usize;
             let way = self.velocities[i] * h;
-            if self.grips[i] == Grip::Wedged || self.is_clear(i, way.length()) {
+            if self.grips[i] == Grip::Wedged || self.is_clear(i, way) {
                 continue;
             }
             let known = self.touches[i].map(|touch| touch.obstacle);
@@ -369,13 +380,14 @@ impl ParticleGroup {
     fn share_bodies(&mut self, bodies: &[ObstacleBody]) {
         self.loads.clear();
         self.loads.resize(bodies.len(), 0.0);
-        for (touch, mass) in self.touches.iter().zip(&self.masses) {
-            if let Some(touch) = touch {
-                self.loads[touch.body] += mass;
+        for &i in &self.solved {
+            if let Some(touch) = &self.touches[i as usize] {
+                self.loads[touch.body] += self.masses[i as usize];
             }
         }
-        for (slot, mass) in self.touches.iter_mut().zip(&self.masses) {
-            if let Some(touch) = slot {
+        for &i in &self.solved {
+            let mass = self.masses[i as usize];
+            if let Some(touch) = &mut self.touches[i as usize] {
                 let load = self.loads[touch.body];
                 touch.lightness =
                     if load * bodies[touch.body].inverse_mass > 1.0 { load / mass } else { 1.0 };
@@ -385,12 +397,18 @@ impl ParticleGroup {
 
     /// Solves for the velocities; repeats while contacts open, close, stick or slip, or are still to come.
     pub(super) fn solve_with_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
+        self.choose_solved(h);
         self.system.load_springs(&self.forest, &self.springs, &self.positions, h);
+        self.reactions.fill(Vec3::ZERO);
         for round in 1..=GRIP_ROUNDS {
             self.share_bodies(bodies);
             self.apply_grips(bodies);
-            self.system.solve(&self.forest, &self.springs, h, &mut self.velocities);
-            self.reactions.fill(Vec3::ZERO);
+            if self.forest.has_trees() {
+                self.system.solve(&self.forest, &self.springs, h, &mut self.velocities);
+                self.reactions.fill(Vec3::ZERO);
+            } else {
+                self.system.solve_apart(&self.solved, &mut self.velocities);
+            }
             self.system.add_spring_impulses(
                 &self.forest,
                 &self.springs,
@@ -412,10 +430,30 @@ impl ParticleGroup {
         }
     }
 
+    /// Lists the particles that the solve is about: all that springs of trees join, those that are held, touch something or may come to.
+    /// The others fly on.
+    fn choose_solved(&mut self, h: f32) {
+        self.solved.clear();
+        let trees = self.forest.has_trees();
+        for i in 0..self.positions.len() {
+            let ahead = self.begun[i] + self.accelerations[i] * h;
+            let is_free = !trees && self.attachment_of[i] == u32::MAX && self.is_clear(i, ahead * h);
+            if is_free && self.touches[i].is_none() {
+                self.velocities[i] = ahead;
+                self.contact_impulses[i] = Vec3::ZERO;
+                continue;
+            }
+            self.solved.push(i as u32);
+            if !trees && self.attachment_of[i] == u32::MAX {
+                self.enter(i, h);
+            }
+        }
+    }
+
     /// Finds the backing of each particle that is on a surface: its share of the body's inertia along the normal.
     pub(super) fn back_contacts(&mut self, h: f32, bodies: &[ObstacleBody]) {
-        for i in 0..self.positions.len() {
-            (self.backings[i], self.press_normals[i], self.presses[i]) = (0.0, Vec3::ZERO, Vec3::ZERO);
+        for at in 0..self.solved.len() {
+            let i = self.solved[at] as usize;
             let Some(touch) = self.touches[i] else { continue };
             let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
             if (relative.dot(touch.normal) - touch.speed_min) * h > NET_GAP {
@@ -430,9 +468,11 @@ impl ParticleGroup {
 
     /// Hands on to bodies what presses particles onto them.
     pub(super) fn press_bodies(&mut self, bodies: &mut [ObstacleBody]) {
-        for i in 0..self.positions.len() {
+        for at in 0..self.solved.len() {
+            let i = self.solved[at] as usize;
             if let Some(touch) = self.touches[i].filter(|_| self.backings[i] > 0.0) {
                 let impulse = self.presses[i];
+                (self.backings[i], self.press_normals[i], self.presses[i]) = (0.0, Vec3::ZERO, Vec3::ZERO);
                 bodies[touch.body].push(touch.point, impulse);
                 self.report(&touch, -impulse, bodies);
             }
@@ -441,7 +481,8 @@ impl ParticleGroup {
 
     /// Turns grips into what the linear system knows: fixed velocities, or the inertia of a body that yields.
     fn apply_grips(&mut self, bodies: &[ObstacleBody]) {
-        for i in 0..self.positions.len() {
+        for at in 0..self.solved.len() {
+            let i = self.solved[at] as usize;
             if self.attachment_of[i] != u32::MAX {
                 continue;
             }
@@ -493,7 +534,8 @@ impl ParticleGroup {
 
     /// Reads off the contact impulses of the last solve as they are.
     fn keep_grips(&mut self) {
-        for i in 0..self.positions.len() {
+        for at in 0..self.solved.len() {
+            let i = self.solved[at] as usize;
             let held = self.touches[i].is_some() && self.grips[i] != Grip::Off;
             self.contact_impulses[i] = if held { self.contact_impulse(i) } else { Vec3::ZERO };
         }
@@ -503,7 +545,8 @@ impl ParticleGroup {
     /// changed.
     fn change_grips(&mut self, bodies: &[ObstacleBody]) -> bool {
         let mut changed = false;
-        for i in 0..self.positions.len() {
+        for at in 0..self.solved.len() {
+            let i = self.solved[at] as usize;
             let Some(touch) = self.touches[i] else {
                 self.contact_impulses[i] = Vec3::ZERO;
                 continue;
@@ -538,7 +581,8 @@ impl ParticleGroup {
 
     /// Pushes bodies back by the impulses that the solve found.
     pub(super) fn push_bodies(&mut self, bodies: &mut [ObstacleBody]) {
-        for i in 0..self.positions.len() {
+        for at in 0..self.solved.len() {
+            let i = self.solved[at] as usize;
             if let Some(touch) = self.touches[i] {
                 let impulse = self.contact_impulses[i];
                 bodies[touch.body].push(touch.point, -impulse);

@@ -1,5 +1,6 @@
 //! Definitions: plain data that particle groups are made from.
 
+use crate::body::def::Sleeping;
 use crate::body::material::Material;
 use crate::body::shape::Filter;
 use crate::id::BodyId;
@@ -178,6 +179,8 @@ pub struct GroupDef {
     pub gravity_scale: f32,
     /// Filter of the shapes that it meets.
     pub filter: Filter,
+    /// Permission to fall asleep when it lies still, with all that hangs together with it. Default on.
+    pub sleeping: Sleeping,
 }
 
 impl Default for GroupDef {
@@ -195,6 +198,7 @@ impl Default for GroupDef {
             linear_damping: 0.0,
             gravity_scale: 1.0,
             filter: Filter::default(),
+            sleeping: Sleeping::On,
         }
     }
 }

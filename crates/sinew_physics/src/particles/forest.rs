@@ -95,6 +95,11 @@ impl Forest {
         forest
     }
 
+    /// True if there are springs to be solved, so that particles hear of each other.
+    pub fn has_trees(&self) -> bool {
+        !(self.links.is_empty() && self.ties.is_empty())
+    }
+
     /// Springs of the linear system.
     pub fn solved_springs(&self) -> impl Iterator<Item = u32> {
         let of_links = self.links.iter().map(|link| link.spring);
@@ -256,6 +261,17 @@ impl System {
             let (child, load) = (link.child as usize, self.loads[link.spring as usize]);
             let inverse = (self.gathered_inertia[child] + load.block).inverse();
             self.settle(child, &inverse, load.block * velocities[link.parent as usize], velocities);
+        }
+    }
+
+    /// Velocities at the end of the step of particles that no springs of the forest join.
+    pub fn solve_apart(&mut self, particles: &[u32], velocities: &mut [Vec3]) {
+        for &i in particles {
+            let i = i as usize;
+            self.gathered_momentum[i] = self.momentum[i] + self.added_momentum[i];
+            let inverse = (self.inertia[i] + self.added_inertia[i]).inverse();
+            self.response[i] = constrained(&inverse, &self.freedom[i]);
+            self.settle(i, &inverse, Vec3::ZERO, velocities);
         }
     }
 

@@ -18,7 +18,8 @@ pub(super) const MAX_TOUCHES: usize = 3 + ROUNDS + 1;
 impl ParticleGroup {
     /// Gives back their share to particles that the solve has stopped.
     pub(super) fn bounce(&mut self, h: f32, bodies: &mut [ObstacleBody]) {
-        for i in 0..self.positions.len() {
+        for at in 0..self.solved.len() {
+            let i = self.solved[at] as usize;
             let Some(mut touch) = self.touches[i] else { continue };
             if touch.material.restitution == 0.0 || self.contact_impulses[i].dot(touch.normal) <= 0.0 {
                 continue;
@@ -38,7 +39,7 @@ impl ParticleGroup {
             let mut but = None;
             for round in 0..=ROUNDS {
                 let ends = (self.previous[i], self.positions[i]);
-                if self.is_clear(i, (ends.1 - ends.0).length()) {
+                if self.is_clear(i, ends.1 - ends.0) {
                     break;
                 }
                 let Some((obstacle, meeting)) = self.entered(i, ends, but, obstacles) else { break };

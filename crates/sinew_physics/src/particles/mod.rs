@@ -14,6 +14,7 @@
 //! are dealt with after it (`impact.rs`).
 
 mod attach;
+mod batches;
 mod builders;
 mod check;
 mod contact;
@@ -24,6 +25,7 @@ mod geodesic;
 mod impact;
 mod near;
 mod net;
+mod rest;
 mod snapshot;
 mod sweep;
 mod tuning;
@@ -37,15 +39,18 @@ pub use def::{
 };
 
 use crate::arena::Item;
+use crate::body::def::Sleeping;
 use crate::body::material::Material;
 use crate::body::shape::{Filter, Shape};
 use crate::boxes::Aabb;
 use crate::id::GroupId;
 use crate::particles::tuning::STRIKE_GAP;
+use batches::Batches;
 use contact::{Grip, Placed, Touch};
 use forest::{Forest, Freedom, System};
 use impact::MAX_TOUCHES;
 use near::Near;
+use rest::{Bed, GroupRest};
 use sinew_math::{Sym3, Transform, Vec3, max};
 
 /// Most strides in which the way of a particle is looked along.
@@ -78,6 +83,12 @@ pub struct ParticleGroup {
 
     /// Position of each particle before the last step, world, metres, for drawing.
     drawn_from: Vec<Vec3>,
+    sleeping: Sleeping,
+    rest: GroupRest,
+    /// Position of each particle when its time of rest began, world, metres.
+    places: Vec<Vec3>,
+    /// Surroundings that it sleeps in, or slept in until it was woken since the last step.
+    bed: Option<Bed>,
 
     forest: Forest,
     system: System,
@@ -101,6 +112,8 @@ pub struct ParticleGroup {
     body_impulses: Vec<BodyImpulse>,
     /// Impulse of springs, bends, tethers and volumes on each particle in this iteration.
     reactions: Vec<Vec3>,
+    /// Particles that the solve of this iteration is about.
+    solved: Vec<u32>,
     /// Surface that each particle touches in this iteration.
     touches: Vec<Option<Touch>>,
     /// Distance to any shape that each particle surely has when the iteration begins, less what the shape moves, metres.
@@ -108,6 +121,12 @@ pub struct ParticleGroup {
     /// Share of an impulse against the surface that each particle touches that goes on to the body: its share of the body's
     /// inertia over that and its own.
     backings: Vec<f32>,
+    /// Rows of the net that hold no attached particle.
+    batches: Batches,
+    /// Projected springs that hold one.
+    held_springs: Vec<u32>,
+    /// Bends that hold one.
+    held_bends: Vec<u32>,
     /// Unit normal of the surface that each particle touches, out of it.
     press_normals: Vec<Vec3>,
     /// Impulse that has gone on from each particle to the body in this iteration, N·s.
@@ -120,6 +139,8 @@ pub struct ParticleGroup {
     outer: Vec<Vec3>,
     /// Gravity and outer force of the last substep on each particle, over its mass, m/s².
     accelerations: Vec<Vec3>,
+    /// Their lengths, m/s².
+    pulls: Vec<f32>,
 }
 
 impl Item for ParticleGroup {
@@ -152,6 +173,7 @@ impl ParticleGroup {
             linear_damping: def.linear_damping,
             gravity_scale: def.gravity_scale,
             filter: def.filter,
+            sleeping: def.sleeping,
             grips: vec![Grip::Off; count],
             contact_impulses: vec![Vec3::ZERO; count],
             ..Self::default()
@@ -176,13 +198,16 @@ impl ParticleGroup {
         self.system = System::new(count, self.springs.len());
         self.previous = self.positions.clone();
         self.drawn_from = self.positions.clone();
+        self.places = self.positions.clone();
         self.attachment_impulses = vec![Vec3::ZERO; self.attachments.len()];
         self.weights = vec![0.0; count];
         self.accelerations = vec![Vec3::ZERO; count];
+        self.pulls = vec![0.0; count];
         self.begun = vec![Vec3::ZERO; count];
         self.anchor_velocities = vec![Vec3::ZERO; self.attachments.len()];
         self.gradients = vec![Vec3::ZERO; count];
         self.touches = vec![None; count];
+        self.solved = Vec::with_capacity(count);
         self.clearances = vec![0.0; count];
         self.near = Near::new(count);
         self.backings = vec![0.0; count];
@@ -191,6 +216,7 @@ impl ParticleGroup {
         self.wedges = vec![Vec3::ZERO; count];
         self.body_impulses = Vec::with_capacity(MAX_TOUCHES * count * self.iterations as usize);
         self.reactions = vec![Vec3::ZERO; count];
+        self.sort_rows();
     }
 
     /// World, metres.
@@ -276,8 +302,13 @@ impl ParticleGroup {
     /// Around all particles, with their radii. Empty, with infinite corners the wrong way round, for a group without
     /// particles.
     pub fn bounds(&self) -> Aabb {
+        self.bounds_of(&self.positions)
+    }
+
+    /// Around its particles, if they were there.
+    fn bounds_of(&self, centers: &[Vec3]) -> Aabb {
         let mut bounds = Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
-        for (&center, &radius) in self.positions.iter().zip(&self.radii) {
+        for (&center, &radius) in centers.iter().zip(&self.radii) {
             bounds = bounds.merge(&Aabb::reaching(center, Vec3::splat(radius)));
         }
         bounds
@@ -285,7 +316,7 @@ impl ParticleGroup {
 
     /// Speed of the fastest particle, m/s.
     pub(crate) fn fastest(&self) -> f32 {
-        self.velocities.iter().fold(0.0, |most, v| max(most, v.length()))
+        self.velocities.iter().fold(0.0, |most, v| max(most, v.length_squared())).sqrt()
     }
 
     /// True if a particle comes to a shape at rest within `dt` seconds, and into it faster than `speed` (m/s).
@@ -335,6 +366,7 @@ impl ParticleGroup {
         let velocity = self.velocities[i] + impulse / self.masses[i];
         assert!(velocity.is_finite(), "an impulse makes a finite velocity, not {velocity:?}");
         self.velocities[i] = velocity;
+        self.wake();
     }
 
     /// Sets the velocity of a particle, m/s, world. One that is attached takes that of what holds it.
@@ -344,6 +376,7 @@ impl ParticleGroup {
     pub fn set_velocity(&mut self, particle: u32, velocity: Vec3) {
         assert!(velocity.is_finite(), "a velocity is finite, not {velocity:?}");
         self.velocities[particle as usize] = velocity;
+        self.wake();
     }
 
     /// Puts a particle somewhere, world, metres, through whatever lies between.
@@ -354,6 +387,7 @@ impl ParticleGroup {
         assert!(position.is_finite(), "a position is finite, not {position:?}");
         self.positions[particle as usize] = position;
         self.previous[particle as usize] = position;
+        self.wake();
     }
 
     /// Moves a particle by `by` (m, world), with the velocity that takes it there within `h` seconds.
@@ -368,6 +402,20 @@ impl ParticleGroup {
         );
         self.positions[particle as usize] += by;
         self.velocities[particle as usize] += velocity;
+        self.wake();
+    }
+
+    /// Moves a pin: the place in the world (metres) that attachment `index` holds its particle at.
+    ///
+    /// # Panics
+    /// If there is no such attachment, it is to a body, or the place is not finite.
+    pub fn move_pin(&mut self, index: usize, to: Vec3) {
+        assert!(to.is_finite(), "a place is finite, not {to:?}");
+        let AttachmentTarget::World(place) = &mut self.attachments[index].target else {
+            panic!("attachment {index} is to a place in the world");
+        };
+        *place = to;
+        self.wake();
     }
 
     /// Moves the group by `h` seconds under `gravity` (m/s²), its springs, its attachments and its contacts.
@@ -396,9 +444,11 @@ impl ParticleGroup {
         let gravity = gravity * self.gravity_scale;
         self.accelerations.clear();
         self.accelerations.resize(self.positions.len(), gravity);
-        for ((sum, force), mass) in self.accelerations.iter_mut().zip(self.outer.drain(..)).zip(&self.masses)
-        {
-            *sum += force / *mass;
+        self.pulls.clear();
+        self.pulls.resize(self.positions.len(), gravity.length());
+        for (i, force) in self.outer.drain(..).enumerate() {
+            self.accelerations[i] += force / self.masses[i];
+            self.pulls[i] = self.accelerations[i].length();
         }
         self.body_impulses.clear();
         self.attachment_impulses.fill(Vec3::ZERO);
@@ -437,19 +487,32 @@ impl ParticleGroup {
         self.stop_impacts(h, obstacles, bodies);
     }
 
-    /// Damping, and what each particle brings into the system.
+    /// Damping, and what particles bring into the system: all where springs are solved in it, else those that are held.
     fn begin(&mut self, h: f32) {
         let damping = 1.0 / (1.0 + h * self.linear_damping);
-        for i in 0..self.positions.len() {
-            let mass = self.masses[i];
-            self.previous[i] = self.positions[i];
-            self.velocities[i] *= damping;
-            self.begun[i] = self.velocities[i];
-            self.weights[i] = 1.0 / mass;
-            self.system.freedom[i] = Freedom::Free;
-            self.system.inertia[i] = Sym3::from_diagonal(Vec3::splat(mass));
-            self.system.momentum[i] = (self.velocities[i] + self.accelerations[i] * h) * mass;
+        self.previous.copy_from_slice(&self.positions);
+        for (velocity, begun) in self.velocities.iter_mut().zip(&mut self.begun) {
+            *velocity *= damping;
+            *begun = *velocity;
         }
+        for (weight, mass) in self.weights.iter_mut().zip(&self.masses) {
+            *weight = 1.0 / *mass;
+        }
+        if self.forest.has_trees() {
+            (0..self.positions.len()).for_each(|i| self.enter(i, h));
+        } else {
+            for k in 0..self.attachments.len() {
+                self.enter(self.attachments[k].particle as usize, h);
+            }
+        }
+    }
+
+    /// Enters a particle into the system, free.
+    fn enter(&mut self, i: usize, h: f32) {
+        let mass = self.masses[i];
+        self.system.freedom[i] = Freedom::Free;
+        self.system.inertia[i] = Sym3::from_diagonal(Vec3::splat(mass));
+        self.system.momentum[i] = (self.velocities[i] + self.accelerations[i] * h) * mass;
     }
 }
 

@@ -55,6 +55,11 @@ impl Near {
         list.iter().map(|&obstacle| obstacle as usize).chain(all)
     }
 
+    /// Distance of all obstacles from a particle's surface at least, if surely none comes within `distance` (m) of it.
+    pub fn alone_within(&self, i: usize, distance: f32) -> Option<f32> {
+        (self.beyond[i] > distance && self.list(i).is_empty()).then_some(self.beyond[i])
+    }
+
     /// Least distance from a particle's surface of all that [`within`](Self::within) leaves out, metres.
     pub fn left_out_from(&self, i: usize, distance: f32) -> f32 {
         if self.beyond[i] > distance { self.beyond[i] } else { f32::INFINITY }
@@ -101,7 +106,7 @@ impl Near {
     /// Finds how far what the list of a particle leaves out is from where it is now.
     fn follow(&mut self, i: usize, at: Vec3) {
         // Places are known to their rounding.
-        let rounding = 1e-5 + 1e-6 * at.length();
+        let rounding = 1e-5 + 1e-6 * (at.x.abs() + at.y.abs() + at.z.abs());
         self.beyond[i] = match self.reaches[i] {
             Some(reach) => reach - (at - self.origins[i]).length() - rounding,
             None => 0.0,

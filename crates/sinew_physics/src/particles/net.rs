@@ -1,13 +1,16 @@
 //! Rows that form loops, each solved once per iteration: `Δx = −C / (Σ w ∇C² + α/h²) w ∇C` with `α = 1/k` (Macklin et al.,
 //! "Small Steps in Physics Simulation", SCA 2019, without its multipliers). A row alone is a step of implicit Euler. Rows that
-//! share particles are solved one after the other, in the order of their definition, and those before do not hear of those
+//! share particles are solved one after the other, and those before do not hear of those
 //! after: each spring of a net yields by about `h² (w₁ + w₂)` more.
 //!
 //! What presses a particle onto a surface moves it with its share of the body's inertia, and is handed on to the body: a ball
 //! in a cloth would else be carried by the cloth's own few grams.
+//!
+//! Rows that hold an attached particle come one by one, since the impulse on it counts; all others eight at a time, see `batches.rs`.
 
+use super::batches::Batches;
 use super::{BendDef, ParticleGroup, Resists, SpringDef, TetherDef, VolumeDef};
-use sinew_math::{Vec3, max};
+use sinew_math::{Vec3, dispatch, max};
 
 impl ParticleGroup {
     /// Tethers, springs that the forest does not solve, bends, volumes: coarse first, so that what is fine has the last
@@ -16,17 +19,64 @@ impl ParticleGroup {
         for k in 0..self.tethers.len() {
             self.project_tether(self.tethers[k], h);
         }
-        for k in 0..self.forest.loops().len() {
-            self.project_spring(self.springs[self.forest.loops()[k] as usize], h);
+        for k in 0..self.held_springs.len() {
+            self.project_spring(self.springs[self.held_springs[k] as usize], h);
         }
-        for k in 0..self.bends.len() {
-            self.project_bend(self.bends[k], h);
+        for k in 0..self.held_bends.len() {
+            self.project_bend(self.bends[self.held_bends[k] as usize], h);
         }
+        self.project_batches(h);
         let volumes = core::mem::take(&mut self.volumes);
         for volume in &volumes {
             self.project_volume(volume, h);
         }
         self.volumes = volumes;
+    }
+
+    /// Sorts rows into those that hold an attached particle, whose impulses are counted, and batches of the others.
+    pub(super) fn sort_rows(&mut self) {
+        let Self { springs, bends, forest, attachment_of, .. } = self;
+        let is_free = |i: u32| attachment_of[i as usize] == u32::MAX;
+        let free_spring = |&k: &u32| is_free(springs[k as usize].a) && is_free(springs[k as usize].b);
+        let free_bend = |&k: &u32| bends[k as usize].particles.into_iter().all(is_free);
+        let (batched, held): (Vec<u32>, _) = forest.loops().iter().partition(|k| free_spring(k));
+        let (batched_bends, held_bends): (Vec<u32>, _) = (0..bends.len() as u32).partition(free_bend);
+        self.batches = Batches::new(
+            attachment_of.len(),
+            batched.iter().map(|&k| springs[k as usize]),
+            batched_bends.iter().map(|&k| bends[k as usize]),
+        );
+        (self.held_springs, self.held_bends) = (held, held_bends);
+    }
+
+    fn project_batches(&mut self, h: f32) {
+        if self.batches.is_empty() {
+            return;
+        }
+        self.batches.put(&self.previous, &self.velocities, &self.weights, h);
+        let mut pressed = false;
+        for &i in &self.solved {
+            let i = i as usize;
+            if self.backings[i] > 0.0 {
+                self.batches.put_surface(i, self.press_normals[i], self.backings[i]);
+                pressed = true;
+            }
+        }
+        dispatch::run(self.batches.project(h, pressed));
+        let per_second = 1.0 / h;
+        let Self { positions, velocities, previous, attachment_of, .. } = self;
+        self.batches.ways(|i, way| {
+            if attachment_of[i] == u32::MAX {
+                velocities[i] = way * per_second;
+                positions[i] = previous[i] + way;
+            }
+        });
+        for &i in self.solved.iter().filter(|_| pressed) {
+            let i = i as usize;
+            if self.backings[i] > 0.0 {
+                self.presses[i] += self.press_normals[i] * (self.batches.take_surface(i) * per_second);
+            }
+        }
     }
 
     /// Mobility of a particle along a force, 1/kg: `∇Cᵀ W ∇C` if `force` is as long as the gradient.

@@ -70,6 +70,7 @@ impl ParticleGroup {
                 }
             }
         }
+        self.save_rest(out);
     }
 
     fn save_net(&self, out: &mut Writer) {
@@ -141,7 +142,9 @@ impl ParticleGroup {
         if !(finite && span.is_finite()) {
             return Err(input.error("an impulse, a place or a time is not finite"));
         }
-        Ok(Self { span, contact_impulses, grips, drawn_from, ..Self::new(&def) })
+        let mut group = Self { span, contact_impulses, grips, drawn_from, ..Self::new(&def) };
+        group.load_rest(input)?;
+        Ok(group)
     }
 }
 

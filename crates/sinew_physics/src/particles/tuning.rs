@@ -14,6 +14,25 @@ pub(super) const LIST_ITERATIONS: f32 = 8.0;
 /// As [`LIST_ITERATIONS`].
 pub(super) const LIST_ROOM: f32 = 0.01;
 
+/// Speed of the way in a step below which a particle may sleep, m/s.
+///
+/// It swings about its place, and must come to rest before that. Larger: cloth stops in mid-swing, and springs short of the stretch that their load
+/// asks for. Smaller: nets that tremble keep a world awake.
+/// Shown by the tests of `sleep`.
+pub(super) const RESTING_SPEED: f32 = 0.001;
+
+/// Room around a sleeping group within which the user's changes to bodies wake it, metres.
+///
+/// More than what bears it is away. Larger: it wakes for what does not concern it. Smaller: it goes on sleeping where its support was. Shown by the
+/// tests of `sleep`.
+pub(super) const BED_ROOM: f32 = 0.02;
+
+/// Least share of the vertical in the normal of a surface at which a particle bears it, a ratio.
+///
+/// Larger: what lies in a steep fold of cloth stays in the air when the cloth goes. Smaller: a rope that swings against a wall of a box keeps the
+/// box awake. Shown by `rope_on_box` and the tests of `sleep`.
+pub(super) const BEARING: f32 = 0.2;
+
 /// Length by which a spring may exceed its predicted length at the end of a step, as a share of its rest length, a ratio.
 ///
 /// Larger: ropes stretch visibly in jerks. Smaller: more iterations. Shown by `catenary`, `spring_chain`.

@@ -1,5 +1,6 @@
 //! `islands` and `color`: which active bodies hang together through contacts, joints, particles and attraction.
 
+use crate::activity::follow;
 use crate::arena::Arena;
 use crate::body::external_work::Work;
 use crate::context::StepContext;
@@ -108,11 +109,12 @@ impl Islands {
     /// Finds the islands and takes the particle groups into them for the length of the step.
     pub fn find(&mut self, view: &View<'_>, groups: &mut Arena<ParticleGroup>) {
         self.is_known = true;
+        groups.iter_mut().for_each(|(_, group)| follow(view.bodies, group));
         self.number(view, groups.slot_count());
         self.join_touching_and_held();
         let first_group = self.active.len() as u32;
         self.neighbors.resize(groups.slot_count(), Neighbors::default());
-        for (index, group) in groups.iter() {
+        for (index, group) in awake(groups) {
             self.neighbors[index as usize].find(group, view);
             for i in 0..self.neighbors[index as usize].bodies.len() {
                 let body = self.neighbors[index as usize].bodies[i];
@@ -123,7 +125,7 @@ impl Islands {
         }
         self.join_attracted(view, groups);
         self.collect();
-        for (index, _) in groups.iter() {
+        for (index, _) in awake(groups) {
             let island = self.island_of(first_group + index);
             self.groups.push(island, index);
         }
@@ -135,7 +137,7 @@ impl Islands {
         self.flown.clear();
         self.flown.reserve(self.parent.len());
         self.flown.resize(self.count, false);
-        for (_, group) in groups.iter_mut() {
+        for (_, group) in groups.iter_mut().filter(|(_, group)| group.is_awake()) {
             group.begin_step();
         }
         self.taken.extend(self.groups.numbers.iter().map(|&index| TakenGroup {
@@ -219,9 +221,8 @@ impl Islands {
                     self.join(*first.get_or_insert(place as u32), place as u32);
                 }
             }
-            for (index, group) in groups.iter() {
-                let mut particles = 0..group.positions().len();
-                if particles.any(|i| field.reaches(&Target::of_particle(group, i))) {
+            for (index, group) in awake(groups) {
+                if field.reaches_group(group) {
                     let place = self.active.len() as u32 + index;
                     self.join(*first.get_or_insert(place), place);
                 }
@@ -412,6 +413,11 @@ impl Islands {
     pub fn halted(&mut self) -> (&mut [Workspace], &mut [TakenGroup]) {
         (&mut self.own[..self.count], &mut self.taken)
     }
+}
+
+/// Groups that do not sleep, with their slots.
+fn awake(groups: &Arena<ParticleGroup>) -> impl Iterator<Item = (u32, &ParticleGroup)> {
+    groups.iter().filter(|(_, group)| group.is_awake())
 }
 
 /// Ascending lists of numbers, one for each island, one after the other in memory.

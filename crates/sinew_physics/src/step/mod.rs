@@ -32,6 +32,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
 
     stage(Stage::Pairs, &mut || {
         activity.wake_struck(bodies, groups, &broad.proxies, def);
+        activity.wake_groups(bodies, groups, &broad.proxies, objects.let_sleep(), def);
         broad.blows.find(bodies, joints, activity);
         broad.update(bodies, parted.filter(joints), meetings, contacts, activity, context.dt);
     });
@@ -55,7 +56,10 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     stage(Stage::Continuous, &mut || {
         continuous::continuous(islands, bodies, activity, broad, filter, context);
     });
-    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, activity, &fields, sleepers, def));
+    stage(Stage::Sleep, &mut || {
+        let may = objects.let_sleep();
+        sleep::sleep(islands, (bodies, groups), (activity, sleepers), &fields, may, def);
+    });
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, def.hit_speed, events));
     stage(Stage::Movers, &mut || mover::movers(world));
 }

@@ -6,16 +6,18 @@ use crate::arena::Arena;
 use crate::body::def::{SleepThresholds, Sleeping, WorldDef};
 use crate::body::{Body, Rest};
 use crate::field::Fields;
+use crate::particles::ParticleGroup;
 use crate::step::islands::Islands;
 use crate::step::tuning::{CREEP, HANGING_SPEED, HANGING_SPIN, PUSHED_SPEED};
 
-/// Counts the calm time of every body and puts islands to sleep. `sleepers` numbers them.
+/// Counts the calm time of every body and particle group and puts islands to sleep. `sleepers` numbers them; `of_groups` permits
+/// groups to sleep. A group keeps bodies awake that it holds; what it touches may rest before it.
 pub(crate) fn sleep(
     islands: &Islands,
-    bodies: &mut Arena<Body>,
-    activity: &mut Activity,
+    (bodies, groups): (&mut Arena<Body>, &mut Arena<ParticleGroup>),
+    (activity, sleepers): (&mut Activity, &mut u32),
     fields: &Fields<'_>,
-    sleepers: &mut u32,
+    of_groups: Sleeping,
     def: &WorldDef,
 ) {
     let thresholds = &def.sleep_thresholds;
@@ -34,14 +36,30 @@ pub(crate) fn sleep(
             let calm = body.sleeping == Sleeping::On
                 && is_slower(body, thresholds.speed, thresholds.spin)
                 && (creeps_little || stays(body, thresholds))
-                && (island.groups.is_empty() || is_slower(body, HANGING_SPEED, HANGING_SPIN))
+                && (island.groups.is_empty() || hangs_still(body, def.dt()))
                 && !fields.keep_awake(body);
             least = sinew_math::min(least, count(body, calm, def.dt()));
         }
-        let rests = least >= thresholds.time && !island.bodies.is_empty();
-        if rests && def.sleeping == Sleeping::On {
+        let resting = if of_groups == Sleeping::On { island.groups } else { &[] };
+        for &index in resting {
+            let group = groups.at_mut(index);
+            let may = if fields.keep_group_awake(group) { Sleeping::Off } else { Sleeping::On };
+            let calm = group.count_rest(may, thresholds, def.dt());
+            if group.holds_bodies() {
+                least = sinew_math::min(least, calm);
+            }
+        }
+        if least >= thresholds.time && def.sleeping == Sleeping::On {
             activity.sleep(bodies, island.bodies, *sleepers);
-            *sleepers = sleepers.wrapping_add(1);
+            let mut any = !island.bodies.is_empty();
+            for &index in resting {
+                let group = groups.at_mut(index);
+                if group.has_rested(thresholds.time) {
+                    group.fall_asleep(*sleepers, island.bodies.first().copied());
+                    any = true;
+                }
+            }
+            *sleepers = sleepers.wrapping_add(u32::from(any));
         }
     }
 }
@@ -69,6 +87,14 @@ fn stays(body: &Body, thresholds: &SleepThresholds) -> bool {
 /// True if a slow body went on all the same in this step.
 fn is_pushed_out(body: &Body, dt: f32) -> bool {
     (body.world_from_principal.translation - body.previous.translation).length() > PUSHED_SPEED * dt
+}
+
+/// True if what hangs on particles went next to no way in this step. Its velocity says less: springs push for the substep to come, which leaves
+/// it with what its weight will take.
+fn hangs_still(body: &Body, dt: f32) -> bool {
+    let (was, is) = (body.previous, body.world_from_principal);
+    (is.translation - was.translation).length() < HANGING_SPEED * dt
+        && is.rotation.angle_to(was.rotation) < HANGING_SPIN * dt
 }
 
 fn is_slower(body: &Body, speed: f32, spin: f32) -> bool {

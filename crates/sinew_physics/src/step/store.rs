@@ -25,7 +25,7 @@ pub(crate) fn store(
     islands.release(groups);
     events.rolled_back.clear();
     for (id, group) in groups.entries_mut() {
-        if group.roll_back() {
+        if group.is_awake() && group.roll_back() {
             events.rolled_back.push(id);
         }
     }

@@ -16,13 +16,13 @@ pub(super) const CREEP: f32 = 2.0;
 /// sleeps. Shown by `ragdoll_drop`.
 pub(super) const PUSHED_SPEED: f32 = 0.0275;
 
-/// Speed below which what hangs on particles may sleep, m/s.
+/// Speed of the way in a step below which what hangs on particles may sleep, m/s.
 ///
 /// It swings about its place, and must come to rest before that. Larger: it stops in mid-swing. Smaller: ropes keep a world awake. Shown by
 /// the tests of `rope`.
 pub(super) const HANGING_SPEED: f32 = 0.02;
 
-/// Spin below which what hangs on particles may sleep, rad/s.
+/// Spin from step to step below which what hangs on particles may sleep, rad/s.
 ///
 /// As [`HANGING_SPEED`].
 pub(super) const HANGING_SPIN: f32 = 0.05;

@@ -57,6 +57,7 @@ pub(crate) use lockstep::lockstep;
 pub use substep::{Corrections, Forces, Substep};
 
 use crate::arena::{Arena, Item};
+use crate::body::def::Sleeping;
 use crate::draw::DebugDraw;
 use crate::id::{Lineage, ObjectId};
 use crate::solver::Grading;
@@ -129,6 +130,11 @@ impl Objects {
     /// They act in every substep of the world's, so that with any all islands take those.
     pub fn grading(&self) -> Grading {
         if self.is_empty() { Grading::ByContent } else { Grading::None }
+    }
+
+    /// Permission of particle groups to sleep: objects see and push them in every substep.
+    pub fn let_sleep(&self) -> Sleeping {
+        if self.is_empty() { Sleeping::On } else { Sleeping::Off }
     }
 
     pub fn is_empty(&self) -> bool {

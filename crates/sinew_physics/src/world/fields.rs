@@ -178,5 +178,8 @@ impl World {
                 self.wake_body(index);
             }
         }
+        for (_, group) in self.groups.iter_mut().filter(|(_, group)| def.reaches_group(group)) {
+            group.wake();
+        }
     }
 }

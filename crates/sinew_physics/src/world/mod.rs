@@ -29,7 +29,7 @@ pub use shapes::MassUpdate;
 pub use surfaces::{BodyContact, ContactPoint};
 pub use update::Update;
 
-use crate::activity::Activity;
+use crate::activity::{Activity, sleeping_partner};
 use crate::arena::Arena;
 use crate::body::def::{BodyDef, BodyKind, WorldDef};
 use crate::body::external_work::Work;
@@ -191,7 +191,7 @@ impl World {
         self.broad.proxies.remove(id.index);
     }
 
-    /// Adds particles with their springs; bodies that they hang on wake. They do not sleep themselves. A body that sleeps is
+    /// Adds particles with their springs; bodies that they hang on wake. Groups sleep with what hangs together with them. A body that sleeps is
     /// a wall to them, unless one strikes it faster than [`SleepThresholds::speed`](crate::SleepThresholds): then it wakes.
     ///
     /// # Panics
@@ -207,10 +207,14 @@ impl World {
         id
     }
 
-    /// Takes a particle group out.
+    /// Takes a particle group out; what slept with it or lay on it wakes.
     #[track_caller]
     pub fn remove_particles(&mut self, id: GroupId) {
-        self.groups.take(id);
+        let group = self.groups.take(id);
+        if let Some(partner) = sleeping_partner(&self.bodies, &group) {
+            self.wake_body(partner);
+        }
+        self.activity.wake_borne(&mut self.bodies, &group, 0.0, (&self.broad.proxies, &self.def));
     }
 
     /// A particle group.

@@ -18,7 +18,7 @@ use crate::world::World;
 use sinew_math::{ReadError, Reader, Writer};
 
 /// First bytes of a snapshot; the last is its version.
-const MAGIC: &[u8; 8] = b"sinew-w\x08";
+const MAGIC: &[u8; 8] = b"sinew-w\x09";
 /// A thousand steps a second for 280,000 years.
 const MOST_STEPS: u64 = 1 << 53;
 
@@ -88,7 +88,8 @@ impl World {
         if !contacts.is_sorted_by(|p: &Contact, q| p.key < q.key) {
             return Err(r.error("contacts are out of order").into());
         }
-        let groups = Arena::load(r, |r| load_group(r, &bodies))?;
+        let mut groups = Arena::load(r, |r| load_group(r, &bodies))?;
+        crate::activity::lie_down(&bodies, &mut groups);
         let fields = Arena::load(r, |r| FieldDef::load(r, &self.functions, &self.library))?;
         let count = r.count(8)?;
         let mut disabled = Vec::with_capacity(count);

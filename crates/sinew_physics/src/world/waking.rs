@@ -1,8 +1,10 @@
 //! Sleep as a user sees it: asked, and changed by hand.
 
 use crate::body::def::{Quality, Sleeping};
+use crate::boxes::Overlap;
 use crate::contact::Contact;
 use crate::id::BodyId;
+use crate::particles::AttachmentTarget;
 use crate::world::World;
 use sinew_math::Vec3;
 use std::collections::BTreeSet;
@@ -79,6 +81,7 @@ impl World {
             for id in self.body_ids().collect::<Vec<_>>() {
                 self.wake_body(id.index);
             }
+            self.groups.iter_mut().for_each(|(_, group)| group.wake());
         }
     }
 
@@ -119,6 +122,24 @@ impl World {
         self.wake_body(index);
         others.iter().for_each(|&other| self.wake_body(other));
         self.around = others;
+        self.wake_groups_around(index);
+    }
+
+    /// Wakes particle groups that sleep where a body is, or hang on it.
+    fn wake_groups_around(&mut self, index: u32) {
+        let (id, body) = (self.bodies.id(index), self.bodies.at(index));
+        for (_, group) in self.groups.iter_mut() {
+            let Some(bed) = group.bed() else { continue };
+            let shapes = 0..body.shapes.len();
+            let bounds = |shape: usize| body.shapes[shape].shape.aabb(&body.world_from_shape(shape));
+            let hangs = |target| matches!(target, AttachmentTarget::Body { body, .. } if body == id);
+            let mut attachments = group.attachments().iter();
+            if shapes.into_iter().any(|shape| bounds(shape).overlaps(&bed.bounds))
+                || attachments.any(|attachment| hangs(attachment.target))
+            {
+                group.wake();
+            }
+        }
     }
 
     /// The contacts of a body, in no order that means anything.

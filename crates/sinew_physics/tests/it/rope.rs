@@ -64,6 +64,8 @@ fn a_rope_holds_a_body_and_hangs_from_a_beam() {
         |particle, body, point| AttachmentDef { particle, target: AttachmentTarget::Body { body, point } };
     // As it is, it would let the weight swing for minutes.
     rope.damp(2.0);
+    // It is measured to some micrometres.
+    rope.sleeping = Sleeping::Off;
     rope.attachments = vec![hold(0, beam, -Vec3::Y * 0.1), hold(10, weight, Vec3::Y * 0.1)];
     world.add_particles(&rope);
     let mass = world.mass(weight).mass;

@@ -90,5 +90,5 @@ impl Neighbors {
 }
 
 fn fastest_point(most: f32, body: &Body) -> f32 {
-    sinew_math::max(most, body.velocity.linear.length() + body.velocity.angular.length() * body.reach())
+    sinew_math::max(most, body.fastest_point())
 }

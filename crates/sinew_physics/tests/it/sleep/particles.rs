@@ -1,8 +1,10 @@
 //! Particles and sleepers.
 
-use super::{Nap, nap, run};
-use sinew_math::Vec3;
-use sinew_physics::particles::{GroupDef, ParticleDef};
+use super::{Nap, linear, nap, run, slab};
+use crate::build::{box_body, floor};
+use sinew_math::{Reader, Vec3, Writer, max};
+use sinew_physics::particles::{AttachmentTarget, ClothDef, GroupDef, ParticleDef, RopeDef};
+use sinew_physics::*;
 
 fn grains(height: f32) -> GroupDef {
     let grain = |i: u32| ParticleDef {
@@ -47,4 +49,245 @@ fn what_flies_past_wakes_nobody() {
     world.add_particles(&def);
     run(&mut world, 30);
     assert!(!world.is_awake(sleeper));
+}
+
+/// A cloth that hangs by two corners, and has come to rest asleep.
+fn curtain() -> (World, GroupId) {
+    let mut cloth = ClothDef {
+        corner: Vec3::new(-0.5, 2.0, 0.0),
+        across: Vec3::X,
+        down: Vec3::NEG_Y,
+        columns: 6,
+        rows: 6,
+        mass: 0.3,
+        stretching: 1000.0,
+        shearing: 100.0,
+        bending: 1e-5,
+        damping_ratio: 0.2,
+        radius: 0.01,
+    }
+    .build();
+    let row = cloth.row(0);
+    cloth.hang(&row);
+    cloth.group.linear_damping = 2.0;
+    let mut world = World::new(WorldDef::default());
+    let id = world.add_particles(&cloth.group);
+    let asleep = (0..900).any(|_| {
+        world.step();
+        !world.particles(id).is_awake()
+    });
+    assert!(asleep, "it falls asleep");
+    (world, id)
+}
+
+/// `act` on a sleeping curtain wakes it at once or within so many steps.
+fn wakes_curtain(what: &str, steps: usize, act: impl FnOnce(&mut World, GroupId)) {
+    let (mut world, id) = curtain();
+    act(&mut world, id);
+    let woke = (0..steps).any(|_| {
+        world.step();
+        world.particles(id).is_awake()
+    });
+    assert!(woke, "{what} wakes it");
+}
+
+#[test]
+fn a_cloth_at_rest_sleeps_where_it_is() {
+    let (mut world, id) = curtain();
+    let before = world.particles(id).positions().to_vec();
+    let calls = world.hash();
+    run(&mut world, 120);
+    assert!(!world.particles(id).is_awake());
+    assert_eq!(world.particles(id).positions(), before.as_slice());
+    assert!(world.particles(id).velocities().iter().all(|v| *v == Vec3::ZERO));
+    assert_ne!(world.hash(), calls, "time goes on");
+}
+
+#[test]
+fn what_is_done_to_particles_wakes_them() {
+    wakes_curtain("a push", 1, |world, id| world.particles_mut(id).apply_impulse(40, Vec3::Z * 1e-6));
+    wakes_curtain("a velocity", 1, |world, id| world.particles_mut(id).set_velocity(40, Vec3::ZERO));
+    wakes_curtain("a place", 1, |world, id| {
+        let at = world.particles(id).positions()[40];
+        world.particles_mut(id).set_position(40, at);
+    });
+    wakes_curtain("a pin", 1, |world, id| world.particles_mut(id).move_pin(0, Vec3::new(-0.5, 2.01, 0.0)));
+    wakes_curtain("a call", 1, |world, id| world.particles_mut(id).wake());
+    wakes_curtain("permission taken", 1, |world, id| world.particles_mut(id).set_sleeping(Sleeping::Off));
+    wakes_curtain("an explosion", 1, |world, _| world.explode(&Explosion::new(Vec3::Y * 1.5, 2.0, 1.0)));
+    wakes_curtain("gravity", 1, |world, _| world.set_gravity(Vec3::Y * -1.6));
+    wakes_curtain("wind that comes", 1, |world, _| {
+        let wind = Wind { velocity: Vec3::Z * 3.0, ..Wind::default() };
+        world.add_field(&FieldDef::new(FieldKind::Wind(wind)));
+    });
+}
+
+#[test]
+fn what_comes_to_particles_wakes_them() {
+    let ball = |at: Vec3, velocity: Vec3| BodyDef {
+        linear_velocity: velocity,
+        gravity_scale: 0.0,
+        ..box_body(Vec3::splat(0.1), at)
+    };
+    wakes_curtain("a body that flies into it", 60, |world, _| {
+        world.add_body(&ball(Vec3::new(0.0, 1.5, 2.0), Vec3::Z * -4.0));
+    });
+    wakes_curtain("a slab that is led into it", 60, |world, _| {
+        let id = world.add_body(&slab(0.2, Vec3::new(0.0, 1.5, 0.5)));
+        world.set_velocity(id, linear(Vec3::Z * -1.0));
+    });
+    wakes_curtain("a wall that is put there", 1, |world, _| {
+        world.add_body(&BodyDef { kind: BodyKind::Static, ..ball(Vec3::Y * 1.5, Vec3::ZERO) });
+    });
+    let (mut world, id) = curtain();
+    world.add_body(&ball(Vec3::new(0.0, 1.5, 2.0), Vec3::X));
+    run(&mut world, 60);
+    assert!(!world.particles(id).is_awake(), "what flies past wakes nobody");
+}
+
+/// A box that hangs on a rope, both asleep.
+fn hung() -> (World, GroupId, BodyId) {
+    let mut world = World::new(WorldDef::default());
+    let calm =
+        BodyDef { linear_damping: 2.0, angular_damping: 2.0, ..box_body(Vec3::splat(0.1), Vec3::Y * 0.9) };
+    let body = world.add_body(&calm);
+    let mut rope =
+        RopeDef { from: Vec3::Y * 2.0, to: Vec3::Y, links: 5, mass: 0.1, stiffness: 1e4, radius: 0.01 }
+            .build();
+    rope.group.hold_in_world(&[rope.first]);
+    rope.group.hold(rope.last, AttachmentTarget::Body { body, point: Vec3::Y * 0.1 });
+    rope.group.linear_damping = 2.0;
+    let id = world.add_particles(&rope.group);
+    let asleep = (0..1200).any(|_| {
+        world.step();
+        !world.particles(id).is_awake()
+    });
+    assert!(asleep && !world.is_awake(body), "they fall asleep together");
+    (world, id, body)
+}
+
+#[test]
+fn what_hangs_together_wakes_together() {
+    let (mut world, id, body) = hung();
+    world.apply_impulse_at_center(body, Vec3::X);
+    world.step();
+    assert!(world.particles(id).is_awake(), "the rope with its box");
+    let (mut world, id, body) = hung();
+    world.particles_mut(id).apply_impulse(3, Vec3::X * 0.1);
+    world.step();
+    assert!(world.is_awake(body), "the box with its rope");
+    let (mut world, id, body) = hung();
+    world.remove_particles(id);
+    assert!(world.is_awake(body), "the box whose rope is gone");
+}
+
+#[test]
+fn a_world_taken_back_sleeps_and_wakes_the_same() {
+    let (mut world, id, body) = hung();
+    let mut at_rest = Writer::new();
+    world.save(&mut at_rest);
+    let wake = |world: &mut World| {
+        world.particles_mut(id).apply_impulse(3, Vec3::X * 0.1);
+        let mut roused = Writer::new();
+        world.save(&mut roused);
+        run(world, 50);
+        (roused.into_bytes(), world.hash())
+    };
+    let (roused, expected) = wake(&mut world);
+    world.load(&mut Reader::new(at_rest.as_bytes())).expect("it was saved");
+    assert!(!world.particles(id).is_awake() && !world.is_awake(body));
+    run(&mut world, 10);
+    world.load(&mut Reader::new(at_rest.as_bytes())).expect("it was saved");
+    assert_eq!(wake(&mut world).1, expected, "from asleep");
+    let mut other = World::new(WorldDef::default());
+    other.load(&mut Reader::new(&roused)).expect("it was saved");
+    run(&mut other, 50);
+    assert_eq!(other.hash(), expected, "from between the push and the step");
+}
+
+#[test]
+fn what_a_rope_swings_over_sleeps() {
+    let mut world = World::new(WorldDef::default());
+    floor(&mut world);
+    let at = Vec3::Y * 0.25;
+    let body = world.add_body(&box_body(Vec3::splat(0.25), at));
+    let middle = Vec3::new(0.0, 0.8, 0.02);
+    let rope = RopeDef {
+        from: middle - Vec3::X * 0.6,
+        to: middle + Vec3::X * 0.6,
+        links: 24,
+        mass: 1.0,
+        stiffness: 2000.0,
+        radius: 0.01,
+    };
+    let rope = world.add_particles(&rope.build().group);
+    run(&mut world, 300);
+    let group = world.particles(rope);
+    let fastest = group.velocities().iter().fold(0.0, |most, v| max(most, v.length()));
+    assert!(group.is_awake() && fastest > 0.01, "the rope still swings on it, at {fastest} m/s");
+    let way = (world.center_of_mass(body) - at).length();
+    assert!(!world.is_awake(body) && way < 1e-3, "the box has gone {way} m");
+}
+
+/// A net that is not calm and a ball that sleeps on it all the same.
+fn netted() -> (World, GroupId, BodyId) {
+    let mut world = World::new(WorldDef::default());
+    let mut net = ClothDef {
+        corner: Vec3::new(-0.5, 1.0, -0.5),
+        across: Vec3::X,
+        down: Vec3::Z,
+        columns: 10,
+        rows: 10,
+        mass: 0.5,
+        stretching: 2000.0,
+        shearing: 500.0,
+        bending: 1e-3,
+        damping_ratio: 1.0,
+        radius: 0.02,
+    }
+    .build();
+    net.group.hold_in_world(&(0..11).chain(110..121).collect::<Vec<_>>());
+    net.group.sleeping = Sleeping::Off;
+    let net = world.add_particles(&net.group);
+    run(&mut world, 240);
+    let group = world.particles(net);
+    let height = |(at, radius): (&Vec3, &f32)| {
+        let reach = radius + 0.1;
+        at.y + max(reach * reach - at.x * at.x - at.z * at.z, 0.0).sqrt()
+    };
+    let near = group.positions().iter().zip(group.radii()).filter(|(at, _)| at.x.hypot(at.z) < 0.1);
+    let ball = BodyDef {
+        position: Vec3::Y * near.map(height).fold(0.0, max),
+        shapes: vec![ShapeDef::new(Shape::Sphere { radius: 0.1 })],
+        ..BodyDef::default()
+    };
+    let ball = world.add_body(&ball);
+    world.put_to_sleep(ball);
+    run(&mut world, 60);
+    assert!(!world.is_awake(ball) && world.particles(net).is_awake());
+    (world, net, ball)
+}
+
+#[test]
+fn what_lay_on_particles_wakes_when_they_go() {
+    let (mut world, net, ball) = netted();
+    let at = world.center_of_mass(ball);
+    for pin in 0..22 {
+        let AttachmentTarget::World(place) = world.particles(net).attachments()[pin].target else {
+            panic!("pins are in the world");
+        };
+        world.particles_mut(net).move_pin(pin, place - Vec3::Y * 0.5);
+    }
+    run(&mut world, 30);
+    assert!(world.is_awake(ball), "the net went away below it");
+    assert!((world.center_of_mass(ball) - at).y < -0.1, "it falls after it");
+
+    let (mut world, net, ball) = netted();
+    world.remove_particles(net);
+    assert!(world.is_awake(ball), "the net is gone");
+
+    let (mut world, net, ball) = netted();
+    world.particles_mut(net).apply_impulse(115, Vec3::Y * 1e-4);
+    world.step();
+    assert!(!world.is_awake(ball), "nothing that it lies on has gone anywhere");
 }
