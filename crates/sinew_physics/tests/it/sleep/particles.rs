@@ -255,7 +255,7 @@ fn netted() -> (World, GroupId, BodyId) {
         let reach = radius + 0.1;
         at.y + max(reach * reach - at.x * at.x - at.z * at.z, 0.0).sqrt()
     };
-    let near = group.positions().iter().zip(group.radii()).filter(|(at, _)| at.x.hypot(at.z) < 0.1);
+    let near = group.positions().iter().zip(group.radii()).filter(|(at, _)| at.x * at.x + at.z * at.z < 0.01);
     let ball = BodyDef {
         position: Vec3::Y * near.map(height).fold(0.0, max),
         shapes: vec![ShapeDef::new(Shape::Sphere { radius: 0.1 })],
