@@ -1,5 +1,6 @@
 //! An arena: powered characters walk up to each other and push; who falls gets up and goes on.
 
+use super::street::apart;
 use crate::framework::actors::Figure;
 use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
@@ -9,7 +10,7 @@ use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, cuboid, fixed, floor};
 use sinew::anim::local_to_model;
 use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer, max, min};
-use sinew::physics::{BodyId, World};
+use sinew::physics::{BodyId, Mover, World};
 use sinew::ragdoll::{Character, CharacterDef, CharacterEvent, Preset, State};
 use std::sync::Arc;
 
@@ -177,13 +178,12 @@ impl Arena {
             watch.falls += u32::from(*event == CharacterEvent::WentLimp);
             watch.ups += u32::from(*event == CharacterEvent::Up);
         }
-        let radius = self.def.in_world.mover.as_ref().map_or(0.0, |mover| mover.radius);
         let (referee, fighters) = self.fighters.split_last().expect("there is a referee");
-        let standing = fighters.iter().filter(|fighter| fighter.character.mover().is_some());
-        let standing: Vec<Vec3> = standing.map(Fighter::place).collect();
-        for (i, a) in standing.iter().enumerate() {
-            let apart = |b: &Vec3| Vec3::new(b.x - a.x, 0.0, b.z - a.z).length() - 2.0 * radius;
-            watch.nearest = standing[..i].iter().map(apart).fold(watch.nearest, min);
+        let standing: Vec<&Mover> =
+            fighters.iter().filter_map(|fighter| Some(world.mover(fighter.character.mover()?))).collect();
+        for (i, mover) in standing.iter().enumerate() {
+            watch.nearest = standing[..i].iter().map(|other| apart(mover, other)).fold(watch.nearest, min);
+            let a = mover.position();
             watch.outside += u32::from(Vec3::new(a.x, 0.0, a.z).length() > self.radius + 0.3);
         }
         watch.highest = max(watch.highest, referee.place().y);

@@ -9,7 +9,7 @@ use crate::framework::setting::{Setting, Setup};
 use crate::parts::{GRAVITY, cuboid, fixed, floor};
 use sinew::anim::local_to_model;
 use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer, max, min};
-use sinew::physics::{BodyId, BodyKind, Velocity, World};
+use sinew::physics::{BodyId, BodyKind, Mover, Velocity, World};
 use sinew::ragdoll::{Character, CharacterDef, CharacterEvent, HitBodies, State};
 use std::sync::Arc;
 
@@ -177,13 +177,11 @@ impl Street {
                 watch.ups += u32::from(matches!(event, CharacterEvent::Up));
             }
         }
-        let stands = |walker: &&Walker| walker.character.mover().is_some();
-        let radius = self.def.in_world.mover.as_ref().map_or(0.0, |mover| mover.radius);
-        let standing: Vec<Vec3> = self.walkers.iter().filter(stands).map(Walker::place).collect();
-        for (i, a) in standing.iter().enumerate() {
-            let level = |b: &Vec3| Vec3::new(b.x - a.x, 0.0, b.z - a.z).length() - 2.0 * radius;
-            let near = standing[..i].iter().filter(|b| (b.y - a.y).abs() < 1.0).map(level);
-            watch.nearest = near.fold(watch.nearest, min);
+        let standing: Vec<&Mover> =
+            self.walkers.iter().filter_map(|walker| Some(world.mover(walker.character.mover()?))).collect();
+        for (i, mover) in standing.iter().enumerate() {
+            watch.nearest = standing[..i].iter().map(|other| apart(mover, other)).fold(watch.nearest, min);
+            let a = mover.position();
             let in_street = a.x < HALF_LENGTH + 1.0;
             watch.outside +=
                 u32::from(in_street && (a.z.abs() > self.half_width || a.x < -HALF_LENGTH - 1.0));
@@ -192,6 +190,13 @@ impl Street {
         watch.drift = max(watch.drift, (rider - Vec3::Y * 0.1).length());
         watch.highest = max(watch.highest, self.walkers[1].place().y);
     }
+}
+
+/// Distance of two upright movers' surfaces, metres; negative where they overlap.
+pub(super) fn apart(a: &Mover, b: &Mover) -> f32 {
+    let way = b.center() - a.center();
+    let over = max(way.y.abs() - a.half_height() - b.half_height(), 0.0);
+    Vec3::new(way.x, over, way.z).length() - a.def().radius - b.def().radius
 }
 
 impl Script for Street {
