@@ -6,7 +6,7 @@ use crate::body::def::BodyKind;
 use crate::body::material::Material;
 use crate::contact::tracking::{load_shape_id, save_shape_id, shape_ids};
 use crate::contact::tuning::STILL_COMING;
-use crate::contact::{Contact, Effect};
+use crate::contact::{Contact, ContactKey, Effect};
 use crate::id::ShapeId;
 use sinew_math::{ReadError, Reader, Vec3, Writer, max, normalize_or};
 
@@ -48,25 +48,53 @@ struct OpenHit {
 pub(crate) struct OpenHits {
     list: Vec<OpenHit>,
     next: Vec<OpenHit>,
+    /// Pairs that came in fast in this step, and how fast that is, m/s. Not part of the snapshot: a step begins with them.
+    fast: Vec<ContactKey>,
+    threshold: f32,
+}
+
+impl OpenHit {
+    fn key(&self) -> ContactKey {
+        ContactKey::new((self.a.body.index, self.a.shape), (self.b.body.index, self.b.shape))
+    }
 }
 
 impl OpenHits {
-    /// Tells of what was hit in this step, faster than `threshold` (m/s).
-    pub fn tell(&mut self, bodies: &Arena<Body>, contacts: &[Contact], threshold: f32, hits: &mut Vec<Hit>) {
+    /// Begins a step in which hits faster than `threshold` (m/s) are told of.
+    pub fn start(&mut self, threshold: f32) {
+        self.threshold = threshold;
+        self.fast.clear();
+    }
+
+    /// Notes a pair that came in fast.
+    pub fn note(&mut self, pair: &[Contact]) {
+        if pair.iter().any(|contact| contact.approach >= self.threshold) {
+            self.fast.push(ContactKey { part: 0, ..pair[0].key });
+        }
+    }
+
+    /// Tells of what was hit in this step, of the pairs that were [noted](Self::note) and those whose hits go on.
+    pub fn tell(&mut self, bodies: &Arena<Body>, contacts: &[Contact], hits: &mut Vec<Hit>) {
         hits.clear();
-        hits.reserve(contacts.len());
         self.next.clear();
-        self.next.reserve(contacts.len());
-        for pair in contacts.chunk_by(|p, q| p.key.is_of_pair(q.key)) {
-            let fast = pair.iter().any(|contact| contact.approach >= threshold);
-            if !fast && self.list.is_empty() || pair[0].effect != Effect::Push {
+        let noted = self.fast.len();
+        self.fast.extend(self.list.iter().map(OpenHit::key));
+        if noted > 0 {
+            self.fast.sort_unstable();
+            self.fast.dedup();
+        }
+        hits.reserve(self.fast.len());
+        self.next.reserve(self.fast.len());
+        for key in self.fast.drain(..) {
+            let rest = &contacts[contacts.partition_point(|contact| contact.key < key)..];
+            let count = rest.iter().take_while(|contact| contact.key.is_of_pair(key)).count();
+            let pair = &rest[..count];
+            if pair.first().is_none_or(|contact| contact.effect != Effect::Push) {
                 continue;
             }
-            let (a, b) = shape_ids(bodies, pair[0].key);
-            let begun = self.list.iter().find(|hit| (hit.a, hit.b) == (a, b));
-            if !fast && begun.is_none() {
-                continue;
-            }
+            let (a, b) = shape_ids(bodies, key);
+            let begun = self.list.binary_search_by_key(&key, OpenHit::key).ok().map(|at| &self.list[at]);
+            let begun = begun.filter(|hit| (hit.a, hit.b) == (a, b));
             let hit = hit_of(bodies, pair, (a, b), begun);
             if hit.impulse <= 0.0 {
                 continue;
@@ -102,7 +130,7 @@ impl OpenHits {
             let (approach, impulse, greatest) = (r.f32()?, r.f32()?, r.f32()?);
             list.push(OpenHit { a, b, point, normal, approach, impulse, greatest });
         }
-        Ok(Self { list, next: Vec::new() })
+        Ok(Self { list, ..Self::default() })
     }
 }
 

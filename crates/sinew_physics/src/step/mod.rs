@@ -37,6 +37,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         broad.update(bodies, parted.filter(joints), meetings, contacts, activity, context.dt);
     });
     stage(Stage::Collide, &mut || collide::collide(bodies, broad, contacts, parts, context));
+    meetings.hits.start(def.hit_speed);
     stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, meetings, events));
     let (proxies, modifiers, pace) =
         (&broad.proxies, &meetings.modifiers, Pace::new(context, objects.grading()));
@@ -60,6 +61,6 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         let may = objects.let_sleep();
         sleep::sleep(islands, (bodies, groups), (activity, sleepers), &fields, may, def);
     });
-    stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, def.hit_speed, events));
+    stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, events));
     stage(Stage::Movers, &mut || mover::movers(world));
 }

@@ -6,13 +6,12 @@ use crate::contact::events::Events;
 use crate::contact::tracking::{ContactTracking, Told};
 use crate::contact::{Contact, Effect, pairs_of};
 
-/// Compares the sensor pairs with those of the step before, and tells of hits faster than `hit_speed` (m/s). All that the
+/// Compares the sensor pairs with those of the step before, and tells of hits. All that the
 /// user changed since has been looked at now.
 pub(crate) fn sensors(
     bodies: &mut Arena<Body>,
     contacts: &mut [Contact],
     meetings: &mut ContactTracking,
-    hit_speed: f32,
     events: &mut Events,
 ) {
     let sensed = &mut meetings.sensed;
@@ -31,6 +30,6 @@ pub(crate) fn sensors(
         Told { bodies: &mut events.sensor_begin, shapes: &mut events.sensor_shapes_begin },
         Told { bodies: &mut events.sensor_end, shapes: &mut events.sensor_shapes_end },
     );
-    meetings.hits.tell(bodies, contacts, hit_speed, &mut events.hits);
+    meetings.hits.tell(bodies, contacts, &mut events.hits);
     meetings.settle(bodies);
 }

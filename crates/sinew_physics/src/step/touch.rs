@@ -25,10 +25,11 @@ pub(crate) fn touch(
     meetings: &mut ContactTracking,
     events: &mut Events,
 ) {
-    let touching = &mut meetings.touching;
+    let ContactTracking { touching, hits, .. } = meetings;
     touching.start(contacts.len());
     for pair in pairs_of(contacts) {
         agree(pair);
+        hits.note(pair);
         let was = pair[0].touching;
         let is = pair[0].effect != Effect::Sense && touches(bodies, pair);
         touching.note(pair[0].key, was, is);
