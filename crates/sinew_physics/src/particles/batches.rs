@@ -381,16 +381,25 @@ impl<L: Lanes> Surface<L> {
     /// Mobility of particles of some weight along a force `share` times a unit `direction`, 1/kg.
     #[inline(always)]
     fn mobility(&self, weight: L, direction: Vector3<L>, share: L) -> L {
-        let pressing = L::min(direction.dot(self.normal) * share, L::splat(0.0));
-        weight * (share * share - self.backing * pressing * pressing)
+        let backed = self.backed(direction.dot(self.normal) * share);
+        weight * (share * share - self.backing * backed * backed)
+    }
+
+    /// The part of a force along the normal that the surface backs: what presses onto it, and what takes from a press.
+    #[inline(always)]
+    fn backed(&self, along: L) -> L {
+        let zero = L::splat(0.0);
+        along.masked(L::lt(along, zero) | L::lt(self.press, zero))
     }
 
     /// The part of an impulse along a unit `direction`, times the length of the iteration, N·s², that is left to particles: the rest presses them onto
     /// their surface and goes on.
     #[inline(always)]
     fn pass_on(&mut self, direction: Vector3<L>, impulse: L) -> Vector3<L> {
-        let handed_on = L::min(direction.dot(self.normal) * impulse, L::splat(0.0)) * self.backing;
-        self.press = self.press + handed_on;
+        let backed = self.backed(direction.dot(self.normal) * impulse) * self.backing;
+        let press = L::min(self.press + backed, L::splat(0.0));
+        let handed_on = press - self.press;
+        self.press = press;
         direction * impulse - self.normal * handed_on
     }
 }

@@ -156,15 +156,19 @@ impl Touch {
         let approach = (velocity - body.velocity_at(self.point)).dot(n) - self.speed_min;
         let normal = max(-approach / (response + body.yielding(self.point, n)), 0.0);
         body.push(self.point, n * -normal);
+        n * normal + self.rub(normal, response, velocity + n * (normal * response), body)
+    }
 
-        let relative = velocity + n * (normal * response) - self.surface_velocity(body);
-        let slip = relative - n * relative.dot(n);
+    /// The friction on the particle that goes with an impulse along the normal; the body is pushed the other way.
+    fn rub(&self, normal: f32, response: f32, velocity: Vec3, body: &mut ObstacleBody) -> Vec3 {
+        let relative = velocity - self.surface_velocity(body);
+        let slip = relative - self.normal * relative.dot(self.normal);
         let along = normalize_or(slip, Vec3::ZERO);
         let stick = slip.length() / (response + body.yielding(self.point, along));
         let holds = stick <= self.material.static_friction * normal;
         let friction = along * -if holds { stick } else { self.material.friction * normal };
         body.push(self.point, -friction);
-        n * normal + friction
+        friction
     }
 
     /// Velocity of the body's surface where it is touched, m/s.
@@ -466,15 +470,19 @@ impl ParticleGroup {
         }
     }
 
-    /// Hands on to bodies what presses particles onto them.
-    pub(super) fn press_bodies(&mut self, bodies: &mut [ObstacleBody]) {
+    /// Hands on to bodies what presses particles onto them, and rubs them with it.
+    pub(super) fn press_bodies(&mut self, h: f32, bodies: &mut [ObstacleBody]) {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
             if let Some(touch) = self.touches[i].filter(|_| self.backings[i] > 0.0) {
                 let impulse = self.presses[i];
                 (self.backings[i], self.press_normals[i], self.presses[i]) = (0.0, Vec3::ZERO, Vec3::ZERO);
-                bodies[touch.body].push(touch.point, impulse);
-                self.report(&touch, -impulse, bodies);
+                let (body, weight) = (&mut bodies[touch.body], self.weights[i]);
+                body.push(touch.point, impulse);
+                let friction = touch.rub(impulse.length(), weight, self.velocities[i], body);
+                self.velocities[i] += friction * weight;
+                self.positions[i] += friction * (weight * h);
+                self.report(&touch, friction - impulse, bodies);
             }
         }
     }

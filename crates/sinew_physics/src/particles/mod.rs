@@ -481,7 +481,7 @@ impl ParticleGroup {
         }
         self.back_contacts(h, bodies);
         self.project_net(h);
-        self.press_bodies(bodies);
+        self.press_bodies(h, bodies);
         self.let_go(part, anchors);
         self.bounce(h, bodies);
         self.stop_impacts(h, obstacles, bodies);

@@ -4,13 +4,14 @@
 //! after: each spring of a net yields by about `h² (w₁ + w₂)` more.
 //!
 //! What presses a particle onto a surface moves it with its share of the body's inertia, and is handed on to the body: a ball
-//! in a cloth would else be carried by the cloth's own few grams.
+//! in a cloth would else be carried by the cloth's own few grams. A later row that pulls it away takes from that press first, or the
+//! body would be pushed by what no longer presses, and nets would tremble under what they bear.
 //!
 //! Rows that hold an attached particle come one by one, since the impulse on it counts; all others eight at a time, see `batches.rs`.
 
 use super::batches::Batches;
 use super::{BendDef, ParticleGroup, Resists, SpringDef, TetherDef, VolumeDef};
-use sinew_math::{Vec3, dispatch, max};
+use sinew_math::{Vec3, dispatch, max, min};
 
 impl ParticleGroup {
     /// Tethers, springs that the forest does not solve, bends, volumes: coarse first, so that what is fine has the last
@@ -81,21 +82,24 @@ impl ParticleGroup {
 
     /// Mobility of a particle along a force, 1/kg: `∇Cᵀ W ∇C` if `force` is as long as the gradient.
     fn mobility(&self, i: usize, force: Vec3) -> f32 {
-        let pressing = force.dot(self.press_normals[i]);
-        let backed = if pressing < 0.0 { self.backings[i] * pressing * pressing } else { 0.0 };
-        self.weights[i] * (force.length_squared() - backed)
+        let backed = self.backed(i, force);
+        self.weights[i] * (force.length_squared() - self.backings[i] * backed * backed)
+    }
+
+    /// The part of a force along the normal that the surface backs: what presses onto it, and what takes from a press.
+    fn backed(&self, i: usize, force: Vec3) -> f32 {
+        let normal = self.press_normals[i];
+        let along = force.dot(normal);
+        if along < 0.0 || self.presses[i].dot(normal) < 0.0 { along } else { 0.0 }
     }
 
     /// An impulse that acts at the end of the iteration, as if it had from its beginning.
     fn nudge(&mut self, i: usize, impulse: Vec3, h: f32) {
-        let pressing = impulse.dot(self.press_normals[i]);
-        let mut own = impulse;
-        if pressing < 0.0 {
-            let handed_on = self.press_normals[i] * (pressing * self.backings[i]);
-            own -= handed_on;
-            self.presses[i] += handed_on;
-        }
-        let change = own * self.weights[i];
+        let normal = self.press_normals[i];
+        let press = self.presses[i].dot(normal);
+        let handed_on = min(press + self.backed(i, impulse) * self.backings[i], 0.0) - press;
+        self.presses[i] += normal * handed_on;
+        let change = (impulse - normal * handed_on) * self.weights[i];
         self.velocities[i] += change;
         self.positions[i] += change * h;
         self.reactions[i] += impulse;

@@ -229,10 +229,9 @@ fn what_a_rope_swings_over_sleeps() {
     assert!(!world.is_awake(body) && way < 1e-3, "the box has gone {way} m");
 }
 
-/// A net that is not calm and a ball that sleeps on it all the same.
-fn netted() -> (World, GroupId, BodyId) {
-    let mut world = World::new(WorldDef::default());
-    let mut net = ClothDef {
+/// A net of a square metre at a height of 1 m.
+fn net(damping_ratio: f32) -> GroupDef {
+    let net = ClothDef {
         corner: Vec3::new(-0.5, 1.0, -0.5),
         across: Vec3::X,
         down: Vec3::Z,
@@ -242,13 +241,19 @@ fn netted() -> (World, GroupId, BodyId) {
         stretching: 2000.0,
         shearing: 500.0,
         bending: 1e-3,
-        damping_ratio: 1.0,
+        damping_ratio,
         radius: 0.02,
-    }
-    .build();
-    net.group.hold_in_world(&(0..11).chain(110..121).collect::<Vec<_>>());
-    net.group.sleeping = Sleeping::Off;
-    let net = world.add_particles(&net.group);
+    };
+    net.build().group
+}
+
+/// A net that is not calm and a ball that sleeps on it all the same.
+fn netted() -> (World, GroupId, BodyId) {
+    let mut world = World::new(WorldDef::default());
+    let mut net = net(1.0);
+    net.hold_in_world(&(0..11).chain(110..121).collect::<Vec<_>>());
+    net.sleeping = Sleeping::Off;
+    let net = world.add_particles(&net);
     run(&mut world, 240);
     let group = world.particles(net);
     let height = |(at, radius): (&Vec3, &f32)| {
@@ -290,4 +295,28 @@ fn what_lay_on_particles_wakes_when_they_go() {
     world.particles_mut(net).apply_impulse(115, Vec3::Y * 1e-4);
     world.step();
     assert!(!world.is_awake(ball), "nothing that it lies on has gone anywhere");
+}
+
+#[test]
+fn what_a_net_has_caught_falls_asleep() {
+    let mut world = World::new(WorldDef::default());
+    let mut net = net(0.2);
+    let is_border = |i: &u32| [0, 10].contains(&(i % 11)) || [0, 10].contains(&(i / 11));
+    net.hold_in_world(&(0..121).filter(is_border).collect::<Vec<_>>());
+    net.iterations = 2;
+    net.linear_damping = 2.0;
+    world.add_particles(&net);
+    let ball = world.add_body(&BodyDef {
+        position: Vec3::Y * 1.3,
+        shapes: vec![ShapeDef { density: 50.0, ..ShapeDef::new(Shape::Sphere { radius: 0.15 }) }],
+        linear_damping: 2.0,
+        angular_damping: 2.0,
+        ..BodyDef::default()
+    });
+    run(&mut world, 900);
+    let at = world.center_of_mass(ball);
+    assert!(!world.is_awake(ball), "it rests");
+    assert!((0.9..1.1).contains(&at.y) && at.x.abs() < 0.05 && at.z.abs() < 0.05, "it lies at {at:?}");
+    run(&mut world, 300);
+    assert_eq!(world.center_of_mass(ball), at, "the net does not wake it");
 }
