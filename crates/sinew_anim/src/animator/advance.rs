@@ -23,6 +23,9 @@ struct Stretch {
 impl Animator {
     pub(super) fn advance(&mut self, set: &AnimationSet, seconds: f64) {
         self.room.crossings.clear();
+        if let Some(fed) = &mut self.fed {
+            fed.advance(seconds as f32);
+        }
         for slot in &mut self.slots {
             slot.motion = Transform::IDENTITY;
         }
