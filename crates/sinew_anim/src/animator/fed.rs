@@ -1,14 +1,12 @@
 //! A clip whose pose comes from outside.
 
 use super::Animator;
+use super::advance::SHORTEST;
 use crate::pose::Pose;
 use crate::rig::LocalTransform;
 use crate::set::{AnimationSet, ClipId};
 use crate::tuning::GOES_ON;
 use sinew_math::{Rotation, min};
-
-/// Shortest time between two poses that makes a velocity, seconds.
-const SHORTEST: f32 = 1e-4;
 
 /// The clip, and the last two poses that it was given.
 #[derive(Clone, Debug)]
@@ -75,7 +73,7 @@ impl Fed {
 
     pub fn sample(&self, pose: &mut Pose) {
         let ahead = min(self.age, GOES_ON);
-        if self.is_new || ahead == 0.0 || self.seconds < SHORTEST {
+        if self.is_new || ahead == 0.0 || self.seconds < SHORTEST as f32 {
             return pose.copy_from(if self.is_new { &self.before } else { &self.now });
         }
         for joint in 0..self.now.len() {
@@ -84,7 +82,7 @@ impl Fed {
     }
 }
 
-/// Where a joint comes to that goes on for `share` of the way between two of its places.
+/// Place of a joint that goes on for `share` of the way between two of its places.
 fn onward(before: &LocalTransform, now: &LocalTransform, share: f32) -> LocalTransform {
     let turn = (now.rotation * before.rotation.inverse()).to_scaled_axis();
     LocalTransform {
