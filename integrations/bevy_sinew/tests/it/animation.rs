@@ -39,15 +39,16 @@ struct Walker {
     app: App,
     entity: Entity,
     def: Arc<CharacterDef>,
+    travels: bool,
     given: Vec<Vec<LocalTransform>>,
 }
 
 impl Walker {
-    fn new() -> Self {
+    fn new(travels: bool) -> Self {
         let mut app = app();
         ground(&mut app);
         let def = Arc::new(mannequin::character());
-        let entity = app.world_mut().spawn((CharacterBody(def.clone()), BevyAnimation::default())).id();
+        let entity = app.world_mut().spawn((CharacterBody(def.clone()), BevyAnimation { travels })).id();
         let joints = scene(&mut app, entity, &def.rig);
         for (&joint, rest) in joints.iter().zip(def.rest()) {
             app.world_mut().get_mut::<Transform>(joint).expect("it has one").translation = rest.translation;
@@ -57,7 +58,7 @@ impl Walker {
         app.insert_resource(Player { joints, pose, still });
         let play = play.in_set(AnimationSystems).before(TransformSystems::Propagate);
         app.add_systems(PostUpdate, play.ambiguous_with_all());
-        Self { app, entity, def, given: Vec::new() }
+        Self { app, entity, def, travels, given: Vec::new() }
     }
 
     /// A frame, in which the player goes on with the walk.
@@ -74,6 +75,10 @@ impl Walker {
         let mut player = self.app.world_mut().resource_mut::<Player>();
         pose[player.still] = def.rest()[player.still];
         player.pose.clone_from(&pose);
+        if self.travels {
+            let way = math::Transform::from_translation(Vec3::Z * (self.given.len() as f32 * DT));
+            def.mapping().reframe(&mut player.pose, way, math::Transform::IDENTITY);
+        }
         self.given.push(pose);
         self.app.update();
     }
@@ -102,7 +107,7 @@ impl Walker {
 
 #[test]
 fn what_animates_the_joints_is_what_the_character_strives_for() {
-    let mut walker = Walker::new();
+    let mut walker = Walker::new(false);
     let mut most = 0.0f32;
     for step in 0..90 {
         walker.frame();
@@ -124,7 +129,7 @@ fn what_animates_the_joints_is_what_the_character_strives_for() {
 
 #[test]
 fn who_is_animated_by_bevy_falls_and_gets_up() {
-    let mut walker = Walker::new();
+    let mut walker = Walker::new(false);
     (0..70).for_each(|_| walker.frame());
     let led = walker.spins();
     walker.go_limp();
@@ -149,4 +154,19 @@ fn who_is_animated_by_bevy_falls_and_gets_up() {
         }
     }
     panic!("{:?}, {} rad from the pose that it is given", walker.handle().state(), walker.off());
+}
+
+#[test]
+fn clips_that_go_over_the_ground_are_held_in_place() {
+    let mut walker = Walker::new(true);
+    let pelvis = walker.def.ragdoll.bodies[0].joint;
+    for step in 0..90 {
+        walker.frame();
+        if step > 3 {
+            assert!(walker.off() < 0.02, "step {step}: {} rad", walker.off());
+            let off = walker.handle().pose()[pelvis].translation - walker.def.rest()[pelvis].translation;
+            assert!(off.length() < 1e-3, "step {step}: {off}");
+        }
+    }
+    assert!(walker.handle().world_from_character().translation.length() < 0.01);
 }
