@@ -11,6 +11,14 @@
 /// by the tests of `animators`.
 pub(crate) const FILL_BELOW: f32 = 0.1;
 
+// animator/fed.rs
+
+/// Longest time for which a pose from outside goes on as it went when no other comes, seconds.
+///
+/// Larger: who is fed no more swings out. Smaller: who is sent ahead by several steps, to see how fast limbs are, sees them stop. Shown by
+/// the tests of `feeding`.
+pub(crate) const GOES_ON: f32 = 0.1;
+
 // animator/track.rs
 
 /// Fastest that a track goes, forward or backward, clip seconds per second.

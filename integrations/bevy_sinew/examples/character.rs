@@ -7,7 +7,7 @@ use bevy_app::{App, FixedUpdate};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_sinew::sinew::anim::Rig;
-use bevy_sinew::sinew::ragdoll::{CharacterDef, Event as Told, State};
+use bevy_sinew::sinew::ragdoll::{CharacterDef, CharacterEvent as Told, State};
 use bevy_sinew::{
     CharacterBody, CharacterHandle, CharacterTold, Collider, Physics, RigidBody, Shape, SinewPlugin,
 };

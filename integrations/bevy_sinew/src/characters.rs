@@ -1,7 +1,8 @@
 //! Characters: on the joints of a scene, they walk, are hit, fall and get up.
 
+use crate::animation::{BevyAnimation, LedKinds, led, to_place};
 use crate::events::both;
-use crate::pose::{to_pose, to_quat};
+use crate::pose::to_pose;
 use crate::{Physics, order};
 use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::*;
@@ -87,11 +88,13 @@ pub(crate) fn forget_character(removed: On<Remove, CharacterBody>, mut commands:
 pub(crate) fn add_characters(
     mut commands: Commands,
     mut physics: ResMut<Physics>,
-    new: Query<(Entity, &CharacterBody, &Transform), Without<CharacterHandle>>,
+    new: Query<(Entity, &CharacterBody, &Transform, Has<BevyAnimation>), Without<CharacterHandle>>,
+    mut kinds: Local<LedKinds>,
 ) {
     let mut new: Vec<_> = new.iter().collect();
     new.sort_unstable_by_key(|&(entity, ..)| order(entity));
-    for (entity, CharacterBody(def), &transform) in new {
+    for (entity, CharacterBody(def), &transform, is_led) in new {
+        let def = if is_led { &led(&mut kinds, def) } else { def };
         let character = Character::spawn(&mut physics, def, to_pose(&transform));
         let mut handle = CharacterHandle { character, transform, bodies: Vec::new() };
         register(&mut physics, entity, &mut handle);
@@ -202,12 +205,12 @@ fn affine(affine: &Affine) -> Affine3A {
 pub(crate) fn write_characters(
     time: Res<Time<Fixed>>,
     interpolation: Res<crate::Interpolation>,
-    mut characters: Query<(Entity, &mut CharacterHandle, Option<&CharacterJoints>)>,
+    mut characters: Query<(Entity, &mut CharacterHandle, Option<&CharacterJoints>, Has<BevyAnimation>)>,
     mut transforms: Query<&mut Transform>,
     mut pose: Local<Vec<LocalTransform>>,
 ) {
     let alpha = interpolation.alpha(&time);
-    for (entity, mut handle, joints) in &mut characters {
+    for (entity, mut handle, joints, is_led) in &mut characters {
         let place = handle.character.interpolated(alpha, &mut pose);
         let world_from_model = affine(&handle.def().mapping().world_from_model(place));
         if let Ok(mut transform) = transforms.get_mut(entity)
@@ -220,13 +223,21 @@ pub(crate) fn write_characters(
                 handle.transform = new;
             }
         }
-        let Some(CharacterJoints(joints)) = joints else { continue };
-        for (joint, local) in joints.iter().zip(pose.iter()) {
-            let Some(mut transform) = joint.and_then(|joint| transforms.get_mut(joint).ok()) else {
-                continue;
-            };
-            let LocalTransform { translation, rotation, scale } = *local;
-            transform.set_if_neq(Transform { translation, rotation: to_quat(rotation), scale });
+        // What Bevy animates it would animate after this: see `animation`.
+        if let Some(CharacterJoints(joints)) = joints.filter(|_| !is_led) {
+            write_joints(joints, &pose, &mut transforms);
+        }
+    }
+}
+
+pub(crate) fn write_joints(
+    joints: &[Option<Entity>],
+    pose: &[LocalTransform],
+    transforms: &mut Query<&mut Transform>,
+) {
+    for (joint, local) in joints.iter().zip(pose) {
+        if let Some(mut transform) = joint.and_then(|joint| transforms.get_mut(joint).ok()) {
+            transform.set_if_neq(to_place(local));
         }
     }
 }

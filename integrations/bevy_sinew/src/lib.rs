@@ -32,12 +32,14 @@
 //! | [`Particles`] | when they come | never |
 //! | [`CharacterBody`] | when it comes | never |
 //! | [`CharacterHandle`] | before and after each step | each step |
+//! | [`BevyAnimation`] | when its character comes | never |
 //!
 //! # Features
 //!
 //! | feature | brings | default |
 //! |---|---|---|
 //! | `characters` | [`CharacterBody`]: walks, is hit, falls, gets up, on the joints of a scene | yes |
+//! | `diagnostics` | `SinewDiagnosticsPlugin`: time of steps, bodies awake, contacts | no |
 //! | `gltf` | `CharacterScene`: characters from GLB files | no |
 //! | `gizmos` | `SinewGizmosPlugin`: what the world looks like to itself | no |
 //! | `picking` | `SinewPickingPlugin`: pointers find bodies | no |
@@ -48,9 +50,13 @@
 //! [`Physics`], with the id in [`BodyHandle`].
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "characters")]
+mod animation;
 mod bodies;
 #[cfg(feature = "characters")]
 mod characters;
+#[cfg(feature = "diagnostics")]
+mod diagnostics;
 mod events;
 #[cfg(feature = "gizmos")]
 mod gizmos;
@@ -64,9 +70,13 @@ mod picking;
 mod pose;
 mod threads;
 
+#[cfg(feature = "characters")]
+pub use animation::BevyAnimation;
 pub use bodies::{BodyHandle, Collider, RigidBody, Velocity};
 #[cfg(feature = "characters")]
 pub use characters::{CharacterBody, CharacterHandle, CharacterJoints, CharacterTold};
+#[cfg(feature = "diagnostics")]
+pub use diagnostics::SinewDiagnosticsPlugin;
 pub use events::{HitTold, SensorEntered, SensorLeft, TouchBegan, TouchEnded};
 #[cfg(feature = "gizmos")]
 pub use gizmos::{GizmoColors, PhysicsGizmos, SinewGizmosPlugin};
@@ -89,10 +99,14 @@ pub use sinew_physics::{
 };
 pub use threads::{BevyTasks, StepThreads};
 
+#[cfg(feature = "characters")]
+use bevy_app::{AnimationSystems, PostUpdate};
 use bevy_app::{App, FixedPostUpdate, Plugin, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::prelude::{IntoScheduleConfigs, Resource, SystemSet};
 use bevy_time::{Fixed, Time};
+#[cfg(feature = "characters")]
+use bevy_transform::TransformSystems;
 use core::ops::{Deref, DerefMut};
 use core::time::Duration;
 use sinew_physics::{BodyId, World};
@@ -214,13 +228,17 @@ impl Plugin for SinewPlugin {
 #[cfg(feature = "characters")]
 fn add_characters(app: &mut App) {
     app.add_message::<CharacterTold>().add_observer(characters::forget_character);
-    let prepare = (characters::add_characters, characters::read_characters).chain();
+    let prepare = (characters::add_characters, characters::read_characters, animation::feed_characters);
+    let prepare = prepare.chain();
     app.add_systems(FixedPostUpdate, prepare.in_set(PhysicsSystems::Prepare).after(particles::add_particles));
     // Before the world's events are told: bodies that a character let go of are still known then.
     let update = characters::update_characters.in_set(PhysicsSystems::Tell);
     app.add_systems(FixedPostUpdate, update.after(movers::tell_movers).before(events::tell));
     let write = (characters::find_joints, characters::write_characters).chain();
     app.add_systems(RunFixedMainLoop, write.in_set(PhysicsSystems::Write).after(movers::write_movers));
+    app.add_systems(PostUpdate, animation::give_back.before(AnimationSystems));
+    let show = animation::take_and_show.after(AnimationSystems).before(TransformSystems::Propagate);
+    app.add_systems(PostUpdate, show);
 }
 
 #[cfg(feature = "reflect")]
@@ -228,6 +246,9 @@ fn register_types(app: &mut App) {
     app.register_type::<RigidBody>().register_type::<Collider>().register_type::<Velocity>();
     app.register_type::<Field>().register_type::<Joint>().register_type::<Interpolation>();
     app.register_type::<Walk>().register_type::<MoverState>().register_type::<StepThreads>();
+    app.register_type::<Mover>().register_type::<Particles>();
+    #[cfg(feature = "characters")]
+    app.register_type::<BevyAnimation>();
 }
 
 /// The README's example.

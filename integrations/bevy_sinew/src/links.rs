@@ -11,7 +11,7 @@ use sinew_physics::{FieldDef, FieldId, JointDef, JointId, JointKind};
 
 /// Entities by their bits: Bevy writes and reads them by a feature that only its scenes switch on.
 #[cfg(feature = "reflect")]
-mod bits {
+pub(crate) mod bits {
     use bevy_ecs::entity::Entity;
     use serde::de::Error;
     use serde::{Deserialize, Deserializer, Serializer};

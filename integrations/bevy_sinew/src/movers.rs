@@ -8,6 +8,8 @@ use bevy_ecs::world::DeferredWorld;
 use bevy_math::Vec3;
 #[cfg(feature = "reflect")]
 use bevy_reflect::std_traits::ReflectDefault;
+#[cfg(feature = "reflect")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
 use sinew_math::Rotation;
@@ -16,6 +18,12 @@ use sinew_physics::{MoverDef, MoverId};
 /// A mover, an upright capsule that walks, climbs steps, rides and pushes without being a body. Its entity's `Transform` is that of
 /// its feet, in the world: it belongs to an entity without a parent and without a [`RigidBody`](crate::RigidBody).
 #[derive(Component, Clone, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "reflect",
+    derive(bevy_reflect::Reflect, serde::Serialize, serde::Deserialize),
+    reflect(opaque),
+    reflect(Component, Clone, Default, Debug, PartialEq, Serialize, Deserialize)
+)]
 #[require(Transform, Walk, MoverState)]
 pub struct Mover(pub MoverDef);
 

@@ -1,10 +1,13 @@
 //! Ropes, cloth and blobs.
 
 use crate::{BodyHandle, Physics, order};
+use bevy_ecs::entity::MapEntities;
 use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::*;
 use bevy_ecs::world::DeferredWorld;
 use bevy_math::Vec3;
+#[cfg(feature = "reflect")]
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef};
 use sinew_physics::{BodyId, GroupId};
 
@@ -12,10 +15,17 @@ use sinew_physics::{BodyId, GroupId};
 /// [`ParticlesHandle`]; the entity's `Transform` does nothing. It is made as soon as all bodies that it hangs on are there, and
 /// goes with any of them.
 #[derive(Component, Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "reflect",
+    derive(bevy_reflect::Reflect, serde::Serialize, serde::Deserialize),
+    reflect(opaque),
+    reflect(Component, Clone, Debug, PartialEq, Serialize, Deserialize)
+)]
 pub struct Particles {
     /// Particles and springs, world, metres. Changes of a group that is there are made by [`Physics`].
     pub def: GroupDef,
     /// Particles that hang on entities with a body.
+    #[entities]
     pub hangs: Vec<Hang>,
 }
 
@@ -26,11 +36,14 @@ impl From<GroupDef> for Particles {
 }
 
 /// A particle that hangs on a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(MapEntities, Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "reflect", derive(serde::Serialize, serde::Deserialize))]
 pub struct Hang {
     /// Index of the particle.
     pub particle: u32,
     /// Entity with the body.
+    #[entities]
+    #[cfg_attr(feature = "reflect", serde(with = "crate::links::bits"))]
     pub body: Entity,
     /// Point in the body's axes, metres.
     pub point: Vec3,

@@ -9,8 +9,9 @@ use crate::playback::sync::match_place;
 use crate::set::{AnimatedClip, AnimationSet};
 use sinew_math::Transform;
 
-/// Shortest time that is played again and again, seconds: a shorter one stands still, else an update would have no end.
-const SHORTEST: f64 = 1e-4;
+/// Shortest time that is played again and again, seconds: a shorter one stands still, else an update would have no end. Between poses from
+/// outside, a shorter one makes no velocity.
+pub(super) const SHORTEST: f64 = 1e-4;
 
 /// Part of an update in which a track goes on without a break.
 #[derive(Clone, Copy)]
@@ -23,6 +24,9 @@ struct Stretch {
 impl Animator {
     pub(super) fn advance(&mut self, set: &AnimationSet, seconds: f64) {
         self.room.crossings.clear();
+        if let Some(fed) = &mut self.fed {
+            fed.advance(seconds as f32);
+        }
         for slot in &mut self.slots {
             slot.motion = Transform::IDENTITY;
         }

@@ -56,8 +56,11 @@ impl Animator {
     /// The pose of all tracks as they are, without what transitions leave.
     pub(super) fn compose(&mut self, set: &AnimationSet, pose: &mut Pose) {
         for slot in self.slots.iter_mut().filter(|slot| slot.track.def.weight > 0.0) {
-            let time = slot.track.playhead.clip_time();
-            set.clip(slot.track.def.clip).clip.sample(time, &mut slot.cursor, &mut slot.pose);
+            let (clip, time) = (slot.track.def.clip, slot.track.playhead.clip_time());
+            match self.fed.as_ref().filter(|fed| fed.clip == clip) {
+                Some(fed) => fed.sample(&mut slot.pose),
+                None => set.clip(clip).clip.sample(time, &mut slot.cursor, &mut slot.pose),
+            }
         }
         let mut next = Some(0);
         while let Some(layer) = next {

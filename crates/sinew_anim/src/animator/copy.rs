@@ -24,6 +24,10 @@ impl Animator {
         self.pose.copy_from(&other.pose);
         self.previous.copy_from(&other.previous);
         (self.previous_seconds, self.has_pose) = (other.previous_seconds, other.has_pose);
+        match (&mut self.fed, &other.fed) {
+            (Some(fed), Some(other)) => fed.copy_from(other),
+            (fed, other) => fed.clone_from(other),
+        }
         self.events.clone_from(&other.events);
         self.root_motion = other.root_motion;
         // Room holds nothing in between.

@@ -4,6 +4,7 @@ mod advance;
 mod compose;
 mod copy;
 mod crossfade;
+mod fed;
 mod fire;
 mod root_inertia;
 mod save;
@@ -20,6 +21,7 @@ use crate::pose::{BlendLayer, BlendOptions, Blender, Pose};
 use crate::set::AnimationSet;
 use crate::tuning::FILL_BELOW;
 use crossfade::{Crossfade, Weights};
+use fed::Fed;
 use fire::{LastFired, TrackCrossing};
 use root_inertia::{RootInertia, RootVelocity};
 use sinew_math::Transform;
@@ -68,6 +70,8 @@ pub struct Animator {
     previous: Pose,
     previous_seconds: f32,
     has_pose: bool,
+    /// Pose of a clip that comes from outside.
+    fed: Option<Fed>,
     events: Vec<FiredEvent>,
     root_motion: Transform,
     room: Room,
@@ -139,6 +143,7 @@ impl Animator {
             previous: rest.clone(),
             previous_seconds: 0.0,
             has_pose: false,
+            fed: None,
             events: Vec::new(),
             root_motion: Transform::IDENTITY,
             room,

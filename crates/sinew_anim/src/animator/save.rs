@@ -2,6 +2,7 @@
 
 use super::{Animator, Easing, EndAction, Slot, Track, TrackDef, TrackId};
 use crate::animator::crossfade::Crossfade;
+use crate::animator::fed::Fed;
 use crate::animator::fire::LastFired;
 use crate::animator::root_inertia::{RootInertia, RootVelocity};
 use crate::animator::track::{Ramp, is_speed};
@@ -40,10 +41,13 @@ impl Animator {
         self.inertia.save(out);
         self.root_inertia.save(out);
         self.root_velocity.save(out);
-        out.bool(self.has_pose);
+        out.u8(u8::from(self.has_pose) | u8::from(self.fed.is_some()) << 1);
         out.f32(self.previous_seconds);
         write_pose(&self.pose, out);
         write_pose(&self.previous, out);
+        if let Some(fed) = &self.fed {
+            fed.save(out);
+        }
     }
 
     /// Reads what [`save`](Self::save) wrote, for the same set; goes on with the same bits.
@@ -83,11 +87,39 @@ impl Animator {
         animator.inertia = Inertia::load(bytes, set.skeleton().len())?;
         animator.root_inertia = RootInertia::load(bytes)?;
         animator.root_velocity = RootVelocity::load(bytes)?;
-        animator.has_pose = bytes.bool()?;
+        let has = bytes.u8()?;
+        if has > 3 {
+            return Err(bytes.error("a kind that there is not"));
+        }
+        animator.has_pose = has & 1 != 0;
         animator.previous_seconds = at_least_zero(bytes, Reader::f32)?;
         read_pose(&mut animator.pose, bytes)?;
         read_pose(&mut animator.previous, bytes)?;
+        if has & 2 != 0 {
+            animator.fed = Some(Fed::load(set, bytes)?);
+        }
         Ok(animator)
+    }
+}
+
+impl Fed {
+    fn save(&self, out: &mut Writer) {
+        out.u32(self.clip.0);
+        write_pose(&self.now, out);
+        write_pose(&self.before, out);
+        out.f32(self.seconds);
+        out.f32(self.age);
+        out.bool(self.is_new);
+    }
+
+    fn load(set: &AnimationSet, bytes: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut fed = Self::new(read_clip(set, bytes)?, set.skeleton().rest());
+        read_pose(&mut fed.now, bytes)?;
+        read_pose(&mut fed.before, bytes)?;
+        fed.seconds = at_least_zero(bytes, Reader::f32)?;
+        fed.age = at_least_zero(bytes, Reader::f32)?;
+        fed.is_new = bytes.bool()?;
+        Ok(fed)
     }
 }
 

@@ -7,6 +7,7 @@ mod built;
 mod cleanup;
 mod corrections;
 mod creatures;
+mod feeding;
 mod hints;
 mod ik;
 mod learned_limits;

@@ -12,7 +12,11 @@ use bevy_transform::components::Transform;
 use std::time::Duration;
 
 #[cfg(feature = "characters")]
+mod animation;
+#[cfg(feature = "characters")]
 mod characters;
+#[cfg(feature = "diagnostics")]
+mod diagnostics;
 #[path = "../../examples/door.rs"]
 mod door;
 #[cfg(feature = "gizmos")]

@@ -1,9 +1,11 @@
 //! Components in the type registry.
 
 use super::*;
+use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::reflect::AppTypeRegistry;
 use bevy_reflect::serde::{ReflectDeserializer, ReflectSerializer};
 use bevy_reflect::{FromReflect, PartialReflect};
+use bevy_sinew::physics::particles::RopeDef;
 use serde::de::DeserializeSeed;
 
 fn round<T: FromReflect + PartialReflect>(app: &App, value: &T) -> T {
@@ -29,4 +31,14 @@ fn components_come_back_from_a_scene_as_they_were() {
     assert_eq!(round(&app, &joint), joint);
     let walk = Walk { velocity: Vec3::X, jump: 1.0 };
     assert_eq!(round(&app, &walk), walk);
+    let mover = Mover(MoverDef { height: 1.5, ..MoverDef::default() });
+    assert_eq!(round(&app, &mover), mover);
+    let (from, to) = (Vec3::ZERO, Vec3::X);
+    let rope = RopeDef { from, to, links: 4, mass: 1.0, stiffness: 1e4, radius: 0.02 }.build().group;
+    let particles = Particles { def: rope, hangs: vec![Hang { particle: 0, body: a, point: Vec3::X }] };
+    assert_eq!(round(&app, &particles), particles);
+    // Entities of a scene are others once it is spawned.
+    let mut spawned = particles;
+    Component::map_entities(&mut spawned, &mut EntityHashMap::from_iter([(a, b)]));
+    assert_eq!(spawned.hangs[0].body, b);
 }

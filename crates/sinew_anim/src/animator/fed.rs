@@ -1,0 +1,93 @@
+//! A clip whose pose comes from outside.
+
+use super::Animator;
+use super::advance::SHORTEST;
+use crate::pose::Pose;
+use crate::rig::LocalTransform;
+use crate::set::{AnimationSet, ClipId};
+use crate::tuning::GOES_ON;
+use sinew_math::{Rotation, min};
+
+/// The clip, and the last two poses that it was given.
+#[derive(Clone, Debug)]
+pub(super) struct Fed {
+    pub clip: ClipId,
+    pub now: Pose,
+    /// The one before, the same to begin with.
+    pub before: Pose,
+    /// Seconds between the two.
+    pub seconds: f32,
+    /// Seconds since the update that `now` was given for.
+    pub age: f32,
+    /// True until that update.
+    pub is_new: bool,
+}
+
+impl Animator {
+    /// Gives a clip a pose from outside, from the next update on: tracks of it then have that pose, whatever its channels say. For
+    /// another engine's animation, or hands that are tracked: with a clip that has no channels, and a call before each update.
+    ///
+    /// Events and root motion stay those of the clip. Where an update comes without a new pose, as in an animator that is
+    /// sent ahead, joints go on as they went between the last two, for 0.1 s at most. One clip at a time has such a pose. Allocates
+    /// with the first call alone.
+    ///
+    /// # Panics
+    /// If the clip is not of the set, or the pose has another number of joints.
+    pub fn feed(&mut self, set: &AnimationSet, clip: ClipId, pose: &Pose) {
+        assert!(set.has_clip(clip.0).is_some(), "a clip of the set");
+        assert_eq!(pose.len(), set.skeleton().len(), "a pose of the same rig");
+        match &mut self.fed {
+            Some(fed) if fed.clip == clip => fed.take(pose),
+            fed => *fed = Some(Fed::new(clip, pose)),
+        }
+    }
+}
+
+impl Fed {
+    pub fn new(clip: ClipId, pose: &Pose) -> Self {
+        Self { clip, now: pose.clone(), before: pose.clone(), seconds: 0.0, age: 0.0, is_new: true }
+    }
+
+    fn take(&mut self, pose: &Pose) {
+        if !self.is_new {
+            core::mem::swap(&mut self.now, &mut self.before);
+        }
+        self.now.copy_from(pose);
+        self.is_new = true;
+    }
+
+    pub fn copy_from(&mut self, other: &Self) {
+        self.now.copy_from(&other.now);
+        self.before.copy_from(&other.before);
+        (self.clip, self.seconds) = (other.clip, other.seconds);
+        (self.age, self.is_new) = (other.age, other.is_new);
+    }
+
+    pub fn advance(&mut self, seconds: f32) {
+        if self.is_new {
+            (self.seconds, self.age, self.is_new) = (self.age + seconds, 0.0, false);
+        } else {
+            self.age += seconds;
+        }
+    }
+
+    pub fn sample(&self, pose: &mut Pose) {
+        let ahead = min(self.age, GOES_ON);
+        if self.is_new || ahead == 0.0 || self.seconds < SHORTEST as f32 {
+            return pose.copy_from(if self.is_new { &self.before } else { &self.now });
+        }
+        for joint in 0..self.now.len() {
+            pose.set(joint, &onward(&self.before.get(joint), &self.now.get(joint), ahead / self.seconds));
+        }
+    }
+}
+
+/// Place of a joint that goes on for `share` of the way between two of its places.
+fn onward(before: &LocalTransform, now: &LocalTransform, share: f32) -> LocalTransform {
+    let turn = (now.rotation * before.rotation.inverse()).to_scaled_axis();
+    LocalTransform {
+        translation: now.translation + (now.translation - before.translation) * share,
+        rotation: (Rotation::from_scaled_axis(turn * share) * now.rotation).normalize(),
+        scale: now.scale + (now.scale - before.scale) * share,
+    }
+}
