@@ -1,4 +1,4 @@
-//! Characters whose joints something else animates: here a system where Bevy's `AnimationPlayer` has its own. `loaded` has the player.
+//! Characters whose joints something else animates: here a system where Bevy's `AnimationPlayer` has its own.
 
 use super::characters::scene;
 use super::*;
