@@ -60,10 +60,11 @@ impl OpenHit {
 }
 
 impl OpenHits {
-    /// Begins a step in which hits faster than `threshold` (m/s) are told of.
-    pub fn start(&mut self, threshold: f32) {
+    /// Begins a step with so many contacts, in which hits faster than `threshold` (m/s) are told of.
+    pub fn start(&mut self, contacts: usize, threshold: f32) {
         self.threshold = threshold;
         self.fast.clear();
+        self.fast.reserve(contacts + self.list.len());
     }
 
     /// Notes a pair that came in fast.
@@ -77,14 +78,11 @@ impl OpenHits {
     pub fn tell(&mut self, bodies: &Arena<Body>, contacts: &[Contact], hits: &mut Vec<Hit>) {
         hits.clear();
         self.next.clear();
-        let noted = self.fast.len();
         self.fast.extend(self.list.iter().map(OpenHit::key));
-        if noted > 0 {
-            self.fast.sort_unstable();
-            self.fast.dedup();
-        }
-        hits.reserve(self.fast.len());
-        self.next.reserve(self.fast.len());
+        self.fast.sort_unstable();
+        self.fast.dedup();
+        hits.reserve(contacts.len());
+        self.next.reserve(contacts.len());
         for key in self.fast.drain(..) {
             let rest = &contacts[contacts.partition_point(|contact| contact.key < key)..];
             let count = rest.iter().take_while(|contact| contact.key.is_of_pair(key)).count();

@@ -86,5 +86,5 @@ pub(super) const WEDGED_SHARE: f32 = 0.02;
 
 /// Acceleration by which a dynamic body takes along the mover that it bears, m/s²: friction of soles.
 ///
-/// Larger: who steps on a hand that is jerked away is flung with it. Smaller: riders slide on crates that start. Shown by the tests of `mover_ground`.
+/// Larger: who steps on a hand that is jerked away is flung with it. Smaller: riders slide on crates that start. Shown by the tests of `mover`.
 pub(super) const GRIP: f32 = 20.0;

@@ -37,7 +37,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         broad.update(bodies, parted.filter(joints), meetings, contacts, activity, context.dt);
     });
     stage(Stage::Collide, &mut || collide::collide(bodies, broad, contacts, parts, context));
-    meetings.hits.start(def.hit_speed);
+    meetings.hits.start(contacts.len(), def.hit_speed);
     stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, meetings, events));
     let (proxies, modifiers, pace) =
         (&broad.proxies, &meetings.modifiers, Pace::new(context, objects.grading()));
