@@ -21,7 +21,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::Duration;
 
@@ -92,6 +92,9 @@ pub struct Bench {
     /// Instead, write the page anew from the figures that there are
     #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "check", "counts", "kernels"])]
     page: bool,
+    /// Instead, add the figures of another machine, a file in the form of bench/benchmarks.json, and write the page anew
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenes", "engines", "quick", "check", "counts", "kernels", "trace", "page"])]
+    take: Option<PathBuf>,
     /// Take the counts as the right ones and write them down
     #[arg(long, requires = "counts")]
     bless: bool,
@@ -115,6 +118,9 @@ impl Bench {
         }
         if self.page {
             return write_page(&kept(), &[]).map(|()| ExitCode::SUCCESS);
+        }
+        if let Some(file) = &self.take {
+            return take(file).map(|()| ExitCode::SUCCESS);
         }
         let wanted = |name: &str| self.is_wanted_engine(name);
         let engines = match needs::check().and_then(|()| peers::build(&wanted)) {
@@ -182,7 +188,8 @@ impl Bench {
 
     /// Writes down what there is so far: whoever stops a long run loses one scene only.
     fn keep(&self, results: &Results, scenes: &[Scene]) -> Result<()> {
-        if self.quick { Ok(()) } else { write(results.clone(), scenes) }
+        let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
+        if self.quick { Ok(()) } else { write(results.clone(), &names) }
     }
 
     /// A scene on all engines that are made for it, which take turns, so that a neighbour's load hits all alike.
@@ -285,13 +292,30 @@ fn kept() -> Results {
     Results::from_json(&earlier.unwrap_or(Value::Null))
 }
 
-/// Adds the figures to those of earlier runs, and writes the page.
-fn write(results: Results, scenes: &[Scene]) -> Result<()> {
-    let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
+/// Adds the figures of another machine, which must have some.
+fn take(file: &Path) -> Result<()> {
+    let text = fs::read_to_string(file).with_context(|| file.display().to_string())?;
+    let value = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
+    let taken = Results::from_json(&value);
+    if taken.scenes.is_empty() && taken.threads.is_empty() {
+        bail!("{}: no scene, and nothing on two threads", file.display());
+    }
+    let earlier = kept();
+    let mut names: Vec<String> = Vec::new();
+    for scene in taken.scenes.iter().chain(&earlier.scenes) {
+        if !names.contains(&scene.name) {
+            names.push(scene.name.clone());
+        }
+    }
+    write(taken, &names.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+/// Adds the figures to those of earlier runs, of the scenes called `names`, and writes the page.
+fn write(results: Results, names: &[&str]) -> Result<()> {
     let mut all = kept();
-    all.update(results, &names);
+    all.update(results, names);
     fs::write(file(), format!("{}\n", all.to_json())).with_context(|| file().display().to_string())?;
-    write_page(&all, &[&names[..], &[BAKE, THREADS]].concat())
+    write_page(&all, &[names, &[BAKE, THREADS]].concat())
 }
 
 /// Writes the page of all figures, and which of `names` have none; but never over one with more scenes.
