@@ -93,12 +93,15 @@ fn peers() -> Result<()> {
     command::run(clippy.args(["--", "-D", "warnings"]))
 }
 
-/// The viewer's window opens and is pulled at, on a display of its own; skips with a line where there is no driver.
+/// The viewer's window opens and is pulled at, on a display of its own, and all scenes are opened many times; skips with a line
+/// where there is no driver.
 fn window() -> Result<()> {
     command::provide("Xvfb", "xvfb")?;
     command::provide("xdotool", "xdotool")?;
     let mut test = command::cargo(&["test", "--package", "sinew_cli", "--test", "it"]);
-    command::run(test.args(["--", "--ignored", "--nocapture", "--test-threads", "1", "window::"]))
+    command::run(test.args(["--", "--ignored", "--nocapture", "--test-threads", "1", "window::"]))?;
+    let mut endurance = command::cargo(&["test", "--package", "sinew_viewer", "--test", "it"]);
+    command::run(endurance.args(["--", "--ignored", "--nocapture", "--test-threads", "1", "endurance::"]))
 }
 
 /// The plugin for Bevy does what its tests say, without a window: with every feature, and compiles with none.

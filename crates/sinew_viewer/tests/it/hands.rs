@@ -7,10 +7,11 @@ use sinew_viewer::{App, Headless, Options, Subject};
 
 const SIZE: [u32; 2] = [1280, 760];
 
-fn viewer(scene: &str) -> Option<Headless> {
+/// A viewer of a scene, paused, in pictures of a size in pixels.
+pub fn viewer(scene: &str, size: [u32; 2]) -> Option<Headless> {
     let subject = Some(Subject::scene(scene, &[]).expect("there is such a scene"));
     let app = App::new(Options { subject, paused: true, ..Options::default() }).expect("it starts");
-    Some(Headless::new(app, gpu()?, SIZE))
+    Some(Headless::new(app, gpu()?, size))
 }
 
 /// Frames until the panels have found their sizes.
@@ -20,7 +21,7 @@ fn settled(viewer: &mut Headless) -> Image {
 
 #[test]
 fn scenes_and_panels() {
-    let Some(mut viewer) = viewer("pendulum") else { return };
+    let Some(mut viewer) = viewer("pendulum", SIZE) else { return };
     for _ in 0..20 {
         viewer.key(Key::N);
         viewer.app_mut().advance();
@@ -37,7 +38,7 @@ fn scenes_and_panels() {
 
 #[test]
 fn the_search_opens_a_scene() {
-    let Some(mut viewer) = viewer("pendulum") else { return };
+    let Some(mut viewer) = viewer("pendulum", SIZE) else { return };
     settled(&mut viewer);
     viewer.text("/");
     settled(&mut viewer);
@@ -52,7 +53,7 @@ fn the_search_opens_a_scene() {
 /// A drag pulls the body under the mouse, is recorded, and the recording replays to the same bits.
 #[test]
 fn a_drag_pulls_a_body_and_is_recorded() {
-    let Some(mut viewer) = viewer("stack") else { return };
+    let Some(mut viewer) = viewer("stack", SIZE) else { return };
     settled(&mut viewer);
     let world = viewer.app().session().world();
     let body = world.body_ids().filter(|&id| world.mass(id).mass > 0.0).last().expect("something moves");
@@ -86,7 +87,7 @@ fn a_drag_pulls_a_body_and_is_recorded() {
 
 #[test]
 fn a_ball_is_thrown_and_layers_are_drawn() {
-    let Some(mut viewer) = viewer("ragdoll_drop") else { return };
+    let Some(mut viewer) = viewer("ragdoll_drop", SIZE) else { return };
     let plain = settled(&mut viewer);
     let bodies = viewer.app().session().world().body_ids().count();
     viewer.key(Key::B);
@@ -107,7 +108,7 @@ fn a_ball_is_thrown_and_layers_are_drawn() {
 /// A file that cannot be shown is a line, and the viewer goes on.
 #[test]
 fn a_bad_file_is_a_line() {
-    let Some(mut viewer) = viewer("pendulum") else { return };
+    let Some(mut viewer) = viewer("pendulum", SIZE) else { return };
     viewer.app_mut().open_file("nowhere.json".as_ref());
     assert_eq!(viewer.app().message(), Some("nowhere.json: no such file"));
     assert_eq!(viewer.app().session().subject().title(), "pendulum");

@@ -1,4 +1,6 @@
 //! Integration tests of the viewer: pictures by the driver that is there, panels and hands without a window, a window under Xvfb.
 
+mod endurance;
+mod files;
 mod hands;
 mod pictures;
