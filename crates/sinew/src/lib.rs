@@ -6,6 +6,7 @@
 //! |---|---|---|
 //! | `ragdoll` | `ragdoll`: from rig to ragdoll, animated to limp and back | yes |
 //! | `formats` | `formats`: files in and out, `load`; needs `ragdoll` | yes |
+//! | `pictures` | base colour pictures of files, for `Textures::Decode` | no |
 //! | `fbx` | FBX files among those; compiles C | no |
 //! | `parallel` | `all_threads`: a world stepped by every core of the machine | yes |
 //! | `serde` | `Serialize` and `Deserialize` for definitions (`BodyDef`, `JointDef` ...) | no |

@@ -1,12 +1,11 @@
-//! A character with Bevy, without a window: `cargo run --example character`, or with a file of your own
-//! `cargo run --features gltf --example character -- knight.glb`.
+//! A character with Bevy: `cargo run --example character`, with a window `cargo run -p window -- character`, or with a file of
+//! your own `cargo run -p window -- character knight.glb`.
 //!
 //! It walks, is hit, falls, gets up and walks on. The joints that it moves are entities, as those of a loaded scene are.
 
-use bevy_app::{App, FixedUpdate};
+use bevy_app::{App, FixedUpdate, PostStartup, Startup};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bevy_sinew::sinew::anim::Rig;
 use bevy_sinew::sinew::ragdoll::{CharacterDef, CharacterEvent as Told, State};
 use bevy_sinew::{
     CharacterBody, CharacterHandle, CharacterTold, Collider, Physics, RigidBody, Shape, SinewPlugin,
@@ -15,19 +14,21 @@ use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bevy_transform::components::Transform;
 use std::sync::Arc;
 
-/// The joints of a rig as entities with names, as Bevy's loader makes them of a scene. In a game it is a `SceneRoot`.
-fn scene(commands: &mut Commands, root: Entity, rig: &Rig) {
-    let mut joints: Vec<Entity> = Vec::new();
-    for joint in &rig.joints {
-        let parent = joint.parent.map_or(root, |parent| joints[parent]);
-        let bundle = (Name::new(joint.name.clone()), Transform::default(), ChildOf(parent));
-        joints.push(commands.spawn(bundle).id());
+/// The joints of a rig as entities with names, as Bevy's loader makes them of a scene. In a game it is a `WorldAssetRoot`.
+fn scene(mut commands: Commands, heroes: Query<(Entity, &CharacterBody)>) {
+    for (root, CharacterBody(def)) in &heroes {
+        let mut joints: Vec<Entity> = Vec::new();
+        for joint in &def.rig.joints {
+            let parent = joint.parent.map_or(root, |parent| joints[parent]);
+            let bundle = (Name::new(joint.name.clone()), Transform::default(), ChildOf(parent));
+            joints.push(commands.spawn(bundle).id());
+        }
     }
 }
 
 fn kind() -> CharacterDef {
     #[cfg(feature = "gltf")]
-    if let Some(path) = std::env::args().nth(1).filter(|path| path.ends_with(".glb")) {
+    if let Some(path) = std::env::args().find(|path| path.ends_with(".glb")) {
         let bytes = std::fs::read(path).expect("the file can be read");
         let file = bevy_sinew::read_character(&bytes, &Default::default()).expect("it is a character");
         return CharacterDef::clone(&file.def);
@@ -37,9 +38,7 @@ fn kind() -> CharacterDef {
 
 fn setup(mut commands: Commands) {
     commands.spawn((RigidBody::Static, Collider::from(Shape::HalfSpace)));
-    let def = Arc::new(kind());
-    let hero = commands.spawn(CharacterBody(def.clone())).id();
-    scene(&mut commands, hero, &def.rig);
+    commands.spawn(CharacterBody(Arc::new(kind())));
 }
 
 /// Hits it once, after a second and a half.
@@ -63,13 +62,18 @@ fn tell(told: On<CharacterTold>, mut heard: ResMut<Heard>, physics: Res<Physics>
     heard.0.push(told.event);
 }
 
+/// The character and what hits it.
+pub fn plugin(app: &mut App) {
+    app.init_resource::<Heard>().add_observer(tell);
+    app.add_systems(Startup, setup).add_systems(FixedUpdate, hit);
+}
+
 /// Lets it walk and fall.
 pub fn main() {
     let mut app = App::new();
-    app.add_plugins((TimePlugin, SinewPlugin::default())); // in a game `DefaultPlugins` bring the first
+    app.add_plugins((TimePlugin, SinewPlugin::default(), plugin)); // in a game `DefaultPlugins` bring the first
     app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1)); // no window: as fast as it goes
-    app.init_resource::<Heard>().add_observer(tell);
-    app.add_systems(bevy_app::Startup, setup).add_systems(FixedUpdate, hit);
+    app.add_systems(PostStartup, scene);
     (0..900).for_each(|_| app.update());
 
     let heard = &app.world().resource::<Heard>().0;

@@ -1,4 +1,4 @@
-//! A crowd with Bevy, without a window: `cargo run --release --example crowd`.
+//! A crowd with Bevy: `cargo run --release --example crowd`, with a window `cargo run --release -p window -- crowd`.
 //!
 //! Forty characters walk on a square; those far from the camera have less detail. Now and then one of them faints.
 
@@ -43,12 +43,16 @@ fn choose_detail(mut physics: ResMut<Physics>, mut crowd: Query<&mut CharacterHa
     }
 }
 
+/// The crowd and what becomes of it.
+pub fn plugin(app: &mut App) {
+    app.add_systems(Startup, setup).add_systems(FixedUpdate, (faint, choose_detail).chain());
+}
+
 /// Lets them walk for three seconds.
 pub fn main() {
     let mut app = App::new();
-    app.add_plugins((TimePlugin, SinewPlugin::default())); // in a game `DefaultPlugins` bring the first
+    app.add_plugins((TimePlugin, SinewPlugin::default(), plugin)); // in a game `DefaultPlugins` bring the first
     app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1)); // no window: as fast as it goes
-    app.add_systems(Startup, setup).add_systems(FixedUpdate, (faint, choose_detail).chain());
     (0..180).for_each(|_| app.update());
     let world = app.world_mut();
     let crowd: Vec<(Detail, State)> = world

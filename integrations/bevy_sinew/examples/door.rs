@@ -1,8 +1,8 @@
-//! A door with Bevy, without a window: `cargo run --example door`.
+//! A door with Bevy: `cargo run --example door`, with a window `cargo run -p window -- door`.
 //!
 //! A mover pushes a door open, a rope with a lamp hangs beside it, and the door falls shut behind it by a motor of its own.
 
-use bevy_app::{App, Startup};
+use bevy_app::{App, FixedUpdate, Startup};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_sinew::math::Range;
@@ -54,12 +54,27 @@ fn angle(app: &mut App) -> f32 {
     world.resource::<Physics>().joint_transform(hinge).rotation.twist_angle(Vec3::X).to_degrees().abs()
 }
 
+/// Anything else that a joint can do is done by the resource: after 2.5 s the door gets a motor.
+fn shut(mut physics: ResMut<Physics>, hinges: Query<&JointHandle>) {
+    if physics.step_count() != 150 {
+        return;
+    }
+    for hinge in &hinges {
+        let turn = physics.joint_transform(hinge.id()).rotation.twist_angle(Vec3::X);
+        physics.set_motor(hinge.id(), Some(Motor::spin(-turn.signum(), 100.0)));
+    }
+}
+
+/// The door, the mover and the lamp.
+pub fn plugin(app: &mut App) {
+    app.add_systems(Startup, setup).add_systems(FixedUpdate, shut);
+}
+
 /// Goes through the door.
 pub fn main() {
     let mut app = App::new();
-    app.add_plugins((TimePlugin, SinewPlugin::default())); // in a game `DefaultPlugins` bring the first
+    app.add_plugins((TimePlugin, SinewPlugin::default(), plugin)); // in a game `DefaultPlugins` bring the first
     app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1)); // no window: as fast as it goes
-    app.add_systems(Startup, setup);
     (0..150).for_each(|_| app.update());
     let open = angle(&mut app);
     let world = app.world_mut();
@@ -68,11 +83,6 @@ pub fn main() {
     println!("the mover is at {mover:.2}, the door is open by {open:.0}°");
     assert!(mover.z > 2.0 && open > 30.0);
 
-    // Anything else that a joint can do is done by the resource.
-    let hinge = world.query::<&JointHandle>().single(world).expect("it has one").id();
-    let mut physics = world.resource_mut::<Physics>();
-    let turn = physics.joint_transform(hinge).rotation.twist_angle(Vec3::X);
-    physics.set_motor(hinge, Some(Motor::spin(-turn.signum(), 100.0)));
     let mut least = open;
     for _ in 0..180 {
         app.update();

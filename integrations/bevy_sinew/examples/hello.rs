@@ -1,4 +1,4 @@
-//! The first program with Bevy, without a window: `cargo run --example hello`.
+//! The first program with Bevy: `cargo run --example hello`, with a window `cargo run -p window -- hello`.
 //!
 //! A box falls on the ground; an observer hears of it.
 
@@ -13,23 +13,34 @@ fn thud(hit: On<HitTold>) {
     println!("{} hits {} at {:.1} m/s", hit.b, hit.a, hit.approach);
 }
 
-/// Drops a box from 2 m.
-pub fn main() {
-    let mut app = App::new();
-    app.add_plugins((TimePlugin, SinewPlugin::default())); // in a game `DefaultPlugins` bring the first
-    app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1)); // no window: as fast as it goes
+#[derive(Component)]
+struct Falling;
+
+/// A box 2 m above the ground.
+pub fn plugin(app: &mut App) {
     app.add_observer(thud);
     app.world_mut().spawn((RigidBody::Static, Collider::from(Shape::HalfSpace)));
     let shape = Shape::cuboid(Vec3::splat(0.5));
     let place = Transform::from_xyz(0.0, 2.5, 0.0);
-    let falling = app.world_mut().spawn((RigidBody::Dynamic, Collider::from(shape), place)).id();
+    app.world_mut().spawn((Falling, RigidBody::Dynamic, Collider::from(shape), place));
+}
+
+fn height(app: &mut App) -> f32 {
+    let world = app.world_mut();
+    let place = world.query_filtered::<&Transform, With<Falling>>().single(world).expect("it is there");
+    place.translation.y
+}
+
+/// Lets it fall.
+pub fn main() {
+    let mut app = App::new();
+    app.add_plugins((TimePlugin, SinewPlugin::default(), plugin)); // in a game `DefaultPlugins` bring the first
+    app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1)); // no window: as fast as it goes
     for frame in 0..120 {
         app.update();
         if frame % 20 == 0 {
-            let height = app.world().get::<Transform>(falling).map(|place| place.translation.y);
-            println!("frame {frame}: {:.3} m", height.unwrap_or_default());
+            println!("frame {frame}: {:.3} m", height(&mut app));
         }
     }
-    let height = app.world().get::<Transform>(falling).map(|place| place.translation.y);
-    assert!(height.is_some_and(|height| (height - 0.5).abs() < 0.01), "it lies on the ground");
+    assert!((height(&mut app) - 0.5).abs() < 0.01, "it lies on the ground");
 }

@@ -1,4 +1,4 @@
-//! A shooter with Bevy, without a window: `cargo run --example shooter`.
+//! A shooter with Bevy: `cargo run --example shooter`, with a window `cargo run -p window -- shooter`.
 //!
 //! A ray from the gun finds the limb of a character; what is weak makes it flinch, what is strong fells it. A mover walks behind a
 //! wall and is not seen.
@@ -50,13 +50,17 @@ fn shoot(
     }
 }
 
+/// The target, the mover, and two shots.
+pub fn plugin(app: &mut App) {
+    app.insert_resource(Shots(vec![(60, "head", 5.0), (180, "chest", 90.0)]));
+    app.add_systems(Startup, setup).add_systems(FixedUpdate, shoot);
+}
+
 /// Shoots twice.
 pub fn main() {
     let mut app = App::new();
-    app.add_plugins((TimePlugin, SinewPlugin::default())); // in a game `DefaultPlugins` bring the first
+    app.add_plugins((TimePlugin, SinewPlugin::default(), plugin)); // in a game `DefaultPlugins` bring the first
     app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1)); // no window: as fast as it goes
-    app.insert_resource(Shots(vec![(60, "head", 5.0), (180, "chest", 90.0)]));
-    app.add_systems(Startup, setup).add_systems(FixedUpdate, shoot);
     let mut seen = Vec::new();
     for _ in 0..240 {
         app.update();

@@ -65,7 +65,7 @@ pub enum Textures {
     /// No: [`Rig::textures`] stays empty.
     #[default]
     Skip,
-    /// Yes, PNG and JPEG; what cannot be decoded becomes a warning.
+    /// Yes, PNG and JPEG, by the feature `pictures`; what cannot be decoded, everything without the feature, becomes a warning.
     Decode,
 }
 

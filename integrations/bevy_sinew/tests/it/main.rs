@@ -118,8 +118,16 @@ fn memory() -> Option<u64> {
     line.split_whitespace().nth(1)?.parse().ok()
 }
 
+/// In a process of its own, for memory is counted by process.
 #[test]
 fn a_thousand_come_and_go_each_frame_and_leave_nothing() {
+    const ALONE: &str = "SINEW_TEST_ALONE";
+    if std::env::var_os(ALONE).is_none() {
+        let mut alone = std::process::Command::new(std::env::current_exe().expect("it runs"));
+        alone.args(["--exact", "a_thousand_come_and_go_each_frame_and_leave_nothing", "--nocapture"]);
+        assert!(alone.env(ALONE, "1").status().expect("it starts").success());
+        return;
+    }
     let mut app = app();
     ground(&mut app);
     let mut alive: Vec<Entity> = Vec::new();
@@ -140,6 +148,7 @@ fn a_thousand_come_and_go_each_frame_and_leave_nothing() {
         }
     }
     if let (Some(warm), Some(end)) = (warm, memory()) {
+        println!("{warm} kB at frame 200, {end} kB at the end");
         assert!(end < warm + 4000, "{warm} kB at frame 200, {end} kB at the end");
     }
 }
