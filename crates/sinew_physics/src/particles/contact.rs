@@ -18,8 +18,10 @@ use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
 /// Slower than that, nothing moves, m/s.
 const NO_SPEED: f32 = 1e-6;
-/// Solves per iteration until grips and directions have to be right.
-const GRIP_ROUNDS: u32 = 8;
+/// Solves per iteration until grips have to be right.
+const GRIP_ROUNDS: u32 = 16;
+/// Solves after which surfaces no longer let go: grips only tighten from there on, so that they come to an end.
+const LOOSE_ROUNDS: u32 = 8;
 /// Depth at the end of an iteration below which a contact is left to impacts, metres.
 const IMPACT_DEPTH: f32 = 1e-5;
 
@@ -402,35 +404,55 @@ impl ParticleGroup {
     /// Solves for the velocities; repeats while contacts open, close, stick or slip, or are still to come.
     pub(super) fn solve_with_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         self.choose_solved(h);
+        let bends_ahead = self.forest.has_trees() && !self.bends.is_empty();
+        if bends_ahead {
+            self.bend_ahead(h);
+        }
         self.system.load_springs(&self.forest, &self.springs, &self.positions, h);
         self.reactions.fill(Vec3::ZERO);
         for round in 1..=GRIP_ROUNDS {
             self.share_bodies(bodies);
             self.apply_grips(bodies);
             if self.forest.has_trees() {
-                self.system.solve(&self.forest, &self.springs, h, &mut self.velocities);
-                self.reactions.fill(Vec3::ZERO);
+                let found = (self.velocities.as_mut_slice(), self.reactions.as_mut_slice());
+                self.system.settle_springs(&self.forest, &self.springs, &self.positions, h, found);
             } else {
                 self.system.solve_apart(&self.solved, &mut self.velocities);
             }
-            self.system.add_spring_impulses(
-                &self.forest,
-                &self.springs,
-                h,
-                &self.velocities,
-                &mut self.reactions,
-            );
             if round == GRIP_ROUNDS {
                 self.keep_grips();
                 break;
             }
-            let changed = self.change_grips(bodies);
+            let changed = self.change_grips(round <= LOOSE_ROUNDS, bodies);
             let found = self.predict_contacts(h, obstacles, bodies);
-            let ends = (self.positions.as_slice(), self.velocities.as_slice());
-            let bent = self.system.follow_springs(&self.forest, &self.springs, ends, h);
-            if !(changed || found || bent) {
+            if !(changed || found) {
                 break;
             }
+        }
+        if bends_ahead {
+            for (reaction, bend) in self.reactions.iter_mut().zip(&self.bend_impulses) {
+                *reaction += *bend;
+            }
+        }
+    }
+
+    /// Projects the bends of what trees join where particles would be without springs, and enters their impulses: springs, which are far
+    /// stiffer, have the last word, or bends would stretch them.
+    fn bend_ahead(&mut self, h: f32) {
+        self.reactions.fill(Vec3::ZERO);
+        for i in 0..self.positions.len() {
+            if self.system.freedom[i] != Freedom::Fixed {
+                self.velocities[i] = self.system.inertia[i].inverse() * self.system.momentum[i];
+            }
+            self.positions[i] += self.velocities[i] * h;
+        }
+        for k in 0..self.bends.len() {
+            self.project_bend(self.bends[k], h);
+        }
+        self.positions.copy_from_slice(&self.previous);
+        core::mem::swap(&mut self.reactions, &mut self.bend_impulses);
+        for (momentum, bend) in self.system.momentum.iter_mut().zip(&self.bend_impulses) {
+            *momentum += *bend;
         }
     }
 
@@ -549,9 +571,9 @@ impl ParticleGroup {
         }
     }
 
-    /// Reads off the contact impulses of the last solve and decides again who is held how; whether anyone's grip has
-    /// changed.
-    fn change_grips(&mut self, bodies: &[ObstacleBody]) -> bool {
+    /// Reads off the contact impulses of the last solve and decides again who is held how, or only who is held more; whether
+    /// anyone's grip has changed.
+    fn change_grips(&mut self, may_loosen: bool, bodies: &[ObstacleBody]) -> bool {
         let mut changed = false;
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
@@ -571,6 +593,8 @@ impl ParticleGroup {
                 }
                 Grip::Off => (Grip::Off, Vec3::ZERO),
                 Grip::Wedged => (Grip::Wedged, impulse),
+                Grip::Stick if !may_loosen => (Grip::Stick, impulse),
+                Grip::Slide if !may_loosen && normal <= 0.0 => (Grip::Slide, n * normal),
                 // A surface does not pull.
                 _ if normal <= 0.0 => (Grip::Off, Vec3::ZERO),
                 Grip::Stick if friction.length() > touch.material.static_friction * normal => {

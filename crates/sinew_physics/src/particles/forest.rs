@@ -10,6 +10,13 @@ use super::{Resists, SpringDef};
 use crate::particles::tuning::LENGTH_TOLERANCE;
 use sinew_math::{Sym3, Vec3, max};
 
+/// Rounds of Newton's method until springs have to be where they were foreseen.
+const NEWTON_ROUNDS: u32 = 16;
+/// Times that a round is halved.
+const HALVINGS: u32 = 8;
+/// Rounding of the energy that it lowers, as a share of the terms in it.
+const MERIT_ROUNDING: f64 = 1e-7;
+
 /// The spring between a particle and the next one toward the root.
 #[derive(Clone, Copy, Debug)]
 struct Link {
@@ -112,9 +119,13 @@ impl Forest {
     }
 }
 
-/// A spring during one step.
+/// A spring during one step: with its damping, which is that of its length between the step's ends, a spring again.
 #[derive(Clone, Copy, Debug, Default)]
 struct Load {
+    /// Its length when the step begins, at least the rest length if it resists stretch alone, metres.
+    begun: f32,
+    /// Damping over the length of the step, N/m.
+    rate: f32,
     /// Vector from A to B where the spring is linearised, metres.
     from_a: Vec3,
     /// Force on A, newtons, extrapolated from there to where the step begins.
@@ -124,28 +135,63 @@ struct Load {
 }
 
 impl Load {
-    /// Linearised where B is at `from_a` from A, which velocities have brought about of which A's is `ahead` of B's.
-    fn new(spring: &SpringDef, from_a: Vec3, ahead: Vec3, h: f32) -> Self {
+    /// At the beginning of a step of `h` seconds, B at `from_a` from A.
+    fn new(spring: &SpringDef, from_a: Vec3, h: f32) -> Self {
+        let length = from_a.length();
+        let begun = match spring.resists {
+            Resists::Both => length,
+            Resists::Stretch => max(length, spring.rest_length),
+        };
+        let mut load = Self { begun, rate: spring.damping / h, ..Self::default() };
+        load.linearise(spring, from_a, Vec3::ZERO, h);
+        load
+    }
+
+    /// Tension when it is so long at the end of the step, N; 0 where it is slack.
+    fn tension(&self, spring: &SpringDef, length: f32) -> f32 {
+        let tension = spring.stiffness * (length - spring.rest_length) + self.rate * (length - self.begun);
+        if spring.resists == Resists::Stretch { max(tension, 0.0) } else { tension }
+    }
+
+    /// Energy that the step pays for that tension, J: its integral over the length, from where there is none.
+    fn energy(&self, spring: &SpringDef, from_a: Vec3) -> f64 {
+        let tension = f64::from(self.tension(spring, from_a.length()));
+        0.5 * tension * tension / f64::from(spring.stiffness + self.rate)
+    }
+
+    /// Linearises where B is at `from_a` from A, which velocities have brought about of which A's is `ahead` of B's.
+    fn linearise(&mut self, spring: &SpringDef, from_a: Vec3, ahead: Vec3, h: f32) {
         let length = from_a.length();
         let direction = sinew_math::normalize_or(from_a, Vec3::Y);
-        let rest = Self { from_a, ..Self::default() };
+        (self.from_a, self.force, self.block) = (from_a, Vec3::ZERO, Sym3::ZERO);
+        let tension = self.tension(spring, length);
+        if spring.resists == Resists::Stretch && tension == 0.0 {
+            return;
+        }
         // A slack spring would have a negative geometric stiffness, with which the system may lose its solution.
-        let taut = if length > 1e-9 { max(1.0 - spring.rest_length / length, 0.0) } else { 0.0 };
-        if spring.resists == Resists::Stretch && taut == 0.0 {
-            return rest;
-        }
-        let across = if spring.rest_length == 0.0 { spring.stiffness } else { spring.stiffness * taut };
-        let stiffness = Sym3::IDENTITY * across + Sym3::outer(direction) * (spring.stiffness - across);
-        Self {
-            force: direction * (spring.stiffness * (length - spring.rest_length)) + stiffness * ahead * h,
-            block: stiffness * (h * h) + Sym3::outer(direction) * (h * spring.damping),
-            ..rest
-        }
+        let across = match length > 1e-9 {
+            true => max(tension / length, 0.0),
+            false if spring.rest_length == 0.0 => spring.stiffness,
+            false => 0.0,
+        };
+        let axial = spring.stiffness + self.rate;
+        let stiffness = Sym3::IDENTITY * across + Sym3::outer(direction) * (axial - across);
+        self.force = direction * tension + stiffness * ahead * h;
+        self.block = stiffness * (h * h);
     }
 
     /// Impulse on A in a step at whose end A and B move at these velocities.
     fn impulse(&self, h: f32, velocity_a: Vec3, velocity_b: Vec3) -> Vec3 {
         self.force * h - self.block * (velocity_a - velocity_b)
+    }
+
+    /// True if the spring at the end of the step is as far from its linearisation as a share of its length.
+    fn is_bent(&self, spring: &SpringDef, from_a: Vec3, ahead: Vec3, h: f32) -> bool {
+        let length = from_a.length();
+        let force = sinew_math::normalize_or(from_a, Vec3::Y) * self.tension(spring, length);
+        let error = force - (self.force - self.block * ahead * (1.0 / h));
+        let bar = LENGTH_TOLERANCE * max(self.begun, spring.rest_length) * (spring.stiffness + self.rate);
+        error.length_squared() > bar * bar
     }
 }
 
@@ -175,6 +221,9 @@ pub(super) struct System {
     /// The velocity of a fixed particle is read from the velocities.
     pub freedom: Vec<Freedom>,
     loads: Vec<Load>,
+    /// Velocities and impulses of springs that Newton's method has come from.
+    last_velocities: Vec<Vec3>,
+    last_impulses: Vec<Vec3>,
     /// Inertia and momentum of each particle with all that hangs below it.
     gathered_inertia: Vec<Sym3>,
     gathered_momentum: Vec<Vec3>,
@@ -192,6 +241,8 @@ impl System {
             added_momentum: vectors.clone(),
             freedom: vec![Freedom::Free; particles],
             loads: vec![Load::default(); springs],
+            last_velocities: vectors.clone(),
+            last_impulses: vectors.clone(),
             gathered_inertia: matrices.clone(),
             gathered_momentum: vectors,
             response: matrices,
@@ -203,36 +254,99 @@ impl System {
         for spring in forest.solved_springs() {
             let s = &springs[spring as usize];
             let from_a = positions[s.b as usize] - positions[s.a as usize];
-            self.loads[spring as usize] = Load::new(s, from_a, Vec3::ZERO, h);
+            self.loads[spring as usize] = Load::new(s, from_a, h);
         }
     }
 
-    /// Linearises the springs anew where the velocities just found would bring them, if any would there be longer or shorter
-    /// than foreseen (Newton's method on the implicit step); whether there was one. A link of a whip that turns far within the
-    /// step would be stretched by that, and hold energy that nobody paid.
-    pub fn follow_springs(
+    /// Velocities at the end of the step, and the impulses of springs with which they come about, by Newton's method: springs
+    /// are linearised anew where the velocities just found would bring them, until none is there other than foreseen.
+    ///
+    /// A link of a whip that turns far within the step would else be stretched by that, and hold energy that nobody paid.
+    /// A step of the method is shortened until it lowers the energy of which the end of the step is the least (`merit`), so that none
+    /// makes it worse.
+    pub fn settle_springs(
+        &mut self,
+        forest: &Forest,
+        springs: &[SpringDef],
+        positions: &[Vec3],
+        h: f32,
+        (velocities, impulses): (&mut [Vec3], &mut [Vec3]),
+    ) {
+        self.solve(forest, springs, h, velocities);
+        self.spring_impulses(forest, springs, h, velocities, impulses);
+        let mut merit = None;
+        for _ in 0..NEWTON_ROUNDS {
+            if !self.follow_springs(forest, springs, (positions, velocities), h) {
+                return;
+            }
+            let before = merit.unwrap_or_else(|| self.merit(forest, springs, (positions, velocities), h));
+            self.last_velocities.copy_from_slice(velocities);
+            self.last_impulses.copy_from_slice(impulses);
+            self.solve(forest, springs, h, velocities);
+            self.spring_impulses(forest, springs, h, velocities, impulses);
+            let mut after = self.merit(forest, springs, (positions, velocities), h);
+            for _ in 0..HALVINGS {
+                if after.0 <= before.0 + MERIT_ROUNDING * before.1 {
+                    break;
+                }
+                for (now, last) in velocities.iter_mut().zip(&self.last_velocities) {
+                    *now = (*now + *last) * 0.5;
+                }
+                for (now, last) in impulses.iter_mut().zip(&self.last_impulses) {
+                    *now = (*now + *last) * 0.5;
+                }
+                after = self.merit(forest, springs, (positions, velocities), h);
+            }
+            merit = Some(after);
+        }
+    }
+
+    /// The energy of which the velocities at the end of the step are the least, J, and the size of its terms:
+    /// `½ v·M v − p·v`, and what springs have there.
+    fn merit(
+        &self,
+        forest: &Forest,
+        springs: &[SpringDef],
+        (positions, velocities): (&[Vec3], &[Vec3]),
+        h: f32,
+    ) -> (f64, f64) {
+        let (mut sum, mut size) = (0.0, 0.0);
+        for (i, &v) in velocities.iter().enumerate() {
+            if self.freedom[i] != Freedom::Fixed {
+                let own = 0.5 * v.dot((self.inertia[i] + self.added_inertia[i]) * v);
+                let given = (self.momentum[i] + self.added_momentum[i]).dot(v);
+                sum += f64::from(own) - f64::from(given);
+                size += f64::from(own) + f64::from(given.abs());
+            }
+        }
+        for spring in forest.solved_springs() {
+            let s = &springs[spring as usize];
+            let energy = self.loads[spring as usize].energy(s, at_end(s, positions, velocities, h).0);
+            sum += energy;
+            size += energy;
+        }
+        (sum, size)
+    }
+
+    /// Linearises the springs anew where these velocities would bring them, if any would be there other than foreseen; whether there was
+    /// one.
+    fn follow_springs(
         &mut self,
         forest: &Forest,
         springs: &[SpringDef],
         (positions, velocities): (&[Vec3], &[Vec3]),
         h: f32,
     ) -> bool {
-        let at_end = |s: &SpringDef| {
-            let [a, b] = [s.a as usize, s.b as usize];
-            let ahead = velocities[a] - velocities[b];
-            (positions[b] - positions[a] - ahead * h, ahead)
-        };
         let bent = forest.solved_springs().any(|spring| {
-            let (s, foreseen) = (&springs[spring as usize], self.loads[spring as usize].from_a);
-            let (from_a, _) = at_end(s);
-            // Length at the end along the direction of the linearisation, and as it is.
-            let direction = sinew_math::normalize_or(foreseen, Vec3::Y);
-            from_a.length() - from_a.dot(direction) > LENGTH_TOLERANCE * s.rest_length
+            let s = &springs[spring as usize];
+            let (from_a, ahead) = at_end(s, positions, velocities, h);
+            self.loads[spring as usize].is_bent(s, from_a, ahead, h)
         });
         if bent {
             for spring in forest.solved_springs() {
-                let (from_a, ahead) = at_end(&springs[spring as usize]);
-                self.loads[spring as usize] = Load::new(&springs[spring as usize], from_a, ahead, h);
+                let s = &springs[spring as usize];
+                let (from_a, ahead) = at_end(s, positions, velocities, h);
+                self.loads[spring as usize].linearise(s, from_a, ahead, h);
             }
         }
         bent
@@ -310,8 +424,8 @@ impl System {
         }
     }
 
-    /// Adds to `sums` the impulse of each tree spring on its two particles.
-    pub fn add_spring_impulses(
+    /// The impulse of the tree springs on each particle.
+    fn spring_impulses(
         &self,
         forest: &Forest,
         springs: &[SpringDef],
@@ -319,6 +433,7 @@ impl System {
         velocities: &[Vec3],
         sums: &mut [Vec3],
     ) {
+        sums.fill(Vec3::ZERO);
         for spring in forest.solved_springs() {
             let s = &springs[spring as usize];
             let (a, b) = (s.a as usize, s.b as usize);
@@ -327,6 +442,13 @@ impl System {
             sums[b] -= impulse;
         }
     }
+}
+
+/// Vector from A to B of a spring at the end of the step, and how far the velocity of A is ahead of that of B.
+fn at_end(s: &SpringDef, positions: &[Vec3], velocities: &[Vec3], h: f32) -> (Vec3, Vec3) {
+    let [a, b] = [s.a as usize, s.b as usize];
+    let ahead = velocities[a] - velocities[b];
+    (positions[b] - positions[a] - ahead * h, ahead)
 }
 
 /// The inverse inertia of a particle that may not gain velocity along the normal: `W − W n nᵀ W / (n·W n)`.

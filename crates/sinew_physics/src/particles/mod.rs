@@ -112,6 +112,8 @@ pub struct ParticleGroup {
     body_impulses: Vec<BodyImpulse>,
     /// Impulse of springs, bends, tethers and volumes on each particle in this iteration.
     reactions: Vec<Vec3>,
+    /// Impulse of bends on each particle that the solve of this iteration knew of.
+    bend_impulses: Vec<Vec3>,
     /// Particles that the solve of this iteration is about.
     solved: Vec<u32>,
     /// Surface that each particle touches in this iteration.
@@ -216,6 +218,7 @@ impl ParticleGroup {
         self.wedges = vec![Vec3::ZERO; count];
         self.body_impulses = Vec::with_capacity(MAX_TOUCHES * count * self.iterations as usize);
         self.reactions = vec![Vec3::ZERO; count];
+        self.bend_impulses = vec![Vec3::ZERO; count];
         self.sort_rows();
     }
 

@@ -41,7 +41,9 @@ impl ParticleGroup {
         let free_spring = |&k: &u32| is_free(springs[k as usize].a) && is_free(springs[k as usize].b);
         let free_bend = |&k: &u32| bends[k as usize].particles.into_iter().all(is_free);
         let (batched, held): (Vec<u32>, _) = forest.loops().iter().partition(|k| free_spring(k));
-        let (batched_bends, held_bends): (Vec<u32>, _) = (0..bends.len() as u32).partition(free_bend);
+        // Those of trees go into the solve.
+        let bent_later = if forest.has_trees() { 0 } else { bends.len() as u32 };
+        let (batched_bends, held_bends): (Vec<u32>, _) = (0..bent_later).partition(free_bend);
         self.batches = Batches::new(
             attachment_of.len(),
             batched.iter().map(|&k| springs[k as usize]),
@@ -144,7 +146,7 @@ impl ParticleGroup {
         self.nudge(b, direction * -impulse, h);
     }
 
-    fn project_bend(&mut self, bend: BendDef, h: f32) {
+    pub(super) fn project_bend(&mut self, bend: BendDef, h: f32) {
         let [a, b, c] = bend.particles.map(|i| i as usize);
         let bow = self.positions[a] - self.positions[b] * 2.0 + self.positions[c];
         let length = bow.length();
