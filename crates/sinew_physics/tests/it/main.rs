@@ -22,6 +22,7 @@ mod meshes;
 mod mover;
 mod nets;
 mod objects;
+mod particle_worlds;
 mod particles;
 mod pins;
 mod quality;

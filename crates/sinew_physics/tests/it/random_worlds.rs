@@ -76,7 +76,7 @@ fn outcomes(seeds: core::ops::Range<u64>) -> Vec<Outcome> {
 }
 
 /// Seeds that `SINEW_WORLDS` asks for, if it is set.
-fn asked_seeds() -> Option<core::ops::Range<u64>> {
+pub fn asked_seeds() -> Option<core::ops::Range<u64>> {
     let range = std::env::var("SINEW_WORLDS").ok()?;
     let (lo, hi) = range.split_once("..").expect("SINEW_WORLDS is lo..hi");
     Some(lo.parse().expect("a seed")..hi.parse().expect("a seed"))
