@@ -168,7 +168,8 @@ impl Bench {
 
     fn measure(&self, engines: &[Engine], scenes: &[Scene]) -> Result<Results> {
         let revision = machine::revision();
-        let mut results = Results::default();
+        let machine = Some(Machine::this().to_string());
+        let mut results = Results { machine, ..Results::default() };
         for scene in scenes.iter().filter(|scene| self.is_wanted(&scene.name)) {
             let engines = self.race(engines, scene)?;
             let (name, about) = (scene.name.clone(), scene.about.clone());
@@ -329,5 +330,5 @@ fn write_page(all: &Results, names: &[&str]) -> Result<()> {
         );
         return Ok(());
     }
-    fs::write(&page, page::page(all, &missing, &Machine::this())).context(PAGE)
+    fs::write(&page, page::page(all, &missing)).context(PAGE)
 }

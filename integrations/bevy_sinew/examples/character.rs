@@ -1,5 +1,4 @@
-//! A character with Bevy: `cargo run --example character`, with a window `cargo run -p window -- character`, or with a file of
-//! your own `cargo run -p window -- character knight.glb`.
+//! A character with Bevy: `cargo run --example character`, without a window.
 //!
 //! It walks, is hit, falls, gets up and walks on. The joints that it moves are entities, as those of a loaded scene are.
 

@@ -1,4 +1,4 @@
-//! A crowd with Bevy: `cargo run --release --example crowd`, with a window `cargo run --release -p window -- crowd`.
+//! A crowd with Bevy: `cargo run --release --example crowd`, without a window.
 //!
 //! Forty characters walk on a square; those far from the camera have less detail. Now and then one of them faints.
 

@@ -1,4 +1,4 @@
-//! The first program with Bevy: `cargo run --example hello`, with a window `cargo run -p window -- hello`.
+//! The first program with Bevy: `cargo run --example hello`, without a window.
 //!
 //! A box falls on the ground; an observer hears of it.
 

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 const NONE: &str = "–";
 
 /// The whole page; `missing` are the scenes without figures.
-pub fn page(results: &Results, missing: &[&str], machine: &Machine) -> String {
+pub fn page(results: &Results, missing: &[&str]) -> String {
     let mut page = String::from(INTRODUCTION);
     let mut add = |heading: &str, text: &str| {
         write!(page, "\n## {heading}\n\n{text}").expect("a string takes everything");
@@ -26,6 +26,7 @@ pub fn page(results: &Results, missing: &[&str], machine: &Machine) -> String {
     for scene in &results.scenes {
         write!(page, "\n### {}\n\n{}", scene.name, details(scene)).expect("a string takes everything");
     }
+    let machine = results.machine.clone().unwrap_or_else(|| Machine::this().to_string());
     write!(page, "\n## Engines and machine\n\n{}\n{machine}", engines(results))
         .expect("a string takes everything");
     page
@@ -318,7 +319,7 @@ mod tests {
 
     #[test]
     fn the_page_has_all_parts() {
-        let page = page(&results(), &["net", "bake"], &Machine::this());
+        let page = page(&results(), &["net", "bake"]);
         for part in ["At a glance", "### chain_swing_1000", "Box3D: no balls.", "yet: net, bake.", "-O3"] {
             assert!(page.contains(part), "{part} is missing:\n{page}");
         }

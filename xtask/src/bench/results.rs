@@ -14,6 +14,8 @@ pub struct Results {
     pub build: Option<f64>,
     /// By scene: wall time on one thread over that on two, where that was measured.
     pub threads: BTreeMap<String, f64>,
+    /// Machine that measured last, in words; `None` in files of before.
+    pub machine: Option<String>,
 }
 
 /// A scene on all engines, their rounds interleaved.
@@ -69,6 +71,7 @@ impl Results {
         let older = std::mem::replace(self, newer);
         self.bake = self.bake.or(older.bake);
         self.build = self.build.or(older.build);
+        self.machine = self.machine.take().or(older.machine);
         for (scene, factor) in older.threads {
             self.threads.entry(scene).or_insert(factor);
         }
@@ -98,6 +101,7 @@ impl Results {
             "bake_realtime_factor": self.bake,
             "builds_in_100_ms": self.build,
             "two_threads": self.threads,
+            "machine": self.machine,
             "scenes": scenes,
         })
     }
@@ -110,6 +114,7 @@ impl Results {
             bake: value["bake_realtime_factor"].as_f64(),
             build: value["builds_in_100_ms"].as_f64(),
             threads: value["two_threads"].as_object().into_iter().flatten().filter_map(factor).collect(),
+            machine: value["machine"].as_str().map(str::to_owned),
         }
     }
 }
@@ -274,6 +279,7 @@ pub mod tests {
         let mut results = Results {
             scenes: vec![of("c", 1.0), of("gone", 1.0), of("a", 1.0)],
             bake: Some(5.0),
+            machine: Some("a machine".to_owned()),
             threads: BTreeMap::from([("a".to_owned(), 1.5)]),
             ..Results::default()
         };

@@ -436,7 +436,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Projects the bends of what trees join where particles would be without springs, and enters their impulses: springs, which are far
+    /// Projects the bends of a group with trees where particles would be without springs, and enters their impulses: springs, which are far
     /// stiffer, have the last word, or bends would stretch them.
     fn bend_ahead(&mut self, h: f32) {
         self.reactions.fill(Vec3::ZERO);

@@ -185,7 +185,7 @@ impl Load {
         self.force * h - self.block * (velocity_a - velocity_b)
     }
 
-    /// True if the spring at the end of the step is as far from its linearisation as a share of its length.
+    /// True if the force at the end of the step differs from the linearised one by more than `LENGTH_TOLERANCE` of the length stretches it.
     fn is_bent(&self, spring: &SpringDef, from_a: Vec3, ahead: Vec3, h: f32) -> bool {
         let length = from_a.length();
         let force = sinew_math::normalize_or(from_a, Vec3::Y) * self.tension(spring, length);

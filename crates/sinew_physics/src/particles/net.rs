@@ -41,7 +41,7 @@ impl ParticleGroup {
         let free_spring = |&k: &u32| is_free(springs[k as usize].a) && is_free(springs[k as usize].b);
         let free_bend = |&k: &u32| bends[k as usize].particles.into_iter().all(is_free);
         let (batched, held): (Vec<u32>, _) = forest.loops().iter().partition(|k| free_spring(k));
-        // Those of trees go into the solve.
+        // Those of groups with trees go into the solve.
         let bent_later = if forest.has_trees() { 0 } else { bends.len() as u32 };
         let (batched_bends, held_bends): (Vec<u32>, _) = (0..bent_later).partition(free_bend);
         self.batches = Batches::new(

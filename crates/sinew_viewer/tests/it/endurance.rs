@@ -1,4 +1,4 @@
-//! What long use costs: memory over many scenes, processor time of a frame.
+//! Memory over many scenes opened and closed, processor time of a frame.
 
 use crate::hands::viewer;
 use crate::pictures::{gpu, look};
@@ -30,7 +30,7 @@ fn thread_time() -> Option<f64> {
 /// Opens every scene again and again, with a picture of each: memory does not grow, and no call to the card fails (which
 /// panics).
 #[test]
-#[ignore = "minutes"]
+#[ignore = "some 40 s a round in a debug build: `cargo xtask ci --full`"]
 fn every_scene_opens_and_closes() {
     let Some(mut viewer) = viewer("pendulum", [320, 200]) else { return };
     let rounds = std::env::var("SINEW_ROUNDS").ok().and_then(|text| text.parse().ok()).unwrap_or(ROUNDS);
@@ -67,7 +67,7 @@ fn every_scene_opens_and_closes() {
 /// Prints what a frame with a hundred skinned figures costs the thread that encodes it, beside one of an empty stage, which has
 /// as much to bring back.
 #[test]
-#[ignore = "a measurement"]
+#[ignore = "a measurement, which asserts no time: `cargo xtask ci --full`"]
 fn a_frame_with_a_hundred_figures() {
     let Some(gpu) = gpu() else { return };
     let subject = Subject::scene("street", &["n=100".to_owned()]).expect("there is such a scene");

@@ -63,6 +63,4 @@ fn what_cannot_be_read_is_a_line_and_changes_nothing() {
         assert!(line.contains(name) && !line.contains('\n'), "{name}: {line}");
         assert_eq!(viewer.app().session().subject().title(), "pendulum", "{name}");
     }
-    viewer.app_mut().open_file(&folder.join("missing.glb"));
-    assert!(viewer.app().message().is_some_and(|line| line.contains("missing.glb")));
 }
