@@ -142,17 +142,16 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
         given[i] = L::load(&block.impulse[i]);
     }
     let (old, before) = (given, rates);
-    let rounds = if N == 1 { 1 } else { MANIFOLD_ROUNDS };
-    for round in 0..rounds {
-        for turn in 0..N {
-            // To and fro: all one way would leave a little motion to the side that comes first.
-            let i = if round % 2 == 0 { turn } else { N - 1 - turn };
-            let asked = rates[i] + L::load(&block.soft[i]) * given[i];
-            let new = L::max(given[i] - asked * L::load(&block.gain[i]), L::load(&block.floor[i]));
-            let change = new - given[i];
-            given[i] = new;
-            for j in 0..N {
-                rates[j] = rates[j] + L::load(&block.response[packed(i, j)]) * change;
+    // To and fro: all one way would leave a little motion to the side that comes first.
+    if N == 1 {
+        visit_point::<L, N, T>(block, 0, &mut rates, &mut given);
+    } else {
+        for _ in 0..MANIFOLD_ROUNDS / 2 {
+            for i in 0..N {
+                visit_point::<L, N, T>(block, i, &mut rates, &mut given);
+            }
+            for i in (0..N).rev() {
+                visit_point::<L, N, T>(block, i, &mut rates, &mut given);
             }
         }
     }
@@ -171,6 +170,24 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
     ends[0].push(L::load(&block.mass[0]), &block.inertia[0], -impulse, -torque);
     ends[1].push(L::load(&block.mass[1]), &block.inertia[1], impulse, torque + lever * push);
     energy
+}
+
+/// One point takes the impulse that its rate asks for, and all points the answer to that. Loops that call it run over constants, so that
+/// what it reads and writes stays in registers.
+#[inline(always)]
+fn visit_point<L: Lanes, const N: usize, const T: usize>(
+    block: &Block<N, T>,
+    i: usize,
+    rates: &mut [L; N],
+    given: &mut [L; N],
+) {
+    let asked = rates[i] + L::load(&block.soft[i]) * given[i];
+    let new = L::max(given[i] - asked * L::load(&block.gain[i]), L::load(&block.floor[i]));
+    let change = new - given[i];
+    given[i] = new;
+    for j in 0..N {
+        rates[j] = rates[j] + L::load(&block.response[packed(i, j)]) * change;
+    }
 }
 
 #[inline(always)]
