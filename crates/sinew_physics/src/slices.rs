@@ -4,6 +4,7 @@
 use crate::runner::TaskRunner;
 use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
+use sinew_math::lanes::WIDTH;
 
 /// Most items that a thread claims at once. Two threads that claim one by one spend more on the counter than on a light item.
 const MOST_CLAIMED: usize = 32;
@@ -31,7 +32,58 @@ unsafe impl<T: Send> Send for SharedRows<'_, T> {}
 // SAFETY: as above.
 unsafe impl<T: Send> Sync for SharedRows<'_, T> {}
 
+/// Eight indices, of which the largest has been compared with a length, for all rows that are as long.
+#[derive(Clone, Copy)]
+pub(crate) struct Places {
+    at: [u32; WIDTH],
+    len: usize,
+}
+
+impl Places {
+    /// Indices into rows of a length.
+    ///
+    /// # Panics
+    /// If one of them is beyond it.
+    #[inline(always)]
+    pub fn new(at: [u32; WIDTH], len: usize) -> Self {
+        let mut last = 0;
+        for at in at {
+            last = u32::max(last, at);
+        }
+        assert!((last as usize) < len);
+        Self { at, len }
+    }
+}
+
 impl<'a, T> SharedRows<'a, T> {
+    /// Item at the `k`-th of eight places.
+    ///
+    /// # Panics
+    /// If there are fewer items than the places were made for, or `k` is beyond them.
+    #[inline(always)]
+    pub fn at(&self, places: &Places, k: usize) -> &T {
+        assert!(places.len <= self.len);
+        // SAFETY: all places are below their length, and nobody writes the item meanwhile, as was promised.
+        unsafe { &*self.start.add(places.at[k] as usize) }
+    }
+
+    /// Item at the `k`-th of eight places, to be written.
+    ///
+    /// # Panics
+    /// If there are fewer items than the places were made for, or `k` is beyond them.
+    #[inline(always)]
+    pub fn at_mut(&mut self, places: &Places, k: usize) -> &mut T {
+        assert!(places.len <= self.len);
+        // SAFETY: all places are below their length, and nobody else reads or writes the item meanwhile, as was promised.
+        unsafe { &mut *self.start.add(places.at[k] as usize) }
+    }
+
+    /// Number of items.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
     /// Shares the items of a slice between copies of what comes of it.
     ///
     /// # Safety

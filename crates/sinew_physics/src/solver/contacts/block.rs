@@ -41,12 +41,10 @@ pub(super) struct Block<const N: usize, const T: usize> {
     pub mass: [Eight; 2],
     /// Inverse inertias: xx, yy, zz, yz, xz, xy.
     pub inertia: [[Eight; 6]; 2],
-    /// From the centre of A to each point.
-    pub arms: [Eight3; N],
+    /// Arm of each point crossed with the normal, about the centre of A.
+    pub levers: [Eight3; N],
     /// From the centre of A to where friction acts.
     pub center: Eight3,
-    /// Gap of each point at the present poses, negative where they overlap.
-    pub separation: [Eight; N],
     /// Velocity bias of each point in this pass, m/s: its rate may fall to minus this.
     pub target: [Eight; N],
     /// Softness of each point in this pass, m/s per N·s.
@@ -83,6 +81,10 @@ pub(super) struct Block<const N: usize, const T: usize> {
     pub seen: f32,
     /// A lane was written anew: the responses are to be computed again.
     pub is_stale: bool,
+    /// From the centre of A to each point. Sweeps read neither these nor the gaps.
+    pub arms: [Eight3; N],
+    /// Gap of each point at the present poses, negative where they overlap.
+    pub separation: [Eight; N],
 }
 
 /// Data of eight manifolds that is looked at once a substep.
@@ -151,9 +153,8 @@ impl<const N: usize, const T: usize> Block<N, T> {
             offset: [ZERO8; 3],
             mass: [ZERO8; 2],
             inertia: [[ZERO8; 6]; 2],
-            arms: [[ZERO8; 3]; N],
+            levers: [[ZERO8; 3]; N],
             center: [ZERO8; 3],
-            separation: [ZERO8; N],
             target: [ZERO8; N],
             soft: [ZERO8; N],
             response: [ZERO8; T],
@@ -176,6 +177,8 @@ impl<const N: usize, const T: usize> Block<N, T> {
             rolling: NONE,
             seen: f32::NEG_INFINITY,
             is_stale: true,
+            arms: [[ZERO8; 3]; N],
+            separation: [ZERO8; N],
         }
     }
 }
@@ -302,21 +305,37 @@ pub(super) struct Motion<L> {
 impl<L: Lanes> Motion<L> {
     #[inline(always)]
     pub fn gather(velocities: &(impl OfBodies + ?Sized), bodies: &[u32; WIDTH]) -> Self {
-        let [x, y, z, u, v, w, _, _] = gather::<L>(velocities, bodies);
+        Self::of_columns(gather::<L>(velocities, bodies))
+    }
+
+    /// Velocities of rows.
+    #[inline(always)]
+    pub fn of(rows: [L; WIDTH]) -> Self {
+        Self::of_columns(L::transpose(rows))
+    }
+
+    #[inline(always)]
+    fn of_columns([x, y, z, u, v, w, _, _]: [L; WIDTH]) -> Self {
         Self { linear: Vector3::new(x, y, z), angular: Vector3::new(u, v, w) }
     }
 
     /// Writes those that move.
     #[inline(always)]
     pub fn scatter(self, velocities: &mut (impl WrittenOfBodies + ?Sized), bodies: &[u32; WIDTH]) {
-        let Self { linear: v, angular: w } = self;
-        let zero = L::splat(0.0);
-        let rows = L::transpose([v.x, v.y, v.z, w.x, w.y, w.z, zero, zero]);
+        let rows = self.rows();
         for k in 0..WIDTH {
             if bodies[k] & HELD == 0 {
                 rows[k].store(velocities.row_mut(bodies[k] as usize));
             }
         }
+    }
+
+    /// One row for each body.
+    #[inline(always)]
+    pub fn rows(self) -> [L; WIDTH] {
+        let Self { linear: v, angular: w } = self;
+        let zero = L::splat(0.0);
+        L::transpose([v.x, v.y, v.z, w.x, w.y, w.z, zero, zero])
     }
 
     /// Takes an impulse and a torque; `inertia` and `mass` inverse.

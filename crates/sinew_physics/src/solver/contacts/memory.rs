@@ -124,7 +124,7 @@ fn rates<L: Lanes, const N: usize, const T: usize>(block: &Block<N, T>, velociti
     let turning = b.angular - a.angular;
     let mut rates = [shared; N];
     for i in 0..N {
-        rates[i] = shared + turning.dot(load3::<L>(&block.arms[i]).cross(n));
+        rates[i] = shared + turning.dot(load3::<L>(&block.levers[i]));
     }
     rates
 }

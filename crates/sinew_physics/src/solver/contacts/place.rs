@@ -1,6 +1,6 @@
 //! Values that follow from where bodies are: separations, what points are to reach in a pass, and the responses of rows.
 
-use super::block::{Block, Bounce, Memory, Motion, NONE, ZERO8, gather, load3, packed, times};
+use super::block::{Block, Bounce, Memory, Motion, NONE, ZERO8, gather, load3, packed, store3, times};
 use crate::solver::contact_rows::NEVER;
 use crate::solver::pass::Pass;
 use crate::solver::tuning::{POINT_PROXIMAL, RELAX_TURN};
@@ -125,7 +125,7 @@ fn softness_at_center<L: Lanes, const N: usize, const T: usize>(
     L::load(&memory.softness) * sum
 }
 
-/// Responses of all rows to each other, from arms, masses and inertias.
+/// Levers of the points, and responses of all rows to each other, from arms, masses and inertias.
 #[inline(always)]
 pub(super) fn respond<L: Lanes, const N: usize, const T: usize>(block: &mut Block<N, T>) {
     let zero = L::splat(0.0);
@@ -136,6 +136,7 @@ pub(super) fn respond<L: Lanes, const N: usize, const T: usize>(block: &mut Bloc
     let (mut arms, mut turned) = ([[none; 2]; N], [[none; 2]; N]);
     for i in 0..N {
         let arm = load3::<L>(&block.arms[i]).cross(n);
+        store3(arm, &mut block.levers[i]);
         arms[i] = [arm, arm + lever];
         turned[i] = [times(&block.inertia[0], arms[i][0]), times(&block.inertia[1], arms[i][1])];
     }

@@ -2,7 +2,7 @@
 
 use super::block::{Block, Eight, HELD, Motion, NONE, Rolling, load3, packed, store3, times};
 use super::disk;
-use crate::slices::SharedRows;
+use crate::slices::{Places, SharedRows};
 use crate::solver::pass::Pass;
 use crate::solver::tuning::{IMPACT_JUMP, MANIFOLD_ROUNDS, SLIP_SPEED};
 use crate::spatial::Vec6;
@@ -21,7 +21,7 @@ pub(super) struct Sweep<'a> {
     pub updates_friction_bound: bool,
     /// A block whose bodies changed by less than this since is left alone, m/s or rad/s.
     pub tolerance: f32,
-    /// Largest change in the sweep so far.
+    /// Largest change of a velocity component in the sweep so far, m/s or rad/s.
     pub largest: f32,
     /// Energy that the changes of the sweep have block by block, J.
     pub energy: f32,
@@ -31,35 +31,18 @@ pub(super) struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    /// True if bodies of a block have changed enough since it was last visited; then this counts as the last visit.
-    #[inline(always)]
-    fn wakes<const N: usize, const T: usize>(&self, block: &mut Block<N, T>) -> bool {
-        let mut now = 0.0;
-        for k in 0..WIDTH {
-            let [a, b] = [block.bodies[0][k], block.bodies[1][k]];
-            now += self.pass_change.get((a & !HELD) as usize) + self.pass_change.get((b & !HELD) as usize);
-        }
-        let wakes = now - block.seen >= self.tolerance;
-        if wakes {
-            block.seen = now;
-        }
-        wakes
-    }
-
     /// Visits a block.
     #[inline(always)]
     pub fn visit_block<L: Lanes, const N: usize, const T: usize>(&mut self, block: &mut Block<N, T>) {
         block.step::<L>(self.step);
-        if !self.wakes(block) {
+        let places = [self.places(&block.bodies[0]), self.places(&block.bodies[1])];
+        if !self.wakes(block, &places) {
             return;
         }
         self.visits += WIDTH as u64;
         self.visited_bytes += size_of::<Block<N, T>>() as u64;
-        let before = [
-            Motion::<L>::gather(&self.velocities, &block.bodies[0]),
-            Motion::<L>::gather(&self.velocities, &block.bodies[1]),
-        ];
-        let mut ends = before;
+        let before = [self.motion(&places[0]), self.motion(&places[1])];
+        let mut ends: [Motion<L>; 2] = before;
         if self.pass == Pass::Relax {
             if self.updates_friction_bound {
                 update_friction_bound::<L, N, T>(block);
@@ -77,9 +60,61 @@ impl Sweep<'_> {
             return;
         }
         for end in 0..2 {
-            ends[end].scatter(&mut self.velocities, &block.bodies[end]);
-            self.note_change(&block.bodies[end], changes[end]);
+            self.write(&block.bodies[end], &places[end], ends[end], changes[end]);
         }
+    }
+
+    #[inline(always)]
+    fn places(&self, bodies: &[u32; WIDTH]) -> Places {
+        Places::new(bodies.map(|body| body & !HELD), self.velocities.len())
+    }
+
+    /// True if bodies of a block have changed enough since it was last visited; then this counts as the last visit.
+    #[inline(always)]
+    fn wakes<const N: usize, const T: usize>(&self, block: &mut Block<N, T>, places: &[Places; 2]) -> bool {
+        let mut now = 0.0;
+        for k in 0..WIDTH {
+            now += self.pass_change.at(&places[0], k) + self.pass_change.at(&places[1], k);
+        }
+        let wakes = now - block.seen >= self.tolerance;
+        if wakes {
+            block.seen = now;
+        }
+        wakes
+    }
+
+    #[inline(always)]
+    fn motion<L: Lanes>(&self, places: &Places) -> Motion<L> {
+        let rows = &self.velocities;
+        Motion::of([
+            L::load(rows.at(places, 0)),
+            L::load(rows.at(places, 1)),
+            L::load(rows.at(places, 2)),
+            L::load(rows.at(places, 3)),
+            L::load(rows.at(places, 4)),
+            L::load(rows.at(places, 5)),
+            L::load(rows.at(places, 6)),
+            L::load(rows.at(places, 7)),
+        ])
+    }
+
+    /// Writes velocities of those that move, and that they have changed.
+    #[inline(always)]
+    fn write<L: Lanes>(&mut self, bodies: &[u32; WIDTH], places: &Places, motion: Motion<L>, change: L) {
+        // Copies, which no write through them can change.
+        let (mut velocities, mut pass_change, places) = (self.velocities, self.pass_change, *places);
+        let mut largest = self.largest;
+        let rows = motion.rows();
+        let mut by = [0.0; WIDTH];
+        change.store(&mut by);
+        for k in 0..WIDTH {
+            if bodies[k] & HELD == 0 {
+                rows[k].store(velocities.at_mut(&places, k));
+                *pass_change.at_mut(&places, k) += by[k];
+                largest = sinew_math::max(largest, by[k]);
+            }
+        }
+        self.largest = largest;
     }
 
     #[inline(always)]
@@ -88,18 +123,6 @@ impl Sweep<'_> {
         energy.store(&mut by);
         for k in 0..WIDTH {
             self.energy += by[k];
-        }
-    }
-
-    #[inline(always)]
-    fn note_change<L: Lanes>(&mut self, bodies: &[u32; WIDTH], change: L) {
-        let mut by = [0.0; WIDTH];
-        change.store(&mut by);
-        for k in 0..WIDTH {
-            if bodies[k] & HELD == 0 {
-                *self.pass_change.get_mut(bodies[k] as usize) += by[k];
-                self.largest = sinew_math::max(self.largest, by[k]);
-            }
         }
     }
 }
@@ -135,10 +158,10 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
     let turning = b.angular - a.angular;
     let shared = n.dot(b.linear - a.linear) + b.angular.dot(lever);
     let none = Vector3::new(zero, zero, zero);
-    let (mut arms, mut rates, mut given) = ([none; N], [zero; N], [zero; N]);
+    let (mut levers, mut rates, mut given) = ([none; N], [zero; N], [zero; N]);
     for i in 0..N {
-        arms[i] = load3::<L>(&block.arms[i]).cross(n);
-        rates[i] = shared + turning.dot(arms[i]) + L::load(&block.target[i]);
+        levers[i] = load3::<L>(&block.levers[i]);
+        rates[i] = shared + turning.dot(levers[i]) + L::load(&block.target[i]);
         given[i] = L::load(&block.impulse[i]);
     }
     let (old, before) = (given, rates);
@@ -156,14 +179,14 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
         }
     }
     let mut push = given[0] - old[0];
-    let mut torque = arms[0] * push;
+    let mut torque = levers[0] * push;
     let mut energy = push * (rates[0] - before[0]);
     given[0].store(&mut block.impulse[0]);
     for i in 1..N {
         let change = given[i] - old[i];
         energy = energy + change * (rates[i] - before[i]);
         push = push + change;
-        torque = torque + arms[i] * change;
+        torque = torque + levers[i] * change;
         given[i].store(&mut block.impulse[i]);
     }
     let impulse = n * push;
