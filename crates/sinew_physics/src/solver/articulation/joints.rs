@@ -181,17 +181,15 @@ impl IslandSolver {
         }
     }
 
-    /// Rows of contacts and limits are told of what a correction has changed.
+    /// Rows of limits are told of what a correction has changed.
     fn tell_corrections(&mut self) {
         if self.coupling != Coupling::Turns {
             return;
         }
         for (tree, range) in self.trees.iter().enumerate().filter(|(tree, _)| self.scratch.corrected[*tree]) {
             let mut most = 0.0;
-            for i in range.clone() {
-                let change = largest(&self.scratch.dv[i]);
-                self.contacts.note_change(i, change);
-                most = max(most, change);
+            for change in &self.scratch.dv[range.clone()] {
+                most = max(most, largest(change));
             }
             self.dirty.mark(tree as u32, most);
         }

@@ -77,8 +77,6 @@ pub(super) struct Block<const N: usize, const T: usize> {
     pub surface: Eight3,
     /// Place of the rolling resistance of its manifolds, or [`NONE`].
     pub rolling: u32,
-    /// Sum of the velocity changes of its bodies when it was last visited, m/s or rad/s.
-    pub seen: f32,
     /// A lane was written anew: the responses are to be computed again.
     pub is_stale: bool,
     /// From the centre of A to each point. Sweeps read neither these nor the gaps.
@@ -175,7 +173,6 @@ impl<const N: usize, const T: usize> Block<N, T> {
             lever: ZERO8,
             surface: [ZERO8; 3],
             rolling: NONE,
-            seen: f32::NEG_INFINITY,
             is_stale: true,
             arms: [[ZERO8; 3]; N],
             separation: [ZERO8; N],

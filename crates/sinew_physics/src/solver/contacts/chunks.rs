@@ -4,7 +4,7 @@
 #![allow(unsafe_code)]
 
 use super::Contacts;
-use super::block::{Block, Memory};
+use super::block::{Block, Memory, ZERO8};
 use super::visit::Sweep;
 use crate::runner::TaskRunner;
 use crate::slices::{MOST_NEAR, SharedRows, for_each_near};
@@ -12,7 +12,7 @@ use crate::solver::contacts::classes::{Class, Color, Visitor};
 use crate::solver::sweep::policy::Order;
 use core::ops::Range;
 use sinew_math::dispatch::{self, Kernel};
-use sinew_math::lanes::Lanes;
+use sinew_math::lanes::{Lanes, WIDTH};
 use sinew_math::max;
 
 /// Blocks of a chunk: a few µs of work, some times what it takes to hand it to a thread.
@@ -179,13 +179,13 @@ pub(super) use parted;
 
 impl Parted for Sweep<'_> {
     fn part(&self) -> Self {
-        Self { largest: 0.0, energy: 0.0, visits: 0, visited_bytes: 0, ..*self }
+        Self { largest: ZERO8, energy: ZERO8, ..*self }
     }
 
     fn join(&mut self, part: &Self) {
-        self.largest = max(self.largest, part.largest);
-        self.energy += part.energy;
-        self.visits += part.visits;
-        self.visited_bytes += part.visited_bytes;
+        for lane in 0..WIDTH {
+            self.largest[lane] = max(self.largest[lane], part.largest[lane]);
+            self.energy[lane] += part.energy[lane];
+        }
     }
 }

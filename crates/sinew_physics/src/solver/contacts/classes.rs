@@ -24,6 +24,11 @@ pub(super) struct Color {
 }
 
 impl<const N: usize, const T: usize> Class<N, T> {
+    /// Size of the blocks alone.
+    pub(super) fn swept_bytes(&self) -> usize {
+        self.count * size_of::<Block<N, T>>()
+    }
+
     pub(super) fn bytes(&self) -> usize {
         self.count * (size_of::<Block<N, T>>() + size_of::<Memory<N>>())
     }

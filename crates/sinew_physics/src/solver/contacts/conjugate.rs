@@ -2,7 +2,7 @@
 //! downhill are made conjugate (nonsmooth nonlinear conjugate gradients: Silcowitz, Niebe and Erleben 2010).
 
 use super::Contacts;
-use super::block::{Block, Eight, ZERO8, packed};
+use super::block::{Block, Eight};
 use crate::runner::TaskRunner;
 use crate::slices::split_off;
 use crate::slices::{MOST_NEAR, for_each_near};
@@ -11,7 +11,6 @@ use crate::solver::contacts::visit::Step;
 use crate::spatial::{Vec6, ZERO6, largest};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
-use sinew_math::max;
 
 /// State of the conjugate steps of a pass. What lists hold of a pass before is never used: its first sweep has no energy to go on from.
 #[derive(Clone, Debug, Default)]
@@ -33,27 +32,25 @@ struct State {
     limits: Vec<f32>,
 }
 
-/// One row of eight manifolds goes on. Gives by how much.
+/// One row of eight manifolds goes on.
 #[inline(always)]
-fn go_on<L: Lanes>(impulse: &mut Eight, was: &mut Eight, direction: &mut Eight, share: f32) -> L {
+fn go_on<L: Lanes>(impulse: &mut Eight, was: &mut Eight, direction: &mut Eight, share: f32) {
     let now = L::load(impulse);
     let change = now - L::load(was);
     if share == 0.0 {
         change.store(direction);
         now.store(was);
-        return L::splat(0.0);
+        return;
     }
     let by = L::load(direction) * L::splat(share);
     (change + by).store(direction);
     let now = now + by;
     now.store(impulse);
     now.store(was);
-    by
 }
 
 impl<const N: usize, const T: usize> Block<N, T> {
-    /// Takes part in a conjugate step, before a visit. What a row has changed of its own velocity counts for the next visit, however little at a time:
-    /// what nobody visits would run away.
+    /// Takes part in a conjugate step, before a visit.
     #[inline(always)]
     pub fn step<L: Lanes>(&mut self, step: Step) {
         let share = match step {
@@ -66,23 +63,13 @@ impl<const N: usize, const T: usize> Block<N, T> {
             Step::GoOn(share) => share,
         };
         let Self { was, direction, .. } = self;
-        let mut most = L::splat(0.0);
         for i in 0..N {
-            let by = go_on::<L>(&mut self.impulse[i], &mut was.normal[i], &mut direction.normal[i], share);
-            most = L::max(most, by.abs() * L::load(&self.response[packed(i, i)]));
+            go_on::<L>(&mut self.impulse[i], &mut was.normal[i], &mut direction.normal[i], share);
         }
         for k in 0..2 {
-            let by =
-                go_on::<L>(&mut self.friction[k], &mut was.friction[k], &mut direction.friction[k], share);
-            most = L::max(most, by.abs() * L::load(&self.tangent_response[2 * k]));
+            go_on::<L>(&mut self.friction[k], &mut was.friction[k], &mut direction.friction[k], share);
         }
-        let by = go_on::<L>(&mut self.twist, &mut was.twist, &mut direction.twist, share);
-        most = L::max(most, by.abs() * L::load(&self.twist_response));
-        if share != 0.0 {
-            let mut by = ZERO8;
-            most.store(&mut by);
-            self.seen -= by.into_iter().fold(0.0, max);
-        }
+        go_on::<L>(&mut self.twist, &mut was.twist, &mut direction.twist, share);
     }
 }
 
@@ -93,7 +80,7 @@ struct GoOnBodies<'a> {
     was: &'a [Vec6],
     direction: &'a mut [Vec6],
     share: f32,
-    /// Largest component by which each body goes on.
+    /// Largest component by which each body goes on, if anyone asks: m/s or rad/s.
     changes: &'a mut [f32],
 }
 
@@ -125,7 +112,8 @@ impl<'a> GoOnBodies<'a> {
         self.was = rest;
         let velocities = split_off(&mut self.velocities, count);
         let direction = split_off(&mut self.direction, count);
-        Self { velocities, was, direction, share: self.share, changes: split_off(&mut self.changes, count) }
+        let asked = usize::min(count, self.changes.len());
+        Self { velocities, was, direction, share: self.share, changes: split_off(&mut self.changes, asked) }
     }
 }
 
@@ -148,9 +136,11 @@ impl Kernel for GoOnBodies<'_> {
             let by = L::load(&direction[i]) * share;
             (now + by).store(v);
             (change + by).store(&mut direction[i]);
-            let mut sizes = ZERO6;
-            by.abs().store(&mut sizes);
-            changes[i] = largest(&sizes);
+            if let Some(most) = changes.get_mut(i) {
+                let mut sizes = ZERO6;
+                by.abs().store(&mut sizes);
+                *most = largest(&sizes);
+            }
         }
     }
 }
@@ -185,13 +175,13 @@ impl Contacts {
     }
 
     /// After a sweep whose changes had this energy, before another: goes on in the direction so far, blocks when that comes to them. What it
-    /// asks too much of rows, the next sweep takes back. Tells `moved` of the bodies, in order, and by how much.
+    /// asks too much of rows, the next sweep takes back. Tells `moved`, if there is one, of the bodies, in order, and by how much.
     pub(in crate::solver) fn after_conjugate(
         &mut self,
         energy: f32,
         (velocities, limits): (&mut [Vec6], &mut [f32]),
         runner: &dyn TaskRunner,
-        mut moved: impl FnMut(usize, f32),
+        moved: Option<&mut dyn FnMut(usize, f32)>,
     ) {
         let Conjugate { was, direction, energy: last, step } = &mut self.conjugate;
         let share = if energy > 0.0 && energy < *last { energy / *last } else { 0.0 };
@@ -199,7 +189,7 @@ impl Contacts {
         direction.velocities.resize(velocities.len(), ZERO6);
         direction.limits.resize(limits.len(), 0.0);
         let mut changes = core::mem::take(&mut self.changes);
-        changes.resize(velocities.len(), 0.0);
+        changes.resize(if moved.is_some() { velocities.len() } else { 0 }, 0.0);
         let bodies = GoOnBodies {
             velocities,
             was: &was.velocities,
@@ -218,11 +208,8 @@ impl Contacts {
             *limit += by;
             direction.limits[i] = change + by;
         }
-        if share != 0.0 {
-            for (i, &change) in changes.iter().enumerate() {
-                self.note_change(i, change);
-                moved(i, change);
-            }
+        if let Some(moved) = moved.filter(|_| share != 0.0) {
+            changes.iter().enumerate().for_each(|(i, &change)| moved(i, change));
         }
         self.changes = changes;
     }

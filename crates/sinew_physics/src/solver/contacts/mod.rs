@@ -31,8 +31,8 @@ use crate::solver::contacts::classes::{Class, Color, Each, Visitor};
 use crate::solver::pass::Pass;
 use crate::solver::sweep::policy::{Order, Sweeps};
 use crate::solver::tuning::{FRICTION_BOUND_UPDATES, RELAX_TURN};
-use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
-use block::{Block, Bounce, Memory, Rolling};
+use crate::spatial::{self, Vec6, ZERO6, add_scaled, angular};
+use block::{Block, Bounce, Memory, Rolling, ZERO8};
 use chunks::{Parted, parted, shared};
 use color::Coloring;
 use conjugate::Conjugate;
@@ -63,8 +63,6 @@ pub(crate) struct Contacts {
     centers: Vec<Vec6>,
     /// Motion of each body since the step began: translation, then rotation.
     moved: Vec<Vec6>,
-    /// Per body: how much its velocity has changed in the pass.
-    pass_change: Vec<f32>,
     /// Angle through which each body has turned in the step so far, radians.
     turned: Vec<f32>,
     found: Vec<Found>,
@@ -82,7 +80,7 @@ pub(crate) struct Contacts {
 pub(super) struct Tally {
     pub manifolds: u64,
     pub points: u64,
-    /// Manifolds in blocks that were not skipped, and the blocks' bytes.
+    /// Manifolds that sweeps have visited, and their blocks' bytes.
     pub visits: u64,
     pub visited_bytes: u64,
 }
@@ -133,7 +131,6 @@ visitor!(
     /// Sets what the points are to reach in a pass.
     Aim { pass: Pass, h: f32 },
     |self, block, memory, bounces| {
-        block.seen = f32::NEG_INFINITY;
         if self.pass == Pass::Restitution && memory.bounce != block::NONE {
             bounces[memory.bounce as usize].held = block.impulse;
         }
@@ -347,7 +344,7 @@ impl Contacts {
                 return done;
             }
             if conjugate && done < sweeps.most {
-                self.after_conjugate(swept.energy, (velocities, &mut []), runner, |_, _| {});
+                self.after_conjugate(swept.energy, (velocities, &mut []), runner, None);
             }
         }
         sweeps.most
@@ -364,12 +361,10 @@ impl Contacts {
         if pass == Pass::Relax && velocities.iter().any(whirls) {
             self.each(RaiseFloor { velocities, h });
         }
-        self.pass_change.clear();
-        self.pass_change.resize(velocities.len(), 0.0);
         self.start_conjugate();
     }
 
-    /// Visits all blocks about whose bodies something has changed; `done` counts from 1.
+    /// Visits all blocks; `done` counts from 1.
     pub fn sweep_once(
         &mut self,
         (pass, sweeps, done): (Pass, Sweeps, usize),
@@ -378,26 +373,21 @@ impl Contacts {
     ) -> Swept {
         let is_backward = sweeps.order == Order::ToAndFro && !done.is_multiple_of(2);
         let order = if is_backward { Order::ToAndFro } else { Order::Forward };
-        let (mut pass_change, mut rolling) =
-            (core::mem::take(&mut self.pass_change), core::mem::take(&mut self.rolling));
+        let mut rolling = core::mem::take(&mut self.rolling);
         let visitor = Sweep {
             velocities: shared(velocities),
-            pass_change: shared(&mut pass_change),
             rolling: shared(&mut rolling),
             pass,
             step: self.conjugate.step,
             updates_friction_bound: done <= FRICTION_BOUND_UPDATES,
-            tolerance: sweeps.tolerance,
-            largest: 0.0,
-            energy: 0.0,
-            visits: 0,
-            visited_bytes: 0,
+            largest: ZERO8,
+            energy: ZERO8,
         };
-        let Sweep { largest, energy, visits, visited_bytes, .. } = self.each_parted(runner, order, visitor);
-        (self.pass_change, self.rolling) = (pass_change, rolling);
-        self.tally.visits += visits;
-        self.tally.visited_bytes += visited_bytes;
-        Swept { largest, energy }
+        let Sweep { largest, energy, .. } = self.each_parted(runner, order, visitor);
+        self.rolling = rolling;
+        self.tally.visits += self.tally.manifolds;
+        self.tally.visited_bytes += self.swept_bytes() as u64;
+        Swept { largest: spatial::largest(&largest), energy: energy.iter().sum() }
     }
 
     /// Counts of the step so far.
@@ -405,17 +395,14 @@ impl Contacts {
         self.tally
     }
 
+    /// Size of what a sweep goes through, bytes.
+    fn swept_bytes(&self) -> usize {
+        self.one.swept_bytes() + self.two.swept_bytes() + self.four.swept_bytes()
+    }
+
     /// Size of the blocks, bytes.
     pub fn bytes(&self) -> usize {
         self.one.bytes() + self.two.bytes() + self.four.bytes()
-    }
-
-    /// A body's velocity has changed by something else than contacts.
-    #[inline(always)]
-    pub fn note_change(&mut self, body: usize, change: f32) {
-        if let Some(pass_change) = self.pass_change.get_mut(body) {
-            *pass_change += change;
-        }
     }
 
     /// Adds what all rows give in this substep, times `sign`, to the impulses of moving bodies.

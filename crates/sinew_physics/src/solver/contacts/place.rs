@@ -1,6 +1,6 @@
 //! Values that follow from where bodies are: separations, what points are to reach in a pass, and the responses of rows.
 
-use super::block::{Block, Bounce, Memory, Motion, NONE, ZERO8, gather, load3, packed, store3, times};
+use super::block::{Block, Bounce, HELD, Memory, Motion, NONE, ZERO8, gather, load3, packed, store3, times};
 use crate::solver::contact_rows::NEVER;
 use crate::solver::pass::Pass;
 use crate::solver::tuning::{POINT_PROXIMAL, RELAX_TURN};
@@ -164,7 +164,7 @@ pub(super) fn respond<L: Lanes, const N: usize, const T: usize>(block: &mut Bloc
     n.dot(ia1 + ib1).store(&mut block.twist_to_tangents[1]);
 }
 
-/// Inverse masses and inertias of the bodies of a block: mass, then xx, yy, zz, yz, xz, xy.
+/// Inverse masses and inertias of the bodies of a block: mass, then xx, yy, zz, yz, xz, xy. What is held, and empty lanes, have none.
 #[inline(always)]
 pub(super) fn take_inertias<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -172,9 +172,11 @@ pub(super) fn take_inertias<L: Lanes, const N: usize, const T: usize>(
 ) {
     for end in 0..2 {
         let rows = gather::<L>(inverse, &block.bodies[end]);
-        rows[0].store(&mut block.mass[end]);
+        let held = block.bodies[end].map(|body| if body & HELD == 0 { 0.0 } else { 1.0 });
+        let moves = L::eq(L::load(&held), L::splat(0.0));
+        rows[0].masked(moves).store(&mut block.mass[end]);
         for k in 0..6 {
-            rows[1 + k].store(&mut block.inertia[end][k]);
+            rows[1 + k].masked(moves).store(&mut block.inertia[end][k]);
         }
     }
 }

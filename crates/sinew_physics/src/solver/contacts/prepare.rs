@@ -62,10 +62,8 @@ impl Contacts {
             list.clear();
             list.reserve(bodies);
         }
-        for list in [&mut self.pass_change, &mut self.turned] {
-            list.clear();
-            list.reserve(bodies);
-        }
+        self.turned.clear();
+        self.turned.reserve(bodies);
         self.records.clear();
         self.records.reserve(contacts);
         self.extras.clear();

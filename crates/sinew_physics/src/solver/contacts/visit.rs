@@ -11,23 +11,16 @@ use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 /// Data that a sweep over blocks works on.
 pub(super) struct Sweep<'a> {
     pub velocities: SharedRows<'a, Vec6>,
-    /// Sum of the changes of each body's velocity in this pass, m/s or rad/s.
-    pub pass_change: SharedRows<'a, f32>,
     pub rolling: SharedRows<'a, Rolling>,
     pub pass: Pass,
     /// Share of the blocks in conjugate steps.
     pub step: Step,
     /// Friction takes its loads from the impulses as they are.
     pub updates_friction_bound: bool,
-    /// A block whose bodies changed by less than this since is left alone, m/s or rad/s.
-    pub tolerance: f32,
-    /// Largest change of a velocity component in the sweep so far, m/s or rad/s.
-    pub largest: f32,
-    /// Energy that the changes of the sweep have block by block, J.
-    pub energy: f32,
-    /// Manifolds in blocks that were not skipped, and the blocks' bytes.
-    pub visits: u64,
-    pub visited_bytes: u64,
+    /// Largest change of a velocity component in the sweep so far, lane by lane, m/s or rad/s.
+    pub largest: Eight,
+    /// Energy that the changes of the sweep have block by block, lane by lane, J.
+    pub energy: Eight,
 }
 
 impl Sweep<'_> {
@@ -36,11 +29,6 @@ impl Sweep<'_> {
     pub fn visit_block<L: Lanes, const N: usize, const T: usize>(&mut self, block: &mut Block<N, T>) {
         block.step::<L>(self.step);
         let places = [self.places(&block.bodies[0]), self.places(&block.bodies[1])];
-        if !self.wakes(block, &places) {
-            return;
-        }
-        self.visits += WIDTH as u64;
-        self.visited_bytes += size_of::<Block<N, T>>() as u64;
         let before = [self.motion(&places[0]), self.motion(&places[1])];
         let mut ends: [Motion<L>; 2] = before;
         if self.pass == Pass::Relax {
@@ -56,31 +44,17 @@ impl Sweep<'_> {
         let energy = visit_normal(block, &mut ends);
         self.add_energy(energy);
         let changes = [ends[0].change(before[0]), ends[1].change(before[1])];
-        if !L::gt(L::max(changes[0], changes[1]), L::splat(0.0)).any() {
-            return;
-        }
-        for end in 0..2 {
-            self.write(&block.bodies[end], &places[end], ends[end], changes[end]);
+        let largest = L::max(changes[0], changes[1]);
+        L::max(L::load(&self.largest), largest).store(&mut self.largest);
+        if L::gt(largest, L::splat(0.0)).any() {
+            self.write(&block.bodies[0], &places[0], ends[0]);
+            self.write(&block.bodies[1], &places[1], ends[1]);
         }
     }
 
     #[inline(always)]
     fn places(&self, bodies: &[u32; WIDTH]) -> Places {
         Places::new(bodies.map(|body| body & !HELD), self.velocities.len())
-    }
-
-    /// True if bodies of a block have changed enough since it was last visited; then this counts as the last visit.
-    #[inline(always)]
-    fn wakes<const N: usize, const T: usize>(&self, block: &mut Block<N, T>, places: &[Places; 2]) -> bool {
-        let mut now = 0.0;
-        for k in 0..WIDTH {
-            now += self.pass_change.at(&places[0], k) + self.pass_change.at(&places[1], k);
-        }
-        let wakes = now - block.seen >= self.tolerance;
-        if wakes {
-            block.seen = now;
-        }
-        wakes
     }
 
     #[inline(always)]
@@ -98,32 +72,22 @@ impl Sweep<'_> {
         ])
     }
 
-    /// Writes velocities of those that move, and that they have changed.
+    /// Writes velocities of those that move.
     #[inline(always)]
-    fn write<L: Lanes>(&mut self, bodies: &[u32; WIDTH], places: &Places, motion: Motion<L>, change: L) {
+    fn write<L: Lanes>(&mut self, bodies: &[u32; WIDTH], places: &Places, motion: Motion<L>) {
         // Copies, which no write through them can change.
-        let (mut velocities, mut pass_change, places) = (self.velocities, self.pass_change, *places);
-        let mut largest = self.largest;
+        let (mut velocities, places) = (self.velocities, *places);
         let rows = motion.rows();
-        let mut by = [0.0; WIDTH];
-        change.store(&mut by);
         for k in 0..WIDTH {
             if bodies[k] & HELD == 0 {
                 rows[k].store(velocities.at_mut(&places, k));
-                *pass_change.at_mut(&places, k) += by[k];
-                largest = sinew_math::max(largest, by[k]);
             }
         }
-        self.largest = largest;
     }
 
     #[inline(always)]
     fn add_energy<L: Lanes>(&mut self, energy: L) {
-        let mut by = [0.0; WIDTH];
-        energy.store(&mut by);
-        for k in 0..WIDTH {
-            self.energy += by[k];
-        }
+        (L::load(&self.energy) + energy).store(&mut self.energy);
     }
 }
 

@@ -11,7 +11,6 @@ use crate::solver::IslandSolver;
 use crate::solver::articulation::batches::{Batches, TurnVelocities};
 use crate::solver::articulation::tree::{self, Link, NONE};
 use crate::solver::body::SolverBody;
-use crate::solver::contacts::Contacts;
 use crate::solver::pass::{Coupling, Pass};
 use crate::solver::sweep::dirty::DirtyRows;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, difference, join, largest, linear};
@@ -40,7 +39,6 @@ struct TurnOfTrees<'a> {
     solved: &'a [Vec6],
     swept: &'a [Vec6],
     velocities: &'a mut [Vec6],
-    contacts: &'a mut Contacts,
     dirty: &'a mut DirtyRows,
 }
 
@@ -50,7 +48,7 @@ impl Kernel for TurnOfTrees<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> f32 {
         let Self { links, trees, batches, impulses, dv, .. } = self;
-        let Self { before, solved, swept, velocities, contacts, dirty, .. } = self;
+        let Self { before, solved, swept, velocities, dirty, .. } = self;
         let mut most = L::splat(0.0);
         for (tree, range) in trees.iter().enumerate() {
             if batches.have(tree) {
@@ -73,7 +71,6 @@ impl Kernel for TurnOfTrees<'_> {
                     None => L::load(&before[i]) + L::load(&dv[i]),
                 };
                 let change = (now - L::load(&velocities[i])).abs();
-                contacts.note_change(i, largest_of(change));
                 most = L::max(most, change);
                 moved = L::max(moved, (now - L::load(&swept[i])).abs());
                 now.store(&mut velocities[i]);
@@ -81,25 +78,6 @@ impl Kernel for TurnOfTrees<'_> {
             dirty.mark(tree as u32, largest_of(moved));
         }
         largest_of(most)
-    }
-}
-
-/// Bodies whose velocities limits have changed are noted for the contacts.
-struct NoteStir<'a> {
-    before: &'a [Vec6],
-    velocities: &'a [Vec6],
-    contacts: &'a mut Contacts,
-}
-
-impl Kernel for NoteStir<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self { before, velocities, contacts } = self;
-        for (i, (now, before)) in velocities.iter().zip(before).enumerate() {
-            contacts.note_change(i, largest_of((L::load(now) - L::load(before)).abs()));
-        }
     }
 }
 
@@ -175,10 +153,6 @@ impl IslandSolver {
         (self.largest_change, self.change_energy) = (0.0, 0.0);
         self.reset_impulses();
         self.visit_limits(pass);
-        if self.largest_change > 0.0 {
-            let (before, velocities) = (&self.scratch.before[..], &self.velocities[..]);
-            dispatch::run(NoteStir { before, velocities, contacts: &mut self.contacts });
-        }
         self.note_swept();
     }
 
@@ -203,10 +177,10 @@ impl IslandSolver {
     /// Velocities from those before the sweep and the impulses of it, exactly. Trees that have got none are as they were. Gives the
     /// largest change by what the contacts did not know of.
     fn take_turn_of_trees(&mut self) -> f32 {
-        let Self { batches, impulses, scratch, velocities, contacts, dirty, .. } = self;
+        let Self { batches, impulses, scratch, velocities, dirty, .. } = self;
         let mut velocities =
             TurnVelocities { before: &scratch.before, limited: &scratch.swept, now: velocities };
-        let change = batches.take_turns(impulses, &mut velocities, contacts, dirty);
+        let change = batches.take_turns(impulses, &mut velocities, dirty);
         self.add_pushes();
         if self.batches.alone.is_empty() {
             return change;
@@ -234,7 +208,6 @@ impl IslandSolver {
             solved: if entangled { &s.contacted } else { &[] },
             swept: &s.swept,
             velocities: &mut self.velocities[..moving],
-            contacts: &mut self.contacts,
             dirty: &mut self.dirty,
         });
         max(change, of_others)
@@ -245,7 +218,7 @@ impl IslandSolver {
         self.note_limits();
         let Self { contacts, velocities, scratch, dirty, trees, limits, .. } = self;
         let mut tree = 0;
-        let note_change = |body: usize, change: f32| {
+        let mut note_change = |body: usize, change: f32| {
             while trees.get(tree).is_some_and(|links| body >= links.end) {
                 tree += 1;
             }
@@ -254,7 +227,7 @@ impl IslandSolver {
             }
             dirty.mark(tree as u32, change);
         };
-        contacts.after_conjugate(energy, (velocities, &mut scratch.limits), runner, note_change);
+        contacts.after_conjugate(energy, (velocities, &mut scratch.limits), runner, Some(&mut note_change));
         for (row, impulse) in limits.iter_mut().zip(&scratch.limits) {
             let change = row.apply(impulse - row.impulse);
             dirty.mark_limits(row.block, change);

@@ -16,7 +16,6 @@ mod turn;
 use crate::joint::TWIST;
 use crate::solver::articulation::response::Push;
 use crate::solver::articulation::tree::{Link, NONE};
-use crate::solver::contacts::Contacts;
 use crate::solver::sweep::dirty::DirtyRows;
 use crate::solver::{SolverBody, SolverJoint};
 use crate::spatial::Vec6;
@@ -175,12 +174,11 @@ impl Batches {
         &mut self,
         impulses: &mut [Vec6],
         velocities: &mut TurnVelocities<'_>,
-        contacts: &mut Contacts,
         dirty: &mut DirtyRows,
     ) -> f32 {
         let (ways, mut most) = (&mut self.ways[..], 0.0);
         for batch in &self.batches[..self.used] {
-            let turn = TurnOfBatch { batch, ways, impulses, velocities, contacts, dirty };
+            let turn = TurnOfBatch { batch, ways, impulses, velocities, dirty };
             most = max(most, dispatch::run(turn));
         }
         most

@@ -4,7 +4,6 @@ use super::node::Side;
 use super::solve::{Noted, Way, begin, down, up};
 use super::{Batch, TurnVelocities};
 use crate::solver::articulation::elimination::{Symmetric, Twist};
-use crate::solver::contacts::Contacts;
 use crate::solver::flight::Eight;
 use crate::solver::sweep::dirty::DirtyRows;
 use crate::spatial::Vec6;
@@ -19,7 +18,6 @@ pub(super) struct TurnOfBatch<'a, 'b> {
     /// Impulses of limits; those of contacts, which are read from what they changed, are added.
     pub impulses: &'a mut [Vec6],
     pub velocities: &'a mut TurnVelocities<'b>,
-    pub contacts: &'a mut Contacts,
     pub dirty: &'a mut DirtyRows,
 }
 
@@ -28,7 +26,7 @@ impl Kernel for TurnOfBatch<'_, '_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> f32 {
-        let Self { batch, ways, impulses, velocities, contacts, dirty } = self;
+        let Self { batch, ways, impulses, velocities, dirty } = self;
         let TurnVelocities { before, limited, now: velocities } = velocities;
         if !is_pushed::<L>(batch, impulses, limited, velocities) {
             return 0.0;
@@ -53,11 +51,6 @@ impl Kernel for TurnOfBatch<'_, '_> {
             most = L::max(most, change);
             moved = L::max(moved, largest(difference(now, batch.twist(i, limited))));
             batch.store(i, now, velocities);
-            let mut changes = [0.0; WIDTH];
-            change.store(&mut changes);
-            for (first, change) in batch.first.iter().zip(changes).take(batch.lanes) {
-                contacts.note_change(first + i, change);
-            }
         }
         let mut all: [Eight; 2] = [[0.0; WIDTH]; 2];
         moved.store(&mut all[0]);
