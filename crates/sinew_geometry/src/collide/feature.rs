@@ -1,6 +1,8 @@
 //! Names of the corners, edges and faces of shapes, for the ids of contact points.
 
 use crate::hull::Topology;
+use crate::shape::Shape;
+use sinew_math::Vec3;
 
 /// A whole shape, or the only feature of its kind.
 pub(crate) const WHOLE: u16 = 0;
@@ -34,6 +36,28 @@ pub(crate) fn face_number(index: usize) -> u16 {
 /// Edge of a polytope, by either of its half-edges.
 pub(crate) fn half_edge(topology: Topology<'_>, side: usize) -> u16 {
     EDGE | topology.edge_of(side) as u16
+}
+
+/// Direction of the edge that a feature names, in the frame of its shape, of any length. `None` if it names none, or the shape is
+/// neither a box nor a hull.
+fn direction(shape: &Shape, feature: u16) -> Option<Vec3> {
+    let number = usize::from(feature & !FACE);
+    match shape {
+        _ if feature & FACE != EDGE => None,
+        Shape::Box { .. } => Some(Vec3::AXES[number >> 3]),
+        Shape::Hull(hull) => {
+            let [from, to] = hull.topology().ends(number).map(|corner| hull.vertices()[corner]);
+            Some(to - from)
+        }
+        _ => None,
+    }
+}
+
+/// Directions of the two edges that cross at a contact point, each in the frame of its shape and of any length. `None` if it is not one of
+/// edges of boxes or hulls.
+pub fn edge_directions(shapes: [&Shape; 2], feature: u32) -> Option<[Vec3; 2]> {
+    let [a, b] = [feature as u16, (feature >> 16) as u16];
+    Some([direction(shapes[0], a)?, direction(shapes[1], b)?])
 }
 
 /// End of a capsule, 0 or 1.

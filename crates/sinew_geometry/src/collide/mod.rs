@@ -28,6 +28,7 @@ mod triangles;
 
 use crate::convex::support::{Core, Posed};
 use crate::shape::Shape;
+pub use feature::edge_directions;
 pub use manifold::{MAX_POINTS, Manifold, ManifoldPoint, SeparationCache};
 use placed::{PlacedBox, PlacedCapsule, PlacedSphere, Plane};
 use sinew_math::{Transform, Vec3};

@@ -1,16 +1,16 @@
 //! Manifolds that are kept: as long as two bodies hardly move against each other, the same features touch, and only their
-//! distance is worked out anew, from points that are fixed in the bodies.
+//! distance is worked out anew, from points that are fixed in the bodies: along the normal of a face, or across two edges.
 
-use crate::body::Body;
 use crate::body::shape::Shape;
-use crate::collide::{MAX_POINTS, Manifold};
+use crate::body::{Body, BodyShape};
+use crate::collide::{MAX_POINTS, Manifold, edge_directions};
 use crate::contact::ContactKey;
-use crate::contact::tuning::{RECYCLED_HALF_TURN, RECYCLED_SLIP, SPECULATIVE_SLOPS};
+use crate::contact::tuning::{RECYCLED_HALF_TURN, RECYCLED_SINE, RECYCLED_SLIP, SPECULATIVE_SLOPS};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
-use sinew_math::{ReadError, Reader, Rotation, Transform, Vec3, Writer};
+use sinew_math::{ReadError, Reader, Rotation, Transform, Vec3, Writer, normalize_or};
 
-/// From this cosine on, a normal is that of a face, to rounding.
+/// From this cosine on, a normal is that of a face, or at right angles to two edges, to rounding.
 const ON_FACE: f32 = 0.999_999;
 
 /// A manifold as it was found, in the frames of its bodies. Part of the state.
@@ -20,15 +20,88 @@ pub(crate) struct Recycled {
     count: usize,
     /// Rotation of B seen from A when the manifold was found.
     a_from_b: Rotation,
-    /// The normal, in the frame of the body whose face it is of.
-    normal: Vec3,
-    of_b: bool,
+    normal: Normal,
     /// Within which points were looked for, metres.
     margin: f32,
     /// Slop of the two shapes, metres.
     slop: f32,
     /// Places of the points on the surfaces of A and B, in their frames.
     places: Places,
+}
+
+/// Direction that the normal follows, in the frames of the bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Normal {
+    /// That of a face of A or of B.
+    OfA(Vec3),
+    OfB(Vec3),
+    /// At right angles to an edge of A and one of B, of length 1 both.
+    Across([Vec3; 2]),
+}
+
+impl Default for Normal {
+    fn default() -> Self {
+        Self::OfA(Vec3::ZERO)
+    }
+}
+
+impl Normal {
+    /// The normal that a manifold of boxes or hulls follows; `None` if it follows neither a face nor two edges.
+    fn find(shapes: [&BodyShape; 2], poses: [&Transform; 2], manifold: &Manifold) -> Option<Self> {
+        let n = manifold.normal;
+        let of_face = |side: usize, n: Vec3| {
+            let shape_from_world =
+                (poses[side].rotation * shapes[side].principal_from_shape.rotation).inverse();
+            is_of_face(&shapes[side].shape, shape_from_world * n)
+        };
+        if of_face(0, n) {
+            return Some(Self::OfA(poses[0].rotation.inverse() * n));
+        }
+        if of_face(1, -n) {
+            return Some(Self::OfB(poses[1].rotation.inverse() * n));
+        }
+        let [point] = manifold.points() else { return None };
+        let edges = edge_directions(shapes.map(|shape| &shape.shape), point.feature)?;
+        let across = Self::Across(core::array::from_fn(|side| {
+            normalize_or(shapes[side].principal_from_shape.rotation * edges[side], Vec3::ZERO)
+        }));
+        across.in_world(poses, n).filter(|across| across.dot(n) > ON_FACE).map(|_| across)
+    }
+
+    /// The normal at the present poses, world axes, on the side of the one before. `None` where two edges are nearly parallel.
+    fn in_world(&self, poses: [&Transform; 2], before: Vec3) -> Option<Vec3> {
+        match *self {
+            Self::OfA(normal) => Some(poses[0].rotation * normal),
+            Self::OfB(normal) => Some(poses[1].rotation * normal),
+            Self::Across([a, b]) => {
+                let across = (poses[0].rotation * a).cross(poses[1].rotation * b);
+                let sine = across.length();
+                let side = if across.dot(before) < 0.0 { -1.0 } else { 1.0 };
+                (sine > RECYCLED_SINE).then(|| across * (side / sine))
+            }
+        }
+    }
+
+    fn save(&self, w: &mut Writer) {
+        let (first, kind, second) = match *self {
+            Self::OfA(normal) => (normal, 0, None),
+            Self::OfB(normal) => (normal, 1, None),
+            Self::Across([a, b]) => (a, 2, Some(b)),
+        };
+        w.vec3(first);
+        w.u8(kind);
+        second.into_iter().for_each(|second| w.vec3(second));
+    }
+
+    fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let (first, kind) = (r.vec3()?, r.u8()?);
+        match kind {
+            0 => Ok(Self::OfA(first)),
+            1 => Ok(Self::OfB(first)),
+            2 => Ok(Self::Across([first, r.vec3()?])),
+            _ => Err(r.error("a contact follows neither a face nor two edges")),
+        }
+    }
 }
 
 /// Places of four points on two surfaces: rows of x, y and z on A, then of those on B. The last row is there so that eight numbers
@@ -70,7 +143,7 @@ fn is_of_face(shape: &Shape, direction: Vec3) -> bool {
 }
 
 impl Recycled {
-    /// Record of a manifold that was just found. Only of what lies on a face of a solid with flat faces: other
+    /// Record of a manifold that was just found. Only of solids with flat faces, where a face or two edges meet: other
     /// points are found as soon as renewed, and what rolls has others from step to step.
     pub fn new([a, b]: [&Body; 2], key: ContactKey, (margin, slop): (f32, f32), manifold: &Manifold) -> Self {
         let shapes = [(a, key.shape_a), (b, key.shape_b)].map(|(body, shape)| &body.shapes[shape as usize]);
@@ -80,14 +153,9 @@ impl Recycled {
         }
         let [pose_a, pose_b] = [a.world_from_principal, b.world_from_principal];
         let n = manifold.normal;
-        let of_face = |side: usize, pose: &Transform, n: Vec3| {
-            let shape_from_world = (pose.rotation * shapes[side].principal_from_shape.rotation).inverse();
-            is_of_face(&shapes[side].shape, shape_from_world * n)
-        };
-        let of_b = !of_face(0, &pose_a, n);
-        if of_b && !of_face(1, &pose_b, -n) {
+        let Some(normal) = Normal::find(shapes, [&pose_a, &pose_b], manifold) else {
             return Self::default();
-        }
+        };
         let mut places = Places::default();
         for (k, point) in manifold.points().iter().enumerate() {
             let half = n * (0.5 * point.separation);
@@ -95,12 +163,10 @@ impl Recycled {
                 [pose_a.inverse_point(point.position - half), pose_b.inverse_point(point.position + half)];
             places.put(k, on);
         }
-        let frame = if of_b { pose_b } else { pose_a };
         Self {
             count: manifold.count,
             a_from_b: pose_a.rotation.inverse() * pose_b.rotation,
-            normal: frame.rotation.inverse() * n,
-            of_b,
+            normal,
             margin,
             slop,
             places,
@@ -118,7 +184,7 @@ impl Recycled {
         if a_from_b.dot(self.a_from_b).abs() < RECYCLED_HALF_TURN {
             return false;
         }
-        let normal = if self.of_b { pose_b } else { pose_a }.rotation * self.normal;
+        let Some(normal) = self.normal.in_world([&pose_a, &pose_b], manifold.normal) else { return false };
         dispatch::run(Renew { recycled: self, poses: [pose_a, pose_b], normal, margin, manifold })
     }
 
@@ -138,8 +204,7 @@ impl Recycled {
             return;
         }
         w.rotation(self.a_from_b);
-        w.vec3(self.normal);
-        w.bool(self.of_b);
+        self.normal.save(w);
         w.f32(self.margin);
         w.f32(self.slop);
         for point in 0..self.count {
@@ -155,13 +220,13 @@ impl Recycled {
         if count == 0 {
             return Ok(Self::default());
         }
-        let (a_from_b, normal, of_b) = (r.rotation()?, r.vec3()?, r.bool()?);
+        let (a_from_b, normal) = (r.rotation()?, Normal::load(r)?);
         let (margin, slop) = (r.f32()?, r.f32()?);
         let mut places = Places::default();
         for point in 0..count {
             places.put(point, [r.vec3()?, r.vec3()?]);
         }
-        Ok(Self { count, a_from_b, normal, of_b, margin, slop, places })
+        Ok(Self { count, a_from_b, normal, margin, slop, places })
     }
 }
 

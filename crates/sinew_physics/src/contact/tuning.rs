@@ -79,3 +79,8 @@ pub(crate) const SAME_PART_COSINE: f32 = 0.9;
 ///
 /// Larger: a hit that takes several steps is told of in parts. Smaller: it is told of late. Shown by the tests of `events`.
 pub(crate) const STILL_COMING: f32 = 0.1;
+
+/// Sine of the angle between two edges up to which their manifold is found anew.
+///
+/// Larger: fewer manifolds are recycled. Smaller: the direction across two edges that are nearly parallel is rounding. Shown by `rocks`.
+pub(crate) const RECYCLED_SINE: f32 = 0.005;
