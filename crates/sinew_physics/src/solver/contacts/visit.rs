@@ -4,7 +4,7 @@ use super::block::{Block, Eight, HELD, Motion, NONE, Rolling, load3, packed, sto
 use super::disk;
 use crate::slices::{Places, SharedRows};
 use crate::solver::pass::Pass;
-use crate::solver::tuning::{IMPACT_JUMP, MANIFOLD_ROUNDS, SLIP_SPEED};
+use crate::solver::tuning::{IMPACT_JUMP, MANIFOLD_ROUNDS, POINT_PROXIMAL, SLIP_SPEED};
 use crate::spatial::Vec6;
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 
@@ -128,27 +128,28 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
         rates[i] = shared + turning.dot(levers[i]) + L::load(&block.target[i]);
         given[i] = L::load(&block.impulse[i]);
     }
-    let (old, before) = (given, rates);
+    let old = given;
+    let points = Points::new(block, &rates, &given);
     // To and fro: all one way would leave a little motion to the side that comes first.
-    if N == 1 {
-        visit_point::<L, N, T>(block, 0, &mut rates, &mut given);
-    } else {
+    points.visit::<true>(0, &mut given);
+    if N > 1 {
         for _ in 0..MANIFOLD_ROUNDS / 2 {
-            for i in 0..N {
-                visit_point::<L, N, T>(block, i, &mut rates, &mut given);
+            for i in 1..N {
+                points.visit::<true>(i, &mut given);
             }
-            for i in (0..N).rev() {
-                visit_point::<L, N, T>(block, i, &mut rates, &mut given);
+            for i in (0..N - 1).rev() {
+                points.visit::<false>(i, &mut given);
             }
         }
     }
-    let mut push = given[0] - old[0];
-    let mut torque = levers[0] * push;
-    let mut energy = push * (rates[0] - before[0]);
-    given[0].store(&mut block.impulse[0]);
-    for i in 1..N {
+    let (mut push, mut torque, mut energy) = (zero, none, zero);
+    for i in 0..N {
         let change = given[i] - old[i];
-        energy = energy + change * (rates[i] - before[i]);
+        let mut answer = zero;
+        for j in 0..N {
+            answer = answer + L::load(&block.response[packed(i, j)]) * (given[j] - old[j]);
+        }
+        energy = energy + change * answer;
         push = push + change;
         torque = torque + levers[i] * change;
         given[i].store(&mut block.impulse[i]);
@@ -159,21 +160,44 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
     energy
 }
 
-/// One point takes the impulse that its rate asks for, and all points the answer to that. Loops that call it run over constants, so that
-/// what it reads and writes stays in registers.
-#[inline(always)]
-fn visit_point<L: Lanes, const N: usize, const T: usize>(
-    block: &Block<N, T>,
-    i: usize,
-    rates: &mut [L; N],
-    given: &mut [L; N],
-) {
-    let asked = rates[i] + L::load(&block.soft[i]) * given[i];
-    let new = L::max(given[i] - asked * L::load(&block.gain[i]), L::load(&block.floor[i]));
-    let change = new - given[i];
-    given[i] = new;
-    for j in 0..N {
-        rates[j] = rates[j] + L::load(&block.response[packed(i, j)]) * change;
+/// The points of a block in a visit, each as a line for its own impulse: what that is to be, if the other points give nothing, and what
+/// each of them takes from it. A visit waits for the point before by a product, a difference and a maximum, and for no rate.
+struct Points<L, const N: usize> {
+    alone: [L; N],
+    /// Row by row; on the diagonal, what stays of its own.
+    taken: [[L; N]; N],
+    floor: [L; N],
+}
+
+impl<L: Lanes, const N: usize> Points<L, N> {
+    #[inline(always)]
+    fn new<const T: usize>(block: &Block<N, T>, rates: &[L; N], given: &[L; N]) -> Self {
+        let zero = L::splat(0.0);
+        let mut points = Self { alone: [zero; N], taken: [[zero; N]; N], floor: [zero; N] };
+        for i in 0..N {
+            let (gain, mut alone) = (L::load(&block.gain[i]), -rates[i]);
+            for j in 0..N {
+                let response = L::load(&block.response[packed(i, j)]);
+                alone = alone + response * given[j];
+                points.taken[i][j] = response * gain;
+            }
+            points.alone[i] = alone * gain;
+            points.taken[i][i] = points.taken[i][i] * L::splat(POINT_PROXIMAL);
+            points.floor[i] = L::load(&block.floor[i]);
+        }
+        points
+    }
+
+    /// The point takes the impulse that it is to have, the one before it in the order of the visits coming last. Loops that call it run
+    /// over constants, so that what it reads and writes stays in registers.
+    #[inline(always)]
+    fn visit<const FORWARD: bool>(&self, i: usize, given: &mut [L; N]) {
+        let mut new = self.alone[i] + self.taken[i][i] * given[i];
+        for step in 1..N {
+            let j = (if FORWARD { i + step } else { i + N - step }) % N;
+            new = new - self.taken[i][j] * given[j];
+        }
+        given[i] = L::max(new, self.floor[i]);
     }
 }
 

@@ -81,13 +81,11 @@ impl IslandSolver {
 
     fn list_supports(&self, Scratch { bearers, supports }: &mut Scratch) {
         supports.clear();
-        for place in 0..self.touches.len() as u32 {
+        for (place, touch) in (0..).zip(&self.touches).filter(|(_, touch)| touch.is_new) {
             let (below, above, sign) = self.standing(place);
             let [below, level] = [below, above].map(|body| self.support.of(body));
-            let touch = &self.touches[place as usize];
             let Some(bearer) = bearers.get_mut(above as usize) else { continue };
-            if touch.is_new
-                && below.checked_add(1) == Some(level)
+            if below.checked_add(1) == Some(level)
                 && !bearer.is_settled
                 && slope(&self.bodies[above as usize], touch, sign) > STANDING_COSINE
             {
