@@ -47,8 +47,6 @@ pub(super) struct Block<const N: usize, const T: usize> {
     pub center: Eight3,
     /// Velocity bias of each point in this pass, m/s: its rate may fall to minus this.
     pub target: [Eight; N],
-    /// Softness of each point in this pass, m/s per N·s.
-    pub soft: [Eight; N],
     /// Response of the points' rates to their impulses, packed.
     pub response: [Eight; T],
     /// Inverse of each point's own response, softness included.
@@ -154,7 +152,6 @@ impl<const N: usize, const T: usize> Block<N, T> {
             levers: [[ZERO8; 3]; N],
             center: [ZERO8; 3],
             target: [ZERO8; N],
-            soft: [ZERO8; N],
             response: [ZERO8; T],
             gain: [ZERO8; N],
             tangent_response: [ZERO8; 3],

@@ -68,7 +68,6 @@ pub(super) fn aim<L: Lanes, const N: usize, const T: usize>(
             (L::select(apart, closes, launch), zero)
         };
         target.store(&mut block.target[i]);
-        soft.store(&mut block.soft[i]);
         let response = L::load(&block.response[packed(i, i)]) * L::splat(1.0 + POINT_PROXIMAL) + soft;
         let moves = L::gt(response, zero);
         (one / L::select(moves, response, one)).masked(moves).store(&mut block.gain[i]);

@@ -133,6 +133,7 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
     // To and fro: all one way would leave a little motion to the side that comes first.
     points.visit::<true>(0, &mut given);
     if N > 1 {
+        const { assert!(MANIFOLD_ROUNDS.is_multiple_of(2)) };
         for _ in 0..MANIFOLD_ROUNDS / 2 {
             for i in 1..N {
                 points.visit::<true>(i, &mut given);
