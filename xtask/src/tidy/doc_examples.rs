@@ -1,0 +1,80 @@
+//! What users learn by: public modules of characters and files show how they are used, and examples are short.
+
+use super::{File, Finding, Repo};
+
+/// Crates of which every public module has an example in its documentation.
+const CRATES: &[&str] = &["sinew_formats", "sinew_ragdoll"];
+
+/// Each public module of those crates without an example that is compiled and run.
+pub fn check(repo: &Repo) -> Vec<Finding> {
+    let files =
+        repo.rust_files().filter(|file| file.crate_of_source().is_some_and(|name| CRATES.contains(&name)));
+    files.flat_map(|file| modules(repo, file)).collect()
+}
+
+/// Findings for the modules that a file declares public.
+fn modules(repo: &Repo, file: &File) -> Vec<Finding> {
+    let folder = match file.path.rsplit_once('/') {
+        Some((folder, "lib.rs" | "mod.rs")) => folder,
+        _ => file.path.trim_end_matches(".rs"),
+    };
+    let mut findings = Vec::new();
+    for (index, line) in file.text.lines().enumerate() {
+        let Some(name) = line.strip_prefix("pub mod ").and_then(|rest| rest.strip_suffix(';')) else {
+            continue;
+        };
+        let paths = [format!("{folder}/{name}.rs"), format!("{folder}/{name}/mod.rs")];
+        let module = paths.iter().find_map(|path| repo.file(path));
+        if !module.is_some_and(|module| has_example(&module.text)) {
+            let message = format!("`{name}` is public, and its documentation has no example that is run");
+            findings.push(Finding::new(&file.path, index + 1, message));
+        }
+    }
+    findings
+}
+
+/// True if the documentation at the head of a module has a block of Rust that runs.
+fn has_example(text: &str) -> bool {
+    let mut is_open = false;
+    text.lines().filter_map(|line| line.strip_prefix("//! ```")).any(|info| {
+        is_open = !is_open;
+        is_open && matches!(info, "" | "rust")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::check_lines;
+    use super::*;
+
+    #[test]
+    fn a_planted_module_without_an_example_is_found() {
+        let lib = ("crates/sinew_ragdoll/src/lib.rs", "mod a;\npub mod b;\npub mod c;\n");
+        let b =
+            ("crates/sinew_ragdoll/src/b/mod.rs", "//! B.\n//!\n//! ```\n//! b();\n//! ```\npub mod d;\n");
+        let c = ("crates/sinew_ragdoll/src/c.rs", "//! C.\n//!\n//! ```json\n//! {}\n//! ```\n");
+        let d = ("crates/sinew_ragdoll/src/b/d.rs", "//! D.\n");
+        let found = check(&Repo::planted(&[lib, b, c, d]));
+        let found: Vec<_> = found.iter().map(|finding| (finding.file.as_str(), finding.line)).collect();
+        assert_eq!(found, [(lib.0, 3), (b.0, 6)]);
+    }
+
+    #[test]
+    fn a_planted_long_example_is_found() {
+        let long = "use sinew::prelude::*;\n".to_owned() + &"// .\n".repeat(60);
+        check_lines(check, "crates/sinew/examples/a.rs", &long, &[61]);
+        check_lines(check, "crates/sinew/examples/flock.rs", &long, &[]);
+        check_lines(
+            check,
+            "crates/sinew/examples/a.rs",
+            "use sinew::prelude::*;\nuse sinew::math::trig;\n",
+            &[2],
+        );
+    }
+
+    #[test]
+    fn other_crates_may_go_without() {
+        check_lines(check, "crates/sinew_physics/src/lib.rs", "pub mod b;\n", &[]);
+        check_lines(check, "crates/sinew_formats/src/lib.rs", "pub mod b;\n", &[1]);
+    }
+}
