@@ -1,15 +1,47 @@
-//! What users learn by: public modules of characters and files show how they are used, and examples are short.
+//! Examples that users learn from: each public module of characters and files has one, and programs are short.
 
 use super::{File, Finding, Repo};
 
 /// Crates of which every public module has an example in its documentation.
 const CRATES: &[&str] = &["sinew_formats", "sinew_ragdoll"];
 
-/// Each public module of those crates without an example that is compiled and run.
+/// Programs that are to be read in a minute.
+const EXAMPLES: &str = "crates/sinew/examples/";
+
+/// Most lines of one.
+const MOST_LINES: usize = 60;
+
+/// Those that are longer, for each is a whole part of a game: kinds of bodies of one's own with their state, all questions to a world,
+/// a fight over a network, a character with all that hangs on it.
+const LONGER: &[&str] = &["door_and_cape", "flock", "pendulum_clock", "probes", "rollback_fight"];
+
+/// Each public module of those crates without an example that is compiled and run; each example that is too long, or names what the
+/// prelude lacks.
 pub fn check(repo: &Repo) -> Vec<Finding> {
-    let files =
-        repo.rust_files().filter(|file| file.crate_of_source().is_some_and(|name| CRATES.contains(&name)));
-    files.flat_map(|file| modules(repo, file)).collect()
+    let mut findings = Vec::new();
+    for file in repo.rust_files() {
+        if file.crate_of_source().is_some_and(|name| CRATES.contains(&name)) {
+            findings.extend(modules(repo, file));
+        }
+        if let Some(name) = file.path.strip_prefix(EXAMPLES) {
+            findings.extend(example(file, name.trim_end_matches(".rs")));
+        }
+    }
+    findings
+}
+
+fn example(file: &File, name: &str) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let lines = file.text.lines().count();
+    if lines > MOST_LINES && !LONGER.contains(&name) {
+        findings.push(Finding::new(&file.path, lines, format!("an example has at most {MOST_LINES} lines")));
+    }
+    for (index, line) in file.text.lines().enumerate() {
+        if line.starts_with("use sinew::") && line != "use sinew::prelude::*;" {
+            findings.push(Finding::new(&file.path, index + 1, "what an example needs is in the prelude"));
+        }
+    }
+    findings
 }
 
 /// Findings for the modules that a file declares public.
