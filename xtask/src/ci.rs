@@ -104,7 +104,7 @@ fn window() -> Result<()> {
     command::run(endurance.args(["--", "--ignored", "--nocapture", "--test-threads", "1", "endurance::"]))
 }
 
-/// The plugin for Bevy does what its tests say, without a window: with every feature, and compiles with none.
+/// The plugin for Bevy does what its tests say: with every feature, and compiles with none; two examples in a window.
 fn bevy() -> Result<()> {
     let run = |command: &str, features: &str| {
         let manifest = "integrations/bevy_sinew/Cargo.toml";
@@ -112,7 +112,28 @@ fn bevy() -> Result<()> {
         command::run(cargo.arg("--target-dir").arg(command::target().join("bevy")))
     };
     run("check", "--no-default-features")?;
-    run("test", "--all-features")
+    run("test", "--all-features")?;
+    run("build", "--package=window")?;
+    for (example, at) in [("character", "2.2"), ("door", "1.9")] {
+        bevy_window(example, at)?;
+    }
+    Ok(())
+}
+
+/// An example in a window of its own, by a software driver if there is no other; it fails where its picture does not show what moves.
+fn bevy_window(example: &str, at: &str) -> Result<()> {
+    command::provide("xvfb-run", "xvfb")?;
+    if !Path::new("/usr/share/vulkan/icd.d").exists() {
+        eprintln!("skipped: no Vulkan driver here (Debian's package `mesa-vulkan-drivers`)");
+        return Ok(());
+    }
+    let folder = command::target().join("bevy");
+    let picture = folder.join(format!("{example}.png"));
+    let mut window = Command::new("xvfb-run");
+    window.arg("-a").arg(folder.join("debug/window")).args([example, "--at", at, "--picture"]);
+    command::run(window.arg(&picture))?;
+    eprintln!("{}", picture.display());
+    Ok(())
 }
 
 /// Crates are whole as they would be published: metadata, licences, versions of our own crates. That it compiles, the other checks say.

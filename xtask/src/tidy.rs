@@ -10,6 +10,7 @@ mod circles;
 mod code_map;
 mod contract_table;
 mod dependencies;
+mod doc_examples;
 mod first_words;
 mod guide;
 mod leftovers;
@@ -46,6 +47,7 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     leftovers::check,
     dependencies::check,
     first_words::check,
+    doc_examples::check,
     tuning::check,
     guide::check,
 ];

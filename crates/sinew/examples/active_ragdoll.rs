@@ -3,7 +3,6 @@
 //! Its muscles draw it to its clips while it walks; pushes move it, it steps to catch itself and goes on. A hard one fells it, and it gets up.
 
 use sinew::prelude::*;
-use sinew::ragdoll::{Preset, State};
 use std::sync::Arc;
 
 /// Farthest that its chest was beside its feet while it walked for some seconds, metres.

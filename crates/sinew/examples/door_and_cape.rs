@@ -2,9 +2,7 @@
 //!
 //! A walker pushes a door open and goes through, felled it drops its sword. The cape hangs on the chest's body, there in every state.
 
-use sinew::physics::particles::{AttachmentDef, AttachmentTarget, ClothDef};
 use sinew::prelude::*;
-use sinew::ragdoll::{CharacterEvent, Grip};
 use std::sync::Arc;
 
 /// A door on a hinge between two walls, 1.5 m ahead.
@@ -14,10 +12,7 @@ fn door(world: &mut World) -> BodyId {
     let walls = [-1.5, 1.5].map(|x| world.add_body(&wall(x)));
     let leaf = ShapeDef { density: 500.0, ..ShapeDef::new(cuboid(0.5, 1.0, 0.02)) };
     let leaf = world.add_body(&BodyDef::dynamic(leaf).at(Vec3::new(0.0, 1.02, 1.5)));
-    let upright = Rotation::from_axis_angle(Vec3::Z, core::f32::consts::FRAC_PI_2);
-    let at = Transform::new(Vec3::new(-0.5, 1.02, 1.5), upright);
-    let (wall, door) = (world.transform(walls[0]), world.transform(leaf));
-    let hinge = JointDef::new(walls[0], leaf, wall, door, at, JointKind::Hinge { limit: None });
+    let hinge = world.hinge(walls[0], leaf, Vec3::new(-0.5, 1.02, 1.5), Vec3::Y);
     world.add_joint(&JointDef { friction_torque: 20.0, ..hinge });
     leaf
 }

@@ -5,7 +5,6 @@
 //! flies as its neighbours fly, and stays with them; all of them are drawn to a place that the flock chooses anew now and
 //! then. And none of them leaves the aviary.
 
-use sinew::math::Random;
 use sinew::prelude::*;
 use std::time::Duration;
 

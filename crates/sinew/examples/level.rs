@@ -2,7 +2,6 @@
 //!
 //! Triangles as a drawn level has them: a mesh to roll on, terrain as a height field, and a hull of points.
 
-use sinew::physics::{HeightField, HeightFieldDef};
 use sinew::prelude::*;
 use std::sync::Arc;
 

@@ -6,7 +6,6 @@
 //! would: by `T = 2π √(I/(m g l)) (1 + A²/16)` at an amplitude of `A` radians.
 
 use core::f32::consts::{PI, TAU};
-use sinew::math::trig;
 use sinew::prelude::*;
 use std::time::Duration;
 

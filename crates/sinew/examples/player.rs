@@ -6,18 +6,6 @@
 use sinew::prelude::*;
 use std::sync::Arc;
 
-fn crate_of(world: &mut World, mass: f32, at: Vec3) -> BodyId {
-    let shape = Shape::Box { half_extents: Vec3::splat(0.3) };
-    let density = mass / shape.mass_properties(1.0).mass;
-    world.add_body(&BodyDef::dynamic(ShapeDef { density, ..ShapeDef::new(shape) }).at(at))
-}
-
-/// A platform that can be moved.
-fn lift(world: &mut World, at: Vec3) -> BodyId {
-    let shape = Shape::Box { half_extents: Vec3::new(1.0, 0.1, 1.0) };
-    world.add_body(&BodyDef { kind: BodyKind::Kinematic, ..BodyDef::fixed(shape).at(at) })
-}
-
 /// Goes somewhere for so many seconds.
 fn go(world: &mut World, player: &mut Character, velocity: Vec3, seconds: f32) {
     player.set_move(velocity);
@@ -36,10 +24,12 @@ fn feet(player: &Character) -> Vec3 {
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
-    let kerb = Shape::Box { half_extents: Vec3::new(2.0, 0.1, 0.5) };
+    let kerb = Shape::cuboid(Vec3::new(2.0, 0.1, 0.5));
     world.add_body(&BodyDef::fixed(kerb).at(Vec3::new(0.0, 0.1, -2.0)));
-    let load = crate_of(&mut world, 30.0, Vec3::new(0.0, 0.3, 1.5));
-    let platform = lift(&mut world, Vec3::new(3.0, -0.05, 0.0));
+    let light = ShapeDef { density: 139.0, ..ShapeDef::new(Shape::cuboid(Vec3::splat(0.3))) }; // 30 kg
+    let load = world.add_body(&BodyDef::dynamic(light).at(Vec3::new(0.0, 0.3, 1.5)));
+    let lift = Shape::cuboid(Vec3::new(1.0, 0.1, 1.0));
+    let platform = world.add_body(&BodyDef::kinematic(lift).at(Vec3::new(3.0, -0.05, 0.0)));
 
     let mut player =
         Character::spawn(&mut world, &Arc::new(sinew::mannequin::character()), Transform::IDENTITY);

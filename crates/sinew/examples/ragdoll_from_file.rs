@@ -4,7 +4,6 @@
 //! embedded mannequin.
 
 use sinew::prelude::*;
-use sinew::ragdoll::{BodySettings, BodyState};
 
 fn rig() -> Result<Rig, Box<dyn std::error::Error>> {
     match std::env::args().nth(1).filter(|path| path.ends_with(".glb") || path.ends_with(".gltf")) {

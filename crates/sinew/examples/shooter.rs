@@ -4,7 +4,6 @@
 //! thrown bounces off it.
 
 use sinew::prelude::*;
-use sinew::ragdoll::{CharacterEvent, State};
 use std::sync::Arc;
 
 /// Shoots at what is shown of a bone, from in front: the bone that was hit.

@@ -2,7 +2,6 @@
 //!
 //! The same pile on one thread and on all of them: as many steps, the same bits.
 
-use sinew::physics::stage::NoProfiler;
 use sinew::prelude::*;
 
 fn pile() -> World {

@@ -2,8 +2,7 @@
 
 /// Refusal of a definition, a shape or a setting: the first of its numbers that makes no sense, and why. Its text is one line in lower case
 /// without a full stop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what}")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DefError {
     what: &'static str,
 }
@@ -19,3 +18,11 @@ impl DefError {
         self.what
     }
 }
+
+impl core::fmt::Display for DefError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.what)
+    }
+}
+
+impl core::error::Error for DefError {}

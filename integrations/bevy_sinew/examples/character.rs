@@ -1,4 +1,4 @@
-//! A character with Bevy: `cargo run --example character`, without a window.
+//! A character with Bevy: `cargo run --example character`; in a window `cargo run -p window -- character`.
 //!
 //! It walks, is hit, falls, gets up and walks on. The joints that it moves are entities, as those of a loaded scene are.
 

@@ -1,4 +1,4 @@
-//! A crowd with Bevy: `cargo run --release --example crowd`, without a window.
+//! A crowd with Bevy: `cargo run --release --example crowd`; in a window `cargo run -p window -- crowd`.
 //!
 //! Forty characters walk on a square; those far from the camera have less detail. Now and then one of them faints.
 

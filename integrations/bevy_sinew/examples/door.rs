@@ -1,4 +1,4 @@
-//! A door with Bevy: `cargo run --example door`, without a window.
+//! A door with Bevy: `cargo run --example door`; in a window `cargo run -p window -- door`.
 //!
 //! A mover pushes a door open, a rope with a lamp hangs beside it, and the door falls shut behind it by a motor of its own.
 

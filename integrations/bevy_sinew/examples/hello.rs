@@ -1,4 +1,4 @@
-//! The first program with Bevy: `cargo run --example hello`, without a window.
+//! The first program with Bevy: `cargo run --example hello`; in a window `cargo run -p window -- hello`.
 //!
 //! A box falls on the ground; an observer hears of it.
 

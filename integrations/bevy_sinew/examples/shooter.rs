@@ -1,4 +1,4 @@
-//! A shooter with Bevy: `cargo run --example shooter`, without a window.
+//! A shooter with Bevy: `cargo run --example shooter`; in a window `cargo run -p window -- shooter`.
 //!
 //! A ray from the gun finds the limb of a character; what is weak makes it flinch, what is strong fells it. A mover walks behind a
 //! wall and is not seen.

@@ -32,6 +32,14 @@
 //! parent as in [ragdoll files](super), each range by itself, and `friction_torque` in N·m. Joints that `ignore` names are no part
 //! of the body, with all that hangs below them. `springs` that the character wears are those that the `file` states, where it states
 //! none those that `names` of joints tell of, or `none`.
+//!
+//! ```
+//! use sinew_formats::read_ragdoll_settings;
+//!
+//! let settings = read_ragdoll_settings(br#"{"sinew": "ragdoll-settings", "version": 1, "mass": 82}"#)?;
+//! assert_eq!(settings.mass, Some(82.0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use super::{read_range, read_up_axis};
 use crate::container::json::{self, At};

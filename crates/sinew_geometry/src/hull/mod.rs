@@ -14,6 +14,7 @@ mod solids;
 mod topology;
 
 use crate::boxes::Aabb;
+use core::fmt;
 pub(crate) use polytope::{Polytope, Room};
 use sinew_math::{Sym3, Vec3, max};
 pub(crate) use solids::BoxPolytope;
@@ -28,27 +29,36 @@ pub const MAX_FACES: usize = 128;
 pub const MAX_VERTICES: usize = 2 * MAX_FACES - 4;
 
 /// Why points have no hull.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HullError {
     /// A coordinate is NaN or infinite.
-    #[error("a coordinate is not finite")]
     NotFinite,
     /// Fewer than four different points.
-    #[error("a hull needs four different points")]
     TooFewPoints,
     /// All points lie on a line.
-    #[error("all points lie on a line")]
     Collinear,
     /// All points lie in a plane.
-    #[error("all points lie in a plane")]
     Coplanar,
     /// Thinner than 1/10,000 of its longest side.
-    #[error("thinner than 1/10,000 of the longest side")]
     TooThin,
     /// The longest side is below 1 µm or above 1,000 km.
-    #[error("the longest side must be between 1e-6 and 1e6 metres")]
     Size,
 }
+
+impl fmt::Display for HullError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => "a coordinate is not finite",
+            Self::TooFewPoints => "a hull needs four different points",
+            Self::Collinear => "all points lie on a line",
+            Self::Coplanar => "all points lie in a plane",
+            Self::TooThin => "thinner than 1/10,000 of the longest side",
+            Self::Size => "the longest side must be between 1e-6 and 1e6 metres",
+        })
+    }
+}
+
+impl core::error::Error for HullError {}
 
 /// A convex solid with at most [`MAX_FACES`] flat faces.
 #[derive(Clone, Debug)]

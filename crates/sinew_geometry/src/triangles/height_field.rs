@@ -4,6 +4,7 @@ use super::build::is_felt;
 use super::triangle::{Triangle, bounds, closest_on_triangle, enter_triangle};
 use super::{Closest, MAX_COORDINATE};
 use crate::boxes::{Aabb, Overlap};
+use core::fmt;
 use core::ops::Range;
 use sinew_math::{StableHasher, Vec3, clamp, max, min};
 
@@ -25,13 +26,11 @@ pub struct HeightFieldDef {
 }
 
 /// Why numbers make no height field.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeightFieldError {
     /// Fewer than 2 vertices along an axis, or more than 2²⁶ cells.
-    #[error("a height field has at least 2 × 2 vertices and at most 2²⁶ cells")]
     Size,
     /// As many heights as vertices are needed.
-    #[error("{heights} heights do not make {vertices} vertices")]
     Heights {
         /// Number that was given.
         heights: usize,
@@ -39,16 +38,13 @@ pub enum HeightFieldError {
         vertices: usize,
     },
     /// A spacing that is not positive and finite, or makes the field larger than [`MAX_COORDINATE`].
-    #[error("the spacing of a height field is positive, and its sides no longer than 10⁶ m")]
     Spacing,
     /// A height that is not finite, or beyond [`MAX_COORDINATE`].
-    #[error("height {index} is not finite or beyond 10⁶ m")]
     NotFinite {
         /// Its place in the list.
         index: usize,
     },
     /// A hole where no cell is.
-    #[error("hole {hole} is not a cell: there are {cells}")]
     Hole {
         /// Number of the cell.
         hole: u32,
@@ -56,9 +52,27 @@ pub enum HeightFieldError {
         cells: usize,
     },
     /// All cells are holes.
-    #[error("all cells are holes")]
     Empty,
 }
+
+impl fmt::Display for HeightFieldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Size => f.write_str("a height field has at least 2 × 2 vertices and at most 2²⁶ cells"),
+            Self::Heights { heights, vertices } => {
+                write!(f, "{heights} heights do not make {vertices} vertices")
+            }
+            Self::Spacing => {
+                f.write_str("the spacing of a height field is positive, and its sides no longer than 10⁶ m")
+            }
+            Self::NotFinite { index } => write!(f, "height {index} is not finite or beyond 10⁶ m"),
+            Self::Hole { hole, cells } => write!(f, "hole {hole} is not a cell: there are {cells}"),
+            Self::Empty => f.write_str("all cells are holes"),
+        }
+    }
+}
+
+impl core::error::Error for HeightFieldError {}
 
 /// Terrain: heights on a grid in x and z, solid from above. Each cell is two triangles, parted from its corner at the
 /// lower x and higher z to the one at the higher x and lower z. Edges are felt as those of a [`Mesh`](super::Mesh).

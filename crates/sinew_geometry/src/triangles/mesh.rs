@@ -4,6 +4,7 @@ use super::Triangle;
 use super::build::{self, Dropped, Sheet};
 use super::bvh::Tree;
 use crate::boxes::Aabb;
+use core::fmt;
 use sinew_math::{StableHasher, Vec3};
 
 /// Most triangles of a mesh.
@@ -12,16 +13,14 @@ pub const MAX_TRIANGLES: usize = 1 << 28;
 pub const MAX_COORDINATE: f32 = 1e6;
 
 /// Why triangles make no mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshError {
     /// Nothing is left: no triangle, or none with an area.
-    #[error("{}", if *.degenerate > 0 { "no triangle has an area" } else { "there are no triangles" })]
     NoTriangles {
         /// Number of triangles without area.
         degenerate: usize,
     },
     /// A triangle names a vertex that is not there.
-    #[error("triangle {triangle} names vertex {index}: there are {vertices}")]
     IndexOutOfRange {
         /// Number of the triangle.
         triangle: usize,
@@ -31,18 +30,32 @@ pub enum MeshError {
         vertices: usize,
     },
     /// A vertex whose coordinates are not finite, or beyond [`MAX_COORDINATE`].
-    #[error("vertex {vertex} is not finite or beyond 10⁶ m")]
     NotFinite {
         /// Number of the vertex.
         vertex: usize,
     },
     /// More triangles than [`MAX_TRIANGLES`], or more vertices than three of each.
-    #[error("{triangles} triangles are more than {MAX_TRIANGLES}")]
     TooMany {
         /// Number that was given.
         triangles: usize,
     },
 }
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoTriangles { degenerate: 0 } => f.write_str("there are no triangles"),
+            Self::NoTriangles { .. } => f.write_str("no triangle has an area"),
+            Self::IndexOutOfRange { triangle, index, vertices } => {
+                write!(f, "triangle {triangle} names vertex {index}: there are {vertices}")
+            }
+            Self::NotFinite { vertex } => write!(f, "vertex {vertex} is not finite or beyond 10⁶ m"),
+            Self::TooMany { triangles } => write!(f, "{triangles} triangles are more than {MAX_TRIANGLES}"),
+        }
+    }
+}
+
+impl core::error::Error for MeshError {}
 
 /// A surface of triangles, each solid from the side from which its corners run counter-clockwise: for levels. It may be open,
 /// and need not enclose anything.

@@ -4,6 +4,7 @@
 //! process gets the library itself by [`World::save_shapes`](crate::World::save_shapes).
 
 use crate::body::shape::Shape;
+use core::fmt;
 use sinew_geometry::DataKind;
 use sinew_math::{ReadError, Reader, Writer};
 use std::collections::BTreeMap;
@@ -14,13 +15,11 @@ pub(crate) const MAGIC: &[u8; 8] = b"sinew-s\x01";
 pub(crate) const ENTRY_BYTES: usize = 5;
 
 /// Why a snapshot could not be loaded.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LoadError {
     /// The bytes are not a snapshot of this version.
-    #[error(transparent)]
-    Bytes(#[from] ReadError),
+    Bytes(ReadError),
     /// The snapshot names a shape with data that the world was never given: see [`World::load_shapes`](crate::World::load_shapes).
-    #[error("names a {kind} of hash {hash:016x} that the world does not have (at byte {at})")]
     UnknownShape {
         /// Offset of the hash.
         at: usize,
@@ -29,6 +28,32 @@ pub enum LoadError {
         /// Hash of its content.
         hash: u64,
     },
+}
+
+impl From<ReadError> for LoadError {
+    fn from(error: ReadError) -> Self {
+        Self::Bytes(error)
+    }
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bytes(error) => error.fmt(f),
+            Self::UnknownShape { at, kind, hash } => {
+                write!(f, "names a {kind} of hash {hash:016x} that the world does not have (at byte {at})")
+            }
+        }
+    }
+}
+
+impl core::error::Error for LoadError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Bytes(error) => error.source(),
+            Self::UnknownShape { .. } => None,
+        }
+    }
 }
 
 /// Shapes with data by their content hash. It only grows: a state that is loaded later may name any of them.

@@ -5,6 +5,8 @@ use crate::id::BodyId;
 use sinew_math::{Range, SwingTwistLimit, Transform, Vec3};
 
 /// Kind of a joint: the motions that it leaves free. The joint's frames are `JointDef::frame_a` and `frame_b`; zero is where they agree.
+///
+#[doc = include_str!("kinds.svg")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointKind {

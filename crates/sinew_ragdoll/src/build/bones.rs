@@ -1,4 +1,19 @@
 //! Bones of a rig as the stages of the build know them: the kept ones, in character space, parents before children.
+//!
+//! ```
+//! use sinew_anim::roles::{Role, Side};
+//! use sinew_math::Vec3;
+//! use sinew_ragdoll::build::bones::{Anatomy, Bone, Bones};
+//!
+//! let list = vec![
+//!     Bone::new(0, Role::Hips, None, Vec3::new(0.0, 1.0, 0.0)),
+//!     Bone::new(1, Role::UpperLeg(Side::Left), Some(0), Vec3::new(0.1, 0.9, 0.0)),
+//!     Bone::new(2, Role::LowerLeg(Side::Left), Some(1), Vec3::new(0.1, 0.5, 0.0)),
+//! ];
+//! let bones = Bones::new(list, Anatomy::Human, 1.75);
+//! assert_eq!(bones.continuation(1), Some(2));
+//! assert!((bones.length(1).expect("it ends at the knee") - 0.4).abs() < 1e-6);
+//! ```
 
 use crate::build::part::{Part, Side, part_of_role};
 use sinew_anim::JointIdx;

@@ -1,4 +1,14 @@
 //! Parts of a body, as the tables of anthropometry and joint ranges know them.
+//!
+//! ```
+//! use sinew_anim::roles::{Role, Side as RoleSide};
+//! use sinew_ragdoll::build::part::{Part, Side, part_of_role};
+//!
+//! let (part, side) = part_of_role(Role::LowerArm(RoleSide::Left));
+//! assert_eq!((part, side), (Part::Forearm, Side::Left));
+//! assert_eq!(part.continued_by(), [Part::Hand]);
+//! assert!(part.is_limb() && side.sign() == 1.0);
+//! ```
 
 use sinew_anim::roles::{self, Role};
 

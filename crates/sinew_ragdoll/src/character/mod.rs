@@ -1,6 +1,8 @@
 //! A character: animated until something knocks it over, limp until it lies still, brought to where a get-up clip begins
 //! if it lies otherwise, getting up, animated again. Each change is a [`CharacterEvent`].
 //!
+#![doc = include_str!("states.svg")]
+//!
 //! The host steps the world, then calls [`Character::update`]; poses and bodies are those of the same moment.
 //!
 //! ```

@@ -1,4 +1,37 @@
 //! Poses in which bodies are looked at: what the joints allow, and what the character does.
+//!
+//! ```
+//! use sinew_math::{Range, Rotation, Transform, Vec3};
+//! use sinew_physics::{JointKind, Shape};
+//! use sinew_ragdoll::RagdollJointDef;
+//! use sinew_ragdoll::filter::poses::within_limits;
+//! use sinew_ragdoll::fit::patch::Selection;
+//! use sinew_ragdoll::fit::Fit;
+//! use sinew_ragdoll::limits::JointPlan;
+//!
+//! // Thigh and shank, each 40 cm long, with a knee between them.
+//! let fit = |y: f32| Fit {
+//!     shape: Shape::capsule(0.15, 0.05),
+//!     character_from_body: Transform::from_translation(Vec3::Y * y),
+//!     error: 0.0,
+//!     area: 0.0,
+//!     selection: Selection::Nothing,
+//! };
+//! let end = |y: f32| Transform::new(Vec3::Y * y, Rotation::IDENTITY);
+//! let kind = JointKind::Hinge { limit: Some(Range { lo: 0.0, hi: 2.4 }) };
+//! let def = RagdollJointDef {
+//!     parent: 0,
+//!     child: 1,
+//!     frame_parent: end(-0.2),
+//!     frame_child: end(0.2),
+//!     kind,
+//!     friction_torque: 0.0,
+//! };
+//! let poses = within_limits(&[fit(0.7), fit(0.3)], &[JointPlan { def, widened: 0.0 }]);
+//! for pose in &poses {
+//!     assert!((pose[1].point(Vec3::Y * 0.2) - Vec3::Y * 0.5).length() < 1e-5, "the knee stays where it is");
+//! }
+//! ```
 
 use crate::build::bones::Bones;
 use crate::fit::Fit;

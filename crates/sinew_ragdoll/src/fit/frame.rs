@@ -1,4 +1,15 @@
 //! Axes of a shape, from the skin it stands for.
+//!
+//! ```
+//! use sinew_math::{Mat3, Vec3};
+//! use sinew_ragdoll::fit::frame::with_y;
+//!
+//! // The same three axes, with y along an upper arm that points to the left.
+//! let frame = with_y(Mat3::IDENTITY, Vec3::new(0.9, -0.1, 0.0));
+//! assert_eq!(frame.y_axis, Vec3::X);
+//! assert_eq!(frame.z_axis, Vec3::Z);
+//! assert!((frame.determinant() - 1.0).abs() < 1e-6);
+//! ```
 
 use crate::build::bones::{Anatomy, Bones};
 use crate::build::part::Part;

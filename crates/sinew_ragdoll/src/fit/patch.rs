@@ -1,4 +1,23 @@
 //! The piece of skin that one shape is fitted to: even samples and second moments.
+//!
+//! ```
+//! use sinew_math::Vec3;
+//! use sinew_ragdoll::fit::patch::{Patch, Symmetry, bounds};
+//! use sinew_ragdoll::fit::surface::Share;
+//!
+//! // A flat piece of skin, 20 cm by 10 cm, all of it a bone's own.
+//! let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+//! let halves = [
+//!     [corner(0.0, 0.0), corner(0.2, 0.0), corner(0.2, 0.1)],
+//!     [corner(0.0, 0.0), corner(0.2, 0.1), corner(0.0, 0.1)],
+//! ];
+//! let shares = halves.map(|corners| Share { corners, weight: 1.0, most: true });
+//! let patch = Patch::select(&shares, Symmetry::AsIs).expect("it has skin");
+//! assert!((patch.area - 0.02).abs() < 1e-4);
+//! assert!((patch.center - corner(0.1, 0.05)).length() < 1e-3);
+//! let (low, high) = bounds(&patch.samples, |point| point.x);
+//! assert!(low >= 0.0 && high <= 0.2);
+//! ```
 
 use crate::fit::surface::{Share, for_each_part};
 use crate::tuning::{LEAST_AREA, SAMPLES};

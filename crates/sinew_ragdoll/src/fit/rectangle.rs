@@ -1,4 +1,15 @@
 //! The rectangle of least area around points of a plane.
+//!
+//! ```
+//! use sinew_math::Vec2;
+//! use sinew_ragdoll::fit::rectangle::{least_rectangle, rectangle_area};
+//!
+//! // A square that stands on a corner.
+//! let mut points = vec![Vec2::X, Vec2::Y, -Vec2::X, -Vec2::Y, Vec2::ZERO];
+//! let side = least_rectangle(&mut points);
+//! assert!((rectangle_area(&points, side) - 2.0).abs() < 1e-5);
+//! assert!((rectangle_area(&points, Vec2::X) - 4.0).abs() < 1e-5);
+//! ```
 
 use sinew_math::Vec2;
 

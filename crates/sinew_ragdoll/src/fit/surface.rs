@@ -1,4 +1,15 @@
 //! Shares of the bones in the skin: the part of it that belongs to each.
+//!
+//! ```
+//! use sinew_ragdoll::fit::surface::for_each_part;
+//!
+//! // A triangle cut into nine: each is a ninth of it.
+//! let mut area = 0.0;
+//! for_each_part(3, |[a, b, c]| {
+//!     area += 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
+//! });
+//! assert!((area - 0.5).abs() < 1e-6);
+//! ```
 
 use crate::build::bones::Bones;
 use crate::tuning::{FINEST, LEAST_PULL, MOST_CUTS};

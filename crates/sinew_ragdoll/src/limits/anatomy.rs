@@ -4,6 +4,24 @@
 //! else, and their joints' own axes follow no rule. What can be relied on is where the bones lie: each bone is taken
 //! to have come from its anatomical direction by the shortest way from its parent. For arms that is right in a T pose
 //! (palms down) and in an A pose (palms inward), because raising a hanging arm sideways turns the palm down.
+//!
+//! ```
+//! # use sinew_anim::roles::{Role, Side};
+//! # use sinew_math::Vec3;
+//! # use sinew_ragdoll::build::bones::{Anatomy, Bone, Bones};
+//! # let list = vec![
+//! #     Bone::new(0, Role::Hips, None, Vec3::new(0.0, 1.0, 0.0)),
+//! #     Bone::new(1, Role::UpperLeg(Side::Left), Some(0), Vec3::new(0.1, 0.9, 0.0)),
+//! #     Bone::new(2, Role::LowerLeg(Side::Left), Some(1), Vec3::new(0.1, 0.5, 0.0)),
+//! # ];
+//! # let bones = Bones::new(list, Anatomy::Human, 1.75);
+//! use sinew_ragdoll::limits::anatomy::bind_from_anatomical;
+//!
+//! // A leg that hangs straight down is bound as it stands in the table.
+//! let middles = [Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.1, 0.7, 0.0), Vec3::new(0.1, 0.3, 0.0)];
+//! let turned = bind_from_anatomical(&bones, &middles);
+//! assert!(turned.iter().all(|turn| turn.to_axis_angle().1 < 1e-3));
+//! ```
 
 use crate::build::bones::{Anatomy, Bones};
 use crate::build::part::Part;

@@ -1,4 +1,18 @@
 //! Friction with which limp joints resist.
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! use sinew_ragdoll::{BuildOptions, build};
+//!
+//! let (def, _) = build(&rig, &analysis, &BuildOptions::default())?;
+//! let of = |role| {
+//!     let joint = def.joints.iter().find(|joint| def.bodies[joint.child].role == role);
+//!     joint.expect("it has one").friction_torque
+//! };
+//! assert!(of("leftUpperLeg") > of("leftHand"), "N·m of a hip and of a wrist");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use super::JointPlan;
 use crate::build::bones::{Anatomy, Bones};

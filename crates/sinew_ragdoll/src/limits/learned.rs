@@ -3,6 +3,21 @@
 //! Of each joint its rotations in all frames give a centre, an ellipse of swing and a range of twist that hold 99.5 % of
 //! them, and a margin. Beyond the anatomical limits there is no margin: only as much as the clips show, by their frames or
 //! by the ellipse about them.
+//!
+//! ```
+//! use sinew_ragdoll::build::takes;
+//! use sinew_ragdoll::settings::build_moving;
+//! use sinew_ragdoll::{BuildOptions, LimitSource, Settings};
+//!
+//! let mannequin = sinew::mannequin::mannequin();
+//! let analysis = sinew_anim::analyze(&mannequin.rig)?;
+//! let takes = takes(&mannequin.rig, &mannequin.clips);
+//! let options = BuildOptions { limits: LimitSource::Clips, ..BuildOptions::default() };
+//! let (_, report) = build_moving(&mannequin.rig, &analysis, &takes, &options, &Settings::default())?;
+//! let learned = report.bodies.iter().filter(|body| body.limits == LimitSource::Clips).count();
+//! assert!(learned > 4, "{learned} joints have limits from the clips");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use super::{JointPlan, Twist, widened_cone};
 use crate::build::bones::Anatomy;

@@ -1,4 +1,18 @@
 //! Random turns of joints within their limits.
+//!
+//! ```
+//! use sinew_math::{Random, Range};
+//! use sinew_physics::JointKind;
+//! use sinew_ragdoll::limits::sample::random_turn;
+//!
+//! let knee = JointKind::Hinge { limit: Some(Range { lo: 0.0, hi: 2.4 }) };
+//! let mut random = Random::new(1);
+//! for _ in 0..100 {
+//!     // Within the middle half of the range.
+//!     let angle = random_turn(knee, &mut random, 0.5).to_axis_angle().1;
+//!     assert!((0.6 - 1e-3..1.8 + 1e-3).contains(&angle), "{angle} rad");
+//! }
+//! ```
 
 use crate::tuning::INSCRIBED;
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Vec3};

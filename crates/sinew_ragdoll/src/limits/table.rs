@@ -1,5 +1,21 @@
 //! Ranges of motion by joint, degrees: clinical ranges (AAOS and the sources that agree with it within 10°) cast into
 //! what a joint can express. Left side; the right is its mirror image.
+//!
+//! ```
+//! # use sinew_anim::roles::{Role, Side};
+//! # use sinew_math::Vec3;
+//! # use sinew_ragdoll::build::bones::{Anatomy, Bone, Bones};
+//! # let list = vec![
+//! #     Bone::new(0, Role::Hips, None, Vec3::new(0.0, 1.0, 0.0)),
+//! #     Bone::new(1, Role::UpperLeg(Side::Left), Some(0), Vec3::new(0.1, 0.9, 0.0)),
+//! #     Bone::new(2, Role::LowerLeg(Side::Left), Some(1), Vec3::new(0.1, 0.5, 0.0)),
+//! # ];
+//! # let bones = Bones::new(list, Anatomy::Human, 1.75);
+//! use sinew_ragdoll::limits::table::{Motion, entry};
+//!
+//! let knee = entry(&bones, 2);
+//! assert_eq!(knee.motion, Motion::Hinge(-2.0, 142.0));
+//! ```
 
 use crate::build::bones::{Anatomy, Bones};
 use crate::build::part::{Part, Side};

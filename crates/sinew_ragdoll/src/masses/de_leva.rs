@@ -1,5 +1,14 @@
 //! Anthropometry of adults: P. de Leva, "Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters",
 //! Journal of Biomechanics 29 (1996), table 4.
+//!
+//! ```
+//! use sinew_ragdoll::Sex;
+//! use sinew_ragdoll::masses::de_leva::table;
+//!
+//! let male = table(Sex::Male);
+//! let thigh = male.thigh.mass * male.reference_mass;
+//! assert!((thigh - 10.3).abs() < 0.1, "{thigh} kg");
+//! ```
 
 /// Whose proportions are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

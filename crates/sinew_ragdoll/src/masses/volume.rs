@@ -1,4 +1,14 @@
 //! Volume that a skin encloses, and what fills it.
+//!
+//! ```
+//! use sinew_math::Vec3;
+//! use sinew_ragdoll::masses::volume::enclosed;
+//!
+//! // A tetrahedron whose corners are the origin and one metre along each axis.
+//! let (o, x, y, z) = (Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z);
+//! let volume = enclosed(&[[o, y, x], [o, x, z], [o, z, y], [x, y, z]]).expect("it is closed");
+//! assert!((volume - 1.0 / 6.0).abs() < 0.005, "{volume} m³");
+//! ```
 
 use crate::tuning::{CLOSED, FLESH, MACHINE};
 use sinew_anim::Rig;

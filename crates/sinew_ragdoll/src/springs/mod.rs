@@ -22,6 +22,25 @@
 //! a second but for what lies between two poses (ADR 0020).
 //!
 //! Springs are light: they take their motion from the character and give none back.
+//!
+//! ```
+//! use sinew_anim::rest_pose;
+//! use sinew_math::{Affine, Transform, Vec3};
+//! use sinew_ragdoll::{SpringStep, SpringSwing};
+//!
+//! let def = sinew_scenes::maned::maned(&sinew_scenes::maned::HAIR); // the mannequin, with hair
+//! let pose = rest_pose(&def.rig);
+//! let mut swing = SpringSwing::new();
+//! for frame in 0..30u16 {
+//!     // It is carried to its left, faster and faster.
+//!     let world_from_model = Affine::from(Transform::from_translation(Vec3::X * 0.002 * f32::from(frame * frame)));
+//!     let (rig, seconds) = (def.springs(), 1.0 / 60.0);
+//!     swing.step(&SpringStep { rig, pose: &pose, world_from_model, bodies: &[], world: None, seconds });
+//! }
+//! let turned = def.springs().joints().zip(swing.turns());
+//! let most = turned.map(|(joint, &turn)| pose[joint].rotation.angle_to(turn)).fold(0.0, f32::max);
+//! assert!(most > 0.1, "its hair lags behind: {most} rad");
+//! ```
 
 mod collide;
 mod limit;
