@@ -14,14 +14,14 @@ use sinew_math::Vec3;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
-/// Numbers of a particle: position when the iteration began, way since, weight, backing of the surface that it is pressed onto, normal of
-/// that, what has gone on to it.
+/// Numbers of a particle: position when the iteration began, way since, weight, backing of the surface that it touches, normal of that, room
+/// before it presses.
 const FIELDS: usize = 12;
 const WAY: usize = 3;
 const WEIGHT: usize = 6;
 const BACKING: usize = 7;
 const NORMAL: usize = 8;
-const PRESS: usize = 11;
+const ROOM: usize = 11;
 /// Fewest aligned rows that make a block.
 const LEAST_ALIGNED: usize = 4;
 /// Blocks that a row to be gathered may still go into.
@@ -137,10 +137,10 @@ impl Batches {
         }
     }
 
-    /// Takes in the surface that a particle is pressed onto.
-    pub fn put_surface(&mut self, i: usize, normal: Vec3, backing: f32) {
+    /// Takes in the surface that a particle touches, with the impulse onto it after which it presses, N·s².
+    pub fn put_surface(&mut self, i: usize, normal: Vec3, backing: f32, room: f32) {
         let (block, lane) = (&mut self.particles[i % self.per_lane].0, i / self.per_lane);
-        for (field, number) in [backing, normal.x, normal.y, normal.z, 0.0].into_iter().enumerate() {
+        for (field, number) in [backing, normal.x, normal.y, normal.z, room].into_iter().enumerate() {
             block[BACKING + field][lane] = number;
         }
     }
@@ -156,16 +156,16 @@ impl Batches {
         }
     }
 
-    /// Forgets the surface that a particle is pressed onto; gives what has gone on to it, along the normal, N·s².
+    /// Forgets the surface that a particle touches; gives the room that is left, N·s², negative for what presses.
     pub fn take_surface(&mut self, i: usize) -> f32 {
         let (block, lane) = (&mut self.particles[i % self.per_lane].0, i / self.per_lane);
         block[BACKING][lane] = 0.0;
-        block[PRESS][lane]
+        block[ROOM][lane]
     }
 
     /// Projects all rows once, springs first, to be run by `dispatch`.
-    pub fn project(&mut self, h: f32, pressed: bool) -> Project<'_> {
-        Project { batches: self, h, pressed }
+    pub fn project(&mut self, h: f32, touching: bool) -> Project<'_> {
+        Project { batches: self, h, touching }
     }
 }
 
@@ -249,8 +249,8 @@ pub(super) struct Project<'a> {
     batches: &'a mut Batches,
     /// The iteration, seconds.
     h: f32,
-    /// Some particle is pressed onto a surface.
-    pressed: bool,
+    /// Some particle touches a surface.
+    touching: bool,
 }
 
 impl Kernel for Project<'_> {
@@ -265,7 +265,7 @@ impl Kernel for Project<'_> {
             let ends = [Particle::load(particles, rows, 0), Particle::load(particles, rows, 1)];
             let way = ends[1].way - ends[0].way;
             let apart = ends[1].from - ends[0].from + way;
-            project::<L, 2>(particles, rows, ends, (apart, way), [-1.0, 1.0], times, self.pressed);
+            project::<L, 2>(particles, rows, ends, (apart, way), [-1.0, 1.0], times, self.touching);
         }
         for rows in bends.iter() {
             let ends = [
@@ -275,7 +275,7 @@ impl Kernel for Project<'_> {
             ];
             let way = ends[0].way - ends[1].way * two + ends[2].way;
             let apart = ends[0].from - ends[1].from * two + ends[2].from + way;
-            project::<L, 3>(particles, rows, ends, (apart, way), [1.0, -2.0, 1.0], times, self.pressed);
+            project::<L, 3>(particles, rows, ends, (apart, way), [1.0, -2.0, 1.0], times, self.touching);
         }
     }
 }
@@ -356,12 +356,12 @@ impl<L: Lanes> Particle<L> {
     }
 }
 
-/// Surfaces that eight particles are pressed onto.
-#[derive(Clone, Copy)]
+/// Surfaces that eight particles touch.
+#[derive(Clone, Copy, Debug)]
 struct Surface<L> {
     normal: Vector3<L>,
     backing: L,
-    press: L,
+    room: L,
 }
 
 impl<L: Lanes> Surface<L> {
@@ -374,44 +374,79 @@ impl<L: Lanes> Surface<L> {
                 load(particles, rows, end, NORMAL + 2),
             ),
             backing: load(particles, rows, end, BACKING),
-            press: load(particles, rows, end, PRESS),
+            room: load(particles, rows, end, ROOM),
         }
     }
 
-    /// Mobility of particles of some weight along a force `share` times a unit `direction`, 1/kg.
+    /// The part of an impulse along the normal that goes on to the bodies.
     #[inline(always)]
-    fn mobility(&self, weight: L, direction: Vector3<L>, share: L) -> L {
-        let backed = self.backed(direction.dot(self.normal) * share);
-        weight * (share * share - self.backing * backed * backed)
+    fn handed_on(&self, along: L) -> L {
+        let zero = L::splat(0.0);
+        (L::min(self.room + along, zero) - L::min(self.room, zero)) * self.backing
     }
 
-    /// The part of a force along the normal that the surface backs: what presses onto it, and what takes from a press.
+    /// Lengths that particles of some weight come along `share` times a unit `direction` by as many times an impulse, and their mobility after it, 1/kg.
     #[inline(always)]
-    fn backed(&self, along: L) -> L {
+    fn moved(&self, weight: L, direction: Vector3<L>, share: L, impulse: L) -> (L, L) {
         let zero = L::splat(0.0);
-        along.masked(L::lt(along, zero) | L::lt(self.press, zero))
+        let along = direction.dot(self.normal) * share;
+        let after = self.room + along * impulse;
+        let presses = L::lt(after, zero) | (L::lt(along, zero) & L::le(after, zero));
+        let backed = (along * self.backing).masked(presses);
+        let square = share * share;
+        (
+            weight * (square * impulse - along * self.handed_on(along * impulse)),
+            weight * (square - along * backed),
+        )
     }
 
     /// The part of an impulse along a unit `direction`, times the length of the iteration, N·s², that is left to particles: the rest presses them onto
     /// their surface and goes on.
     #[inline(always)]
     fn pass_on(&mut self, direction: Vector3<L>, impulse: L) -> Vector3<L> {
-        let backed = self.backed(direction.dot(self.normal) * impulse) * self.backing;
-        let press = L::min(self.press + backed, L::splat(0.0));
-        let handed_on = press - self.press;
-        self.press = press;
+        let along = direction.dot(self.normal) * impulse;
+        let handed_on = self.handed_on(along);
+        self.room = self.room + along;
         direction * impulse - self.normal * handed_on
     }
 }
 
-/// True if a particle of the rows is pressed onto a surface.
+/// True if a particle of the rows touches a surface.
 #[inline(always)]
-fn any_pressed<L: Lanes, const K: usize>(particles: &[Block<FIELDS>], rows: &Rows<K>) -> bool {
+fn any_touching<L: Lanes, const K: usize>(particles: &[Block<FIELDS>], rows: &Rows<K>) -> bool {
     let mut any = false;
     for end in 0..K {
         any |= L::gt(load::<L, K>(particles, rows, end, BACKING), L::splat(0.0)).any();
     }
     any
+}
+
+/// The impulse, N·s², that takes eight rows by `error` along their `direction`, and the mobility there, 1/kg. Mobility changes where a particle comes to
+/// press and where it ceases to: a second step of Newton's method, exact for one such change.
+#[inline(always)]
+fn impulse_on_surfaces<L: Lanes, const K: usize>(
+    surfaces: &[Surface<L>; K],
+    ends: &[Particle<L>; K],
+    (direction, error): (Vector3<L>, L),
+    shares: [f32; K],
+    compliance: L,
+) -> (L, L) {
+    let zero = L::splat(0.0);
+    // Ends are pulled against the error.
+    let sign = L::select(L::lt(error, zero), L::splat(1.0), L::splat(-1.0));
+    let (mut impulse, mut mobility) = (zero, zero);
+    for _ in 0..2 {
+        let mut moved = zero;
+        mobility = zero;
+        for k in 0..K {
+            let (by, gained) =
+                surfaces[k].moved(ends[k].weight, direction, sign * L::splat(shares[k]), impulse);
+            moved = moved + by;
+            mobility = mobility + gained;
+        }
+        impulse = impulse + (error.abs() - moved - compliance * impulse) / (mobility + compliance);
+    }
+    (zero - sign * impulse, mobility)
 }
 
 /// Solves eight rows. `apart` is the vector whose length is their error and rest, `way` how far it has come in the iteration, and
@@ -424,27 +459,29 @@ fn project<L: Lanes, const K: usize>(
     (apart, way): (Vector3<L>, Vector3<L>),
     shares: [f32; K],
     (h, per_square): (L, L),
-    pressed: bool,
+    touching: bool,
 ) {
     let length = apart.dot(apart).sqrt();
     let direction = apart * (L::splat(1.0) / length);
     let error = length - L::load(&rows.rest);
     let active = L::gt(error, L::load(&rows.least)) & L::gt(length, L::splat(1e-9));
-    let is_pressed = pressed && any_pressed::<L, K>(particles, rows);
-    let mut sum = L::splat(0.0);
-    if is_pressed {
-        // Ends are pulled against the error.
-        let sign = L::select(L::lt(error, L::splat(0.0)), L::splat(1.0), L::splat(-1.0));
-        for k in 0..K {
-            let surface = Surface::load(particles, rows, k);
-            sum = sum + surface.mobility(ends[k].weight, direction, sign * L::splat(shares[k]));
+    let compliance = L::load(&rows.compliance) * per_square;
+    let mut surfaces = None;
+    let (mut impulse, mut sum);
+    if touching && any_touching::<L, K>(particles, rows) {
+        let mut found = [Surface::load(particles, rows, 0); K];
+        for k in 1..K {
+            found[k] = Surface::load(particles, rows, k);
         }
+        (impulse, sum) = impulse_on_surfaces(&found, &ends, (direction, error), shares, compliance);
+        surfaces = Some(found);
     } else {
+        sum = L::splat(0.0);
         for k in 0..K {
             sum = sum + ends[k].weight * L::splat(shares[k] * shares[k]);
         }
+        impulse = error / (sum + compliance);
     }
-    let mut impulse = error / (sum + L::load(&rows.compliance) * per_square);
     if rows.is_damped {
         // Damping of the speed that this leaves.
         let left = way.dot(direction) - impulse * sum;
@@ -458,12 +495,12 @@ fn project<L: Lanes, const K: usize>(
         Vector3::new(direction.x.masked(active), direction.y.masked(active), direction.z.masked(active));
     for k in 0..K {
         let on_end = impulse * L::splat(-shares[k]);
-        if is_pressed {
-            let mut surface = Surface::load(particles, rows, k);
-            ends[k].way = ends[k].way + surface.pass_on(direction, on_end) * ends[k].weight;
-            store(surface.press, particles, rows, k, PRESS);
-        } else {
-            ends[k].way = ends[k].way + direction * (on_end * ends[k].weight);
+        match &mut surfaces {
+            Some(surfaces) => {
+                ends[k].way = ends[k].way + surfaces[k].pass_on(direction, on_end) * ends[k].weight;
+                store(surfaces[k].room, particles, rows, k, ROOM);
+            }
+            None => ends[k].way = ends[k].way + direction * (on_end * ends[k].weight),
         }
         ends[k].store(particles, rows, k);
     }

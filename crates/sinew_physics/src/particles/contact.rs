@@ -13,7 +13,7 @@ use super::{Part, ParticleGroup};
 use crate::body::material::{ContactMaterial, Material};
 use crate::body::shape::Shape;
 use crate::boxes::Aabb;
-use crate::particles::tuning::{DETOUR, NET_GAP};
+use crate::particles::tuning::DETOUR;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
 /// Slower than that, nothing moves, m/s.
@@ -51,11 +51,18 @@ impl ObstacleBody {
         self.inverse_mass + lever.dot(self.inverse_inertia * lever)
     }
 
-    /// Inertia that resists a push at `point`, kg: the inverse of `I/m − [r]× J⁻¹ [r]×`.
-    fn inertia_at(&self, point: Vec3) -> Sym3 {
+    /// Inertia that resists a push at `point`, kg, along a unit normal and across it: the inverse of `I/m − [r]× J⁻¹ [r]×` without what a push along
+    /// the one moves along the other.
+    ///
+    /// A body that many push from below does not turn; each would take it that its own push does, and slide outward by that.
+    fn inertia_at(&self, point: Vec3, normal: Vec3) -> Sym3 {
         let r = point - self.center;
         let gained = |e: Vec3| e * self.inverse_mass + (self.inverse_inertia * r.cross(e)).cross(r);
-        Sym3::from_mat3(&Mat3::from_cols(gained(Vec3::X), gained(Vec3::Y), gained(Vec3::Z))).inverse()
+        let whole = Sym3::from_mat3(&Mat3::from_cols(gained(Vec3::X), gained(Vec3::Y), gained(Vec3::Z)));
+        let along = whole * normal;
+        let aside = along - normal * normal.dot(along);
+        let coupling = Sym3::outer(normal + aside) - Sym3::outer(normal) - Sym3::outer(aside);
+        (whole - coupling).inverse()
     }
 
     pub(super) fn push(&mut self, point: Vec3, impulse: Vec3) {
@@ -476,15 +483,14 @@ impl ParticleGroup {
         }
     }
 
-    /// Finds the backing of each particle that is on a surface: its share of the body's inertia along the normal.
-    pub(super) fn back_contacts(&mut self, h: f32, bodies: &[ObstacleBody]) {
+    /// Finds the backing of each particle that touches a surface, its share of the body's inertia along the normal, and its room before it presses.
+    pub(super) fn back_contacts(&mut self, bodies: &[ObstacleBody]) {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
             let Some(touch) = self.touches[i] else { continue };
             let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
-            if (relative.dot(touch.normal) - touch.speed_min) * h > NET_GAP {
-                continue;
-            }
+            let away = relative.dot(touch.normal) - touch.speed_min;
+            self.rooms[i] = max(away, 0.0) / self.weights[i];
             let yielding = bodies[touch.body].yielding(touch.point, touch.normal);
             self.press_normals[i] = touch.normal;
             // M / (m + M), of M = m / (load · yielding).
@@ -497,8 +503,8 @@ impl ParticleGroup {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
             if let Some(touch) = self.touches[i].filter(|_| self.backings[i] > 0.0) {
-                let impulse = self.presses[i];
-                (self.backings[i], self.press_normals[i], self.presses[i]) = (0.0, Vec3::ZERO, Vec3::ZERO);
+                let impulse = self.press_normals[i] * (self.backings[i] * min(self.rooms[i], 0.0));
+                (self.backings[i], self.press_normals[i], self.rooms[i]) = (0.0, Vec3::ZERO, 0.0);
                 let (body, weight) = (&mut bodies[touch.body], self.weights[i]);
                 body.push(touch.point, impulse);
                 let friction = touch.rub(impulse.length(), weight, self.velocities[i], body);
@@ -532,7 +538,7 @@ impl ParticleGroup {
                         momentum = self.friction(i, n);
                     }
                     Grip::Stick if movable => {
-                        inertia = body.inertia_at(touch.point) * (1.0 / touch.lightness);
+                        inertia = body.inertia_at(touch.point, n) * (1.0 / touch.lightness);
                         momentum = inertia * target;
                     }
                     Grip::Stick => {

@@ -131,8 +131,8 @@ pub struct ParticleGroup {
     held_bends: Vec<u32>,
     /// Unit normal of the surface that each particle touches, out of it.
     press_normals: Vec<Vec3>,
-    /// Impulse that has gone on from each particle to the body in this iteration, N·s.
-    presses: Vec<Vec3>,
+    /// Impulse against the surface that brings each particle onto it, N·s; negative for what is pressed onto it already.
+    rooms: Vec<f32>,
     /// Velocities that bring particles into the corner of two surfaces.
     wedges: Vec<Vec3>,
     /// Mass of the particles that touch each body.
@@ -214,7 +214,7 @@ impl ParticleGroup {
         self.near = Near::new(count);
         self.backings = vec![0.0; count];
         self.press_normals = vec![Vec3::ZERO; count];
-        self.presses = vec![Vec3::ZERO; count];
+        self.rooms = vec![0.0; count];
         self.wedges = vec![Vec3::ZERO; count];
         self.body_impulses = Vec::with_capacity(MAX_TOUCHES * count * self.iterations as usize);
         self.reactions = vec![Vec3::ZERO; count];
@@ -482,7 +482,7 @@ impl ParticleGroup {
         for i in 0..self.positions.len() {
             self.positions[i] += self.velocities[i] * h;
         }
-        self.back_contacts(h, bodies);
+        self.back_contacts(bodies);
         self.project_net(h);
         self.press_bodies(h, bodies);
         self.let_go(part, anchors);

@@ -4,8 +4,10 @@
 //! after: each spring of a net yields by about `h² (w₁ + w₂)` more.
 //!
 //! What presses a particle onto a surface moves it with its share of the body's inertia, and is handed on to the body: a ball
-//! in a cloth would else be carried by the cloth's own few grams. A later row that pulls it away takes from that press first, or the
-//! body would be pushed by what no longer presses, and nets would tremble under what they bear.
+//! in a cloth would else be carried by the cloth's own few grams. A surface only presses: a particle has **room**, the impulse that
+//! brings it from where the solve left it onto the surface, which rows use up before they press, and a later row that pulls it away takes from
+//! the press first. Else rows would pull particles through the surface, or push the body by what no longer presses, and nets would tremble under what
+//! they bear.
 //!
 //! Rows that hold an attached particle come one by one, since the impulse on it counts; all others eight at a time, see `batches.rs`.
 
@@ -57,15 +59,15 @@ impl ParticleGroup {
             return;
         }
         self.batches.put(&self.previous, &self.velocities, &self.weights, h);
-        let mut pressed = false;
+        let mut touching = false;
         for &i in &self.solved {
             let i = i as usize;
             if self.backings[i] > 0.0 {
-                self.batches.put_surface(i, self.press_normals[i], self.backings[i]);
-                pressed = true;
+                self.batches.put_surface(i, self.press_normals[i], self.backings[i], self.rooms[i] * h);
+                touching = true;
             }
         }
-        dispatch::run(self.batches.project(h, pressed));
+        dispatch::run(self.batches.project(h, touching));
         let per_second = 1.0 / h;
         let Self { positions, velocities, previous, attachment_of, .. } = self;
         self.batches.ways(|i, way| {
@@ -74,33 +76,64 @@ impl ParticleGroup {
                 positions[i] = previous[i] + way;
             }
         });
-        for &i in self.solved.iter().filter(|_| pressed) {
+        for &i in self.solved.iter().filter(|_| touching) {
             let i = i as usize;
             if self.backings[i] > 0.0 {
-                self.presses[i] += self.press_normals[i] * (self.batches.take_surface(i) * per_second);
+                self.rooms[i] = self.batches.take_surface(i) * per_second;
             }
         }
     }
 
-    /// Mobility of a particle along a force, 1/kg: `∇Cᵀ W ∇C` if `force` is as long as the gradient.
-    fn mobility(&self, i: usize, force: Vec3) -> f32 {
-        let backed = self.backed(i, force);
-        self.weights[i] * (force.length_squared() - self.backings[i] * backed * backed)
+    /// The part of an impulse along the normal that goes on to the body that a particle touches, N·s.
+    fn handed_on(&self, i: usize, along: f32) -> f32 {
+        (min(self.rooms[i] + along, 0.0) - min(self.rooms[i], 0.0)) * self.backings[i]
     }
 
-    /// The part of a force along the normal that the surface backs: what presses onto it, and what takes from a press.
-    fn backed(&self, i: usize, force: Vec3) -> f32 {
-        let normal = self.press_normals[i];
-        let along = force.dot(normal);
-        if along < 0.0 || self.presses[i].dot(normal) < 0.0 { along } else { 0.0 }
+    /// Speed that a particle gains along `force` by as many times an impulse, and its mobility after it, 1/kg: `∇Cᵀ W ∇C` if
+    /// `force` is as long as the gradient.
+    fn moved(&self, i: usize, force: Vec3, impulse: f32) -> (f32, f32) {
+        let along = force.dot(self.press_normals[i]);
+        let after = self.rooms[i] + along * impulse;
+        let presses = after < 0.0 || along < 0.0 && after <= 0.0;
+        let backed = if presses { along * self.backings[i] } else { 0.0 };
+        let (weight, square) = (self.weights[i], force.length_squared());
+        (
+            weight * (square * impulse - along * self.handed_on(i, along * impulse)),
+            weight * (square - along * backed),
+        )
+    }
+
+    /// The impulse that gives a row a speed by forces on its ends of so much for each N·s, and the mobility there, 1/kg; `None` where nothing moves. As
+    /// `impulse_on_surfaces` of `batches.rs`.
+    fn row_impulse(
+        &self,
+        ends: &(impl Iterator<Item = (usize, Vec3)> + Clone),
+        speed: f32,
+        compliance: f32,
+    ) -> Option<(f32, f32)> {
+        let (mut impulse, mut mobility) = (0.0, 0.0);
+        for _ in 0..2 {
+            let mut moved = 0.0;
+            mobility = 0.0;
+            for (i, force) in ends.clone() {
+                let (by, gained) = self.moved(i, force, impulse);
+                moved += by;
+                mobility += gained;
+            }
+            if mobility <= 0.0 {
+                break;
+            }
+            impulse += (speed - moved - compliance * impulse) / (mobility + compliance);
+        }
+        (impulse > 0.0).then_some((impulse, mobility))
     }
 
     /// An impulse that acts at the end of the iteration, as if it had from its beginning.
     fn nudge(&mut self, i: usize, impulse: Vec3, h: f32) {
         let normal = self.press_normals[i];
-        let press = self.presses[i].dot(normal);
-        let handed_on = min(press + self.backed(i, impulse) * self.backings[i], 0.0) - press;
-        self.presses[i] += normal * handed_on;
+        let along = impulse.dot(normal);
+        let handed_on = self.handed_on(i, along);
+        self.rooms[i] += along;
         let change = (impulse - normal * handed_on) * self.weights[i];
         self.velocities[i] += change;
         self.positions[i] += change * h;
@@ -115,11 +148,10 @@ impl ParticleGroup {
             return;
         }
         let direction = apart / length;
-        let sum = self.mobility(i, direction) + self.weights[to];
-        if sum > 0.0 {
-            let impulse = direction * ((length - tether.length) / (sum * h));
-            self.nudge(i, impulse, h);
-            self.nudge(to, -impulse, h);
+        let ends = [(i, direction), (to, -direction)];
+        if let Some((impulse, _)) = self.row_impulse(&ends.into_iter(), (length - tether.length) / h, 0.0) {
+            self.nudge(i, direction * impulse, h);
+            self.nudge(to, direction * -impulse, h);
         }
     }
 
@@ -133,17 +165,17 @@ impl ParticleGroup {
         }
         let direction = apart / length;
         let pull = if stretch < 0.0 { -direction } else { direction };
-        let sum = self.mobility(a, pull) + self.mobility(b, -pull);
-        if sum == 0.0 {
-            return;
-        }
         let compliance = 1.0 / (s.stiffness * h * h);
-        let mut impulse = stretch / (sum + compliance) / h;
+        let ends = [(a, pull), (b, -pull)];
+        let Some((mut impulse, sum)) = self.row_impulse(&ends.into_iter(), stretch.abs() / h, compliance)
+        else {
+            return;
+        };
         // Damping of the axial speed that this leaves.
-        let speed = (self.velocities[b] - self.velocities[a]).dot(direction) - impulse * sum;
+        let speed = (self.velocities[b] - self.velocities[a]).dot(pull) - impulse * sum;
         impulse += speed * h * s.damping / (1.0 + h * s.damping * sum);
-        self.nudge(a, direction * impulse, h);
-        self.nudge(b, direction * -impulse, h);
+        self.nudge(a, pull * impulse, h);
+        self.nudge(b, pull * -impulse, h);
     }
 
     pub(super) fn project_bend(&mut self, bend: BendDef, h: f32) {
@@ -154,15 +186,14 @@ impl ParticleGroup {
             return;
         }
         let back = bow * (if bend.rest < length { -1.0 } else { 1.0 } / length);
-        let sum = self.mobility(a, back) + self.mobility(b, back * -2.0) + self.mobility(c, back);
-        if sum == 0.0 {
-            return;
-        }
         let compliance = 1.0 / (bend.stiffness * h * h);
-        let impulse = back * ((bend.rest - length).abs() / ((sum + compliance) * h));
-        self.nudge(a, impulse, h);
-        self.nudge(b, impulse * -2.0, h);
-        self.nudge(c, impulse, h);
+        let ends = [(a, back), (b, back * -2.0), (c, back)];
+        let speed = (bend.rest - length).abs() / h;
+        if let Some((impulse, _)) = self.row_impulse(&ends.into_iter(), speed, compliance) {
+            for (i, force) in ends {
+                self.nudge(i, force * impulse, h);
+            }
+        }
     }
 
     /// A surface that encloses too little is pushed outward, each particle along the area that it carries.
@@ -172,11 +203,11 @@ impl ParticleGroup {
             enclosed_volume(&volume.triangles, &self.positions, |i, area| self.gradients[i] += area);
         let missing = volume.rest_volume - enclosed;
         let sign = if missing < 0.0 { -1.0 } else { 1.0 };
-        let sum: f32 = (0..self.positions.len()).map(|i| self.mobility(i, self.gradients[i] * sign)).sum();
         let compliance = volume.rest_volume / (volume.bulk_modulus * h * h);
-        let impulse = missing / (sum + compliance) / h;
+        let ends = self.gradients.iter().enumerate().map(|(i, &gradient)| (i, gradient * sign));
+        let Some((impulse, _)) = self.row_impulse(&ends, missing.abs() / h, compliance) else { return };
         for i in 0..self.positions.len() {
-            let along = self.gradients[i] * impulse;
+            let along = self.gradients[i] * (sign * impulse);
             if along != Vec3::ZERO {
                 self.nudge(i, along, h);
             }

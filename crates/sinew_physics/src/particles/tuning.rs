@@ -38,11 +38,6 @@ pub(super) const BEARING: f32 = 0.2;
 /// Larger: ropes stretch visibly in jerks. Smaller: more iterations. Shown by `catenary`, `spring_chain`.
 pub(super) const LENGTH_TOLERANCE: f32 = 1e-3;
 
-/// Gap that a net may close by pressing, metres.
-///
-/// Larger: cloth pushes what it does not touch. Smaller: it trembles on what it lies on. Shown by `cloth`.
-pub(super) const NET_GAP: f32 = 1e-4;
-
 /// Factor on the length of a way within which everything is looked for, a ratio.
 ///
 /// What is still to push may turn the way a little. Larger: more to look at. Smaller: particles pass what they are pushed into. Shown by

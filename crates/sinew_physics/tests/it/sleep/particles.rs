@@ -224,7 +224,8 @@ fn what_a_rope_swings_over_sleeps() {
     run(&mut world, 300);
     let group = world.particles(rope);
     let fastest = group.velocities().iter().fold(0.0, |most, v| max(most, v.length()));
-    assert!(group.is_awake() && fastest > 0.01, "the rope still swings on it, at {fastest} m/s");
+    // Particles may sleep below 0.001 m/s.
+    assert!(group.is_awake() && fastest > 0.003, "the rope still swings on it, at {fastest} m/s");
     let way = (world.center_of_mass(body) - at).length();
     assert!(!world.is_awake(body) && way < 1e-3, "the box has gone {way} m");
 }

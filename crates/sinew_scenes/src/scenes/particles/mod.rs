@@ -1,5 +1,7 @@
 //! Particles, cloth, blobs.
 
+pub(super) mod bearing;
 pub(super) mod blobs;
 pub(super) mod cloths;
+pub(super) mod sheets;
 pub(super) mod single;
