@@ -77,8 +77,12 @@ impl Character {
             match (own(hit.a.body), own(hit.b.body)) {
                 (Some(_), None) if stands(hit.b.body) => {}
                 (None, Some(_)) if stands(hit.a.body) => {}
-                (Some(body), None) => note(body, self.taken(world, hit, hit.a.body, -hit.normal)),
-                (None, Some(body)) => note(body, self.taken(world, hit, hit.b.body, hit.normal)),
+                (Some(body), None) => {
+                    note(body, self.taken(world, hit, [hit.a.body, hit.b.body], -hit.normal));
+                }
+                (None, Some(body)) => {
+                    note(body, self.taken(world, hit, [hit.b.body, hit.a.body], hit.normal));
+                }
                 _ => {}
             }
         }
@@ -114,15 +118,28 @@ impl Character {
         self.events = events;
     }
 
-    /// Impulse of a hit on one of its bodies, `way` being from the other to it, N·s: no more than what comes could bring to all of it, and to a led
-    /// body what comes by itself. A foot that comes down on a hand presses that to the ground however hard it is led.
-    fn taken(&self, world: &World, hit: &Hit, own: BodyId, way: Vec3) -> Vec3 {
+    /// Impulse of a hit on one of its bodies by another, `way` being from that to it, N·s: no more than what comes could bring to all of it, and to a
+    /// led body what comes by itself. A foot that comes down on a hand presses that to the ground however hard it is led.
+    fn taken(&self, world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3) -> Vec3 {
         let Velocity { linear, angular } = world.velocity(own);
         let led = linear + angular.cross(hit.point - world.center_of_mass(own));
         let shoves = if world.kind(own) == BodyKind::Dynamic { 0.0 } else { -led.dot(way) };
         let bounce = hit.materials.iter().fold(1.0, |most, material| max(most, 1.0 + material.restitution));
-        let most = self.def.ragdoll.total_mass * bounce * max(hit.approach - shoves, 0.0);
+        let most = self.meeting_mass(world, other) * bounce * max(hit.approach - shoves, 0.0);
         way * min(hit.impulse, most)
+    }
+
+    /// Mass of all of it and of what comes, as they answer to a push between them, kg; what joints hold, or nothing moves, may have any mass.
+    fn meeting_mass(&self, world: &World, other: BodyId) -> f32 {
+        let whole = self.def.ragdoll.total_mass;
+        let is_free = world.contains(other)
+            && world.kind(other) == BodyKind::Dynamic
+            && world.joints_of(other).next().is_none();
+        if !is_free {
+            return whole;
+        }
+        let mass = world.mass(other).mass;
+        mass * whole / (mass + whole)
     }
 
     /// Impulse that a body that goes through one of its own would give it, if the two stopped each other: N·s.
@@ -131,13 +148,12 @@ impl Character {
         if gone || world.kind(other) != BodyKind::Dynamic || world.kind(own) == BodyKind::Dynamic {
             return Vec3::ZERO;
         }
-        let (mass, whole) = (world.mass(other).mass, self.def.ragdoll.total_mass);
         let relative = world.velocity(other).linear - world.velocity(own).linear;
         let toward = world.center_of_mass(own) - world.center_of_mass(other);
         let way = sinew_math::normalize_or(toward, Vec3::ZERO);
         // What comes by itself, not what it walks into.
         let comes = max(world.velocity(other).linear.dot(way), 0.0);
         let closing = max(relative.dot(way), 0.0);
-        way * (mass * whole / (mass + whole) * min(closing, comes))
+        way * (self.meeting_mass(world, other) * min(closing, comes))
     }
 }
