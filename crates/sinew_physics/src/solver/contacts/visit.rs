@@ -131,14 +131,15 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
     let old = given;
     let points = Points::new(block, &rates, &given);
     // To and fro: all one way would leave a little motion to the side that comes first.
-    points.visit::<true>(0, &mut given);
-    if N > 1 {
+    if N == 1 {
+        points.visit::<true>(0, &mut given);
+    } else {
         const { assert!(MANIFOLD_ROUNDS.is_multiple_of(2)) };
         for _ in 0..MANIFOLD_ROUNDS / 2 {
-            for i in 1..N {
+            for i in 0..N {
                 points.visit::<true>(i, &mut given);
             }
-            for i in (0..N - 1).rev() {
+            for i in (0..N).rev() {
                 points.visit::<false>(i, &mut given);
             }
         }
