@@ -11,7 +11,7 @@ const EXAMPLES: &str = "crates/sinew/examples/";
 /// Most lines of one.
 const MOST_LINES: usize = 60;
 
-/// Those that are longer, for each is a whole part of a game: kinds of bodies of one's own with their state, all questions to a world,
+/// Examples that may be longer, since each is a whole part of a game: kinds of bodies of one's own with their state, all questions to a world,
 /// a fight over a network, a character with all that hangs on it.
 const LONGER: &[&str] = &["door_and_cape", "flock", "pendulum_clock", "probes", "rollback_fight"];
 

@@ -1,4 +1,4 @@
-//! What shapes, movers, ropes and characters look like.
+//! Looks of shapes, movers, ropes and characters.
 
 use bevy::asset::io::AssetSourceBuilder;
 use bevy::asset::io::memory::{Dir, MemoryAssetReader};

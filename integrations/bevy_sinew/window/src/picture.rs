@@ -19,7 +19,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// What the arguments ask for.
+    /// Picture that the arguments ask for, if they ask for one.
     ///
     /// # Errors
     /// An option that there is not, or that lacks its value.

@@ -27,7 +27,7 @@ fn impulse_of(body: &SolverBody, change: &Vec6) -> Vec6 {
     join(linear(change) * (body.mass * body.mass_scale), spin)
 }
 
-/// Trees that have got impulses take on what those make of their velocities before the sweep; who did not know of it is told.
+/// Trees that have got impulses take on what those make of their velocities before the sweep; rows of limits learn how far they moved.
 struct TurnOfTrees<'a> {
     links: &'a [Link],
     trees: &'a [Range<usize>],

@@ -168,8 +168,8 @@ impl Batches {
         }
     }
 
-    /// Trees take on what impulses of limits, and of contacts in this sweep, make of the velocities before it; who did not know of it is
-    /// told. `impulses` are those of limits, and get those of contacts. Gives the largest change that the contacts did not know of.
+    /// Trees take on what impulses of limits, and of contacts in this sweep, make of the velocities before it; rows of limits
+    /// learn how far they moved. `impulses` are those of limits, and get those of contacts. Gives the largest change that the contacts did not know of.
     pub fn take_turns(
         &mut self,
         impulses: &mut [Vec6],

@@ -10,8 +10,8 @@ use crate::spatial::Vec6;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
 
-/// Trees take on what impulses of limits, and of contacts in this sweep, make of the velocities before it; who did not know of it is
-/// told. Gives the largest change that the contacts did not know of.
+/// Trees take on what impulses of limits, and of contacts in this sweep, make of the velocities before it; rows of limits learn
+/// how far they moved. Gives the largest change that the contacts did not know of.
 pub(super) struct TurnOfBatch<'a, 'b> {
     pub batch: &'a Batch,
     pub ways: &'a mut [Way],
