@@ -81,15 +81,16 @@ impl Level {
     }
 }
 
-/// The widest registers that every processor of a build has.
-#[cfg(target_arch = "x86_64")]
+/// The widest registers that every processor of a build has. With debug assertions those of SSE2 do not count: few processors have no
+/// AVX2, and kernels for SSE2 would be half of the machine code of a development build.
+#[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 type Base = crate::lanes::sse2::Sse2;
 #[cfg(target_arch = "aarch64")]
 type Base = crate::lanes::neon::Neon;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 type Base = crate::lanes::simd128::Simd128;
 #[cfg(not(any(
-    target_arch = "x86_64",
+    all(target_arch = "x86_64", not(debug_assertions)),
     target_arch = "aarch64",
     all(target_arch = "wasm32", target_feature = "simd128")
 )))]
