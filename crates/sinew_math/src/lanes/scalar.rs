@@ -120,11 +120,13 @@ pub struct Scalar([f32; WIDTH]);
 pub struct Doubles([f64; WIDTH]);
 
 impl Doubles {
+    #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn widened(from: [f32; WIDTH]) -> Self {
         Self(from.map(f64::from))
     }
 
+    #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn narrowed(self) -> [f32; WIDTH] {
         self.0.map(|x| x as f32)
@@ -139,6 +141,7 @@ macro_rules! lane_by_lane {
     ($($operator:ident $method:ident $of:ident),*) => {$(
         impl $operator for $of {
             type Output = Self;
+            #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn $method(self, other: Self) -> Self {
                 Self(array::from_fn(|k| $operator::$method(self.0[k], other.0[k])))
@@ -152,6 +155,7 @@ lane_by_lane!(Add add Doubles, Sub sub Doubles, Mul mul Doubles, Div div Doubles
 
 impl Not for Bools {
     type Output = Self;
+    #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn not(self) -> Self {
         Self(self.0.map(bool::not))
@@ -161,6 +165,7 @@ impl Not for Bools {
 impl Mask for Bools {}
 
 impl LaneMask for Bools {
+    #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn bits(self) -> u8 {
         let bit = |(k, &lane): (usize, &bool)| u8::from(lane) << k;
@@ -173,6 +178,7 @@ macro_rules! array_of {
     ($of:ident $number:ident) => {
         impl Neg for $of {
             type Output = Self;
+            #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn neg(self) -> Self {
                 Self(self.0.map($number::neg))
@@ -182,51 +188,61 @@ macro_rules! array_of {
         impl Real for $of {
             type Mask = Bools;
 
+            #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn splat(value: f32) -> Self {
                 Self([$number::splat(value); WIDTH])
             }
 
+            #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn splat_wide(value: f64) -> Self {
                 Self([$number::splat_wide(value); WIDTH])
             }
 
+            #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn sqrt(self) -> Self {
                 Self(self.0.map($number::sqrt))
             }
 
+            #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn abs(self) -> Self {
                 Self(self.0.map($number::abs))
             }
 
+            #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn lt(a: Self, b: Self) -> Bools {
                 Bools(array::from_fn(|k| a.0[k] < b.0[k]))
             }
 
+            #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn le(a: Self, b: Self) -> Bools {
                 Bools(array::from_fn(|k| a.0[k] <= b.0[k]))
             }
 
+            #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn eq(a: Self, b: Self) -> Bools {
                 Bools(array::from_fn(|k| a.0[k] == b.0[k]))
             }
 
+            #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn select(mask: Bools, a: Self, b: Self) -> Self {
                 Self(array::from_fn(|k| $number::select(mask.0[k], a.0[k], b.0[k])))
             }
 
+            #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn masked(self, mask: Bools) -> Self {
                 Self(array::from_fn(|k| self.0[k].masked(mask.0[k])))
             }
 
+            #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn nan_where(self, mask: Bools) -> Self {
                 Self(array::from_fn(|k| self.0[k].nan_where(mask.0[k])))
@@ -241,21 +257,25 @@ array_of!(Doubles f64);
 impl Lanes for Scalar {
     type Wide = Doubles;
 
+    #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn widen(self) -> Doubles {
         Doubles::widened(self.0)
     }
 
+    #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn narrow(wide: Doubles) -> Self {
         Self(wide.narrowed())
     }
 
+    #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn load(from: &[f32; WIDTH]) -> Self {
         Self(*from)
     }
 
+    #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn store(self, to: &mut [f32; WIDTH]) {
         *to = self.0;
