@@ -1,5 +1,6 @@
 //! Particles that bodies or places in the world hold.
 
+use super::contact::ObstacleBody;
 use super::forest::Freedom;
 use super::{Part, ParticleGroup};
 use sinew_math::{Sym3, Vec3};
@@ -14,33 +15,45 @@ pub struct Anchor {
     /// Velocity that the forces on the body will add to `velocity` within the next substep, m/s. The springs push for the interval to
     /// come, so they must know what else pulls in it, or a hung body would hang lower by `g h²`.
     pub gained: Vec3,
-    /// Inverse mass of the point, 1/kg: velocity gained per impulse there, `I/m − [r]× J⁻¹ [r]×`. Zero if nothing
-    /// moves it.
-    pub inverse_mass: Sym3,
+    /// Index in the slice of bodies of what is moved there; one of inverse mass 0 is not. Where there is none, it is a place in the world.
+    pub body: Option<u32>,
 }
 
 impl ParticleGroup {
     /// Puts attached particles where their anchors were, with the velocity that brings them to where those are, and
     /// with their inertia.
     pub(super) fn hold(&mut self, part: Part, anchors: &[Anchor]) {
-        let [from, _] = part.shares();
-        for (k, (a, anchor)) in self.attachments.iter().zip(anchors).enumerate() {
-            let (i, velocity) = (a.particle as usize, self.anchor_velocities[k]);
+        let [from, to] = part.shares();
+        let in_trees = self.forest.has_trees();
+        for k in 0..anchors.len() {
+            let (anchor, i) = (&anchors[k], self.attachments[k].particle as usize);
             let before = anchor.position - anchor.velocity * (part.whole * (1.0 - from));
             self.positions[i] = before;
             self.previous[i] = before;
-            if anchor.inverse_mass == Sym3::ZERO {
+            let body =
+                anchor.body.map(|body| self.holders[body as usize]).filter(|body| body.inverse_mass > 0.0);
+            let Some(body) = body else {
                 self.system.freedom[i] = Freedom::Fixed;
-                self.velocities[i] = velocity;
+                self.velocities[i] = anchor.velocity;
                 self.weights[i] = 0.0;
                 continue;
+            };
+            let gained = anchor.gained * to;
+            let hub = self.forest.hub_of(i);
+            if in_trees {
+                self.system.points[i] = anchor.position;
+                self.system.hubs[hub].take(&body, gained);
             }
-            let of_body = anchor.inverse_mass.inverse();
-            let coming = velocity + anchor.gained * (1.0 / part.of as f32);
-            self.system.inertia[i] += of_body;
-            self.system.momentum[i] += of_body * coming;
+            // Rows of the net find it with its share of the inertia, so that what all give together is not too much.
+            let of_body =
+                body.response_at(anchor.position).inverse() * (1.0 / self.forest.hubs()[hub].len() as f32);
+            let inertia = self.system.inertia[i] + of_body;
+            if !in_trees {
+                self.system.momentum[i] += of_body * (body.velocity_at(anchor.position) + gained);
+                self.system.inertia[i] = inertia;
+            }
             let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z];
-            let inverse = self.system.inertia[i].inverse();
+            let inverse = inertia.inverse();
             self.weights[i] = (x.dot(inverse * x) + y.dot(inverse * y) + z.dot(inverse * z)) / 3.0;
         }
     }
@@ -54,9 +67,23 @@ impl ParticleGroup {
             let lost = self.begun[i] + self.accelerations[i] * h - self.velocities[i];
             let impulse = self.reactions[i] + lost * self.masses[i];
             self.attachment_impulses[k] += impulse;
-            self.anchor_velocities[k] +=
-                anchor.gained * (1.0 / part.of as f32) + anchor.inverse_mass * impulse;
+            if let Some(body) = anchor.body {
+                self.holders[body as usize].push(anchor.position, impulse);
+            }
             self.positions[i] = anchor.position - anchor.velocity * (part.whole * (1.0 - to));
         }
+    }
+
+    /// Brings the particle of an attachment and the point that holds it to one velocity after the substep, where others have pushed the body
+    /// since, as an inelastic impact does; gives the impulse on the body, N·s.
+    pub(crate) fn join_held(&mut self, k: usize, anchor: &Anchor, body: &mut ObstacleBody) -> Vec3 {
+        let i = self.attachments[k].particle as usize;
+        let own = 1.0 / self.masses[i];
+        let apart = self.velocities[i] - body.velocity_at(anchor.position) - anchor.gained;
+        let impulse = (body.response_at(anchor.position) + Sym3::IDENTITY * own).inverse() * apart;
+        self.velocities[i] -= impulse * own;
+        self.attachment_impulses[k] += impulse;
+        body.push(anchor.position, impulse);
+        impulse
     }
 }

@@ -7,7 +7,7 @@
 //! solution tell who must let go, slip or stick; grips are kept from substep to substep, so that at rest one solve is
 //! enough. On bodies that can move, the body's inertia at the point is added instead.
 
-use super::forest::Freedom;
+use super::forest::{Freedom, NO_HUB};
 use super::sweep::{Meeting, sweep_ball};
 use super::{Part, ParticleGroup};
 use crate::body::material::{ContactMaterial, Material};
@@ -41,7 +41,7 @@ pub struct ObstacleBody {
 }
 
 impl ObstacleBody {
-    pub(super) fn velocity_at(&self, point: Vec3) -> Vec3 {
+    pub(crate) fn velocity_at(&self, point: Vec3) -> Vec3 {
         self.linear_velocity + self.angular_velocity.cross(point - self.center)
     }
 
@@ -51,14 +51,19 @@ impl ObstacleBody {
         self.inverse_mass + lever.dot(self.inverse_inertia * lever)
     }
 
-    /// Inertia that resists a push at `point`, kg, along a unit normal and across it: the inverse of `I/m − [r]× J⁻¹ [r]×` without what a push along
+    /// Velocity gained at `point` per impulse there, 1/kg: `I/m − [r]× J⁻¹ [r]×`.
+    pub(super) fn response_at(&self, point: Vec3) -> Sym3 {
+        let r = point - self.center;
+        let gained = |e: Vec3| e * self.inverse_mass + (self.inverse_inertia * r.cross(e)).cross(r);
+        Sym3::from_mat3(&Mat3::from_cols(gained(Vec3::X), gained(Vec3::Y), gained(Vec3::Z)))
+    }
+
+    /// Inertia that resists a push at `point`, kg, along a unit normal and across it: the inverse of the response there without what a push along
     /// the one moves along the other.
     ///
     /// A body that many push from below does not turn; each would take it that its own push does, and slide outward by that.
     fn inertia_at(&self, point: Vec3, normal: Vec3) -> Sym3 {
-        let r = point - self.center;
-        let gained = |e: Vec3| e * self.inverse_mass + (self.inverse_inertia * r.cross(e)).cross(r);
-        let whole = Sym3::from_mat3(&Mat3::from_cols(gained(Vec3::X), gained(Vec3::Y), gained(Vec3::Z)));
+        let whole = self.response_at(point);
         let along = whole * normal;
         let aside = along - normal * normal.dot(along);
         let coupling = Sym3::outer(normal + aside) - Sym3::outer(normal) - Sym3::outer(aside);
@@ -449,7 +454,10 @@ impl ParticleGroup {
         self.reactions.fill(Vec3::ZERO);
         for i in 0..self.positions.len() {
             if self.system.freedom[i] != Freedom::Fixed {
-                self.velocities[i] = self.system.inertia[i].inverse() * self.system.momentum[i];
+                self.velocities[i] = match self.forest.hub_of(i) {
+                    NO_HUB => self.system.inertia[i].inverse() * self.system.momentum[i],
+                    hub => self.system.hubs[hub].coming_at(self.system.points[i]),
+                };
             }
             self.positions[i] += self.velocities[i] * h;
         }

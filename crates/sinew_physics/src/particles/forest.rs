@@ -6,7 +6,9 @@
 //! leaves to the root fills nothing in and the solution is exact in linear time. At rest the right-hand side is
 //! zero, so that a chain hangs exactly where its forces balance, whatever the length of the step.
 
+use super::hub::Hub;
 use super::{Resists, SpringDef};
+use crate::id::BodyId;
 use crate::particles::tuning::LENGTH_TOLERANCE;
 use sinew_math::{Sym3, Vec3, max};
 
@@ -42,44 +44,83 @@ pub(super) struct Forest {
     ties: Vec<Tie>,
     /// Springs that are projected, not solved: those that would close a loop.
     loops: Vec<u32>,
+    /// Particles that each body holds, and the hub of each particle.
+    hubs: Vec<Vec<u32>>,
+    hub_of: Vec<usize>,
+}
+
+/// Holder of a particle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Holder {
+    Nothing,
+    World,
+    Body(BodyId),
+}
+
+/// Number of the hub of a particle that no body holds.
+pub(super) const NO_HUB: usize = usize::MAX;
+
+/// True if a spring between what these hold cannot change its length.
+fn is_rigid([a, b]: [Holder; 2]) -> bool {
+    a == b && a != Holder::Nothing
 }
 
 impl Forest {
     /// All springs projected, none solved: each particle is a tree of its own.
-    pub fn without_trees(springs: &[SpringDef], held_in_world: &[bool]) -> Self {
-        let held = |i: u32| held_in_world[i as usize];
-        let moves = |k: &u32| !(held(springs[*k as usize].a) && held(springs[*k as usize].b));
+    pub fn without_trees(springs: &[SpringDef], holders: &[Holder]) -> Self {
+        let ends = |k: u32| [springs[k as usize].a, springs[k as usize].b].map(|i| holders[i as usize]);
         Self {
-            roots: (0..held_in_world.len() as u32).filter(|&i| !held(i)).collect(),
-            loops: (0..springs.len() as u32).filter(moves).collect(),
-            ..Self::default()
+            roots: (0..holders.len() as u32).filter(|&i| holders[i as usize] != Holder::World).collect(),
+            loops: (0..springs.len() as u32).filter(|&k| !is_rigid(ends(k))).collect(),
+            ..Self::with_hubs(holders)
         }
     }
 
-    /// A spanning forest in order of indices. Particles held in the world carry no motion, so trees end at them.
-    pub fn new(particles: usize, springs: &[SpringDef], held_in_world: &[bool]) -> Self {
-        let mut forest = Self::default();
-        let mut touching: Vec<Vec<u32>> = vec![Vec::new(); particles];
+    /// No springs yet.
+    fn with_hubs(holders: &[Holder]) -> Self {
+        let mut forest = Self { hub_of: vec![NO_HUB; holders.len()], ..Self::default() };
+        let mut bodies: Vec<BodyId> = Vec::new();
+        for (i, holder) in holders.iter().enumerate() {
+            let Holder::Body(body) = *holder else { continue };
+            let hub = bodies.iter().position(|&other| other == body).unwrap_or_else(|| {
+                bodies.push(body);
+                forest.hubs.push(Vec::new());
+                bodies.len() - 1
+            });
+            forest.hubs[hub].push(i as u32);
+            forest.hub_of[i] = hub;
+        }
+        forest
+    }
+
+    /// A spanning forest in order of indices. Particles held in the world carry no motion, so trees end at them; those that one body holds are
+    /// one node.
+    pub fn new(springs: &[SpringDef], holders: &[Holder]) -> Self {
+        let mut forest = Self::with_hubs(holders);
+        let mut touching: Vec<Vec<u32>> = vec![Vec::new(); holders.len()];
         for (index, s) in springs.iter().enumerate() {
             let index = index as u32;
-            match (held_in_world[s.a as usize], held_in_world[s.b as usize]) {
-                (true, true) => {}
-                (true, false) => forest.ties.push(Tie { particle: s.b, held: s.a, spring: index }),
-                (false, true) => forest.ties.push(Tie { particle: s.a, held: s.b, spring: index }),
-                (false, false) => {
+            match [s.a, s.b].map(|i| holders[i as usize]) {
+                ends if is_rigid(ends) => {}
+                [Holder::World, _] => forest.ties.push(Tie { particle: s.b, held: s.a, spring: index }),
+                [_, Holder::World] => forest.ties.push(Tie { particle: s.a, held: s.b, spring: index }),
+                _ => {
                     touching[s.a as usize].push(index);
                     touching[s.b as usize].push(index);
+                    forest.loops.push(index);
                 }
             }
         }
-        let mut reached = held_in_world.to_vec();
+        let mut reached: Vec<bool> = holders.iter().map(|&holder| holder == Holder::World).collect();
         let mut in_tree = vec![false; springs.len()];
-        for root in 0..particles {
-            if core::mem::replace(&mut reached[root], true) {
+        let mut frontier = Vec::new();
+        for root in 0..holders.len() as u32 {
+            if reached[root as usize] {
                 continue;
             }
-            forest.roots.push(root as u32);
-            let mut frontier = vec![root as u32];
+            forest.roots.push(root);
+            frontier.clear();
+            forest.reach(root, &mut reached, &mut frontier);
             let mut next = 0;
             while next < frontier.len() {
                 let parent = frontier[next];
@@ -87,19 +128,37 @@ impl Forest {
                 for &spring in &touching[parent as usize] {
                     let s = &springs[spring as usize];
                     let child = if s.a == parent { s.b } else { s.a };
-                    if !core::mem::replace(&mut reached[child as usize], true) {
+                    if !reached[child as usize] {
                         in_tree[spring as usize] = true;
                         forest.links.push(Link { child, parent, spring });
-                        frontier.push(child);
+                        forest.reach(child, &mut reached, &mut frontier);
                     }
                 }
             }
         }
         forest.links.reverse();
-        let free = |s: &SpringDef| !held_in_world[s.a as usize] && !held_in_world[s.b as usize];
-        let closes_loop = |k: &u32| !in_tree[*k as usize] && free(&springs[*k as usize]);
-        forest.loops = (0..springs.len() as u32).filter(closes_loop).collect();
+        forest.loops.retain(|&spring| !in_tree[spring as usize]);
         forest
+    }
+
+    /// Puts a particle in the frontier of a tree, and those that the same body holds.
+    fn reach(&self, i: u32, reached: &mut [bool], frontier: &mut Vec<u32>) {
+        let alone = [i];
+        let node = self.hubs.get(self.hub_of[i as usize]).map_or(&alone[..], |hub| &hub[..]);
+        for &particle in node {
+            reached[particle as usize] = true;
+            frontier.push(particle);
+        }
+    }
+
+    /// Particles that each body holds.
+    pub fn hubs(&self) -> &[Vec<u32>] {
+        &self.hubs
+    }
+
+    /// Hub of a particle, or `NO_HUB`.
+    pub fn hub_of(&self, i: usize) -> usize {
+        self.hub_of[i]
     }
 
     /// True if there are springs to be solved, so that particles hear of each other.
@@ -210,7 +269,7 @@ pub(super) enum Freedom {
 /// Memory of one step's system, by particle and by spring.
 #[derive(Clone, Debug, Default)]
 pub(super) struct System {
-    /// kg: the particle's own, and what its anchor adds.
+    /// kg: the particle's own, and where nothing is in trees what its anchor adds.
     pub inertia: Vec<Sym3>,
     /// kg·m/s: momentum at the end of the step without springs and contacts.
     pub momentum: Vec<Vec3>,
@@ -220,6 +279,10 @@ pub(super) struct System {
     pub added_momentum: Vec<Vec3>,
     /// The velocity of a fixed particle is read from the velocities.
     pub freedom: Vec<Freedom>,
+    /// Bodies that hold particles.
+    pub hubs: Vec<Hub>,
+    /// Place of each held particle on its body, world, metres.
+    pub points: Vec<Vec3>,
     loads: Vec<Load>,
     /// Velocities and impulses of springs that Newton's method has come from.
     last_velocities: Vec<Vec3>,
@@ -232,7 +295,7 @@ pub(super) struct System {
 }
 
 impl System {
-    pub fn new(particles: usize, springs: usize) -> Self {
+    pub fn new(particles: usize, springs: usize, hubs: usize) -> Self {
         let (matrices, vectors) = (vec![Sym3::ZERO; particles], vec![Vec3::ZERO; particles]);
         Self {
             inertia: matrices.clone(),
@@ -240,6 +303,8 @@ impl System {
             added_inertia: matrices.clone(),
             added_momentum: vectors.clone(),
             freedom: vec![Freedom::Free; particles],
+            hubs: vec![Hub::new(); hubs],
+            points: vectors.clone(),
             loads: vec![Load::default(); springs],
             last_velocities: vectors.clone(),
             last_impulses: vectors.clone(),
@@ -281,6 +346,7 @@ impl System {
             }
             let before = merit.unwrap_or_else(|| self.merit(forest, springs, (positions, velocities), h));
             self.last_velocities.copy_from_slice(velocities);
+            self.hubs.iter_mut().for_each(|hub| hub.last_velocity = hub.velocity);
             self.last_impulses.copy_from_slice(impulses);
             self.solve(forest, springs, h, velocities);
             self.spring_impulses(forest, springs, h, velocities, impulses);
@@ -291,6 +357,9 @@ impl System {
                 }
                 for (now, last) in velocities.iter_mut().zip(&self.last_velocities) {
                     *now = (*now + *last) * 0.5;
+                }
+                for hub in &mut self.hubs {
+                    hub.velocity = core::array::from_fn(|k| (hub.velocity[k] + hub.last_velocity[k]) * 0.5);
                 }
                 for (now, last) in impulses.iter_mut().zip(&self.last_impulses) {
                     *now = (*now + *last) * 0.5;
@@ -318,6 +387,11 @@ impl System {
                 sum += f64::from(own) - f64::from(given);
                 size += f64::from(own) + f64::from(given.abs());
             }
+        }
+        for hub in &self.hubs {
+            let own = f64::from(hub.merit());
+            sum += own;
+            size += own;
         }
         for spring in forest.solved_springs() {
             let s = &springs[spring as usize];
@@ -367,6 +441,10 @@ impl System {
         self.gather(forest, springs, h, velocities);
         for &root in &forest.roots {
             let root = root as usize;
+            if self.gather_hub(forest, root) {
+                self.move_hub(forest, root, velocities);
+                continue;
+            }
             let inverse = self.gathered_inertia[root].inverse();
             self.response[root] = constrained(&inverse, &self.freedom[root]);
             self.settle(root, &inverse, Vec3::ZERO, velocities);
@@ -375,6 +453,39 @@ impl System {
             let (child, load) = (link.child as usize, self.loads[link.spring as usize]);
             let inverse = (self.gathered_inertia[child] + load.block).inverse();
             self.settle(child, &inverse, load.block * velocities[link.parent as usize], velocities);
+            if self.is_in_hub(forest, child) {
+                let hub = forest.hub_of[child];
+                let seen = self.hubs[hub].seen_at(self.points[child]);
+                self.hubs[hub].follow(self.points[child], velocities[child], seen);
+                self.move_hub(forest, child, velocities);
+            }
+        }
+    }
+
+    /// True if a body that moves holds it.
+    fn is_in_hub(&self, forest: &Forest, i: usize) -> bool {
+        forest.hub_of[i] != NO_HUB && self.freedom[i] != Freedom::Fixed
+    }
+
+    /// Gathers what the body of a particle holds, if one that moves does; whether there is one.
+    fn gather_hub(&mut self, forest: &Forest, i: usize) -> bool {
+        if !self.is_in_hub(forest, i) {
+            return false;
+        }
+        let hub = forest.hub_of[i];
+        let held = |&i: &u32| {
+            let i = i as usize;
+            (self.points[i], self.gathered_inertia[i], self.gathered_momentum[i])
+        };
+        self.hubs[hub].gather(forest.hubs[hub].iter().map(held));
+        true
+    }
+
+    /// Gives all that the body of a particle holds the velocities of its points.
+    fn move_hub(&self, forest: &Forest, i: usize, velocities: &mut [Vec3]) {
+        let hub = forest.hub_of[i];
+        for &held in &forest.hubs[hub] {
+            velocities[held as usize] = self.hubs[hub].velocity_at(self.points[held as usize]);
         }
     }
 
@@ -394,6 +505,10 @@ impl System {
         for link in &forest.links {
             let (child, parent) = (link.child as usize, link.parent as usize);
             let Load { force, block, .. } = self.loads[link.spring as usize];
+            if self.gather_hub(forest, child) {
+                let seen = self.hubs[forest.hub_of[child]].seen_at(self.points[child]);
+                (self.gathered_inertia[child], self.gathered_momentum[child]) = seen;
+            }
             let on_child = if springs[link.spring as usize].a == link.child { force * h } else { -force * h };
             self.gathered_momentum[child] += on_child;
             self.gathered_momentum[parent] -= on_child;

@@ -22,6 +22,7 @@ mod def;
 mod elastic;
 mod forest;
 mod geodesic;
+mod hub;
 mod impact;
 mod near;
 mod net;
@@ -47,7 +48,7 @@ use crate::id::GroupId;
 use crate::particles::tuning::STRIKE_GAP;
 use batches::Batches;
 use contact::{Grip, Placed, Touch};
-use forest::{Forest, Freedom, System};
+use forest::{Forest, Freedom, Holder, System};
 use impact::MAX_TOUCHES;
 use near::Near;
 use rest::{Bed, GroupRest};
@@ -98,8 +99,8 @@ pub struct ParticleGroup {
     weights: Vec<f32>,
     /// Velocity of each particle when the iteration began, damped.
     begun: Vec<Vec3>,
-    /// Velocity of each point that holds a particle, as the iterations so far have changed it, m/s.
-    anchor_velocities: Vec<Vec3>,
+    /// Bodies as what they hold has changed them in the iterations so far.
+    holders: Vec<ObstacleBody>,
     /// Directions in which each particle changes a volume, m².
     gradients: Vec<Vec3>,
     /// Shapes as the iteration finds them.
@@ -188,16 +189,19 @@ impl ParticleGroup {
     fn derive(&mut self) {
         let count = self.positions.len();
         self.attachment_of = vec![u32::MAX; count];
-        let mut held_in_world = vec![false; count];
+        let mut holders = vec![Holder::Nothing; count];
         for (index, a) in self.attachments.iter().enumerate() {
             self.attachment_of[a.particle as usize] = index as u32;
-            held_in_world[a.particle as usize] = matches!(a.target, AttachmentTarget::World(_));
+            holders[a.particle as usize] = match a.target {
+                AttachmentTarget::World(_) => Holder::World,
+                AttachmentTarget::Body { body, .. } => Holder::Body(body),
+            };
         }
         self.forest = match self.scheme {
-            SpringScheme::Implicit => Forest::new(count, &self.springs, &held_in_world),
-            SpringScheme::Projected => Forest::without_trees(&self.springs, &held_in_world),
+            SpringScheme::Implicit => Forest::new(&self.springs, &holders),
+            SpringScheme::Projected => Forest::without_trees(&self.springs, &holders),
         };
-        self.system = System::new(count, self.springs.len());
+        self.system = System::new(count, self.springs.len(), self.forest.hubs().len());
         self.previous = self.positions.clone();
         self.drawn_from = self.positions.clone();
         self.places = self.positions.clone();
@@ -206,7 +210,6 @@ impl ParticleGroup {
         self.accelerations = vec![Vec3::ZERO; count];
         self.pulls = vec![0.0; count];
         self.begun = vec![Vec3::ZERO; count];
-        self.anchor_velocities = vec![Vec3::ZERO; self.attachments.len()];
         self.gradients = vec![Vec3::ZERO; count];
         self.touches = vec![None; count];
         self.solved = Vec::with_capacity(count);
@@ -423,9 +426,8 @@ impl ParticleGroup {
 
     /// Moves the group by `h` seconds under `gravity` (m/s²), its springs, its attachments and its contacts.
     ///
-    /// `anchors[k]` holds attachment `k`. Anchors that are bodies yield to the springs within the same solve, so that
-    /// a stiff rope does not shake a light body; each such point is solved as if it were the body's only one, so give
-    /// each its share of the body's inertia. What the body gains is in
+    /// `anchors[k]` holds attachment `k`. Anchors that are bodies yield to the springs within the same solve, as whole bodies, so that
+    /// a stiff rope does not shake a light body. What the body gains is in
     /// [`attachment_impulses`](Self::attachment_impulses), for the caller to apply.
     ///
     /// `obstacles` and `bodies` are at the end of the substep; pass those that come near [`bounds`](Self::bounds). Which of
@@ -434,7 +436,7 @@ impl ParticleGroup {
     /// and [`body_impulses`](Self::body_impulses) lists how. Attached particles touch nothing.
     ///
     /// # Panics
-    /// If there is not one anchor for each attachment, or an obstacle's body is not in `bodies`.
+    /// If there is not one anchor for each attachment, or the body of an anchor or an obstacle is not in `bodies`.
     pub fn substep(
         &mut self,
         h: f32,
@@ -455,8 +457,8 @@ impl ParticleGroup {
         }
         self.body_impulses.clear();
         self.attachment_impulses.fill(Vec3::ZERO);
-        self.anchor_velocities.clear();
-        self.anchor_velocities.extend(anchors.iter().map(|anchor| anchor.velocity));
+        self.holders.clear();
+        self.holders.extend_from_slice(bodies);
         for number in 0..self.iterations {
             self.iterate(Part { number, of: self.iterations, whole: h }, anchors, obstacles, bodies);
         }

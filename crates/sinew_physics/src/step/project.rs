@@ -20,6 +20,8 @@ pub(crate) struct Surroundings {
     starts: Vec<Transform>,
     /// Impulses on the bodies of the island, by local index.
     impulses: Vec<Vec6>,
+    /// Number of groups that hang on each of them, and the last of these.
+    hung_on: Vec<(u32, usize)>,
 }
 
 /// A body as particles see it: where it is now, and where to put what they do to it.
@@ -87,6 +89,8 @@ impl Surroundings {
         self.impulses.reserve(island.bodies.len());
         self.starts.clear();
         self.starts.reserve(island.bodies.len());
+        self.hung_on.clear();
+        self.hung_on.reserve(island.bodies.len());
     }
 
     /// Moves the groups of an island by one substep. Bodies get what springs and contacts push them with through their
@@ -106,11 +110,15 @@ impl Surroundings {
             let back = Velocity { linear: -linear(v), angular: -angular(v) };
             moved(&body.pose, &back, view.pace.h)
         }));
-        for taken in groups {
-            self.seen.clear();
-            let see = |&index: &u32| Seen::new(index, &self.starts, solver, view, substep);
-            self.seen.extend(taken.near.bodies.iter().map(see));
-            self.place(taken, view);
+        self.hung_on.clear();
+        self.hung_on.resize(solver.moving_bodies().len(), (0, usize::MAX));
+        for (number, taken) in groups.iter_mut().enumerate() {
+            self.see(taken, solver, view, substep);
+            self.place_obstacles(taken, view);
+            for local in self.anchors.iter().filter_map(|anchor| self.seen[anchor.body? as usize].local) {
+                let (count, last) = self.hung_on[local];
+                self.hung_on[local] = if last == number { (count, last) } else { (count + 1, number) };
+            }
             taken.group.substep(
                 view.pace.h,
                 view.def.gravity,
@@ -120,10 +128,45 @@ impl Surroundings {
             );
             self.push_bodies(taken, solver);
         }
+        if self.hung_on.iter().any(|&(count, _)| count > 1) {
+            groups.iter_mut().for_each(|taken| self.join_held(taken, solver, view, substep));
+        }
     }
 
-    /// Obstacles and anchors of a group at the present poses.
-    fn place(&mut self, TakenGroup { group, near, .. }: &TakenGroup, view: &View<'_>) {
+    /// Gives particles of a group the velocity of a body that other groups hang on as well: these have pushed it since. If they went on without, it
+    /// would learn of their inertia one substep late, and what hangs on two ropes would gain energy.
+    fn join_held(
+        &mut self,
+        taken: &mut TakenGroup,
+        solver: &mut IslandSolver,
+        view: &View<'_>,
+        substep: u32,
+    ) {
+        self.see(taken, solver, view, substep);
+        self.impulses.clear();
+        self.impulses.resize(solver.moving_bodies().len(), ZERO6);
+        for (k, anchor) in self.anchors.iter().enumerate() {
+            let Some(place) = anchor.body.map(|body| body as usize) else { continue };
+            if let Some(local) = self.seen[place].local.filter(|&local| self.hung_on[local].0 > 1) {
+                let impulse = taken.group.join_held(k, anchor, &mut self.bodies[place]);
+                let arm = anchor.position - self.bodies[place].center;
+                add_scaled(&mut self.impulses[local], &join(impulse, arm.cross(impulse)), 1.0);
+            }
+        }
+        solver.apply_impulses(&self.impulses);
+    }
+
+    /// Bodies and anchors of a group at the present poses.
+    fn see(
+        &mut self,
+        TakenGroup { group, near, .. }: &TakenGroup,
+        solver: &IslandSolver,
+        view: &View<'_>,
+        substep: u32,
+    ) {
+        self.seen.clear();
+        let see = |&index: &u32| Seen::new(index, &self.starts, solver, view, substep);
+        self.seen.extend(near.bodies.iter().map(see));
         let seen = &self.seen;
         self.bodies.clear();
         self.bodies.extend(seen.iter().map(|body| ObstacleBody {
@@ -133,6 +176,25 @@ impl Surroundings {
             inverse_mass: body.inverse_mass,
             inverse_inertia: body.inverse_inertia,
         }));
+        self.anchors.clear();
+        for attachment in group.attachments() {
+            self.anchors.push(match attachment.target {
+                AttachmentTarget::World(position) => Anchor { position, ..Anchor::default() },
+                AttachmentTarget::Body { body, point } => {
+                    let place = near.bodies.binary_search(&body.index).unwrap_or(0);
+                    let principal_from_body = view.bodies.at(body.index).principal_from_body;
+                    let seen = &seen[place];
+                    let position = seen.pose.point(principal_from_body.point(point));
+                    let velocity = self.bodies[place].velocity_at(position);
+                    Anchor { position, velocity, gained: seen.coming, body: Some(place as u32) }
+                }
+            });
+        }
+    }
+
+    /// Obstacles of a group.
+    fn place_obstacles(&mut self, TakenGroup { near, .. }: &TakenGroup, view: &View<'_>) {
+        let seen = &self.seen;
         self.obstacles.clear();
         for &(place, shape) in &near.shapes {
             let body = view.bodies.at(near.bodies[place as usize]);
@@ -143,17 +205,6 @@ impl Surroundings {
                 world_from_shape: seen[place as usize].pose * s.principal_from_shape,
                 body: place,
                 material: body.surface(shape as usize).material,
-            });
-        }
-        self.anchors.clear();
-        for attachment in group.attachments() {
-            self.anchors.push(match attachment.target {
-                AttachmentTarget::World(position) => Anchor { position, ..Anchor::default() },
-                AttachmentTarget::Body { body, point } => {
-                    let place = near.bodies.binary_search(&body.index).unwrap_or(0);
-                    let principal_from_body = view.bodies.at(body.index).principal_from_body;
-                    anchor(&seen[place], principal_from_body.point(point), near.holds[place])
-                }
             });
         }
     }
@@ -179,22 +230,5 @@ impl Surroundings {
             }
         }
         solver.apply_impulses(&self.impulses);
-    }
-}
-
-/// A point of a body (principal frame) as one of so many attachments to it sees it: each has its share of the inertia, so
-/// that what they give together is not too much.
-fn anchor(body: &Seen, point: Vec3, among: u32) -> Anchor {
-    let position = body.pose.point(point);
-    let arm = position - body.pose.translation;
-    // Velocity gained at the point per impulse there: 1/m − [r]× I⁻¹ [r]×.
-    let gained = |e: Vec3| e * body.inverse_mass + (body.inverse_inertia * arm.cross(e)).cross(arm);
-    let columns = sinew_math::Mat3::from_cols(gained(Vec3::X), gained(Vec3::Y), gained(Vec3::Z));
-    let yields = Sym3::from_mat3(&columns) * among as f32;
-    Anchor {
-        position,
-        velocity: linear(&body.velocity) + angular(&body.velocity).cross(arm),
-        gained: body.coming,
-        inverse_mass: if body.local.is_some() { yields } else { Sym3::ZERO },
     }
 }

@@ -189,8 +189,15 @@ fn a_stiff_spring_moves_a_light_body_both_ways() {
     let (mut position, mut velocity) = (Vec3::ZERO, Vec3::ZERO);
     let h = 1.0 / 240.0;
     for _ in 0..2400 {
-        let anchor = Anchor { position, velocity, gained: Vec3::ZERO, inverse_mass: Sym3::IDENTITY };
-        group.substep(h, Vec3::ZERO, &[anchor], &[], &mut []);
+        let anchor = Anchor { position, velocity, gained: Vec3::ZERO, body: Some(0) };
+        let body = ObstacleBody {
+            center: position,
+            linear_velocity: velocity,
+            inverse_mass: 1.0,
+            inverse_inertia: Sym3::IDENTITY,
+            ..ObstacleBody::default()
+        };
+        group.substep(h, Vec3::ZERO, &[anchor], &[], &mut [body]);
         velocity += group.attachment_impulses()[0];
         position += velocity * h;
         let stretch = (group.positions()[1] - position).length() - 1.0;

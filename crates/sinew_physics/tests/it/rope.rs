@@ -170,3 +170,82 @@ fn a_world_with_particles_restores_and_threads_alike() {
         assert_eq!(world.hash(), threaded.hash());
     }
 }
+
+#[test]
+fn a_rope_pulls_through_a_body_that_it_holds_twice() {
+    let mut world = World::new(WorldDef::default());
+    let bodies = [(-1.0, 1.0), (-2.0, 10.0)].map(|(y, mass)| {
+        let mut def = box_body(Vec3::splat(0.1), Vec3::Y * y);
+        def.shapes[0].density = mass / 0.008;
+        def.sleeping = Sleeping::Off;
+        world.add_body(&def)
+    });
+    let particle = |y| ParticleDef { position: Vec3::Y * y, velocity: Vec3::ZERO, mass: 1e-3, radius: 0.01 };
+    let mut group = GroupDef {
+        particles: [0.0, -0.9, -1.1, -1.9].map(particle).to_vec(),
+        springs: vec![SpringDef::new([0, 1], 0.9, 5000.0), SpringDef::new([2, 3], 0.8, 5000.0)],
+        sleeping: Sleeping::Off,
+        ..GroupDef::default()
+    };
+    for spring in &mut group.springs {
+        *spring = spring.damped(1.0, [f32::INFINITY, 10.0]);
+    }
+    group.hold_in_world(&[0]);
+    for (particle, body, side) in [(1, bodies[0], 0.1), (2, bodies[0], -0.1), (3, bodies[1], 0.1)] {
+        group.hold(particle, AttachmentTarget::Body { body, point: Vec3::Y * side });
+    }
+    let id = world.add_particles(&group);
+    run(&mut world, 600);
+    let hung = [11.0, 10.0].map(|mass| mass * 9.81 / 5000.0);
+    for (k, expected) in hung.into_iter().enumerate() {
+        let stretch = world.particles(id).stretch(k);
+        assert!((stretch / expected - 1.0).abs() < 1e-3, "spring {k}: {stretch} for {expected}");
+    }
+}
+
+/// A plank on so many ropes, each of which holds it at two knots and is held at both ends.
+fn hung_plank(ropes: usize) -> World {
+    const LINK: f32 = 0.15;
+    const HALF: Vec3 = Vec3::new(0.13, 0.02, 0.8);
+    let mut world = World::new(WorldDef::default());
+    let mut def = BodyDef {
+        linear_velocity: Vec3::Y * 0.2,
+        angular_velocity: Vec3::new(0.3, 0.2, 1.0),
+        sleeping: Sleeping::Off,
+        ..box_body(HALF, Vec3::ZERO)
+    };
+    def.shapes[0].density = 5.0 / (8.0 * HALF.x * HALF.y * HALF.z);
+    let plank = world.add_body(&def);
+    let sides: &[f32] = if ropes == 1 { &[0.0] } else { &[-HALF.z, HALF.z] };
+    for z in sides.iter().map(|&z| Vec3::Z * z) {
+        let ends = [-1.5, 1.5].map(|x| Vec3::X * x * LINK + z);
+        let def = RopeDef { from: ends[0], to: ends[1], links: 3, mass: 2.0, stiffness: 4e4, radius: 0.01 };
+        let mut group = def.build().group;
+        // Taut with 400 N, and not damped.
+        for spring in &mut group.springs {
+            (spring.rest_length, spring.damping) = (LINK - 0.01, 0.0);
+        }
+        group.sleeping = Sleeping::Off;
+        // It lies inside the plank.
+        group.filter.mask = 0;
+        group.hold_in_world(&[0, 3]);
+        for (knot, x) in [(1, -0.5), (2, 0.5)] {
+            group.hold(knot, AttachmentTarget::Body { body: plank, point: Vec3::X * x * LINK + z });
+        }
+        world.add_particles(&group);
+    }
+    world
+}
+
+#[test]
+fn a_plank_on_taut_ropes_gains_no_energy() {
+    for ropes in [1, 2] {
+        let mut world = hung_plank(ropes);
+        let begin = world.energy().total();
+        for step in 0..600 {
+            world.step();
+            let now = world.energy().total();
+            assert!(now < begin + 0.5, "{ropes} ropes, step {step}: {begin} J became {now}");
+        }
+    }
+}

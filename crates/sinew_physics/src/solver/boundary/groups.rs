@@ -35,8 +35,6 @@ impl TakenGroup {
 pub(crate) struct Neighbors {
     /// World body indices, ascending.
     pub bodies: Vec<u32>,
-    /// Number of particles that hang on each of `bodies`.
-    pub holds: Vec<u32>,
     /// Position in `bodies`, shape number.
     pub shapes: Vec<(u32, u32)>,
     /// Body and shape of what is near, body and nothing for each particle that hangs on it.
@@ -73,17 +71,13 @@ impl Neighbors {
     /// From what was found, in order, to the lists.
     fn list(&mut self) {
         self.bodies.clear();
-        self.holds.clear();
         self.shapes.clear();
         for &(body, shape) in &self.found {
             if self.bodies.last() != Some(&body) {
                 self.bodies.push(body);
-                self.holds.push(0);
             }
-            let place = self.bodies.len() - 1;
-            match shape {
-                Some(shape) => self.shapes.push((place as u32, shape)),
-                None => self.holds[place] += 1,
+            if let Some(shape) = shape {
+                self.shapes.push((self.bodies.len() as u32 - 1, shape));
             }
         }
     }

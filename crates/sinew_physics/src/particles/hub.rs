@@ -1,0 +1,141 @@
+//! Bodies in the linear system of the springs: particles that one body holds move as it does.
+//!
+//! Such a body, a **hub**, is one node of a tree with six degrees of freedom: it gathers inertia and momentum of all its particles,
+//! `S = M + Σ Gᵀ Iᵢ G` with `G = (1, −[r]×)`, and the particle by which it hangs on the next one towards the root feels `(G S⁻¹ Gᵀ)⁻¹`. A rope that
+//! goes on from one point of a body to another pulls through it then. Were its points solved one by one, each with its share of the
+//! body's inertia, they would part under the tension within the solve, and a bridge of planks on ropes would stretch and gain energy.
+
+use super::contact::ObstacleBody;
+use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, angular, dot, join, linear, spd_inverse};
+use sinew_math::{Mat3, Sym3, Vec3, max};
+
+/// A body that holds particles, in one iteration.
+#[derive(Clone, Debug)]
+pub(super) struct Hub {
+    /// World, metres.
+    center: Vec3,
+    /// kg, and kg·m² about the centre, world axes.
+    mass: f32,
+    inertia: Sym3,
+    /// At the end of the iteration without springs and particles, and with those that hang below it.
+    coming: Vec6,
+    free: Vec6,
+    /// Velocity gained per impulse, with the particles below it.
+    response: Mat6,
+    /// As the solve found it, and as it was before the last step of Newton's method.
+    pub velocity: Vec6,
+    pub last_velocity: Vec6,
+}
+
+impl Hub {
+    pub fn new() -> Self {
+        Self {
+            center: Vec3::ZERO,
+            mass: 1.0,
+            inertia: Sym3::IDENTITY,
+            coming: ZERO6,
+            free: ZERO6,
+            response: ZERO66,
+            velocity: ZERO6,
+            last_velocity: ZERO6,
+        }
+    }
+
+    /// Takes in a body that moves; `gained` is the velocity that other forces will add to its own, m/s.
+    pub fn take(&mut self, body: &ObstacleBody, gained: Vec3) {
+        // One that does not turn has an inverse inertia that has no inverse.
+        let least = max(1e-9, 1e-6 * body.inverse_inertia.to_mat3().x_axis.length());
+        self.center = body.center;
+        self.mass = 1.0 / body.inverse_mass;
+        self.inertia = (body.inverse_inertia + Sym3::IDENTITY * least).inverse();
+        self.coming = join(body.linear_velocity + gained, body.angular_velocity);
+        self.velocity = self.coming;
+    }
+
+    /// Velocity of a point of it without springs, m/s.
+    pub fn coming_at(&self, point: Vec3) -> Vec3 {
+        velocity_at(&self.coming, point - self.center)
+    }
+
+    /// Velocity of a point of it as the solve found it, m/s.
+    pub fn velocity_at(&self, point: Vec3) -> Vec3 {
+        velocity_at(&self.velocity, point - self.center)
+    }
+
+    /// Gathers what it holds: point, inertia and momentum of each particle with all that hangs below it.
+    pub fn gather(&mut self, particles: impl Iterator<Item = (Vec3, Sym3, Vec3)>) {
+        let mut whole = ZERO66;
+        let turning = self.inertia.to_mat3();
+        for (k, axis) in [turning.x_axis, turning.y_axis, turning.z_axis].into_iter().enumerate() {
+            whole[k][k] = self.mass;
+            whole[3 + k] = join(Vec3::ZERO, axis);
+        }
+        let mut pull = ZERO6;
+        for (point, inertia, momentum) in particles {
+            let arm = point - self.center;
+            for (row, axis) in whole.iter_mut().zip(AXES) {
+                add_scaled(row, &wrench(arm, inertia * velocity_at(&axis, arm)), 1.0);
+            }
+            let gained = momentum - inertia * velocity_at(&self.coming, arm);
+            add_scaled(&mut pull, &wrench(arm, gained), 1.0);
+        }
+        self.response = spd_inverse(&whole, 6).unwrap_or(ZERO66);
+        self.free = self.coming;
+        let gained = self.respond(&pull);
+        add_scaled(&mut self.free, &gained, 1.0);
+        self.velocity = self.free;
+    }
+
+    /// Inertia and momentum that a point of it has for what pulls there, kg and kg·m/s.
+    pub fn seen_at(&self, point: Vec3) -> (Sym3, Vec3) {
+        let arm = point - self.center;
+        let column = |axis: Vec3| velocity_at(&self.respond(&wrench(arm, axis)), arm);
+        let inertia =
+            Sym3::from_mat3(&Mat3::from_cols(column(Vec3::X), column(Vec3::Y), column(Vec3::Z))).inverse();
+        (inertia, inertia * velocity_at(&self.free, arm))
+    }
+
+    /// Moves it as a pull at a point does that brings this to a velocity.
+    pub fn follow(&mut self, point: Vec3, velocity: Vec3, (inertia, momentum): (Sym3, Vec3)) {
+        let pull = wrench(point - self.center, inertia * velocity - momentum);
+        self.velocity = self.free;
+        let gained = self.respond(&pull);
+        add_scaled(&mut self.velocity, &gained, 1.0);
+    }
+
+    /// Part of the energy that the solve makes least, J: see `merit` of `forest.rs`.
+    pub fn merit(&self) -> f32 {
+        let mut gained = self.velocity;
+        add_scaled(&mut gained, &self.coming, -1.0);
+        let (along, turn) = (linear(&gained), angular(&gained));
+        0.5 * (self.mass * along.length_squared() + turn.dot(self.inertia * turn))
+    }
+
+    fn respond(&self, pull: &Vec6) -> Vec6 {
+        let mut gained = ZERO6;
+        for (gained, row) in gained.iter_mut().zip(&self.response) {
+            *gained = dot(row, pull);
+        }
+        gained
+    }
+}
+
+/// Units of velocity.
+const AXES: Mat6 = {
+    let mut axes = ZERO66;
+    let mut k = 0;
+    while k < 6 {
+        axes[k][k] = 1.0;
+        k += 1;
+    }
+    axes
+};
+
+fn velocity_at(v: &Vec6, arm: Vec3) -> Vec3 {
+    linear(v) + angular(v).cross(arm)
+}
+
+/// Impulse on a body by one at `arm` from its centre.
+fn wrench(arm: Vec3, impulse: Vec3) -> Vec6 {
+    join(impulse, arm.cross(impulse))
+}
