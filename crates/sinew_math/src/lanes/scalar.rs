@@ -111,7 +111,7 @@ impl Real for f64 {
     }
 }
 
-/// Eight `f32`, each treated as `f32` is. Development builds call its operations: see [`dispatch`](crate::dispatch).
+/// Eight `f32`, each treated as `f32` is. Without optimisation its operations are calls: see [`dispatch`](crate::dispatch).
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar([f32; WIDTH]);
 
@@ -120,14 +120,12 @@ pub struct Scalar([f32; WIDTH]);
 pub struct Doubles([f64; WIDTH]);
 
 impl Doubles {
-    #[cfg_attr(debug_assertions, inline)]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     pub(crate) fn widened(from: [f32; WIDTH]) -> Self {
         Self(from.map(f64::from))
     }
 
-    #[cfg_attr(debug_assertions, inline)]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     pub(crate) fn narrowed(self) -> [f32; WIDTH] {
         self.0.map(|x| x as f32)
     }
@@ -141,8 +139,7 @@ macro_rules! lane_by_lane {
     ($($operator:ident $method:ident $of:ident),*) => {$(
         impl $operator for $of {
             type Output = Self;
-            #[cfg_attr(debug_assertions, inline)]
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[inline]
             fn $method(self, other: Self) -> Self {
                 Self(array::from_fn(|k| $operator::$method(self.0[k], other.0[k])))
             }
@@ -155,8 +152,7 @@ lane_by_lane!(Add add Doubles, Sub sub Doubles, Mul mul Doubles, Div div Doubles
 
 impl Not for Bools {
     type Output = Self;
-    #[cfg_attr(debug_assertions, inline)]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     fn not(self) -> Self {
         Self(self.0.map(bool::not))
     }
@@ -165,8 +161,7 @@ impl Not for Bools {
 impl Mask for Bools {}
 
 impl LaneMask for Bools {
-    #[cfg_attr(debug_assertions, inline)]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     fn bits(self) -> u8 {
         let bit = |(k, &lane): (usize, &bool)| u8::from(lane) << k;
         self.0.iter().enumerate().map(bit).fold(0, BitOr::bitor)
@@ -178,8 +173,7 @@ macro_rules! array_of {
     ($of:ident $number:ident) => {
         impl Neg for $of {
             type Output = Self;
-            #[cfg_attr(debug_assertions, inline)]
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[inline]
             fn neg(self) -> Self {
                 Self(self.0.map($number::neg))
             }
@@ -188,62 +182,52 @@ macro_rules! array_of {
         impl Real for $of {
             type Mask = Bools;
 
-            #[cfg_attr(debug_assertions, inline)]
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[inline]
             fn splat(value: f32) -> Self {
                 Self([$number::splat(value); WIDTH])
             }
 
-            #[cfg_attr(debug_assertions, inline)]
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[inline]
             fn splat_wide(value: f64) -> Self {
                 Self([$number::splat_wide(value); WIDTH])
             }
 
-            #[cfg_attr(debug_assertions, inline)]
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[inline]
             fn sqrt(self) -> Self {
                 Self(self.0.map($number::sqrt))
             }
 
-            #[cfg_attr(debug_assertions, inline)]
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[inline]
             fn abs(self) -> Self {
                 Self(self.0.map($number::abs))
             }
 
-            #[cfg_attr(debug_assertions, inline)]
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[inline]
             fn lt(a: Self, b: Self) -> Bools {
                 Bools(array::from_fn(|k| a.0[k] < b.0[k]))
             }
 
-            #[cfg_attr(debug_assertions, inline)]
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[inline]
             fn le(a: Self, b: Self) -> Bools {
                 Bools(array::from_fn(|k| a.0[k] <= b.0[k]))
             }
 
-            #[cfg_attr(debug_assertions, inline)]
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[inline]
             fn eq(a: Self, b: Self) -> Bools {
                 Bools(array::from_fn(|k| a.0[k] == b.0[k]))
             }
 
-            #[cfg_attr(debug_assertions, inline)]
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[inline]
             fn select(mask: Bools, a: Self, b: Self) -> Self {
                 Self(array::from_fn(|k| $number::select(mask.0[k], a.0[k], b.0[k])))
             }
 
-            #[cfg_attr(debug_assertions, inline)]
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[inline]
             fn masked(self, mask: Bools) -> Self {
                 Self(array::from_fn(|k| self.0[k].masked(mask.0[k])))
             }
 
-            #[cfg_attr(debug_assertions, inline)]
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[inline]
             fn nan_where(self, mask: Bools) -> Self {
                 Self(array::from_fn(|k| self.0[k].nan_where(mask.0[k])))
             }
@@ -257,26 +241,22 @@ array_of!(Doubles f64);
 impl Lanes for Scalar {
     type Wide = Doubles;
 
-    #[cfg_attr(debug_assertions, inline)]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     fn widen(self) -> Doubles {
         Doubles::widened(self.0)
     }
 
-    #[cfg_attr(debug_assertions, inline)]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     fn narrow(wide: Doubles) -> Self {
         Self(wide.narrowed())
     }
 
-    #[cfg_attr(debug_assertions, inline)]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     fn load(from: &[f32; WIDTH]) -> Self {
         Self(*from)
     }
 
-    #[cfg_attr(debug_assertions, inline)]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     fn store(self, to: &mut [f32; WIDTH]) {
         *to = self.0;
     }
