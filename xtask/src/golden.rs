@@ -90,6 +90,15 @@ impl std::fmt::Display for GoldenHash {
     }
 }
 
+/// Steps and hash of a scene as committed.
+///
+/// # Errors
+/// If there is no such scene.
+pub fn committed(scene: &str) -> Result<(u32, String)> {
+    let found = read()?.into_iter().find(|golden| golden.scene == scene);
+    found.map(|golden| (golden.steps, golden.hash)).with_context(|| format!("{PATH} has no `{scene}`"))
+}
+
 fn read() -> Result<Vec<GoldenHash>> {
     let path = command::root().join(PATH);
     parse(&fs::read_to_string(path).context(PATH)?)

@@ -1,4 +1,4 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | bindings | fuzz`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | bindings | web | fuzz`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -15,6 +15,7 @@ mod ragdolls;
 mod spawns;
 mod targets;
 mod tidy;
+mod web;
 mod wild;
 
 use clap::{Parser, Subcommand};
@@ -49,6 +50,8 @@ enum Task {
     NewUser(new_user::NewUser),
     /// The libraries for C and Python, built, installed and tried as their users have them
     Bindings(bindings::Bindings),
+    /// The viewer as a page, a folder of static files; and its trial in a browser
+    Web(web::Web),
     /// Bytes from nowhere against the readers, and clips against the runtime
     Fuzz(fuzz::Fuzz),
 }
@@ -73,6 +76,7 @@ fn run() -> anyhow::Result<ExitCode> {
         Task::Ragdolls(ragdolls) => ragdolls.run()?,
         Task::Wild(wild) => wild.run()?,
         Task::Fuzz(fuzz) => fuzz.run()?,
+        Task::Web(web) => web.run()?,
         Task::Bench(bench) => return bench.run(),
     }
     Ok(ExitCode::SUCCESS)

@@ -5,7 +5,7 @@ use anyhow::Result;
 use std::process::Command;
 
 /// Of browsers.
-const BROWSER: &str = "wasm32-unknown-unknown";
+pub const BROWSER: &str = "wasm32-unknown-unknown";
 
 /// Of programs that print: Node runs them.
 const PROGRAM: &str = "wasm32-wasip1";
@@ -70,6 +70,10 @@ fn soup_with(flags: &str, tests: &[&str]) -> Result<()> {
     command::run(test.env("RUSTFLAGS", flags).env("CARGO_TARGET_WASM32_WASIP1_RUNNER", runner))
 }
 
-fn add(target: &str) -> Result<()> {
+/// Adds a target to the toolchain.
+///
+/// # Errors
+/// If it cannot.
+pub fn add(target: &str) -> Result<()> {
     command::run(Command::new("rustup").args(["target", "add", target]))
 }

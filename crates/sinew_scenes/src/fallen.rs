@@ -1,4 +1,4 @@
-//! A character of a file, limp: it falls on a floor and lies there, drawn by its skin.
+//! A character of a file, limp: it falls on a floor and lies there, drawn by its skin, or by its bodies where there is no more of it.
 
 use crate::framework::actors::Figure;
 use crate::framework::instance::{Instance, Script};
@@ -8,7 +8,8 @@ use sinew::anim::{Rig, RigAnalysis, local_to_model};
 use sinew::math::{Affine, ReadError, Reader, Rotation, Transform, Vec3, Writer};
 use sinew::physics::{BodyId, World, WorldDef};
 use sinew::ragdoll::{
-    AfterSettling, BuildError, BuildOptions, BuildReport, Character, CharacterDef, QualityMeter, build,
+    AfterSettling, BodySettings, BodyState, BuildError, BuildOptions, BuildReport, Character, CharacterDef,
+    QualityMeter, Ragdoll, RagdollDef, build,
 };
 use std::sync::Arc;
 
@@ -26,11 +27,8 @@ pub fn fall_of(rig: Rig, analysis: &RigAnalysis) -> Result<(Instance, BuildRepor
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
     def.after_settling = AfterSettling::StayDown;
     let def = Arc::new(def);
-    let mut world = World::new(WorldDef { gravity: Vec3::NEG_Y * GRAVITY, ..WorldDef::default() });
-    world.add_body(&floor());
-    let lean = Rotation::from_axis_angle(Vec3::X, LEAN);
-    let height = HEIGHT * def.ragdoll.height;
-    let mut character = Character::new(def.clone(), Transform::new(Vec3::Y * height, lean), 0.0);
+    let mut world = floor_alone();
+    let mut character = Character::new(def.clone(), start(&def.ragdoll), 0.0);
     character.go_limp(&mut world);
     let mut meter = QualityMeter::new(&def.ragdoll, SECONDS);
     meter.went_limp();
@@ -38,6 +36,33 @@ pub fn fall_of(rig: Rig, analysis: &RigAnalysis) -> Result<(Instance, BuildRepor
     let mut fallen = Fallen { def, character, meter, model: Vec::new() };
     fallen.show();
     Ok((Instance::new(world, fallen), report))
+}
+
+/// The bodies of a ragdoll without its rig, which fall from the pose in which it was built.
+pub fn fall_of_bodies(def: &RagdollDef) -> Instance {
+    let mut world = floor_alone();
+    let world_from_character = start(def);
+    let states: Vec<BodyState> = def
+        .bodies
+        .iter()
+        .map(|body| BodyState {
+            world_from_body: world_from_character * body.character_from_body,
+            ..BodyState::default()
+        })
+        .collect();
+    Ragdoll::spawn(&mut world, def, &states, &BodySettings::default());
+    Instance::of_world(world)
+}
+
+fn floor_alone() -> World {
+    let mut world = World::new(WorldDef { gravity: Vec3::NEG_Y * GRAVITY, ..WorldDef::default() });
+    world.add_body(&floor());
+    world
+}
+
+/// World from character at the start of a fall.
+fn start(def: &RagdollDef) -> Transform {
+    Transform::new(Vec3::Y * (HEIGHT * def.height), Rotation::from_axis_angle(Vec3::X, LEAN))
 }
 
 /// Length of a fall for which the meter has memory from the start, seconds.

@@ -21,8 +21,12 @@ pub use gpu::{Gpu, GpuError, Offscreen, StageRenderer, Target};
 pub use headless::Headless;
 pub use layers::Layer;
 pub use preferences::Preferences;
-pub use session::{Session, Subject};
+pub use session::{NamedFile, Session, Subject};
 pub use stage::Stage;
 pub use stage_times::{STAGES, StageTimes};
 pub use view::{Orbit, bounds, stage};
-pub use window::{ViewerError, open};
+pub use window::ViewerError;
+#[cfg(not(target_arch = "wasm32"))]
+pub use window::open;
+#[cfg(target_arch = "wasm32")]
+pub use window::web;

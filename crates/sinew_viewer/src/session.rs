@@ -2,23 +2,38 @@
 
 use crate::stage_times::StageTimes;
 use sinew::anim::{Hints, analyze_hinted};
-use sinew::formats::{Error, MotionOptions, ReadOptions, Textures, load_motion, load_world, read_bytes};
+use sinew::formats::{
+    Error, MotionFile, MotionOptions, ReadOptions, Textures, load_motion, read_bytes, read_motion,
+    read_ragdoll, read_world,
+};
 use sinew::physics::{Serial, TaskRunner, Threads, World, WorldDef};
-use sinew_scenes::fallen::fall_of;
+use sinew_scenes::fallen::{fall_of, fall_of_bodies};
 use sinew_scenes::recording::{Hands, Operation, Recorder, Recording, Replay};
 use sinew_scenes::scenes::{Instance, Scene, Settings, find};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::sync::Arc;
+use web_time::{Duration, Instant};
 
 /// Subject of a session, from which it can be started anew.
 #[derive(Clone, Debug)]
 pub enum Subject {
     /// A named scene with its settings, and those of them that are not at their defaults, `key=value`.
     Scene(&'static Scene, Box<Settings>, Vec<String>),
-    /// A file: a world, a character, a motion.
+    /// A file: a world, a character, a ragdoll.
     File(PathBuf),
+    /// Files without a folder, as a page is given them: what [`File`](Self::File) may be, and the files beside it.
+    Dropped(Arc<[NamedFile]>),
     /// A recording, and where it comes from.
     Recording(PathBuf, Box<Recording>),
+}
+
+/// A file without a folder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedFile {
+    /// Its name, with its extension.
+    pub name: String,
+    /// Content.
+    pub bytes: Vec<u8>,
 }
 
 impl Subject {
@@ -41,12 +56,36 @@ impl Subject {
     /// # Errors
     /// One line that names the file.
     pub fn file(path: &Path) -> Result<Self, Error> {
-        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("sinewrec")) {
-            let name = path.display().to_string();
-            let recording = Recording::read(&read_bytes(path)?).map_err(|error| error.with_file(name))?;
-            return Ok(Self::Recording(path.to_owned(), Box::new(recording)));
+        if has_extension(path, "sinewrec") {
+            return Self::recording(path, &read_bytes(path)?);
         }
         Ok(Self::File(path.to_owned()))
+    }
+
+    /// Files that were dropped together. The first of a kind that can be shown by itself is shown, the others are beside it.
+    ///
+    /// # Errors
+    /// One line that names the file.
+    pub fn dropped(mut files: Vec<NamedFile>) -> Result<Self, Error> {
+        let is_shown =
+            |file: &NamedFile| SHOWN.iter().any(|extension| has_extension(Path::new(&file.name), extension));
+        let first = files.iter().position(is_shown).unwrap_or(0);
+        match files.get(first) {
+            None => Err(Error::unsupported("nothing was dropped", "")),
+            Some(file) if has_extension(Path::new(&file.name), "sinewrec") => {
+                Self::recording(Path::new(&file.name), &file.bytes)
+            }
+            Some(_) => {
+                files.swap(0, first);
+                Ok(Self::Dropped(files.into()))
+            }
+        }
+    }
+
+    fn recording(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
+        let recording = Recording::read(bytes);
+        let recording = recording.map_err(|error| error.with_file(path.display().to_string()))?;
+        Ok(Self::Recording(path.to_owned(), Box::new(recording)))
     }
 
     /// Name to be shown.
@@ -56,6 +95,7 @@ impl Subject {
         match self {
             Self::Scene(scene, ..) => scene.name.to_owned(),
             Self::File(path) | Self::Recording(path, _) => file_name(path),
+            Self::Dropped(files) => files[0].name.clone(),
         }
     }
 
@@ -64,6 +104,7 @@ impl Subject {
         match self {
             Self::Scene(scene, ..) => scene.about.to_owned(),
             Self::File(path) => path.display().to_string(),
+            Self::Dropped(files) => files[0].name.clone(),
             Self::Recording(_, recording) => format!(
                 "recording of {} by version {}, {} steps",
                 recording.scene,
@@ -110,6 +151,11 @@ impl Session {
                 let (instance, lines) = instance_of_file(path)?;
                 report = lines;
                 Run::Live(Box::new(Recorder::of(instance, &name, &[])))
+            }
+            Subject::Dropped(files) => {
+                let (instance, lines) = instance_of_dropped(files)?;
+                report = lines;
+                Run::Live(Box::new(Recorder::of(instance, &files[0].name, &[])))
             }
             Subject::Recording(path, recording) => {
                 let replay = Replay::start((**recording).clone());
@@ -230,21 +276,66 @@ impl Session {
     }
 }
 
+/// Extensions of files that are shown by themselves; others lie beside them.
+const SHOWN: [&str; 7] = ["sinewrec", "json", "glb", "gltf", "vrm", "fbx", "bvh"];
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|it| it.eq_ignore_ascii_case(extension))
+}
+
 /// A world of what is in a file: its bodies, or the character in it, which falls; and lines that tell of it.
 fn instance_of_file(path: &Path) -> Result<(Instance, Vec<String>), Error> {
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
-        let bodies = load_world(path)?;
-        let mut world = World::new(WorldDef::default());
-        bodies.iter().for_each(|body| {
-            world.add_body(body);
-        });
-        return Ok((Instance::of_world(world), vec![format!("{} bodies", bodies.len())]));
-    }
     let name = path.display().to_string();
+    if has_extension(path, "json") {
+        return instance_of_json(&read_bytes(path)?).map_err(|error| error.with_file(name));
+    }
+    instance_of_character(load_motion(path, &motion_options())?, &name)
+}
+
+/// As [`instance_of_file`], of files without a folder.
+fn instance_of_dropped(files: &[NamedFile]) -> Result<(Instance, Vec<String>), Error> {
+    let [NamedFile { name, bytes }, beside @ ..] = files else {
+        return Err(Error::unsupported("nothing was dropped", ""));
+    };
+    if has_extension(Path::new(name), "json") {
+        return instance_of_json(bytes).map_err(|error| error.with_file(name.clone()));
+    }
+    // A page is told names without folders.
+    let last = |path: &str| path.rsplit('/').next().unwrap_or(path).to_owned();
+    let mut resolve = |relative: &str| {
+        let found = beside.iter().find(|file| file.name == last(relative));
+        let missing = || Error::io(format!("'{relative}' was not dropped with it"));
+        found.map(|file| file.bytes.clone()).ok_or_else(missing)
+    };
+    let file = read_motion(bytes, &motion_options(), &mut resolve);
+    instance_of_character(file.map_err(|error| error.with_file(name.clone()))?, name)
+}
+
+fn motion_options() -> MotionOptions<'static> {
     let gltf = ReadOptions { textures: Textures::Decode };
-    let file = load_motion(path, &MotionOptions { gltf, ..MotionOptions::default() })?;
+    MotionOptions { gltf, ..MotionOptions::default() }
+}
+
+/// A ragdoll, or a world.
+fn instance_of_json(bytes: &[u8]) -> Result<(Instance, Vec<String>), Error> {
+    let kind = serde_json::from_slice::<serde_json::Value>(bytes);
+    if kind.is_ok_and(|value| value["sinew"] == "ragdoll") {
+        let def = read_ragdoll(bytes)?;
+        let about = format!("{} bodies, {} joints", def.bodies.len(), def.joints.len());
+        let size = format!("{:.2} m, {:.1} kg", def.height, def.total_mass);
+        return Ok((fall_of_bodies(&def), vec![about, size]));
+    }
+    let bodies = read_world(bytes)?;
+    let mut world = World::new(WorldDef::default());
+    bodies.iter().for_each(|body| {
+        world.add_body(body);
+    });
+    Ok((Instance::of_world(world), vec![format!("{} bodies", bodies.len())]))
+}
+
+fn instance_of_character(file: MotionFile, name: &str) -> Result<(Instance, Vec<String>), Error> {
     let hints = Hints { exporter: file.generator.clone(), ..Hints::of_clips(&file.rig, &file.clips) };
-    let refused = |what: String| Error::unsupported(what, "").with_file(&name);
+    let refused = |what: String| Error::unsupported(what, "").with_file(name);
     let analysis = analyze_hinted(&file.rig, &hints).map_err(|error| refused(error.to_string()))?;
     let (joints, clips) = (file.rig.joints.len(), file.clips.len());
     let (instance, report) = fall_of(file.rig, &analysis).map_err(|error| refused(error.to_string()))?;

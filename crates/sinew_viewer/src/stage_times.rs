@@ -3,7 +3,7 @@
 use sinew::physics::stage::{Profiler, Stage};
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
+use web_time::Instant;
 
 /// All stages, in the order of the step.
 pub const STAGES: [Stage; 20] = [

@@ -9,7 +9,7 @@ mod transport;
 
 use crate::layers::Layer;
 use crate::preferences::Preferences;
-use crate::session::{Session, Subject};
+use crate::session::{NamedFile, Session, Subject};
 use crate::stage::Stage;
 use crate::view::{self, Orbit};
 use egui::{Key, Rect, Vec2};
@@ -18,7 +18,7 @@ use sinew::math::Vec3;
 use sinew_picture::Camera;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 /// Longest that a frame may step, so that the window stays awake in scenes that are slower than real time.
 const MOST_STEPPING: Duration = Duration::from_millis(60);
@@ -36,6 +36,8 @@ pub struct Options {
     pub subject: Option<Subject>,
     /// True to start without running.
     pub paused: bool,
+    /// Steps that are taken as fast as it goes, after which it is paused and tells its hash; `None` runs in real time.
+    pub steps: Option<u64>,
     /// True to print each message to stderr as well.
     pub log: bool,
     /// File in which choices are kept from one start to the next; `None` keeps none.
@@ -52,6 +54,8 @@ pub struct App {
     session: Session,
     orbit: Orbit,
     running: bool,
+    /// Step up to which it goes as fast as it can.
+    goal: Option<u64>,
     /// Simulated over real time.
     speed: f32,
     /// Real time that has not been stepped yet, seconds of simulation.
@@ -77,6 +81,8 @@ pub struct App {
     starts: u64,
     log: bool,
     preferences: Option<PathBuf>,
+    /// Files to be written by whoever shows it.
+    files: Vec<NamedFile>,
     wants_screenshot: bool,
     wants_to_close: bool,
 }
@@ -99,6 +105,7 @@ impl App {
             orbit: Orbit { target: Vec3::ZERO, yaw: 0.0, pitch: 0.0, distance: 1.0 },
             session,
             running: !options.paused,
+            goal: options.steps,
             speed: 1.0,
             pending: 0.0,
             last_frame: None,
@@ -117,6 +124,7 @@ impl App {
             starts: 0,
             log: options.log,
             preferences: options.preferences,
+            files: Vec::new(),
             wants_screenshot: false,
             wants_to_close: false,
         };
@@ -211,6 +219,19 @@ impl App {
         }
     }
 
+    /// Shows files that were dropped on a page. What cannot be read is a message.
+    pub fn open_dropped(&mut self, files: Vec<NamedFile>) {
+        match Subject::dropped(files) {
+            Ok(subject) => self.open(subject),
+            Err(error) => self.tell(error.to_string()),
+        }
+    }
+
+    /// Files to be kept for the person in front of it, once.
+    pub fn take_files(&mut self) -> Vec<NamedFile> {
+        std::mem::take(&mut self.files)
+    }
+
     /// Begins with a new session: its camera, its sliders, its plots.
     fn begin(&mut self) {
         self.starts += 1;
@@ -272,6 +293,9 @@ impl App {
         if !self.running {
             return;
         }
+        if let Some(goal) = self.goal {
+            return self.hurry(goal, now);
+        }
         let dt = f64::from(self.session.world().def().dt());
         self.pending += passed.min(LONGEST_FRAME) * f64::from(self.speed);
         while self.running && self.pending >= dt {
@@ -280,6 +304,19 @@ impl App {
             if now.elapsed() > MOST_STEPPING {
                 self.pending = 0.0;
             }
+        }
+    }
+
+    /// Steps as fast as it goes, up to a step, for as long as a frame may take.
+    fn hurry(&mut self, goal: u64, start: Instant) {
+        while self.running && self.session.world().step_count() < goal && start.elapsed() < MOST_STEPPING {
+            self.step();
+        }
+        let world = self.session.world();
+        if world.step_count() >= goal {
+            let line = format!("hash {:016x} after {} steps", world.hash(), world.step_count());
+            (self.goal, self.running) = (None, false);
+            self.tell(line);
         }
     }
 
@@ -388,15 +425,12 @@ impl App {
         }
     }
 
-    /// Writes the recording of the scene so far into the working folder.
+    /// Hands out the recording of the scene so far, to be written.
     fn save_recording(&mut self) {
         let Some(recording) = self.session.recording() else {
             return self.tell("only scenes can be recorded");
         };
         let name = format!("{}-{}.sinewrec", recording.scene, recording.steps.len());
-        match sinew::formats::write_atomic(&name, &recording.to_bytes()) {
-            Ok(()) => self.tell(format!("wrote {name}")),
-            Err(error) => self.tell(error.to_string()),
-        }
+        self.files.push(NamedFile { name, bytes: recording.to_bytes() });
     }
 }

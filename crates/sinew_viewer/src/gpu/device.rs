@@ -1,9 +1,5 @@
 //! A device that draws, or the line that says what is missing.
 
-use std::future::Future;
-use std::pin::pin;
-use std::task::{Context, Poll, Waker};
-
 /// A device that draws, with the queue of its work.
 #[derive(Clone, Debug)]
 pub struct Gpu {
@@ -38,31 +34,30 @@ pub enum GpuError {
 }
 
 impl Gpu {
-    /// A device for pictures without a window.
+    /// A device for pictures without a window; pages have none.
     ///
     /// # Errors
     /// If there is no driver, or it cannot do what is needed.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn open() -> Result<Self, GpuError> {
-        Self::open_for(&instance(), None)
+        let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+        wait(Self::open_for(&wgpu::Instance::new(descriptor), None))
     }
 
     /// A device for a window's surface.
-    pub(crate) fn open_for(
+    pub(crate) async fn open_for(
         instance: &wgpu::Instance,
         surface: Option<&wgpu::Surface<'_>>,
     ) -> Result<Self, GpuError> {
         let options = wgpu::RequestAdapterOptions { compatible_surface: surface, ..Default::default() };
-        let adapter = wait(instance.request_adapter(&options));
+        let adapter = instance.request_adapter(&options).await;
         let adapter = adapter.map_err(|error| GpuError::NoDriver(one_line(&error)))?;
         let name = adapter.get_info().name;
-        let limits = wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits());
-        let limits = wgpu::Limits {
-            max_storage_buffer_binding_size: adapter.limits().max_storage_buffer_binding_size,
-            max_buffer_size: adapter.limits().max_buffer_size,
-            ..limits
-        };
+        // Nothing here asks for more than WebGL2 has, so that a page draws what a window draws.
+        let limits = wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits());
+        let limits = wgpu::Limits { max_buffer_size: adapter.limits().max_buffer_size, ..limits };
         let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
-        let device = wait(adapter.request_device(&descriptor));
+        let device = adapter.request_device(&descriptor).await;
         let (device, queue) = device.map_err(|error| GpuError::Driver { name, what: one_line(&error) })?;
         Ok(Self { adapter, device, queue })
     }
@@ -74,18 +69,15 @@ impl Gpu {
     }
 }
 
-/// Instance for pictures without a window.
-fn instance() -> wgpu::Instance {
-    wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env())
-}
-
 fn one_line(error: &dyn std::fmt::Display) -> String {
     error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ")
 }
 
 /// Result of work that the driver does at once: on the desktop nothing that is waited for here sleeps.
-fn wait<T>(work: impl Future<Output = T>) -> T {
-    let mut work = pin!(work);
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) fn wait<T>(work: impl Future<Output = T>) -> T {
+    use std::task::{Context, Poll, Waker};
+    let mut work = std::pin::pin!(work);
     let mut context = Context::from_waker(Waker::noop());
     loop {
         if let Poll::Ready(result) = work.as_mut().poll(&mut context) {

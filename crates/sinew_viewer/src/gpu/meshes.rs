@@ -2,6 +2,7 @@
 
 use super::device::Gpu;
 use super::pipelines::{Pipelines, SKIN, VERTEX};
+use super::samples::texture;
 use crate::stage::Form;
 use sinew::anim::{Primitive, Rig, TextureImage};
 use sinew::math::{Transform, Vec2, Vec3};
@@ -178,6 +179,54 @@ impl Stream {
     }
 }
 
+/// Matrices in a row of the palette's texture: the shader has the same number. Three texels each, so that a row fits every card.
+const PALETTE_ROW: usize = 512;
+/// Numbers of a row.
+const PALETTE_NUMBERS: usize = PALETTE_ROW * 12;
+
+/// The matrices of all figures as a texture that is written anew for each picture, and grows.
+#[derive(Debug)]
+pub(crate) struct Palette {
+    texture: wgpu::Texture,
+}
+
+impl Palette {
+    pub fn new(gpu: &Gpu) -> Self {
+        Self { texture: Self::texture(gpu, 1) }
+    }
+
+    fn texture(gpu: &Gpu, rows: u32) -> wgpu::Texture {
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let size = [3 * PALETTE_ROW as u32, rows];
+        texture(gpu, "palette", wgpu::TextureFormat::Rgba32Float, size, 1, usage)
+    }
+
+    pub fn view(&self) -> wgpu::TextureView {
+        self.texture.create_view(&Default::default())
+    }
+
+    /// Writes it, with the last row filled up; true if it is another texture since.
+    pub fn write(&mut self, gpu: &Gpu, numbers: &mut Vec<f32>) -> bool {
+        numbers.resize(numbers.len().next_multiple_of(PALETTE_NUMBERS), 0.0);
+        let rows = (numbers.len() / PALETTE_NUMBERS) as u32;
+        let grows = rows > self.texture.height();
+        if grows {
+            self.texture = Self::texture(gpu, rows.next_power_of_two());
+        }
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * PALETTE_NUMBERS as u32),
+            rows_per_image: None,
+        };
+        let size = wgpu::Extent3d { width: 3 * PALETTE_ROW as u32, height: rows, depth_or_array_layers: 1 };
+        if rows > 0 {
+            let bytes = bytemuck::cast_slice(numbers);
+            gpu.queue.write_texture(self.texture.as_image_copy(), bytes, layout, size);
+        }
+        grows
+    }
+}
+
 /// A rig on the card: its parts, each with slots and weights.
 #[derive(Debug)]
 pub(crate) struct RigMeshes {
@@ -249,9 +298,9 @@ fn skin(gpu: &Gpu, primitive: &Primitive, is_skinned: bool) -> wgpu::Buffer {
 }
 
 /// A texture with its smaller copies.
-pub(crate) fn upload(gpu: &Gpu, pipelines: &Pipelines, texture: &Texture) -> wgpu::BindGroup {
+pub(crate) fn upload(gpu: &Gpu, pipelines: &Pipelines, picture: &Texture) -> wgpu::BindGroup {
     let most = gpu.device.limits().max_texture_dimension_2d;
-    let levels: Vec<_> = texture.levels().skip_while(|(w, h, _)| *w.max(h) > most).collect();
+    let levels: Vec<_> = picture.levels().skip_while(|(w, h, _)| *w.max(h) > most).collect();
     let size = |width: u32, height: u32| wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
     let made = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("picture"),

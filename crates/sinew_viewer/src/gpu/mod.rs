@@ -8,6 +8,8 @@ mod pipelines;
 mod renderer;
 mod samples;
 
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) use device::wait;
 pub use device::{Gpu, GpuError};
 pub use offscreen::Offscreen;
 pub(crate) use offscreen::{read_back, rows_of};

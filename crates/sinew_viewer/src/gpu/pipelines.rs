@@ -43,7 +43,7 @@ impl Pipelines {
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         let device = &gpu.device;
         let module = device.create_shader_module(wgpu::include_wgsl!("shader.wgsl"));
-        let frame_layout = layout(device, "frame", &[uniform(0), storage(1)]);
+        let frame_layout = layout(device, "frame", &[uniform(0), numbers_texture(1)]);
         let shadow_layout = layout(device, "shadow", &[depth_texture(0), sampler(1, true)]);
         let picture_layout = layout(device, "picture", &[color_texture(0), sampler(1, false)]);
         let all = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -171,9 +171,9 @@ fn uniform(binding: u32) -> wgpu::BindGroupLayoutEntry {
     entry(binding, wgpu::ShaderStages::VERTEX_FRAGMENT, buffer(wgpu::BufferBindingType::Uniform))
 }
 
-fn storage(binding: u32) -> wgpu::BindGroupLayoutEntry {
-    let ty = buffer(wgpu::BufferBindingType::Storage { read_only: true });
-    entry(binding, wgpu::ShaderStages::VERTEX, ty)
+fn numbers_texture(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    let sample_type = wgpu::TextureSampleType::Float { filterable: false };
+    wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::VERTEX, ..image(binding, sample_type) }
 }
 
 fn color_texture(binding: u32) -> wgpu::BindGroupLayoutEntry {

@@ -2,7 +2,7 @@
 
 use super::device::Gpu;
 use super::lists::{Lists, address};
-use super::meshes::{RigMeshes, Solids, Stream, upload};
+use super::meshes::{Palette, RigMeshes, Solids, Stream, upload};
 use super::pipelines::Pipelines;
 use super::samples::{DEPTH, Target, texture};
 use crate::stage::Stage;
@@ -35,7 +35,7 @@ pub struct StageRenderer {
     shadow: wgpu::BindGroup,
     shadow_map: wgpu::TextureView,
     instances: Stream,
-    palette: Stream,
+    palette: Palette,
     vertices: Stream,
     indices: Stream,
     lines: Stream,
@@ -56,7 +56,7 @@ impl StageRenderer {
             mapped_at_creation: false,
         });
         let stream = |label, usage| Stream::new(gpu, label, usage);
-        let palette = stream("palette", wgpu::BufferUsages::STORAGE);
+        let palette = Palette::new(gpu);
         Self {
             format,
             lists: Lists::default(),
@@ -64,7 +64,7 @@ impl StageRenderer {
             rigs: HashMap::new(),
             white: Arc::new(upload(gpu, &pipelines, &white)),
             textures: HashMap::new(),
-            frame: frame_group(gpu, &pipelines, &view, &palette.buffer),
+            frame: frame_group(gpu, &pipelines, &view, &palette),
             shadow: shadow_group(gpu, &pipelines, &shadow_map),
             view,
             shadow_map,
@@ -138,8 +138,8 @@ impl StageRenderer {
         self.vertices.write(gpu, bytemuck::cast_slice(&self.lists.vertices));
         self.indices.write(gpu, bytemuck::cast_slice(&self.lists.indices));
         self.lines.write(gpu, bytemuck::cast_slice(&self.lists.lines));
-        if self.palette.write(gpu, bytemuck::cast_slice(&self.lists.palette)) {
-            self.frame = frame_group(gpu, &self.pipelines, &self.view, &self.palette.buffer);
+        if self.palette.write(gpu, &mut self.lists.palette) {
+            self.frame = frame_group(gpu, &self.pipelines, &self.view, &self.palette);
         }
     }
 
@@ -242,18 +242,16 @@ fn depth_of(
     }
 }
 
-fn frame_group(
-    gpu: &Gpu,
-    pipelines: &Pipelines,
-    view: &wgpu::Buffer,
-    palette: &wgpu::Buffer,
-) -> wgpu::BindGroup {
+fn frame_group(gpu: &Gpu, pipelines: &Pipelines, view: &wgpu::Buffer, palette: &Palette) -> wgpu::BindGroup {
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("frame"),
         layout: &pipelines.frame_layout,
         entries: &[
             wgpu::BindGroupEntry { binding: 0, resource: view.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: palette.as_entire_binding() },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: wgpu::BindingResource::TextureView(&palette.view()),
+            },
         ],
     })
 }

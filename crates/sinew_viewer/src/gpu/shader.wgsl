@@ -21,8 +21,8 @@ struct View {
 }
 
 @group(0) @binding(0) var<uniform> view: View;
-// Three rows for each matrix.
-@group(0) @binding(1) var<storage, read> palette: array<vec4<f32>>;
+// Three texels for each matrix, its rows; rows of 512 matrices. A texture, since WebGL2 has no storage buffers.
+@group(0) @binding(1) var palette: texture_2d<f32>;
 @group(1) @binding(0) var shadow_map: texture_depth_2d;
 @group(1) @binding(1) var shadow_sampler: sampler_comparison;
 @group(2) @binding(0) var picture: texture_2d<f32>;
@@ -83,8 +83,12 @@ fn place(position: vec3<f32>, normal: vec3<f32>, rows: mat3x4<f32>) -> Placed {
 fn blended(skin: Skin, first: u32) -> mat3x4<f32> {
     var rows = mat3x4<f32>(vec4(0.0), vec4(0.0), vec4(0.0));
     for (var i = 0u; i < 4u; i++) {
-        let at = (first + skin.slots[i]) * 3u;
-        rows += mat3x4<f32>(palette[at], palette[at + 1u], palette[at + 2u]) * skin.weights[i];
+        let matrix = first + skin.slots[i];
+        let at = vec2(matrix % 512u * 3u, matrix / 512u);
+        let x = textureLoad(palette, at, 0);
+        let y = textureLoad(palette, at + vec2(1u, 0u), 0);
+        let z = textureLoad(palette, at + vec2(2u, 0u), 0);
+        rows += mat3x4<f32>(x, y, z) * skin.weights[i];
     }
     return rows;
 }

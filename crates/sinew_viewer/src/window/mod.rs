@@ -1,19 +1,28 @@
-//! The window: events of the system in, frames out.
+//! The window: events of the system in, frames out. On the desktop one of the system, in a browser a canvas of the page.
 
-use crate::app::{App, Options};
+#[cfg(not(target_arch = "wasm32"))]
+mod desktop;
+#[cfg(target_arch = "wasm32")]
+pub mod web;
+
+use crate::app::App;
 use crate::gpu::{Gpu, GpuError};
 use crate::painter::{Painter, Panels};
-use sinew_picture::{PictureFormat, encode};
+use crate::session::NamedFile;
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 use winit::application::ApplicationHandler;
-use winit::dpi::LogicalSize;
-use winit::event::WindowEvent;
-use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::event::{StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::{Window, WindowId};
 
-/// Size of the window at first, points.
-const SIZE: [f32; 2] = [1280.0, 760.0];
+#[cfg(not(target_arch = "wasm32"))]
+use desktop::Host;
+#[cfg(not(target_arch = "wasm32"))]
+pub use desktop::open;
+#[cfg(target_arch = "wasm32")]
+use web::Host;
+
 /// Wait between frames where nothing moves by itself.
 const IDLE: Duration = Duration::from_millis(200);
 
@@ -28,20 +37,6 @@ pub enum ViewerError {
     Subject(String),
 }
 
-/// Opens a window on what the options say, and returns when it is closed.
-///
-/// # Errors
-/// If there is no window system, no driver, or the subject cannot be started.
-pub fn open(options: Options) -> Result<(), ViewerError> {
-    let size = options.size.unwrap_or(SIZE);
-    let app = App::new(options).map_err(ViewerError::Subject)?;
-    let event_loop = EventLoop::new().map_err(|error| GpuError::NoWindow(one_line(&error)))?;
-    let mut viewer = Viewer { app, size, screen: None, error: None };
-    event_loop.run_app(&mut viewer).map_err(|error| GpuError::NoWindow(one_line(&error)))?;
-    viewer.app.keep_preferences();
-    viewer.error.map_or(Ok(()), |error| Err(error.into()))
-}
-
 /// An error as one line, without the place in the source of others at which it came up.
 fn one_line(error: &dyn std::fmt::Display) -> String {
     let line = error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ");
@@ -50,11 +45,23 @@ fn one_line(error: &dyn std::fmt::Display) -> String {
     said.unwrap_or(line).trim_end_matches('.').to_owned()
 }
 
+/// The viewer, and whatever surrounds it.
 struct Viewer {
     app: App,
-    size: [f32; 2],
+    host: Host,
     screen: Option<Screen>,
+    /// True if the next frame differs from the last one by itself.
+    moves: bool,
     error: Option<GpuError>,
+}
+
+/// Message that reaches the viewer beside the events of the system.
+enum Told {
+    /// The card, which a browser hands out later.
+    Screen(Result<Box<Screen>, GpuError>),
+    /// Files that were dropped on the page.
+    #[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "a desktop tells paths"))]
+    Files(Vec<NamedFile>),
 }
 
 /// A window with all that draws into it.
@@ -69,20 +76,52 @@ struct Screen {
     complaints: Arc<Mutex<Vec<String>>>,
 }
 
-impl ApplicationHandler for Viewer {
+impl Viewer {
+    fn new(app: App, host: Host) -> Self {
+        Self { app, host, screen: None, moves: true, error: None }
+    }
+}
+
+impl ApplicationHandler<Told> for Viewer {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
         if self.screen.is_some() {
             return;
         }
-        match Screen::new(event_loop, &self.app, self.size) {
-            Ok(screen) => {
-                self.app.tell(format!("drawn by {}", screen.painter.gpu.name()));
-                self.screen = Some(screen);
+        let title = format!("Sinew: {}", self.app.session().subject().title());
+        let window = event_loop.create_window(self.host.attributes().with_title(title));
+        match window.map_err(|error| no_window(&error)) {
+            Ok(window) => {
+                let display = Box::new(event_loop.owned_display_handle());
+                let mut descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(display);
+                descriptor.backends &= self.host.backends();
+                if let Some(told) = self.host.await_screen(Screen::new(Arc::new(window), descriptor)) {
+                    self.user_event(event_loop, told);
+                }
             }
-            Err(error) => {
+            Err(error) => self.user_event(event_loop, Told::Screen(Err(error))),
+        }
+    }
+
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, told: Told) {
+        match told {
+            Told::Screen(Ok(screen)) => {
+                self.app.tell(format!("drawn by {}", screen.painter.gpu.name()));
+                screen.window.request_redraw();
+                self.screen = Some(*screen);
+            }
+            Told::Screen(Err(error)) => {
+                self.host.failed(&error);
                 self.error = Some(error);
                 event_loop.exit();
             }
+            Told::Files(files) => self.app.open_dropped(files),
+        }
+        self.moves = true;
+    }
+
+    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+        if matches!(cause, StartCause::ResumeTimeReached { .. }) {
+            self.moves = true;
         }
     }
 
@@ -94,43 +133,39 @@ impl ApplicationHandler for Viewer {
             WindowEvent::Resized(size) => screen.resize([size.width, size.height]),
             WindowEvent::DroppedFile(path) => self.app.open_file(&path),
             WindowEvent::RedrawRequested => {
-                screen.frame(&mut self.app);
+                screen.frame(&mut self.app, &self.host);
                 if self.app.is_closing() {
                     event_loop.exit();
                 }
-                let moves = self.app.is_moving() || screen.ctx.has_requested_repaint();
-                event_loop.set_control_flow(if moves {
-                    ControlFlow::Poll
+                self.moves = self.app.is_moving() || screen.ctx.has_requested_repaint();
+                event_loop.set_control_flow(if self.moves {
+                    ControlFlow::Wait
                 } else {
                     ControlFlow::WaitUntil(Instant::now() + IDLE)
                 });
             }
             _ => {}
         }
-        if response.repaint {
-            screen.window.request_redraw();
-        }
+        self.moves |= response.repaint;
     }
 
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
-        if let Some(screen) = &self.screen {
+        if let Some(screen) = self.screen.as_ref().filter(|_| self.moves) {
             screen.window.request_redraw();
         }
     }
 }
 
+fn no_window(error: &dyn std::fmt::Display) -> GpuError {
+    GpuError::NoWindow(one_line(error))
+}
+
 impl Screen {
-    fn new(event_loop: &ActiveEventLoop, app: &App, [width, height]: [f32; 2]) -> Result<Self, GpuError> {
-        let no_window = |error: &dyn std::fmt::Display| GpuError::NoWindow(one_line(error));
-        let attributes = Window::default_attributes()
-            .with_title(format!("Sinew: {}", app.session().subject().title()))
-            .with_inner_size(LogicalSize::new(width, height));
-        let window = Arc::new(event_loop.create_window(attributes).map_err(|error| no_window(&error))?);
-        let display = Box::new(event_loop.owned_display_handle());
-        let descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(display);
-        let instance = wgpu::Instance::new(descriptor);
+    async fn new(window: Arc<Window>, descriptor: wgpu::InstanceDescriptor) -> Result<Box<Self>, GpuError> {
+        // Where a page has a card for WebGPU it is that, else WebGL2; no desktop has WebGPU.
+        let instance = wgpu::util::new_instance_with_webgpu_detection(descriptor).await;
         let surface = instance.create_surface(window.clone()).map_err(|error| no_window(&error))?;
-        let gpu = Gpu::open_for(&instance, Some(&surface))?;
+        let gpu = Gpu::open_for(&instance, Some(&surface)).await?;
         let complaints = Arc::new(Mutex::new(Vec::new()));
         let heard = complaints.clone();
         gpu.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
@@ -153,7 +188,7 @@ impl Screen {
         let scale = Some(window.scale_factor() as f32);
         let input = egui_winit::State::new(ctx.clone(), egui::ViewportId::ROOT, &window, scale, None, most);
         let painter = Painter::new(gpu, config.format, [width, height]);
-        Ok(Self { window, surface, config, painter, ctx, input, complaints })
+        Ok(Box::new(Self { window, surface, config, painter, ctx, input, complaints }))
     }
 
     fn resize(&mut self, size: [u32; 2]) {
@@ -166,7 +201,7 @@ impl Screen {
     }
 
     /// One frame.
-    fn frame(&mut self, app: &mut App) {
+    fn frame(&mut self, app: &mut App, host: &Host) {
         app.advance();
         let input = self.input.take_egui_input(&self.window);
         let output = self.ctx.run_ui(input, |ui| app.ui(ui));
@@ -174,8 +209,18 @@ impl Screen {
         let panels = self.painter.panels(&self.ctx, output);
         self.show(app, &panels);
         if app.takes_screenshot() {
-            let line = self.write_picture(app, &panels);
-            app.tell(line);
+            let world = app.session().world();
+            let name = format!("sinew-{}-{}.png", app.session().subject().title(), world.step_count());
+            match host.picture(self, app, &panels, &name) {
+                Ok(()) => app.tell(format!("wrote {name}")),
+                Err(line) => app.tell(line),
+            }
+        }
+        for file in app.take_files() {
+            match host.keep(&file) {
+                Ok(()) => app.tell(format!("wrote {}", file.name)),
+                Err(line) => app.tell(line),
+            }
         }
         self.painter.finish(&panels);
         if let Ok(mut complaints) = self.complaints.lock()
@@ -183,6 +228,7 @@ impl Screen {
         {
             app.tell(format!("the driver complains: {complaint}"));
         }
+        host.shown(app);
     }
 
     fn show(&mut self, app: &App, panels: &Panels) {
@@ -200,19 +246,5 @@ impl Screen {
         self.painter.gpu.queue.submit([encoder.finish()]);
         self.window.pre_present_notify();
         self.painter.gpu.queue.present(texture);
-    }
-
-    /// Writes a picture of the window into the working folder; a line that says so.
-    fn write_picture(&mut self, app: &App, panels: &Panels) -> String {
-        let world = app.session().world();
-        let name = format!("sinew-{}-{}.png", app.session().subject().title(), world.step_count());
-        let image = match self.painter.picture(app, panels) {
-            Ok(image) => image,
-            Err(error) => return error.to_string(),
-        };
-        let written = encode::encode(PictureFormat::Png, &[image], 1)
-            .map_err(|error| error.to_string())
-            .and_then(|bytes| sinew::formats::write_atomic(&name, &bytes).map_err(|error| error.to_string()));
-        written.map_or_else(|what| what, |()| format!("wrote {name}"))
     }
 }

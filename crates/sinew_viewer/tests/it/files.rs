@@ -2,7 +2,10 @@
 
 use crate::hands::viewer;
 use crate::pictures::look;
-use sinew::formats::write_gltf;
+use sinew::anim::analyze;
+use sinew::formats::{write_gltf, write_ragdoll};
+use sinew::ragdoll::{BuildOptions, build};
+use sinew_viewer::{Headless, NamedFile};
 use std::path::{Path, PathBuf};
 
 /// A folder of this test alone, empty.
@@ -26,20 +29,76 @@ fn a_character_that_is_dropped_falls() {
     let session = viewer.app().session();
     assert_eq!(session.subject().title(), "mannequin.glb");
     assert!(session.report()[0].ends_with("4 clips"), "{:?}", session.report());
-    let height = |viewer: &sinew_viewer::Headless| {
-        let world = viewer.app().session().world();
-        let heights = world.body_ids().map(|id| world.transform(id).translation.y);
-        heights.fold(0.0, f32::max)
-    };
-    let before = height(&viewer);
+    falls(&mut viewer, "dropped");
+}
+
+/// Height of the highest body, metres.
+fn height(viewer: &Headless) -> f32 {
+    let world = viewer.app().session().world();
+    world.body_ids().map(|id| world.transform(id).translation.y).fold(0.0, f32::max)
+}
+
+/// Takes two seconds of steps; what stood lies.
+fn falls(viewer: &mut Headless, name: &str) {
+    let before = height(viewer);
     for _ in 0..120 {
         viewer.key(egui::Key::N);
         viewer.frame().expect("the card draws");
     }
-    look("dropped", &viewer.frame().expect("the card draws"));
+    look(name, &viewer.frame().expect("the card draws"));
     assert_eq!(viewer.app().session().world().step_count(), 120);
-    let after = height(&viewer);
+    let after = height(viewer);
     assert!(before > 1.2 && after < 0.5 * before, "highest body at {before} m, then at {after} m");
+}
+
+/// A ragdoll without its rig: its bodies fall.
+#[test]
+fn a_ragdoll_that_is_dropped_falls() {
+    let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
+    let mannequin = sinew::mannequin::mannequin();
+    let analysis = analyze(&mannequin.rig).expect("it has a skin");
+    let (def, _) = build(&mannequin.rig, &analysis, &BuildOptions::default()).expect("and bones");
+    let path = folder("dropped_ragdoll").join("mannequin.sinew.json");
+    std::fs::write(&path, write_ragdoll(&def)).expect("the folder is there");
+    viewer.app_mut().open_file(&path);
+    let session = viewer.app().session();
+    assert_eq!(session.subject().title(), "mannequin.sinew.json");
+    assert_eq!(session.world().body_ids().count(), def.bodies.len() + 1);
+    falls(&mut viewer, "dropped_ragdoll");
+}
+
+/// What a page is given: bytes with names. A glTF finds the file beside it, and has the bits of the same file on a disk.
+#[test]
+fn files_without_a_folder_are_as_those_with_one() {
+    let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
+    let folder = folder("dropped_on_a_page");
+    let mannequin = sinew::mannequin::mannequin();
+    let glb = write_gltf(&mannequin.rig, &mannequin.clips).expect("it can be written");
+    let (json, binary) = parts(&glb);
+    let mut json: serde_json::Value = serde_json::from_slice(json).expect("it is JSON");
+    json["buffers"][0]["uri"] = "mannequin.bin".into();
+    let json = json.to_string().into_bytes();
+    std::fs::write(folder.join("mannequin.gltf"), &json).expect("the folder is there");
+    std::fs::write(folder.join("mannequin.bin"), binary).expect("the folder is there");
+    viewer.app_mut().open_file(&folder.join("mannequin.gltf"));
+    falls(&mut viewer, "with_a_folder");
+    let hash = viewer.app().session().world().hash();
+    let file = |name: &str, bytes: &[u8]| NamedFile { name: name.into(), bytes: bytes.to_vec() };
+    viewer.app_mut().open_dropped(vec![file("mannequin.bin", binary), file("mannequin.gltf", &json)]);
+    assert_eq!(viewer.app().session().subject().title(), "mannequin.gltf");
+    falls(&mut viewer, "without_a_folder");
+    assert_eq!(viewer.app().session().world().hash(), hash);
+    viewer.app_mut().open_dropped(vec![file("alone.gltf", &json)]);
+    let line = viewer.app().message().expect("a line");
+    assert!(line.contains("alone.gltf") && line.contains("mannequin.bin"), "{line}");
+    assert_eq!(viewer.app().session().subject().title(), "mannequin.gltf");
+}
+
+/// The two chunks of a GLB.
+fn parts(glb: &[u8]) -> (&[u8], &[u8]) {
+    let length = |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().expect("four bytes")) as usize;
+    let json = 20 + length(12);
+    (&glb[20..json], &glb[json + 8..json + 8 + length(json)])
 }
 
 #[test]

@@ -1,0 +1,191 @@
+// Tries the page of `cargo xtask web` in a headless Chromium, by the DevTools protocol: node browser.mjs FOLDER PICTURES
+// CASES, where CASES is JSON: {"scenes": [[NAME, STEPS], …], "drop": [PATH of a GLB, …]}. Prints JSON: for each of the ways to draw
+// what it draws by, milliseconds to the first picture, hashes, what was dragged and dropped; errors of the console end it.
+import { spawn } from 'node:child_process';
+import { createServer } from 'node:http';
+import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { basename, extname, join } from 'node:path';
+
+const [folder, pictures, cases] = process.argv.slice(2);
+const { scenes, drop } = JSON.parse(cases);
+// Software drivers on a busy machine.
+const PATIENCE_MS = 180_000;
+const SIZE = { width: 1280, height: 760 };
+const WAYS = {
+  webgl2: ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  webgpu: ['--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan'],
+};
+const KINDS = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
+
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+// Files of the folder alone, on the loopback.
+async function serve() {
+  const server = createServer(async (request, response) => {
+    const name = basename(new URL(request.url, 'http://localhost').pathname) || 'index.html';
+    try {
+      const bytes = await readFile(join(folder, name));
+      response.writeHead(200, { 'content-type': KINDS[extname(name)] ?? 'application/octet-stream' }).end(bytes);
+    } catch {
+      response.writeHead(404).end();
+    }
+  });
+  await new Promise((done) => server.listen(0, '127.0.0.1', done));
+  return server;
+}
+
+// A browser with one page, and what its console said.
+class Browser {
+  static async start(flags) {
+    const browser = new Browser();
+    browser.home = await mkdtemp(join(tmpdir(), 'sinew-browser-'));
+    const general = ['--headless=new', '--no-sandbox', '--no-first-run', '--disable-background-networking',
+      '--ignore-gpu-blocklist', '--hide-scrollbars', `--user-data-dir=${browser.home}`, '--remote-debugging-port=0',
+      `--window-size=${SIZE.width},${SIZE.height}`];
+    browser.process = spawn('chromium', [...general, ...flags, 'about:blank'], { stdio: 'ignore' });
+    const port = await browser.until('the browser to start', async () => {
+      const told = await readFile(join(browser.home, 'DevToolsActivePort'), 'utf8').catch(() => '');
+      return told.split('\n')[0];
+    });
+    const pages = await (await fetch(`http://127.0.0.1:${port}/json/list`)).json();
+    browser.socket = new WebSocket(pages.find((page) => page.type === 'page').webSocketDebuggerUrl);
+    browser.pending = new Map();
+    browser.errors = [];
+    browser.socket.onmessage = ({ data }) => browser.hear(JSON.parse(data));
+    await new Promise((done, failed) => Object.assign(browser.socket, { onopen: done, onerror: failed }));
+    for (const domain of ['Page', 'Runtime', 'Log', 'Network']) await browser.send(`${domain}.enable`);
+    await browser.send('Emulation.setDeviceMetricsOverride', { ...SIZE, deviceScaleFactor: 1, mobile: false });
+    return browser;
+  }
+
+  hear({ id, result, error, method, params }) {
+    if (id) {
+      const { done, failed } = this.pending.get(id);
+      this.pending.delete(id);
+      return error ? failed(new Error(JSON.stringify(error))) : done(result);
+    }
+    if (method === 'Runtime.exceptionThrown') this.errors.push(JSON.stringify(params.exceptionDetails));
+    if (method === 'Log.entryAdded' && params.entry.level === 'error') this.errors.push(params.entry.text);
+    if (method === 'Runtime.consoleAPICalled' && params.type === 'error') {
+      this.errors.push(params.args.map((arg) => arg.value ?? arg.description).join(' '));
+    }
+  }
+
+  send(method, params = {}) {
+    const id = (this.last = (this.last ?? 0) + 1);
+    this.socket.send(JSON.stringify({ id, method, params }));
+    return new Promise((done, failed) => this.pending.set(id, { done, failed }));
+  }
+
+  // What the canvas says of itself.
+  async said() {
+    const expression = "JSON.stringify({...document.getElementById('viewer')?.dataset})";
+    const { result } = await this.send('Runtime.evaluate', { expression });
+    return JSON.parse(result.value ?? '{}');
+  }
+
+  async until(what, found) {
+    const end = Date.now() + PATIENCE_MS;
+    while (Date.now() < end) {
+      if (this.errors?.length) throw new Error(`waiting for ${what}: ${this.errors.join('\n')}`);
+      const it = await found();
+      if (it) return it;
+      await sleep(50);
+    }
+    throw new Error(`nothing came of ${what}: ${JSON.stringify(await this.said().catch(String))}`);
+  }
+
+  line(start) {
+    return this.until(`'${start}'`, async () => {
+      const { line } = await this.said();
+      return line?.startsWith(start) && line;
+    });
+  }
+
+  async open(url) {
+    await this.send('Page.navigate', { url });
+    await this.until(url, async () => (await this.said()).ready);
+    return this.said();
+  }
+
+  mouse(type, x, y, buttons) {
+    return this.send('Input.dispatchMouseEvent', { type, x, y, button: 'left', buttons, clickCount: 1 });
+  }
+
+  async picture(name) {
+    const { data } = await this.send('Page.captureScreenshot');
+    await writeFile(join(pictures, `${name}.png`), Buffer.from(data, 'base64'));
+  }
+
+  async end() {
+    this.process.kill();
+    await new Promise((done) => (this.process.exitCode === null ? this.process.once('exit', done) : done()));
+    await rm(this.home, { recursive: true, force: true, maxRetries: 5 });
+  }
+}
+
+// Pulls the body in the middle of the picture: of one that falls alone it is there.
+async function drag(browser, url) {
+  await browser.open(`${url}?scene=free_fall&steps=1`);
+  await browser.line('hash');
+  await browser.mouse('mouseMoved', 620, 357, 0);
+  await browser.mouse('mousePressed', 620, 357, 1);
+  await browser.mouse('mouseMoved', 632, 350, 1);
+  const held = await browser.line('holds body');
+  await browser.mouse('mouseMoved', 700, 300, 1);
+  await browser.mouse('mouseReleased', 700, 300, 0);
+  await browser.line('let go');
+  return held;
+}
+
+async function dropped(browser, path) {
+  const data = { items: [], files: [path], dragOperationsMask: 1 };
+  for (const type of ['dragEnter', 'dragOver', 'drop']) {
+    await browser.send('Input.dispatchDragEvent', { type, x: 620, y: 357, data });
+  }
+  const name = basename(path);
+  await browser.until(`${name} to be shown`, async () => (await browser.said()).scene === name);
+  await browser.until('it to fall', async () => (await browser.said()).steps > 30);
+  await browser.picture(name);
+  return name;
+}
+
+async function tried(way, url) {
+  const browser = await Browser.start(WAYS[way]);
+  try {
+    const { ready } = await browser.open(url);
+    const by = await browser.line('drawn by');
+    // Compiled code is kept by the browser from the second time on.
+    const { ready: again } = await browser.open(url);
+    await browser.picture(`${way}-first`);
+    const hashes = {};
+    for (const [scene, steps] of scenes) {
+      await browser.open(`${url}?scene=${scene}&steps=${steps}`);
+      hashes[scene] = (await browser.line('hash')).split(' ')[1];
+      await browser.picture(`${way}-${scene}`);
+    }
+    const held = await drag(browser, url);
+    await browser.picture(`${way}-dragged`);
+    const shown = [];
+    for (const path of drop) shown.push(await dropped(browser, path));
+    if (browser.errors.length) throw new Error(browser.errors.join('\n'));
+    return { by, ready_ms: Number(ready), ready_again_ms: Number(again), hashes, held, dropped: shown };
+  } finally {
+    await browser.end();
+  }
+}
+
+const server = await serve();
+const outcome = {};
+try {
+  for (const way of Object.keys(WAYS)) {
+    outcome[way] = await tried(way, `http://127.0.0.1:${server.address().port}/`);
+  }
+  console.log(JSON.stringify(outcome, null, 1));
+} catch (error) {
+  console.error(String(error));
+  process.exitCode = 1;
+} finally {
+  server.close();
+}
