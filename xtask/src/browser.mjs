@@ -1,5 +1,5 @@
 // Tries the page of `cargo xtask web` in a headless Chromium, by the DevTools protocol: node browser.mjs FOLDER PICTURES
-// CASES, where CASES is JSON: {"scenes": [[NAME, STEPS], …], "drop": [PATH of a GLB, …]}. Prints JSON: for each of the ways to draw
+// CASES, where CASES is JSON: {"scenes": [[NAME, STEPS], …], "drop": [PATH of a GLB, …]}, and "ways" to draw if not all. Prints JSON: for each of the ways to draw
 // what it draws by, milliseconds to the first picture, hashes, what was dragged and dropped; errors of the console end it.
 import { spawn } from 'node:child_process';
 import { createServer } from 'node:http';
@@ -8,13 +8,14 @@ import { tmpdir } from 'node:os';
 import { basename, extname, join } from 'node:path';
 
 const [folder, pictures, cases] = process.argv.slice(2);
-const { scenes, drop } = JSON.parse(cases);
+const { scenes, drop, ways } = JSON.parse(cases);
 // Software drivers on a busy machine.
 const PATIENCE_MS = 180_000;
 const SIZE = { width: 1280, height: 760 };
 const WAYS = {
   webgl2: ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-  webgpu: ['--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan'],
+  webgpu: ['--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--use-gl=angle', '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader'],
 };
 const KINDS = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
 
@@ -127,19 +128,24 @@ class Browser {
 
 // Pulls the body in the middle of the picture: of one that falls alone it is there.
 async function drag(browser, url) {
-  await browser.open(`${url}?scene=free_fall&steps=1`);
+  await browser.open(`${url}&scene=free_fall&steps=1`);
   await browser.line('hash');
   await browser.mouse('mouseMoved', 620, 357, 0);
   await browser.mouse('mousePressed', 620, 357, 1);
   await browser.mouse('mouseMoved', 632, 350, 1);
   const held = await browser.line('holds body');
-  await browser.mouse('mouseMoved', 700, 300, 1);
-  await browser.mouse('mouseReleased', 700, 300, 0);
+  await browser.mouse('mouseMoved', 760, 250, 1);
+  for (const type of ['keyDown', 'keyUp']) {
+    await browser.send('Input.dispatchKeyEvent', { type, key: 'n', code: 'KeyN', text: type === 'keyDown' ? 'n' : undefined });
+  }
+  await browser.until('a step', async () => (await browser.said()).steps > 1);
+  await browser.mouse('mouseReleased', 760, 250, 0);
   await browser.line('let go');
   return held;
 }
 
-async function dropped(browser, path) {
+async function dropped(browser, url, path) {
+  await browser.open(url);
   const data = { items: [], files: [path], dragOperationsMask: 1 };
   for (const type of ['dragEnter', 'dragOver', 'drop']) {
     await browser.send('Input.dispatchDragEvent', { type, x: 620, y: 357, data });
@@ -161,14 +167,14 @@ async function tried(way, url) {
     await browser.picture(`${way}-first`);
     const hashes = {};
     for (const [scene, steps] of scenes) {
-      await browser.open(`${url}?scene=${scene}&steps=${steps}`);
+      await browser.open(`${url}&scene=${scene}&steps=${steps}`);
       hashes[scene] = (await browser.line('hash')).split(' ')[1];
       await browser.picture(`${way}-${scene}`);
     }
     const held = await drag(browser, url);
     await browser.picture(`${way}-dragged`);
     const shown = [];
-    for (const path of drop) shown.push(await dropped(browser, path));
+    for (const path of drop) shown.push(await dropped(browser, url, path));
     if (browser.errors.length) throw new Error(browser.errors.join('\n'));
     return { by, ready_ms: Number(ready), ready_again_ms: Number(again), hashes, held, dropped: shown };
   } finally {
@@ -179,8 +185,8 @@ async function tried(way, url) {
 const server = await serve();
 const outcome = {};
 try {
-  for (const way of Object.keys(WAYS)) {
-    outcome[way] = await tried(way, `http://127.0.0.1:${server.address().port}/`);
+  for (const way of ways ?? Object.keys(WAYS)) {
+    outcome[way] = await tried(way, `http://127.0.0.1:${server.address().port}/?gpu=${way}`);
   }
   console.log(JSON.stringify(outcome, null, 1));
 } catch (error) {
