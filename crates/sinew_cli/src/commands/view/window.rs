@@ -29,6 +29,7 @@ impl View {
         let options = Options {
             subject,
             paused: self.paused,
+            steps: None,
             log: self.log,
             preferences: Preferences::path(),
             size: None,
