@@ -56,7 +56,7 @@ pub fn main() {
     let bone_from_held = Transform::from_translation(Vec3::Z * 0.35);
     hero.hold(&mut world, "rightHand", sword, &Grip { bone_from_held, drops: true, ..Grip::default() });
     let mut told = Vec::new();
-    for frame in 0..600 {
+    for frame in 0..540 {
         world.step();
         hero.update(&mut world);
         told.extend_from_slice(hero.events());
