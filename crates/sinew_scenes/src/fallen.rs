@@ -1,11 +1,13 @@
 //! A character of a file, limp: it falls on a floor and lies there, drawn by its skin, or by its bodies where there is no more of it.
 
 use crate::framework::actors::Figure;
+use crate::framework::camera_hint::{CameraHint, Trails};
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
 use crate::parts::{GRAVITY, floor};
 use sinew::anim::{Rig, RigAnalysis, local_to_model};
 use sinew::math::{Affine, ReadError, Reader, Rotation, Transform, Vec3, Writer};
+use sinew::physics::boxes::Aabb;
 use sinew::physics::{BodyId, World, WorldDef};
 use sinew::ragdoll::{
     AfterSettling, BodySettings, BodyState, BuildError, BuildOptions, BuildReport, Character, CharacterDef,
@@ -120,6 +122,14 @@ impl Script for Fallen {
             Metric::awaited("settled_s", q.settled_s, Expected::Anything),
             Metric::awaited("asleep_s", q.asleep_s, Expected::AtMost(6.0)),
         ]
+    }
+
+    /// From the side, with room for where it comes to lie: it leans toward +z.
+    fn camera_hint(&self) -> CameraHint {
+        let height = self.def.ragdoll.height;
+        let bounds =
+            Aabb { min: Vec3::new(-0.4, 0.0, -0.3) * height, max: Vec3::new(0.4, 1.4, 1.3) * height };
+        CameraHint { direction: Vec3::new(1.0, 0.35, 0.5), bounds: Some(bounds), trails: Trails::None }
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {

@@ -1,6 +1,6 @@
 // The page around the viewer: what the address asks for, files that are dropped, files to be kept.
 //
-// ?scene=NAME, set=KEY=VALUE (any number), steps=N (steps so far at once, then tells the hash), gpu=webgpu (else WebGL2).
+// ?scene=NAME, set=KEY=VALUE (any number), steps=N (steps so far at once, then tells the hash), gpu=webgl2 (not WebGPU).
 // The canvas says what it shows: data-scene, data-steps, data-line; data-ready is the time to the first picture, ms.
 import init, { show } from './sinew.js';
 
@@ -52,7 +52,7 @@ async function begin() {
     asked.get('scene') ?? undefined,
     asked.getAll('set'),
     steps > 0 ? steps : undefined,
-    asked.get('gpu') !== 'webgpu',
+    asked.get('gpu') === 'webgl2',
   );
   document.addEventListener('dragover', (event) => event.preventDefault());
   document.addEventListener('drop', async (event) => {

@@ -162,7 +162,7 @@ fn no_window(error: &dyn std::fmt::Display) -> GpuError {
 
 impl Screen {
     async fn new(window: Arc<Window>, descriptor: wgpu::InstanceDescriptor) -> Result<Box<Self>, GpuError> {
-        // Of a page that asks for WebGPU it is that where the browser has it, else WebGL2; no desktop has WebGPU.
+        // Where a page has a card for WebGPU it is that, else WebGL2; no desktop has WebGPU.
         let instance = wgpu::util::new_instance_with_webgpu_detection(descriptor).await;
         let surface = instance.create_surface(window.clone()).map_err(|error| no_window(&error))?;
         let gpu = Gpu::open_for(&instance, Some(&surface)).await?;
