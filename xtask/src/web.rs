@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// What the page is made of beside the program.
+/// Folder of the files around the program.
 const PAGE: &str = "crates/sinew_viewer/page";
 /// Most bytes of the folder, compressed as servers do.
 const MOST_BYTES: u64 = 6_000_000;

@@ -11,10 +11,26 @@ pub(crate) type Mat6 = [Vec6; 6];
 
 pub(crate) const ZERO6: Vec6 = [0.0; WIDTH];
 pub(crate) const ZERO66: Mat6 = [ZERO6; 6];
+/// Rows of the unit matrix.
+pub(crate) const UNITS: Mat6 = {
+    let mut units = ZERO66;
+    let mut k = 0;
+    while k < 6 {
+        units[k][k] = 1.0;
+        k += 1;
+    }
+    units
+};
 
 #[inline(always)]
 pub(crate) fn join(linear: Vec3, angular: Vec3) -> Vec6 {
     [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z, 0.0, 0.0]
+}
+
+/// Impulse on a body by one at `arm` from its centre of mass.
+#[inline(always)]
+pub(crate) fn wrench(arm: Vec3, impulse: Vec3) -> Vec6 {
+    join(impulse, arm.cross(impulse))
 }
 
 #[inline(always)]

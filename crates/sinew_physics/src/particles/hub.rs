@@ -6,7 +6,9 @@
 //! body's inertia, they would part under the tension within the solve, and a bridge of planks on ropes would stretch and gain energy.
 
 use super::contact::ObstacleBody;
-use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, angular, dot, join, linear, spd_inverse};
+use crate::spatial::{
+    Mat6, UNITS, Vec6, ZERO6, ZERO66, add_scaled, angular, dot, join, linear, spd_inverse, wrench,
+};
 use sinew_math::{Mat3, Sym3, Vec3, max};
 
 /// A body that holds particles, in one iteration.
@@ -73,7 +75,7 @@ impl Hub {
         let mut pull = ZERO6;
         for (point, inertia, momentum) in particles {
             let arm = point - self.center;
-            for (row, axis) in whole.iter_mut().zip(AXES) {
+            for (row, axis) in whole.iter_mut().zip(UNITS) {
                 add_scaled(row, &wrench(arm, inertia * velocity_at(&axis, arm)), 1.0);
             }
             let gained = momentum - inertia * velocity_at(&self.coming, arm);
@@ -120,22 +122,6 @@ impl Hub {
     }
 }
 
-/// Units of velocity.
-const AXES: Mat6 = {
-    let mut axes = ZERO66;
-    let mut k = 0;
-    while k < 6 {
-        axes[k][k] = 1.0;
-        k += 1;
-    }
-    axes
-};
-
 fn velocity_at(v: &Vec6, arm: Vec3) -> Vec3 {
     linear(v) + angular(v).cross(arm)
-}
-
-/// Impulse on a body by one at `arm` from its centre.
-fn wrench(arm: Vec3, impulse: Vec3) -> Vec6 {
-    join(impulse, arm.cross(impulse))
 }

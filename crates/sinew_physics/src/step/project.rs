@@ -6,7 +6,7 @@ use crate::island::Island;
 use crate::particles::{Anchor, AttachmentTarget, Obstacle, ObstacleBody};
 use crate::solver::boundary::groups::TakenGroup;
 use crate::solver::{IslandSolver, View};
-use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear, wrench};
 use sinew_math::{Sym3, Transform, Vec3};
 
 /// Bodies as a particle group sees them.
@@ -150,7 +150,7 @@ impl Surroundings {
             if let Some(local) = self.seen[place].local.filter(|&local| self.hung_on[local].0 > 1) {
                 let impulse = taken.group.join_held(k, anchor, &mut self.bodies[place]);
                 let arm = anchor.position - self.bodies[place].center;
-                add_scaled(&mut self.impulses[local], &join(impulse, arm.cross(impulse)), 1.0);
+                add_scaled(&mut self.impulses[local], &wrench(arm, impulse), 1.0);
             }
         }
         solver.apply_impulses(&self.impulses);
@@ -217,7 +217,7 @@ impl Surroundings {
         let mut push = |place: usize, point: Vec3, impulse: Vec3| {
             if let Some(local) = seen[place].local {
                 let arm = point - seen[place].pose.translation;
-                add_scaled(&mut self.impulses[local], &join(impulse, arm.cross(impulse)), 1.0);
+                add_scaled(&mut self.impulses[local], &wrench(arm, impulse), 1.0);
             }
         };
         for hit in group.body_impulses() {

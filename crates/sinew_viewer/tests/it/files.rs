@@ -67,7 +67,7 @@ fn a_ragdoll_that_is_dropped_falls() {
     falls(&mut viewer, "dropped_ragdoll");
 }
 
-/// What a page is given: bytes with names. A glTF finds the file beside it, and has the bits of the same file on a disk.
+/// Bytes with names, as a page is given them: a glTF finds the file beside it, and has the bits of the same file on a disk.
 #[test]
 fn files_without_a_folder_are_as_those_with_one() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };

@@ -11,7 +11,7 @@ use crate::solver::articulation::elimination::{
 };
 use crate::solver::joint::SolverJoint;
 use crate::solver::tuning::{LEAST_AXIS_SHARE, LEAST_AXIS_SQUARE};
-use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, join};
+use crate::spatial::{Mat6, UNITS, Vec6, ZERO6, ZERO66, join};
 use core::ops::Range;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, Real, Vector3};
@@ -22,16 +22,6 @@ pub(crate) const NONE: u32 = u32::MAX;
 
 /// One in each of the lanes that six numbers take.
 const SIX: Vec6 = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0];
-/// Rows of the unit matrix.
-const UNITS: Mat6 = {
-    let mut units = ZERO66;
-    let mut k = 0;
-    while k < 6 {
-        units[k][k] = 1.0;
-        k += 1;
-    }
-    units
-};
 
 /// A moving body as a node of its tree. Nodes of a tree are contiguous, parents before children.
 #[derive(Clone, Debug)]
