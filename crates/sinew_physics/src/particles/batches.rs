@@ -260,66 +260,107 @@ impl Kernel for Project<'_> {
     fn run<L: Lanes>(self) {
         let Batches { springs, bends, particles, .. } = self.batches;
         let times = (L::splat(self.h), L::splat(1.0 / (self.h * self.h)));
-        let two = L::splat(2.0);
         for rows in springs.iter() {
-            let ends = [Particle::load(particles, rows, 0), Particle::load(particles, rows, 1)];
-            let way = ends[1].way - ends[0].way;
-            let apart = ends[1].from - ends[0].from + way;
-            project::<L, 2>(particles, rows, ends, (apart, way), [-1.0, 1.0], times, self.touching);
+            match &rows.slots {
+                None => project_springs::<L, _>(particles, rows, &rows.blocks, times, self.touching),
+                Some(slots) => project_springs::<L, _>(particles, rows, slots, times, self.touching),
+            }
         }
         for rows in bends.iter() {
-            let ends = [
-                Particle::load(particles, rows, 0),
-                Particle::load(particles, rows, 1),
-                Particle::load(particles, rows, 2),
-            ];
-            let way = ends[0].way - ends[1].way * two + ends[2].way;
-            let apart = ends[0].from - ends[1].from * two + ends[2].from + way;
-            project::<L, 3>(particles, rows, ends, (apart, way), [1.0, -2.0, 1.0], times, self.touching);
-        }
-    }
-}
-
-/// One number of eight particles, each in its block and lane.
-#[inline(always)]
-fn load<L: Lanes, const K: usize>(
-    particles: &[Block<FIELDS>],
-    rows: &Rows<K>,
-    end: usize,
-    field: usize,
-) -> L {
-    match &rows.slots {
-        None => L::load(&particles[rows.blocks[end] as usize].0[field]),
-        Some(slots) => {
-            let mut numbers = [0.0; WIDTH];
-            for lane in 0..WIDTH {
-                let slot = slots[end][lane] as usize;
-                numbers[lane] = particles[slot / WIDTH].0[field][slot % WIDTH];
+            match &rows.slots {
+                None => project_bends::<L, _>(particles, rows, &rows.blocks, times, self.touching),
+                Some(slots) => project_bends::<L, _>(particles, rows, slots, times, self.touching),
             }
-            L::load(&numbers)
         }
     }
 }
 
+/// Places of eight particles.
+trait Place {
+    /// One number of each.
+    fn load<L: Lanes>(&self, particles: &[Block<FIELDS>], field: usize) -> L;
+
+    /// Writes one number of each.
+    fn store<L: Lanes>(&self, value: L, particles: &mut [Block<FIELDS>], field: usize);
+}
+
+/// All in one block.
+impl Place for u32 {
+    #[inline(always)]
+    fn load<L: Lanes>(&self, particles: &[Block<FIELDS>], field: usize) -> L {
+        L::load(&particles[*self as usize].0[field])
+    }
+
+    #[inline(always)]
+    fn store<L: Lanes>(&self, value: L, particles: &mut [Block<FIELDS>], field: usize) {
+        value.store(&mut particles[*self as usize].0[field]);
+    }
+}
+
+/// Each in its block and lane.
+impl Place for [u32; WIDTH] {
+    #[inline(always)]
+    fn load<L: Lanes>(&self, particles: &[Block<FIELDS>], field: usize) -> L {
+        let mut numbers = [0.0; WIDTH];
+        for lane in 0..WIDTH {
+            let slot = self[lane] as usize;
+            numbers[lane] = particles[slot / WIDTH].0[field][slot % WIDTH];
+        }
+        L::load(&numbers)
+    }
+
+    #[inline(always)]
+    fn store<L: Lanes>(&self, value: L, particles: &mut [Block<FIELDS>], field: usize) {
+        let mut numbers = [0.0; WIDTH];
+        value.store(&mut numbers);
+        for lane in 0..WIDTH {
+            let slot = self[lane] as usize;
+            particles[slot / WIDTH].0[field][slot % WIDTH] = numbers[lane];
+        }
+    }
+}
+
+/// One vector of eight particles, from its first field.
 #[inline(always)]
-fn store<L: Lanes, const K: usize>(
-    value: L,
+fn vector<L: Lanes>(particles: &[Block<FIELDS>], place: &impl Place, field: usize) -> Vector3<L> {
+    Vector3::new(
+        place.load(particles, field),
+        place.load(particles, field + 1),
+        place.load(particles, field + 2),
+    )
+}
+
+#[inline(always)]
+fn project_springs<L: Lanes, P: Place>(
     particles: &mut [Block<FIELDS>],
-    rows: &Rows<K>,
-    end: usize,
-    field: usize,
+    rows: &Rows<2>,
+    places: &[P; 2],
+    times: (L, L),
+    touching: bool,
 ) {
-    match &rows.slots {
-        None => value.store(&mut particles[rows.blocks[end] as usize].0[field]),
-        Some(slots) => {
-            let mut numbers = [0.0; WIDTH];
-            value.store(&mut numbers);
-            for lane in 0..WIDTH {
-                let slot = slots[end][lane] as usize;
-                particles[slot / WIDTH].0[field][slot % WIDTH] = numbers[lane];
-            }
-        }
-    }
+    let ends = [Particle::load(particles, &places[0]), Particle::load(particles, &places[1])];
+    let way = ends[1].way - ends[0].way;
+    let apart = ends[1].from - ends[0].from + way;
+    project::<L, P, 2>(particles, (rows, places), ends, (apart, way), [-1.0, 1.0], times, touching);
+}
+
+#[inline(always)]
+fn project_bends<L: Lanes, P: Place>(
+    particles: &mut [Block<FIELDS>],
+    rows: &Rows<3>,
+    places: &[P; 3],
+    times: (L, L),
+    touching: bool,
+) {
+    let two = L::splat(2.0);
+    let ends = [
+        Particle::load(particles, &places[0]),
+        Particle::load(particles, &places[1]),
+        Particle::load(particles, &places[2]),
+    ];
+    let way = ends[0].way - ends[1].way * two + ends[2].way;
+    let apart = ends[0].from - ends[1].from * two + ends[2].from + way;
+    project::<L, P, 3>(particles, (rows, places), ends, (apart, way), [1.0, -2.0, 1.0], times, touching);
 }
 
 /// Eight particles.
@@ -332,27 +373,16 @@ struct Particle<L> {
 
 impl<L: Lanes> Particle<L> {
     #[inline(always)]
-    fn load<const K: usize>(particles: &[Block<FIELDS>], rows: &Rows<K>, end: usize) -> Self {
-        Self {
-            from: Vector3::new(
-                load(particles, rows, end, 0),
-                load(particles, rows, end, 1),
-                load(particles, rows, end, 2),
-            ),
-            way: Vector3::new(
-                load(particles, rows, end, WAY),
-                load(particles, rows, end, WAY + 1),
-                load(particles, rows, end, WAY + 2),
-            ),
-            weight: load(particles, rows, end, WEIGHT),
-        }
+    fn load(particles: &[Block<FIELDS>], place: &impl Place) -> Self {
+        let (from, way) = (vector(particles, place, 0), vector(particles, place, WAY));
+        Self { from, way, weight: place.load(particles, WEIGHT) }
     }
 
     #[inline(always)]
-    fn store<const K: usize>(&self, particles: &mut [Block<FIELDS>], rows: &Rows<K>, end: usize) {
-        store(self.way.x, particles, rows, end, WAY);
-        store(self.way.y, particles, rows, end, WAY + 1);
-        store(self.way.z, particles, rows, end, WAY + 2);
+    fn store(&self, particles: &mut [Block<FIELDS>], place: &impl Place) {
+        place.store(self.way.x, particles, WAY);
+        place.store(self.way.y, particles, WAY + 1);
+        place.store(self.way.z, particles, WAY + 2);
     }
 }
 
@@ -366,15 +396,11 @@ struct Surface<L> {
 
 impl<L: Lanes> Surface<L> {
     #[inline(always)]
-    fn load<const K: usize>(particles: &[Block<FIELDS>], rows: &Rows<K>, end: usize) -> Self {
+    fn load(particles: &[Block<FIELDS>], place: &impl Place) -> Self {
         Self {
-            normal: Vector3::new(
-                load(particles, rows, end, NORMAL),
-                load(particles, rows, end, NORMAL + 1),
-                load(particles, rows, end, NORMAL + 2),
-            ),
-            backing: load(particles, rows, end, BACKING),
-            room: load(particles, rows, end, ROOM),
+            normal: vector(particles, place, NORMAL),
+            backing: place.load(particles, BACKING),
+            room: place.load(particles, ROOM),
         }
     }
 
@@ -385,19 +411,19 @@ impl<L: Lanes> Surface<L> {
         (L::min(self.room + along, zero) - L::min(self.room, zero)) * self.backing
     }
 
-    /// Lengths that particles of some weight come along `share` times a unit `direction` by as many times an impulse, and their mobility after it, 1/kg.
+    /// Mobility, 1/kg, of a particle of some weight that is pulled by a force of which so much is along the normal and whose square is `square`, while
+    /// it has some room.
     #[inline(always)]
-    fn moved(&self, weight: L, direction: Vector3<L>, share: L, impulse: L) -> (L, L) {
+    fn mobility(&self, (weight, along, square): (L, L, L), room: L) -> L {
         let zero = L::splat(0.0);
-        let along = direction.dot(self.normal) * share;
-        let after = self.room + along * impulse;
-        let presses = L::lt(after, zero) | (L::lt(along, zero) & L::le(after, zero));
-        let backed = (along * self.backing).masked(presses);
-        let square = share * share;
-        (
-            weight * (square * impulse - along * self.handed_on(along * impulse)),
-            weight * (square - along * backed),
-        )
+        let presses = L::lt(room, zero) | (L::lt(along, zero) & L::le(room, zero));
+        weight * (square - along * (along * self.backing).masked(presses))
+    }
+
+    /// Length that a particle of some weight comes along that force by as many times an impulse.
+    #[inline(always)]
+    fn moved(&self, (weight, along, square): (L, L, L), impulse: L) -> L {
+        weight * (square * impulse - along * self.handed_on(along * impulse))
     }
 
     /// The part of an impulse along a unit `direction`, times the length of the iteration, N·s², that is left to particles: the rest presses them onto
@@ -413,10 +439,10 @@ impl<L: Lanes> Surface<L> {
 
 /// True if a particle of the rows touches a surface.
 #[inline(always)]
-fn any_touching<L: Lanes, const K: usize>(particles: &[Block<FIELDS>], rows: &Rows<K>) -> bool {
+fn any_touching<L: Lanes, P: Place, const K: usize>(particles: &[Block<FIELDS>], places: &[P; K]) -> bool {
     let mut any = false;
-    for end in 0..K {
-        any |= L::gt(load::<L, K>(particles, rows, end, BACKING), L::splat(0.0)).any();
+    for place in places {
+        any |= L::gt(place.load::<L>(particles, BACKING), L::splat(0.0)).any();
     }
     any
 }
@@ -434,27 +460,31 @@ fn impulse_on_surfaces<L: Lanes, const K: usize>(
     let zero = L::splat(0.0);
     // Ends are pulled against the error.
     let sign = L::select(L::lt(error, zero), L::splat(1.0), L::splat(-1.0));
-    let (mut impulse, mut mobility) = (zero, zero);
-    for _ in 0..2 {
-        let mut moved = zero;
-        mobility = zero;
-        for k in 0..K {
-            let (by, gained) =
-                surfaces[k].moved(ends[k].weight, direction, sign * L::splat(shares[k]), impulse);
-            moved = moved + by;
-            mobility = mobility + gained;
-        }
-        impulse = impulse + (error.abs() - moved - compliance * impulse) / (mobility + compliance);
+    let mut pulls = [(zero, zero, zero); K];
+    let mut mobility = zero;
+    for k in 0..K {
+        let share = sign * L::splat(shares[k]);
+        let along = direction.dot(surfaces[k].normal) * share;
+        pulls[k] = (ends[k].weight, along, L::splat(shares[k] * shares[k]));
+        mobility = mobility + surfaces[k].mobility(pulls[k], surfaces[k].room);
     }
+    let first = error.abs() / (mobility + compliance);
+    let mut left = error.abs() - compliance * first;
+    mobility = zero;
+    for k in 0..K {
+        left = left - surfaces[k].moved(pulls[k], first);
+        mobility = mobility + surfaces[k].mobility(pulls[k], surfaces[k].room + pulls[k].1 * first);
+    }
+    let impulse = first + left / (mobility + compliance);
     (zero - sign * impulse, mobility)
 }
 
 /// Solves eight rows. `apart` is the vector whose length is their error and rest, `way` how far it has come in the iteration, and
 /// each end moves it by its share.
 #[inline(always)]
-fn project<L: Lanes, const K: usize>(
+fn project<L: Lanes, P: Place, const K: usize>(
     particles: &mut [Block<FIELDS>],
-    rows: &Rows<K>,
+    (rows, places): (&Rows<K>, &[P; K]),
     mut ends: [Particle<L>; K],
     (apart, way): (Vector3<L>, Vector3<L>),
     shares: [f32; K],
@@ -468,10 +498,10 @@ fn project<L: Lanes, const K: usize>(
     let compliance = L::load(&rows.compliance) * per_square;
     let mut surfaces = None;
     let (mut impulse, mut sum);
-    if touching && any_touching::<L, K>(particles, rows) {
-        let mut found = [Surface::load(particles, rows, 0); K];
+    if touching && any_touching::<L, P, K>(particles, places) {
+        let mut found = [Surface::load(particles, &places[0]); K];
         for k in 1..K {
-            found[k] = Surface::load(particles, rows, k);
+            found[k] = Surface::load(particles, &places[k]);
         }
         (impulse, sum) = impulse_on_surfaces(&found, &ends, (direction, error), shares, compliance);
         surfaces = Some(found);
@@ -498,10 +528,10 @@ fn project<L: Lanes, const K: usize>(
         match &mut surfaces {
             Some(surfaces) => {
                 ends[k].way = ends[k].way + surfaces[k].pass_on(direction, on_end) * ends[k].weight;
-                store(surfaces[k].room, particles, rows, k, ROOM);
+                places[k].store(surfaces[k].room, particles, ROOM);
             }
             None => ends[k].way = ends[k].way + direction * (on_end * ends[k].weight),
         }
-        ends[k].store(particles, rows, k);
+        ends[k].store(particles, &places[k]);
     }
 }
