@@ -96,6 +96,8 @@ pub struct Obstacle {
 pub(super) struct Placed {
     pub start: Transform,
     pub end: Transform,
+    /// Way of any of its points at most, metres.
+    pub way: f32,
     /// Around all the way from start to end.
     pub bounds: Aabb,
 }
@@ -110,13 +112,21 @@ impl Placed {
         let (start, end) = (at(from), at(to));
         let bounds = o.shape.aabb(&start).merge(&o.shape.aabb(&end));
         // What turns bulges out of the bounds of its ends by the height of the arc.
-        let bulge = if turn == 0.0 { 0.0 } else { (bounds.max - bounds.min).length() * turn * turn / 8.0 };
-        Self { start, end, bounds: bounds.expand(bulge) }
+        let size = (bounds.max - bounds.min).length();
+        let bulge = if turn == 0.0 { 0.0 } else { size * turn * turn / 8.0 };
+        let way = if start == end {
+            0.0
+        } else {
+            let lever = (start.translation - end.translation).length();
+            let reach = size + (bounds.min - start.translation).length();
+            if start.rotation == end.rotation { lever } else { lever + DETOUR * turn * reach }
+        };
+        Self { start, end, way, bounds: bounds.expand(bulge) }
     }
 
-    /// World position, at the end of the iteration, of a point that moves along with the shape, metres.
-    fn carried(&self, point: Vec3) -> Vec3 {
-        self.end.point(self.start.inverse_point(point))
+    /// Way in the iteration of a point that moves along with the shape, metres.
+    fn way_of(&self, point: Vec3) -> f32 {
+        if self.way == 0.0 { 0.0 } else { (self.end.point(self.start.inverse_point(point)) - point).length() }
     }
 }
 
@@ -124,6 +134,11 @@ impl Placed {
 pub(super) fn distance_at_least(bounds: &Aabb, point: Vec3) -> f32 {
     let beyond = max3(bounds.min - point, point - bounds.max);
     max(max(beyond.x, beyond.y), beyond.z)
+}
+
+/// True if what is so far away, metres, is surely not on the way.
+fn is_beyond(clearance: f32, way: Vec3) -> bool {
+    clearance > 0.0 && clearance * clearance > DETOUR * DETOUR * way.length_squared()
 }
 
 fn between(from: &Transform, to: &Transform, share: f32) -> Transform {
@@ -160,6 +175,8 @@ pub(super) struct Touch {
     /// Factor by which the body is lighter for this particle than it is: where those that touch it outweigh it, each has
     /// its share of the body's inertia, or their sum would push it too far.
     pub lightness: f32,
+    /// Distance from any other shape that the particle surely has when the iteration begins, less what shapes move in it, metres.
+    pub beside: f32,
 }
 
 impl Touch {
@@ -183,6 +200,11 @@ impl Touch {
         let friction = along * -if holds { stick } else { self.material.friction * normal };
         body.push(self.point, -friction);
         friction
+    }
+
+    /// Height of a ball of this radius above the plane that it touches, at the end of the iteration, metres.
+    pub fn height(&self, center: Vec3, radius: f32) -> f32 {
+        (center - self.point).dot(self.normal) - radius
     }
 
     /// Velocity of the body's surface where it is touched, m/s.
@@ -220,13 +242,9 @@ impl ParticleGroup {
         for &i in &self.solved {
             self.touches[i as usize] = None;
         }
-        for i in 0..self.positions.len() {
+        for at in 0..self.close.len() {
+            let i = self.close[at] as usize;
             if self.attachment_of[i] == u32::MAX {
-                let sight = self.sight(i, h);
-                if let Some(beyond) = self.near.alone_within(i, sight) {
-                    (self.clearances[i], self.grips[i]) = (beyond, Grip::Off);
-                    continue;
-                }
                 self.find_contact(i, h, obstacles, bodies);
             }
             self.grips[i] = match self.grips[i] {
@@ -250,26 +268,35 @@ impl ParticleGroup {
 
     fn find_contact(&mut self, i: usize, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         let (position, radius) = (self.positions[i], self.radii[i]);
-        let (reach, sight) = (self.contact_reach(i, h), self.sight(i, h));
-        let mut clearance = self.near.left_out_from(i, sight);
-        let mut nearest: Option<Touch> = None;
+        let (reach, sight) = (self.contact_reach(i, h), self.sights[i]);
+        let mut beside = self.near.left_out_from(i, sight);
+        let mut distance_now = beside;
+        let mut nearest: Option<(usize, Meeting)> = None;
+        let mut clearance = f32::INFINITY;
         for index in self.near.within(i, sight, obstacles.len()) {
             let (o, placed) = (&obstacles[index], &self.placed[index]);
             let at_least = distance_at_least(&placed.bounds, position) - radius;
             if at_least > sight {
-                clearance = min(clearance, at_least);
+                (beside, distance_now) = (min(beside, at_least), min(distance_now, at_least));
                 continue;
             }
-            let local = placed.start.inverse_point(position);
-            let (distance, normal) = o.shape.ball_distance(local, radius, sight + radius);
+            let at = placed.start.inverse_point(position);
+            let (distance, normal) = o.shape.ball_distance(at, radius, sight + radius);
             let gap = distance - radius;
-            clearance = min(clearance, gap - (placed.carried(position) - position).length());
-            if gap <= reach && nearest.is_none_or(|touch| gap < touch.gap) {
-                let meeting = Meeting { fraction: 0.0, at: local, normal, gap };
-                nearest = Some(self.touch(i, h, index, &meeting, obstacles, bodies));
+            distance_now = min(distance_now, gap);
+            let clear = gap - placed.way_of(position);
+            if gap <= reach && nearest.is_none_or(|(_, best)| gap < best.gap) {
+                nearest = Some((index, Meeting { fraction: 0.0, at, normal, gap }));
+                beside = min(beside, clearance);
+                clearance = clear;
+            } else {
+                beside = min(beside, clear);
             }
         }
-        (self.touches[i], self.clearances[i]) = (nearest, clearance);
+        self.touches[i] = nearest
+            .map(|(index, meeting)| Touch { beside, ..self.touch(i, h, index, &meeting, obstacles, bodies) });
+        self.clearances[i] = min(clearance, beside);
+        self.near.note_distance(i, position, distance_now);
     }
 
     /// The contact of a particle with the plane that it meets, so that it ends the iteration on it at the lowest.
@@ -306,14 +333,18 @@ impl ParticleGroup {
             material,
             speed_min: speed - body.velocity_at(point).dot(normal),
             lightness: 1.0,
+            beside: 0.0,
         }
     }
 
     /// True if a particle surely meets nothing on its way.
     pub(super) fn is_clear(&self, i: usize, way: Vec3) -> bool {
-        let clearance = self.clearances[i];
-        let beyond = clearance > 0.0 && clearance * clearance > DETOUR * DETOUR * way.length_squared();
-        beyond || self.attachment_of[i] != u32::MAX
+        is_beyond(self.clearances[i], way) || self.attachment_of[i] != u32::MAX
+    }
+
+    /// True if a particle surely meets nothing on its way but what it touches.
+    pub(super) fn is_clear_beside(&self, i: usize, way: Vec3) -> bool {
+        self.touches[i].map_or_else(|| self.is_clear(i, way), |touch| is_beyond(touch.beside, way))
     }
 
     /// The first obstacle on the way of a particle, given by where it begins and ends in the iteration, that it ends deeper
@@ -344,40 +375,36 @@ impl ParticleGroup {
         first
     }
 
-    /// Surfaces that particles would meet within the iteration with the velocities just found; whether there are any that
+    /// The surface that a particle would meet within the iteration with the velocity just found; whether there is one that
     /// the solve does not know of.
-    fn predict_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> bool {
-        let mut found = false;
-        for at in 0..self.solved.len() {
-            let i = self.solved[at] as usize;
-            let way = self.velocities[i] * h;
-            if self.grips[i] == Grip::Wedged || self.is_clear(i, way) {
-                continue;
+    fn predict_contact(&mut self, i: usize, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> bool {
+        let way = self.velocities[i] * h;
+        if self.grips[i] == Grip::Wedged || self.is_clear_beside(i, way) {
+            return false;
+        }
+        let known = self.touches[i].map(|touch| touch.obstacle);
+        let ends = (self.positions[i], self.positions[i] + way);
+        let Some((obstacle, meeting)) = self.first_met(i, ends, known, IMPACT_DEPTH, obstacles) else {
+            return false;
+        };
+        let touch = self.touch(i, h, obstacle, &meeting, obstacles, bodies);
+        let fixed = |body: usize| bodies[body].inverse_mass == 0.0;
+        match self.touches[i] {
+            Some(held) if self.grips[i] != Grip::Off => {
+                // Against two walls nothing is left to move along but their edge. A body that yields is left to impacts.
+                let wedged = fixed(held.body) && fixed(touch.body);
+                if wedged {
+                    self.grips[i] = Grip::Wedged;
+                    self.wedges[i] = self.velocities[i] * meeting.fraction;
+                }
+                wedged
             }
-            let known = self.touches[i].map(|touch| touch.obstacle);
-            let ends = (self.positions[i], self.positions[i] + way);
-            let Some((obstacle, meeting)) = self.first_met(i, ends, known, IMPACT_DEPTH, obstacles) else {
-                continue;
-            };
-            let touch = self.touch(i, h, obstacle, &meeting, obstacles, bodies);
-            let fixed = |body: usize| bodies[body].inverse_mass == 0.0;
-            match self.touches[i] {
-                Some(held) if self.grips[i] != Grip::Off => {
-                    // Against two walls nothing is left to move along but their edge. A body that yields is left to impacts.
-                    if fixed(held.body) && fixed(touch.body) {
-                        self.grips[i] = Grip::Wedged;
-                        self.wedges[i] = self.velocities[i] * meeting.fraction;
-                        found = true;
-                    }
-                }
-                _ => {
-                    self.grips[i] = self.first_grip(i, &touch, bodies);
-                    self.touches[i] = Some(touch);
-                    found = true;
-                }
+            _ => {
+                self.grips[i] = self.first_grip(i, &touch, bodies);
+                self.touches[i] = Some(touch);
+                true
             }
         }
-        found
     }
 
     /// First grip of a surface on a particle that comes to it with the velocity just found: if stopping it takes more than
@@ -394,8 +421,9 @@ impl ParticleGroup {
         Grip::Slide
     }
 
-    /// Each particle is solved as if it alone pushed the body.
-    fn share_bodies(&mut self, bodies: &[ObstacleBody]) {
+    /// Each particle is solved as if it alone pushed the body; whether the share of any has changed.
+    fn share_bodies(&mut self, bodies: &[ObstacleBody]) -> bool {
+        let mut changed = false;
         self.loads.clear();
         self.loads.resize(bodies.len(), 0.0);
         for &i in &self.solved {
@@ -407,13 +435,16 @@ impl ParticleGroup {
             let mass = self.masses[i as usize];
             if let Some(touch) = &mut self.touches[i as usize] {
                 let load = self.loads[touch.body];
-                touch.lightness =
-                    if load * bodies[touch.body].inverse_mass > 1.0 { load / mass } else { 1.0 };
+                let lightness = if load * bodies[touch.body].inverse_mass > 1.0 { load / mass } else { 1.0 };
+                changed |= lightness != touch.lightness;
+                touch.lightness = lightness;
             }
         }
+        changed
     }
 
-    /// Solves for the velocities; repeats while contacts open, close, stick or slip, or are still to come.
+    /// Solves for the velocities; repeats while contacts open, close, stick or slip, or are still to come: for all particles where springs
+    /// join them, else for those whose own contacts do.
     pub(super) fn solve_with_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         self.choose_solved(h);
         let bends_ahead = self.forest.has_trees() && !self.bends.is_empty();
@@ -422,25 +453,37 @@ impl ParticleGroup {
         }
         self.system.load_springs(&self.forest, &self.springs, &self.positions, h);
         self.reactions.fill(Vec3::ZERO);
+        let mut unsettled = core::mem::take(&mut self.unsettled);
+        unsettled.clone_from(&self.solved);
+        let mut met = true;
         for round in 1..=GRIP_ROUNDS {
-            self.share_bodies(bodies);
-            self.apply_grips(bodies);
+            let shares_changed = met && self.share_bodies(bodies);
+            if shares_changed || self.forest.has_trees() {
+                unsettled.clone_from(&self.solved);
+            }
+            self.apply_grips(&unsettled, bodies);
             if self.forest.has_trees() {
                 let found = (self.velocities.as_mut_slice(), self.reactions.as_mut_slice());
                 self.system.settle_springs(&self.forest, &self.springs, &self.positions, h, found);
             } else {
-                self.system.solve_apart(&self.solved, &mut self.velocities);
+                self.system.solve_apart(&unsettled, &mut self.velocities);
             }
             if round == GRIP_ROUNDS {
-                self.keep_grips();
+                self.keep_grips(&unsettled);
                 break;
             }
-            let changed = self.change_grips(round <= LOOSE_ROUNDS, bodies);
-            let found = self.predict_contacts(h, obstacles, bodies);
-            if !(changed || found) {
+            met = false;
+            unsettled.retain(|&i| {
+                let changed = self.change_grip(i as usize, round <= LOOSE_ROUNDS, bodies);
+                let found = self.predict_contact(i as usize, h, obstacles, bodies);
+                met |= found;
+                changed || found
+            });
+            if unsettled.is_empty() {
                 break;
             }
         }
+        self.unsettled = unsettled;
         if bends_ahead {
             for (reaction, bend) in self.reactions.iter_mut().zip(&self.bend_impulses) {
                 *reaction += *bend;
@@ -475,19 +518,29 @@ impl ParticleGroup {
     /// The others fly on.
     fn choose_solved(&mut self, h: f32) {
         self.solved.clear();
-        let trees = self.forest.has_trees();
-        for i in 0..self.positions.len() {
+        if self.forest.has_trees() {
+            self.solved.extend(0..self.positions.len() as u32);
+            return;
+        }
+        for at in 0..self.close.len() {
+            let i = self.close[at] as usize;
+            if self.attachment_of[i] != u32::MAX {
+                self.solved.push(i as u32);
+                continue;
+            }
             let ahead = self.begun[i] + self.accelerations[i] * h;
-            let is_free = !trees && self.attachment_of[i] == u32::MAX && self.is_clear(i, ahead * h);
-            if is_free && self.touches[i].is_none() {
-                self.velocities[i] = ahead;
+            if self.is_clear(i, ahead * h) && self.touches[i].is_none() {
                 self.contact_impulses[i] = Vec3::ZERO;
                 continue;
             }
             self.solved.push(i as u32);
-            if !trees && self.attachment_of[i] == u32::MAX {
-                self.enter(i, h);
-            }
+            self.enter(i, h);
+        }
+        // What is free flies on; the solve finds all others' velocities.
+        let begun = self.begun.iter().zip(&self.accelerations);
+        let particles = self.velocities.iter_mut().zip(begun).zip(&self.attachment_of);
+        for ((velocity, (begun, acceleration)), _) in particles.filter(|(_, held)| **held == u32::MAX) {
+            *velocity = *begun + *acceleration * h;
         }
     }
 
@@ -524,9 +577,9 @@ impl ParticleGroup {
     }
 
     /// Turns grips into what the linear system knows: fixed velocities, or the inertia of a body that yields.
-    fn apply_grips(&mut self, bodies: &[ObstacleBody]) {
-        for at in 0..self.solved.len() {
-            let i = self.solved[at] as usize;
+    fn apply_grips(&mut self, particles: &[u32], bodies: &[ObstacleBody]) {
+        for &i in particles {
+            let i = i as usize;
             if self.attachment_of[i] != u32::MAX {
                 continue;
             }
@@ -577,51 +630,47 @@ impl ParticleGroup {
     }
 
     /// Reads off the contact impulses of the last solve as they are.
-    fn keep_grips(&mut self) {
-        for at in 0..self.solved.len() {
-            let i = self.solved[at] as usize;
+    fn keep_grips(&mut self, particles: &[u32]) {
+        for &i in particles {
+            let i = i as usize;
             let held = self.touches[i].is_some() && self.grips[i] != Grip::Off;
             self.contact_impulses[i] = if held { self.contact_impulse(i) } else { Vec3::ZERO };
         }
     }
 
-    /// Reads off the contact impulses of the last solve and decides again who is held how, or only who is held more; whether
-    /// anyone's grip has changed.
-    fn change_grips(&mut self, may_loosen: bool, bodies: &[ObstacleBody]) -> bool {
-        let mut changed = false;
-        for at in 0..self.solved.len() {
-            let i = self.solved[at] as usize;
-            let Some(touch) = self.touches[i] else {
-                self.contact_impulses[i] = Vec3::ZERO;
-                continue;
-            };
-            let n = touch.normal;
-            let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
-            let impulse = self.contact_impulse(i);
-            let (normal, friction) = (impulse.dot(n), impulse - n * impulse.dot(n));
-            let limit = touch.material.friction * normal;
-            let slip = relative - n * relative.dot(n);
-            let (grip, impulse) = match self.grips[i] {
-                Grip::Off if relative.dot(n) < touch.speed_min - NO_SPEED => {
-                    (self.first_grip(i, &touch, bodies), self.contact_impulses[i])
-                }
-                Grip::Off => (Grip::Off, Vec3::ZERO),
-                Grip::Wedged => (Grip::Wedged, impulse),
-                Grip::Stick if !may_loosen => (Grip::Stick, impulse),
-                Grip::Slide if !may_loosen && normal <= 0.0 => (Grip::Slide, n * normal),
-                // A surface does not pull.
-                _ if normal <= 0.0 => (Grip::Off, Vec3::ZERO),
-                Grip::Stick if friction.length() > touch.material.static_friction * normal => {
-                    (Grip::Slide, n * normal + friction * (limit / friction.length()))
-                }
-                Grip::Stick => (Grip::Stick, impulse),
-                // Friction that drives the motion has stopped it on the way.
-                Grip::Slide if limit > 0.0 && slip.dot(friction) > 0.0 => (Grip::Stick, impulse),
-                Grip::Slide => (Grip::Slide, n * normal - normalize_or(slip, Vec3::ZERO) * limit),
-            };
-            changed |= grip != self.grips[i];
-            (self.grips[i], self.contact_impulses[i]) = (grip, impulse);
-        }
+    /// Reads off the contact impulse of the last solve and decides again how the particle is held, or only whether it is held more; whether
+    /// its grip has changed.
+    fn change_grip(&mut self, i: usize, may_loosen: bool, bodies: &[ObstacleBody]) -> bool {
+        let Some(touch) = self.touches[i] else {
+            self.contact_impulses[i] = Vec3::ZERO;
+            return false;
+        };
+        let n = touch.normal;
+        let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
+        let impulse = self.contact_impulse(i);
+        let (normal, friction) = (impulse.dot(n), impulse - n * impulse.dot(n));
+        let limit = touch.material.friction * normal;
+        let slip = relative - n * relative.dot(n);
+        let (grip, impulse) = match self.grips[i] {
+            Grip::Off if relative.dot(n) < touch.speed_min - NO_SPEED => {
+                (self.first_grip(i, &touch, bodies), self.contact_impulses[i])
+            }
+            Grip::Off => (Grip::Off, Vec3::ZERO),
+            Grip::Wedged => (Grip::Wedged, impulse),
+            Grip::Stick if !may_loosen => (Grip::Stick, impulse),
+            Grip::Slide if !may_loosen && normal <= 0.0 => (Grip::Slide, n * normal),
+            // A surface does not pull.
+            _ if normal <= 0.0 => (Grip::Off, Vec3::ZERO),
+            Grip::Stick if friction.length() > touch.material.static_friction * normal => {
+                (Grip::Slide, n * normal + friction * (limit / friction.length()))
+            }
+            Grip::Stick => (Grip::Stick, impulse),
+            // Friction that drives the motion has stopped it on the way.
+            Grip::Slide if limit > 0.0 && slip.dot(friction) > 0.0 => (Grip::Stick, impulse),
+            Grip::Slide => (Grip::Slide, n * normal - normalize_or(slip, Vec3::ZERO) * limit),
+        };
+        let changed = grip != self.grips[i];
+        (self.grips[i], self.contact_impulses[i]) = (grip, impulse);
         changed
     }
 

@@ -36,6 +36,10 @@ impl ParticleGroup {
     /// or bounce, and rub.
     pub(super) fn stop_impacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &mut [ObstacleBody]) {
         for i in 0..self.positions.len() {
+            if self.is_clear(i, self.positions[i] - self.previous[i]) || self.rests(i, obstacles) {
+                continue;
+            }
+            self.near.follow(i, self.previous[i]);
             let mut but = None;
             for round in 0..=ROUNDS {
                 let ends = (self.previous[i], self.positions[i]);
@@ -60,6 +64,15 @@ impl ParticleGroup {
                 but = Some(obstacle);
             }
         }
+    }
+
+    /// True if a particle has ended on the convex solid that it touches, and met nothing else.
+    fn rests(&self, i: usize, obstacles: &[Obstacle]) -> bool {
+        self.touches[i].is_some_and(|touch| {
+            touch.height(self.positions[i], self.radii[i]) > -ROUNDING
+                && self.is_clear_beside(i, self.positions[i] - self.previous[i])
+                && obstacles[touch.obstacle].shape.surface().is_none()
+        })
     }
 
     /// The surface that a particle has come through, or else the one it is deepest in.

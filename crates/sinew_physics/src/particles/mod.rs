@@ -115,12 +115,18 @@ pub struct ParticleGroup {
     reactions: Vec<Vec3>,
     /// Impulse of bends on each particle that the solve of this iteration knew of.
     bend_impulses: Vec<Vec3>,
+    /// Particles that are held or may see a shape in this iteration.
+    close: Vec<u32>,
     /// Particles that the solve of this iteration is about.
     solved: Vec<u32>,
+    /// Those of them whose contacts still change from one solve to the next.
+    unsettled: Vec<u32>,
     /// Surface that each particle touches in this iteration.
     touches: Vec<Option<Touch>>,
     /// Distance to any shape that each particle surely has when the iteration begins, less what the shape moves, metres.
     clearances: Vec<f32>,
+    /// Distance from its surface within which each particle looks for shapes in this iteration, metres.
+    sights: Vec<f32>,
     /// Share of an impulse against the surface that each particle touches that goes on to the body: its share of the body's
     /// inertia over that and its own.
     backings: Vec<f32>,
@@ -212,8 +218,11 @@ impl ParticleGroup {
         self.begun = vec![Vec3::ZERO; count];
         self.gradients = vec![Vec3::ZERO; count];
         self.touches = vec![None; count];
+        self.close = Vec::with_capacity(count);
         self.solved = Vec::with_capacity(count);
+        self.unsettled = Vec::with_capacity(count);
         self.clearances = vec![0.0; count];
+        self.sights = vec![0.0; count];
         self.near = Near::new(count);
         self.backings = vec![0.0; count];
         self.press_normals = vec![Vec3::ZERO; count];
@@ -253,6 +262,8 @@ impl ParticleGroup {
     /// Takes the present positions as those before the step, for drawing.
     pub(crate) fn begin_step(&mut self) {
         self.drawn_from.copy_from_slice(&self.positions);
+        // Between steps shapes change as the user likes.
+        self.near.forget_distances();
     }
 
     /// m/s.

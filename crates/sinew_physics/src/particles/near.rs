@@ -5,11 +5,11 @@
 //! list leaves out cannot be met: the results are the bits that trying all gives, so that lists are no part of the state.
 
 use super::ParticleGroup;
-use super::contact::{Placed, distance_at_least};
+use super::contact::{Grip, Placed, distance_at_least};
 use crate::boxes::Aabb;
 use crate::particles::tuning::DETOUR;
 use crate::particles::tuning::{LIST_ITERATIONS, LIST_ROOM};
-use sinew_math::Vec3;
+use sinew_math::{Vec3, max};
 
 /// Indices that all lists together have room for, per particle.
 const SHARE: usize = 32;
@@ -31,6 +31,15 @@ pub(super) struct Near {
     obstacles: Vec<u32>,
     /// End of each particle's list in `obstacles`.
     ends: Vec<usize>,
+    /// Distance of all shapes from each particle's surface at least, metres, when it was measured: minus infinity where it is not known.
+    distances: Vec<f32>,
+    /// Where the particle was then, world, metres, and `drift`.
+    measured_at: Vec<Vec3>,
+    drifts: Vec<f32>,
+    /// Way of all shapes in the iterations of this step before this one, each time that of the fastest, metres.
+    drift: f32,
+    /// The same in this iteration.
+    way: f32,
     /// Capacity of `obstacles`; once it is full, or for a list that does not fit, none is made.
     most: usize,
 }
@@ -44,6 +53,9 @@ impl Near {
             beyond: vec![0.0; count],
             obstacles: Vec::with_capacity(SHARE * count),
             ends: vec![0; count],
+            distances: vec![f32::NEG_INFINITY; count],
+            measured_at: vec![Vec3::ZERO; count],
+            drifts: vec![0.0; count],
             most: SHARE * count,
             ..Self::default()
         }
@@ -55,9 +67,28 @@ impl Near {
         list.iter().map(|&obstacle| obstacle as usize).chain(all)
     }
 
-    /// Distance of all obstacles from a particle's surface at least, if surely none comes within `distance` (m) of it.
-    pub fn alone_within(&self, i: usize, distance: f32) -> Option<f32> {
-        (self.beyond[i] > distance && self.list(i).is_empty()).then_some(self.beyond[i])
+    /// Forgets how far away everything was.
+    pub fn forget_distances(&mut self) {
+        self.distances.fill(f32::NEG_INFINITY);
+        self.drift = 0.0;
+        self.way = 0.0;
+    }
+
+    /// Notes how far all obstacles are from a particle's surface at least when an iteration begins, metres.
+    pub fn note_distance(&mut self, i: usize, at: Vec3, distance: f32) {
+        (self.distances[i], self.measured_at[i], self.drifts[i]) = (distance, at, self.drift);
+    }
+
+    /// Goes on to the next iteration.
+    fn drift_on(&mut self, placed: &[Placed]) {
+        self.drift += self.way;
+        self.way = placed.iter().fold(0.0, |most, placed| max(most, placed.way));
+    }
+
+    /// Distance of all obstacles from a particle's surface at least, less what they move in this iteration, metres.
+    fn clearance(&self, i: usize, at: Vec3) -> f32 {
+        let moved = (at - self.measured_at[i]).length() + (self.drift - self.drifts[i]) + self.way;
+        self.distances[i] - moved - rounding_at(at)
     }
 
     /// Least distance from a particle's surface of all that [`within`](Self::within) leaves out, metres.
@@ -104,29 +135,36 @@ impl Near {
     }
 
     /// Finds how far what the list of a particle leaves out is from where it is now.
-    fn follow(&mut self, i: usize, at: Vec3) {
-        // Places are known to their rounding.
-        let rounding = 1e-5 + 1e-6 * (at.x.abs() + at.y.abs() + at.z.abs());
+    pub fn follow(&mut self, i: usize, at: Vec3) {
         self.beyond[i] = match self.reaches[i] {
-            Some(reach) => reach - (at - self.origins[i]).length() - rounding,
+            Some(reach) => reach - (at - self.origins[i]).length() - rounding_at(at),
             None => 0.0,
         };
     }
 }
 
+/// What places are not known by, metres.
+fn rounding_at(place: Vec3) -> f32 {
+    1e-5 + 1e-6 * (place.x.abs() + place.y.abs() + place.z.abs())
+}
+
 impl ParticleGroup {
-    /// Sees to it that most particles have a list that holds for this iteration.
+    /// Finds which particles may be close to a shape, and sees to it that most of these have a list that holds for this iteration.
     pub(super) fn find_near(&mut self, h: f32) {
-        if self.near.holds(&self.placed) {
-            let mut lost = 0;
-            for i in 0..self.positions.len() {
-                self.near.follow(i, self.positions[i]);
-                lost +=
-                    usize::from(self.near.reaches[i].is_some() && self.near.beyond[i] <= self.sight(i, h));
-            }
-            if lost * LOST_ONE_IN <= self.positions.len() {
-                return;
-            }
+        let holds = self.near.holds(&self.placed);
+        if !holds {
+            self.near.forget_distances();
+        }
+        self.near.drift_on(&self.placed);
+        self.find_close(h);
+        let mut lost = 0;
+        for &i in &self.close {
+            let i = i as usize;
+            self.near.follow(i, self.positions[i]);
+            lost += usize::from(self.near.reaches[i].is_some() && self.near.beyond[i] <= self.sights[i]);
+        }
+        if holds && lost * LOST_ONE_IN <= self.positions.len() {
+            return;
         }
         self.near.make_fat_bounds(&self.placed);
         self.near.obstacles.clear();
@@ -137,6 +175,24 @@ impl ParticleGroup {
             let reach = self.sight(i, h) + room;
             self.near.push(i, self.positions[i], self.radii[i], reach);
             self.near.follow(i, self.positions[i]);
+        }
+    }
+
+    /// Lists the particles that are held or may see a shape; the others let go of what they touched.
+    fn find_close(&mut self, h: f32) {
+        self.close.clear();
+        for i in 0..self.positions.len() {
+            let sight = self.sight(i, h);
+            let clearance = self.near.clearance(i, self.positions[i]);
+            if clearance > sight && self.attachment_of[i] == u32::MAX {
+                self.clearances[i] = clearance;
+                if self.grips[i] != Grip::Off {
+                    (self.grips[i], self.contact_impulses[i]) = (Grip::Off, Vec3::ZERO);
+                }
+                continue;
+            }
+            self.sights[i] = sight;
+            self.close.push(i as u32);
         }
     }
 }
@@ -279,6 +335,31 @@ mod tests {
             let pairs = SUBSTEPS * def.particles.len() * obstacles.len();
             assert!(tried * 4 < pairs, "seed {seed}: {tried} of {pairs} pairs are tried");
             assert!(touching > SUBSTEPS, "seed {seed}: {touching} touches say little");
+        }
+    }
+
+    #[test]
+    fn loose_balls_on_what_stands_still_do_not_hear_of_each_other() {
+        let mut random = Random::new(3);
+        let all = GroupDef { attachments: Vec::new(), ..rain(&mut random, 0, 2) };
+        let (obstacles, bodies) = surroundings(&mut random, usize::MAX);
+        let still: Vec<ObstacleBody> = bodies
+            .iter()
+            .map(|body| ObstacleBody { center: body.center, ..ObstacleBody::default() })
+            .collect();
+        let run = |def: &GroupDef| {
+            let mut group = ParticleGroup::new(def);
+            for _ in 0..SUBSTEPS {
+                group.begin_step();
+                group.substep(H, GRAVITY, &[], &obstacles, &mut still.clone());
+            }
+            group
+        };
+        let together = run(&all);
+        for (i, &particle) in all.particles.iter().enumerate() {
+            let alone = run(&GroupDef { particles: vec![particle], ..all.clone() });
+            assert_eq!(together.positions[i], alone.positions[0], "particle {i}");
+            assert_eq!(together.velocities[i], alone.velocities[0], "particle {i}");
         }
     }
 
