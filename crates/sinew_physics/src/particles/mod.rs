@@ -119,7 +119,7 @@ pub struct ParticleGroup {
     close: Vec<u32>,
     /// Particles that the solve of this iteration is about.
     solved: Vec<u32>,
-    /// Those of them whose contacts still change from one solve to the next.
+    /// Particles of these whose contacts still change from one solve to the next.
     unsettled: Vec<u32>,
     /// Surface that each particle touches in this iteration.
     touches: Vec<Option<Touch>>,

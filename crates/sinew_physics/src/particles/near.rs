@@ -33,7 +33,7 @@ pub(super) struct Near {
     ends: Vec<usize>,
     /// Distance of all shapes from each particle's surface at least, metres, when it was measured: minus infinity where it is not known.
     distances: Vec<f32>,
-    /// Where the particle was then, world, metres, and `drift`.
+    /// Place of the particle then, world, metres, and `drift`.
     measured_at: Vec<Vec3>,
     drifts: Vec<f32>,
     /// Way of all shapes in the iterations of this step before this one, each time that of the fastest, metres.
@@ -143,7 +143,7 @@ impl Near {
     }
 }
 
-/// What places are not known by, metres.
+/// Rounding of a place, metres.
 fn rounding_at(place: Vec3) -> f32 {
     1e-5 + 1e-6 * (place.x.abs() + place.y.abs() + place.z.abs())
 }
