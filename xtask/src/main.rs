@@ -1,4 +1,4 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | bindings | web | fuzz`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | web | fuzz`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -12,6 +12,7 @@ mod fuzz;
 mod golden;
 mod new_user;
 mod ragdolls;
+mod sizes;
 mod spawns;
 mod targets;
 mod tidy;
@@ -48,6 +49,8 @@ enum Task {
     Bench(bench::Bench),
     /// What README and guide print, built and run in an empty folder outside the workspace
     NewUser(new_user::NewUser),
+    /// Size of the library in a page, for the table of the guide
+    Sizes(sizes::Sizes),
     /// The libraries for C and Python, built, installed and tried as their users have them
     Bindings(bindings::Bindings),
     /// The viewer as a page, a folder of static files; and its trial in a browser
@@ -71,6 +74,7 @@ fn run() -> anyhow::Result<ExitCode> {
         Task::Tidy(tidy) => tidy.run()?,
         Task::Golden(golden) => golden.run()?,
         Task::NewUser(user) => user.run()?,
+        Task::Sizes(sizes) => sizes.run()?,
         Task::Bindings(bindings) => bindings.run()?,
         Task::Book(book) => book.run()?,
         Task::Ragdolls(ragdolls) => ragdolls.run()?,

@@ -1,5 +1,7 @@
 //! Physics for characters: give it a rigged file, and it falls, collides, is hit, gets up and walks on.
 //!
+#![doc = include_str!("../doc/fall.svg")]
+//!
 //! The crate to add; each module is one of the crates it is made of, [`prelude`] the names that most programs need.
 //!
 //! | feature | brings | default |

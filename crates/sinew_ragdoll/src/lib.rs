@@ -1,4 +1,6 @@
 //! From a rig to a ragdoll, and back to a clip. The only crate that knows physics **and** animation.
+//!
+#![doc = include_str!("../doc/ragdoll.svg")]
 #![forbid(unsafe_code)]
 
 pub mod bake;

@@ -40,6 +40,7 @@ mod threads;
 mod wind;
 
 mod motions;
+mod pictures;
 
 #[test]
 fn the_flock_flies() {

@@ -111,7 +111,8 @@ impl Real for f64 {
     }
 }
 
-/// Eight `f32`, each treated as `f32` is. Without optimisation its operations are calls: see [`dispatch`](crate::dispatch).
+/// Eight `f32`, each treated as `f32` is. Its operations are calls: written out eight times at each place, kernels are more than twice as
+/// large and no faster (wasm32 without simd128, which is what this is for beside development builds: see [`dispatch`](crate::dispatch)).
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar([f32; WIDTH]);
 
@@ -120,12 +121,12 @@ pub struct Scalar([f32; WIDTH]);
 pub struct Doubles([f64; WIDTH]);
 
 impl Doubles {
-    #[inline]
+    #[inline(never)]
     pub(crate) fn widened(from: [f32; WIDTH]) -> Self {
         Self(from.map(f64::from))
     }
 
-    #[inline]
+    #[inline(never)]
     pub(crate) fn narrowed(self) -> [f32; WIDTH] {
         self.0.map(|x| x as f32)
     }
@@ -139,7 +140,7 @@ macro_rules! lane_by_lane {
     ($($operator:ident $method:ident $of:ident),*) => {$(
         impl $operator for $of {
             type Output = Self;
-            #[inline]
+            #[inline(never)]
             fn $method(self, other: Self) -> Self {
                 Self(array::from_fn(|k| $operator::$method(self.0[k], other.0[k])))
             }
@@ -152,7 +153,7 @@ lane_by_lane!(Add add Doubles, Sub sub Doubles, Mul mul Doubles, Div div Doubles
 
 impl Not for Bools {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn not(self) -> Self {
         Self(self.0.map(bool::not))
     }
@@ -161,7 +162,7 @@ impl Not for Bools {
 impl Mask for Bools {}
 
 impl LaneMask for Bools {
-    #[inline]
+    #[inline(never)]
     fn bits(self) -> u8 {
         let bit = |(k, &lane): (usize, &bool)| u8::from(lane) << k;
         self.0.iter().enumerate().map(bit).fold(0, BitOr::bitor)
@@ -173,7 +174,7 @@ macro_rules! array_of {
     ($of:ident $number:ident) => {
         impl Neg for $of {
             type Output = Self;
-            #[inline]
+            #[inline(never)]
             fn neg(self) -> Self {
                 Self(self.0.map($number::neg))
             }
@@ -182,52 +183,52 @@ macro_rules! array_of {
         impl Real for $of {
             type Mask = Bools;
 
-            #[inline]
+            #[inline(never)]
             fn splat(value: f32) -> Self {
                 Self([$number::splat(value); WIDTH])
             }
 
-            #[inline]
+            #[inline(never)]
             fn splat_wide(value: f64) -> Self {
                 Self([$number::splat_wide(value); WIDTH])
             }
 
-            #[inline]
+            #[inline(never)]
             fn sqrt(self) -> Self {
                 Self(self.0.map($number::sqrt))
             }
 
-            #[inline]
+            #[inline(never)]
             fn abs(self) -> Self {
                 Self(self.0.map($number::abs))
             }
 
-            #[inline]
+            #[inline(never)]
             fn lt(a: Self, b: Self) -> Bools {
                 Bools(array::from_fn(|k| a.0[k] < b.0[k]))
             }
 
-            #[inline]
+            #[inline(never)]
             fn le(a: Self, b: Self) -> Bools {
                 Bools(array::from_fn(|k| a.0[k] <= b.0[k]))
             }
 
-            #[inline]
+            #[inline(never)]
             fn eq(a: Self, b: Self) -> Bools {
                 Bools(array::from_fn(|k| a.0[k] == b.0[k]))
             }
 
-            #[inline]
+            #[inline(never)]
             fn select(mask: Bools, a: Self, b: Self) -> Self {
                 Self(array::from_fn(|k| $number::select(mask.0[k], a.0[k], b.0[k])))
             }
 
-            #[inline]
+            #[inline(never)]
             fn masked(self, mask: Bools) -> Self {
                 Self(array::from_fn(|k| self.0[k].masked(mask.0[k])))
             }
 
-            #[inline]
+            #[inline(never)]
             fn nan_where(self, mask: Bools) -> Self {
                 Self(array::from_fn(|k| self.0[k].nan_where(mask.0[k])))
             }
@@ -241,22 +242,22 @@ array_of!(Doubles f64);
 impl Lanes for Scalar {
     type Wide = Doubles;
 
-    #[inline]
+    #[inline(never)]
     fn widen(self) -> Doubles {
         Doubles::widened(self.0)
     }
 
-    #[inline]
+    #[inline(never)]
     fn narrow(wide: Doubles) -> Self {
         Self(wide.narrowed())
     }
 
-    #[inline]
+    #[inline(never)]
     fn load(from: &[f32; WIDTH]) -> Self {
         Self(*from)
     }
 
-    #[inline]
+    #[inline(never)]
     fn store(self, to: &mut [f32; WIDTH]) {
         *to = self.0;
     }

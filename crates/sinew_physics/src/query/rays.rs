@@ -13,7 +13,7 @@ use crate::id::BodyId;
 use crate::ray::{CLEARLY_OUTSIDE, Ray};
 use crate::slabs::Slabs;
 use crate::tree::{Stop, Sweep, Traversal, Tree};
-use sinew_math::dispatch::{self, Kernel, Level};
+use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Transform, Vec3};
 
@@ -31,13 +31,13 @@ pub(super) fn first_each<P: Fn(BodyId, u32) -> bool>(
             *hit = query.best(ray);
         }
     } else {
-        first_each_at(Level::best(), query, rays, hits);
+        first_each_by(|stream| dispatch::run(stream), query, rays, hits);
     }
 }
 
-/// [`first`](Query::first) of each ray, all together, on the registers of a level.
-fn first_each_at<P: Fn(BodyId, u32) -> bool>(
-    level: Level,
+/// [`first`](Query::first) of each ray, all together, by what runs the kernel.
+fn first_each_by<P: Fn(BodyId, u32) -> bool>(
+    run: impl Fn(Stream<'_, '_, P>),
     query: &Query<'_, P>,
     rays: &[Ray],
     hits: &mut [Option<BodyHit>],
@@ -50,7 +50,7 @@ fn first_each_at<P: Fn(BodyId, u32) -> bool>(
         }
     }
     for (tree, owners) in proxies.trees() {
-        dispatch::run_at(level, Stream { query, tree, owners, rays, hits, begun: 0 });
+        run(Stream { query, tree, owners, rays, hits, begun: 0 });
     }
 }
 
@@ -266,6 +266,7 @@ mod tests {
     use super::*;
     use crate::{BodyDef, BodyKind, Filter, QueryFilter, ShapeDef, World, WorldDef};
     use sinew_math::Random;
+    use sinew_math::dispatch::{Level, run_at};
 
     /// Mostly boxes, static and moving, alone and several to a body, some of which a filter leaves out.
     fn world(random: &mut Random) -> World {
@@ -321,7 +322,7 @@ mod tests {
             let single: Vec<_> = rays.iter().map(|ray| query.first(ray)).collect();
             for level in Level::available() {
                 let mut each = vec![None; rays.len()];
-                first_each_at(level, &query, &rays, &mut each);
+                first_each_by(|stream| run_at(level, stream), &query, &rays, &mut each);
                 for ((ray, each), single) in rays.iter().zip(each).zip(&single) {
                     assert_eq!(each, *single, "{level:?}: {ray:?}");
                 }
