@@ -11,7 +11,7 @@ const HINTS: [&str; 3] = [
 ];
 
 /// Keys and what they do.
-const KEYS: [(&str, &str); 16] = [
+const KEYS: [(&str, &str); 21] = [
     ("left drag", "on a body: pull it; on the background: look around"),
     ("right drag", "look around"),
     ("middle drag, Shift + drag", "shift the view"),
@@ -22,7 +22,12 @@ const KEYS: [(&str, &str); 16] = [
     ("N, .", "one step"),
     ("R", "start again"),
     ("B", "throw a ball at what the mouse points at"),
-    ("1 to 7", "layers"),
+    ("1 to 9, 0", "layers"),
+    ("click, [ and ]", "choose a body of a ragdoll; its handles change limits and size"),
+    ("- and =", "narrow or widen the limits of its joint by 5°"),
+    ("Ctrl+S", "save the ragdoll as .sinew.json"),
+    ("← →, Home, End", "through a recording, step by step"),
+    ("drop a second recording", "of the same scene: it goes along as a ghost"),
     ("/", "search scenes; Enter opens the first"),
     ("P, F12", "write a picture of the window"),
     ("drop a file", "character (GLB, VRM, FBX), world (.json), recording (.sinewrec)"),

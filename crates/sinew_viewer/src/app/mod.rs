@@ -1,10 +1,13 @@
 //! The viewer without its window: what is shown, what hands do, the panels around it.
 
+mod bench;
 mod browser;
+mod editor;
 mod help;
 mod inspector;
 mod mouse;
 mod style;
+mod timeline;
 mod transport;
 
 use crate::layers::Layer;
@@ -12,10 +15,12 @@ use crate::preferences::Preferences;
 use crate::session::{NamedFile, Session, Subject};
 use crate::stage::Stage;
 use crate::view::{self, Orbit};
+use bench::Bench;
 use egui::{Key, Rect, Vec2};
 use mouse::Mouse;
 use sinew::math::Vec3;
 use sinew_picture::Camera;
+use sinew_scenes::recording::Recording;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use web_time::{Duration, Instant};
@@ -44,6 +49,12 @@ pub struct Options {
     pub preferences: Option<PathBuf>,
     /// Size of the window, points.
     pub size: Option<[f32; 2]>,
+    /// A second recording of the same scene, which is shown beside the first.
+    pub ghost: Option<PathBuf>,
+    /// True to show no times of this machine: for pictures that are compared.
+    pub hides_times: bool,
+    /// File to which a picture of the window is written once the steps are taken, after which it is closed.
+    pub screenshot: Option<PathBuf>,
 }
 
 /// Scene of the first minute: a figure falls down stairs.
@@ -74,6 +85,10 @@ pub struct App {
     /// Seen since the start, until something is done.
     shows_hints: bool,
     mouse: Mouse,
+    bench: Bench,
+    /// Step of a recording to which it is on its way.
+    seeking: Option<u64>,
+    hides_times: bool,
     area: Rect,
     /// True once the camera has been set for the size that the picture really has.
     is_framed: bool,
@@ -100,6 +115,14 @@ impl App {
             None => Subject::scene(FIRST, &[])?,
         };
         let mut session = Session::start(subject).map_err(|error| error.to_string())?;
+        if let Some(path) = &options.ghost {
+            let Subject::Recording(_, recording) = Subject::file(path).map_err(|error| error.to_string())?
+            else {
+                return Err(format!("{}: is no recording", path.display()));
+            };
+            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+            session.set_ghost(&name, *recording).map_err(|error| error.to_string())?;
+        }
         session.set_threads(preferences.threads);
         let mut app = Self {
             orbit: Orbit { target: Vec3::ZERO, yaw: 0.0, pitch: 0.0, distance: 1.0 },
@@ -119,6 +142,9 @@ impl App {
             shows_help: false,
             shows_hints,
             mouse: Mouse::default(),
+            bench: Bench::default(),
+            seeking: None,
+            hides_times: options.hides_times,
             area: Rect::from_min_size(Default::default(), Vec2::new(640.0, 360.0)),
             is_framed: false,
             starts: 0,
@@ -144,7 +170,9 @@ impl App {
 
     /// Content of the picture.
     pub fn stage(&self) -> Stage<'_> {
-        view::stage(&self.session, &self.camera(), &self.layers)
+        let mut stage = view::stage(&self.session, &self.camera(), &self.layers);
+        bench::draw(self, &mut stage);
+        stage
     }
 
     /// The line that is shown, if there is one.
@@ -175,7 +203,7 @@ impl App {
 
     /// True if the next frame differs from this one by itself.
     pub fn is_moving(&self) -> bool {
-        self.running || self.mouse.is_busy() || self.message.is_some()
+        self.running || self.mouse.is_busy() || self.seeking.is_some() || self.message.is_some()
     }
 
     /// True once, if a picture of the window was asked for.
@@ -214,15 +242,74 @@ impl App {
     /// Shows a file that was dropped on the window. What cannot be read is a message.
     pub fn open_file(&mut self, path: &Path) {
         match Subject::file(path) {
-            Ok(subject) => self.open(subject),
+            Ok(subject) => self.open_or_compare(subject),
             Err(error) => self.tell(error.to_string()),
         }
+    }
+
+    /// Shows a subject; a second recording of the scene that is played goes along with the first as its ghost.
+    fn open_or_compare(&mut self, subject: Subject) {
+        let (Subject::Recording(_, second), Subject::Recording(_, first)) =
+            (&subject, self.session.subject())
+        else {
+            return self.open(subject);
+        };
+        if (&first.scene, &first.settings) != (&second.scene, &second.settings) {
+            return self.open(subject);
+        }
+        let (title, recording) = (subject.title(), (**second).clone());
+        self.compare_with(&title, recording);
+    }
+
+    /// Shows a second recording of the same scene beside the one that is played. What cannot be is a message.
+    pub fn compare_with(&mut self, name: &str, recording: Recording) {
+        let line = match self.session.set_ghost(name, recording) {
+            Ok(()) => {
+                let difference = self.session.ghost().and_then(|ghost| ghost.difference());
+                format!("beside it {name}: {}", timeline::told(difference))
+            }
+            Err(error) => error.to_string(),
+        };
+        self.tell(line);
+    }
+
+    /// Plays what was just done from its start, as a recording that can be scrubbed.
+    fn replay(&mut self) {
+        let Some(recording) = self.session.recording().cloned() else {
+            return self.tell("only scenes can be played again");
+        };
+        let orbit = self.orbit;
+        let name = format!("{}-{}.sinewrec", recording.scene, recording.steps.len());
+        let length = recording.steps.len() as u64;
+        self.open(Subject::Recording(name.into(), Box::new(recording)));
+        (self.orbit, self.is_framed, self.running) = (orbit, true, false);
+        self.seek(length);
+    }
+
+    /// Goes to a step of the recording that is played.
+    pub fn seek(&mut self, step: u64) {
+        let Some(length) = self.session.length() else { return };
+        self.seeking = Some(step.min(length));
+        self.running = false;
+        self.go_on_seeking();
+    }
+
+    fn go_on_seeking(&mut self) {
+        let Some(goal) = self.seeking else { return };
+        if self.session.seek(goal, Instant::now() + MOST_STEPPING) {
+            self.seeking = None;
+        }
+        let past = self.session.past_metrics();
+        let recent = &past[past.len().saturating_sub(HISTORY)..];
+        let count = recent.first().map_or(0, Vec::len);
+        let values = |i: usize| recent.iter().map(|it| it[i].value.unwrap_or(f64::NAN)).collect();
+        self.history = (0..count).map(values).collect();
     }
 
     /// Shows files that were dropped on a page. What cannot be read is a message.
     pub fn open_dropped(&mut self, files: Vec<NamedFile>) {
         match Subject::dropped(files) {
-            Ok(subject) => self.open(subject),
+            Ok(subject) => self.open_or_compare(subject),
             Err(error) => self.tell(error.to_string()),
         }
     }
@@ -234,11 +321,9 @@ impl App {
 
     /// Begins with a new session: its camera, its sliders, its plots.
     fn begin(&mut self) {
-        self.starts += 1;
-        self.pending = 0.0;
-        self.mouse = Mouse::default();
+        self.begin_again();
+        self.bench = Bench::default();
         self.is_framed = false;
-        self.history.clear();
         self.sliders = match self.session.subject() {
             Subject::Scene(scene, settings, _) => {
                 let declared = scene.settings().declared().iter();
@@ -249,6 +334,15 @@ impl App {
         self.frame();
     }
 
+    /// Begins anew with the same: nothing of its last run is left.
+    fn begin_again(&mut self) {
+        self.starts += 1;
+        self.pending = 0.0;
+        self.mouse = Mouse::default();
+        self.seeking = None;
+        self.history.clear();
+    }
+
     /// Turns the camera to all that the scene is about.
     fn frame(&mut self) {
         let instance = self.session.instance();
@@ -257,12 +351,16 @@ impl App {
     }
 
     fn restart(&mut self) {
-        let subject = self.session.subject().clone();
-        let orbit = self.orbit;
-        self.open(subject);
-        // Who looks closely at something wants to see it again from there.
-        self.orbit = orbit;
-        self.is_framed = true;
+        if self.session.length().is_some() {
+            let runs = self.running;
+            self.seek(0);
+            self.running = runs;
+            return;
+        }
+        match self.session.restart() {
+            Ok(()) => self.begin_again(),
+            Err(error) => self.tell(error.to_string()),
+        }
     }
 
     fn step(&mut self) {
@@ -274,7 +372,7 @@ impl App {
             };
             self.tell(line);
         }
-        let metrics = self.session.instance().metrics();
+        let metrics = self.session.metrics();
         self.history.resize_with(metrics.len(), VecDeque::new);
         for (history, metric) in self.history.iter_mut().zip(&metrics) {
             if history.len() == HISTORY {
@@ -290,6 +388,9 @@ impl App {
         let passed = self.last_frame.map_or(0.0, |last| (now - last).as_secs_f64());
         self.last_frame = Some(now);
         self.frame_time += (passed as f32 - self.frame_time) * 0.1;
+        if self.seeking.is_some() {
+            return self.go_on_seeking();
+        }
         if !self.running {
             return;
         }
@@ -337,6 +438,7 @@ impl App {
                 }
             }
             mouse::act(self, ui);
+            bench::overlay(self, ui);
             help::overlay(self, ui);
         });
         help::window(self, ui.ctx());
@@ -366,6 +468,7 @@ impl App {
         if pressed(Key::R) {
             self.restart();
         }
+        self.bench_keys(ctx);
         if pressed(Key::F) {
             self.frame();
         }
@@ -385,10 +488,9 @@ impl App {
             self.shows_help = false;
             self.shows_hints = false;
         }
-        for (key, layer) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7]
-            .into_iter()
-            .zip(Layer::ALL)
-        {
+        use Key::{Num0, Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9};
+        let keys = [Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9, Num0];
+        for (key, layer) in keys.into_iter().zip(Layer::ALL) {
             if pressed(key) {
                 self.toggle(layer);
             }
@@ -396,9 +498,42 @@ impl App {
         self.fly(ctx);
     }
 
+    /// Keys that change a ragdoll, or go through a recording.
+    fn bench_keys(&mut self, ctx: &egui::Context) {
+        let pressed = |key: Key| ctx.input(|input| input.key_pressed(key));
+        let saves = |input: &egui::InputState| input.modifiers.command && input.key_pressed(Key::S);
+        if ctx.input(saves) {
+            bench::save(self);
+        }
+        for (key, by) in [(Key::OpenBracket, -1), (Key::CloseBracket, 1)] {
+            if pressed(key) {
+                bench::choose_next(self, by);
+            }
+        }
+        for (key, sign) in [(Key::Minus, -1.0), (Key::Equals, 1.0), (Key::Plus, 1.0)] {
+            if pressed(key) {
+                bench::widen(self, sign);
+            }
+        }
+        let at = self.session.world().step_count();
+        for (key, step) in [
+            (Key::ArrowLeft, at.saturating_sub(1)),
+            (Key::ArrowRight, at + 1),
+            (Key::Home, 0),
+            (Key::End, u64::MAX),
+        ] {
+            if pressed(key) {
+                self.seek(step);
+            }
+        }
+    }
+
     /// Moves the camera while keys are held.
     fn fly(&mut self, ctx: &egui::Context) {
         let (seconds, fast) = ctx.input(|input| (input.stable_dt.min(0.1), input.modifiers.shift));
+        if ctx.input(|input| input.modifiers.command) {
+            return;
+        }
         let held = |key: Key| ctx.input(|input| f32::from(u8::from(input.key_down(key))));
         let way =
             Vec3::new(held(Key::D) - held(Key::A), held(Key::E) - held(Key::Q), held(Key::W) - held(Key::S));

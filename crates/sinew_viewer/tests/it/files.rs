@@ -9,7 +9,7 @@ use sinew_viewer::{Headless, NamedFile};
 use std::path::{Path, PathBuf};
 
 /// A folder of this test alone, empty.
-fn folder(name: &str) -> PathBuf {
+pub fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     if folder.exists() {
         std::fs::remove_dir_all(&folder).expect("it is ours");
@@ -18,13 +18,17 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
+/// The mannequin as a file.
+pub fn mannequin_glb() -> Vec<u8> {
+    let mannequin = sinew::mannequin::mannequin();
+    write_gltf(&mannequin.rig, &mannequin.clips).expect("it can be written")
+}
+
 #[test]
 fn a_character_that_is_dropped_falls() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let path = folder("dropped_character").join("mannequin.glb");
-    let mannequin = sinew::mannequin::mannequin();
-    let bytes = write_gltf(&mannequin.rig, &mannequin.clips).expect("it can be written");
-    std::fs::write(&path, bytes).expect("the folder is there");
+    std::fs::write(&path, mannequin_glb()).expect("the folder is there");
     viewer.app_mut().open_file(&path);
     let session = viewer.app().session();
     assert_eq!(session.subject().title(), "mannequin.glb");
@@ -72,8 +76,7 @@ fn a_ragdoll_that_is_dropped_falls() {
 fn files_without_a_folder_are_as_those_with_one() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let folder = folder("dropped_on_a_page");
-    let mannequin = sinew::mannequin::mannequin();
-    let glb = write_gltf(&mannequin.rig, &mannequin.clips).expect("it can be written");
+    let glb = mannequin_glb();
     let (json, binary) = parts(&glb);
     let mut json: serde_json::Value = serde_json::from_slice(json).expect("it is JSON");
     json["buffers"][0]["uri"] = "mannequin.bin".into();

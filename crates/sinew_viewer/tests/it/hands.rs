@@ -15,7 +15,7 @@ pub fn viewer(scene: &str, size: [u32; 2]) -> Option<Headless> {
 }
 
 /// Frames until the panels have found their sizes.
-fn settled(viewer: &mut Headless) -> Image {
+pub fn settled(viewer: &mut Headless) -> Image {
     (0..3).map(|_| viewer.frame().expect("the card draws")).last().expect("three frames")
 }
 

@@ -1,6 +1,8 @@
 //! Integration tests of the viewer: pictures by the driver that is there, panels and hands without a window, a window under Xvfb.
 
+mod editor;
 mod endurance;
 mod files;
 mod hands;
 mod pictures;
+mod timeline;

@@ -18,7 +18,7 @@ use sinew::formats::{MotionOptions, ReadOptions, Textures, load_world};
 use sinew::physics::{BodyDef, World, WorldDef};
 use sinew_picture::{EncodeError, RenderSettings};
 use sinew_scenes::scenes::{Instance, Scene, Settings, find};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Length of the movie of a world file, and when a picture of one is taken, seconds: things have fallen by then.
 const WORLD_SECONDS: f32 = 3.0;
@@ -63,6 +63,9 @@ pub struct View {
     /// The window starts without running
     #[arg(long, conflicts_with_all = ["picture", "movie"])]
     paused: bool,
+    /// A second recording of the same scene, which the window shows beside the first
+    #[arg(long, value_name = "OTHER.sinewrec", conflicts_with_all = ["picture", "movie"])]
+    ghost: Option<PathBuf>,
     /// The window's messages go to stderr as well
     #[arg(long, conflicts_with_all = ["picture", "movie"])]
     log: bool,

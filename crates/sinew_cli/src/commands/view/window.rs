@@ -29,10 +29,10 @@ impl View {
         let options = Options {
             subject,
             paused: self.paused,
-            steps: None,
             log: self.log,
             preferences: Preferences::path(),
-            size: None,
+            ghost: self.ghost.clone(),
+            ..Options::default()
         };
         open(options).map_err(|error| Failure::of_file(title.clone().unwrap_or("view".into()), error))?;
         Ok(Report { json: json!({"subject": title, "outputs": []}), text: String::new() })
