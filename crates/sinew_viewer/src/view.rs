@@ -6,7 +6,7 @@ use crate::stage::Stage;
 use sinew::math::{Rotation, Vec3, clamp, max, min, normalize_or, trig};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
-use sinew::physics::{BodyKind, World};
+use sinew::physics::{BodyKind, BodyKinds, QueryFilter, World};
 use sinew_picture::world::{self, Canvas, Frame, Kinematic, Lines};
 use sinew_picture::{Camera, Line, LineDepth, RenderMaterial, Scene, Sky, Sun, draw};
 use sinew_scenes::scenes::Instance;
@@ -33,6 +33,16 @@ pub fn bounds(instance: &Instance) -> Aabb {
     let all = all.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE));
     let is_sound = all.min.is_finite() && all.max.is_finite();
     if is_sound { all } else { Aabb::around(Vec3::ZERO, Vec3::ONE) }
+}
+
+/// Bounds with the ground below them, if it is no farther than that they may fall on it before one's eyes.
+pub(crate) fn with_ground(bounds: &Aabb, world: &World) -> Aabb {
+    let size = (bounds.max - bounds.min).length();
+    let fall = max(6.0 * size, 1.0);
+    let down = Ray { origin: bounds.center(), direction: Vec3::NEG_Y * fall };
+    let ground = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&down);
+    let Some(hit) = ground else { return *bounds };
+    bounds.merge(&Aabb { min: hit.point, max: hit.point })
 }
 
 /// Camera that turns around a point.

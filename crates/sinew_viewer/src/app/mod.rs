@@ -88,6 +88,8 @@ pub struct App {
     bench: Bench,
     /// Step of a recording to which it is on its way.
     seeking: Option<u64>,
+    /// Middle of the scene when the camera last went along with it.
+    follows: Option<Vec3>,
     hides_times: bool,
     area: Rect,
     /// True once the camera has been set for the size that the picture really has.
@@ -144,6 +146,7 @@ impl App {
             mouse: Mouse::default(),
             bench: Bench::default(),
             seeking: None,
+            follows: None,
             hides_times: options.hides_times,
             area: Rect::from_min_size(Default::default(), Vec2::new(640.0, 360.0)),
             is_framed: false,
@@ -166,6 +169,16 @@ impl App {
     /// Camera as it stands.
     pub fn camera(&self) -> Camera {
         self.orbit.camera()
+    }
+
+    /// Camera as it turns around a point.
+    pub fn orbit(&self) -> Orbit {
+        self.orbit
+    }
+
+    /// Moves the camera.
+    pub fn set_orbit(&mut self, orbit: Orbit) {
+        self.orbit = orbit;
     }
 
     /// Content of the picture.
@@ -232,6 +245,7 @@ impl App {
             Ok(session) => {
                 self.session = session;
                 self.session.set_threads(threads);
+                self.shows_hints = false;
                 self.begin();
                 self.tell(format!("opened {}", self.session.subject().title()));
             }
@@ -347,7 +361,8 @@ impl App {
     fn frame(&mut self) {
         let instance = self.session.instance();
         let aspect = self.area.width().max(1.0) / self.area.height().max(1.0);
-        self.orbit = Orbit::framing(&view::bounds(instance), instance.camera_hint().direction, aspect);
+        let bounds = view::with_ground(&view::bounds(instance), instance.world());
+        self.orbit = Orbit::framing(&bounds, instance.camera_hint().direction, aspect);
     }
 
     fn restart(&mut self) {
@@ -363,7 +378,8 @@ impl App {
         }
     }
 
-    fn step(&mut self) {
+    /// One step, whether it runs or not.
+    pub fn step(&mut self) {
         if !self.session.step() {
             self.running = false;
             let line = match self.session.diverged() {
@@ -437,12 +453,17 @@ impl App {
                     self.frame();
                 }
             }
+            if let Some(before) = self.follows {
+                let now = view::bounds(self.session.instance()).center();
+                self.orbit.target += now - before;
+                self.follows = Some(now);
+            }
             mouse::act(self, ui);
             bench::overlay(self, ui);
             help::overlay(self, ui);
         });
         help::window(self, ui.ctx());
-        if self.message.as_ref().is_some_and(|(_, since)| since.elapsed() > MESSAGE) {
+        if !self.hides_times && self.message.as_ref().is_some_and(|(_, since)| since.elapsed() > MESSAGE) {
             self.message = None;
         }
     }
@@ -471,6 +492,10 @@ impl App {
         self.bench_keys(ctx);
         if pressed(Key::F) {
             self.frame();
+        }
+        if pressed(Key::C) {
+            self.follows = self.follows.is_none().then(|| view::bounds(self.session.instance()).center());
+            self.tell(if self.follows.is_some() { "the camera goes along" } else { "the camera stays" });
         }
         if pressed(Key::B) {
             mouse::throw(self, ui);
@@ -543,7 +568,8 @@ impl App {
         }
     }
 
-    fn toggle(&mut self, layer: Layer) {
+    /// Switches a layer on or off.
+    pub fn toggle(&mut self, layer: Layer) {
         match self.layers.iter().position(|&on| on == layer) {
             Some(place) => {
                 self.layers.remove(place);

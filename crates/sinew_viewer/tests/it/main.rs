@@ -4,5 +4,6 @@ mod editor;
 mod endurance;
 mod files;
 mod hands;
+mod kept;
 mod pictures;
 mod timeline;
