@@ -57,6 +57,9 @@ pub struct Options {
     pub screenshot: Option<PathBuf>,
 }
 
+/// Frames in which panels find their sizes.
+const SETTLING: u8 = 4;
+
 /// Scene of the first minute: a figure falls down stairs.
 const FIRST: &str = "stairs";
 
@@ -102,6 +105,8 @@ pub struct App {
     files: Vec<NamedFile>,
     wants_screenshot: bool,
     wants_to_close: bool,
+    /// File for a picture of the window, and frames until it is taken: panels find their sizes in the first ones.
+    screenshot: Option<(PathBuf, u8)>,
 }
 
 impl App {
@@ -156,6 +161,7 @@ impl App {
             files: Vec::new(),
             wants_screenshot: false,
             wants_to_close: false,
+            screenshot: options.screenshot.map(|path| (path, SETTLING)),
         };
         app.begin();
         Ok(app)
@@ -216,12 +222,30 @@ impl App {
 
     /// True if the next frame differs from this one by itself.
     pub fn is_moving(&self) -> bool {
-        self.running || self.mouse.is_busy() || self.seeking.is_some() || self.message.is_some()
+        self.running
+            || self.mouse.is_busy()
+            || self.seeking.is_some()
+            || self.screenshot.is_some()
+            || self.message.is_some()
     }
 
     /// True once, if a picture of the window was asked for.
     pub fn takes_screenshot(&mut self) -> bool {
         std::mem::take(&mut self.wants_screenshot)
+    }
+
+    /// File for a picture of the window, once what it was asked for is shown; then it is to end.
+    pub(crate) fn due_screenshot(&mut self) -> Option<PathBuf> {
+        if self.goal.is_some() {
+            return None;
+        }
+        let (path, frames) = self.screenshot.take()?;
+        if frames > 0 {
+            self.screenshot = Some((path, frames - 1));
+            return None;
+        }
+        self.wants_to_close = true;
+        Some(path)
     }
 
     /// True if it is to end.
@@ -526,7 +550,9 @@ impl App {
     /// Keys that change a ragdoll, or go through a recording.
     fn bench_keys(&mut self, ctx: &egui::Context) {
         let pressed = |key: Key| ctx.input(|input| input.key_pressed(key));
-        let saves = |input: &egui::InputState| input.modifiers.command && input.key_pressed(Key::S);
+        // Ctrl may be up again at the end of a slow frame, so what counts is the event.
+        let is_save = |event: &egui::Event| matches!(event, egui::Event::Key { key: Key::S, pressed: true, modifiers, .. } if modifiers.command);
+        let saves = |input: &egui::InputState| input.events.iter().any(is_save);
         if ctx.input(saves) {
             bench::save(self);
         }
