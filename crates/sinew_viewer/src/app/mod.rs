@@ -51,6 +51,8 @@ pub struct Options {
     pub size: Option<[f32; 2]>,
     /// A second recording of the same scene, which is shown beside the first.
     pub ghost: Option<PathBuf>,
+    /// True to show no list of scenes: for a small window on one of them.
+    pub hides_browser: bool,
     /// True to show no times of this machine: for pictures that are compared.
     pub hides_times: bool,
     /// File to which a picture of the window is written once the steps are taken, after which it is closed.
@@ -94,6 +96,7 @@ pub struct App {
     /// Middle of the scene when the camera last went along with it.
     follows: Option<Vec3>,
     hides_times: bool,
+    hides_browser: bool,
     area: Rect,
     /// True once the camera has been set for the size that the picture really has.
     is_framed: bool,
@@ -153,6 +156,7 @@ impl App {
             seeking: None,
             follows: None,
             hides_times: options.hides_times,
+            hides_browser: options.hides_browser,
             area: Rect::from_min_size(Default::default(), Vec2::new(640.0, 360.0)),
             is_framed: false,
             starts: 0,
@@ -465,7 +469,9 @@ impl App {
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         style::apply(ui.ctx());
         self.keys(ui);
-        browser::show(self, ui);
+        if !self.hides_browser {
+            browser::show(self, ui);
+        }
         transport::show(self, ui);
         inspector::show(self, ui);
         egui::CentralPanel::no_frame().show(ui, |ui| {
@@ -609,6 +615,14 @@ impl App {
         if let Some(path) = &self.preferences {
             let kept = Preferences { layers: self.layers.clone(), threads: self.session.threads() };
             kept.save(path);
+        }
+    }
+
+    /// Hands out what was just played as a GLB, to be written.
+    pub fn save_glb(&mut self) {
+        match self.session.to_glb() {
+            Ok(file) => self.files.push(file),
+            Err(line) => self.tell(line),
         }
     }
 

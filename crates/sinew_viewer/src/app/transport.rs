@@ -48,6 +48,14 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
                 {
                     app.replay();
                 }
+                if app.session.workbench().is_some()
+                    && ui
+                        .button("Save GLB")
+                        .on_hover_text("What was just played, as a clip in the file")
+                        .clicked()
+                {
+                    app.save_glb();
+                }
                 if ui.button("Save recording").on_hover_text("What was done and what became of it").clicked()
                 {
                     app.save_recording();

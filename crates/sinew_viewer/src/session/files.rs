@@ -2,11 +2,13 @@
 
 use super::subject::{NamedFile, has_extension};
 use super::workbench::Workbench;
+use sinew::anim::{Wrap, analyze_skeleton, rest_pose, sample};
 use sinew::formats::{
     Error, MotionFile, MotionOptions, ReadOptions, Textures, load_motion, read_bytes, read_motion,
     read_ragdoll, read_world,
 };
 use sinew::physics::{World, WorldDef};
+use sinew_scenes::played::played;
 use sinew_scenes::scenes::Instance;
 use std::path::Path;
 
@@ -14,6 +16,8 @@ use std::path::Path;
 pub(super) enum Opened {
     /// Bodies, and lines that tell of them.
     World(Box<Instance>, Vec<String>),
+    /// A motion without a skin, which plays, and lines that tell of it.
+    Motion(Box<Instance>, Vec<String>),
     /// A ragdoll, which can be edited.
     Workbench(Box<Workbench>),
 }
@@ -67,6 +71,28 @@ fn of_json(bytes: &[u8], name: &str) -> Result<Opened, Error> {
 }
 
 fn of_motion(file: MotionFile, name: &str) -> Result<Opened, Error> {
-    let bench = Workbench::of_character(file, name);
-    Ok(Opened::Workbench(Box::new(bench.map_err(|what| Error::unsupported(what, ""))?)))
+    let refused = |what: String| Error::unsupported(what, "");
+    if file.rig.skins.is_empty() && !file.clips.is_empty() {
+        return of_skeleton(file).map_err(refused);
+    }
+    Ok(Opened::Workbench(Box::new(Workbench::of_character(file, name).map_err(refused)?)))
+}
+
+/// The first clip of a skeleton without skin, as motion capture has it.
+fn of_skeleton(file: MotionFile) -> Result<Opened, String> {
+    let MotionFile { rig, mut clips, notes, .. } = file;
+    let count = clips.len();
+    let clip = clips.swap_remove(0);
+    let mut pose = rest_pose(&rig);
+    sample(&clip, &rig, 0.0, Wrap::Clamp, &mut pose);
+    let analysis = analyze_skeleton(&rig, &pose).map_err(|error| error.to_string())?;
+    let roles = analysis.roles.iter().flatten().count();
+    let mut report = vec![
+        format!("{} joints, {roles} with a role; clip '{}' of {count}", rig.joints.len(), clip.name),
+        format!("{:.2} m, {:.2} s", analysis.height, clip.duration),
+        "motion capture has no skin: no ragdoll is built".to_owned(),
+    ];
+    report.extend(notes.into_iter().chain(analysis.notes.clone()));
+    let instance = played(rig, clip, &analysis.character_from_file());
+    Ok(Opened::Motion(Box::new(instance), report))
 }

@@ -3,6 +3,7 @@
 mod files;
 mod playback;
 mod subject;
+mod takes;
 mod workbench;
 
 pub use playback::Ghost;
@@ -12,17 +13,26 @@ pub use workbench::{Workbench, limits};
 use crate::stage_times::StageTimes;
 use files::Opened;
 use playback::Playback;
-use sinew::formats::Error;
+use sinew::formats::{Error, read_bytes};
+use sinew::math::Affine;
 use sinew::physics::{BodyId, Serial, TaskRunner, Threads, World};
 use sinew::ragdoll::settings::BoneSettings;
 use sinew_scenes::recording::{Hands, Operation, Recorder, Recording};
 use sinew_scenes::scenes::{Instance, Metric};
+use std::path::Path;
 use web_time::{Duration, Instant};
 
 /// Way in which a subject runs.
 enum Run {
     Live(Box<Recorder>),
     Replay(Box<Playback>),
+}
+
+/// Most poses that are kept to be written: five minutes.
+const MOST_POSES: usize = 18_000;
+
+fn is_glb(path: &Path) -> bool {
+    ["glb", "vrm"].into_iter().any(|extension| subject::has_extension(path, extension))
 }
 
 /// Longest that a ghost may keep the window waiting.
@@ -42,6 +52,8 @@ pub struct Session {
     /// Bodies of the ragdoll, where no figure tells them.
     bodies: Vec<BodyId>,
     ghost: Option<Box<Ghost>>,
+    /// Poses of the character on the workbench at its start and after each step, world from joint.
+    poses: Vec<Vec<Affine>>,
 }
 
 impl Session {
@@ -64,7 +76,7 @@ impl Session {
             Subject::Dropped(files) => files::open_dropped(files)?,
         };
         match opened {
-            Opened::World(instance, report) => {
+            Opened::World(instance, report) | Opened::Motion(instance, report) => {
                 let run = Recorder::of(*instance, &subject.title(), &[]);
                 Ok(Self { report, ..Self::of(subject, Run::Live(Box::new(run))) })
             }
@@ -84,6 +96,7 @@ impl Session {
             workbench: None,
             bodies: Vec::new(),
             ghost: None,
+            poses: Vec::new(),
         }
     }
 
@@ -91,7 +104,30 @@ impl Session {
     fn on(subject: Subject, workbench: Box<Workbench>) -> Self {
         let (instance, bodies) = workbench.fall();
         let run = Run::Live(Box::new(Recorder::of(instance, &subject.title(), &[])));
-        Self { workbench: Some(workbench), bodies, ..Self::of(subject, run) }
+        let mut session = Self { workbench: Some(workbench), bodies, ..Self::of(subject, run) };
+        session.keep_pose();
+        session
+    }
+
+    fn keep_pose(&mut self) {
+        if self.workbench.is_some() && self.poses.len() < MOST_POSES {
+            let pose = self.instance().figures().first().map(|figure| figure.world_from_joint.to_vec());
+            self.poses.extend(pose);
+        }
+    }
+
+    /// What was just played as a clip in a GLB.
+    ///
+    /// # Errors
+    /// One line: there is no character, or nothing was played.
+    pub fn to_glb(&self) -> Result<NamedFile, String> {
+        let workbench = self.workbench.as_ref().ok_or("only characters of files can be written as GLB")?;
+        let original = match &self.subject {
+            Subject::File(path) if is_glb(path) => Some(read_bytes(path).map_err(|error| error.to_string())?),
+            Subject::Dropped(files) if is_glb(files[0].name.as_ref()) => Some(files[0].bytes.clone()),
+            _ => None,
+        };
+        workbench.to_glb(&self.poses, self.world().def().dt(), original.as_deref())
     }
 
     /// Starts the same anew: a scene with its settings, a ragdoll with what was changed of it.
@@ -196,6 +232,7 @@ impl Session {
         };
         self.times.end_step();
         self.step_time = start.elapsed();
+        self.keep_pose();
         self.follow();
         went_on
     }

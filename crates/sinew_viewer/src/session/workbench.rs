@@ -1,13 +1,14 @@
 //! A ragdoll on the workbench: built from a file's rig or read from a file, edited, dropped again.
 
 use super::subject::NamedFile;
-use sinew::anim::{Hints, Rig, RigAnalysis, analyze_hinted};
-use sinew::formats::{MotionFile, write_ragdoll};
-use sinew::math::{Range, SwingTwistLimit};
+use super::takes;
+use sinew::anim::{Clip, Hints, Rig, RigAnalysis, analyze_hinted};
+use sinew::formats::{MotionFile, ReadOptions, append_clip, no_files, read_gltf, write_gltf, write_ragdoll};
+use sinew::math::{Affine, Range, SwingTwistLimit, Transform};
 use sinew::physics::{AxisMotion, BodyId, JointKind};
 use sinew::ragdoll::doctor::Finding;
 use sinew::ragdoll::settings::BoneSettings;
-use sinew::ragdoll::{BuildOptions, RagdollDef, Repair, Settings, build_with, doctor};
+use sinew::ragdoll::{BuildOptions, Mapping, RagdollDef, Repair, Settings, build_with, doctor};
 use sinew_scenes::fallen::{fall_of_bodies, fall_with};
 use sinew_scenes::scenes::Instance;
 
@@ -36,8 +37,7 @@ enum Source {
 struct Character {
     rig: Rig,
     analysis: RigAnalysis,
-    /// Number of its clips.
-    clips: usize,
+    clips: Vec<Clip>,
     notes: Vec<String>,
 }
 
@@ -46,7 +46,7 @@ impl Workbench {
     pub(super) fn of_character(file: MotionFile, name: &str) -> Result<Self, String> {
         let hints = Hints { exporter: file.generator.clone(), ..Hints::of_clips(&file.rig, &file.clips) };
         let analysis = analyze_hinted(&file.rig, &hints).map_err(|error| error.to_string())?;
-        let (rig, clips, notes) = (file.rig, file.clips.len(), file.notes);
+        let (rig, clips, notes) = (file.rig, file.clips, file.notes);
         let source = Source::Rig(Box::new(Character { rig, analysis, clips, notes }));
         Self::made(source, name, Vec::new())
     }
@@ -65,7 +65,7 @@ impl Workbench {
         let size = format!("{:.2} m, {:.1} kg", def.height, def.total_mass);
         let about = match &source {
             Source::Rig(character) => {
-                let (joints, clips) = (character.rig.joints.len(), character.clips);
+                let (joints, clips) = (character.rig.joints.len(), character.clips.len());
                 format!("{} bodies of {joints} joints, {clips} clips", def.bodies.len())
             }
             Source::Bodies(_) => format!("{} bodies, {} joints", def.bodies.len(), def.joints.len()),
@@ -125,6 +125,35 @@ impl Workbench {
             }
             Source::Bodies(_) => fall_of_bodies(&self.def),
         }
+    }
+
+    /// What was played as a clip in a GLB, `NAME-played.glb`: in the file itself where `original` is one, else with the clips that
+    /// it had. `poses` are world from joint, every `dt` seconds.
+    ///
+    /// # Errors
+    /// One line: there is no rig, or nothing was played.
+    pub(super) fn to_glb(
+        &self,
+        poses: &[Vec<Affine>],
+        dt: f32,
+        original: Option<&[u8]>,
+    ) -> Result<NamedFile, String> {
+        let Source::Rig(it) = &self.source else { return Err("a ragdoll file has no rig to play on".into()) };
+        if poses.len() < 2 {
+            return Err("nothing has been played yet".into());
+        }
+        let mapping = Mapping::new(&it.rig, &self.def, &it.analysis.bind_model);
+        let world_from_model = mapping.world_from_model(Transform::IDENTITY);
+        let clip = takes::clip_of(&it.rig, poses, &world_from_model, dt);
+        let document =
+            original.and_then(|bytes| read_gltf(bytes, ReadOptions::default(), &mut no_files).ok());
+        let written = match document {
+            Some(document) => append_clip(&document, &clip, &clip.name, None),
+            None => write_gltf(&it.rig, &[&it.clips[..], &[clip]].concat()),
+        };
+        let bytes = written.map_err(|error| error.to_string())?;
+        let stem = self.name.rsplit_once('.').map_or(&*self.name, |(stem, _)| stem);
+        Ok(NamedFile { name: format!("{stem}-played.glb"), bytes })
     }
 
     /// Name of the file that [`to_file`](Self::to_file) gives.
