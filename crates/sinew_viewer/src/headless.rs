@@ -56,6 +56,12 @@ impl Headless {
         }
     }
 
+    /// Presses a key and holds it, or lets it go.
+    pub fn hold(&mut self, key: egui::Key, pressed: bool) {
+        let modifiers = Modifiers::NONE;
+        self.events.push(Event::Key { key, physical_key: None, pressed, repeat: false, modifiers });
+    }
+
     /// Presses and releases a key with Ctrl before the next frame.
     pub fn ctrl(&mut self, key: egui::Key) {
         for pressed in [true, false] {

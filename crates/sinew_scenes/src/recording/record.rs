@@ -69,6 +69,7 @@ impl Recorder {
     /// Does something to the scene now; it is recorded for the step that comes next.
     pub fn apply(&mut self, operation: Operation) {
         self.hands.apply(self.instance.world_mut(), &operation);
+        operation.apply_to(&mut self.instance);
         self.operations.push(operation.of_any_world());
     }
 
@@ -198,6 +199,7 @@ impl Replay {
         let step = self.recording.steps.get(usize::try_from(taken).ok()?)?;
         for operation in &step.operations {
             self.hands.apply(self.instance.world_mut(), operation);
+            operation.apply_to(&mut self.instance);
         }
         self.instance.step_with(runner, profiler);
         Some(ReplayedStep { step: taken + 1, recorded: step.hash, found: self.instance.world().hash() })

@@ -11,12 +11,13 @@ const HINTS: [&str; 3] = [
 ];
 
 /// Keys and what they do.
-const KEYS: [(&str, &str); 21] = [
+const KEYS: [(&str, &str); 22] = [
     ("left drag", "on a body: pull it; on the background: look around"),
     ("right drag", "look around"),
     ("middle drag, Shift + drag", "shift the view"),
     ("wheel", "nearer, farther"),
     ("W A S D, Q E", "fly; with Shift faster"),
+    ("G", "W A S D walk a character (scene 'street'), and no more"),
     ("F; C", "see all of the scene; go along with it"),
     ("Space", "run, pause"),
     ("N, .", "one step"),

@@ -9,6 +9,7 @@ mod mouse;
 mod style;
 mod timeline;
 mod transport;
+mod walk;
 
 use crate::layers::Layer;
 use crate::preferences::Preferences;
@@ -95,6 +96,8 @@ pub struct App {
     seeking: Option<u64>,
     /// Middle of the scene when the camera last went along with it.
     follows: Option<Vec3>,
+    /// Way of the character that keys lead, m/s; `None` while they move the camera.
+    leads: Option<Vec3>,
     hides_times: bool,
     hides_browser: bool,
     area: Rect,
@@ -155,6 +158,7 @@ impl App {
             bench: Bench::default(),
             seeking: None,
             follows: None,
+            leads: None,
             hides_times: options.hides_times,
             hides_browser: options.hides_browser,
             area: Rect::from_min_size(Default::default(), Vec2::new(640.0, 360.0)),
@@ -382,6 +386,7 @@ impl App {
         self.pending = 0.0;
         self.mouse = Mouse::default();
         self.seeking = None;
+        self.leads = None;
         self.history.clear();
     }
 
@@ -523,6 +528,9 @@ impl App {
         if pressed(Key::F) {
             self.frame();
         }
+        if pressed(Key::G) {
+            walk::toggle(self);
+        }
         if pressed(Key::C) {
             self.follows = self.follows.is_none().then(|| view::bounds(self.session.instance()).center());
             self.tell(if self.follows.is_some() { "the camera goes along" } else { "the camera stays" });
@@ -592,6 +600,9 @@ impl App {
             return;
         }
         let held = |key: Key| ctx.input(|input| f32::from(u8::from(input.key_down(key))));
+        if self.leads.is_some() {
+            return walk::lead(self, held(Key::D) - held(Key::A), held(Key::W) - held(Key::S), fast);
+        }
         let way =
             Vec3::new(held(Key::D) - held(Key::A), held(Key::E) - held(Key::Q), held(Key::W) - held(Key::S));
         if way != Vec3::ZERO {

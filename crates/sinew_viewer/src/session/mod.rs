@@ -116,7 +116,7 @@ impl Session {
         }
     }
 
-    /// What was just played as a clip in a GLB.
+    /// Writes the steps so far as a clip in a GLB.
     ///
     /// # Errors
     /// One line: there is no character, or nothing was played.

@@ -50,7 +50,7 @@ impl Playback {
         self.replay.recording().steps.len() as u64
     }
 
-    /// What was measured up to now, after each number of steps.
+    /// Figures up to now, after each number of steps.
     pub fn metrics(&self) -> &[Vec<Metric>] {
         &self.metrics[..=(self.at() as usize).min(self.metrics.len() - 1)]
     }

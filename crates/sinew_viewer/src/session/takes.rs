@@ -1,4 +1,4 @@
-//! What was played, as a clip.
+//! Steps that were played, as a clip.
 
 use sinew::anim::{Channel, Clip, Interpolation, KeyBound, LocalTransform, Property, Rig, reduce_keys};
 use sinew::math::{Affine, Rotation, Vec3};

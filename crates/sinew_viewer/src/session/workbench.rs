@@ -127,7 +127,7 @@ impl Workbench {
         }
     }
 
-    /// What was played as a clip in a GLB, `NAME-played.glb`: in the file itself where `original` is one, else with the clips that
+    /// Writes poses as a clip in a GLB, `NAME-played.glb`: in the file itself where `original` is one, else with the clips that
     /// it had. `poses` are world from joint, every `dt` seconds.
     ///
     /// # Errors
