@@ -94,15 +94,18 @@ fn peers() -> Result<()> {
     command::run(clippy.args(["--", "-D", "warnings"]))
 }
 
-/// The viewer's window opens and is pulled at, on a display of its own, and all scenes are opened many times; skips with a line
+/// The viewer's window opens, is pulled at and edits, on a display of its own; its pictures are those that are kept, and all scenes are opened many times; skips with a line
 /// where there is no driver.
 fn window() -> Result<()> {
     command::provide("Xvfb", "xvfb")?;
     command::provide("xdotool", "xdotool")?;
     let mut test = command::cargo(&["test", "--package", "sinew_cli", "--test", "it"]);
     command::run(test.args(["--", "--ignored", "--nocapture", "--test-threads", "1", "window::"]))?;
-    let mut endurance = command::cargo(&["test", "--package", "sinew_viewer", "--test", "it"]);
-    command::run(endurance.args(["--", "--ignored", "--nocapture", "--test-threads", "1", "endurance::"]))
+    for tests in ["kept::", "endurance::"] {
+        let mut viewer = command::cargo(&["test", "--package", "sinew_viewer", "--test", "it"]);
+        command::run(viewer.args(["--", "--ignored", "--nocapture", "--test-threads", "1", tests]))?;
+    }
+    Ok(())
 }
 
 /// The plugin for Bevy compiles with no feature, and does what its tests say with all, on files that Bevy has loaded as well; two

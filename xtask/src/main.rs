@@ -4,6 +4,7 @@
 mod bench;
 mod bindings;
 mod book;
+mod chapters;
 mod check;
 mod ci;
 mod command;

@@ -1,7 +1,7 @@
 //! The viewer as a page: a folder of static files, and its trial in a browser.
 
 use crate::command::{self, cargo};
-use crate::{golden, ragdolls, targets};
+use crate::{chapters, golden, ragdolls, targets};
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::{Value, json};
 use std::fs;
@@ -63,11 +63,16 @@ fn build(folder: &Path) -> Result<()> {
     bind.args(["--target", "web", "--no-typescript", "--remove-name-section", "--remove-producers-section"]);
     command::run(bind.args(["--out-name", "sinew", "--out-dir"]).arg(folder).arg(program))?;
     let page = command::root().join(PAGE);
-    for file in ["index.html", "page.js"] {
+    for file in ["index.html", "page.js", "chapter.js"] {
         fs::copy(page.join(file), folder.join(file)).with_context(|| file.to_owned())?;
     }
+    let (chapters, scenes) = chapters::write(&command::root(), folder)?;
     let bytes = compressed(folder)?;
-    eprintln!("{}: {:.2} MB compressed", folder.display(), bytes as f64 * 1e-6);
+    eprintln!(
+        "{}: {:.2} MB compressed, {chapters} chapters of the book with {scenes} scenes",
+        folder.display(),
+        bytes as f64 * 1e-6
+    );
     ensure!(bytes < MOST_BYTES, "the page is larger than {MOST_BYTES} bytes");
     Ok(())
 }
@@ -88,11 +93,16 @@ fn binder() -> Result<PathBuf> {
     Ok(program)
 }
 
-/// Bytes of a folder's files, each compressed by itself.
+/// Bytes of the files that lie in a folder, each compressed by itself.
 fn compressed(folder: &Path) -> Result<u64> {
     let mut bytes = 0;
     for entry in fs::read_dir(folder)? {
-        let out = Command::new("gzip").args(["-9", "-c"]).arg(entry?.path()).output().context("gzip")?;
+        let path = entry?.path();
+        if path.is_dir() {
+            // Pictures, each fetched by its chapter alone.
+            continue;
+        }
+        let out = Command::new("gzip").args(["-9", "-c"]).arg(path).output().context("gzip")?;
         ensure!(out.status.success(), "gzip: {}", String::from_utf8_lossy(&out.stderr));
         bytes += out.stdout.len() as u64;
     }

@@ -8,6 +8,7 @@ use sinew::physics::particles::{ParticleGroup, SpringDef};
 use sinew::physics::{
     BodyId, BodyKind, DebugDraw, DrawKind, JointDef, JointId, JointKind, Shape, SixDof, World,
 };
+use std::collections::HashSet;
 
 /// Part of a world that a picture shows: thin and small things are drawn as thick as it needs to see them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,8 +71,7 @@ pub fn subject(world: &World) -> Option<Aabb> {
     let moving = world.body_ids().filter(|&id| world.kind(id) != BodyKind::Static);
     let particles = world.group_ids().map(|id| world.particles(id)).filter(|g| !g.positions().is_empty());
     let particles = particles.map(particle_bounds);
-    let mut lines = Lines::default();
-    world.draw(&mut lines);
+    let lines = lines_of_objects(world);
     let joints = world.joint_ids().flat_map(|id| links(world, id)).flatten();
     let anchors = joints.map(|point| Aabb { min: point, max: point }).chain(lines.bounds());
     let merge = |a: Aabb, b: Aabb| a.merge(&b);
@@ -159,6 +159,7 @@ pub fn paint(world: &World, frame: &Frame, canvas: &mut dyn Canvas) {
 /// Paints what [`paint`] does, without bodies that something else shows, and their joints: those of a character that is drawn by
 /// its skin.
 pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, canvas: &mut dyn Canvas) {
+    let shown: HashSet<BodyId> = shown.iter().copied().collect();
     for (number, id) in world.body_ids().enumerate() {
         if shown.contains(&id) {
             continue;
@@ -182,9 +183,17 @@ pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, canvas: &mu
     let joints: Vec<_> =
         world.joint_ids().filter(|id| !is_shown(id)).flat_map(|id| links(world, id)).collect();
     thin(&joints, JOINT, frame, canvas);
+    lines_of_objects(world).list.into_iter().for_each(|line| canvas.line(line));
+}
+
+/// Lines that the world's objects draw of themselves.
+fn lines_of_objects(world: &World) -> Lines {
     let mut lines = Lines::default();
-    world.draw(&mut lines);
-    lines.list.into_iter().for_each(|line| canvas.line(line));
+    // The world draws all that it has; most have no objects, and a crowd many shapes.
+    if world.object_ids().next().is_some() {
+        world.draw(&mut lines);
+    }
+    lines
 }
 
 /// Rods, or lines where they are too many.

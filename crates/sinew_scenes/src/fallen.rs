@@ -26,7 +26,12 @@ const LEAN: f32 = 0.35;
 /// If no ragdoll can be built.
 pub fn fall_of(rig: Rig, analysis: &RigAnalysis) -> Result<(Instance, BuildReport), BuildError> {
     let (ragdoll, report) = build(&rig, analysis, &BuildOptions::default())?;
-    let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    Ok((fall_with(rig, ragdoll, &analysis.bind_model), report))
+}
+
+/// [`fall_of`] with a ragdoll that is there already, built for that rig. `bind_model` is `RigAnalysis::bind_model`.
+pub fn fall_with(rig: Rig, ragdoll: RagdollDef, bind_model: &[Affine]) -> Instance {
+    let mut def = CharacterDef::new(rig, ragdoll, bind_model);
     def.after_settling = AfterSettling::StayDown;
     let def = Arc::new(def);
     let mut world = floor_alone();
@@ -37,11 +42,11 @@ pub fn fall_of(rig: Rig, analysis: &RigAnalysis) -> Result<(Instance, BuildRepor
     meter.before_step(&world);
     let mut fallen = Fallen { def, character, meter, model: Vec::new() };
     fallen.show();
-    Ok((Instance::new(world, fallen), report))
+    Instance::new(world, fallen)
 }
 
-/// The bodies of a ragdoll without its rig, which fall from the pose in which it was built.
-pub fn fall_of_bodies(def: &RagdollDef) -> Instance {
+/// The bodies of a ragdoll without its rig, which fall from the pose in which it was built, and their ids.
+pub fn fall_of_bodies(def: &RagdollDef) -> (Instance, Vec<BodyId>) {
     let mut world = floor_alone();
     let world_from_character = start(def);
     let states: Vec<BodyState> = def
@@ -52,8 +57,8 @@ pub fn fall_of_bodies(def: &RagdollDef) -> Instance {
             ..BodyState::default()
         })
         .collect();
-    Ragdoll::spawn(&mut world, def, &states, &BodySettings::default());
-    Instance::of_world(world)
+    let ragdoll = Ragdoll::spawn(&mut world, def, &states, &BodySettings::default());
+    (Instance::of_world(world), ragdoll.bodies)
 }
 
 fn floor_alone() -> World {

@@ -8,6 +8,7 @@ pub mod demo;
 pub mod fallen;
 mod framework;
 pub mod maned;
+pub mod played;
 pub mod recording;
 pub use sinew::mannequin;
 mod parts;

@@ -1,6 +1,7 @@
 // The page around the viewer: what the address asks for, files that are dropped, files to be kept.
 //
-// ?scene=NAME, set=KEY=VALUE (any number), steps=N (steps so far at once, then tells the hash), gpu=webgl2 (not WebGPU).
+// ?scene=NAME, set=KEY=VALUE (any number), steps=N (steps so far at once, then tells the hash), gpu=webgl2 (not WebGPU),
+// panels=few (without the list of scenes).
 // The canvas says what it shows: data-scene, data-steps, data-line; data-ready is the time to the first picture, ms.
 import init, { show } from './sinew.js';
 
@@ -53,6 +54,7 @@ async function begin() {
     asked.getAll('set'),
     steps > 0 ? steps : undefined,
     asked.get('gpu') === 'webgl2',
+    asked.get('panels') === 'few',
   );
   document.addEventListener('dragover', (event) => event.preventDefault());
   document.addEventListener('drop', async (event) => {

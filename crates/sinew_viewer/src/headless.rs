@@ -14,13 +14,23 @@ pub struct Headless {
     size: [u32; 2],
     events: Vec<Event>,
     frames: u32,
+    /// Held in the frame that comes next.
+    holds_ctrl: bool,
 }
 
 impl Headless {
     /// A viewer of a size in pixels, one for each point.
     pub fn new(app: App, gpu: Gpu, size: [u32; 2]) -> Self {
         let painter = Painter::new(gpu, wgpu::TextureFormat::Rgba8Unorm, size);
-        Self { app, ctx: egui::Context::default(), painter, size, events: Vec::new(), frames: 0 }
+        Self {
+            app,
+            ctx: egui::Context::default(),
+            painter,
+            size,
+            events: Vec::new(),
+            frames: 0,
+            holds_ctrl: false,
+        }
     }
 
     /// The viewer.
@@ -44,6 +54,21 @@ impl Headless {
                 modifiers: Modifiers::NONE,
             });
         }
+    }
+
+    /// Presses a key and holds it, or lets it go.
+    pub fn hold(&mut self, key: egui::Key, pressed: bool) {
+        let modifiers = Modifiers::NONE;
+        self.events.push(Event::Key { key, physical_key: None, pressed, repeat: false, modifiers });
+    }
+
+    /// Presses and releases a key with Ctrl before the next frame.
+    pub fn ctrl(&mut self, key: egui::Key) {
+        for pressed in [true, false] {
+            let modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
+            self.events.push(Event::Key { key, physical_key: None, pressed, repeat: false, modifiers });
+        }
+        self.holds_ctrl = true;
     }
 
     /// Types text before the next frame.
@@ -73,6 +98,10 @@ impl Headless {
     pub fn frame(&mut self) -> Result<Image, GpuError> {
         let [width, height] = self.size.map(|side| side as f32);
         self.frames += 1;
+        let ctrl = std::mem::take(&mut self.holds_ctrl);
+        let modifiers = Modifiers { ctrl, command: ctrl, ..Modifiers::NONE };
+        // egui is told of modifiers by events of their own.
+        self.events.insert(0, Event::ModifiersChanged(modifiers));
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, Vec2::new(width, height))),
             // Time goes by the frames, so that a test has the same one whenever it runs.

@@ -21,7 +21,7 @@ pub use gpu::{Gpu, GpuError, Offscreen, StageRenderer, Target};
 pub use headless::Headless;
 pub use layers::Layer;
 pub use preferences::Preferences;
-pub use session::{NamedFile, Session, Subject};
+pub use session::{Ghost, NamedFile, Session, Subject, Workbench, limits};
 pub use stage::Stage;
 pub use stage_times::{STAGES, StageTimes};
 pub use view::{Orbit, bounds, stage};

@@ -6,8 +6,9 @@ use crate::stage::Stage;
 use sinew::math::{Rotation, Vec3, clamp, max, min, normalize_or, trig};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
+use sinew::physics::{BodyKind, BodyKinds, QueryFilter, World};
 use sinew_picture::world::{self, Canvas, Frame, Kinematic, Lines};
-use sinew_picture::{Camera, Line, LineDepth, Scene, Sky, Sun};
+use sinew_picture::{Camera, Line, LineDepth, RenderMaterial, Scene, Sky, Sun, draw};
 use sinew_scenes::scenes::Instance;
 
 /// Smallest distance between the camera and what it turns around, metres.
@@ -32,6 +33,16 @@ pub fn bounds(instance: &Instance) -> Aabb {
     let all = all.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE));
     let is_sound = all.min.is_finite() && all.max.is_finite();
     if is_sound { all } else { Aabb::around(Vec3::ZERO, Vec3::ONE) }
+}
+
+/// Bounds with the ground below them, if it is no farther than that they may fall on it before one's eyes.
+pub(crate) fn with_ground(bounds: &Aabb, world: &World) -> Aabb {
+    let size = (bounds.max - bounds.min).length();
+    let fall = max(6.0 * size, 1.0);
+    let down = Ray { origin: bounds.center(), direction: Vec3::NEG_Y * fall };
+    let ground = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&down);
+    let Some(hit) = ground else { return *bounds };
+    bounds.merge(&Aabb { min: hit.point, max: hit.point })
 }
 
 /// Camera that turns around a point.
@@ -140,15 +151,45 @@ pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Sta
         stage.scene.lines.push(Line { from, to, color: [0.9, 0.1, 0.5], depth: LineDepth::OnTop });
         stage.ball(0.012 * distance, sinew::math::Transform::new(to, Rotation::IDENTITY), [0.9, 0.1, 0.5]);
     }
+    if let Some(ghost) = session.ghost() {
+        add_ghost(ghost.world(), instance.world(), &mut stage);
+    }
     if !has_floor(session) {
         add_grid(&around, &mut stage);
     }
     stage
 }
 
+/// Distance and turn from which on a ghost is seen beside the body, metres and radians.
+const SEEN: f32 = 1e-3;
+/// Linear colour of a ghost.
+const GHOST: [f32; 3] = [0.05, 0.55, 0.50];
+
+/// Adds the bodies of a second run that are elsewhere than those of the first.
+fn add_ghost(ghost: &World, first: &World, stage: &mut Stage<'_>) {
+    // Ids know their world, so bodies are told by their order.
+    let places: Vec<_> = first.body_ids().map(|id| first.transform(id)).collect();
+    for (number, id) in ghost.body_ids().enumerate().filter(|(_, id)| ghost.kind(*id) != BodyKind::Static) {
+        let place = ghost.transform(id);
+        let same = places.get(number);
+        let is_beside = same.is_some_and(|same| {
+            (same.translation - place.translation).length() < SEEN
+                && same.rotation.angle_to(place.rotation) < SEEN
+        });
+        if is_beside {
+            continue;
+        }
+        for (shape, place) in ghost.shapes(id) {
+            let material = RenderMaterial { opacity: 0.45, ..RenderMaterial::new(GHOST) };
+            stage.scene.models.push(draw::shape(&shape, place, material));
+            stage.scene.lines.extend(draw::wire(&shape, place, GHOST, LineDepth::Tested));
+        }
+    }
+}
+
 /// True if something endless or wide stands below.
 fn has_floor(session: &Session) -> bool {
-    use sinew::physics::{BodyKind, Shape};
+    use sinew::physics::Shape;
     let world = session.world();
     let mut shapes =
         world.body_ids().filter(|&id| world.kind(id) == BodyKind::Static).flat_map(|id| world.shapes(id));

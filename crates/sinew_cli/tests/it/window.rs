@@ -3,7 +3,8 @@
 //! Ignored unless asked for: `cargo xtask ci --full` runs it. Without Xvfb, xdotool or a driver it says that it skipped.
 #![cfg(feature = "viewer")]
 
-use crate::sinew::{Folder, command};
+use crate::sinew::{Folder, Run, command, sinew};
+use sinew::formats::read_ragdoll;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
@@ -147,6 +148,86 @@ fn a_window_opens_and_is_pulled_at() {
     let (name, after) = picture();
     assert_ne!(name, "sinew-free_fall-0.png", "it has taken steps");
     assert_ne!(before, after, "it was pulled");
+}
+
+/// The file of the ragdoll, read again; and the widest swing about z of its left upper arm, degrees.
+fn swing(path: &str) -> f32 {
+    let def = read_ragdoll(&std::fs::read(path).expect("it is there")).expect("it is a ragdoll");
+    let arm = def.bodies.iter().position(|body| body.role == "leftUpperArm").expect("it has one");
+    let joint = def.joints.iter().find(|joint| joint.child == arm).expect("it hangs on something");
+    let [_, Some(z), _] = sinew_viewer::limits(&joint.kind) else { panic!("it swings") };
+    z.hi.to_degrees()
+}
+
+/// A character is opened, one of its bones is pulled at, a limit is narrowed by keys, and what is saved has it.
+#[test]
+#[ignore = "opens a window: cargo xtask ci --full"]
+fn a_limit_is_edited_and_saved() {
+    let Some(display) = Display::start() else { return };
+    if let Err(error) = sinew_viewer::Gpu::open() {
+        return println!("skipped: {error}");
+    }
+    let folder = Folder::new("window-edit");
+    let file = folder.mannequin();
+    let built = folder.path("built.sinew.json");
+    sinew(&["ragdoll", "build", &file, "-o", &built, "--json"]).json();
+    let viewer = Viewer::start(&display, &folder, &["view", &file, "--paused", "--log"]);
+    viewer.wait_for("drawn by");
+    display.xdotool(&["search", "--name", "Sinew", "windowfocus"]);
+    display.xdotool(&["mousemove", "620", "400"]);
+    display.xdotool(&["key", "F12"]);
+    let first = viewer.wait_for("wrote sinew-");
+    // Until it is the arm's turn; more than all bodies of a humanoid there are not.
+    let chosen = (0..30).any(|_| {
+        display.xdotool(&["key", "bracketright"]);
+        viewer.wait_for("chose ").starts_with("chose leftUpperArm ")
+    });
+    assert!(chosen, "it has a left upper arm");
+    let mut told = String::new();
+    for _ in 0..4 {
+        display.xdotool(&["key", "minus"]);
+        told = viewer.wait_for("limits of leftUpperArm: ");
+    }
+    display.xdotool(&["key", "ctrl+s"]);
+    let line = viewer.wait_for(".sinew.json");
+    let name = line.strip_prefix("wrote ").expect("the name follows").to_owned();
+    let (before, after) = (swing(&built), swing(&folder.path(&name)));
+    assert!((before - after - 20.0).abs() < 0.1, "{before}° became {after}°; it told {told}");
+    display.xdotool(&["key", "F12"]);
+    assert_eq!(viewer.wait_for("wrote sinew-"), first, "the test begins anew, at step 0");
+    // It falls by the new limits, and what was written opens again.
+    for _ in 0..5 {
+        display.xdotool(&["key", "n"]);
+    }
+    drop(viewer);
+    let viewer = Viewer::start(&display, &folder, &["view", &folder.path(&name), "--paused", "--log"]);
+    viewer.wait_for("drawn by");
+}
+
+/// One command writes a picture of the window with its panels, and ends.
+#[test]
+#[ignore = "opens a window: cargo xtask ci --full"]
+fn a_picture_of_the_window_by_one_command() {
+    let Some(display) = Display::start() else { return };
+    if let Err(error) = sinew_viewer::Gpu::open() {
+        return println!("skipped: {error}");
+    }
+    let folder = Folder::new("window-picture");
+    let run = |out: &str| {
+        let mut command = command(&["view", "ragdoll_drop", "--screenshot", out, "--at", "0.5"]);
+        Run::of(command.env("DISPLAY", &display.name).env("XDG_CONFIG_HOME", folder.path("config")))
+    };
+    let out = folder.path("window.png");
+    let told = run(&out);
+    assert_eq!(told.code, Some(0), "{told:?}");
+    assert!(std::fs::read(&out).expect("it is there").starts_with(b"\x89PNG"));
+    let refused = run(&folder.path("nowhere/window.png"));
+    // The system's libraries have their own say before it.
+    let line = refused.stderr.lines().last().expect("it says why");
+    assert!(
+        refused.code == Some(1) && line.starts_with("error: ") && line.contains("nowhere"),
+        "{refused:?}"
+    );
 }
 
 #[test]

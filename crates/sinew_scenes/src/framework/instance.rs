@@ -4,7 +4,7 @@ use super::actors::Figure;
 use super::camera_hint::CameraHint;
 use super::metric::{Expected, Metric};
 use core::time::Duration;
-use sinew::math::{ReadError, Reader, Writer, max};
+use sinew::math::{ReadError, Reader, Vec3, Writer, max};
 use sinew::physics::stage::{NoProfiler, Profiler};
 use sinew::physics::{BodyId, DebugDraw, Energy, LoadError, Serial, TaskRunner, Update, World};
 
@@ -60,6 +60,14 @@ pub trait Script: Send {
     /// Bodies that those skins show.
     fn bodies_of_figures(&self) -> Vec<BodyId> {
         Vec::new()
+    }
+
+    /// Lets the character that a person may lead walk from the next step on, m/s, world space; nobody in most scenes.
+    fn steer(&mut self, _way: Vec3) {}
+
+    /// Place of that character, metres, world space.
+    fn steered(&self) -> Option<Vec3> {
+        None
     }
 }
 
@@ -117,6 +125,16 @@ impl Instance {
     /// Bodies that those skins show.
     pub fn bodies_of_figures(&self) -> Vec<BodyId> {
         self.script.bodies_of_figures()
+    }
+
+    /// Lets the character that a person may lead walk from the next step on, m/s, world space.
+    pub fn steer(&mut self, way: Vec3) {
+        self.script.steer(way);
+    }
+
+    /// Place of that character, metres, world space; `None` in scenes that have none.
+    pub fn steered(&self) -> Option<Vec3> {
+        self.script.steered()
     }
 
     /// Its world, for questions, drawing, snapshots.

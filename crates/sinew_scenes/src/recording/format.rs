@@ -143,6 +143,7 @@ mod kind {
     pub const PUSH: u8 = 4;
     pub const THROW: u8 = 5;
     pub const PUT: u8 = 6;
+    pub const STEER: u8 = 7;
 }
 
 fn write_operation(out: &mut Writer, operation: &Operation) {
@@ -157,6 +158,10 @@ fn write_operation(out: &mut Writer, operation: &Operation) {
             out.vec3(to);
         }
         Operation::Release => out.u8(kind::RELEASE),
+        Operation::Steer { way } => {
+            out.u8(kind::STEER);
+            out.vec3(way);
+        }
         Operation::Push { body, impulse, point } => {
             out.u8(kind::PUSH);
             out.u64(body.to_bits());
@@ -193,6 +198,7 @@ fn read_operation(reader: &mut Reader<'_>) -> Result<Option<Operation>, ReadErro
             radius: reader.f32()?,
             density: reader.f32()?,
         },
+        kind::STEER => Operation::Steer { way: reader.vec3()? },
         kind::PUT => {
             Operation::Put { position: reader.vec3()?, half_extents: reader.vec3()?, density: reader.f32()? }
         }

@@ -1,5 +1,6 @@
 //! Hands of a person in a running scene.
 
+use crate::framework::instance::Instance;
 use sinew::math::{Transform, Vec3, max};
 use sinew::physics::{
     BodyDef, BodyId, BodyKind, JointCollision, JointDef, JointId, JointKind, Motor, Shape, ShapeDef, SixDof,
@@ -42,6 +43,11 @@ pub enum Operation {
         radius: f32,
         /// kg/m³, above 0.
         density: f32,
+    },
+    /// Lets the character that a person may lead walk so; nothing happens in scenes that have none.
+    Steer {
+        /// m/s.
+        way: Vec3,
     },
     /// Puts a box into the world.
     Put {
@@ -110,6 +116,8 @@ impl Hands {
             Operation::Grab { body, point } => self.grab(world, body, point),
             Operation::Lead { to } => self.lead(world, to),
             Operation::Release => self.release(world),
+            // No matter of the world's.
+            Operation::Steer { .. } => {}
             Operation::Push { body, impulse, point } => {
                 if moves(world, body) {
                     world.apply_impulse(body, impulse, point);
@@ -198,6 +206,13 @@ impl Operation {
         self
     }
 
+    /// Does to a scene what its world alone cannot be told.
+    pub(super) fn apply_to(&self, instance: &mut Instance) {
+        if let (Self::Steer { way }, true) = (*self, self.is_sound()) {
+            instance.steer(way);
+        }
+    }
+
     /// True if its numbers are finite, no farther than 10⁶ m, and its sizes above 0.
     fn is_sound(&self) -> bool {
         let near = |v: Vec3| v.to_array().into_iter().all(|x| x.abs() < 1e6);
@@ -206,6 +221,7 @@ impl Operation {
             Self::Grab { point, .. } => near(point),
             Self::Lead { to } => near(to),
             Self::Release => true,
+            Self::Steer { way } => near(way),
             Self::Push { impulse, point, .. } => near(impulse) && near(point),
             Self::Throw { position, velocity, radius, density } => {
                 near(position) && near(velocity) && positive(radius) && positive(density)

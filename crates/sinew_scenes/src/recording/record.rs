@@ -5,6 +5,7 @@ use super::hands::{Hands, Operation};
 use crate::framework::instance::Instance;
 use crate::scenes::find;
 use sinew::formats::Error;
+use sinew::math::{Reader, Writer};
 use sinew::physics::stage::{NoProfiler, Profiler};
 use sinew::physics::{Serial, TaskRunner, World};
 
@@ -68,6 +69,7 @@ impl Recorder {
     /// Does something to the scene now; it is recorded for the step that comes next.
     pub fn apply(&mut self, operation: Operation) {
         self.hands.apply(self.instance.world_mut(), &operation);
+        operation.apply_to(&mut self.instance);
         self.operations.push(operation.of_any_world());
     }
 
@@ -114,6 +116,26 @@ pub struct Replay {
     recording: Recording,
 }
 
+/// State in the middle of a recording that is played, to which it can go again.
+#[derive(Clone, Debug)]
+pub struct Mark {
+    step: u64,
+    state: Vec<u8>,
+    hands: Hands,
+}
+
+impl Mark {
+    /// Number of steps taken.
+    pub fn step(&self) -> u64 {
+        self.step
+    }
+
+    /// Size in memory, bytes.
+    pub fn bytes(&self) -> usize {
+        self.state.len()
+    }
+}
+
 /// A step that was played again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReplayedStep {
@@ -150,6 +172,22 @@ impl Replay {
         &self.recording
     }
 
+    /// The state as it is now, to go to again.
+    pub fn mark(&self) -> Mark {
+        let mut out = Writer::new();
+        self.instance.save(&mut out);
+        let step = self.instance.world().step_count();
+        Mark { step, state: out.into_bytes(), hands: self.hands.clone() }
+    }
+
+    /// Goes to a state in which this recording has been; false if the scene cannot be taken there, in which case it is of no use
+    /// any more. Figures are those of when it was played last, but for what a scene saves of them.
+    pub fn go_to(&mut self, mark: &Mark) -> bool {
+        let loaded = self.instance.load(&mut Reader::new(&mark.state));
+        self.hands = mark.hands.clone();
+        loaded.is_ok() && self.instance.world().step_count() == mark.step
+    }
+
     /// Takes the next step; `None` at the end.
     pub fn step(&mut self) -> Option<ReplayedStep> {
         self.step_with(&Serial, &NoProfiler)
@@ -161,6 +199,7 @@ impl Replay {
         let step = self.recording.steps.get(usize::try_from(taken).ok()?)?;
         for operation in &step.operations {
             self.hands.apply(self.instance.world_mut(), operation);
+            operation.apply_to(&mut self.instance);
         }
         self.instance.step_with(runner, profiler);
         Some(ReplayedStep { step: taken + 1, recorded: step.hash, found: self.instance.world().hash() })

@@ -11,18 +11,24 @@ const HINTS: [&str; 3] = [
 ];
 
 /// Keys and what they do.
-const KEYS: [(&str, &str); 16] = [
+const KEYS: [(&str, &str); 22] = [
     ("left drag", "on a body: pull it; on the background: look around"),
     ("right drag", "look around"),
     ("middle drag, Shift + drag", "shift the view"),
     ("wheel", "nearer, farther"),
     ("W A S D, Q E", "fly; with Shift faster"),
-    ("F", "see all of the scene"),
+    ("G", "W A S D walk a character (scene 'street'), and no more"),
+    ("F; C", "see all of the scene; go along with it"),
     ("Space", "run, pause"),
     ("N, .", "one step"),
     ("R", "start again"),
     ("B", "throw a ball at what the mouse points at"),
-    ("1 to 7", "layers"),
+    ("1 to 9, 0", "layers"),
+    ("click, [ and ]", "choose a body of a ragdoll; its handles change limits and size"),
+    ("- and =", "narrow or widen the limits of its joint by 5°"),
+    ("Ctrl+S", "save the ragdoll as .sinew.json"),
+    ("Left, Right, Home, End", "through a recording, step by step"),
+    ("drop a second recording", "of the same scene: it goes along as a ghost"),
     ("/", "search scenes; Enter opens the first"),
     ("P, F12", "write a picture of the window"),
     ("drop a file", "character (GLB, VRM, FBX), world (.json), recording (.sinewrec)"),
@@ -34,18 +40,11 @@ const KEYS: [(&str, &str); 16] = [
 pub(super) fn overlay(app: &App, ui: &mut egui::Ui) {
     let area = app.area;
     let font = FontId::proportional(14.0);
-    let mut lines: Vec<String> = Vec::new();
     if app.shows_hints {
-        lines.extend(HINTS.iter().map(ToString::to_string));
-    }
-    for (row, line) in lines.iter().enumerate() {
-        plate(
-            ui,
-            area.left_top() + egui::vec2(16.0, 16.0 + 28.0 * row as f32),
-            Align2::LEFT_TOP,
-            line,
-            &font,
-        );
+        let mut top = area.left_top() + egui::vec2(16.0, 16.0);
+        for line in HINTS {
+            top.y = plate(ui, top, Align2::LEFT_TOP, line, &font).bottom() + 12.0;
+        }
     }
     if let Some((message, _)) = &app.message {
         plate(ui, area.left_bottom() + egui::vec2(16.0, -16.0), Align2::LEFT_BOTTOM, message, &font);
@@ -55,19 +54,21 @@ pub(super) fn overlay(app: &App, ui: &mut egui::Ui) {
     }
 }
 
-/// A line of text on a dark plate, readable over any picture.
-fn plate(ui: &egui::Ui, at: egui::Pos2, align: Align2, text: &str, font: &FontId) {
-    let galley =
-        ui.painter().layout(text.to_owned(), font.clone(), Color32::WHITE, 0.8 * ui.max_rect().width());
+/// A line of text on a dark plate, readable over any picture; its place.
+fn plate(ui: &egui::Ui, at: egui::Pos2, align: Align2, text: &str, font: &FontId) -> egui::Rect {
+    let width = 0.7 * ui.max_rect().width();
+    let galley = ui.painter().layout(text.to_owned(), font.clone(), Color32::WHITE, width);
     let rect = align.anchor_size(at, galley.size());
     ui.painter().rect_filled(rect.expand2(egui::vec2(8.0, 4.0)), 4.0, Color32::from_black_alpha(170));
     ui.painter().galley(rect.min, galley, Color32::WHITE);
+    rect
 }
 
 /// All keys.
 pub(super) fn window(app: &mut App, ctx: &egui::Context) {
     let mut open = app.shows_help;
     let window = egui::Window::new("Keys").open(&mut open).collapsible(false).resizable(false);
+    let window = window.vscroll(true).max_height(ctx.content_rect().height() - 80.0);
     window.anchor(Align2::CENTER_CENTER, [0.0, 0.0]).show(ctx, |ui| {
         Grid::new("keys").num_columns(2).spacing([24.0, 7.0]).show(ui, |ui| {
             for (key, what) in KEYS {

@@ -1,6 +1,6 @@
 //! The panel at the right: what the scene is about, its settings, figures, layers, stages and state.
 
-use super::{App, style};
+use super::{App, editor, style, timeline};
 use crate::layers::Layer;
 use crate::session::Subject;
 use crate::stage_times::STAGES;
@@ -28,9 +28,18 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
                     });
                 });
             }
+            if app.session.workbench().is_some() {
+                section(ui, "Ragdoll", true, |ui| editor::show(app, ui));
+                section(ui, "Findings", true, |ui| editor::findings(app, ui));
+            }
+            if app.session.ghost().is_some() {
+                section(ui, "Second run", true, |ui| timeline::ghost(app, ui));
+            }
             section(ui, "Figures", true, |ui| figures(app, ui));
             section(ui, "Layers", true, |ui| layers(app, ui));
-            section(ui, "Time by stage", true, |ui| stages(app, ui));
+            if !app.hides_times {
+                section(ui, "Time by stage", true, |ui| stages(app, ui));
+            }
             section(ui, "State", true, |ui| state(app, ui));
         });
     });
@@ -87,7 +96,7 @@ fn settings(app: &mut App, ui: &mut egui::Ui) {
 }
 
 fn figures(app: &App, ui: &mut egui::Ui) {
-    let metrics = app.session.instance().metrics();
+    let metrics = app.session.metrics();
     // What a scene expects holds once it has run its course.
     let is_over = match app.session.subject() {
         Subject::Scene(scene, ..) => app.session.world().step_count() >= u64::from(scene.steps),
@@ -154,7 +163,7 @@ fn plot(ui: &mut egui::Ui, history: &VecDeque<f64>, metric: &Metric) {
 fn layers(app: &mut App, ui: &mut egui::Ui) {
     for (number, layer) in Layer::ALL.into_iter().enumerate() {
         let mut on = app.layers.contains(&layer);
-        if ui.checkbox(&mut on, format!("{}  {}", number + 1, layer.name())).changed() {
+        if ui.checkbox(&mut on, format!("{}  {}", (number + 1) % 10, layer.name())).changed() {
             app.toggle(layer);
         }
     }

@@ -1,21 +1,27 @@
 //! The viewer without its window: what is shown, what hands do, the panels around it.
 
+mod bench;
 mod browser;
+mod editor;
 mod help;
 mod inspector;
 mod mouse;
 mod style;
+mod timeline;
 mod transport;
+mod walk;
 
 use crate::layers::Layer;
 use crate::preferences::Preferences;
 use crate::session::{NamedFile, Session, Subject};
 use crate::stage::Stage;
 use crate::view::{self, Orbit};
+use bench::Bench;
 use egui::{Key, Rect, Vec2};
 use mouse::Mouse;
 use sinew::math::Vec3;
 use sinew_picture::Camera;
+use sinew_scenes::recording::Recording;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use web_time::{Duration, Instant};
@@ -44,7 +50,18 @@ pub struct Options {
     pub preferences: Option<PathBuf>,
     /// Size of the window, points.
     pub size: Option<[f32; 2]>,
+    /// A second recording of the same scene, which is shown beside the first.
+    pub ghost: Option<PathBuf>,
+    /// True to show no list of scenes: for a small window on one of them.
+    pub hides_browser: bool,
+    /// True to show no times of this machine: for pictures that are compared.
+    pub hides_times: bool,
+    /// File to which a picture of the window is written once the steps are taken, after which it is closed.
+    pub screenshot: Option<PathBuf>,
 }
+
+/// Frames in which panels find their sizes.
+const SETTLING: u8 = 4;
 
 /// Scene of the first minute: a figure falls down stairs.
 const FIRST: &str = "stairs";
@@ -74,6 +91,15 @@ pub struct App {
     /// Seen since the start, until something is done.
     shows_hints: bool,
     mouse: Mouse,
+    bench: Bench,
+    /// Step of a recording to which it is on its way.
+    seeking: Option<u64>,
+    /// Middle of the scene when the camera last went along with it.
+    follows: Option<Vec3>,
+    /// Way of the character that keys lead, m/s; `None` while they move the camera.
+    leads: Option<Vec3>,
+    hides_times: bool,
+    hides_browser: bool,
     area: Rect,
     /// True once the camera has been set for the size that the picture really has.
     is_framed: bool,
@@ -85,6 +111,8 @@ pub struct App {
     files: Vec<NamedFile>,
     wants_screenshot: bool,
     wants_to_close: bool,
+    /// File for a picture of the window, and frames until it is taken: panels find their sizes in the first ones.
+    screenshot: Option<(PathBuf, u8)>,
 }
 
 impl App {
@@ -100,6 +128,14 @@ impl App {
             None => Subject::scene(FIRST, &[])?,
         };
         let mut session = Session::start(subject).map_err(|error| error.to_string())?;
+        if let Some(path) = &options.ghost {
+            let Subject::Recording(_, recording) = Subject::file(path).map_err(|error| error.to_string())?
+            else {
+                return Err(format!("{}: is no recording", path.display()));
+            };
+            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+            session.set_ghost(&name, *recording).map_err(|error| error.to_string())?;
+        }
         session.set_threads(preferences.threads);
         let mut app = Self {
             orbit: Orbit { target: Vec3::ZERO, yaw: 0.0, pitch: 0.0, distance: 1.0 },
@@ -119,6 +155,12 @@ impl App {
             shows_help: false,
             shows_hints,
             mouse: Mouse::default(),
+            bench: Bench::default(),
+            seeking: None,
+            follows: None,
+            leads: None,
+            hides_times: options.hides_times,
+            hides_browser: options.hides_browser,
             area: Rect::from_min_size(Default::default(), Vec2::new(640.0, 360.0)),
             is_framed: false,
             starts: 0,
@@ -127,6 +169,7 @@ impl App {
             files: Vec::new(),
             wants_screenshot: false,
             wants_to_close: false,
+            screenshot: options.screenshot.map(|path| (path, SETTLING)),
         };
         app.begin();
         Ok(app)
@@ -142,9 +185,21 @@ impl App {
         self.orbit.camera()
     }
 
+    /// Camera as it turns around a point.
+    pub fn orbit(&self) -> Orbit {
+        self.orbit
+    }
+
+    /// Moves the camera.
+    pub fn set_orbit(&mut self, orbit: Orbit) {
+        self.orbit = orbit;
+    }
+
     /// Content of the picture.
     pub fn stage(&self) -> Stage<'_> {
-        view::stage(&self.session, &self.camera(), &self.layers)
+        let mut stage = view::stage(&self.session, &self.camera(), &self.layers);
+        bench::draw(self, &mut stage);
+        stage
     }
 
     /// The line that is shown, if there is one.
@@ -175,12 +230,30 @@ impl App {
 
     /// True if the next frame differs from this one by itself.
     pub fn is_moving(&self) -> bool {
-        self.running || self.mouse.is_busy() || self.message.is_some()
+        self.running
+            || self.mouse.is_busy()
+            || self.seeking.is_some()
+            || self.screenshot.is_some()
+            || self.message.is_some()
     }
 
     /// True once, if a picture of the window was asked for.
     pub fn takes_screenshot(&mut self) -> bool {
         std::mem::take(&mut self.wants_screenshot)
+    }
+
+    /// File for a picture of the window, once what it was asked for is shown; then it is to end.
+    pub(crate) fn due_screenshot(&mut self) -> Option<PathBuf> {
+        if self.goal.is_some() {
+            return None;
+        }
+        let (path, frames) = self.screenshot.take()?;
+        if frames > 0 {
+            self.screenshot = Some((path, frames - 1));
+            return None;
+        }
+        self.wants_to_close = true;
+        Some(path)
     }
 
     /// True if it is to end.
@@ -204,6 +277,7 @@ impl App {
             Ok(session) => {
                 self.session = session;
                 self.session.set_threads(threads);
+                self.shows_hints = false;
                 self.begin();
                 self.tell(format!("opened {}", self.session.subject().title()));
             }
@@ -214,15 +288,74 @@ impl App {
     /// Shows a file that was dropped on the window. What cannot be read is a message.
     pub fn open_file(&mut self, path: &Path) {
         match Subject::file(path) {
-            Ok(subject) => self.open(subject),
+            Ok(subject) => self.open_or_compare(subject),
             Err(error) => self.tell(error.to_string()),
         }
+    }
+
+    /// Shows a subject; a second recording of the scene that is played goes along with the first as its ghost.
+    fn open_or_compare(&mut self, subject: Subject) {
+        let (Subject::Recording(_, second), Subject::Recording(_, first)) =
+            (&subject, self.session.subject())
+        else {
+            return self.open(subject);
+        };
+        if (&first.scene, &first.settings) != (&second.scene, &second.settings) {
+            return self.open(subject);
+        }
+        let (title, recording) = (subject.title(), (**second).clone());
+        self.compare_with(&title, recording);
+    }
+
+    /// Shows a second recording of the same scene beside the one that is played. What cannot be is a message.
+    pub fn compare_with(&mut self, name: &str, recording: Recording) {
+        let line = match self.session.set_ghost(name, recording) {
+            Ok(()) => {
+                let difference = self.session.ghost().and_then(|ghost| ghost.difference());
+                format!("beside it {name}: {}", timeline::told(difference))
+            }
+            Err(error) => error.to_string(),
+        };
+        self.tell(line);
+    }
+
+    /// Plays what was just done from its start, as a recording that can be scrubbed.
+    fn replay(&mut self) {
+        let Some(recording) = self.session.recording().cloned() else {
+            return self.tell("only scenes can be played again");
+        };
+        let orbit = self.orbit;
+        let name = format!("{}-{}.sinewrec", recording.scene, recording.steps.len());
+        let length = recording.steps.len() as u64;
+        self.open(Subject::Recording(name.into(), Box::new(recording)));
+        (self.orbit, self.is_framed, self.running) = (orbit, true, false);
+        self.seek(length);
+    }
+
+    /// Goes to a step of the recording that is played.
+    pub fn seek(&mut self, step: u64) {
+        let Some(length) = self.session.length() else { return };
+        self.seeking = Some(step.min(length));
+        self.running = false;
+        self.go_on_seeking();
+    }
+
+    fn go_on_seeking(&mut self) {
+        let Some(goal) = self.seeking else { return };
+        if self.session.seek(goal, Instant::now() + MOST_STEPPING) {
+            self.seeking = None;
+        }
+        let past = self.session.past_metrics();
+        let recent = &past[past.len().saturating_sub(HISTORY)..];
+        let count = recent.first().map_or(0, Vec::len);
+        let values = |i: usize| recent.iter().map(|it| it[i].value.unwrap_or(f64::NAN)).collect();
+        self.history = (0..count).map(values).collect();
     }
 
     /// Shows files that were dropped on a page. What cannot be read is a message.
     pub fn open_dropped(&mut self, files: Vec<NamedFile>) {
         match Subject::dropped(files) {
-            Ok(subject) => self.open(subject),
+            Ok(subject) => self.open_or_compare(subject),
             Err(error) => self.tell(error.to_string()),
         }
     }
@@ -234,11 +367,9 @@ impl App {
 
     /// Begins with a new session: its camera, its sliders, its plots.
     fn begin(&mut self) {
-        self.starts += 1;
-        self.pending = 0.0;
-        self.mouse = Mouse::default();
+        self.begin_again();
+        self.bench = Bench::default();
         self.is_framed = false;
-        self.history.clear();
         self.sliders = match self.session.subject() {
             Subject::Scene(scene, settings, _) => {
                 let declared = scene.settings().declared().iter();
@@ -249,23 +380,39 @@ impl App {
         self.frame();
     }
 
+    /// Begins anew with the same: nothing of its last run is left.
+    fn begin_again(&mut self) {
+        self.starts += 1;
+        self.pending = 0.0;
+        self.mouse = Mouse::default();
+        self.seeking = None;
+        self.leads = None;
+        self.history.clear();
+    }
+
     /// Turns the camera to all that the scene is about.
     fn frame(&mut self) {
         let instance = self.session.instance();
         let aspect = self.area.width().max(1.0) / self.area.height().max(1.0);
-        self.orbit = Orbit::framing(&view::bounds(instance), instance.camera_hint().direction, aspect);
+        let bounds = view::with_ground(&view::bounds(instance), instance.world());
+        self.orbit = Orbit::framing(&bounds, instance.camera_hint().direction, aspect);
     }
 
     fn restart(&mut self) {
-        let subject = self.session.subject().clone();
-        let orbit = self.orbit;
-        self.open(subject);
-        // Who looks closely at something wants to see it again from there.
-        self.orbit = orbit;
-        self.is_framed = true;
+        if self.session.length().is_some() {
+            let runs = self.running;
+            self.seek(0);
+            self.running = runs;
+            return;
+        }
+        match self.session.restart() {
+            Ok(()) => self.begin_again(),
+            Err(error) => self.tell(error.to_string()),
+        }
     }
 
-    fn step(&mut self) {
+    /// One step, whether it runs or not.
+    pub fn step(&mut self) {
         if !self.session.step() {
             self.running = false;
             let line = match self.session.diverged() {
@@ -274,7 +421,7 @@ impl App {
             };
             self.tell(line);
         }
-        let metrics = self.session.instance().metrics();
+        let metrics = self.session.metrics();
         self.history.resize_with(metrics.len(), VecDeque::new);
         for (history, metric) in self.history.iter_mut().zip(&metrics) {
             if history.len() == HISTORY {
@@ -290,6 +437,9 @@ impl App {
         let passed = self.last_frame.map_or(0.0, |last| (now - last).as_secs_f64());
         self.last_frame = Some(now);
         self.frame_time += (passed as f32 - self.frame_time) * 0.1;
+        if self.seeking.is_some() {
+            return self.go_on_seeking();
+        }
         if !self.running {
             return;
         }
@@ -324,7 +474,9 @@ impl App {
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         style::apply(ui.ctx());
         self.keys(ui);
-        browser::show(self, ui);
+        if !self.hides_browser {
+            browser::show(self, ui);
+        }
         transport::show(self, ui);
         inspector::show(self, ui);
         egui::CentralPanel::no_frame().show(ui, |ui| {
@@ -336,11 +488,17 @@ impl App {
                     self.frame();
                 }
             }
+            if let Some(before) = self.follows {
+                let now = view::bounds(self.session.instance()).center();
+                self.orbit.target += now - before;
+                self.follows = Some(now);
+            }
             mouse::act(self, ui);
+            bench::overlay(self, ui);
             help::overlay(self, ui);
         });
         help::window(self, ui.ctx());
-        if self.message.as_ref().is_some_and(|(_, since)| since.elapsed() > MESSAGE) {
+        if !self.hides_times && self.message.as_ref().is_some_and(|(_, since)| since.elapsed() > MESSAGE) {
             self.message = None;
         }
     }
@@ -366,8 +524,16 @@ impl App {
         if pressed(Key::R) {
             self.restart();
         }
+        self.bench_keys(ctx);
         if pressed(Key::F) {
             self.frame();
+        }
+        if pressed(Key::G) {
+            walk::toggle(self);
+        }
+        if pressed(Key::C) {
+            self.follows = self.follows.is_none().then(|| view::bounds(self.session.instance()).center());
+            self.tell(if self.follows.is_some() { "the camera goes along" } else { "the camera stays" });
         }
         if pressed(Key::B) {
             mouse::throw(self, ui);
@@ -385,10 +551,9 @@ impl App {
             self.shows_help = false;
             self.shows_hints = false;
         }
-        for (key, layer) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7]
-            .into_iter()
-            .zip(Layer::ALL)
-        {
+        use Key::{Num0, Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9};
+        let keys = [Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9, Num0];
+        for (key, layer) in keys.into_iter().zip(Layer::ALL) {
             if pressed(key) {
                 self.toggle(layer);
             }
@@ -396,10 +561,48 @@ impl App {
         self.fly(ctx);
     }
 
+    /// Keys that change a ragdoll, or go through a recording.
+    fn bench_keys(&mut self, ctx: &egui::Context) {
+        let pressed = |key: Key| ctx.input(|input| input.key_pressed(key));
+        // Ctrl may be up again at the end of a slow frame, so what counts is the event.
+        let is_save = |event: &egui::Event| matches!(event, egui::Event::Key { key: Key::S, pressed: true, modifiers, .. } if modifiers.command);
+        let saves = |input: &egui::InputState| input.events.iter().any(is_save);
+        if ctx.input(saves) {
+            bench::save(self);
+        }
+        for (key, by) in [(Key::OpenBracket, -1), (Key::CloseBracket, 1)] {
+            if pressed(key) {
+                bench::choose_next(self, by);
+            }
+        }
+        for (key, sign) in [(Key::Minus, -1.0), (Key::Equals, 1.0), (Key::Plus, 1.0)] {
+            if pressed(key) {
+                bench::widen(self, sign);
+            }
+        }
+        let at = self.session.world().step_count();
+        for (key, step) in [
+            (Key::ArrowLeft, at.saturating_sub(1)),
+            (Key::ArrowRight, at + 1),
+            (Key::Home, 0),
+            (Key::End, u64::MAX),
+        ] {
+            if pressed(key) {
+                self.seek(step);
+            }
+        }
+    }
+
     /// Moves the camera while keys are held.
     fn fly(&mut self, ctx: &egui::Context) {
         let (seconds, fast) = ctx.input(|input| (input.stable_dt.min(0.1), input.modifiers.shift));
+        if ctx.input(|input| input.modifiers.command) {
+            return;
+        }
         let held = |key: Key| ctx.input(|input| f32::from(u8::from(input.key_down(key))));
+        if self.leads.is_some() {
+            return walk::lead(self, held(Key::D) - held(Key::A), held(Key::W) - held(Key::S), fast);
+        }
         let way =
             Vec3::new(held(Key::D) - held(Key::A), held(Key::E) - held(Key::Q), held(Key::W) - held(Key::S));
         if way != Vec3::ZERO {
@@ -408,7 +611,8 @@ impl App {
         }
     }
 
-    fn toggle(&mut self, layer: Layer) {
+    /// Switches a layer on or off.
+    pub fn toggle(&mut self, layer: Layer) {
         match self.layers.iter().position(|&on| on == layer) {
             Some(place) => {
                 self.layers.remove(place);
@@ -422,6 +626,14 @@ impl App {
         if let Some(path) = &self.preferences {
             let kept = Preferences { layers: self.layers.clone(), threads: self.session.threads() };
             kept.save(path);
+        }
+    }
+
+    /// Hands out what was just played as a GLB, to be written.
+    pub fn save_glb(&mut self) {
+        match self.session.to_glb() {
+            Ok(file) => self.files.push(file),
+            Err(line) => self.tell(line),
         }
     }
 

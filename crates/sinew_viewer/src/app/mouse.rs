@@ -1,6 +1,6 @@
 //! Hands in the picture: grab, pull, throw; turn, shift and near the camera.
 
-use super::App;
+use super::{App, bench};
 use egui::{PointerButton, Pos2, Sense};
 use sinew::math::Vec3;
 use sinew::physics::ray::Ray;
@@ -34,8 +34,24 @@ pub(super) fn act(app: &mut App, ui: &mut egui::Ui) {
     let response = ui.allocate_rect(app.area, Sense::click_and_drag());
     if response.drag_started_by(PointerButton::Primary)
         && let Some(at) = ui.input(|input| input.pointer.press_origin())
+        && !bench::take(app, at)
     {
         grab(app, at);
+    }
+    if app.bench.is_busy() {
+        if let Some(at) = response.interact_pointer_pos() {
+            bench::drag(app, &ray(app, at));
+        }
+        if !ui.input(|input| input.pointer.primary_down()) {
+            bench::release(app);
+        }
+    }
+    if response.clicked_by(PointerButton::Primary)
+        && app.session.workbench().is_some()
+        && let Some(at) = response.interact_pointer_pos()
+    {
+        let body = body_at(app, &ray(app, at)).map(|hit| hit.body);
+        bench::pick(app, body);
     }
     if let (Some(depth), Some(at)) = (app.mouse.held, response.interact_pointer_pos()) {
         let to = at_depth(app, &ray(app, at), depth);
@@ -47,8 +63,9 @@ pub(super) fn act(app: &mut App, ui: &mut egui::Ui) {
         app.tell("let go");
     }
     let shift = ui.input(|input| input.modifiers.shift);
-    let turns = response.dragged_by(PointerButton::Primary) && app.mouse.held.is_none()
-        || response.dragged_by(PointerButton::Secondary);
+    let turns =
+        response.dragged_by(PointerButton::Primary) && app.mouse.held.is_none() && !app.bench.is_busy()
+            || response.dragged_by(PointerButton::Secondary);
     let delta = response.drag_delta();
     if response.dragged_by(PointerButton::Middle) || turns && shift {
         let by = 1.0 / app.area.height().max(1.0);
@@ -94,14 +111,18 @@ fn at_depth(app: &App, ray: &Ray, depth: f32) -> Vec3 {
     ray.origin + way * (depth / way.dot(app.camera().axes(1.0).forward).max(1e-3))
 }
 
+/// The first body on a ray.
+fn body_at(app: &App, ray: &Ray) -> Option<BodyHit> {
+    let world = app.session.world();
+    world.query().filter(QueryFilter::of(BodyKinds::DYNAMIC | BodyKinds::STATIC)).first(ray)
+}
+
 fn grab(app: &mut App, at: Pos2) {
     if !app.session.is_live() {
         return;
     }
-    let ray = ray(app, at);
+    let Some(BodyHit { body, point, .. }) = body_at(app, &ray(app, at)) else { return };
     let world = app.session.world();
-    let solid = world.query().filter(QueryFilter::of(BodyKinds::DYNAMIC | BodyKinds::STATIC));
-    let Some(BodyHit { body, point, .. }) = solid.first(&ray) else { return };
     if world.kind(body) != sinew::physics::BodyKind::Dynamic {
         return;
     }

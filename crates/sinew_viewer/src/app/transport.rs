@@ -1,11 +1,12 @@
 //! The bar below: run, pause, step, how fast, and what it costs.
 
-use super::{App, style};
+use super::{App, style, timeline};
 use egui::{RichText, Slider};
 
 /// Shows it.
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     egui::Panel::bottom("transport").frame(style::panel()).show(ui, |ui| {
+        timeline::show(app, ui);
         ui.horizontal(|ui| {
             let label = if app.running { "Pause" } else { "Run" };
             if ui.button(label).on_hover_text("Space").clicked() {
@@ -31,14 +32,29 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
             ui.separator();
             let world = app.session.world();
             ui.label(format!("{:7.2} s", world.time()));
-            let step = 1e3 * app.session.step_time().as_secs_f64();
-            ui.label(format!("{step:.2} ms a step")).on_hover_text("wall time of the last step");
-            if app.running {
+            if !app.hides_times {
+                let step = 1e3 * app.session.step_time().as_secs_f64();
+                ui.label(format!("{step:.2} ms a step")).on_hover_text("wall time of the last step");
+            }
+            if app.running && !app.hides_times {
                 ui.label(format!("{:.0} fps", 1.0 / app.frame_time.max(1e-3)));
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button("?").on_hover_text("All keys").clicked() {
                     app.shows_help = !app.shows_help;
+                }
+                if app.session.recording().is_some()
+                    && ui.button("Replay").on_hover_text("What was done so far, on a timeline").clicked()
+                {
+                    app.replay();
+                }
+                if app.session.workbench().is_some()
+                    && ui
+                        .button("Save GLB")
+                        .on_hover_text("What was just played, as a clip in the file")
+                        .clicked()
+                {
+                    app.save_glb();
                 }
                 if ui.button("Save recording").on_hover_text("What was done and what became of it").clicked()
                 {

@@ -25,6 +25,9 @@ pub fn open(options: Options) -> Result<(), ViewerError> {
     let mut viewer = Viewer::new(app, host);
     event_loop.run_app(&mut viewer).map_err(|error| no_window(&error))?;
     viewer.app.keep_preferences();
+    if let Some(line) = viewer.screen.and_then(|screen| screen.failure) {
+        return Err(ViewerError::Subject(line));
+    }
     viewer.error.map_or(Ok(()), |error| Err(error.into()))
 }
 

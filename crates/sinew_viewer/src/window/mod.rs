@@ -74,6 +74,8 @@ struct Screen {
     input: egui_winit::State,
     /// Complaints of the driver since the last frame.
     complaints: Arc<Mutex<Vec<String>>>,
+    /// Why it could not do what it was opened for.
+    failure: Option<String>,
 }
 
 impl Viewer {
@@ -188,7 +190,7 @@ impl Screen {
         let scale = Some(window.scale_factor() as f32);
         let input = egui_winit::State::new(ctx.clone(), egui::ViewportId::ROOT, &window, scale, None, most);
         let painter = Painter::new(gpu, config.format, [width, height]);
-        Ok(Box::new(Self { window, surface, config, painter, ctx, input, complaints }))
+        Ok(Box::new(Self { window, surface, config, painter, ctx, input, complaints, failure: None }))
     }
 
     fn resize(&mut self, size: [u32; 2]) {
@@ -215,6 +217,11 @@ impl Screen {
                 Ok(()) => app.tell(format!("wrote {name}")),
                 Err(line) => app.tell(line),
             }
+        }
+        if let Some(path) = app.due_screenshot()
+            && let Err(line) = host.picture(self, app, &panels, &path.display().to_string())
+        {
+            self.failure = Some(line);
         }
         for file in app.take_files() {
             match host.keep(&file) {

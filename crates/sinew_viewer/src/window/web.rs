@@ -71,11 +71,13 @@ pub fn show(
     settings: Vec<String>,
     steps: Option<u32>,
     webgl: bool,
+    hides_browser: bool,
 ) -> Result<Shown, String> {
     // WebAssembly alone says `unreachable` and no more.
     std::panic::set_hook(Box::new(|what| console_error(&what.to_string())));
     let subject = scene.map(|name| Subject::scene(&name, &settings)).transpose()?;
-    let app = App::new(Options { subject, steps: steps.map(u64::from), ..Options::default() })?;
+    let steps = steps.map(u64::from);
+    let app = App::new(Options { subject, steps, hides_browser, ..Options::default() })?;
     let event_loop = EventLoop::with_user_event().build().map_err(|error| error.to_string())?;
     let proxy: EventLoopProxy<Told> = event_loop.create_proxy();
     let told = RefCell::default();

@@ -2,14 +2,17 @@
 
 use crate::hands::viewer;
 use crate::pictures::look;
-use sinew::anim::analyze;
-use sinew::formats::{write_gltf, write_ragdoll};
+use sinew::anim::{Wrap, analyze, local_to_model, rest_pose, sample};
+use sinew::formats::{
+    BvhWriteOptions, ReadOptions, no_files, read_gltf, write_bvh, write_gltf, write_ragdoll,
+};
+use sinew::math::Affine;
 use sinew::ragdoll::{BuildOptions, build};
-use sinew_viewer::{Headless, NamedFile};
+use sinew_viewer::{Headless, NamedFile, Session, Subject};
 use std::path::{Path, PathBuf};
 
 /// A folder of this test alone, empty.
-fn folder(name: &str) -> PathBuf {
+pub fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     if folder.exists() {
         std::fs::remove_dir_all(&folder).expect("it is ours");
@@ -18,13 +21,17 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
+/// The mannequin as a file.
+pub fn mannequin_glb() -> Vec<u8> {
+    let mannequin = sinew::mannequin::mannequin();
+    write_gltf(&mannequin.rig, &mannequin.clips).expect("it can be written")
+}
+
 #[test]
 fn a_character_that_is_dropped_falls() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let path = folder("dropped_character").join("mannequin.glb");
-    let mannequin = sinew::mannequin::mannequin();
-    let bytes = write_gltf(&mannequin.rig, &mannequin.clips).expect("it can be written");
-    std::fs::write(&path, bytes).expect("the folder is there");
+    std::fs::write(&path, mannequin_glb()).expect("the folder is there");
     viewer.app_mut().open_file(&path);
     let session = viewer.app().session();
     assert_eq!(session.subject().title(), "mannequin.glb");
@@ -72,8 +79,7 @@ fn a_ragdoll_that_is_dropped_falls() {
 fn files_without_a_folder_are_as_those_with_one() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let folder = folder("dropped_on_a_page");
-    let mannequin = sinew::mannequin::mannequin();
-    let glb = write_gltf(&mannequin.rig, &mannequin.clips).expect("it can be written");
+    let glb = mannequin_glb();
     let (json, binary) = parts(&glb);
     let mut json: serde_json::Value = serde_json::from_slice(json).expect("it is JSON");
     json["buffers"][0]["uri"] = "mannequin.bin".into();
@@ -122,4 +128,72 @@ fn what_cannot_be_read_is_a_line_and_changes_nothing() {
         assert!(line.contains(name) && !line.contains('\n'), "{name}: {line}");
         assert_eq!(viewer.app().session().subject().title(), "pendulum", "{name}");
     }
+}
+
+/// A motion without a skin plays as bones.
+#[test]
+fn a_bvh_that_is_dropped_plays() {
+    let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
+    let mannequin = sinew::mannequin::mannequin();
+    let walk = &mannequin.clips[0];
+    let bvh = write_bvh(&mannequin.rig, walk, &BvhWriteOptions::default()).expect("it can be written");
+    let file = NamedFile { name: "walk.bvh".into(), bytes: bvh.text.into_bytes() };
+    viewer.app_mut().open_dropped(vec![file]);
+    assert_eq!(viewer.app().session().subject().title(), "walk.bvh", "{:?}", viewer.app().message());
+    println!("{:?}", viewer.app().session().report());
+    let head = |viewer: &Headless| {
+        let figures = viewer.app().session().instance().figures();
+        let rig = figures[0].rig;
+        let head = rig.joints.iter().position(|joint| joint.name == "head").expect("it has a head");
+        figures[0].world_from_joint[head].translation
+    };
+    let before = head(&viewer);
+    assert!((1.2..2.0).contains(&before.y), "a head at {before}: metres, feet on the floor");
+    let still = viewer.frame().expect("the card draws");
+    for _ in 0..20 {
+        viewer.app_mut().step();
+    }
+    let moved = viewer.frame().expect("the card draws");
+    look("bvh", &moved);
+    assert!((head(&viewer) - before).length() > 0.02, "it walks");
+    assert_ne!(still, moved);
+}
+
+/// What was played stands in the file as one more clip: its joints go where they went.
+#[test]
+fn what_was_played_is_saved_as_glb() {
+    let glb = mannequin_glb();
+    let file = NamedFile { name: "mannequin.glb".into(), bytes: glb.clone() };
+    let subject = Subject::dropped(vec![file]).expect("it is a character");
+    let mut session = Session::start(subject).expect("it is a character");
+    assert!(session.to_glb().expect_err("no step yet").contains("nothing"));
+    let poses: Vec<Vec<Affine>> = (0..=90)
+        .map(|i| {
+            if i > 0 {
+                session.step();
+            }
+            session.instance().figures()[0].world_from_joint.to_vec()
+        })
+        .collect();
+    let written = session.to_glb().expect("it can be written");
+    assert_eq!(written.name, "mannequin-played.glb");
+    let mut none = no_files;
+    let document = read_gltf(&written.bytes, ReadOptions::default(), &mut none).expect("it can be read");
+    let clip = document.clips.last().expect("it has clips");
+    assert_eq!((document.clips.len(), clip.name.as_str()), (5, "played"));
+    assert!((clip.duration - 1.5).abs() < 1e-4, "{} s", clip.duration);
+    // The file stands upright at the origin of the world, its soles on the floor; its unit is the metre.
+    let root = Affine::from(session.workbench().expect("a ragdoll").def().character_from_model);
+    let mut model = Vec::new();
+    let mut pose = rest_pose(&document.rig);
+    let mut worst = 0.0_f32;
+    for (i, then) in poses.iter().enumerate() {
+        sample(clip, &document.rig, i as f32 / 60.0, Wrap::Clamp, &mut pose);
+        local_to_model(&document.rig, &pose, &root, &mut model);
+        for (now, then) in model.iter().zip(then) {
+            worst = worst.max((now.translation - then.translation).length());
+        }
+    }
+    println!("farthest joint {worst} m");
+    assert!(worst < 5e-4, "{worst} m");
 }

@@ -15,7 +15,7 @@ pub fn viewer(scene: &str, size: [u32; 2]) -> Option<Headless> {
 }
 
 /// Frames until the panels have found their sizes.
-fn settled(viewer: &mut Headless) -> Image {
+pub fn settled(viewer: &mut Headless) -> Image {
     (0..3).map(|_| viewer.frame().expect("the card draws")).last().expect("three frames")
 }
 
@@ -113,4 +113,44 @@ fn a_bad_file_is_a_line() {
     assert_eq!(viewer.app().message(), Some("nowhere.json: no such file"));
     assert_eq!(viewer.app().session().subject().title(), "pendulum");
     look("message", &settled(&mut viewer));
+}
+
+/// W walks the scene's character away from the camera, letting go stands it still, and the recording does the same again.
+#[test]
+fn keys_walk_a_character() {
+    let Some(mut viewer) = viewer("street", [640, 360]) else { return };
+    settled(&mut viewer);
+    let place = |viewer: &Headless| viewer.app().session().instance().steered().expect("somebody is led");
+    let before = place(&viewer);
+    viewer.key(Key::G);
+    viewer.frame().expect("the card draws");
+    viewer.hold(Key::W, true);
+    viewer.frame().expect("the card draws");
+    for _ in 0..60 {
+        viewer.app_mut().step();
+    }
+    let (after, camera) = (place(&viewer), viewer.app().camera());
+    look("walk", &viewer.frame().expect("the card draws"));
+    let way = after - before;
+    let ahead = camera.target - camera.position;
+    assert!(way.length() > 0.8, "it walked {way}");
+    let level = |v: sinew::math::Vec3| sinew::math::Vec3::new(v.x, 0.0, v.z).normalize();
+    assert!(level(way).dot(level(ahead)) > 0.9, "it walked {way}, the camera looks along {ahead}");
+    viewer.hold(Key::W, false);
+    viewer.frame().expect("the card draws");
+    for _ in 0..30 {
+        viewer.app_mut().step();
+    }
+    let stands = place(&viewer);
+    for _ in 0..20 {
+        viewer.app_mut().step();
+    }
+    assert!((place(&viewer) - stands).length() < 0.02, "it stands");
+    let recording = viewer.app().session().recording().expect("a scene is recorded").to_bytes();
+    let recording = sinew_scenes::recording::Recording::read(&recording).expect("it can be read again");
+    let mut replay = sinew_scenes::recording::Replay::start(recording).expect("it starts");
+    while let Some(step) = replay.step() {
+        assert_eq!(step.found, step.recorded, "step {}", step.step);
+    }
+    assert_eq!(replay.instance().steered(), Some(place(&viewer)));
 }

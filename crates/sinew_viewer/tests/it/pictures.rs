@@ -44,7 +44,7 @@ pub fn look(name: &str, image: &Image) {
 }
 
 /// All shapes, a textured and a translucent surface, lines before and behind, on a checkered floor.
-fn paint(canvas: &mut dyn Canvas) {
+pub fn paint(canvas: &mut dyn Canvas) {
     let corners = [[0.0; 3], [0.5, 0.0, 0.0], [0.0, 0.0, 0.5], [0.1, 0.6, 0.1]].map(Vec3::from_array);
     let shapes = [
         Shape::Box { half_extents: Vec3::new(0.3, 0.2, 0.25) },
@@ -91,7 +91,7 @@ fn paint(canvas: &mut dyn Canvas) {
     }
 }
 
-fn camera() -> Camera {
+pub fn camera() -> Camera {
     Camera { position: Vec3::new(0.8, 2.1, 5.2), target: Vec3::new(0.0, 0.4, 0.2), fov_y: 0.7 }
 }
 

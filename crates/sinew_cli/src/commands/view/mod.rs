@@ -18,17 +18,19 @@ use sinew::formats::{MotionOptions, ReadOptions, Textures, load_world};
 use sinew::physics::{BodyDef, World, WorldDef};
 use sinew_picture::{EncodeError, RenderSettings};
 use sinew_scenes::scenes::{Instance, Scene, Settings, find};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Length of the movie of a world file, and when a picture of one is taken, seconds: things have fallen by then.
 const WORLD_SECONDS: f32 = 3.0;
 
 /// Open a window on scenes, or draw a scene, a world file, or a character or motion file as a picture or a movie
 #[derive(clap::Args)]
+#[command(group = clap::ArgGroup::new("still").args(["picture", "screenshot"]).multiple(true))]
 #[command(after_help = "\
 Example:
   sinew view
   sinew view stairs
+  sinew view ragdoll_drop --screenshot window.png --at 0.5
   sinew view pendulum --picture pendulum.png --at 1.5
   sinew view stairs --movie stairs.gif --set impulse=50
   sinew view character.glb --clip Walk --movie walk.gif
@@ -49,7 +51,7 @@ pub struct View {
     #[arg(long, value_name = "OUT.(png|gif|webp)")]
     picture: Option<PictureFile>,
     /// When the picture is taken, seconds from the start; by default at the scene's end, of a clip in its middle
-    #[arg(long, value_name = "T", requires = "picture", value_parser = seconds)]
+    #[arg(long, value_name = "T", requires = "still", value_parser = seconds)]
     at: Option<f32>,
     /// Draw all of it, 20 pictures a second: a .gif, .png (animated) or .webp file
     #[arg(long, value_name = "OUT.(gif|png|webp)")]
@@ -63,6 +65,12 @@ pub struct View {
     /// The window starts without running
     #[arg(long, conflicts_with_all = ["picture", "movie"])]
     paused: bool,
+    /// A second recording of the same scene, which the window shows beside the first
+    #[arg(long, value_name = "OTHER.sinewrec", conflicts_with_all = ["picture", "movie"])]
+    ghost: Option<PathBuf>,
+    /// Open the window, write a picture of it with its panels (after --at seconds of a scene), and close it
+    #[arg(long, value_name = "OUT.png", conflicts_with_all = ["picture", "movie"])]
+    screenshot: Option<PathBuf>,
     /// The window's messages go to stderr as well
     #[arg(long, conflicts_with_all = ["picture", "movie"])]
     log: bool,

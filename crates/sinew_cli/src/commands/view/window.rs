@@ -26,16 +26,23 @@ impl View {
             Some(name) => Some(Subject::file(Path::new(name))?),
         };
         let title = subject.as_ref().map(Subject::title);
+        let dt = sinew::physics::WorldDef::default().dt();
+        let steps = self.at.map(|seconds| (seconds / dt).round() as u64);
         let options = Options {
+            // A picture of the window is of a moment.
+            paused: self.paused || self.screenshot.is_some() && steps.is_none(),
+            steps,
+            hides_times: self.screenshot.is_some(),
+            screenshot: self.screenshot.clone(),
             subject,
-            paused: self.paused,
-            steps: None,
             log: self.log,
             preferences: Preferences::path(),
-            size: None,
+            ghost: self.ghost.clone(),
+            ..Options::default()
         };
         open(options).map_err(|error| Failure::of_file(title.clone().unwrap_or("view".into()), error))?;
-        Ok(Report { json: json!({"subject": title, "outputs": []}), text: String::new() })
+        let outputs: Vec<String> = self.screenshot.iter().map(|path| path.display().to_string()).collect();
+        Ok(Report { json: json!({"subject": title, "outputs": outputs}), text: String::new() })
     }
 
     /// Says that there is none.

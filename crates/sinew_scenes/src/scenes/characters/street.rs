@@ -35,6 +35,8 @@ const SPEEDS: (f32, f32) = (0.8, 1.5);
 /// Steps between turns of the lift, and its speed, m/s.
 const LIFT_TURNS: u64 = 150;
 const LIFT: f32 = 0.8;
+/// The one that a person may lead: it stands in the open.
+const LED: usize = 1;
 /// Step in which the last of them jumps.
 const JUMPS: u64 = 90;
 
@@ -82,7 +84,7 @@ fn street(setup: &Setup<'_>) -> Instance {
     let walkers: Vec<Walker> = (0..count).map(walker).collect();
     let watch = Watch { nearest: f32::INFINITY, drift: 0.0, ..Watch::default() };
     let hits = setup.number("hits");
-    let mut script = Street { def, walkers, lift, half_width, hits, due: 0.0, seed: 7, watch };
+    let mut script = Street { def, walkers, lift, half_width, hits, due: 0.0, seed: 7, watch, led: None };
     script.walkers.iter_mut().for_each(Walker::show);
     Instance::new(world, script)
 }
@@ -147,6 +149,8 @@ struct Street {
     due: f32,
     seed: u64,
     watch: Watch,
+    /// Way of the one in the open that a person leads, m/s.
+    led: Option<Vec3>,
 }
 
 impl Street {
@@ -206,15 +210,23 @@ impl Script for Street {
             let up = if (step / LIFT_TURNS).is_multiple_of(2) { LIFT } else { -LIFT };
             world.set_velocity(self.lift, Velocity { linear: Vec3::Y * up, ..Velocity::default() });
         }
-        if step == JUMPS {
+        // Who is led jumps when it is told to.
+        if step == JUMPS && self.led.is_none() {
             self.walkers[1].character.jump(world);
         }
     }
 
     fn after_step(&mut self, world: &mut World) {
         self.watch.work_in += world.work().total();
-        for walker in &mut self.walkers {
+        for (index, walker) in self.walkers.iter_mut().enumerate() {
             walker.character.update(world);
+            if let Some(way) = self.led.filter(|_| index == LED) {
+                walker.character.set_move(way);
+                if way != Vec3::ZERO {
+                    walker.character.face(way);
+                }
+                continue;
+            }
             let x = walker.place().x;
             if walker.speed != 0.0 && x * walker.speed > 0.0 && x.abs() > HALF_LENGTH - 1.0 {
                 walker.speed = -walker.speed;
@@ -234,6 +246,8 @@ impl Script for Street {
         }
         out.f32(self.due);
         out.u64(self.seed);
+        out.u8(u8::from(self.led.is_some()));
+        out.vec3(self.led.unwrap_or(Vec3::ZERO));
         let Watch { nearest, drift, highest, outside, flinches, falls, ups, work_in } = self.watch;
         [nearest, drift, highest, work_in].into_iter().for_each(|x| out.f32(x));
         [outside, flinches, falls, ups].into_iter().for_each(|x| out.u32(x));
@@ -246,6 +260,8 @@ impl Script for Street {
             walker.show();
         }
         (self.due, self.seed) = (bytes.f32()?, bytes.u64()?);
+        let (is_led, way) = (bytes.u8()? != 0, bytes.vec3()?);
+        self.led = is_led.then_some(way);
         let (nearest, drift) = (bytes.f32()?, bytes.f32()?);
         let (highest, work_in) = (bytes.f32()?, bytes.f32()?);
         let (outside, flinches) = (bytes.u32()?, bytes.u32()?);
@@ -276,6 +292,14 @@ impl Script for Street {
 
     fn camera_hint(&self) -> CameraHint {
         CameraHint { direction: Vec3::new(0.5, 0.7, 1.0), bounds: None, trails: Trails::None }
+    }
+
+    fn steer(&mut self, way: Vec3) {
+        self.led = Some(way);
+    }
+
+    fn steered(&self) -> Option<Vec3> {
+        Some(self.walkers[LED].place())
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {

@@ -1,0 +1,16 @@
+// A chapter of the book: a click on a picture runs its scene there, and nowhere else at the same time.
+let running = null;
+
+for (const button of document.querySelectorAll('button[data-scene]')) {
+  button.addEventListener('click', () => {
+    running?.();
+    const frame = document.createElement('iframe');
+    const address = new URLSearchParams({ scene: button.dataset.scene, panels: 'few' });
+    const gpu = new URLSearchParams(location.search).get('gpu');
+    if (gpu) address.set('gpu', gpu);
+    frame.src = `index.html?${address}`;
+    frame.title = button.dataset.scene;
+    button.replaceWith(frame);
+    running = () => frame.replaceWith(button);
+  });
+}

@@ -1,0 +1,331 @@
+//! Subjects that run: a scene with hands on it, a character on the workbench, or a recording.
+
+mod files;
+mod playback;
+mod subject;
+mod takes;
+mod workbench;
+
+pub use playback::Ghost;
+pub use subject::{NamedFile, Subject};
+pub use workbench::{Workbench, limits};
+
+use crate::stage_times::StageTimes;
+use files::Opened;
+use playback::Playback;
+use sinew::formats::{Error, read_bytes};
+use sinew::math::Affine;
+use sinew::physics::{BodyId, Serial, TaskRunner, Threads, World};
+use sinew::ragdoll::settings::BoneSettings;
+use sinew_scenes::recording::{Hands, Operation, Recorder, Recording};
+use sinew_scenes::scenes::{Instance, Metric};
+use std::path::Path;
+use web_time::{Duration, Instant};
+
+/// Way in which a subject runs.
+enum Run {
+    Live(Box<Recorder>),
+    Replay(Box<Playback>),
+}
+
+/// Most poses that are kept to be written: five minutes.
+const MOST_POSES: usize = 18_000;
+
+fn is_glb(path: &Path) -> bool {
+    ["glb", "vrm"].into_iter().any(|extension| subject::has_extension(path, extension))
+}
+
+/// Longest that a ghost may keep the window waiting.
+const LONGEST_WAIT: Duration = Duration::from_secs(5);
+
+/// A subject that runs.
+pub struct Session {
+    subject: Subject,
+    run: Run,
+    threads: usize,
+    runner: Box<dyn TaskRunner>,
+    times: StageTimes,
+    /// Wall time of the last step.
+    step_time: Duration,
+    report: Vec<String>,
+    workbench: Option<Box<Workbench>>,
+    /// Bodies of the ragdoll, where no figure tells them.
+    bodies: Vec<BodyId>,
+    ghost: Option<Box<Ghost>>,
+    /// Poses of the character on the workbench at its start and after each step, world from joint.
+    poses: Vec<Vec<Affine>>,
+}
+
+impl Session {
+    /// Starts a subject.
+    ///
+    /// # Errors
+    /// One line: a file that cannot be read, a recording of a scene that is not there.
+    pub fn start(subject: Subject) -> Result<Self, Error> {
+        let opened = match &subject {
+            Subject::Scene(scene, settings, assignments) => {
+                let run = Recorder::of(scene.start(settings), scene.name, assignments);
+                return Ok(Self::of(subject, Run::Live(Box::new(run))));
+            }
+            Subject::Recording(path, recording) => {
+                let playback = Playback::start((**recording).clone());
+                let playback = playback.map_err(|error| error.with_file(path.display().to_string()))?;
+                return Ok(Self::of(subject, Run::Replay(Box::new(playback))));
+            }
+            Subject::File(path) => files::open(path)?,
+            Subject::Dropped(files) => files::open_dropped(files)?,
+        };
+        match opened {
+            Opened::World(instance, report) | Opened::Motion(instance, report) => {
+                let run = Recorder::of(*instance, &subject.title(), &[]);
+                Ok(Self { report, ..Self::of(subject, Run::Live(Box::new(run))) })
+            }
+            Opened::Workbench(workbench) => Ok(Self::on(subject, workbench)),
+        }
+    }
+
+    fn of(subject: Subject, run: Run) -> Self {
+        Self {
+            subject,
+            run,
+            threads: 1,
+            runner: Box::new(Serial),
+            times: StageTimes::default(),
+            step_time: Duration::ZERO,
+            report: Vec::new(),
+            workbench: None,
+            bodies: Vec::new(),
+            ghost: None,
+            poses: Vec::new(),
+        }
+    }
+
+    /// A ragdoll that falls.
+    fn on(subject: Subject, workbench: Box<Workbench>) -> Self {
+        let (instance, bodies) = workbench.fall();
+        let run = Run::Live(Box::new(Recorder::of(instance, &subject.title(), &[])));
+        let mut session = Self { workbench: Some(workbench), bodies, ..Self::of(subject, run) };
+        session.keep_pose();
+        session
+    }
+
+    fn keep_pose(&mut self) {
+        if self.workbench.is_some() && self.poses.len() < MOST_POSES {
+            let pose = self.instance().figures().first().map(|figure| figure.world_from_joint.to_vec());
+            self.poses.extend(pose);
+        }
+    }
+
+    /// Writes the steps so far as a clip in a GLB.
+    ///
+    /// # Errors
+    /// One line: there is no character, or nothing was played.
+    pub fn to_glb(&self) -> Result<NamedFile, String> {
+        let workbench = self.workbench.as_ref().ok_or("only characters of files can be written as GLB")?;
+        let original = match &self.subject {
+            Subject::File(path) if is_glb(path) => Some(read_bytes(path).map_err(|error| error.to_string())?),
+            Subject::Dropped(files) if is_glb(files[0].name.as_ref()) => Some(files[0].bytes.clone()),
+            _ => None,
+        };
+        workbench.to_glb(&self.poses, self.world().def().dt(), original.as_deref())
+    }
+
+    /// Starts the same anew: a scene with its settings, a ragdoll with what was changed of it.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start).
+    pub fn restart(&mut self) -> Result<(), Error> {
+        let subject = self.subject.clone();
+        let mut started = match self.workbench.take() {
+            Some(workbench) => Self::on(subject, workbench),
+            None => Self::start(subject)?,
+        };
+        started.set_threads(self.threads);
+        started.ghost = self.ghost.take();
+        *self = started;
+        self.follow();
+        Ok(())
+    }
+
+    /// The ragdoll that can be edited, if there is one.
+    pub fn workbench(&self) -> Option<&Workbench> {
+        self.workbench.as_deref()
+    }
+
+    /// Bodies of that ragdoll in the world, in the order of its definition.
+    pub fn ragdoll(&self) -> Vec<BodyId> {
+        match &self.workbench {
+            Some(workbench) if workbench.has_rig() => self.instance().bodies_of_figures(),
+            _ => self.bodies.clone(),
+        }
+    }
+
+    /// Changes a body of the ragdoll and its joint to the parent, and lets the ragdoll fall again.
+    ///
+    /// # Errors
+    /// One line: there is no ragdoll, or it cannot be built so; then everything is as before.
+    pub fn edit(&mut self, body: usize, wish: BoneSettings) -> Result<(), String> {
+        let workbench = self.workbench.as_mut().ok_or("only ragdolls of files can be edited")?;
+        workbench.set_wish(body, wish)?;
+        self.restart().map_err(|error| error.to_string())
+    }
+
+    /// Subject that it shows.
+    pub fn subject(&self) -> &Subject {
+        &self.subject
+    }
+
+    /// The scene as it runs.
+    pub fn instance(&self) -> &Instance {
+        match &self.run {
+            Run::Live(recorder) => recorder.instance(),
+            Run::Replay(playback) => playback.replay.instance(),
+        }
+    }
+
+    /// Its world.
+    pub fn world(&self) -> &World {
+        self.instance().world()
+    }
+
+    /// Hands, and so what they hold.
+    pub fn hands(&self) -> &Hands {
+        match &self.run {
+            Run::Live(recorder) => recorder.hands(),
+            Run::Replay(playback) => playback.replay.hands(),
+        }
+    }
+
+    /// Number of threads that its steps run on.
+    pub fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// Runs the steps to come on so many threads, at least 1: the same bits.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.threads = threads.max(1);
+        self.runner = if self.threads == 1 { Box::new(Serial) } else { Box::new(Threads::new(self.threads)) };
+    }
+
+    /// Does something to the scene; nothing to a recording.
+    pub fn apply(&mut self, operation: Operation) {
+        if let Run::Live(recorder) = &mut self.run {
+            recorder.apply(operation);
+        }
+    }
+
+    /// True if hands reach into it.
+    pub fn is_live(&self) -> bool {
+        matches!(self.run, Run::Live(_))
+    }
+
+    /// One step; false at the end of a recording.
+    pub fn step(&mut self) -> bool {
+        let start = Instant::now();
+        self.times.begin_step();
+        let went_on = match &mut self.run {
+            Run::Live(recorder) => {
+                recorder.step_with(&*self.runner, &self.times);
+                true
+            }
+            Run::Replay(playback) => playback.step(&*self.runner, &self.times),
+        };
+        self.times.end_step();
+        self.step_time = start.elapsed();
+        self.keep_pose();
+        self.follow();
+        went_on
+    }
+
+    /// Figures so far; of a recording as they were when the step was first played.
+    pub fn metrics(&self) -> Vec<Metric> {
+        match &self.run {
+            Run::Live(recorder) => recorder.instance().metrics(),
+            Run::Replay(playback) => playback.metrics().last().cloned().unwrap_or_default(),
+        }
+    }
+
+    /// Figures of a recording up to now, after each number of steps; empty of what is live.
+    pub fn past_metrics(&self) -> &[Vec<Metric>] {
+        match &self.run {
+            Run::Live(_) => &[],
+            Run::Replay(playback) => playback.metrics(),
+        }
+    }
+
+    /// Number of steps of the recording that is played; `None` of what is live.
+    pub fn length(&self) -> Option<u64> {
+        match &self.run {
+            Run::Live(_) => None,
+            Run::Replay(playback) => Some(playback.length()),
+        }
+    }
+
+    /// Goes toward a number of steps of a recording, forth or back, until then; true once it is there.
+    pub fn seek(&mut self, goal: u64, until: Instant) -> bool {
+        let Run::Replay(playback) = &mut self.run else { return true };
+        let arrived = playback.seek(goal, &*self.runner, until);
+        self.follow();
+        arrived
+    }
+
+    /// Takes the ghost to the step at which the first run is.
+    fn follow(&mut self) {
+        let at = self.world().step_count();
+        if let Some(ghost) = &mut self.ghost {
+            // It is never far behind, for it goes along with each step.
+            let until = Instant::now() + LONGEST_WAIT;
+            ghost.playback.seek(at, &*self.runner, until);
+        }
+    }
+
+    /// The second run that is shown beside a recording.
+    pub fn ghost(&self) -> Option<&Ghost> {
+        self.ghost.as_deref()
+    }
+
+    /// Shows a second run of the same scene beside a recording.
+    ///
+    /// # Errors
+    /// One line: nothing is played, or it is of another scene.
+    pub fn set_ghost(&mut self, name: &str, recording: Recording) -> Result<(), Error> {
+        let Run::Replay(playback) = &self.run else {
+            return Err(Error::unsupported("a ghost goes along with a recording, and none is played", ""));
+        };
+        let ghost = Ghost::new(name.to_owned(), recording, playback.replay.recording());
+        self.ghost = Some(Box::new(ghost.map_err(|error| error.with_file(name))?));
+        self.follow();
+        Ok(())
+    }
+
+    /// Times of the stages of the last steps.
+    pub fn times(&self) -> &StageTimes {
+        &self.times
+    }
+
+    /// Wall time of the last step.
+    pub fn step_time(&self) -> Duration {
+        self.step_time
+    }
+
+    /// Lines that tell of a file that was opened.
+    pub fn report(&self) -> &[String] {
+        self.workbench.as_ref().map_or(&self.report, |workbench| workbench.report())
+    }
+
+    /// First step of a recording that came to another state than was recorded.
+    pub fn diverged(&self) -> Option<u64> {
+        match &self.run {
+            Run::Live(_) => None,
+            Run::Replay(playback) => playback.diverged,
+        }
+    }
+
+    /// Recording of what was done so far and what became of it; `None` of what no scene made, which cannot be started again elsewhere.
+    pub fn recording(&self) -> Option<&Recording> {
+        match (&self.run, &self.subject) {
+            (Run::Live(recorder), Subject::Scene(..)) => Some(recorder.recording()),
+            _ => None,
+        }
+    }
+}

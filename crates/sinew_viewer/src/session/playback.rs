@@ -1,0 +1,156 @@
+//! A recording that is played forth and back.
+
+use sinew::formats::Error;
+use sinew::physics::TaskRunner;
+use sinew::physics::stage::{NoProfiler, Profiler};
+use sinew_scenes::recording::{Difference, Mark, Recording, Replay, compare};
+use sinew_scenes::scenes::Metric;
+use web_time::Instant;
+
+/// Steps between marks at first.
+const MARK_STEPS: u64 = 30;
+/// Most bytes of all marks: of more, every second one goes.
+const MARK_BYTES: usize = 128 << 20;
+
+/// A recording that is played. Steps that have been played before are as they were, with all that was measured.
+pub(super) struct Playback {
+    pub replay: Replay,
+    /// By the number of steps taken, in order.
+    marks: Vec<Mark>,
+    mark_steps: u64,
+    /// After each number of steps that has been reached.
+    metrics: Vec<Vec<Metric>>,
+    /// Hash of the state after each step, when it was first played.
+    hashes: Vec<u64>,
+    /// First step that came to another state than was recorded.
+    pub diverged: Option<u64>,
+}
+
+impl Playback {
+    pub fn start(recording: Recording) -> Result<Self, Error> {
+        let replay = Replay::start(recording)?;
+        let metrics = vec![replay.instance().metrics()];
+        Ok(Self {
+            replay,
+            marks: Vec::new(),
+            mark_steps: MARK_STEPS,
+            metrics,
+            hashes: Vec::new(),
+            diverged: None,
+        })
+    }
+
+    /// Number of steps taken.
+    pub fn at(&self) -> u64 {
+        self.replay.instance().world().step_count()
+    }
+
+    /// Number of steps that were recorded.
+    pub fn length(&self) -> u64 {
+        self.replay.recording().steps.len() as u64
+    }
+
+    /// Figures up to now, after each number of steps.
+    pub fn metrics(&self) -> &[Vec<Metric>] {
+        &self.metrics[..=(self.at() as usize).min(self.metrics.len() - 1)]
+    }
+
+    /// The next step; false at the end.
+    pub fn step(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) -> bool {
+        let Some(step) = self.replay.step_with(runner, profiler) else { return false };
+        if self.hashes.get(step.step as usize - 1).is_some_and(|&first| first != step.found) {
+            self.play_anew();
+            while self.at() < step.step && self.replay.step_with(runner, &NoProfiler).is_some() {}
+            return true;
+        }
+        if step.found != step.recorded && self.diverged.is_none_or(|first| step.step < first) {
+            self.diverged = Some(step.step);
+        }
+        if self.metrics.len() as u64 == step.step {
+            self.metrics.push(self.replay.instance().metrics());
+            self.hashes.push(step.found);
+            self.mark();
+        }
+        true
+    }
+
+    /// Keeps a way back to now. Characters beside a world are not taken back with it, so that their scenes are played anew.
+    fn mark(&mut self) {
+        if !self.at().is_multiple_of(self.mark_steps) || !self.replay.instance().figures().is_empty() {
+            return;
+        }
+        self.marks.push(self.replay.mark());
+        if self.marks.iter().map(Mark::bytes).sum::<usize>() > MARK_BYTES {
+            self.mark_steps *= 2;
+            let mark_steps = self.mark_steps;
+            self.marks.retain(|mark| mark.step().is_multiple_of(mark_steps));
+        }
+    }
+
+    /// Goes toward a number of steps, forth or back, until then; true once it is there.
+    pub fn seek(&mut self, goal: u64, runner: &dyn TaskRunner, until: Instant) -> bool {
+        let goal = goal.min(self.length());
+        let at = self.at();
+        let mark = self.marks.iter().rposition(|mark| mark.step() <= goal && (mark.step() > at || goal < at));
+        if let Some(mark) = mark.map(|place| &self.marks[place]) {
+            if !self.replay.go_to(mark) {
+                self.play_anew();
+            }
+        } else if goal < at {
+            self.rewind();
+        }
+        while self.at() < goal && Instant::now() < until {
+            if !self.step(runner, &NoProfiler) {
+                break;
+            }
+        }
+        self.at() >= goal
+    }
+
+    /// From the start, now and always: the scene cannot be taken back.
+    fn play_anew(&mut self) {
+        self.marks.clear();
+        self.mark_steps = u64::MAX;
+        self.rewind();
+    }
+
+    fn rewind(&mut self) {
+        let recording = self.replay.recording().clone();
+        // It has been started before.
+        if let Ok(replay) = Replay::start(recording) {
+            self.replay = replay;
+        }
+    }
+}
+
+/// A second run of the same scene, shown beside the first.
+pub struct Ghost {
+    pub(super) name: String,
+    pub(super) playback: Playback,
+    pub(super) difference: Option<Difference>,
+}
+
+impl Ghost {
+    pub(super) fn new(name: String, recording: Recording, first: &Recording) -> Result<Self, Error> {
+        let difference = compare(first, &recording);
+        if difference == Some(Difference::Scene) {
+            return Err(Error::unsupported("is of another scene or has other settings", ""));
+        }
+        Ok(Self { name, playback: Playback::start(recording)?, difference })
+    }
+
+    /// Name of its file.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// First difference of the two; `None` if there is none.
+    pub fn difference(&self) -> Option<&Difference> {
+        self.difference.as_ref()
+    }
+
+    /// Its world.
+    pub fn world(&self) -> &sinew::physics::World {
+        self.playback.replay.instance().world()
+    }
+}

@@ -1,0 +1,115 @@
+//! Subjects: what a session shows and can be started from anew.
+
+use sinew::formats::{Error, read_bytes};
+use sinew_scenes::recording::Recording;
+use sinew_scenes::scenes::{Scene, Settings, find};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Subject of a session, from which it can be started anew.
+#[derive(Clone, Debug)]
+pub enum Subject {
+    /// A named scene with its settings, and those of them that are not at their defaults, `key=value`.
+    Scene(&'static Scene, Box<Settings>, Vec<String>),
+    /// A file: a world, a character, a ragdoll.
+    File(PathBuf),
+    /// Files without a folder, as a page is given them: what [`File`](Self::File) may be, and the files beside it.
+    Dropped(Arc<[NamedFile]>),
+    /// A recording, and where it comes from.
+    Recording(PathBuf, Box<Recording>),
+}
+
+/// A file without a folder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedFile {
+    /// Its name, with its extension.
+    pub name: String,
+    /// Content.
+    pub bytes: Vec<u8>,
+}
+
+impl Subject {
+    /// The scene of that name, with settings `key=value`.
+    ///
+    /// # Errors
+    /// One line: there is no such scene, or it refuses a setting.
+    pub fn scene(name: &str, assignments: &[String]) -> Result<Self, String> {
+        let scene = find(name).ok_or_else(|| format!("no scene '{name}'"))?;
+        let mut settings = scene.settings();
+        for assignment in assignments {
+            settings.assign(assignment).map_err(|error| error.to_string())?;
+        }
+        settings.check().map_err(|error| error.to_string())?;
+        Ok(Self::Scene(scene, Box::new(settings), assignments.to_vec()))
+    }
+
+    /// A file by its path, of whatever kind it is.
+    ///
+    /// # Errors
+    /// One line that names the file.
+    pub fn file(path: &Path) -> Result<Self, Error> {
+        if has_extension(path, "sinewrec") {
+            return Self::recording(path, &read_bytes(path)?);
+        }
+        Ok(Self::File(path.to_owned()))
+    }
+
+    /// Files that were dropped together. The first of a kind that can be shown by itself is shown, the others are beside it.
+    ///
+    /// # Errors
+    /// One line that names the file.
+    pub fn dropped(mut files: Vec<NamedFile>) -> Result<Self, Error> {
+        let is_shown =
+            |file: &NamedFile| SHOWN.iter().any(|extension| has_extension(Path::new(&file.name), extension));
+        let first = files.iter().position(is_shown).unwrap_or(0);
+        match files.get(first) {
+            None => Err(Error::unsupported("nothing was dropped", "")),
+            Some(file) if has_extension(Path::new(&file.name), "sinewrec") => {
+                Self::recording(Path::new(&file.name), &file.bytes)
+            }
+            Some(_) => {
+                files.swap(0, first);
+                Ok(Self::Dropped(files.into()))
+            }
+        }
+    }
+
+    fn recording(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
+        let recording = Recording::read(bytes);
+        let recording = recording.map_err(|error| error.with_file(path.display().to_string()))?;
+        Ok(Self::Recording(path.to_owned(), Box::new(recording)))
+    }
+
+    /// Name to be shown.
+    pub fn title(&self) -> String {
+        let file_name =
+            |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        match self {
+            Self::Scene(scene, ..) => scene.name.to_owned(),
+            Self::File(path) | Self::Recording(path, _) => file_name(path),
+            Self::Dropped(files) => files[0].name.clone(),
+        }
+    }
+
+    /// One line on what it is about.
+    pub fn about(&self) -> String {
+        match self {
+            Self::Scene(scene, ..) => scene.about.to_owned(),
+            Self::File(path) => path.display().to_string(),
+            Self::Dropped(files) => files[0].name.clone(),
+            Self::Recording(_, recording) => format!(
+                "recording of {} by version {}, {} steps",
+                recording.scene,
+                recording.made_by,
+                recording.steps.len()
+            ),
+        }
+    }
+}
+
+/// Extensions of files that are shown by themselves; others lie beside them.
+const SHOWN: [&str; 7] = ["sinewrec", "json", "glb", "gltf", "vrm", "fbx", "bvh"];
+
+pub(super) fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|it| it.eq_ignore_ascii_case(extension))
+}

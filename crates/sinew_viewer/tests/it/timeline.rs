@@ -1,0 +1,131 @@
+//! Recordings on a timeline: forth and back to the same bits, a second run beside the first.
+
+use crate::hands::{settled, viewer};
+use crate::pictures::look;
+use egui::Key;
+use sinew::math::Vec3;
+use sinew_scenes::recording::{Difference, Operation, Recorder, Recording};
+use sinew_viewer::{Session, Subject};
+use std::time::{Duration, Instant};
+
+const SIZE: [u32; 2] = [1280, 760];
+
+/// A recording of a scene; a body is struck before a step, if one is given.
+pub fn recorded(scene: &str, steps: u64, strike: Option<u64>) -> Recording {
+    let mut recorder = Recorder::start(scene, &[]).expect("there is such a scene");
+    for step in 0..steps {
+        if strike == Some(step) {
+            let world = recorder.instance().world();
+            // Where there are particles alone, nothing is struck.
+            if let Some(body) = world.body_ids().filter(|&id| world.mass(id).mass > 0.0).last() {
+                let (point, mass) = (world.center_of_mass(body), world.mass(body).mass);
+                recorder.apply(Operation::Push { body, impulse: Vec3::new(1.5, 0.5, 0.0) * mass, point });
+            }
+        }
+        recorder.step();
+    }
+    recorder.finish()
+}
+
+fn played(recording: &Recording) -> Subject {
+    Subject::Recording("run.sinewrec".into(), Box::new(recording.clone()))
+}
+
+/// Goes there, however long it takes.
+fn seek(session: &mut Session, step: u64) {
+    while !session.seek(step, Instant::now() + Duration::from_secs(1)) {}
+}
+
+/// Scenes of bodies, of joints, of particles, of characters beside the world and within it: wherever one goes, the state is that
+/// of the recording, and so are the figures.
+#[test]
+fn forth_and_back_to_the_same_bits() {
+    for scene in ["stack", "pendulum", "rope_on_box", "stairs", "two_tracks", "flag", "dominoes"] {
+        let recording = recorded(scene, 130, Some(40));
+        let mut session = Session::start(played(&recording)).expect("it is ours");
+        let mut figures = vec![session.metrics()];
+        while session.step() {
+            figures.push(session.metrics());
+        }
+        assert_eq!(session.diverged(), None, "{scene}");
+        assert_eq!(session.world().step_count(), 130, "{scene}");
+        for step in [90, 30, 31, 0, 64, 61, 130, 59, 1] {
+            seek(&mut session, step);
+            let world = session.world();
+            assert_eq!(world.step_count(), step, "{scene}");
+            if step > 0 {
+                assert_eq!(world.hash(), recording.steps[step as usize - 1].hash, "{scene}, step {step}");
+            }
+            assert_eq!(session.metrics(), figures[step as usize], "{scene}, step {step}");
+            assert_eq!(session.past_metrics().len() as u64, step + 1, "{scene}");
+        }
+        // From there it goes on as it did.
+        while session.step() {}
+        assert_eq!(session.diverged(), None, "{scene}");
+        assert_eq!(session.world().hash(), recording.steps[129].hash, "{scene}");
+    }
+}
+
+#[test]
+fn a_second_run_is_a_ghost() {
+    let (plain, struck) = (recorded("stack", 100, None), recorded("stack", 100, Some(30)));
+    let mut session = Session::start(played(&plain)).expect("it is ours");
+    session.set_ghost("struck.sinewrec", struck).expect("it is of the same scene");
+    let ghost = session.ghost().expect("it has one");
+    let Some(Difference::State { step, body: Some((_, [a, b])) }) = ghost.difference().cloned() else {
+        panic!("{:?}", ghost.difference())
+    };
+    assert_eq!(step, 31, "the strike is felt in the step that follows it");
+    assert_ne!(a, b);
+    for step in [100, 20, 30, 31] {
+        seek(&mut session, step);
+        let ghost = session.ghost().expect("it has one").world();
+        assert_eq!(ghost.step_count(), step);
+        assert_eq!(ghost.hash() == session.world().hash(), step < 31, "step {step}");
+    }
+    let other = recorded("pendulum", 10, None);
+    let error = session.set_ghost("other.sinewrec", other).expect_err("of another scene");
+    assert!(error.to_string().contains("other.sinewrec"), "{error}");
+    let mut live = Session::start(Subject::scene("stack", &[]).expect("a scene")).expect("it starts");
+    assert!(live.set_ghost("plain.sinewrec", plain).is_err());
+}
+
+/// What was just done is put on a timeline, by a button; keys and the mouse go through it.
+#[test]
+fn the_timeline_is_dragged() {
+    let Some(mut viewer) = viewer("stack", SIZE) else { return };
+    let recording = recorded("stack", 100, Some(10));
+    viewer.app_mut().open(played(&recording));
+    settled(&mut viewer);
+    viewer.key(Key::End);
+    viewer.frame().expect("the card draws");
+    let at = |viewer: &sinew_viewer::Headless| viewer.app().session().world().step_count();
+    let arrive = |viewer: &mut sinew_viewer::Headless| {
+        for _ in 0..1000 {
+            viewer.app_mut().advance();
+        }
+        viewer.frame().expect("the card draws");
+    };
+    arrive(&mut viewer);
+    assert_eq!(at(&viewer), 100);
+    viewer.key(Key::ArrowLeft);
+    viewer.frame().expect("the card draws");
+    arrive(&mut viewer);
+    assert_eq!(at(&viewer), 99);
+    viewer.app_mut().compare_with("plain.sinewrec", recorded("stack", 100, None));
+    let line = viewer.app().message().expect("it says so").to_owned();
+    assert!(line.contains("differs from step 11 on: body "), "{line}");
+    // The bar stands above the buttons, right of the scenes and of the number of the step.
+    let area = viewer.app().area();
+    let (x, y) = (0.5 * (area.left() + 150.0 + SIZE[0] as f32 - 18.0), area.bottom() + 22.0);
+    viewer.move_to(x, y);
+    viewer.button(x, y, true);
+    viewer.frame().expect("the card draws");
+    viewer.button(x, y, false);
+    viewer.frame().expect("the card draws");
+    arrive(&mut viewer);
+    let middle = at(&viewer);
+    assert!((40..=60).contains(&middle), "step {middle}");
+    assert_eq!(viewer.app().session().world().hash(), recording.steps[middle as usize - 1].hash);
+    look("timeline", &settled(&mut viewer));
+}
