@@ -382,6 +382,8 @@ impl ParticleGroup {
         if self.grips[i] == Grip::Wedged || self.is_clear_beside(i, way) {
             return false;
         }
+        // Springs may take a particle farther than it saw.
+        self.near.follow(i, self.positions[i]);
         let known = self.touches[i].map(|touch| touch.obstacle);
         let ends = (self.positions[i], self.positions[i] + way);
         let Some((obstacle, meeting)) = self.first_met(i, ends, known, IMPACT_DEPTH, obstacles) else {
