@@ -25,7 +25,8 @@ const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 // Files of the folder alone, on the loopback.
 async function serve() {
   const server = createServer(async (request, response) => {
-    const name = basename(new URL(request.url, 'http://localhost').pathname) || 'index.html';
+    // A URL's path has no '..' left.
+    const name = new URL(request.url, 'http://localhost').pathname.slice(1) || 'index.html';
     try {
       const bytes = await readFile(join(folder, name));
       response.writeHead(200, { 'content-type': KINDS[extname(name)] ?? 'application/octet-stream' }).end(bytes);
@@ -158,6 +159,23 @@ async function dropped(browser, url, path) {
   return name;
 }
 
+// A chapter of the book: its pictures are there, and the first one runs its scene at a click.
+async function chapter(browser, url) {
+  const address = new URL('chapter-1.html', url);
+  address.search = new URL(url).search;
+  const ask = async (expression) => (await browser.send('Runtime.evaluate', { expression })).result.value;
+  await browser.send('Page.navigate', { url: String(address) });
+  const button = "document.querySelector('button[data-scene]')";
+  await browser.until('a chapter', () => ask(`document.readyState === 'complete' && ${button}?.dataset.scene`));
+  const scene = await ask(`${button}.dataset.scene`);
+  await ask(`${button}.scrollIntoView()`);
+  await browser.until('its picture', () => ask(`${button}.querySelector('img').naturalWidth > 0`));
+  await ask(`${button}.click()`);
+  const shown = "document.querySelector('iframe')?.contentDocument?.getElementById('viewer')?.dataset";
+  await browser.until(`${scene} in its chapter`, () => ask(`${shown}?.scene === '${scene}' && ${shown}.steps > 2`));
+  return scene;
+}
+
 async function tried(way, url) {
   const browser = await Browser.start(WAYS[way]);
   try {
@@ -176,8 +194,10 @@ async function tried(way, url) {
     await browser.picture(`${way}-dragged`);
     const shown = [];
     for (const path of drop) shown.push(await dropped(browser, url, path));
+    const run = await chapter(browser, url);
+    await browser.picture(`${way}-chapter`);
     if (browser.errors.length) throw new Error(browser.errors.join('\n'));
-    return { by, ready_ms: Number(ready), ready_again_ms: Number(again), hashes, held, dropped: shown };
+    return { by, ready_ms: Number(ready), ready_again_ms: Number(again), hashes, held, dropped: shown, chapter: run };
   } finally {
     await browser.end();
   }
