@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
 use crate::input::files::Outputs;
-use crate::render::film::{FLOOR_HALF_SIZE, Film, View, body_models};
+use crate::render::film::{FILM_SIZE, FLOOR_HALF_SIZE, Film, View, body_models};
 use crate::report::Report;
 use sinew::anim::{Joint, LocalTransform, Primitive, Rig, RigMesh};
 use sinew::formats::write_gltf;
@@ -23,12 +23,19 @@ const MOWN: [f32; 3] = [0.19, 0.30, 0.11];
 Example:
   sinew demo
   sinew demo --out fall --json
+  sinew demo --out small --width 320 --height 180
 
 Writes demo.glb (the mannequin with the fall as a clip), demo.gif and report.json.")]
 pub struct Demo {
     /// Folder to write into; it is made if it is not there
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
+    /// Pixels of the picture across
+    #[arg(long, value_name = "N", default_value_t = FILM_SIZE[0], value_parser = clap::value_parser!(u32).range(16..=4096))]
+    width: u32,
+    /// Pixels of the picture down
+    #[arg(long, value_name = "N", default_value_t = FILM_SIZE[1], value_parser = clap::value_parser!(u32).range(16..=4096))]
+    height: u32,
 }
 
 impl Demo {
@@ -43,7 +50,7 @@ impl Demo {
         let json = fall.to_json(&paths);
         let film = film(&fall, &demo.props);
         let picture_bytes = film
-            .shoot(PictureFormat::Gif)
+            .shoot(PictureFormat::Gif, [self.width, self.height])
             .map_err(|error| Failure::of_file(picture.display().to_string(), error))?;
         std::fs::create_dir_all(&self.out)
             .map_err(|error| Failure::of_file(self.out.display().to_string(), error))?;

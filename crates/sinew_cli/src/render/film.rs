@@ -16,6 +16,9 @@ use sinew_picture::{
     Renderer, Scene, Sun,
 };
 
+/// Pixels of a film across and down, where nobody asks for others.
+pub const FILM_SIZE: [u32; 2] = [640, 360];
+
 /// Pictures a second: a whole number of a GIF's hundredths of a second, and enough to follow a fall.
 const FPS: u32 = 20;
 /// Seconds for which a hit's arrow is shown.
@@ -46,10 +49,11 @@ pub enum View {
 }
 
 impl Film<'_> {
-    /// The bytes of a picture file.
-    pub fn shoot(self, format: PictureFormat) -> Result<Vec<u8>, EncodeError> {
+    /// The bytes of a picture file of so many pixels across and down.
+    pub fn shoot(self, format: PictureFormat, [width, height]: [u32; 2]) -> Result<Vec<u8>, EncodeError> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        let mut renderer = Renderer::new(RenderSettings { threads, ..RenderSettings::default() });
+        let settings = RenderSettings { width, height, threads, ..RenderSettings::default() };
+        let mut renderer = Renderer::new(settings);
         let mut movie = Movie::new(format, FPS);
         let frames = (self.fall.input.seconds * FPS as f32) as u32 + 1;
         let progress = Progress::new("drawing", frames as usize);

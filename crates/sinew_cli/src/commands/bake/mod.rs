@@ -15,7 +15,7 @@ use crate::input::files::{CharacterFile, Outputs, never_over};
 use crate::input::picture_file::{PictureFile, length, seconds};
 use crate::input::ragdoll_file::read_definition;
 use crate::input::settings_arg::{SettingsArg, unit_note};
-use crate::render::film::{FLOOR_HALF_SIZE, Film, View, body_models};
+use crate::render::film::{FILM_SIZE, FLOOR_HALF_SIZE, Film, View, body_models};
 use crate::report::Report;
 use crate::report::skin_report::{SkinReport, skin_json};
 use crate::report::springs_report::SpringsReport;
@@ -307,7 +307,7 @@ impl Bake {
         outputs.add(self.output.path(), bytes);
         if let Some(picture) = &self.picture {
             let failed = |error| Failure::of_file(picture.path().display().to_string(), error);
-            outputs.add(picture.path(), film(fall).shoot(picture.format).map_err(failed)?);
+            outputs.add(picture.path(), film(fall).shoot(picture.format, FILM_SIZE).map_err(failed)?);
         }
         outputs.write()?;
         Ok(notes)
