@@ -151,6 +151,7 @@ const REGISTRY: &[Scene] = &[
     characters::walking::UNEVEN_GROUND,
     characters::mocap::RETARGET,
     characters::hair::HAIR_RATES,
+    characters::cape::CAPE,
 ];
 
 /// Scenes that need a file of the user's, and so are in no list.

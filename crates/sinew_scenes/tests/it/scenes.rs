@@ -7,6 +7,8 @@ use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, Settings, find, re
 const NOT_YET: &[(&str, &[&str])] = &[
     // 2.07 mm instead of 2; its line of thrust is nearer to the middle than when it met this.
     ("arch", &["shift_max_m"]),
+    // `World::work` leaves out what kinematic bodies do to particles: here the led chest, which is off at once at walking speed.
+    ("cape", &["energy_gain_max"]),
     // Heaps are chaotic: from starts that differ by 1 mm the sticks sleep after 212 to 226 steps.
     ("mesh_drop", &["asleep_steps"]),
 ];
@@ -35,6 +37,7 @@ const BLIND_TO_GRAVITY: &[&str] = &[
     "uneven_ground",
     "retarget",
     "hair",
+    "cape",
     "crowd",
 ];
 
@@ -231,6 +234,7 @@ scenes!(
         uneven_ground,
         retarget,
         hair,
+        cape,
         crowd,
     ],
     large: [chain_100_links, joint_grid, net, ragdoll_pile],

@@ -3,6 +3,7 @@
 pub(super) mod arena;
 pub(super) mod blending;
 pub(super) mod callbacks;
+pub(super) mod cape;
 pub(super) mod hair;
 pub(super) mod mocap;
 pub(super) mod movers;

@@ -1,0 +1,273 @@
+//! A cape that is worn through a walk, a fall down the stairs, and getting up.
+
+use crate::cabin::Site;
+use crate::framework::actors::Figure;
+use crate::framework::camera_hint::{CameraHint, Trails};
+use crate::framework::instance::{Instance, Script};
+use crate::framework::metric::{Expected, Metric};
+use crate::framework::scene::{Chapter, Scene};
+use crate::framework::setting::{Setting, Setup};
+use sinew::anim::local_to_model;
+
+use sinew::math::{Affine, ReadError, Reader, Vec3, Writer, max};
+use sinew::physics::boxes::{Aabb, Overlap};
+use sinew::physics::particles::{AttachmentDef, AttachmentTarget, ClothDef, GroupDef, ParticleGroup};
+use sinew::physics::{BodyId, GroupId, Material, World};
+use sinew::ragdoll::{Character, CharacterEvent};
+use std::sync::Arc;
+
+pub(in crate::scenes) const CAPE: Scene = Scene {
+    chapter: Chapter::Characters,
+    name: "cape",
+    about: "the mannequin in a cape walks, is hit, falls down the stairs, gets up and walks on, still in its cape",
+    steps: 480,
+    settings: &[
+        Setting::number("impulse", 110.0, (0.0, 200.0), "in the back, N·s"),
+        Setting::number("mass", 0.6, (0.1, 3.0), "of the cape, kg"),
+    ],
+    build: cape,
+};
+
+/// Middle of the cape's upper edge, in front of which the shoulders are, from the soles, metres.
+const NAPE: Vec3 = Vec3::new(0.0, 1.42, -0.15);
+/// Width and length, metres.
+const WIDE: f32 = 0.44;
+const LONG: f32 = 0.96;
+/// Springs along its edges: apart by less than two of the particles.
+const COLUMNS: u32 = 11;
+const ROWS: u32 = 24;
+/// Radius of each particle, metres.
+const RADIUS: f32 = 0.02;
+/// Distance before the edge of the porch at which the hit comes, metres.
+const HIT_BEFORE_EDGE: f32 = 0.45;
+/// Role of the body that wears it, and is hit.
+const SHOULDERS: &str = "chest";
+
+fn cape(setup: &Setup<'_>) -> Instance {
+    let mut world = setup.world();
+    let site = Site::CabinWithStairs;
+    for prop in site.props() {
+        world.add_body(&prop.body);
+    }
+    let def = Arc::new(sinew::mannequin::character());
+    let spawn = site.spawn();
+    let mut character = Character::spawn(&mut world, &def, spawn.world_from_character);
+    character.set_move(Vec3::Z * sinew::mannequin::WALK_SPEED);
+    let chest = character.bodies()[def.body_named(SHOULDERS).expect("it has a chest")];
+    let nape = spawn.world_from_character.point(NAPE);
+    let group = worn(&world, chest, nape, setup.number("mass"));
+    let cape = world.add_particles(&group);
+    let mut script = Worn {
+        character,
+        cape,
+        impulse: setup.number("impulse"),
+        was_hit: false,
+        model: Vec::new(),
+        watch: Watch::default(),
+    };
+    script.show();
+    Instance::new(world, script)
+}
+
+/// Cloth whose first row is held at points of a body.
+fn worn(world: &World, body: BodyId, nape: Vec3, mass: f32) -> GroupDef {
+    let mut cloth = ClothDef {
+        corner: nape + Vec3::X * (0.5 * WIDE),
+        across: Vec3::X * -WIDE,
+        down: Vec3::NEG_Y * LONG,
+        columns: COLUMNS,
+        rows: ROWS,
+        mass,
+        stretching: 2000.0,
+        shearing: 100.0,
+        bending: 1e-4,
+        damping_ratio: 0.2,
+        radius: RADIUS,
+    }
+    .build();
+    for particle in cloth.row(0) {
+        let place = cloth.group.particles[particle as usize].position;
+        let target = AttachmentTarget::Body { body, point: world.transform(body).inverse_point(place) };
+        cloth.group.attachments.push(AttachmentDef { particle, target });
+    }
+    cloth.group.tether();
+    cloth.group.iterations = 4;
+    cloth.group.linear_damping = 0.5;
+    cloth.group.material = Material { friction: 0.3, ..Material::default() };
+    cloth.group
+}
+
+#[derive(Default)]
+struct Watch {
+    /// Depth of a free particle's middle in a body of the wearer, and in anything else, metres; 0: it was in none.
+    deepest_in_wearer: f32,
+    deepest_in_world: f32,
+    /// Largest mean over the threads of how much a thread is longer or shorter than at rest, over its length.
+    stretch: f32,
+    /// Sum of that mean over steps.
+    stretch_sum: f32,
+    /// Furthest that a held particle was from its place, metres.
+    torn: f32,
+    falls: u32,
+    /// When it was up again, seconds.
+    up: Option<f32>,
+    work_in: f32,
+}
+
+struct Worn {
+    character: Character,
+    cape: GroupId,
+    /// N·s.
+    impulse: f32,
+    was_hit: bool,
+    /// World from joint.
+    model: Vec<Affine>,
+    watch: Watch,
+}
+
+/// Mean over the threads of how far their lengths are from those at rest, as a share.
+fn stretch(group: &ParticleGroup) -> f32 {
+    let threads = COLUMNS * (ROWS + 1) + ROWS * (COLUMNS + 1);
+    let threads = &group.springs()[..threads as usize];
+    let positions = group.positions();
+    let off = threads.iter().map(|thread| {
+        let length = (positions[thread.b as usize] - positions[thread.a as usize]).length();
+        (length / thread.rest_length - 1.0).abs()
+    });
+    off.sum::<f32>() / threads.len() as f32
+}
+
+impl Worn {
+    fn show(&mut self) {
+        let root = self.character.world_from_model();
+        local_to_model(&self.character.def().rig, self.character.pose(), &root, &mut self.model);
+    }
+
+    fn chest(&self) -> usize {
+        self.character.def().body_named(SHOULDERS).expect("it has a chest")
+    }
+
+    /// Depth of the deepest free particle's middle in one of the bodies, metres; negative: outside.
+    fn deepest(&self, world: &World, bodies: impl Iterator<Item = BodyId>) -> f32 {
+        let group = world.particles(self.cape);
+        let bounds = group.bounds();
+        let free = &group.positions()[COLUMNS as usize + 1..];
+        let mut deepest = -RADIUS;
+        let near = bodies.filter(|&body| world.bounds(body).overlaps(&bounds));
+        for (shape, frame) in near.flat_map(|body| world.shapes(body)) {
+            for &position in free {
+                deepest = max(deepest, -shape.signed_distance(&frame, position).0);
+            }
+        }
+        deepest
+    }
+
+    fn look(&mut self, world: &World) {
+        let own = self.character.bodies();
+        let others = world.body_ids().filter(|body| !own.contains(body));
+        let [in_wearer, in_world] = [self.deepest(world, own.iter().copied()), self.deepest(world, others)];
+        let group = world.particles(self.cape);
+        let torn = group.attachments().iter().map(|held| match held.target {
+            AttachmentTarget::Body { body, point } => {
+                (world.transform(body).point(point) - group.positions()[held.particle as usize]).length()
+            }
+            AttachmentTarget::World(_) => f32::INFINITY,
+        });
+        let (torn, stretch) = (torn.fold(0.0, max), stretch(group));
+        let watch = &mut self.watch;
+        watch.deepest_in_wearer = max(watch.deepest_in_wearer, in_wearer);
+        watch.deepest_in_world = max(watch.deepest_in_world, in_world);
+        watch.torn = max(watch.torn, torn);
+        watch.stretch = max(watch.stretch, stretch);
+        watch.stretch_sum += stretch;
+    }
+
+    /// From the middle of the first row to that of the last, in the wearer's axes, metres.
+    fn hem(&self, world: &World) -> Vec3 {
+        let positions = world.particles(self.cape).positions();
+        let row = COLUMNS as usize + 1;
+        let mean = |row: &[Vec3]| row.iter().copied().sum::<Vec3>() / row.len() as f32;
+        let way = mean(&positions[positions.len() - row..]) - mean(&positions[..row]);
+        self.character.world_from_character().rotation.inverse() * way
+    }
+}
+
+impl Script for Worn {
+    fn after_step(&mut self, world: &mut World) {
+        self.watch.work_in += world.work().total();
+        self.look(world);
+        self.character.update(world);
+        for event in self.character.events() {
+            self.watch.falls += u32::from(*event == CharacterEvent::WentLimp);
+            if *event == CharacterEvent::Up {
+                self.watch.up = Some(world.time() as f32);
+            }
+        }
+        if !self.was_hit && self.character.world_from_character().translation.z > -HIT_BEFORE_EDGE {
+            self.was_hit = true;
+            self.character.hit(world, self.chest(), Vec3::Z * self.impulse);
+        }
+        self.show();
+    }
+
+    fn save(&self, out: &mut Writer) {
+        self.character.save(out);
+        out.u32(u32::from(self.was_hit));
+        let Watch { deepest_in_wearer, deepest_in_world, stretch, stretch_sum, torn, falls, up, work_in } =
+            self.watch;
+        [deepest_in_wearer, deepest_in_world, stretch, stretch_sum, torn, work_in, up.unwrap_or(0.0)]
+            .into_iter()
+            .for_each(|x| out.f32(x));
+        out.u32(falls);
+    }
+
+    fn load(&mut self, bytes: &mut Reader<'_>) -> Result<(), ReadError> {
+        self.character.load(bytes)?;
+        self.was_hit = bytes.u32()? != 0;
+        let (deepest_in_wearer, deepest_in_world) = (bytes.f32()?, bytes.f32()?);
+        let (stretch, stretch_sum, torn) = (bytes.f32()?, bytes.f32()?, bytes.f32()?);
+        let (work_in, up) = (bytes.f32()?, bytes.f32()?);
+        let up = (up > 0.0).then_some(up);
+        let falls = bytes.u32()?;
+        self.watch =
+            Watch { deepest_in_wearer, deepest_in_world, stretch, stretch_sum, torn, falls, up, work_in };
+        self.show();
+        Ok(())
+    }
+
+    fn work_in(&self, _: &World) -> f32 {
+        self.watch.work_in
+    }
+
+    fn metrics(&self, world: &World) -> Vec<Metric> {
+        let Watch { deepest_in_wearer, deepest_in_world, stretch, stretch_sum, torn, falls, up, .. } =
+            self.watch;
+        let radius = f64::from(RADIUS);
+        let hem = self.hem(world);
+        let mean = (world.step_count() > 0).then_some(stretch_sum / world.step_count() as f32);
+        vec![
+            Metric::new("deepest_in_wearer_m", deepest_in_wearer, Expected::AtMost(radius)),
+            Metric::new("deepest_in_world_m", deepest_in_world, Expected::AtMost(radius)),
+            Metric::awaited("stretch_mean", mean, Expected::AtMost(0.03)),
+            Metric::new("stretch_mean_worst", stretch, Expected::Anything),
+            Metric::new("held_off_m", torn, Expected::AtMost(1e-3)),
+            Metric::new("falls", falls, Expected::Near { value: 1.0, tolerance: 0.0 }),
+            Metric::awaited("up_s", up, Expected::AtMost(12.0)),
+            Metric::new("hem_over_shoulders_m", hem.y, Expected::AtMost(f64::from(-0.7 * LONG))),
+            Metric::new("hem_before_shoulders_m", hem.z, Expected::AtMost(0.0)),
+        ]
+    }
+
+    fn camera_hint(&self) -> CameraHint {
+        let bounds = Aabb { min: Vec3::new(-0.6, 0.0, -1.0), max: Vec3::new(0.6, 2.6, 4.6) };
+        CameraHint { direction: Vec3::new(1.0, 0.3, -0.25), bounds: Some(bounds), trails: Trails::None }
+    }
+
+    fn figures(&self) -> Vec<Figure<'_>> {
+        vec![Figure { rig: &self.character.def().rig, world_from_joint: &self.model }]
+    }
+
+    fn bodies_of_figures(&self) -> Vec<BodyId> {
+        self.character.bodies().to_vec()
+    }
+}
