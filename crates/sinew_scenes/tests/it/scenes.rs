@@ -37,7 +37,6 @@ const BLIND_TO_GRAVITY: &[&str] = &[
     "uneven_ground",
     "retarget",
     "hair",
-    "cape",
     "crowd",
 ];
 
@@ -234,10 +233,9 @@ scenes!(
         uneven_ground,
         retarget,
         hair,
-        cape,
         crowd,
     ],
-    large: [chain_100_links, joint_grid, net, ragdoll_pile],
+    large: [cape, chain_100_links, joint_grid, net, ragdoll_pile],
 );
 
 #[test]
