@@ -355,14 +355,8 @@ mod tests {
         let ours =
             |key: &str| EngineResult { name: "sinew".into(), reports: vec![json!({ key: "no cloth" })] };
         let cloth = |key| of("cloth", ours(key), engine("jolt", &[3.0], &json!({ "stretch_mean": 0.03 })));
-        assert_eq!(
-            speed(CLOTH_RACE).judge(&cloth("unsupported")).1,
-            Verdict::Open("no cloth".into())
-        );
-        assert_eq!(
-            speed(CLOTH_RACE).judge(&cloth("failed")).1,
-            Verdict::Missed
-        );
+        assert_eq!(speed(CLOTH_RACE).judge(&cloth("unsupported")).1, Verdict::Open("no cloth".into()));
+        assert_eq!(speed(CLOTH_RACE).judge(&cloth("failed")).1, Verdict::Missed);
         let (missed, _) = shortfalls(&cloth("failed"));
         assert_eq!(
             missed,
