@@ -130,6 +130,9 @@ fn figures(app: &App, ui: &mut egui::Ui) {
     }
 }
 
+/// Rounding of a figure that was found in 32 bits, a ratio.
+const ROUNDING: f64 = 1e-6;
+
 /// The way of a figure, and the line that it should come to.
 fn plot(ui: &mut egui::Ui, history: &VecDeque<f64>, metric: &Metric) {
     let known: Vec<(usize, f64)> =
@@ -141,8 +144,8 @@ fn plot(ui: &mut egui::Ui, history: &VecDeque<f64>, metric: &Metric) {
     };
     let all = || known.iter().map(|it| it.1).chain(wanted);
     let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
-    // What hardly moves is drawn as what stands still.
-    if high - low < 1e-9 * high.abs().max(1e-9) {
+    // What moves by the rounding of its numbers stands still.
+    if high - low < ROUNDING * high.abs().max(1e-9) {
         return;
     }
     let (rect, _) = ui.allocate_exact_size(egui::vec2(ui.available_width(), 34.0), Sense::hover());
