@@ -42,9 +42,9 @@ pub enum Bar {
 pub enum Measure {
     /// A scene: the fastest peer's time over ours.
     Peers(&'static str),
-    /// Likewise, but a peer whose joints came apart does not count; with none left there is no bar.
+    /// A scene as for `Peers`, but a peer whose joints came apart does not count; with none left there is no bar.
     PeersTogether(&'static str),
-    /// Likewise, but a peer whose figure is larger than a bound does not count; ours that is falls short.
+    /// A scene as for `Peers`, but a peer whose figure exceeds a bound does not count, and ours that does falls short.
     PeersWithin(&'static str, &'static Figure, f64),
     /// The bake of one character, in seconds per second.
     Bake,

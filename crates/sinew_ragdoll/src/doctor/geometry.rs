@@ -29,8 +29,8 @@ pub(super) fn depth(exam: &Exam<'_>, a: usize, b: usize) -> f32 {
     depth_at(exam, (a, exam.def.bodies[a].character_from_body), b)
 }
 
-/// The shape, larger by `factor`. Surfaces, which no body of a ragdoll is, stay as they are.
-pub(crate) fn scaled(shape: &Shape, factor: f32) -> Shape {
+/// The shape with all of its lengths times `factor`. Surfaces, which no body of a ragdoll is, stay as they are.
+pub fn scaled(shape: &Shape, factor: f32) -> Shape {
     match *shape {
         Shape::Box { half_extents } => Shape::Box { half_extents: half_extents * factor },
         Shape::Sphere { radius } => Shape::Sphere { radius: radius * factor },

@@ -37,7 +37,7 @@ pub use code::{Code, Severity};
 pub(crate) use exam::bones_of;
 pub use exam::limit_reach;
 pub use finding::{Finding, Repair};
-pub(crate) use geometry::scaled;
+pub use geometry::scaled;
 
 use crate::skin::{Flaw, FlawKind};
 use exam::Exam;

@@ -8,6 +8,7 @@ use egui::{Color32, Pos2, Stroke};
 use sinew::math::{Range, Transform, Vec3, clamp, max, normalize_or};
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyId, Shape};
+use sinew::ragdoll::doctor::scaled;
 use sinew::ragdoll::settings::BoneSettings;
 use sinew_picture::{LineDepth, draw};
 
@@ -337,23 +338,6 @@ pub(super) fn draw(app: &App, stage: &mut Stage<'_>) {
     }
     if let Some(cone) = cone(app) {
         add_cone(&cone, Some([0.95, 0.55, 0.05]), &mut stage.scene.lines);
-    }
-}
-
-/// A shape of another size.
-fn scaled(shape: &Shape, by: f32) -> Shape {
-    match *shape {
-        Shape::Box { half_extents } => Shape::Box { half_extents: half_extents * by },
-        Shape::Sphere { radius } => Shape::Sphere { radius: radius * by },
-        Shape::Capsule { half_height, radius } => {
-            Shape::Capsule { half_height: half_height * by, radius: radius * by }
-        }
-        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => Shape::TaperedCapsule {
-            half_height: half_height * by,
-            radius_bottom: radius_bottom * by,
-            radius_top: radius_top * by,
-        },
-        _ => shape.clone(),
     }
 }
 

@@ -159,7 +159,7 @@ fn a_bvh_that_is_dropped_plays() {
     assert_ne!(still, moved);
 }
 
-/// What was played stands in the file as one more clip: its joints go where they went.
+/// The saved file has the motion that was played as one more clip: its joints go where they went.
 #[test]
 fn what_was_played_is_saved_as_glb() {
     let glb = mannequin_glb();

@@ -90,7 +90,7 @@ fn a_second_run_is_a_ghost() {
     assert!(live.set_ghost("plain.sinewrec", plain).is_err());
 }
 
-/// What was just done is put on a timeline, by a button; keys and the mouse go through it.
+/// A run that was just made is put on a timeline, by a button; keys and the mouse go through it.
 #[test]
 fn the_timeline_is_dragged() {
     let Some(mut viewer) = viewer("stack", SIZE) else { return };
