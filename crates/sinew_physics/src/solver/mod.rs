@@ -217,7 +217,7 @@ impl IslandSolver {
 
     /// The last substep's impulses of contacts and limits, but for what jumped up in it: an impact is not repeated.
     pub fn warm_start(&mut self, runner: &dyn TaskRunner) {
-        if !self.is_articulated() {
+        if !self.has_joints() {
             self.contacts.warm_start(&mut self.velocities, runner);
             return;
         }
@@ -253,7 +253,7 @@ impl IslandSolver {
     ///
     /// Never contacts before the tree: the joints would undo what the contacts did (823 mm gap, +59 kJ in one step).
     pub fn solve(&mut self, runner: &dyn TaskRunner) {
-        if !self.is_articulated() {
+        if !self.has_joints() {
             self.contacts.pull_approach(&self.velocities);
             self.sweep(Pass::Solve, runner);
             self.fall_back_to_rigid(0.0);
@@ -330,7 +330,7 @@ impl IslandSolver {
         if core::mem::take(&mut self.displaced) {
             self.refresh(view, runner);
         }
-        if !self.is_articulated() {
+        if !self.has_joints() {
             self.sweep(Pass::Relax, runner);
             self.fall_back_to_rigid(0.0);
             self.bound_energy();
@@ -377,7 +377,7 @@ impl IslandSolver {
 
     /// Rows, inertias, factor and response at the present pose.
     fn refresh(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
-        if !self.is_articulated() {
+        if !self.has_joints() {
             self.refresh_mass_scale();
             self.refresh_inertia();
             self.place_contacts(view, runner);
@@ -478,7 +478,7 @@ impl IslandSolver {
     /// there are any. (Without joints nothing swings in so fast, and corners that bounce at once would gain energy.)
     fn predict_contacts(&mut self) -> bool {
         let mut any = false;
-        if !self.is_articulated() {
+        if !self.has_joints() {
             return any;
         }
         for rows in &mut self.manifolds {
@@ -490,8 +490,8 @@ impl IslandSolver {
         any
     }
 
-    /// Some joints are solved as trees.
-    fn is_articulated(&self) -> bool {
+    /// Joints hold some of its bodies.
+    fn has_joints(&self) -> bool {
         self.coupling != Coupling::Free
     }
 

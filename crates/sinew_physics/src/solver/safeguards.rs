@@ -161,7 +161,7 @@ impl IslandSolver {
         let slack = ENERGY_SLACK * max(self.kinetic_start, self.mass());
         let mut allowed = self.kinetic_start + self.drive_work;
         let mut most = allowed + slack;
-        if self.is_articulated() && !self.manifolds.is_empty() {
+        if self.has_joints() && !self.manifolds.is_empty() {
             let lift = if self.manifolds.iter().any(ManifoldRows::is_deep) { slack } else { 0.0 };
             allowed = min(allowed, self.kinetic_before + self.force_work + self.drive_work + lift);
             most = min(most, allowed);
@@ -191,7 +191,7 @@ impl IslandSolver {
     /// by that must be there as kinetic energy, or motors pay for it. Where it is not, the whole motion beside that of the island as one piece is
     /// slowed, and the rest is done later. Joints that are open by more are closed at any price.
     pub(in crate::solver) fn bound_position_energy(&mut self) {
-        if self.pushed_from_outside || !self.is_passive() || !self.is_articulated() {
+        if self.pushed_from_outside || !self.is_passive() || !self.has_joints() {
             return;
         }
         let (square, mut linear) = self.resistance_of_springs();

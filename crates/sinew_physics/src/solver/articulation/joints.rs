@@ -55,7 +55,7 @@ impl IslandSolver {
 
     /// Solves the joint rows exactly.
     pub(in crate::solver) fn project_joints(&mut self, pass: Pass) {
-        if !self.is_articulated() {
+        if !self.has_joints() {
             return;
         }
         let solve = pass == Pass::Solve;
@@ -114,7 +114,7 @@ impl IslandSolver {
     ///
     /// Gives the largest error that is left, m or rad.
     pub(in crate::solver) fn correct_positions(&mut self, of: Corrected) -> f32 {
-        if !self.is_articulated() {
+        if !self.has_joints() {
             return 0.0;
         }
         let rounds = match self.coupling {
@@ -326,7 +326,7 @@ impl IslandSolver {
 
     /// [`solve_trees`](Self::solve_trees) for `scratch.impulses` alone.
     pub(in crate::solver) fn answer_impulses(&mut self) {
-        if !self.is_articulated() {
+        if !self.has_joints() {
             for (i, impulse) in self.scratch.impulses.iter().enumerate() {
                 let change = self.bodies[i].velocity_change(impulse);
                 add_scaled(&mut self.velocities[i], &change, 1.0);
@@ -342,7 +342,7 @@ impl IslandSolver {
     /// The linear force of each tree joint on its child in this substep: what the momentum of the subtree below gained,
     /// less what contacts gave it.
     pub(in crate::solver) fn store_joint_forces(&mut self) {
-        if !self.is_articulated() {
+        if !self.has_joints() {
             return;
         }
         let push = &mut self.contact_push;

@@ -23,7 +23,7 @@ impl IslandSolver {
     /// Adds the reactions to what `solve` gave, with arms and axes of the pose in which it was given: that of the substep's
     /// beginning.
     pub(in crate::solver) fn add_solve_reactions(&mut self) {
-        if !self.is_articulated() {
+        if !self.has_joints() {
             return;
         }
         self.sum_gains(Since::Forces);
@@ -53,7 +53,7 @@ impl IslandSolver {
 
     /// At the new pose: what bodies have there, and got from contacts and loops, is no reaction of `relax`.
     pub(in crate::solver) fn begin_relax_reactions(&mut self) {
-        if !self.is_articulated() {
+        if !self.has_joints() {
             return;
         }
         let moving = self.links.len();
@@ -68,7 +68,7 @@ impl IslandSolver {
 
     /// Adds the reactions to what `relax` gave.
     pub(in crate::solver) fn add_relax_reactions(&mut self) {
-        if !self.is_articulated() {
+        if !self.has_joints() {
             return;
         }
         self.settle_pins();

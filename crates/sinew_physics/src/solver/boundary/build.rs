@@ -53,7 +53,7 @@ impl IslandSolver {
         } else {
             self.copy_contacts(island, view);
         }
-        if !self.is_articulated() {
+        if !self.has_joints() {
             return;
         }
         self.factor_joints();

@@ -59,7 +59,7 @@ impl IslandSolver {
 
     /// Response of a row on a body to its own impulse, joints of the trees included.
     pub fn response_along(&mut self, local: usize, row: &Vec6) -> f32 {
-        if !self.is_articulated() {
+        if !self.has_joints() {
             return dot(row, &self.bodies[local].velocity_change(row));
         }
         let s = &mut self.scratch;
