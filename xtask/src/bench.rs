@@ -13,6 +13,7 @@ pub mod table;
 mod trace;
 
 use crate::command::{self, Profile};
+use crate::ragdolls::SHARED;
 use anyhow::{Context, Result, bail};
 use machine::Machine;
 use peers::{Engine, Judging, Run, Scene};
@@ -45,6 +46,12 @@ const LIMIT: Duration = Duration::from_secs(900);
 /// Not a scene of the peers: a character from rig to baked clip, whose speed is held against real time.
 const BAKE: &str = "bake";
 
+/// How the names of files end that hold characters.
+const RIGS: &[&str] = &["glb", "gltf", "vrm", "fbx"];
+
+/// Nor this: characters that fall limp until they sleep, of which there must be files.
+const LIMP: &str = "limp";
+
 /// Nor this: some scenes of it on one thread and on two, by the wall's clock.
 const THREADS: &str = "threads";
 
@@ -57,7 +64,7 @@ const THREADED: &[(&str, u32)] = &[("box_rain", 120), ("ragdoll_pile", 300)];
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask bench --scene ragdoll_pile --scene chain_swing_1000 --quick")]
 pub struct Bench {
-    /// Only this scene, of those that `peers list` names, or `bake` or `threads`; others keep the figures that they have
+    /// Only this scene, of those that `peers list` names, or `bake`, `limp` or `threads`; others keep the figures that they have
     #[arg(long = "scene", value_name = "NAME")]
     scenes: Vec<String>,
     /// Only this engine, of those that `peers list` names; of the scenes that run, the figures of others are forgotten
@@ -147,12 +154,12 @@ impl Bench {
             bail!("no engine `{name}`");
         }
         let is_known = |scene: &String| {
-            scene == BAKE || scene == THREADS || scenes.iter().any(|known| known.name == *scene)
+            [BAKE, LIMP, THREADS].contains(&scene.as_str()) || scenes.iter().any(|known| known.name == *scene)
         };
         match self.scenes.iter().find(|scene| !is_known(scene)) {
             Some(scene) => {
                 let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
-                bail!("no scene `{scene}`; there are {}, {BAKE}, {THREADS}", names.join(", "))
+                bail!("no scene `{scene}`; there are {}, {BAKE}, {LIMP}, {THREADS}", names.join(", "))
             }
             None => Ok(()),
         }
@@ -178,6 +185,10 @@ impl Bench {
         }
         if self.is_wanted(BAKE) && !self.quick {
             (results.bake, results.build) = bake()?;
+            self.keep(&results, scenes)?;
+        }
+        if self.is_wanted(LIMP) && !self.quick {
+            results.limp = limp()?;
             self.keep(&results, scenes)?;
         }
         if self.is_wanted(THREADS) && !self.quick {
@@ -262,6 +273,22 @@ fn bake() -> Result<(Option<f64>, Option<f64>)> {
     Ok((Some(realtime), Some(100.0 / milliseconds * (vertices / 6000.0))))
 }
 
+/// Simulated seconds per processor second of characters that fall limp until they sleep, of the rigs in [`SHARED`]; none without them.
+fn limp() -> Result<BTreeMap<String, f64>> {
+    let folder = command::root().join(SHARED);
+    let Ok(files) = fs::read_dir(&folder) else {
+        eprintln!("{LIMP}: left out, there is no {}", folder.display());
+        return Ok(BTreeMap::new());
+    };
+    let files = files.map(|file| Ok(file?.path())).collect::<Result<Vec<PathBuf>>>()?;
+    let is_rig = |file: &&PathBuf| file.extension().is_some_and(|end| RIGS.iter().any(|rig| end == *rig));
+    let mut rigs: Vec<&PathBuf> = files.iter().filter(is_rig).collect();
+    rigs.sort();
+    let falls = command::output_json(Command::new(peers::build_ours()?).arg("limp").args(rigs))?;
+    let factor = |name: &str| Some((name.to_owned(), falls["realtime_factor"][name].as_f64()?));
+    Ok(["median", "slowest_humanoid"].into_iter().filter_map(factor).collect())
+}
+
 /// Of each scene, how much sooner a step is done on two threads than on one: the median of rounds by turns.
 fn two_threads(rounds: u32) -> Result<BTreeMap<String, f64>> {
     let binary = peers::build_ours()?;
@@ -316,7 +343,7 @@ fn write(results: Results, names: &[&str]) -> Result<()> {
     let mut all = kept();
     all.update(results, names);
     fs::write(file(), format!("{}\n", all.to_json())).with_context(|| file().display().to_string())?;
-    write_page(&all, &[names, &[BAKE, THREADS]].concat())
+    write_page(&all, &[names, &[BAKE, LIMP, THREADS]].concat())
 }
 
 /// Writes the page of all figures, and which of `names` have none; but never over one with more scenes.

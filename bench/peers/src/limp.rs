@@ -20,31 +20,38 @@ const MOST_STEPS: u32 = 1_200;
 
 /// `falls` falls of each of the files' characters. Files without one that can be built are named with the reason.
 pub fn run(files: &[PathBuf], falls: u32) -> Value {
-    let mut factors = Vec::new();
+    let (mut factors, mut humanoids) = (Vec::new(), Vec::new());
     let characters: Vec<Value> = files
         .iter()
         .map(|file| match character(file) {
-            Ok(def) => {
-                let (factor, figures) = fall_often(file, &def, falls);
+            Ok((def, humanoid)) => {
+                let (factor, mut figures) = fall_often(file, &def, falls);
                 factors.push(factor);
+                humanoids.extend(humanoid.then_some(factor));
+                figures["humanoid"] = json!(humanoid);
                 figures
             }
             Err(reason) => json!({ "file": file, "refused": reason }),
         })
         .collect();
-    let of_all = |share: f64| (!factors.is_empty()).then(|| quantile(&factors, share));
+    let of = |factors: &[f64], share: f64| (!factors.is_empty()).then(|| quantile(factors, share));
     json!({
         "falls": falls,
-        "realtime_factor": { "median": of_all(0.5), "least": of_all(0.0) },
+        "realtime_factor": {
+            "median": of(&factors, 0.5),
+            "least": of(&factors, 0.0),
+            "slowest_humanoid": of(&humanoids, 0.0),
+        },
         "characters": characters,
     })
 }
 
-fn character(file: &Path) -> Result<RagdollDef, String> {
+/// The ragdoll of a file's character, and whether it is a humanoid.
+fn character(file: &Path) -> Result<(RagdollDef, bool), String> {
     let rig = sinew::load(file).map_err(|error| error.to_string())?.rig;
     let analysis = analyze(&rig).map_err(|error| error.to_string())?;
     let (def, _) = build(&rig, &analysis, &BuildOptions::default()).map_err(|error| error.to_string())?;
-    Ok(def)
+    Ok((def, analysis.humanoid))
 }
 
 /// Simulated seconds per second of processor time, and what is told of it.

@@ -12,6 +12,9 @@ pub struct Results {
     pub bake: Option<f64>,
     /// How often a rig of 6,000 vertices becomes a ragdoll in 100 ms, if that was measured with the bake.
     pub build: Option<f64>,
+    /// Of characters that fall limp until they sleep, simulated seconds per processor second: `median` of all rigs and `slowest_humanoid`,
+    /// where that was measured.
+    pub limp: BTreeMap<String, f64>,
     /// By scene: wall time on one thread over that on two, where that was measured.
     pub threads: BTreeMap<String, f64>,
     /// Machine that measured last, in words; `None` in files of before.
@@ -59,10 +62,11 @@ impl Results {
         self.scenes.iter().find(|scene| scene.name == name)
     }
 
-    /// Whether the scene of that name was measured, or the bake.
+    /// Whether the scene of that name was measured, or what is not a scene.
     pub fn has(&self, name: &str) -> bool {
         self.scene(name).is_some()
             || name == super::BAKE && self.bake.is_some()
+            || name == super::LIMP && !self.limp.is_empty()
             || name == super::THREADS && !self.threads.is_empty()
     }
 
@@ -72,8 +76,10 @@ impl Results {
         self.bake = self.bake.or(older.bake);
         self.build = self.build.or(older.build);
         self.machine = self.machine.take().or(older.machine);
-        for (scene, factor) in older.threads {
-            self.threads.entry(scene).or_insert(factor);
+        for (newer, older) in [(&mut self.threads, older.threads), (&mut self.limp, older.limp)] {
+            older.into_iter().for_each(|(name, factor)| {
+                newer.entry(name).or_insert(factor);
+            });
         }
         let mut found: Vec<SceneResult> = self.scenes.drain(..).chain(older.scenes).collect();
         for name in names {
@@ -100,6 +106,7 @@ impl Results {
             "version": 1,
             "bake_realtime_factor": self.bake,
             "builds_in_100_ms": self.build,
+            "limp_realtime_factor": self.limp,
             "two_threads": self.threads,
             "machine": self.machine,
             "scenes": scenes,
@@ -109,18 +116,20 @@ impl Results {
     /// As it was written; what cannot be read counts as not measured.
     pub fn from_json(value: &Value) -> Self {
         let scenes = value["scenes"].as_array().into_iter().flatten();
+        let factors = |key: &str| value[key].as_object().into_iter().flatten().filter_map(factor).collect();
         Self {
             scenes: scenes.filter_map(scene).collect(),
             bake: value["bake_realtime_factor"].as_f64(),
             build: value["builds_in_100_ms"].as_f64(),
-            threads: value["two_threads"].as_object().into_iter().flatten().filter_map(factor).collect(),
+            limp: factors("limp_realtime_factor"),
+            threads: factors("two_threads"),
             machine: value["machine"].as_str().map(str::to_owned),
         }
     }
 }
 
-fn factor((scene, value): (&String, &Value)) -> Option<(String, f64)> {
-    Some((scene.clone(), value.as_f64()?))
+fn factor((name, value): (&String, &Value)) -> Option<(String, f64)> {
+    Some((name.clone(), value.as_f64()?))
 }
 
 fn scene(value: &Value) -> Option<SceneResult> {
@@ -280,13 +289,14 @@ pub mod tests {
             scenes: vec![of("c", 1.0), of("gone", 1.0), of("a", 1.0)],
             bake: Some(5.0),
             machine: Some("a machine".to_owned()),
+            limp: BTreeMap::from([("median".to_owned(), 3.0)]),
             threads: BTreeMap::from([("a".to_owned(), 1.5)]),
             ..Results::default()
         };
         let newer = Results { scenes: vec![of("b", 2.0), of("a", 2.0)], ..Results::default() };
         results.update(newer, &["a", "b", "c"]);
         assert_eq!(results.scenes, [of("a", 2.0), of("b", 2.0), of("c", 1.0)]);
-        assert_eq!((results.bake, results.threads["a"]), (Some(5.0), 1.5));
+        assert_eq!((results.bake, results.limp["median"], results.threads["a"]), (Some(5.0), 3.0, 1.5));
         assert_eq!(Results::from_json(&results.to_json()), results);
     }
 }
