@@ -126,7 +126,12 @@ impl Placed {
 
     /// Way in the iteration of a point that moves along with the shape, metres.
     fn way_of(&self, point: Vec3) -> f32 {
-        if self.way == 0.0 { 0.0 } else { (self.end.point(self.start.inverse_point(point)) - point).length() }
+        if self.way == 0.0 { 0.0 } else { self.displacement(point).length() }
+    }
+
+    /// The same with its direction.
+    pub fn displacement(&self, point: Vec3) -> Vec3 {
+        self.end.point(self.start.inverse_point(point)) - point
     }
 }
 

@@ -173,6 +173,7 @@ scenes!(
         trampoline,
         flag,
         curtain,
+        folded,
         blob,
         steel_vs_basketball,
         gimbal,
