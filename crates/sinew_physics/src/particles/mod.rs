@@ -369,7 +369,7 @@ impl ParticleGroup {
         &self.attachment_impulses
     }
 
-    /// Impulses on bodies that particles touched in the last substep, in order of particles.
+    /// Impulses on bodies that particles touched in the last substep, in order of particles; of bodies that nothing moves only those in motion.
     pub fn body_impulses(&self) -> &[BodyImpulse] {
         &self.body_impulses
     }
