@@ -47,6 +47,7 @@ impl GroupDef {
             not_negative(self.linear_damping) && self.gravity_scale.is_finite(),
             "damping must not be negative, and the gravity scale finite",
         )?;
+        must(not_negative(self.thickness), "the thickness must not be negative")?;
         must((1..=MAX_ITERATIONS).contains(&self.iterations), "there must be 1 to 64 iterations")
     }
 }

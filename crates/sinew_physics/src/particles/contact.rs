@@ -70,6 +70,11 @@ impl ObstacleBody {
         (whole - coupling).inverse()
     }
 
+    /// True of what neither moves nor can be moved.
+    fn rests(&self) -> bool {
+        self.inverse_mass == 0.0 && self.linear_velocity == Vec3::ZERO && self.angular_velocity == Vec3::ZERO
+    }
+
     pub(super) fn push(&mut self, point: Vec3, impulse: Vec3) {
         self.linear_velocity += impulse * self.inverse_mass;
         self.angular_velocity += self.inverse_inertia * (point - self.center).cross(impulse);
@@ -126,7 +131,12 @@ impl Placed {
 
     /// Way in the iteration of a point that moves along with the shape, metres.
     fn way_of(&self, point: Vec3) -> f32 {
-        if self.way == 0.0 { 0.0 } else { (self.end.point(self.start.inverse_point(point)) - point).length() }
+        if self.way == 0.0 { 0.0 } else { self.displacement(point).length() }
+    }
+
+    /// The same with its direction.
+    pub fn displacement(&self, point: Vec3) -> Vec3 {
+        self.end.point(self.start.inverse_point(point)) - point
     }
 }
 
@@ -688,9 +698,9 @@ impl ParticleGroup {
         }
     }
 
-    /// Lists an impulse on a particle as its opposite on the body, if that can move.
+    /// Lists an impulse on a particle as its opposite on the body, if that can move or moves by itself.
     pub(super) fn report(&mut self, touch: &Touch, on_particle: Vec3, bodies: &[ObstacleBody]) {
-        if bodies[touch.body].inverse_mass > 0.0 && on_particle != Vec3::ZERO {
+        if !bodies[touch.body].rests() && on_particle != Vec3::ZERO {
             let body = touch.body as u32;
             self.body_impulses.push(BodyImpulse { body, impulse: -on_particle, point: touch.point });
         }

@@ -27,6 +27,7 @@ mod impact;
 mod near;
 mod net;
 mod rest;
+mod self_collision;
 mod snapshot;
 mod sweep;
 mod tuning;
@@ -52,6 +53,7 @@ use forest::{Forest, Freedom, Holder, System};
 use impact::MAX_TOUCHES;
 use near::Near;
 use rest::{Bed, GroupRest};
+use self_collision::SelfCollision;
 use sinew_math::{Sym3, Transform, Vec3, max};
 
 /// Most strides in which the way of a particle is looked along.
@@ -115,6 +117,8 @@ pub struct ParticleGroup {
     reactions: Vec<Vec3>,
     /// Impulse of bends on each particle that the solve of this iteration knew of.
     bend_impulses: Vec<Vec3>,
+    /// Pairs of its own particles that keep apart, if it has a thickness.
+    self_collision: Option<SelfCollision>,
     /// Particles that are held or may see a shape in this iteration.
     close: Vec<u32>,
     /// Particles that the solve of this iteration is about.
@@ -187,6 +191,8 @@ impl ParticleGroup {
             contact_impulses: vec![Vec3::ZERO; count],
             ..Self::default()
         };
+        group.self_collision =
+            (def.thickness > 0.0).then(|| SelfCollision::new(count, def.thickness, &group.springs));
         group.derive();
         group
     }
@@ -363,7 +369,7 @@ impl ParticleGroup {
         &self.attachment_impulses
     }
 
-    /// Impulses on bodies that particles touched in the last substep, in order of particles.
+    /// Impulses on bodies that particles touched in the last substep, in order of particles; of bodies that nothing moves only those in motion.
     pub fn body_impulses(&self) -> &[BodyImpulse] {
         &self.body_impulses
     }

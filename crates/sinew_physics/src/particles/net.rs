@@ -16,8 +16,8 @@ use super::{BendDef, ParticleGroup, Resists, SpringDef, TetherDef, VolumeDef};
 use sinew_math::{Vec3, dispatch, max, min};
 
 impl ParticleGroup {
-    /// Tethers, springs that the forest does not solve, bends, volumes: coarse first, so that what is fine has the last
-    /// word but on pressure.
+    /// Tethers, springs that the forest does not solve, bends, volumes, particles that touch each other: coarse first, so that what is fine has the
+    /// last word but on pressure, and on what is not to pass through what.
     pub(super) fn project_net(&mut self, h: f32) {
         for k in 0..self.tethers.len() {
             self.project_tether(self.tethers[k], h);
@@ -34,6 +34,7 @@ impl ParticleGroup {
             self.project_volume(volume, h);
         }
         self.volumes = volumes;
+        self.part_particles(h);
     }
 
     /// Sorts rows into those that hold an attached particle, whose impulses are counted, and batches of the others.
@@ -103,14 +104,14 @@ impl ParticleGroup {
         )
     }
 
-    /// The impulse that gives a row a speed by forces on its ends of so much for each N·s, and the mobility there, 1/kg; `None` where nothing moves. As
-    /// `impulse_on_surfaces` of `batches.rs`.
-    fn row_impulse(
+    /// The impulse that gives a row a speed by forces on its ends of so much for each N·s, and the mobility there, 1/kg. As `impulse_on_surfaces` of
+    /// `batches.rs`.
+    pub(super) fn row_impulse(
         &self,
         ends: &(impl Iterator<Item = (usize, Vec3)> + Clone),
         speed: f32,
         compliance: f32,
-    ) -> Option<(f32, f32)> {
+    ) -> (f32, f32) {
         let (mut impulse, mut mobility) = (0.0, 0.0);
         for _ in 0..2 {
             let mut moved = 0.0;
@@ -125,11 +126,11 @@ impl ParticleGroup {
             }
             impulse += (speed - moved - compliance * impulse) / (mobility + compliance);
         }
-        (impulse > 0.0).then_some((impulse, mobility))
+        (impulse, mobility)
     }
 
     /// An impulse that acts at the end of the iteration, as if it had from its beginning.
-    fn nudge(&mut self, i: usize, impulse: Vec3, h: f32) {
+    pub(super) fn nudge(&mut self, i: usize, impulse: Vec3, h: f32) {
         let normal = self.press_normals[i];
         let along = impulse.dot(normal);
         let handed_on = self.handed_on(i, along);
@@ -149,7 +150,8 @@ impl ParticleGroup {
         }
         let direction = apart / length;
         let ends = [(i, direction), (to, -direction)];
-        if let Some((impulse, _)) = self.row_impulse(&ends.into_iter(), (length - tether.length) / h, 0.0) {
+        let (impulse, _) = self.row_impulse(&ends.into_iter(), (length - tether.length) / h, 0.0);
+        if impulse > 0.0 {
             self.nudge(i, direction * impulse, h);
             self.nudge(to, direction * -impulse, h);
         }
@@ -167,10 +169,10 @@ impl ParticleGroup {
         let pull = if stretch < 0.0 { -direction } else { direction };
         let compliance = 1.0 / (s.stiffness * h * h);
         let ends = [(a, pull), (b, -pull)];
-        let Some((mut impulse, sum)) = self.row_impulse(&ends.into_iter(), stretch.abs() / h, compliance)
-        else {
+        let (mut impulse, sum) = self.row_impulse(&ends.into_iter(), stretch.abs() / h, compliance);
+        if impulse <= 0.0 {
             return;
-        };
+        }
         // Damping of the axial speed that this leaves.
         let speed = (self.velocities[b] - self.velocities[a]).dot(pull) - impulse * sum;
         impulse += speed * h * s.damping / (1.0 + h * s.damping * sum);
@@ -189,7 +191,8 @@ impl ParticleGroup {
         let compliance = 1.0 / (bend.stiffness * h * h);
         let ends = [(a, back), (b, back * -2.0), (c, back)];
         let speed = (bend.rest - length).abs() / h;
-        if let Some((impulse, _)) = self.row_impulse(&ends.into_iter(), speed, compliance) {
+        let (impulse, _) = self.row_impulse(&ends.into_iter(), speed, compliance);
+        if impulse > 0.0 {
             for (i, force) in ends {
                 self.nudge(i, force * impulse, h);
             }
@@ -205,7 +208,10 @@ impl ParticleGroup {
         let sign = if missing < 0.0 { -1.0 } else { 1.0 };
         let compliance = volume.rest_volume / (volume.bulk_modulus * h * h);
         let ends = self.gradients.iter().enumerate().map(|(i, &gradient)| (i, gradient * sign));
-        let Some((impulse, _)) = self.row_impulse(&ends, missing.abs() / h, compliance) else { return };
+        let (impulse, _) = self.row_impulse(&ends, missing.abs() / h, compliance);
+        if impulse <= 0.0 {
+            return;
+        }
         for i in 0..self.positions.len() {
             let along = self.gradients[i] * (sign * impulse);
             if along != Vec3::ZERO {

@@ -27,7 +27,11 @@ impl ParticleGroup {
         out.f32(self.linear_damping);
         out.f32(self.gravity_scale);
         save_filter(out, self.filter);
-        out.u8(u8::from(self.scheme == SpringScheme::Projected));
+        let (projected, thickness) = (self.scheme == SpringScheme::Projected, self.thickness());
+        out.u8(u8::from(projected) | u8::from(thickness > 0.0) << 1);
+        if thickness > 0.0 {
+            out.f32(thickness);
+        }
         out.u32(self.iterations);
         out.f32(self.span);
         out.count(self.positions.len());
@@ -103,9 +107,14 @@ impl ParticleGroup {
         let material = load_material(input)?;
         let (linear_damping, gravity_scale) = (input.f32()?, input.f32()?);
         let filter = load_filter(input)?;
-        let scheme = match input.u8()? {
+        let scheme_and_thickness = input.u8()?;
+        let scheme = match scheme_and_thickness & 1 {
             0 => SpringScheme::Implicit,
-            1 => SpringScheme::Projected,
+            _ => SpringScheme::Projected,
+        };
+        let thickness = match scheme_and_thickness >> 1 {
+            0 => 0.0,
+            1 => input.f32()?,
             _ => return Err(input.error("a scheme is neither of the two")),
         };
         let (iterations, span) = (input.u32()?, input.f32()?);
@@ -115,6 +124,7 @@ impl ParticleGroup {
             gravity_scale,
             filter,
             scheme,
+            thickness,
             iterations,
             ..GroupDef::default()
         };

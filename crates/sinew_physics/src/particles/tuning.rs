@@ -59,3 +59,19 @@ pub(super) const ROPE_DAMPING: f32 = 0.1;
 ///
 /// Larger: what drops from a hand's breadth stays down. Smaller: what lies trembles. Shown by `particle`.
 pub(super) const IMPACT_SPEED: f32 = 1.0;
+
+/// Room of the list of pairs of a group's own particles, as a share of the thickness, a ratio.
+///
+/// Larger: more pairs to look at. Smaller: they are found anew more often. Shown by `folded`.
+pub(super) const SELF_ROOM: f32 = 1.0;
+
+/// Sweeps over the pairs of a group's own particles in an iteration, a number.
+///
+/// A particle lies in the hollow between up to four. Larger: slower. Smaller: with two, folds creep and never sleep. Shown by the tests of
+/// `self_collision`.
+pub(super) const SELF_SWEEPS: u32 = 4;
+
+/// Speed with which particles of a group that lie in each other are pushed apart, m/s.
+///
+/// Larger: what is made or pulled into itself springs open. Smaller: it stays so. Shown by `folded`.
+pub(super) const SELF_PUSH_SPEED: f32 = 0.1;

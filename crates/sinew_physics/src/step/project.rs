@@ -214,10 +214,14 @@ impl Surroundings {
         let seen = &self.seen;
         self.impulses.clear();
         self.impulses.resize(solver.moving_bodies().len(), ZERO6);
+        let mut given = 0.0;
         let mut push = |place: usize, point: Vec3, impulse: Vec3| {
-            if let Some(local) = seen[place].local {
-                let arm = point - seen[place].pose.translation;
-                add_scaled(&mut self.impulses[local], &wrench(arm, impulse), 1.0);
+            let Seen { pose, velocity, local, .. } = &seen[place];
+            let arm = point - pose.translation;
+            match *local {
+                Some(local) => add_scaled(&mut self.impulses[local], &wrench(arm, impulse), 1.0),
+                // Of a kinematic body; a static one has no velocity.
+                None => given -= impulse.dot(linear(velocity) + angular(velocity).cross(arm)),
             }
         };
         for hit in group.body_impulses() {
@@ -229,6 +233,7 @@ impl Surroundings {
                 push(place, self.anchors[k].position, group.attachment_impulses()[k]);
             }
         }
+        solver.work.kinematic += given;
         solver.apply_impulses(&self.impulses);
     }
 }

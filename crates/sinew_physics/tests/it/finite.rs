@@ -308,6 +308,7 @@ fn particle_groups() {
     refuses("stiffness", &BAD, |f, x| add(f, &|def| def.springs[0].stiffness = x));
     refuses("damping", &BAD, |f, x| add(f, &|def| def.springs[0].damping = x));
     refuses("linear damping", &BAD, |f, x| add(f, &|def| def.linear_damping = x));
+    refuses("thickness", &BAD, |f, x| add(f, &|def| def.thickness = x));
     refuses("gravity scale", &BAD, |f, x| add(f, &|def| def.gravity_scale = x));
     refuses("friction", &BAD, |f, x| add(f, &|def| def.material.friction = x));
     refuses("restitution", &BAD, |f, x| add(f, &|def| def.material.restitution = x));

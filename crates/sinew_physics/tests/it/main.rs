@@ -31,6 +31,7 @@ mod random_worlds;
 mod rims;
 mod rope;
 mod round_rest;
+mod self_collision;
 #[cfg(feature = "serde")]
 mod serde;
 mod sleep;

@@ -2,6 +2,7 @@
 
 use crate::build::ball;
 use sinew_math::{Reader, Sym3, Transform, Vec3, Writer};
+use sinew_physics::particles::{AttachmentDef, AttachmentTarget, RopeDef};
 use sinew_physics::*;
 
 const G: f32 = 9.81;
@@ -259,4 +260,49 @@ fn a_body_that_is_led_works_on_what_hangs_on_it_and_what_it_pushes() {
     let after = world.energy();
     let rise = (after.kinetic - before.kinetic) + (after.potential - before.potential);
     assert!(rise > 50.0 && (rise - work).abs() < 0.03 * rise, "{rise} J of {work}");
+}
+
+#[test]
+fn a_body_that_is_led_works_on_particles_that_hang_on_it_and_that_it_lifts() {
+    let lift = |held: bool| {
+        let mut world = world();
+        let half_extents = Vec3::new(1.0, 0.1, 1.0);
+        let plate = world.add_body(&BodyDef::kinematic(Shape::Box { half_extents }));
+        let place = Vec3::Y * if held { -1.0 } else { 0.15 };
+        let rope = RopeDef {
+            from: place,
+            to: place + Vec3::X * 0.5,
+            links: 5,
+            mass: 2.0,
+            stiffness: 1e4,
+            radius: 0.05,
+        };
+        let mut group = rope.build().group;
+        if held {
+            let target = AttachmentTarget::Body { body: plate, point: place };
+            group.attachments.push(AttachmentDef { particle: 0, target });
+        }
+        group.linear_damping = 2.0;
+        world.add_particles(&group);
+        run(&mut world, 5.0);
+        world.set_velocity(plate, Velocity { linear: Vec3::Y * 0.5, ..Velocity::default() });
+        // It has come to that speed, and what the jerk left has died down.
+        run(&mut world, 3.0);
+        let (before, mut work) = (world.energy().total(), 0.0);
+        for _ in 0..120 {
+            world.step();
+            work += world.work().kinematic;
+        }
+        (world.energy().total() - before, work)
+    };
+    // m g v t, and what damping in air takes.
+    let expected = 2.0 * 9.81 * 0.5 * 2.0;
+    for held in [true, false] {
+        let (rise, work) = lift(held);
+        println!("held: {held}, {rise} J of {work}");
+        assert!((rise - expected).abs() < 0.01 * expected, "held: {held}, {rise} J");
+        // 2 kg lose 2 v per second to the air.
+        let drag = 2.0 * 2.0 * 0.5 * 0.5 * 2.0;
+        assert!((work - rise - drag).abs() < 0.03 * expected, "held: {held}, {rise} J of {work}");
+    }
 }

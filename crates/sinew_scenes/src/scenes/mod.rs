@@ -84,6 +84,7 @@ const REGISTRY: &[Scene] = &[
     particles::bearing::TRAMPOLINE,
     particles::sheets::FLAG,
     particles::sheets::CURTAIN,
+    particles::folded::FOLDED,
     particles::blobs::BLOB,
     particles::blobs::STEEL_VS_BASKETBALL,
     free_motion::gimbal::GIMBAL,

@@ -3,5 +3,6 @@
 pub(super) mod bearing;
 pub(super) mod blobs;
 pub(super) mod cloths;
+pub(super) mod folded;
 pub(super) mod sheets;
 pub(super) mod single;

@@ -1,0 +1,387 @@
+//! Self-collision: particles of a group that no spring joins keep apart by its thickness.
+//!
+//! Pairs come from a list that holds while nobody has moved by half of its room (Verlet 1967). What it holds too much changes nothing, and it is in
+//! the order of its particles, so that results are the bits that trying all gives, and the list is no part of the state. Each pair is a row that only
+//! presses, along the line between its particles, on the side on which they were when the iteration began; what moves by more than their distance
+//! within it passes.
+//!
+//! Layers that bear a load are thousands of times lighter than it: rows that share an impulse by mass let it through. What lies on something that
+//! cannot move is therefore solved from there outward, and a particle gives way to what comes down on it only where what it lies on lets it (shock
+//! propagation: Guendelman, Bridson and Fedkiw, "Nonconvex Rigid Bodies with Stacking", 2003). What is pressed into it goes on, layer by layer, to the
+//! surface at the bottom, and friction between layers knows of all of it. What comes from below is shared by mass as ever: a light particle that does
+//! not give way would push with momentum that it does not have.
+
+use super::tuning::{BEARING, SELF_PUSH_SPEED, SELF_ROOM, SELF_SWEEPS};
+use super::{ParticleGroup, SpringDef};
+use sinew_math::{Vec3, max, min, normalize_or};
+
+/// Pairs of particles that may come to touch, and how they are found.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SelfCollision {
+    /// Distance that pairs keep, metres.
+    thickness: f32,
+    /// Particles that each is joined to.
+    joined: Lists,
+    /// Particles within reach of each.
+    near: Lists,
+    /// Pairs within reach, both ways, ascending.
+    pairs: Vec<[u32; 2]>,
+    /// Particles by their cells, ascending.
+    cells: Vec<(u64, u32)>,
+    /// Position of each particle when the pairs were found, world, metres; none if they never were.
+    found_at: Vec<Vec3>,
+    /// Particles in the order in which their pairs are solved: each after what it lies on.
+    order: Vec<u32>,
+    /// Number of those whose turn has come.
+    next: usize,
+    /// Turn of each particle.
+    turns: Vec<Turn>,
+    /// Direction out of what each particle lies on: unit once its turn has come, before that the sum of those of all that bear it.
+    supports: Vec<Vec3>,
+    /// Length of that sum.
+    bearing: Vec<f32>,
+    /// Way in the iteration of what bears each particle in the end, metres.
+    ways: Vec<Vec3>,
+    /// Coefficient of friction of that.
+    grips: Vec<f32>,
+    /// Impulse that is pressed into each particle and goes on to what it lies on, N·s.
+    loads: Vec<f32>,
+    /// Pairs that touch, in the order in which they are solved.
+    rows: Vec<Row>,
+}
+
+/// Turn of a particle among those whose pairs are solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turn {
+    /// Nothing is known to bear it.
+    Loose,
+    /// In the order.
+    Listed,
+    /// Its pairs are solved.
+    Done,
+}
+
+/// A pair that touches.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    below: u32,
+    above: u32,
+    /// Unit, from the one below.
+    normal: Vec3,
+    /// Share of what pushes the one below that what it lies on takes, outward.
+    held: Vec3,
+    /// Distance along the normal that it is brought to, metres.
+    goal: f32,
+    /// N·s.
+    impulse: f32,
+}
+
+/// A list for each particle, one after the other.
+#[derive(Clone, Debug, Default)]
+struct Lists {
+    items: Vec<u32>,
+    /// End of each list.
+    ends: Vec<usize>,
+}
+
+impl Lists {
+    /// From ascending pairs: of each the second goes into the list of the first.
+    fn fill(&mut self, count: usize, pairs: &[[u32; 2]]) {
+        self.items.clear();
+        self.items.extend(pairs.iter().map(|pair| pair[1]));
+        self.ends.clear();
+        self.ends.resize(count, 0);
+        for &[a, _] in pairs {
+            self.ends[a as usize] += 1;
+        }
+        let mut end = 0;
+        for count in &mut self.ends {
+            end += *count;
+            *count = end;
+        }
+    }
+
+    fn of(&self, i: u32) -> &[u32] {
+        let start = if i == 0 { 0 } else { self.ends[i as usize - 1] };
+        &self.items[start..self.ends[i as usize]]
+    }
+}
+
+impl SelfCollision {
+    /// For as many particles with these springs that keep `thickness` metres apart.
+    pub fn new(count: usize, thickness: f32, springs: &[SpringDef]) -> Self {
+        let mut both: Vec<[u32; 2]> = springs.iter().map(|s| [s.a, s.b]).collect();
+        both.extend(both.clone().into_iter().map(|[a, b]| [b, a]));
+        both.sort_unstable();
+        both.dedup();
+        let mut own = Self { thickness, turns: vec![Turn::Loose; count], ..Self::default() };
+        own.joined.fill(count, &both);
+        (own.supports, own.ways) = (vec![Vec3::ZERO; count], vec![Vec3::ZERO; count]);
+        (own.bearing, own.loads, own.grips) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
+        own.order = Vec::with_capacity(count);
+        own
+    }
+
+    /// True if no particle has moved by half of the list's room.
+    fn holds(&self, positions: &[Vec3]) -> bool {
+        let most = 0.5 * SELF_ROOM * self.thickness;
+        let mut ways = self.found_at.iter().zip(positions);
+        self.found_at.len() == positions.len()
+            && ways.all(|(from, to)| (*to - *from).length_squared() < most * most)
+    }
+
+    /// Finds all pairs within reach of each other.
+    fn find(&mut self, positions: &[Vec3]) {
+        let reach = (1.0 + SELF_ROOM) * self.thickness;
+        self.found_at.clear();
+        self.found_at.extend_from_slice(positions);
+        self.cells.clear();
+        self.cells.extend((0_u32..).zip(positions).map(|(i, &p)| (cell(coordinates(p, reach)), i)));
+        self.cells.sort_unstable();
+        let mut pairs = core::mem::take(&mut self.pairs);
+        pairs.clear();
+        for (i, &position) in (0_u32..).zip(positions) {
+            let center = coordinates(position, reach);
+            for neighbor in 0..27 {
+                let shift = [neighbor % 3 - 1, neighbor / 3 % 3 - 1, neighbor / 9 - 1];
+                let key = cell([0, 1, 2].map(|axis: usize| center[axis].wrapping_add(shift[axis])));
+                let from = self.cells.partition_point(|&(other, _)| other < key);
+                let others = self.cells[from..].iter().take_while(|&&(other, _)| other == key);
+                for &(_, j) in others.filter(|&&(_, j)| j != i) {
+                    let near = (positions[j as usize] - position).length_squared() < reach * reach;
+                    if near && self.joined.of(i).binary_search(&j).is_err() {
+                        pairs.push([i, j]);
+                    }
+                }
+            }
+        }
+        pairs.sort_unstable();
+        // Cells that are far apart may have one number.
+        pairs.dedup();
+        self.near.fill(positions.len(), &pairs);
+        self.rows.clear();
+        self.rows.reserve(pairs.len() / 2);
+        self.pairs = pairs;
+    }
+
+    /// Forgets the last iteration.
+    fn begin(&mut self) {
+        self.order.clear();
+        self.rows.clear();
+        self.next = 0;
+        self.turns.fill(Turn::Loose);
+        self.supports.fill(Vec3::ZERO);
+        self.bearing.fill(0.0);
+        self.loads.fill(0.0);
+        self.ways.fill(Vec3::ZERO);
+        self.grips.fill(0.0);
+    }
+
+    fn list(&mut self, i: u32) {
+        self.turns[i as usize] = Turn::Listed;
+        self.order.push(i);
+    }
+
+    fn take_turn(&mut self, i: usize) {
+        self.turns[i] = Turn::Done;
+        self.supports[i] = normalize_or(self.supports[i], Vec3::ZERO);
+    }
+
+    /// Notes a pair that touches. If the one below lies on something, it bears the one above.
+    fn bear(&mut self, row: Row) {
+        self.rows.push(row);
+        let above = row.above as usize;
+        if self.supports[row.below as usize].dot(row.normal) <= BEARING {
+            return;
+        }
+        // One that touches a surface hands on to that.
+        if self.turns[above] == Turn::Loose {
+            self.list(row.above);
+            self.ways[above] = self.ways[row.below as usize];
+            self.grips[above] = self.grips[row.below as usize];
+        }
+        self.supports[above] += row.normal;
+        self.bearing[above] = self.supports[above].length();
+    }
+}
+
+/// Coordinates of the cell of a point.
+fn coordinates(point: Vec3, size: f32) -> [i32; 3] {
+    point.to_array().map(|x| (x / size).floor() as i32)
+}
+
+/// Number of a cell: 21 bits of each coordinate.
+fn cell(coordinates: [i32; 3]) -> u64 {
+    coordinates.into_iter().fold(0, |number, c| number << 21 | u64::from(c as u32 & 0x1f_ffff))
+}
+
+impl ParticleGroup {
+    /// Distance that particles which no spring joins keep from each other, metres; 0 if they do not.
+    pub fn thickness(&self) -> f32 {
+        self.self_collision.as_ref().map_or(0.0, |own| own.thickness)
+    }
+
+    /// Pushes particles of the group apart where they would end the iteration in each other.
+    pub(super) fn part_particles(&mut self, h: f32) {
+        let Some(mut own) = self.self_collision.take() else { return };
+        if !own.holds(&self.positions) {
+            own.find(&self.positions);
+        }
+        own.begin();
+        // First what lies on what cannot move, then what is on bodies that can, then the rest.
+        for fixed in [true, false] {
+            self.list_first(&mut own, fixed);
+            self.part_listed(&mut own, h);
+        }
+        for i in 0..self.positions.len() as u32 {
+            if own.turns[i as usize] == Turn::Loose {
+                own.list(i);
+                self.part_listed(&mut own, h);
+            }
+        }
+        for _ in 1..SELF_SWEEPS {
+            for row in &mut own.rows {
+                self.press(row, h);
+            }
+        }
+        self.hand_down(&mut own);
+        self.rub_pairs(&own, h);
+        self.push_out(&own, h);
+        self.self_collision = Some(own);
+    }
+
+    /// Lists particles that touch surfaces that cannot move, or such that can.
+    fn list_first(&self, own: &mut SelfCollision, fixed: bool) {
+        for &i in &self.solved {
+            let at = i as usize;
+            let Some(touch) = &self.touches[at] else { continue };
+            let backing = self.backings[at];
+            if backing > 0.0 && (backing >= 1.0) == fixed && own.turns[at] == Turn::Loose {
+                own.supports[at] = self.press_normals[at];
+                own.ways[at] = self.placed[touch.obstacle].displacement(touch.point);
+                own.grips[at] = touch.material.friction;
+                own.list(i);
+            }
+        }
+    }
+
+    /// Solves the pairs of all particles in the order that have not had their turn, and of those that these bear.
+    fn part_listed(&mut self, own: &mut SelfCollision, h: f32) {
+        while let Some(&i) = own.order.get(own.next) {
+            own.next += 1;
+            own.take_turn(i as usize);
+            for k in 0..own.near.of(i).len() {
+                let j = own.near.of(i)[k];
+                if own.turns[j as usize] != Turn::Done {
+                    self.part(own, i, j, h);
+                }
+            }
+        }
+    }
+
+    /// Pushes a particle off one whose turn came before, and notes whether it lies on it.
+    fn part(&mut self, own: &mut SelfCollision, below: u32, above: u32, h: f32) {
+        let (b, a) = (below as usize, above as usize);
+        let apart = self.positions[a] - self.positions[b];
+        if apart.length_squared() >= own.thickness * own.thickness {
+            return;
+        }
+        let before = self.previous[a] - self.previous[b];
+        // Those that would have passed each other go back to their sides.
+        let side = if apart.dot(before) > 0.0 { apart } else { before };
+        let normal = normalize_or(side, normalize_or(apart, Vec3::Y));
+        // Only what comes from above meets what does not give way: what comes from below would push with more than it has.
+        let way = |i: usize| (self.positions[i] - self.previous[i] - own.ways[b]).dot(normal);
+        let (fallen, risen) = (max(-way(a), 0.0), max(way(b), 0.0));
+        // The first take part in what their surface bears.
+        let is_borne = own.bearing[b] > 0.0 && fallen > 0.0;
+        let share = if is_borne { fallen / (fallen + risen) } else { 0.0 };
+        let held = own.supports[b] * (share * max(normal.dot(own.supports[b]), 0.0));
+        // A body is lifted out of what it has pressed into each other; the rest comes out without a velocity that it would keep.
+        let out = if self.lifts(a) { SELF_PUSH_SPEED * h } else { 0.0 };
+        let goal = min(own.thickness, before.length() + out);
+        let mut row = Row { below, above, normal, held, goal, impulse: 0.0 };
+        self.press(&mut row, h);
+        own.bear(row);
+    }
+
+    /// True if a particle touches a body that it may lift.
+    fn lifts(&self, i: usize) -> bool {
+        self.backings[i] > 0.0 && self.backings[i] < 1.0
+    }
+
+    /// Brings a pair to its distance, by an impulse that in all never pulls.
+    fn press(&mut self, row: &mut Row, h: f32) {
+        let (below, above) = (row.below as usize, row.above as usize);
+        let missing = row.goal - (self.positions[above] - self.positions[below]).dot(row.normal);
+        let ends = [(below, row.held - row.normal), (above, row.normal)];
+        let (change, _) = self.row_impulse(&ends.into_iter(), missing / h, 0.0);
+        let change = max(change, -row.impulse);
+        row.impulse += change;
+        for (i, force) in ends {
+            self.nudge(i, force * change, h);
+        }
+    }
+
+    /// Hands what presses each particle on to what it lies on.
+    fn hand_down(&mut self, own: &mut SelfCollision) {
+        for row in own.rows.iter_mut().rev() {
+            let (below, above) = (row.below as usize, row.above as usize);
+            let along = max(row.normal.dot(own.supports[above]), 0.0);
+            let share = if own.bearing[above] > 0.0 { along / own.bearing[above] } else { 0.0 };
+            let carried = own.loads[above] * share;
+            let into = max(row.normal.dot(own.supports[below]), 0.0);
+            if own.bearing[below] == 0.0 {
+                self.rooms[below] -= carried * into;
+            } else {
+                own.loads[below] += row.impulse * row.held.dot(own.supports[below]) + carried * into;
+            }
+            row.impulse += carried;
+        }
+    }
+
+    /// Friction of pairs by all that presses them, from what does not move outward.
+    fn rub_pairs(&mut self, own: &SelfCollision, h: f32) {
+        for row in &own.rows {
+            let (below, above) = (row.below as usize, row.above as usize);
+            let relative = self.velocities[above] - self.velocities[below];
+            let slip = relative - row.normal * relative.dot(row.normal);
+            let along = normalize_or(slip, Vec3::ZERO);
+            let limit = self.material.friction * row.impulse;
+            let weights = [self.weights[below], self.weights[above]];
+            if limit <= 0.0 || weights[1] <= 0.0 {
+                continue;
+            }
+            // What the one above brings, the ground takes, as far as the way down there holds.
+            let ground = own.ways[below] / h;
+            let brought = max((self.velocities[above] - ground).dot(along), 0.0);
+            let met = max((ground - self.velocities[below]).dot(along), 0.0);
+            let is_borne = own.bearing[below] > 0.0 && brought > 0.0;
+            let share = if is_borne { brought / (brought + met) } else { 0.0 };
+            let grip = min(own.grips[below], self.material.friction) * row.impulse;
+            let held = min(slip.length() * share / weights[1], grip);
+            self.nudge(above, along * -held, h);
+            let left = max(slip.length() - held * weights[1], 0.0) / (weights[0] + weights[1]);
+            let shared = along * min(left, max(limit - held, 0.0));
+            self.nudge(above, -shared, h);
+            self.nudge(below, shared, h);
+        }
+    }
+
+    /// Moves what is inside each other out slowly, without a velocity that it would keep.
+    fn push_out(&mut self, own: &SelfCollision, h: f32) {
+        for row in &own.rows {
+            let (below, above) = (row.below as usize, row.above as usize);
+            let apart = self.positions[above] - self.positions[below];
+            let out = min(own.thickness - apart.dot(row.normal), SELF_PUSH_SPEED * h);
+            let support = if own.bearing[below] > 0.0 { own.supports[below] } else { Vec3::ZERO };
+            let yielding = support * max(row.normal.dot(support), 0.0) - row.normal;
+            let weights = [self.weights[below], self.weights[above]];
+            let sum = weights[0] * yielding.length_squared() + weights[1];
+            if out > 0.0 && sum > 0.0 && !self.lifts(above) {
+                self.positions[below] += yielding * (out / sum * weights[0]);
+                self.positions[above] += row.normal * (out / sum * weights[1]);
+            }
+        }
+    }
+}
