@@ -59,3 +59,14 @@ pub(super) const ROPE_DAMPING: f32 = 0.1;
 ///
 /// Larger: what drops from a hand's breadth stays down. Smaller: what lies trembles. Shown by `particle`.
 pub(super) const IMPACT_SPEED: f32 = 1.0;
+
+/// Energy that a body passes on of what springs give it, over what it keeps, from which on what it passes it to counts as moving along, a ratio.
+///
+/// Larger: what hangs on ropes hangs lower by `g h²` times that for what lies on it. Smaller: rounding counts as a mass. Shown by the tests of `held`.
+pub(super) const LEAST_ADDED: f32 = 1e-3;
+
+/// Most mass that moves along with a body, over its own, a ratio.
+///
+/// Larger: what hangs taut and stands on the ground as well is solved as if it could not move, with what comes of that when it lifts off. Smaller: light
+/// planks hang lower under what is heavier than so many of them. Shown by the tests of `held`.
+pub(super) const MOST_ADDED: f32 = 1e3;
