@@ -2,7 +2,8 @@
 
 use super::contact::ObstacleBody;
 use super::forest::Freedom;
-use super::{Part, ParticleGroup};
+use super::{AddedMass, AttachmentTarget, Part, ParticleGroup};
+use crate::id::BodyId;
 use sinew_math::{Sym3, Vec3};
 
 /// The point that holds an attached particle, in one substep.
@@ -40,13 +41,14 @@ impl ParticleGroup {
             };
             let gained = anchor.gained * to;
             let hub = self.forest.hub_of(i);
+            let added = self.added[hub];
             if in_trees {
                 self.system.points[i] = anchor.position;
-                self.system.hubs[hub].take(&body, gained);
+                self.system.hubs[hub].take(&body, gained, &added);
             }
             // Rows of the net find it with its share of the inertia, so that what all give together is not too much.
-            let of_body =
-                body.response_at(anchor.position).inverse() * (1.0 / self.forest.hubs()[hub].len() as f32);
+            let of_body = added.response_at(&body, anchor.position).inverse()
+                * (1.0 / self.forest.hubs()[hub].len() as f32);
             let inertia = self.system.inertia[i] + of_body;
             if !in_trees {
                 self.system.momentum[i] += of_body * (body.velocity_at(anchor.position) + gained);
@@ -68,7 +70,9 @@ impl ParticleGroup {
             let impulse = self.reactions[i] + lost * self.masses[i];
             self.attachment_impulses[k] += impulse;
             if let Some(body) = anchor.body {
-                self.holders[body as usize].push(anchor.position, impulse);
+                let hub = self.forest.hub_of(i);
+                let added = self.added[hub];
+                added.push(&mut self.holders[body as usize], anchor.position, impulse);
             }
             self.positions[i] = anchor.position - anchor.velocity * (part.whole * (1.0 - to));
         }
@@ -80,10 +84,21 @@ impl ParticleGroup {
         let i = self.attachments[k].particle as usize;
         let own = 1.0 / self.masses[i];
         let apart = self.velocities[i] - body.velocity_at(anchor.position) - anchor.gained;
-        let impulse = (body.response_at(anchor.position) + Sym3::IDENTITY * own).inverse() * apart;
+        let added = self.added[self.forest.hub_of(i)];
+        let impulse = (added.response_at(body, anchor.position) + Sym3::IDENTITY * own).inverse() * apart;
         self.velocities[i] -= impulse * own;
         self.attachment_impulses[k] += impulse;
-        body.push(anchor.position, impulse);
+        added.push(body, anchor.position, impulse);
         impulse
+    }
+
+    /// Bodies that hold particles of it, each with the mass that moves along.
+    pub(crate) fn holders(&mut self) -> impl Iterator<Item = (BodyId, &mut AddedMass)> {
+        let Self { added, forest, attachments, attachment_of, .. } = self;
+        let first = |hub: &Vec<u32>| attachments[attachment_of[hub[0] as usize] as usize].target;
+        forest.hubs().iter().map(first).zip(added).filter_map(|(target, added)| match target {
+            AttachmentTarget::Body { body, .. } => Some((body, added)),
+            AttachmentTarget::World(_) => None,
+        })
     }
 }

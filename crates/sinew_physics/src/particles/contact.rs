@@ -75,6 +75,13 @@ impl ObstacleBody {
         self.inverse_mass == 0.0 && self.linear_velocity == Vec3::ZERO && self.angular_velocity == Vec3::ZERO
     }
 
+    /// Mass, and moments about the centre, kg and kg·m², world axes, of a body that moves.
+    pub(super) fn inertia(&self) -> (f32, Sym3) {
+        // One that does not turn has an inverse inertia that has no inverse.
+        let least = max(1e-9, 1e-6 * self.inverse_inertia.to_mat3().x_axis.length());
+        (1.0 / self.inverse_mass, (self.inverse_inertia + Sym3::IDENTITY * least).inverse())
+    }
+
     pub(super) fn push(&mut self, point: Vec3, impulse: Vec3) {
         self.linear_velocity += impulse * self.inverse_mass;
         self.angular_velocity += self.inverse_inertia * (point - self.center).cross(impulse);

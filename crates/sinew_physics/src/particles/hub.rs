@@ -5,11 +5,12 @@
 //! goes on from one point of a body to another pulls through it then. Were its points solved one by one, each with its share of the
 //! body's inertia, they would part under the tension within the solve, and a bridge of planks on ropes would stretch and gain energy.
 
+use super::added_mass::AddedMass;
 use super::contact::ObstacleBody;
 use crate::spatial::{
     Mat6, UNITS, Vec6, ZERO6, ZERO66, add_scaled, angular, dot, join, linear, spd_inverse, wrench,
 };
-use sinew_math::{Mat3, Sym3, Vec3, max};
+use sinew_math::{Mat3, Sym3, Vec3};
 
 /// A body that holds particles, in one iteration.
 #[derive(Clone, Debug)]
@@ -19,6 +20,8 @@ pub(super) struct Hub {
     /// kg, and kg·m² about the centre, world axes.
     mass: f32,
     inertia: Sym3,
+    /// Inertia that moves along with it.
+    added: AddedMass,
     /// At the end of the iteration without springs and particles, and with those that hang below it.
     coming: Vec6,
     free: Vec6,
@@ -35,6 +38,7 @@ impl Hub {
             center: Vec3::ZERO,
             mass: 1.0,
             inertia: Sym3::IDENTITY,
+            added: AddedMass::default(),
             coming: ZERO6,
             free: ZERO6,
             response: ZERO66,
@@ -44,12 +48,10 @@ impl Hub {
     }
 
     /// Takes in a body that moves; `gained` is the velocity that other forces will add to its own, m/s.
-    pub fn take(&mut self, body: &ObstacleBody, gained: Vec3) {
-        // One that does not turn has an inverse inertia that has no inverse.
-        let least = max(1e-9, 1e-6 * body.inverse_inertia.to_mat3().x_axis.length());
+    pub fn take(&mut self, body: &ObstacleBody, gained: Vec3, added: &AddedMass) {
         self.center = body.center;
-        self.mass = 1.0 / body.inverse_mass;
-        self.inertia = (body.inverse_inertia + Sym3::IDENTITY * least).inverse();
+        (self.mass, self.inertia) = body.inertia();
+        self.added = *added;
         self.coming = join(body.linear_velocity + gained, body.angular_velocity);
         self.velocity = self.coming;
     }
@@ -72,6 +74,7 @@ impl Hub {
             whole[k][k] = self.mass;
             whole[3 + k] = join(Vec3::ZERO, axis);
         }
+        self.added.add_to(&mut whole);
         let mut pull = ZERO6;
         for (point, inertia, momentum) in particles {
             let arm = point - self.center;
@@ -111,6 +114,7 @@ impl Hub {
         add_scaled(&mut gained, &self.coming, -1.0);
         let (along, turn) = (linear(&gained), angular(&gained));
         0.5 * (self.mass * along.length_squared() + turn.dot(self.inertia * turn))
+            + self.added.energy(&gained)
     }
 
     fn respond(&self, pull: &Vec6) -> Vec6 {

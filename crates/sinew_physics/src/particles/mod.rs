@@ -13,6 +13,7 @@
 //! strikes the floor would be compressed by what its end would have sunk in (`contact.rs`). Bounces, and what is left,
 //! are dealt with after it (`impact.rs`).
 
+mod added_mass;
 mod attach;
 mod batches;
 mod builders;
@@ -32,6 +33,7 @@ mod snapshot;
 mod sweep;
 mod tuning;
 
+pub(crate) use added_mass::AddedMass;
 pub use attach::Anchor;
 pub use builders::{Blob, BlobDef, Cloth, ClothDef, Rope, RopeDef, StrandDef};
 pub use contact::{BodyImpulse, Obstacle, ObstacleBody};
@@ -103,6 +105,8 @@ pub struct ParticleGroup {
     begun: Vec<Vec3>,
     /// Bodies as what they hold has changed them in the iterations so far.
     holders: Vec<ObstacleBody>,
+    /// Mass that moves along with each body that holds particles.
+    added: Vec<AddedMass>,
     /// Directions in which each particle changes a volume, m².
     gradients: Vec<Vec3>,
     /// Shapes as the iteration finds them.
@@ -214,6 +218,7 @@ impl ParticleGroup {
             SpringScheme::Projected => Forest::without_trees(&self.springs, &holders),
         };
         self.system = System::new(count, self.springs.len(), self.forest.hubs().len());
+        self.added = vec![AddedMass::default(); self.forest.hubs().len()];
         self.previous = self.positions.clone();
         self.drawn_from = self.positions.clone();
         self.places = self.positions.clone();

@@ -2,8 +2,8 @@
 
 use super::contact::Grip;
 use super::{
-    AttachmentDef, AttachmentTarget, BendDef, GroupDef, ParticleDef, ParticleGroup, Resists, SpringDef,
-    SpringScheme, TetherDef, VolumeDef,
+    AddedMass, AttachmentDef, AttachmentTarget, BendDef, GroupDef, ParticleDef, ParticleGroup, Resists,
+    SpringDef, SpringScheme, TetherDef, VolumeDef,
 };
 use crate::body::snapshot::{load_filter, load_material, save_filter, save_material};
 use crate::id::BodyId;
@@ -60,21 +60,32 @@ impl ParticleGroup {
         }
         self.save_net(out);
         out.count(self.attachments.len());
-        for a in &self.attachments {
-            out.u32(a.particle);
-            match a.target {
-                AttachmentTarget::World(place) => {
-                    out.u8(0);
-                    out.vec3(place);
-                }
-                AttachmentTarget::Body { body, point } => {
-                    out.u8(1);
-                    out.u64(body.to_bits());
-                    out.vec3(point);
-                }
+        self.attachments.iter().for_each(|a| self.save_attachment(a, out));
+        self.save_rest(out);
+    }
+
+    /// Writes an attachment; with the first of each body what moves along with that.
+    fn save_attachment(&self, a: &AttachmentDef, out: &mut Writer) {
+        out.u32(a.particle);
+        match a.target {
+            AttachmentTarget::World(place) => {
+                out.u8(0);
+                out.vec3(place);
+            }
+            AttachmentTarget::Body { body, point } => {
+                let added = self.added_by_first(a.particle).filter(AddedMass::is_some);
+                out.u8(if added.is_some() { 2 } else { 1 });
+                out.u64(body.to_bits());
+                out.vec3(point);
+                added.iter().for_each(|added| added.save(out));
             }
         }
-        self.save_rest(out);
+    }
+
+    /// Inertia that moves along with the body of a particle, if this is the first that the body holds.
+    fn added_by_first(&self, particle: u32) -> Option<AddedMass> {
+        let hub = self.forest.hub_of(particle as usize);
+        self.forest.hubs().get(hub).filter(|held| held[0] == particle).map(|_| self.added[hub])
     }
 
     fn save_net(&self, out: &mut Writer) {
@@ -144,8 +155,11 @@ impl ParticleGroup {
             def.springs.push(read_spring(input)?);
         }
         load_net(input, &mut def)?;
+        let mut added = Vec::new();
         for _ in 0..input.count(ATTACHMENT_BYTES)? {
-            def.attachments.push(read_attachment(input)?);
+            let (attachment, of_body) = read_attachment(input)?;
+            added.extend(of_body.map(|of_body| (attachment.particle, of_body)));
+            def.attachments.push(attachment);
         }
         def.check().map_err(|error| input.error(error.what()))?;
         let finite = contact_impulses.iter().chain(&drawn_from).all(|v: &Vec3| v.is_finite());
@@ -153,6 +167,12 @@ impl ParticleGroup {
             return Err(input.error("an impulse, a place or a time is not finite"));
         }
         let mut group = Self { span, contact_impulses, grips, drawn_from, ..Self::new(&def) };
+        for (particle, of_body) in added {
+            if group.added_by_first(particle).is_none() {
+                return Err(input.error("an added mass stands with the first particle of its body"));
+            }
+            group.added[group.forest.hub_of(particle as usize)] = of_body;
+        }
         group.load_rest(input)?;
         Ok(group)
     }
@@ -203,12 +223,14 @@ fn read_particle(input: &mut Reader<'_>) -> Result<ParticleDef, ReadError> {
     })
 }
 
-fn read_attachment(input: &mut Reader<'_>) -> Result<AttachmentDef, ReadError> {
+fn read_attachment(input: &mut Reader<'_>) -> Result<(AttachmentDef, Option<AddedMass>), ReadError> {
     let particle = input.u32()?;
-    let target = match input.u8()? {
+    let kind = input.u8()?;
+    let target = match kind {
         0 => AttachmentTarget::World(input.vec3()?),
-        1 => AttachmentTarget::Body { body: BodyId::from_bits(input.u64()?), point: input.vec3()? },
+        1 | 2 => AttachmentTarget::Body { body: BodyId::from_bits(input.u64()?), point: input.vec3()? },
         _ => return Err(input.error("attachment is neither to the world nor to a body")),
     };
-    Ok(AttachmentDef { particle, target })
+    let added = if kind == 2 { Some(AddedMass::load(input)?) } else { None };
+    Ok((AttachmentDef { particle, target }, added))
 }

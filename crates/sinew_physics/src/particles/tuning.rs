@@ -75,3 +75,14 @@ pub(super) const SELF_SWEEPS: u32 = 4;
 ///
 /// Larger: what is made or pulled into itself springs open. Smaller: it stays so. Shown by `folded`.
 pub(super) const SELF_PUSH_SPEED: f32 = 0.1;
+
+/// Energy that a body passes on of what springs give it, over what it keeps, from which on what it passes it to counts as moving along, a ratio.
+///
+/// Larger: what hangs on ropes hangs lower by `g h²` times that for what lies on it. Smaller: rounding counts as a mass. Shown by the tests of `held`.
+pub(super) const LEAST_ADDED: f32 = 1e-3;
+
+/// Most mass that moves along with a body, over its own, a ratio.
+///
+/// Larger: what hangs taut and stands on the ground as well is solved as if it could not move, with what comes of that when it lifts off. Smaller: light
+/// planks hang lower under what is heavier than so many of them. Shown by the tests of `held`.
+pub(super) const MOST_ADDED: f32 = 1e3;

@@ -23,7 +23,8 @@ mod view;
 use crate::body::def::Quality;
 use crate::body::external_work::Work;
 use crate::runner::TaskRunner;
-use crate::solver::body::{SolverBody, advance};
+pub(crate) use crate::solver::body::SolverBody;
+use crate::solver::body::advance;
 use crate::solver::boundary::groups::TakenGroup;
 use crate::solver::joint::SolverJoint;
 use crate::solver::limits::row::LimitRow;
@@ -31,7 +32,7 @@ use crate::solver::motion::momentum::Momentum;
 use crate::solver::pass::{Corrected, Coupling, Pass};
 use crate::solver::piles::touch::{Pressing, Touch};
 use crate::solver::sweep::dirty::DirtyRows;
-use crate::solver::sweep::policy::SweepPolicy;
+use crate::solver::sweep::policy::{HUNG, SweepPolicy};
 use crate::solver::tuning::PREDICTIONS;
 pub(crate) use crate::solver::view::{Grading, Pace, View};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, linear};
@@ -129,6 +130,8 @@ pub(crate) struct IslandSolver {
     push_work: f32,
     /// In the step so far.
     pub work: Work,
+    /// Springs of particles hold a body that others press on.
+    pub bears_by_springs: bool,
     /// Particles or objects pushed in this substep.
     pushed_from_outside: bool,
     /// Objects pushed in this step.
@@ -206,6 +209,7 @@ impl IslandSolver {
         self.momentum_start = self.momentum_of_start();
         self.drive_work = 0.0;
         self.pushed_from_outside = false;
+        self.bears_by_springs = false;
         self.unconstrained.clear();
         self.unconstrained.extend_from_slice(&self.velocities[..moving]);
         self.contact_push.clear();
@@ -327,6 +331,15 @@ impl IslandSolver {
 
     /// Joint velocities to zero at the new pose (RATTLE), contacts and limits without bias, friction.
     pub fn relax(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
+        let usual = self.policy;
+        if self.bears_by_springs {
+            self.policy = usual.at_least(HUNG);
+        }
+        self.relax_rows(view, runner);
+        self.policy = usual;
+    }
+
+    fn relax_rows(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         if core::mem::take(&mut self.displaced) {
             self.refresh(view, runner);
         }

@@ -50,6 +50,7 @@ pub(crate) fn solve(phase: Phase, task: &mut Task<'_>, view: &View<'_>, context:
         Phase::Relax(_) => {
             stage(Stage::Relax, &mut || solver.relax(view, context.runner));
             stage(Stage::Restitution, &mut || solver.restitution(context.runner));
+            surroundings.find_added(groups, solver);
             solver.drop_fields(view);
         }
         Phase::Store => stage(Stage::Store, &mut || solver.store(solution, context.profiler)),

@@ -2,10 +2,11 @@
 
 use crate::body::Velocity;
 use crate::body::def::BodyKind;
+use crate::id::BodyId;
 use crate::island::Island;
-use crate::particles::{Anchor, AttachmentTarget, Obstacle, ObstacleBody};
+use crate::particles::{AddedMass, Anchor, AttachmentTarget, Obstacle, ObstacleBody};
 use crate::solver::boundary::groups::TakenGroup;
-use crate::solver::{IslandSolver, View};
+use crate::solver::{IslandSolver, SolverBody, View};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear, wrench};
 use sinew_math::{Sym3, Transform, Vec3};
 
@@ -20,8 +21,11 @@ pub(crate) struct Surroundings {
     starts: Vec<Transform>,
     /// Impulses on the bodies of the island, by local index.
     impulses: Vec<Vec6>,
-    /// Number of groups that hang on each of them, and the last of these.
-    hung_on: Vec<(u32, usize)>,
+    /// Number of groups that hang on each of them.
+    hung_on: Vec<u32>,
+    /// Velocities of the island's moving bodies before groups pushed them, and what these gave them since, N·s.
+    untouched: Vec<Vec6>,
+    pushed: Vec<Vec3>,
 }
 
 /// A body as particles see it: where it is now, and where to put what they do to it.
@@ -75,6 +79,11 @@ impl Seen {
     }
 }
 
+/// Local index of a body among those of an island that move.
+fn local_of(moving: &[SolverBody], id: BodyId) -> Option<usize> {
+    moving.iter().position(|body| body.index == id.index)
+}
+
 fn moved(pose: &Transform, velocity: &Velocity, h: f32) -> Transform {
     if *velocity == Velocity::default() {
         return *pose;
@@ -91,6 +100,10 @@ impl Surroundings {
         self.starts.reserve(island.bodies.len());
         self.hung_on.clear();
         self.hung_on.reserve(island.bodies.len());
+        self.untouched.clear();
+        self.untouched.reserve(island.bodies.len());
+        self.pushed.clear();
+        self.pushed.reserve(island.bodies.len());
     }
 
     /// Moves the groups of an island by one substep. Bodies get what springs and contacts push them with through their
@@ -105,20 +118,10 @@ impl Surroundings {
         if groups.is_empty() {
             return;
         }
-        self.starts.clear();
-        self.starts.extend(solver.moving_bodies().iter().zip(&solver.velocities).map(|(body, v)| {
-            let back = Velocity { linear: -linear(v), angular: -angular(v) };
-            moved(&body.pose, &back, view.pace.h)
-        }));
-        self.hung_on.clear();
-        self.hung_on.resize(solver.moving_bodies().len(), (0, usize::MAX));
-        for (number, taken) in groups.iter_mut().enumerate() {
+        self.look_at_bodies(groups, solver, view.pace.h);
+        for taken in groups.iter_mut() {
             self.see(taken, solver, view, substep);
             self.place_obstacles(taken, view);
-            for local in self.anchors.iter().filter_map(|anchor| self.seen[anchor.body? as usize].local) {
-                let (count, last) = self.hung_on[local];
-                self.hung_on[local] = if last == number { (count, last) } else { (count + 1, number) };
-            }
             taken.group.substep(
                 view.pace.h,
                 view.def.gravity,
@@ -128,7 +131,7 @@ impl Surroundings {
             );
             self.push_bodies(taken, solver);
         }
-        if self.hung_on.iter().any(|&(count, _)| count > 1) {
+        if self.hung_on.iter().any(|&count| count > 1) {
             groups.iter_mut().for_each(|taken| self.join_held(taken, solver, view, substep));
         }
     }
@@ -147,13 +150,58 @@ impl Surroundings {
         self.impulses.resize(solver.moving_bodies().len(), ZERO6);
         for (k, anchor) in self.anchors.iter().enumerate() {
             let Some(place) = anchor.body.map(|body| body as usize) else { continue };
-            if let Some(local) = self.seen[place].local.filter(|&local| self.hung_on[local].0 > 1) {
+            if let Some(local) = self.seen[place].local.filter(|&local| self.hung_on[local] > 1) {
                 let impulse = taken.group.join_held(k, anchor, &mut self.bodies[place]);
                 let arm = anchor.position - self.bodies[place].center;
                 add_scaled(&mut self.impulses[local], &wrench(arm, impulse), 1.0);
             }
         }
+        self.push(solver);
+    }
+
+    /// Gives bodies the impulses that are listed.
+    fn push(&mut self, solver: &mut IslandSolver) {
+        for (pushed, impulse) in self.pushed.iter_mut().zip(&self.impulses) {
+            *pushed += linear(impulse);
+        }
         solver.apply_impulses(&self.impulses);
+    }
+
+    /// Takes note of bodies before groups push them, and of how many hold each.
+    fn look_at_bodies(&mut self, groups: &mut [TakenGroup], solver: &mut IslandSolver, h: f32) {
+        let moving = solver.moving_bodies();
+        self.starts.clear();
+        self.starts.extend(moving.iter().zip(&solver.velocities).map(|(body, v)| {
+            let back = Velocity { linear: -linear(v), angular: -angular(v) };
+            moved(&body.pose, &back, h)
+        }));
+        self.untouched.clear();
+        self.untouched.extend_from_slice(&solver.velocities[..moving.len()]);
+        self.pushed.clear();
+        self.pushed.resize(moving.len(), Vec3::ZERO);
+        self.hung_on.clear();
+        self.hung_on.resize(moving.len(), 0);
+        let mut bears = false;
+        for (id, added) in groups.iter_mut().flat_map(|taken| taken.group.holders()) {
+            bears |= added.is_some();
+            if let Some(local) = local_of(moving, id) {
+                self.hung_on[local] += 1;
+            }
+        }
+        solver.bears_by_springs = bears;
+    }
+
+    /// Finds what moves along with the bodies that groups hold, by what these gained until the end of the substep of what they were given. Groups that
+    /// hold one together take their turns, and each finds it as the others have left it.
+    pub fn find_added(&self, groups: &mut [TakenGroup], solver: &IslandSolver) {
+        let moving = solver.moving_bodies();
+        for (id, added) in groups.iter_mut().flat_map(|taken| taken.group.holders()) {
+            let local = local_of(moving, id).filter(|&local| self.hung_on[local] == 1);
+            *added = local.map_or_else(AddedMass::default, |local| {
+                let gained = linear(&solver.velocities[local]) - linear(&self.untouched[local]);
+                AddedMass::of(moving[local].mass, self.pushed[local], gained)
+            });
+        }
     }
 
     /// Bodies and anchors of a group at the present poses.
@@ -234,6 +282,6 @@ impl Surroundings {
             }
         }
         solver.work.kinematic += given;
-        solver.apply_impulses(&self.impulses);
+        self.push(solver);
     }
 }

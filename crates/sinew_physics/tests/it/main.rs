@@ -13,6 +13,7 @@ mod events;
 mod fields;
 mod finite;
 mod flight;
+mod held;
 mod hull;
 mod humanoid;
 mod ids;

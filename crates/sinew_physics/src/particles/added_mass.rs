@@ -1,0 +1,91 @@
+//! Mass that moves along with a body which holds particles: of what lies on it, or hangs on it by joints.
+//!
+//! Springs are solved before the contacts of bodies are, and see of a plank its own mass. If a box of twenty times that mass lies on it, they would
+//! find out in the next substep only what there is to bear: the plank would hang lower by `g h² M/m`, and stiff ropes would throw both into
+//! the air. So each substep tells what a body did with the impulse `p` that springs gave it: it gained the velocity `d`, and passed on
+//! `w = p − m d`. With `m + w wᵀ/(w·d)`, the symmetric update of rank one of quasi-Newton methods, the mass that answers to `p` with `d` is what the next substep
+//! begins with, and at rest it is the true one. Turns are left out: where a swing turns back, what they pass on is noise.
+
+use super::contact::ObstacleBody;
+use super::tuning::{LEAST_ADDED, MOST_ADDED};
+use crate::spatial::{Mat6, Vec6, add_scaled, join, linear};
+use sinew_math::{ReadError, Reader, Sym3, Vec3, Writer, max};
+
+/// Mass added to that of a body along the direction of a push.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct AddedMass {
+    /// Momentum passed on, kg·m/s, and twice the energy of that, `w·d`, J: 0 where nothing moves along.
+    momentum: Vec3,
+    power: f32,
+}
+
+impl AddedMass {
+    /// As a body of so many kg shows it that was pushed by an impulse and gained a velocity.
+    pub fn of(mass: f32, pushed: Vec3, gained: Vec3) -> Self {
+        let own = gained * mass;
+        let momentum = pushed - own;
+        let power = momentum.dot(gained);
+        let least = momentum.length_squared() / (mass * MOST_ADDED);
+        let added = Self { momentum, power: max(power, least) };
+        if power > LEAST_ADDED * own.dot(gained) && added.is_some() { added } else { Self::default() }
+    }
+
+    /// True if it is one.
+    pub fn is_some(&self) -> bool {
+        self.momentum.is_finite() && self.power > 0.0 && self.power < f32::INFINITY
+    }
+
+    /// Adds itself to an inertia.
+    pub fn add_to(&self, inertia: &mut Mat6) {
+        if self.is_some() {
+            let whole = join(self.momentum, Vec3::ZERO);
+            for (row, along) in inertia.iter_mut().zip(whole) {
+                add_scaled(row, &whole, along / self.power);
+            }
+        }
+    }
+
+    /// Energy of a velocity in it, J.
+    pub fn energy(&self, velocity: &Vec6) -> f32 {
+        if !self.is_some() {
+            return 0.0;
+        }
+        let along = self.momentum.dot(linear(velocity));
+        0.5 * along * along / self.power
+    }
+
+    /// Velocity that it keeps a body from gaining of an impulse, m/s, by Sherman and Morrison.
+    fn kept(&self, body: &ObstacleBody, impulse: Vec3) -> Vec3 {
+        if !self.is_some() {
+            return Vec3::ZERO;
+        }
+        let own = self.momentum * body.inverse_mass;
+        own * (own.dot(impulse) / (self.power + own.dot(self.momentum)))
+    }
+
+    /// As [`ObstacleBody::response_at`], with it.
+    pub fn response_at(&self, body: &ObstacleBody, point: Vec3) -> Sym3 {
+        let whole = body.response_at(point);
+        if !self.is_some() {
+            return whole;
+        }
+        let own = self.momentum * body.inverse_mass;
+        whole - Sym3::outer(own) * (1.0 / (self.power + own.dot(self.momentum)))
+    }
+
+    /// As [`ObstacleBody::push`], with it.
+    pub fn push(&self, body: &mut ObstacleBody, point: Vec3, impulse: Vec3) {
+        body.push(point, impulse);
+        body.linear_velocity -= self.kept(body, impulse);
+    }
+
+    pub(super) fn save(&self, out: &mut Writer) {
+        out.vec3(self.momentum);
+        out.f32(self.power);
+    }
+
+    pub(super) fn load(input: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let added = Self { momentum: input.vec3()?, power: input.f32()? };
+        if added.is_some() { Ok(added) } else { Err(input.error("an added mass is finite and positive")) }
+    }
+}

@@ -1,0 +1,135 @@
+//! Bodies that hang on ropes and bear others: these weigh on the ropes.
+
+use crate::build::box_body;
+use sinew_math::{Reader, Vec3, Writer};
+use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, RopeDef, SpringDef};
+use sinew_physics::*;
+
+const PLANK: Vec3 = Vec3::new(0.6, 0.02, 0.2);
+const PLANK_MASS: f32 = 5.0;
+/// Half of an edge of the box, metres.
+const BOX: f32 = 0.1;
+/// Tension of a rope at double its length, N; its length is 1 m, its mass 0.1 kg.
+const STIFFNESS: f32 = 4e4;
+const LINKS: u32 = 4;
+const ROPE_MASS: f32 = 0.1;
+
+struct Laden {
+    world: World,
+    plank: BodyId,
+    load: BodyId,
+    ropes: GroupId,
+}
+
+/// A plank on a rope at each corner, and so far above it a box.
+fn laden(mass: f32, height: f32) -> Laden {
+    let mut world = World::new(WorldDef::default());
+    let mut def = BodyDef { sleeping: Sleeping::Off, ..box_body(PLANK, Vec3::ZERO) };
+    def.shapes[0].density = PLANK_MASS / (8.0 * PLANK.x * PLANK.y * PLANK.z);
+    let plank = world.add_body(&def);
+    let mut ropes = GroupDef { sleeping: Sleeping::Off, ..GroupDef::default() };
+    ropes.filter.mask = 0;
+    for (x, z) in [(-0.5, -0.18), (-0.5, 0.18), (0.5, -0.18), (0.5, 0.18)] {
+        let corner = Vec3::new(x, 0.0, z);
+        let def = RopeDef {
+            from: corner + Vec3::Y,
+            to: corner,
+            links: LINKS,
+            mass: ROPE_MASS,
+            stiffness: STIFFNESS,
+            radius: 0.01,
+        };
+        let (rope, first) = (def.build().group, ropes.particles.len() as u32);
+        ropes.particles.extend(rope.particles);
+        // Damped as is critical for a quarter of the load on the whole rope.
+        let damping = LINKS as f32 * (STIFFNESS * (mass + PLANK_MASS)).sqrt();
+        ropes.springs.extend(rope.springs.iter().map(|s| SpringDef {
+            a: s.a + first,
+            b: s.b + first,
+            damping,
+            ..*s
+        }));
+        let held = AttachmentTarget::Body { body: plank, point: corner };
+        let place = AttachmentTarget::World(corner + Vec3::Y);
+        for (particle, target) in [(first, place), (first + LINKS, held)] {
+            ropes.attachments.push(AttachmentDef { particle, target });
+        }
+    }
+    let ropes = world.add_particles(&ropes);
+    let place = Vec3::Y * (PLANK.y + BOX + height);
+    let mut def = BodyDef { sleeping: Sleeping::Off, ..box_body(Vec3::splat(BOX), place) };
+    def.shapes[0].density = mass / (8.0 * BOX * BOX * BOX);
+    let load = world.add_body(&def);
+    Laden { world, plank, load, ropes }
+}
+
+impl Laden {
+    /// Sum of what the ropes pull their places in the world down with, N, in the last substep.
+    fn tension(&self) -> f32 {
+        let group = self.world.particles(self.ropes);
+        let per_second = 60.0 * WorldDef::default().substeps as f32;
+        let pulls = group.attachments().iter().zip(group.attachment_impulses());
+        let of_world = pulls.filter(|(a, _)| matches!(a.target, AttachmentTarget::World(_)));
+        of_world.map(|(_, impulse)| -impulse.y * per_second).sum()
+    }
+
+    /// Runs until all is at rest; the most that the energy exceeds what it was, J, and the last second's way up and down, metres.
+    fn run(&mut self, steps: usize) -> (f32, f32) {
+        let begin = self.world.energy().total();
+        let (mut gain, mut low, mut high) = (0.0_f32, f32::INFINITY, f32::NEG_INFINITY);
+        for step in 0..steps {
+            self.world.step();
+            gain = gain.max(self.world.energy().total() - begin);
+            if step + 60 >= steps {
+                let y = self.world.center_of_mass(self.plank).y;
+                (low, high) = (low.min(y), high.max(y));
+            }
+        }
+        (gain, high - low)
+    }
+}
+
+/// A body on ropes is borne with all that lies on it: the ropes' stretch is that of the whole weight, and so is their tension.
+#[test]
+fn what_lies_on_a_hung_plank_weighs_on_its_ropes() {
+    for (mass, height) in [(1.0, 0.0), (10.0, 0.0), (100.0, 0.0), (10.0, 0.2), (100.0, 0.2)] {
+        let what = format!("{mass} kg from {height} m");
+        let mut laden = laden(mass, height);
+        let (gain, tremble) = laden.run(900);
+        let sag = -laden.world.center_of_mass(laden.plank).y;
+        // Each rope bears half of its own weight on the mean.
+        let due = ((PLANK_MASS + mass) / 4.0 + 0.5 * ROPE_MASS) * 9.81 / STIFFNESS;
+        let (tension, weight) = (laden.tension(), (PLANK_MASS + mass + 4.0 * ROPE_MASS) * 9.81);
+        let above = laden.world.center_of_mass(laden.load).y + sag - PLANK.y - BOX;
+        println!(
+            "{what}: sag {sag} for {due}, tension {tension} for {weight}, gain {gain}, tremble {tremble}"
+        );
+        assert!((tension / weight - 1.0).abs() < 0.01, "{what}: {tension} N for {weight}");
+        assert!(above.abs() < 1e-3, "{what}: {above} m above the plank");
+        assert!(gain < 0.01 * weight * (height + due), "{what}: gained {gain} J");
+        // What fell with twenty times the plank's mass trembles for longer than this, by 1.4 mm.
+        if mass * height < 20.0 {
+            assert!((sag / due - 1.0).abs() < 0.005, "{what}: sag {sag} for {due}");
+            assert!(tremble < 1e-5, "{what}: trembles by {tremble} m");
+        }
+    }
+}
+
+/// What moves along is in the snapshot.
+#[test]
+fn a_laden_plank_goes_on_alike_when_it_is_loaded() {
+    let mut laden = laden(20.0, 0.1);
+    for step in 0..60 {
+        laden.world.step();
+        let mut bytes = Writer::new();
+        laden.world.save(&mut bytes);
+        let mut copy = World::new(WorldDef::default());
+        copy.load(&mut Reader::new(bytes.as_bytes())).expect("own snapshot");
+        let mut other = laden.world.clone();
+        for _ in 0..3 {
+            copy.step();
+            other.step();
+            assert_eq!(copy.hash(), other.hash(), "saved after step {step}");
+        }
+    }
+}
