@@ -35,6 +35,11 @@ impl AddedMass {
         self.momentum.is_finite() && self.power > 0.0 && self.power < f32::INFINITY
     }
 
+    /// Mass along the push, kg.
+    pub fn mass(&self) -> f32 {
+        if self.is_some() { self.momentum.length_squared() / self.power } else { 0.0 }
+    }
+
     /// Adds itself to an inertia.
     pub fn add_to(&self, inertia: &mut Mat6) {
         if self.is_some() {

@@ -130,7 +130,7 @@ pub(crate) struct IslandSolver {
     push_work: f32,
     /// In the step so far.
     pub work: Work,
-    /// Springs of particles hold a body that others press on.
+    /// Springs of particles hold a body that bears what is far heavier.
     pub bears_by_springs: bool,
     /// Particles or objects pushed in this substep.
     pushed_from_outside: bool,

@@ -8,6 +8,7 @@ use crate::particles::{AddedMass, Anchor, AttachmentTarget, Obstacle, ObstacleBo
 use crate::solver::boundary::groups::TakenGroup;
 use crate::solver::{IslandSolver, SolverBody, View};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear, wrench};
+use crate::step::tuning::HEAVY_LOAD;
 use sinew_math::{Sym3, Transform, Vec3};
 
 /// Bodies as a particle group sees them.
@@ -183,9 +184,9 @@ impl Surroundings {
         self.hung_on.resize(moving.len(), 0);
         let mut bears = false;
         for (id, added) in groups.iter_mut().flat_map(|taken| taken.group.holders()) {
-            bears |= added.is_some();
             if let Some(local) = local_of(moving, id) {
                 self.hung_on[local] += 1;
+                bears |= added.mass() > HEAVY_LOAD * moving[local].mass;
             }
         }
         solver.bears_by_springs = bears;

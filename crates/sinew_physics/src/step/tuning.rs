@@ -49,3 +49,9 @@ pub(super) const BLOW_SPEED: f32 = 0.3;
 /// From the pelvis to a hand there are five. Larger: more pairs are looked at in steps after a blow. Smaller: the hand of a figure that is struck at its trunk
 /// is in the thigh by the end of the step. Shown as [`BLOW_SPEED`].
 pub(super) const BLOW_PASSES: usize = 6;
+
+/// Mass that moves along with a body on ropes over its own, from which on its island's contacts are swept until they pass all of it on, a ratio.
+///
+/// Larger: a plank turns under what is heavier by so much, and gains energy. Smaller: more islands on ropes pay for sweeps, and light loads on ropes without
+/// damping tremble. Sensible from 2 to 10. Shown by the tests of `held`.
+pub(super) const HEAVY_LOAD: f32 = 4.0;

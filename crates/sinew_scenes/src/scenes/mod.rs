@@ -85,6 +85,7 @@ const REGISTRY: &[Scene] = &[
     particles::sheets::FLAG,
     particles::sheets::CURTAIN,
     particles::folded::FOLDED,
+    particles::rope_bridge::ROPE_BRIDGE,
     particles::blobs::BLOB,
     particles::blobs::STEEL_VS_BASKETBALL,
     free_motion::gimbal::GIMBAL,

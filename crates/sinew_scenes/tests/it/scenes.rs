@@ -174,6 +174,7 @@ scenes!(
         flag,
         curtain,
         folded,
+        rope_bridge,
         blob,
         steel_vs_basketball,
         gimbal,

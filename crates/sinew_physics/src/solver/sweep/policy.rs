@@ -102,8 +102,9 @@ const HEAP: SweepPolicy = SweepPolicy { solve: 5, relax: 4, first_conjugate: 2, 
 const UNEQUAL: SweepPolicy =
     SweepPolicy { solve: 96, tolerance: 2e-3, small: 0.0, order: Order::Forward, first_conjugate: 4, ..PILE };
 
-/// At least, in `relax`, for islands of which springs of particles hold a body: they bear all that lies on it by pushing it alone, and the contacts have to pass that
-/// on whole in one pass, or a box of 100 kg on a plank of 5 kg on ropes turns and gains energy. Twelve sweeps are enough for that.
+/// At least, in `relax`, for islands in which springs of particles hold a body that bears a heavy load: they bear all that lies on it by pushing
+/// it alone, and the contacts have to pass that on whole in one pass, or a box of 100 kg on a plank of 5 kg on ropes turns and gains energy.
+/// Twelve sweeps are enough for that.
 pub(in crate::solver) const HUNG: SweepPolicy = SweepPolicy {
     solve: 0,
     relax: 24,
