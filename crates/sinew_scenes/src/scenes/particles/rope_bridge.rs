@@ -150,9 +150,9 @@ struct RopeBridge {
     ropes: GroupId,
     /// Attachments to the world.
     held: Vec<usize>,
-    /// Of all that hangs, N.
+    /// Weight of all that hangs, N.
     weight: f32,
-    /// What those hold in each of the last steps, N.
+    /// Pull of these in each step, N.
     pulls: Vec<f64>,
 }
 
