@@ -180,7 +180,7 @@ impl Script for Folded {
     fn after_step(&mut self, world: &mut World) {
         let group = world.particles(self.cloth);
         let step = world.step_count();
-        if step % 10 == 0 {
+        if step.is_multiple_of(10) {
             self.watch.crossings += crossings(group.positions());
             self.watch.least = min(self.watch.least, least_apart(group.positions()));
         }
