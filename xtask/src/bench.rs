@@ -46,7 +46,7 @@ const LIMIT: Duration = Duration::from_secs(900);
 /// Not a scene of the peers: a character from rig to baked clip, whose speed is held against real time.
 const BAKE: &str = "bake";
 
-/// How the names of files end that hold characters.
+/// Extensions of files that hold characters.
 const RIGS: &[&str] = &["glb", "gltf", "vrm", "fbx"];
 
 /// Nor this: characters that fall limp until they sleep, of which there must be files.

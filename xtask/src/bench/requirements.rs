@@ -60,7 +60,7 @@ pub enum Measure {
 const CLOTH_RACE: &str = "cloth, against those that stretch by 3.1 % at most";
 const CLOTH_STRETCH: f64 = 0.031;
 
-/// Of all rigs, and of humanoids.
+/// Speed of limp characters: the median of all rigs, and the slowest humanoid.
 const LIMP: [Measure; 2] = [Measure::Limp("median"), Measure::Limp("slowest_humanoid")];
 
 const fn factor(work: &'static str, must: f64, goal: f64, measure: Measure) -> Speed {

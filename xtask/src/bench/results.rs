@@ -12,7 +12,7 @@ pub struct Results {
     pub bake: Option<f64>,
     /// How often a rig of 6,000 vertices becomes a ragdoll in 100 ms, if that was measured with the bake.
     pub build: Option<f64>,
-    /// Of characters that fall limp until they sleep, simulated seconds per processor second: `median` of all rigs and `slowest_humanoid`,
+    /// Simulated seconds per processor second of characters that fall limp until they sleep: `median` of all rigs and `slowest_humanoid`,
     /// where that was measured.
     pub limp: BTreeMap<String, f64>,
     /// By scene: wall time on one thread over that on two, where that was measured.
@@ -62,7 +62,7 @@ impl Results {
         self.scenes.iter().find(|scene| scene.name == name)
     }
 
-    /// Whether the scene of that name was measured, or what is not a scene.
+    /// True if the scene of that name was measured, or the bake, the limp characters or the threads.
     pub fn has(&self, name: &str) -> bool {
         self.scene(name).is_some()
             || name == super::BAKE && self.bake.is_some()

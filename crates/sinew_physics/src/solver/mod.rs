@@ -339,6 +339,7 @@ impl IslandSolver {
         self.policy = usual;
     }
 
+    /// `relax` by the policy that is set.
     fn relax_rows(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         if core::mem::take(&mut self.displaced) {
             self.refresh(view, runner);

@@ -2,7 +2,6 @@
 
 use crate::body::Velocity;
 use crate::body::def::BodyKind;
-use crate::id::BodyId;
 use crate::island::Island;
 use crate::particles::{AddedMass, Anchor, AttachmentTarget, Obstacle, ObstacleBody};
 use crate::solver::boundary::groups::TakenGroup;
@@ -46,7 +45,7 @@ struct Seen {
 
 impl Seen {
     fn new(index: u32, starts: &[Transform], solver: &IslandSolver, view: &View<'_>, substep: u32) -> Self {
-        if let Some(local) = solver.moving_bodies().iter().position(|body| body.index == index) {
+        if let Some(local) = local_of(solver.moving_bodies(), index) {
             let body = &solver.moving_bodies()[local];
             return Self {
                 start: starts[local],
@@ -81,8 +80,8 @@ impl Seen {
 }
 
 /// Local index of a body among those of an island that move.
-fn local_of(moving: &[SolverBody], id: BodyId) -> Option<usize> {
-    moving.iter().position(|body| body.index == id.index)
+fn local_of(moving: &[SolverBody], index: u32) -> Option<usize> {
+    moving.iter().position(|body| body.index == index)
 }
 
 fn moved(pose: &Transform, velocity: &Velocity, h: f32) -> Transform {
@@ -184,7 +183,7 @@ impl Surroundings {
         self.hung_on.resize(moving.len(), 0);
         let mut bears = false;
         for (id, added) in groups.iter_mut().flat_map(|taken| taken.group.holders()) {
-            if let Some(local) = local_of(moving, id) {
+            if let Some(local) = local_of(moving, id.index) {
                 self.hung_on[local] += 1;
                 bears |= added.mass() > HEAVY_LOAD * moving[local].mass;
             }
@@ -197,7 +196,7 @@ impl Surroundings {
     pub fn find_added(&self, groups: &mut [TakenGroup], solver: &IslandSolver) {
         let moving = solver.moving_bodies();
         for (id, added) in groups.iter_mut().flat_map(|taken| taken.group.holders()) {
-            let local = local_of(moving, id).filter(|&local| self.hung_on[local] == 1);
+            let local = local_of(moving, id.index).filter(|&local| self.hung_on[local] == 1);
             *added = local.map_or_else(AddedMass::default, |local| {
                 let gained = linear(&solver.velocities[local]) - linear(&self.untouched[local]);
                 AddedMass::of(moving[local].mass, self.pushed[local], gained)

@@ -115,7 +115,7 @@ fn what_lies_on_a_hung_plank_weighs_on_its_ropes() {
     }
 }
 
-/// What moves along is in the snapshot.
+/// Snapshots hold the mass that moves along with a body on ropes.
 #[test]
 fn a_laden_plank_goes_on_alike_when_it_is_loaded() {
     let mut laden = laden(20.0, 0.1);
