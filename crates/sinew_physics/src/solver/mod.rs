@@ -142,6 +142,8 @@ pub(crate) struct IslandSolver {
     displaced: bool,
     /// Fastest rate that a hit may give a joint, rad/s: limits within reach of it get rows.
     hit_rate: f32,
+    /// What limits and contacts were foreseen to pass by far, the substep's sweeps have dealt with.
+    is_settled: bool,
     /// Substep, seconds, how many there are in the step, and how many times as long as the world's they are: a power of two.
     h: f32,
     substeps: u32,
@@ -274,9 +276,11 @@ impl IslandSolver {
         self.sweep(Pass::Solve, runner);
         self.limit_inner_turn();
         let mut torn = self.correct_positions(Corrected::All);
+        self.is_settled = false;
         for _ in 0..PREDICTIONS {
             let tightened = self.tighten_limits();
-            if !self.predict_contacts() && !tightened {
+            self.is_settled = !self.predict_contacts() && !tightened;
+            if self.is_settled {
                 break;
             }
             let changed = self.sweep_again(runner);
@@ -519,6 +523,11 @@ impl IslandSolver {
         let power = |(body, v): (&SolverBody, &Vec6)| body.force.dot(linear(v)) + body.torque.dot(angular(v));
         let moving = self.bodies[..self.links.len()].iter().zip(&self.velocities);
         self.h * moving.map(power).fold(0.0, |sum, power| sum + power)
+    }
+
+    /// True if the substep is longer than the world's, and what its limits and contacts were foreseen to pass it could not deal with.
+    pub fn overreaches(&self) -> bool {
+        self.stretch > 1.0 && !self.is_settled
     }
 
     /// Number of substeps of the island in this step.

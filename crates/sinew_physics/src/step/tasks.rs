@@ -5,7 +5,7 @@ use crate::island::Island;
 use crate::runner::TaskRunner;
 use crate::slices::split_off;
 use crate::solver::boundary::groups::TakenGroup;
-use crate::solver::{IslandSolution, IslandSolver, Solution, View};
+use crate::solver::{Grading, IslandSolution, IslandSolver, Pace, Solution, View};
 use crate::step::phase::{Phase, solve};
 use crate::step::project::Surroundings;
 use std::sync::{Mutex, PoisonError};
@@ -60,12 +60,23 @@ pub(crate) struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// All of the island's step, in the substeps that it takes.
+    /// All of the island's step, in the substeps that it takes: where long ones overreach, from the beginning once more in those of the
+    /// world.
     pub fn solve(&mut self, view: &View<'_>, context: &StepContext<'_>) {
-        solve(Phase::Prepare, self, view, context);
-        let substeps = self.workspace.solver.substeps();
-        Phase::of_substeps(substeps).for_each(|phase| solve(phase, self, view, context));
+        if !self.take_substeps(view, context) {
+            let of_world = Pace { grading: Grading::None, ..view.pace };
+            self.take_substeps(&View { pace: of_world, ..*view }, context);
+        }
         solve(Phase::Store, self, view, context);
+    }
+
+    /// Takes all substeps from the beginning of the step, up to one that overreaches. Gives whether none did.
+    fn take_substeps(&mut self, view: &View<'_>, context: &StepContext<'_>) -> bool {
+        solve(Phase::Prepare, self, view, context);
+        Phase::of_substeps(self.workspace.solver.substeps()).all(|phase| {
+            solve(phase, self, view, context);
+            !self.workspace.solver.overreaches()
+        })
     }
 }
 

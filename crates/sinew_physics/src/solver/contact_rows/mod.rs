@@ -85,7 +85,7 @@ pub(crate) struct ManifoldRows {
     material: ContactMaterial,
     slop: f32,
     soft: Softness,
-    /// Firmness of the contact: a share of `soft`, which the bias takes no notice of, and the speed with which it pushes apart.
+    /// Firmness of the contact: shares of `soft` and of its bias rate, and the speed with which it pushes apart.
     firmness: Firmness,
     /// Separations of the points at the present pose, metres; the rows are of that pose, too.
     separation: [f32; MAX_POINTS],

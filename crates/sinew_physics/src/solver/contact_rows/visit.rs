@@ -64,7 +64,7 @@ impl ManifoldRows {
         } else if s > 0.0 {
             s / h
         } else if biased {
-            let apart = self.soft.bias_rate * min(s + DEAD_ZONE * self.slop, 0.0);
+            let apart = self.firmness.bias * self.soft.bias_rate * min(s + DEAD_ZONE * self.slop, 0.0);
             let push = max(apart, -self.firmness.push_speed);
             min(push, -self.material.launch)
         } else {

@@ -15,6 +15,7 @@ struct Each {
     /// 1 of two bodies that are moved.
     both_move: Eight,
     softness: Eight,
+    bias: Eight,
     push_speed: Eight,
     /// Gap below which points bear.
     bearing: Eight,
@@ -56,6 +57,7 @@ fn write_ends<const N: usize, const T: usize>(
         places: [0; WIDTH],
         both_move: ZERO8,
         softness: ZERO8,
+        bias: ZERO8,
         push_speed: ZERO8,
         bearing: [f32::INFINITY; WIDTH],
         surface: [ZERO8; 6],
@@ -66,6 +68,7 @@ fn write_ends<const N: usize, const T: usize>(
         let edge = &source.edges[place as usize];
         each.places[lane] = place;
         each.softness[lane] = edge.firmness.softness;
+        each.bias[lane] = edge.firmness.bias;
         each.push_speed[lane] = edge.firmness.push_speed;
         let mut both_move = !is_empty;
         for end in 0..2 {
@@ -171,7 +174,8 @@ fn write_shape<L: Lanes, const N: usize, const T: usize>(
 fn write_softness<L: Lanes, const N: usize>(memory: &mut Memory<N>, each: &Each, soft: &[Softness; 2]) {
     let both_move = L::gt(L::load(&each.both_move), L::splat(0.0));
     let [moving, fixed] = soft;
-    pick::<L>(both_move, moving.bias_rate, fixed.bias_rate).store(&mut memory.bias_rate);
+    let bias_rate = L::load(&each.bias) * pick::<L>(both_move, moving.bias_rate, fixed.bias_rate);
+    bias_rate.store(&mut memory.bias_rate);
     memory.push_speed = each.push_speed;
     // Of the mean response of the points: its sum is divided here.
     let softness = L::load(&each.softness) * pick::<L>(both_move, moving.impulse_scale, fixed.impulse_scale)

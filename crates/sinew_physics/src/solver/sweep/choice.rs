@@ -21,6 +21,7 @@ impl IslandSolver {
         self.quality = quality_of(island, view);
         self.stretch = stretch_of(island, view);
         (self.h, self.substeps) = view.pace.stretched(self.stretch);
+        self.is_settled = true;
     }
 
     /// Chooses how islands of joints come to agree with their contacts: few figures by the response of all their links, heaps by turns.
