@@ -16,7 +16,7 @@ pub(in crate::scenes) const ROPE_BRIDGE: Scene = Scene {
     chapter: Chapter::Particles,
     name: "rope_bridge",
     about: "two limp mannequins fall on a bridge of planks that hang on two ropes, and are borne",
-    steps: 900,
+    steps: 1500,
     settings: &[
         Setting::whole("figures", 2, (0, 4), "number of mannequins"),
         Setting::whole("first", 5, (0, 10_000), "number of the first one's pose"),
