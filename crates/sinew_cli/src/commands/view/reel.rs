@@ -235,7 +235,8 @@ impl Take {
         };
         let legend = |(number, curve): (usize, Curve)| Caption {
             x: -10,
-            y: 10 + 22 * number as i32,
+            y: 10 + 12 * number as i32,
+            scale: 1,
             // Paler than the curve, to be read on the plate.
             color: draw::curve_color(number).map(|part| part + 0.4 * (1.0 - part)),
             ..Caption::new(curve.name)
