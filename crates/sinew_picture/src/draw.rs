@@ -118,6 +118,25 @@ pub fn axes(frame: Transform, length: f32, depth: LineDepth) -> [Line; 3] {
         .map(|(axis, color)| Line { from: frame.translation, to: frame.point(axis * length), color, depth })
 }
 
+/// Curves in the colours of [`curve_color`], pieces from and to.
+pub fn curves<'a>(curves: impl IntoIterator<Item = &'a [[Vec3; 2]]>) -> Vec<Line> {
+    let of = |(number, pieces): (usize, &'a [[Vec3; 2]])| {
+        let color = curve_color(number);
+        pieces.iter().map(move |&[from, to]| Line { from, to, color, depth: LineDepth::Tested })
+    };
+    curves.into_iter().enumerate().flat_map(of).collect()
+}
+
+/// The colour (linear) of curve number `number` of several that are compared.
+pub fn curve_color(number: usize) -> [f32; 3] {
+    CURVES[number % CURVES.len()]
+}
+
+/// Bright and far from each other, on the sky as on the dark plate of a caption (Okabe and Ito's, for those who do not see all colours):
+/// blue, vermilion, yellow, bluish green, reddish purple.
+const CURVES: [[f32; 3]; 5] =
+    [[0.0, 0.17, 0.45], [0.67, 0.11, 0.0], [0.87, 0.78, 0.05], [0.0, 0.34, 0.17], [0.60, 0.19, 0.39]];
+
 fn box_corner(i: usize, half: Vec3) -> Vec3 {
     let sign = |bit: usize| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
     Vec3::new(sign(0) * half.x, sign(1) * half.y, sign(2) * half.z)

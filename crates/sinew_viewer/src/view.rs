@@ -26,6 +26,7 @@ const SIGHT: f32 = 1e5;
 pub fn bounds(instance: &Instance) -> Aabb {
     let mut lines = Lines::default();
     instance.draw(&mut lines);
+    lines.list.append(&mut curves(instance));
     let joints = instance.figures().into_iter().flat_map(|figure| figure.world_from_joint);
     let joints = joints.map(|joint| joint.translation).map(|at| Aabb { min: at, max: at });
     let all = world::subject(instance.world()).into_iter().chain(lines.bounds()).chain(joints);
@@ -33,6 +34,12 @@ pub fn bounds(instance: &Instance) -> Aabb {
     let all = all.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE));
     let is_sound = all.min.is_finite() && all.max.is_finite();
     if is_sound { all } else { Aabb::around(Vec3::ZERO, Vec3::ONE) }
+}
+
+/// Lines of the curves that a scene compares.
+fn curves(instance: &Instance) -> Vec<Line> {
+    let curves = instance.curves();
+    draw::curves(curves.iter().map(|curve| &curve.pieces[..]))
 }
 
 /// Bounds with the ground below them, if it is no farther than that they may fall on it before one's eyes.
@@ -146,6 +153,7 @@ pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Sta
     let mut lines = Lines::default();
     instance.draw(&mut lines);
     stage.scene.lines.append(&mut lines.list);
+    stage.scene.lines.append(&mut curves(instance));
     layers::draw(instance.world(), layers, &mut stage.scene.lines);
     if let Some([from, to]) = session.hands().spring(instance.world()) {
         stage.scene.lines.push(Line { from, to, color: [0.9, 0.1, 0.5], depth: LineDepth::OnTop });

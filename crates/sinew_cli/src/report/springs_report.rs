@@ -3,8 +3,11 @@
 use super::number;
 use super::table::{Table, counted, shown};
 use serde_json::{Value, json};
-use sinew::anim::springs::{ColliderShape, LimitKind, Side, SpringBone, SpringChain, Springs};
+use sinew::anim::springs::{
+    ColliderShape, LimitKind, Side, SpringBone, SpringChain, SpringCollider, Springs,
+};
 use sinew::anim::{JointIdx, Rig};
+use sinew::math::{Vec3, direction, max, min};
 use sinew::ragdoll::{CharacterDef, RagdollDef};
 
 /// Most names of joints in a note.
@@ -62,19 +65,20 @@ pub fn listed(names: &[String]) -> String {
     if more == 0 { first.join(", ") } else { format!("{} and {more} more", first.join(", ")) }
 }
 
-/// Springs of a file: each chain with its joints, and the settings of its first bone.
+/// Springs of a file: each chain with its bones and their settings.
 pub fn springs_json(rig: &Rig) -> Value {
     let chain = |chain: &SpringChain| {
-        let bone = &chain.bones[0];
+        let first = &chain.bones[0];
         let names: Vec<&str> = chain.bones.iter().map(|bone| rig.joints[bone.joint].name.as_str()).collect();
         json!({
             "name": chain.name,
             "joints": names,
-            "stiffness": number(bone.stiffness),
-            "gravity": bone.gravity.to_array().map(number),
-            "drag": number(bone.drag),
-            "radius": number(bone.radius),
-            "limit": bone.limit.map(|limit| limit_name(limit.kind)),
+            "bones": chain.bones.iter().map(|bone| bone_json(rig, bone)).collect::<Vec<_>>(),
+            "stiffness": number(first.stiffness),
+            "gravity": first.gravity.to_array().map(number),
+            "drag": number(first.drag),
+            "radius": number(first.radius),
+            "limit": first.limit.map(|limit| limit_name(limit.kind)),
             "center": chain.center.map(|joint| rig.joints[joint].name.as_str()),
             "colliders": chain.colliders,
         })
@@ -82,46 +86,181 @@ pub fn springs_json(rig: &Rig) -> Value {
     rig.springs.chains.iter().map(chain).collect()
 }
 
+fn bone_json(rig: &Rig, bone: &SpringBone) -> Value {
+    json!({
+        "joint": rig.joints[bone.joint].name,
+        "tail": bone.tail.to_array().map(number),
+        "stiffness": number(bone.stiffness),
+        "gravity": bone.gravity.to_array().map(number),
+        "drag": number(bone.drag),
+        "radius": number(bone.radius),
+        "limit": bone.limit.map(|limit| limit_name(limit.kind)),
+        "limit_deg": bone.limit.map(|limit| {
+            angles(limit.kind).into_iter().map(|angle| number(angle.to_degrees())).collect::<Vec<_>>()
+        }),
+    })
+}
+
 /// Colliders of a file's springs, in the order that chains refer to.
 pub fn colliders_json(rig: &Rig) -> Value {
-    let collider = |collider: &sinew::anim::SpringCollider| {
-        let (shape, radius, keeps) = described(&collider.shape);
+    let collider = |collider: &SpringCollider| {
+        let it = Described::of(&collider.shape);
         json!({
             "joint": rig.joints[collider.joint].name,
-            "shape": shape,
-            "radius": radius.map(number),
-            "inside": keeps == Side::Inside,
+            "shape": it.name,
+            "offset": it.offset.to_array().map(number),
+            "tail": it.tail.map(|tail| tail.to_array().map(number)),
+            "normal": it.normal.map(|normal| normal.to_array().map(number)),
+            "radius": it.radius.map(number),
+            "inside": it.keeps == Side::Inside,
         })
     };
     rig.springs.colliders.iter().map(collider).collect()
 }
 
-/// The chains as a table, their settings in the file's units.
-pub fn springs_table(rig: &Rig) -> Table {
-    let titles = ["spring", "bones", "stiffness", "gravity", "drag", "radius", "limit", "colliders"];
+/// The springs of a file for people: its chains, with the settings of their joints in the file's units, each as one number or from the least
+/// to the most, and the colliders that they name. `format` is the name of what they are stated in; nothing where that is nothing.
+pub fn springs_text(rig: &Rig, format: Option<&str>) -> String {
+    let Some(format) = format else { return String::new() };
+    let springs = &rig.springs;
+    if springs.is_empty() {
+        return format!("\nSprings ({format}): none has a joint to swing\n");
+    }
+    let (chains, bones) = (springs.chains.len(), springs.bone_count());
+    let mut text = format!(
+        "\nSprings ({format}): {} of {}\n",
+        counted(chains, "chain", "chains"),
+        counted(bones, "bone", "bones")
+    );
+    text += &springs_table(rig).to_text();
+    if !springs.colliders.is_empty() {
+        text += "\nColliders of springs\n";
+        text += &colliders_table(rig).to_text();
+    }
+    text
+}
+
+fn springs_table(rig: &Rig) -> Table {
+    let titles = [
+        "spring",
+        "joints",
+        "bones",
+        "stiffness",
+        "gravity",
+        "drag",
+        "radius",
+        "limit",
+        "center",
+        "colliders",
+    ];
     let mut table = Table::titled(&titles);
     for chain in &rig.springs.chains {
-        let first = &chain.bones[0];
-        let root = &rig.joints[first.joint].name;
-        let name = if chain.name.is_empty() { root } else { &chain.name };
-        let span = |value: fn(&SpringBone) -> f32| {
-            let values = chain.bones.iter().map(value);
-            let (low, high) =
-                values.fold((f32::INFINITY, 0.0_f32), |(low, high), x| (low.min(x), high.max(x)));
-            if low == high { format!("{low}") } else { format!("{low} to {high}") }
-        };
+        let span = |value: fn(&SpringBone) -> f32| span(chain.bones.iter().map(value));
+        let name = |joint: JointIdx| shown(&rig.joints[joint].name);
+        let [first, last] =
+            [&chain.bones[0], &chain.bones[chain.bones.len() - 1]].map(|bone| name(bone.joint));
         table.row([
-            shown(name),
+            shown(&chain.name),
+            if chain.bones.len() == 1 { first } else { format!("{first} to {last}") },
             chain.bones.len().to_string(),
             span(|bone| bone.stiffness),
-            span(|bone| bone.gravity.length()),
+            gravity(chain),
             span(|bone| bone.drag),
             span(|bone| bone.radius),
-            first.limit.map_or("", |limit| limit_name(limit.kind)).to_owned(),
-            chain.colliders.len().to_string(),
+            limits(chain),
+            chain.center.map_or("-".to_owned(), name),
+            indices(&chain.colliders),
         ]);
     }
     table
+}
+
+fn colliders_table(rig: &Rig) -> Table {
+    let mut table = Table::titled(&["number", "joint", "shape", "radius", "at"]);
+    for (index, collider) in rig.springs.colliders.iter().enumerate() {
+        let it = Described::of(&collider.shape);
+        let mut at = vector(it.offset);
+        at += &it.tail.map_or(String::new(), |tail| format!(" to {}", vector(tail)));
+        at += &it.normal.map_or(String::new(), |normal| format!(", normal {}", vector(normal)));
+        let side = if it.keeps == Side::Inside { ", inside" } else { "" };
+        table.row([
+            index.to_string(),
+            shown(&rig.joints[collider.joint].name),
+            format!("{}{side}", it.name),
+            it.radius.map_or("-".to_owned(), short),
+            at,
+        ]);
+    }
+    table
+}
+
+/// Four digits at most, as few as tell the number; no sign of a zero.
+fn short(x: f32) -> String {
+    let x = if x == 0.0 { 0.0 } else { x };
+    format!("{x:.3e}").parse::<f32>().unwrap_or(x).to_string()
+}
+
+fn vector(v: Vec3) -> String {
+    format!("({})", v.to_array().map(short).join(", "))
+}
+
+/// One number, or the least and the most.
+fn span(values: impl Iterator<Item = f32>) -> String {
+    let none = (f32::INFINITY, f32::NEG_INFINITY);
+    let (low, high) = values.fold(none, |(low, high), x| (min(low, x), max(high, x)));
+    let (low, high) = (short(low), short(high));
+    if low == high { low } else { format!("{low} to {high}") }
+}
+
+/// Its size, with its direction where that is not down.
+fn gravity(chain: &SpringChain) -> String {
+    let size = span(chain.bones.iter().map(|bone| bone.gravity.length()));
+    let way = |bone: &SpringBone| direction(bone.gravity).map(vector);
+    let mut ways: Vec<String> = chain.bones.iter().filter_map(way).collect();
+    ways.dedup();
+    match &ways[..] {
+        [] => size,
+        [one] if *one == vector(Vec3::NEG_Y) => size,
+        [one] => format!("{size} along {one}"),
+        _ => format!("{size}, not one way"),
+    }
+}
+
+/// Kinds of limits with their angles in degrees, and how many bones have one where not all do.
+fn limits(chain: &SpringChain) -> String {
+    let kinds: Vec<LimitKind> =
+        chain.bones.iter().filter_map(|bone| bone.limit.map(|limit| limit.kind)).collect();
+    let mut names: Vec<&str> = kinds.iter().map(|&kind| limit_name(kind)).collect();
+    names.sort_unstable();
+    names.dedup();
+    let of = |name: &&str| {
+        let same: Vec<Vec<f32>> =
+            kinds.iter().filter(|&&kind| limit_name(kind) == *name).map(|&kind| angles(kind)).collect();
+        let angle = |k: usize| format!("{}°", span(same.iter().map(|angles| angles[k].to_degrees())));
+        let angles: Vec<String> = (0..same[0].len()).map(angle).collect();
+        format!("{name} {}", angles.join(" × "))
+    };
+    let mut text = names.iter().map(of).collect::<Vec<_>>().join(", ");
+    if kinds.is_empty() {
+        text = "-".to_owned();
+    } else if kinds.len() < chain.bones.len() {
+        text += &format!(" ({} of {})", kinds.len(), chain.bones.len());
+    }
+    text
+}
+
+/// Numbers of colliders, runs of them by their ends.
+fn indices(list: &[usize]) -> String {
+    let mut sorted = list.to_vec();
+    sorted.sort_unstable();
+    let runs = sorted.chunk_by(|a, b| a + 1 == *b);
+    let run = |run: &[usize]| match run {
+        [one] => one.to_string(),
+        [first, .., last] => format!("{first}-{last}"),
+        [] => String::new(),
+    };
+    let text = runs.map(run).collect::<Vec<_>>().join(", ");
+    if text.is_empty() { "-".to_owned() } else { text }
 }
 
 /// Joints that by the names of a rig without springs could swing and that no body of its ragdoll moves, as advice; nothing where there are
@@ -148,10 +287,42 @@ fn limit_name(kind: LimitKind) -> &'static str {
     }
 }
 
-fn described(shape: &ColliderShape) -> (&'static str, Option<f32>, Side) {
-    match *shape {
-        ColliderShape::Sphere { radius, keeps, .. } => ("sphere", Some(radius), keeps),
-        ColliderShape::Capsule { radius, keeps, .. } => ("capsule", Some(radius), keeps),
-        ColliderShape::Plane { .. } => ("plane", None, Side::Outside),
+/// Angles of a limit, radians.
+fn angles(kind: LimitKind) -> Vec<f32> {
+    match kind {
+        LimitKind::Cone { angle } | LimitKind::Hinge { angle } => vec![angle],
+        LimitKind::Spherical { phi, theta } => vec![phi, theta],
+    }
+}
+
+/// Collider in parts that one shape has and another has not.
+struct Described {
+    name: &'static str,
+    offset: Vec3,
+    tail: Option<Vec3>,
+    normal: Option<Vec3>,
+    radius: Option<f32>,
+    keeps: Side,
+}
+
+impl Described {
+    fn of(shape: &ColliderShape) -> Self {
+        let bare = |name, offset| Self {
+            name,
+            offset,
+            tail: None,
+            normal: None,
+            radius: None,
+            keeps: Side::Outside,
+        };
+        match *shape {
+            ColliderShape::Sphere { offset, radius, keeps } => {
+                Self { radius: Some(radius), keeps, ..bare("sphere", offset) }
+            }
+            ColliderShape::Capsule { offset, tail, radius, keeps } => {
+                Self { tail: Some(tail), radius: Some(radius), keeps, ..bare("capsule", offset) }
+            }
+            ColliderShape::Plane { offset, normal } => Self { normal: Some(normal), ..bare("plane", offset) },
+        }
     }
 }

@@ -3,54 +3,18 @@
 use crate::contract::check_keys;
 use crate::sinew::{Folder, glb, gltf_files, shared_data, sinew};
 use serde_json::{Value, json};
-use sinew::anim::springs::ColliderShape;
-use sinew::anim::{Clip, Property, Rig};
+use sinew::anim::springs::{ColliderShape, LimitKind, Side};
+use sinew::anim::{Clip, Property, Rig, SpringBone, SpringChain, SpringCollider, SpringLimit, Springs};
+use sinew::formats::gltf::SpringFormat;
 use sinew::formats::{ReadOptions, load_gltf};
-use sinew::math::Rotation;
+use sinew::math::{Random, Rotation, Vec3};
 use sinew_scenes::maned::{HAIR, maned_rig};
+use sinew_scenes::mannequin::mannequin;
 
-/// The springs of a rig, as `VRMC_springBone`.
-fn extension(rig: &Rig) -> Value {
-    let collider = |collider: &sinew::anim::SpringCollider| {
-        let ColliderShape::Sphere { offset, radius, .. } = collider.shape else { panic!("a ball") };
-        json!({"node": collider.joint, "shape": {"sphere": {"offset": offset.to_array(), "radius": radius}}})
-    };
-    let spring = |chain: &sinew::anim::SpringChain| {
-        let joint = |bone: &sinew::anim::SpringBone| {
-            json!({"node": bone.joint, "stiffness": bone.stiffness, "gravityPower": -bone.gravity.y,
-                "dragForce": bone.drag, "hitRadius": bone.radius})
-        };
-        let mut joints: Vec<Value> = chain.bones.iter().map(joint).collect();
-        joints.push(json!({"node": chain.bones.last().expect("it has some").joint + 1}));
-        json!({"name": chain.name, "joints": joints, "colliderGroups": [0]})
-    };
-    let springs = &rig.springs;
-    json!({
-        "specVersion": "1.0",
-        "colliders": springs.colliders.iter().map(collider).collect::<Vec<_>>(),
-        "colliderGroups": [{"colliders": [0]}],
-        "springs": springs.chains.iter().map(spring).collect::<Vec<_>>(),
-    })
-}
+#[path = "../../../sinew_ragdoll/tests/it/springs/avatar.rs"]
+mod avatar;
 
-/// The mannequin with hair, as a VRM.
-fn avatar() -> Vec<u8> {
-    let rig = maned_rig(&HAIR);
-    let bytes = glb(&rig, &[]);
-    let length = u32::from_le_bytes(bytes[12..16].try_into().expect("four bytes")) as usize;
-    let mut document: Value = serde_json::from_slice(&bytes[20..20 + length]).expect("JSON");
-    document["extensions"] = json!({ "VRMC_springBone": extension(&rig) });
-    let mut text = document.to_string();
-    text += &" ".repeat(text.len().next_multiple_of(4) - text.len());
-    let rest = &bytes[20 + length..];
-    let mut vrm = b"glTF\x02\0\0\0".to_vec();
-    vrm.extend((20 + text.len() + rest.len()).to_le_bytes()[..4].iter());
-    vrm.extend(text.len().to_le_bytes()[..4].iter());
-    vrm.extend(b"JSON");
-    vrm.extend(text.as_bytes());
-    vrm.extend(rest);
-    vrm
-}
+use avatar::{Calming, random_avatar, strands, vrm};
 
 /// Largest turn of a hair's joint in a clip, radians.
 fn swings(clip: &Clip, rig: &Rig) -> f32 {
@@ -67,17 +31,18 @@ fn swings(clip: &Clip, rig: &Rig) -> f32 {
 #[test]
 fn an_avatars_hair_moves_in_its_bake() {
     let folder = Folder::new("springs");
-    let file = folder.file("avatar.vrm", avatar());
+    let file = folder.file("avatar.vrm", vrm(&maned_rig(&HAIR), SpringFormat::Vrm1));
     let object = sinew(&["inspect", &file, "--json"]).json();
     check_keys("inspect", &object);
     assert_eq!(object["springs"][0]["name"], "hair_back");
     assert_eq!(object["springs"][0]["joints"].as_array().map(Vec::len), Some(5));
     assert_eq!(
         object["spring_colliders"][0],
-        json!({"joint": "head", "shape": "sphere", "radius": 0.09, "inside": false})
+        json!({"joint": "head", "shape": "sphere", "offset": [0.0, 0.1, 0.0], "tail": null, "normal": null,
+            "radius": 0.09, "inside": false})
     );
     let text = sinew(&["inspect", &file]).stdout;
-    assert!(text.contains("Springs, 1 collider") && text.contains("hair_left"), "{text}");
+    assert!(text.contains("Springs (VRM 1): 3 chains of 13 bones") && text.contains("hair_left"), "{text}");
 
     let out = folder.path("fall.vrm");
     let bake = |more: &[&str]| {
@@ -96,6 +61,142 @@ fn an_avatars_hair_moves_in_its_bake() {
     folder.file("avatar.ragdoll.json", r#"{"sinew":"ragdoll-settings","version":1,"springs":"none"}"#);
     assert_eq!(bake(&[]).0["bones"], 0);
     assert_eq!(bake(&["--guess-springs"]).0["bones"], 13, "what the file states goes before names");
+}
+
+/// Two strands with all that a file can say, and what `inspect` is to say of them.
+fn stated(rig: &mut Rig) {
+    let hair = strands(rig);
+    let bone = |strand: usize, link: usize| SpringBone {
+        joint: hair[strand][link],
+        tail: rig.joints[hair[strand][link + 1]].rest.translation,
+        ..SpringBone::default()
+    };
+    let limited = |kind| Some(SpringLimit { kind, rotation: Rotation::IDENTITY });
+    let cone = |degrees: f32| limited(LimitKind::Cone { angle: degrees.to_radians() });
+    let down = Vec3::NEG_Y;
+    let first = vec![
+        SpringBone {
+            stiffness: 2.0,
+            gravity: down * 0.5,
+            drag: 0.4,
+            radius: 0.02,
+            limit: cone(60.0),
+            ..bone(0, 0)
+        },
+        SpringBone {
+            stiffness: 1.0,
+            gravity: down * 0.25,
+            drag: 0.4,
+            radius: 0.01,
+            limit: cone(30.0),
+            ..bone(0, 1)
+        },
+        SpringBone { stiffness: 0.5, drag: 0.4, radius: 0.01, ..bone(0, 2) },
+    ];
+    let turn = limited(LimitKind::Spherical { phi: 1.0, theta: 0.5 });
+    let second = vec![SpringBone { gravity: Vec3::X * 0.3, limit: turn, ..bone(1, 0) }];
+    let head = rig.joints[hair[0][0]].parent.expect("it hangs on the head");
+    let ball = ColliderShape::Sphere { offset: Vec3::Y * 0.1, radius: 0.09, keeps: Side::Outside };
+    let (offset, tail) = (Vec3::ZERO, Vec3::Y * 0.5);
+    let shapes = [
+        ball,
+        ColliderShape::Capsule { offset, tail, radius: 0.25, keeps: Side::Inside },
+        ColliderShape::Plane { offset: Vec3::Z * -0.5, normal: Vec3::Z },
+    ];
+    let chain = |name: &str, bones, center, colliders: &[usize]| SpringChain {
+        name: name.to_owned(),
+        bones,
+        center,
+        colliders: colliders.to_vec(),
+        hits_body: false,
+    };
+    rig.springs = Springs {
+        chains: vec![chain("braid", first, Some(head), &[0, 1, 2]), chain("", second, None, &[0, 2])],
+        colliders: shapes.map(|shape| SpringCollider { joint: head, shape }).to_vec(),
+    };
+}
+
+/// Every setting of every joint is told, for people each as a number or a range.
+#[test]
+fn inspect_tells_all_settings_of_springs() {
+    let folder = Folder::new("settings");
+    let mut rig = mannequin().rig;
+    stated(&mut rig);
+    let file = folder.file("avatar.vrm", vrm(&rig, SpringFormat::Vrm1));
+    let text = sinew(&["inspect", &file]).stdout;
+    let row = |with: &str| {
+        let line =
+            text.lines().find(|line| line.contains(with)).unwrap_or_else(|| panic!("no {with}: {text}"));
+        line.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect::<Vec<_>>()
+    };
+    assert!(text.contains("Springs (VRM 1): 2 chains of 4 bones"), "{text}");
+    assert_eq!(
+        row("  braid "),
+        [
+            "braid",
+            "strand_0_0 to strand_0_2",
+            "3",
+            "0.5 to 2",
+            "0 to 0.5",
+            "0.4",
+            "0.01 to 0.02",
+            "cone 30 to 60° (2 of 3)",
+            "head",
+            "0-2"
+        ]
+    );
+    assert_eq!(
+        row("  -  "),
+        [
+            "-",
+            "strand_1_0",
+            "1",
+            "1",
+            "0.3 along (1, 0, 0)",
+            "0.5",
+            "0",
+            "spherical 57.3° × 28.65°",
+            "-",
+            "0, 2"
+        ]
+    );
+    assert_eq!(row("capsule"), ["1", "head", "capsule, inside", "0.25", "(0, 0, 0) to (0, 0.5, 0)"]);
+    assert_eq!(row("plane"), ["2", "head", "plane", "-", "(0, 0, -0.5), normal (0, 0, 1)"]);
+    let object = sinew(&["inspect", &file, "--json"]).json();
+    check_keys("inspect", &object);
+    assert_eq!(
+        object["springs"][0]["bones"][2],
+        json!({"joint": "strand_0_2", "tail": [0.0, -0.06, -0.02], "stiffness": 0.5, "gravity": [0.0, 0.0, 0.0],
+            "drag": 0.4, "radius": 0.01, "limit": null, "limit_deg": null})
+    );
+    assert_eq!(object["springs"][1]["bones"][0]["limit_deg"], json!([57.29578, 28.64789]));
+}
+
+/// Of avatars with anything in them, `inspect` tells as many bones as the reader reads, for either version.
+#[test]
+fn inspect_tells_springs_of_both_versions() {
+    let folder = Folder::new("versions");
+    let mut rig = mannequin().rig;
+    let hair = strands(&mut rig);
+    let mut random = Random::new(8);
+    let kinds = [(SpringFormat::Vrm1, Calming::Soon, 54), (SpringFormat::Vrm0, Calming::Late, 66)];
+    for (format, calming, bones) in kinds {
+        rig.springs = random_avatar(&rig, &hair, calming, &mut random);
+        let file = folder.file("avatar.vrm", vrm(&rig, format));
+        let object = sinew(&["inspect", &file, "--json"]).json();
+        check_keys("inspect", &object);
+        assert_eq!(object["spring_format"], format.name());
+        let told = object["springs"].as_array().expect("chains").iter();
+        let told: usize = told.map(|chain| chain["bones"].as_array().map_or(0, Vec::len)).sum();
+        assert_eq!((told, object["springs"].as_array().map(Vec::len)), (bones, Some(12)));
+        assert!(sinew(&["inspect", &file]).stdout.contains(&format!("Springs ({})", format.name())));
+    }
+    rig.springs = Springs::default();
+    let none = folder.file("none.vrm", vrm(&rig, SpringFormat::Vrm0));
+    let text = sinew(&["inspect", &none]).stdout;
+    assert!(text.contains("Springs (VRM 0): none has a joint to swing"), "{text}");
+    let bare = folder.file("bare.glb", glb(&rig, &[]));
+    assert_eq!(sinew(&["inspect", &bare, "--json"]).json()["spring_format"], Value::Null);
 }
 
 #[test]

@@ -63,6 +63,7 @@ pub fn read_fbx_with(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<
         format: MotionFormat::Fbx,
         generator: scene.metadata.creator.to_string(),
         extensions: Vec::new(),
+        spring_format: None,
         rig,
         events: vec![Vec::new(); clips.len()],
         clips,

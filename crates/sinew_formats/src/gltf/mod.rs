@@ -40,6 +40,7 @@ pub use khr::{KhrFile, write_khr};
 pub(crate) use material::{MAX_DECODED, decode_picture};
 #[cfg(feature = "fbx")]
 pub(crate) use mesh::strongest_four;
+pub use springs::SpringFormat;
 pub use write::{write_gltf, write_motion};
 
 use crate::container::json::{self, At};
@@ -111,6 +112,11 @@ impl Document {
     pub fn extensions(&self) -> Vec<&str> {
         let used = self.json["extensionsUsed"].as_array();
         used.into_iter().flatten().filter_map(Value::as_str).collect()
+    }
+
+    /// Format that the springs of the rig are stated in; `None` where the file states none.
+    pub fn spring_format(&self) -> Option<SpringFormat> {
+        SpringFormat::of(&self.json)
     }
 }
 

@@ -4,6 +4,7 @@ use super::scene::Scene;
 use super::source::Source;
 use crate::container::json::At;
 use crate::error::Result;
+use serde_json::Value;
 use sinew_anim::springs::{ColliderShape, LimitKind, Side};
 use sinew_anim::{JointIdx, SpringBone, SpringChain, SpringCollider, SpringLimit, Springs};
 use sinew_anim::{local_to_model, rest_pose};
@@ -18,6 +19,35 @@ const VIRTUAL_TAIL: f32 = 0.07;
 const MOST_WARNINGS: usize = 16;
 /// Bytes that a reference to a collider takes, against the file's size.
 const REFERENCE: usize = size_of::<usize>();
+
+/// Format that a file states its springs in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpringFormat {
+    /// `secondaryAnimation` of VRM 0.
+    Vrm0,
+    /// `VRMC_springBone` of VRM 1.
+    Vrm1,
+}
+
+impl SpringFormat {
+    /// That of a glTF's JSON; `None` where it states no springs. Of both, the newer one is read.
+    pub(super) fn of(json: &Value) -> Option<Self> {
+        let extensions = json.get("extensions")?;
+        let stated = |at: Option<&Value>| at.is_some_and(|at| !at.is_null());
+        if stated(extensions.get(VERSION_1)) {
+            return Some(Self::Vrm1);
+        }
+        stated(extensions.get("VRM")?.get("secondaryAnimation")).then_some(Self::Vrm0)
+    }
+
+    /// Name for people: `VRM 0`, `VRM 1`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vrm0 => "VRM 0",
+            Self::Vrm1 => "VRM 1",
+        }
+    }
+}
 
 /// Springs of a file; `warnings` gets a line for what is left out of them.
 pub(super) fn read(source: &Source<'_>, scene: &Scene, warnings: &mut Vec<String>) -> Result<Springs> {

@@ -17,7 +17,7 @@ pub use format::MotionFormat;
 use crate::bvh::{BvhOptions, read_bvh};
 use crate::deepmimic::{DeepMimicCharacter, read_deepmimic, read_deepmimic_character};
 use crate::error::{Error, Result};
-use crate::gltf::{ReadOptions, Resolver, read_gltf};
+use crate::gltf::{ReadOptions, Resolver, SpringFormat, read_gltf};
 use crate::jolt::read_jolt_ragdoll;
 use sinew_anim::{Clip, ClipEvent, LocalTransform, Rig};
 
@@ -41,6 +41,8 @@ pub struct MotionFile {
     pub generator: String,
     /// Names of the extensions that a glTF uses.
     pub extensions: Vec<String>,
+    /// Format that the springs of the rig are stated in; `None` where the file states none.
+    pub spring_format: Option<SpringFormat>,
     /// Joints, with skins and meshes where the format has them.
     pub rig: Rig,
     /// Clips in file order.
@@ -100,6 +102,7 @@ fn bare(format: MotionFormat, rig: Rig) -> MotionFile {
         format,
         generator: String::new(),
         extensions: Vec::new(),
+        spring_format: None,
         rig,
         clips: Vec::new(),
         events: Vec::new(),
@@ -125,6 +128,7 @@ fn of_gltf(
     Ok(MotionFile {
         generator: document.generator().to_owned(),
         extensions: document.extensions().into_iter().map(str::to_owned).collect(),
+        spring_format: document.spring_format(),
         clips: document.clips,
         events: document.events,
         notes,

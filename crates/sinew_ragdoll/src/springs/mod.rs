@@ -18,7 +18,8 @@
 //! x(ρ) = x + v ρ + (x − x₋₁ − v) d (1 − d^ρ) / (1 − d),      v = TICK · force / (1 − d)
 //! ```
 //!
-//! which is the tick itself for `ρ = 1`. Nothing of it is kept, so errors do not add up: the path is the same at 30 and 240 steps
+//! which is the tick itself for `ρ = 1`. What length, limits and colliders do to the tip in the whole tick is part of its force: a tip that
+//! they keep at rest is shown at rest, also where it cannot get out of them. Nothing of it is kept, so errors do not add up: the path is the same at 30 and 240 steps
 //! a second but for what lies between two poses (ADR 0020).
 //!
 //! Springs are light: they take their motion from the character and give none back.

@@ -6,7 +6,7 @@ use super::rig::{Bone, SpringRig};
 use super::tuning::{ALIKE, SLIGHT_DRAG, SNAP};
 use sinew_anim::LocalTransform;
 use sinew_math::trig::pow;
-use sinew_math::{Affine, Mat3, Rotation, Transform, Vec3, direction, max, normalize_or};
+use sinew_math::{Affine, Mat3, Rotation, Transform, Vec3, direction, max, min, normalize_or};
 use sinew_physics::{BodyId, World};
 
 /// Most ticks of one step: what takes longer than a second at once starts over from its last second.
@@ -220,11 +220,13 @@ impl SpringSwing {
             axis,
             bone,
         };
-        let free = tip + flight(way, force * TICK, bone.drag, rho);
-        let mut next = held.hold(free);
-        if rho > 0.0 {
-            next = self.push_out(step, meets, index, &held, next);
-        }
+        let around = Around { swing: self, step, meets, index, held: &held };
+        let mut next = if rho > 0.0 {
+            let whole = around.tick(tip, way, force * TICK);
+            if rho < 1.0 { around.part(tip, way, whole, rho) } else { whole }
+        } else {
+            held.hold(tip)
+        };
         let mut to = normalize_or(held.joint_from_world * (next - joint.translation), bone.axis);
         if !(next.is_finite() && to.is_finite()) {
             // What numbers cannot hold starts over at rest.
@@ -238,30 +240,59 @@ impl SpringSwing {
         }
         (rest * Rotation::from_arc(bone.axis, to)).normalize()
     }
+}
 
-    /// Out of every collider, one after the other.
-    fn push_out(
-        &self,
-        step: &SpringStep<'_>,
-        meets: Option<Surroundings<'_>>,
-        index: usize,
-        held: &Held<'_>,
-        mut next: Vec3,
-    ) -> Vec3 {
-        let (rig, bone) = (step.rig, held.bone);
+/// A bone with all that holds its tip or pushes it.
+struct Around<'a> {
+    swing: &'a SpringSwing,
+    step: &'a SpringStep<'a>,
+    meets: Option<Surroundings<'a>>,
+    index: usize,
+    held: &'a Held<'a>,
+}
+
+impl Around<'_> {
+    /// Place of the tip a tick on, from where and on which way it is, pushed by `push` a tick.
+    fn tick(&self, tip: Vec3, way: Vec3, push: Vec3) -> Vec3 {
+        let [keeps, pushed] = flight(self.held.bone.drag, 1.0);
+        self.push_out(self.held.hold(tip + (way * keeps + push * pushed)), None)
+    }
+
+    /// Place of the tip the share `rho` of a tick on, which leads to `whole`: what holds and pushes it acts as evenly in time as its spring
+    /// does, so that a tip at rest is where it is. Colliders let it as deep into them as they let it at the end of the tick.
+    fn part(&self, tip: Vec3, way: Vec3, whole: Vec3, rho: f32) -> Vec3 {
+        let drag = self.held.bone.drag;
+        let acts = whole - tip - way * flight(drag, 1.0)[0];
+        let [keeps, pushed] = flight(drag, rho);
+        self.push_out(self.held.hold(tip + (way * keeps + acts * pushed)), Some(whole))
+    }
+
+    /// Out of every collider, one after the other; where a place is given, only as far as that one is.
+    fn push_out(&self, mut next: Vec3, as_far_as: Option<Vec3>) -> Vec3 {
+        let (rig, bone) = (self.step.rig, self.held.bone);
+        let depth = |gap: &dyn Fn(Vec3) -> Gap| as_far_as.map_or(0.0, |there| min(gap(there).distance, 0.0));
         for &collider in &rig.chains[bone.chain].colliders {
             let collider = &rig.colliders[collider];
-            next = held.out_of(gap(&collider.shape, &self.at[collider.node], next, bone.radius), next);
+            let gap = |tip| gap(&collider.shape, &self.swing.at[collider.node], tip, bone.radius);
+            next = self.held.out_of(gap(next), depth(&gap), next);
         }
-        for (body, (shape, frame)) in rig.bodies.iter().zip(step.bodies).enumerate() {
-            if rig.meets[index] >> body & 1 == 1 {
-                let (distance, direction) = shape.signed_distance(frame, next);
-                next = held.out_of(Gap { direction, distance: distance - bone.radius }, next);
+        for (body, (shape, frame)) in rig.bodies.iter().zip(self.step.bodies).enumerate() {
+            if rig.meets[self.index] >> body & 1 == 1 {
+                let gap = |tip| {
+                    let (distance, direction) = shape.signed_distance(frame, tip);
+                    Gap { direction, distance: distance - bone.radius }
+                };
+                next = self.held.out_of(gap(next), depth(&gap), next);
             }
         }
+        let Some(meets) = self.meets else { return next };
+        let free = Gap { direction: Vec3::Y, distance: 0.0 };
         for _ in 0..PUSHES {
-            match meets.and_then(|around| around.gap(next, bone.radius)) {
-                Some(gap) if gap.distance < 0.0 => next = held.out_of(gap, next),
+            match meets.gap(next, bone.radius) {
+                Some(gap) if gap.distance < 0.0 => {
+                    let depth = depth(&|tip| meets.gap(tip, bone.radius).unwrap_or(free));
+                    next = self.held.out_of(gap, depth, next);
+                }
                 _ => break,
             }
         }
@@ -295,23 +326,24 @@ impl Held<'_> {
         from + direction * self.length
     }
 
-    fn out_of(&self, gap: Gap, tip: Vec3) -> Vec3 {
-        if gap.distance < 0.0 { self.hold(tip - gap.direction * gap.distance) } else { tip }
+    /// Out of a collider until it is no deeper in it than `depth`, ≤ 0.
+    fn out_of(&self, gap: Gap, depth: f32, tip: Vec3) -> Vec3 {
+        let by = gap.distance - depth;
+        if by < 0.0 { self.hold(tip - gap.direction * by) } else { tip }
     }
 }
 
-/// Way of a free tip in the share `rho` of a tick after one in which it went `way`, pushed by `push` a tick.
-fn flight(way: Vec3, push: Vec3, drag: f32, rho: f32) -> Vec3 {
+/// Way of a free tip in the share `rho` of a tick, as shares of its way in the tick before and of what pushes it in a tick.
+fn flight(drag: f32, rho: f32) -> [f32; 2] {
     let keeps = 1.0 - drag;
     if rho == 1.0 {
-        return way * keeps + push;
+        return [keeps, 1.0];
     }
     if drag < SLIGHT_DRAG {
-        return way * (keeps * rho) + push * (0.5 * rho * (rho + 1.0));
+        return [keeps * rho, 0.5 * rho * (rho + 1.0)];
     }
-    let steady = push / drag;
     let slowed = if keeps > 0.0 { keeps * (1.0 - pow(keeps, rho)) / drag } else { 0.0 };
-    steady * rho + (way - steady) * slowed
+    [slowed, (rho - slowed) / drag]
 }
 
 /// Place of a node at a share of the step from the second place to the third, on the parabola through all three; `ratio` is the length
@@ -351,13 +383,17 @@ mod tests {
     fn a_part_of_a_tick_leads_to_the_whole() {
         let (way, push) = (Vec3::new(0.03, -0.01, 0.02), Vec3::new(0.0, 0.016, -0.004));
         for drag in [0.0, 5e-4, 0.01, 0.4, 0.9, 1.0] {
+            let flight = |way: Vec3, push: Vec3, drag, rho| {
+                let [keeps, pushed] = flight(drag, rho);
+                way * keeps + push * pushed
+            };
             let near = flight(way, push, drag, 0.999_999);
             let whole = flight(way, push, drag, 1.0);
             assert!((near - whole).length() < 1e-4 * (1.0 + drag) * 0.1, "drag {drag}: {near} {whole}");
             assert_eq!(flight(way, push, drag, 0.0), Vec3::ZERO);
         }
         // Free flight against drag, closed form: half a tick twice is a tick, where nothing pushes.
-        let half = flight(way, Vec3::ZERO, 0.64, 0.5);
-        assert!((half - way * (0.36 * 0.4 / 0.64)).length() < 1e-8, "{half}");
+        let [half, _] = flight(0.64, 0.5);
+        assert!((half - 0.36 * 0.4 / 0.64).abs() < 1e-7, "{half}");
     }
 }

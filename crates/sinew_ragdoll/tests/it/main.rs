@@ -3,6 +3,7 @@
 mod actor;
 mod bake;
 mod blows;
+mod borne;
 mod build;
 mod build_limits;
 mod character;

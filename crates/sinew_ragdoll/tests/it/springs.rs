@@ -1,15 +1,20 @@
 //! Springs against VRM's reference in double precision, at other frame rates, at rest, and on a character's way through its states.
 
 use sinew_anim::springs::{ColliderShape, LimitKind, Side};
-use sinew_anim::{Rig, SpringBone, SpringCollider, SpringLimit, Springs, rest_pose};
+use sinew_anim::{Rig, SpringBone, SpringCollider, SpringLimit, Springs, analyze, rest_pose};
+use sinew_formats::gltf::SpringFormat;
+use sinew_formats::{ReadOptions, no_files, read_gltf};
 use sinew_math::{Affine, Random, Reader, Rotation, Transform, Vec3, Writer, trig};
 use sinew_physics::{BodyDef, FieldDef, FieldKind, Shape, Wind, World, WorldDef};
-use sinew_ragdoll::{Character, CharacterDef, SpringStep, SpringSwing, State};
+use sinew_ragdoll::{BuildOptions, Character, CharacterDef, SpringStep, SpringSwing, State, build};
 use sinew_scenes::maned::{HAIR, maned, maned_rig};
+use sinew_scenes::mannequin::mannequin;
 use std::sync::Arc;
 
+mod avatar;
 mod reference;
 
+use avatar::{Calming, random_avatar, strands, vrm};
 use reference::Reference;
 
 /// A head that starts to walk, sways and turns: pose of the character at a time. It takes a third of a second to get going, for what starts
@@ -215,6 +220,103 @@ fn at_rest_nothing_twitches_for_a_minute() {
         }
         assert!(most < 2e-3, "stiffness {stiffness}, drag {drag}: turned by {most} rad");
     }
+}
+
+/// Most that each tip moves from frame to frame at rest, and from where it was in the first to any time of a minute, metres: after a second on
+/// the way and five to settle.
+fn unrest(def: &CharacterDef, rate: f32, settling: f32) -> Vec<[f32; 2]> {
+    let pose = rest_pose(&def.rig);
+    let mut swing = SpringSwing::new();
+    let (moving, settling) = (rate as u32, (settling * rate) as u32);
+    let mut settled = Vec::new();
+    let mut before: Vec<Vec3> = Vec::new();
+    let mut most = Vec::new();
+    for frame in 0..=moving + settling + (60.0 * rate) as u32 {
+        let place = place_at(frame.min(moving) as f32 / rate);
+        let root = def.mapping().world_from_model(place);
+        swing.step(&still(def, &pose, root, 1.0 / rate));
+        let now = tips(def, &pose, root, &swing);
+        if frame == moving + settling {
+            settled.clone_from(&now);
+            most = vec![[0.0; 2]; now.len()];
+        } else if frame > moving + settling {
+            for (index, &tip) in now.iter().enumerate() {
+                assert!(tip.is_finite());
+                let [step, way] = &mut most[index];
+                *step = sinew_math::max(*step, (tip - before[index]).length());
+                *way = sinew_math::max(*way, (tip - settled[index]).length());
+            }
+        }
+        before = now;
+    }
+    most
+}
+
+/// Avatars as files have them: strands of three to six bones, stiff and soft, with and without gravity, with every collider and limit, which
+/// they touch at rest, in the world's space or a joint's. Of six, two have hardly any stiffness or drag, and swing for minutes before.
+#[test]
+fn no_tip_of_an_avatar_twitches_or_drifts_for_a_minute() {
+    let mut rig = mannequin().rig;
+    let hair = strands(&mut rig);
+    let analysis = analyze(&rig).expect("the mannequin has a skin");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
+    let mut def = CharacterDef::new(rig.clone(), ragdoll, &analysis.bind_model);
+    let (mut random, mut worst) = (Random::new(60), [0.0_f32; 2]);
+    for case in 0..6 {
+        let (calming, settling) = if case % 3 == 2 { (Calming::Late, 180.0) } else { (Calming::Soon, 5.0) };
+        let format = if case == 3 { SpringFormat::Vrm0 } else { SpringFormat::Vrm1 };
+        rig.springs = random_avatar(&rig, &hair, calming, &mut random);
+        let file = read_gltf(&vrm(&rig, format), ReadOptions::default(), &mut no_files).expect("a VRM");
+        def.set_springs(&file.rig.springs);
+        let springs = def.springs().source();
+        assert_eq!(springs.bone_count(), if format == SpringFormat::Vrm0 { 66 } else { 54 });
+        for rate in [30.0, 60.0, 240.0] {
+            let most = unrest(&def, rate, settling);
+            let bones =
+                springs.chains.iter().flat_map(|chain| chain.bones.iter().map(move |bone| (chain, bone)));
+            for ((chain, bone), [step, way]) in bones.zip(most) {
+                worst = [sinew_math::max(worst[0], step), sinew_math::max(worst[1], way)];
+                let colliders: Vec<_> =
+                    chain.colliders.iter().map(|&index| springs.colliders[index].shape).collect();
+                assert!(
+                    step < 1e-4 && way < 1e-3,
+                    "case {case} at {rate} a second, {}: {step} m a frame, {way} m in a minute; \
+                     {bone:?}, center {:?}, {colliders:?}",
+                    chain.name,
+                    chain.center
+                );
+            }
+        }
+    }
+    println!("at most {:.1e} m from frame to frame, {:.1e} m in a minute", worst[0], worst[1]);
+}
+
+/// At 240 frames a second no tip that is shown between two ticks is deeper in the head, which turns and nods, than at a tick.
+#[test]
+fn between_ticks_colliders_hold_as_at_ticks() {
+    let mut def = maned(&HAIR);
+    let mut springs = def.springs().source().clone();
+    let ColliderShape::Sphere { offset, .. } = springs.colliders[0].shape else { panic!("a ball") };
+    // As large as that all three strands lie on it, but for their first bones.
+    let radius = 0.13;
+    springs.colliders[0].shape = ColliderShape::Sphere { offset, radius, keeps: Side::Outside };
+    def.set_springs(&springs);
+    let ways = run(&def, 240.0, 3.0);
+    let (mut depth, mut touched) = ([0.0_f32; 2], 0);
+    for (frame, tips) in (1_u16..).zip(&ways) {
+        let mut model = Vec::new();
+        let root = Affine::from(place_at(f32::from(frame) / 240.0));
+        sinew_anim::local_to_model(&def.rig, &rest_pose(&def.rig), &root, &mut model);
+        let middle = model[springs.colliders[0].joint].point(offset);
+        for tip in tips {
+            let deep = radius + HAIR.radius - (*tip - middle).length();
+            touched += usize::from(deep > -1e-4);
+            let part = usize::from(frame % 4 != 0);
+            depth[part] = sinew_math::max(depth[part], deep);
+        }
+    }
+    println!("{touched} touched; {:.2e} m deep at ticks, {:.2e} m between", depth[0], depth[1]);
+    assert!(touched > 1000 && depth[1] < depth[0] + 1e-3, "{touched} touched, {depth:?} m deep");
 }
 
 #[test]

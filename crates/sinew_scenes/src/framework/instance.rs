@@ -2,6 +2,7 @@
 
 use super::actors::Figure;
 use super::camera_hint::CameraHint;
+use super::curve::Curve;
 use super::metric::{Expected, Metric};
 use core::time::Duration;
 use sinew::math::{ReadError, Reader, Vec3, Writer, max};
@@ -51,6 +52,11 @@ pub trait Script: Send {
 
     /// Draws what a picture shows beside the world, such as what it asks the world for.
     fn draw(&self, _world: &World, _out: &mut dyn DebugDraw) {}
+
+    /// Curves that are compared, each in a colour of its own.
+    fn curves(&self) -> Vec<Curve> {
+        Vec::new()
+    }
 
     /// Characters that a picture shows by their skins.
     fn figures(&self) -> Vec<Figure<'_>> {
@@ -115,6 +121,11 @@ impl Instance {
     /// Draws what a picture shows beside the world.
     pub fn draw(&self, out: &mut dyn DebugDraw) {
         self.script.draw(&self.world, out);
+    }
+
+    /// Curves that are compared, each in a colour of its own.
+    pub fn curves(&self) -> Vec<Curve> {
+        self.script.curves()
     }
 
     /// Characters that a picture shows by their skins.

@@ -2,6 +2,7 @@
 
 pub(crate) mod actors;
 pub(crate) mod camera_hint;
+pub(crate) mod curve;
 pub(crate) mod flight;
 pub(crate) mod instance;
 pub(crate) mod metric;

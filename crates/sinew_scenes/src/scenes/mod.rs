@@ -24,6 +24,7 @@ mod shows;
 
 pub use crate::framework::actors::Figure;
 pub use crate::framework::camera_hint::{CameraHint, Trails};
+pub use crate::framework::curve::Curve;
 pub use crate::framework::instance::{Instance, Part, Script};
 pub use crate::framework::metric::{Expected, Metric};
 pub use crate::framework::scene::{Chapter, Scene};

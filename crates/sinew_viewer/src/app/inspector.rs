@@ -5,6 +5,7 @@ use crate::layers::Layer;
 use crate::session::Subject;
 use crate::stage_times::STAGES;
 use egui::{Color32, RichText, ScrollArea, Sense, Slider, Stroke};
+use sinew_picture::draw;
 use sinew_scenes::scenes::{Domain, Expected, Metric};
 use std::collections::VecDeque;
 
@@ -95,7 +96,21 @@ fn settings(app: &mut App, ui: &mut egui::Ui) {
     }
 }
 
+/// Names of the curves that a scene compares, in their colours.
+fn legend(app: &App, ui: &mut egui::Ui) {
+    for (number, curve) in app.session.instance().curves().into_iter().enumerate() {
+        let [r, g, b] = draw::curve_color(number);
+        let color = egui::Rgba::from_rgb(r, g, b);
+        ui.horizontal(|ui| {
+            let (place, _) = ui.allocate_exact_size(egui::vec2(14.0, 10.0), Sense::hover());
+            ui.painter().rect_filled(place, 2.0, Color32::from(color));
+            ui.label(curve.name);
+        });
+    }
+}
+
 fn figures(app: &App, ui: &mut egui::Ui) {
+    legend(app, ui);
     let metrics = app.session.metrics();
     // What a scene expects holds once it has run its course.
     let is_over = match app.session.subject() {

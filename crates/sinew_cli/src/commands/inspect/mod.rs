@@ -6,12 +6,13 @@ use crate::failure::Result;
 use crate::input::motion::Motion;
 use crate::input::settings_arg::assumed;
 use crate::report::ragdoll_report::axis_name;
-use crate::report::springs_report::{colliders_json, springs_json, springs_table};
+use crate::report::springs_report::{colliders_json, springs_json, springs_text};
 use crate::report::table::{Table, counted, shown};
 use crate::report::{Report, number};
 use clips::{ClipFacts, clip_table, event_table};
 use serde_json::{Value, json};
 use sinew::formats::MotionOptions;
+use sinew::formats::gltf::SpringFormat;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -21,6 +22,7 @@ use std::path::PathBuf;
 Example:
   sinew inspect character.glb
   sinew inspect walk.bvh
+  sinew inspect avatar.vrm       # its springs and their settings among the rest
   sinew inspect character.glb --json | jq '.joints[] | select(.role == \"hips\")'")]
 pub struct Inspect {
     /// A glTF, GLB, VRM, VRMA, BVH, FBX or DeepMimic file; it need not hold a character
@@ -63,6 +65,7 @@ impl Content<'_> {
             "humanoid": analysis.map(|analysis| analysis.humanoid),
             "joints": joints,
             "clips": self.clips.iter().map(ClipFacts::to_json).collect::<Vec<_>>(),
+            "spring_format": file.spring_format.map(SpringFormat::name),
             "springs": springs_json(&file.rig),
             "spring_colliders": colliders_json(&file.rig),
             "notes": self.notes(),
@@ -111,11 +114,7 @@ impl Content<'_> {
             text += "\nEvents\n";
             text += &events.to_text();
         }
-        if !rig.springs.is_empty() {
-            let colliders = counted(rig.springs.colliders.len(), "collider", "colliders");
-            let _ = writeln!(text, "\nSprings, {colliders}");
-            text += &springs_table(rig).to_text();
-        }
+        text += &springs_text(rig, file.spring_format.map(SpringFormat::name));
         if !rig.joints.is_empty() {
             text += "\nJoints\n";
             text += &self.joint_table().to_text();

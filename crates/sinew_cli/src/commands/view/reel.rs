@@ -10,9 +10,9 @@ use sinew::physics::{BodyId, BodyKind, BodyKinds, QueryFilter};
 use sinew_picture::world::{self, Frame, Kinematic, Lines};
 use sinew_picture::{
     Camera, Caption, EncodeError, Image, Line, LineDepth, Movie, PictureFormat, RenderMaterial,
-    RenderSettings, Renderer, Scene, Sky, Sun,
+    RenderSettings, Renderer, Scene, Sky, Sun, draw,
 };
-use sinew_scenes::scenes::{CameraHint, Expected, Figure, Instance, Metric, Trails};
+use sinew_scenes::scenes::{CameraHint, Curve, Expected, Figure, Instance, Metric, Trails};
 
 /// Pictures a second: a whole number of a GIF's hundredths of a second.
 const FPS: u32 = 20;
@@ -165,6 +165,8 @@ impl Take {
     fn lines(&self) -> Lines {
         let mut lines = Lines::default();
         self.run.draw(&mut lines);
+        let curves = self.run.curves();
+        lines.list.extend(draw::curves(curves.iter().map(|curve| &curve.pieces[..])));
         lines
     }
 
@@ -231,7 +233,17 @@ impl Take {
             scale: 1,
             ..Caption::new(text)
         };
-        std::iter::once(head).chain(lines.into_iter().enumerate().map(place)).collect()
+        let legend = |(number, curve): (usize, Curve)| Caption {
+            x: -10,
+            y: 10 + 12 * number as i32,
+            scale: 1,
+            // Paler than the curve, to be read on the plate.
+            color: draw::curve_color(number).map(|part| part + 0.4 * (1.0 - part)),
+            ..Caption::new(curve.name)
+        };
+        let legend = self.run.curves().into_iter().enumerate().map(legend);
+        let lines = lines.into_iter().enumerate().map(place);
+        std::iter::once(head).chain(lines).chain(legend).collect()
     }
 }
 

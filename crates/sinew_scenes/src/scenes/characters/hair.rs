@@ -2,6 +2,7 @@
 
 use crate::framework::actors::{Actor, Cast, Figure, Gone};
 use crate::framework::camera_hint::CameraHint;
+use crate::framework::curve::Curve;
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
 use crate::framework::scene::{Chapter, Scene};
@@ -12,7 +13,7 @@ use crate::parts::floor;
 use sinew::anim::TrackDef;
 use sinew::math::trig::sin;
 use sinew::math::{Affine, Rotation, Transform, Vec3, max};
-use sinew::physics::{DebugDraw, DrawKind, World};
+use sinew::physics::World;
 use sinew::ragdoll::{CharacterDef, SpringStep, SpringSwing};
 use std::sync::Arc;
 
@@ -41,6 +42,8 @@ const TURN: f32 = 0.5;
 const GRAPH: Vec3 = Vec3::new(2.0, 2.3, 0.0);
 const GRAPH_SECOND: f32 = -1.0;
 const GRAPH_METRE: f32 = 1.5;
+/// From one dash of a curve to the next, seconds: a dozen frames of the coarsest.
+const DASH: f32 = 0.4;
 
 fn hair(setup: &Setup<'_>) -> Instance {
     let mut world = setup.world();
@@ -180,14 +183,20 @@ impl Script for Hair {
         CameraHint { direction: Vec3::new(-0.1, 0.12, -1.0), ..CameraHint::default() }
     }
 
-    fn draw(&self, _: &World, out: &mut dyn DebugDraw) {
+    /// The finest curve whole, each coarser one over it in shorter dashes: where they lie on each other, all are seen.
+    fn curves(&self) -> Vec<Curve> {
         let place =
             |&(time, side): &(f32, f32)| GRAPH + Vec3::new(time * GRAPH_SECOND, side * GRAPH_METRE, 0.0);
-        for runner in &self.runners {
-            for pair in runner.curve.windows(2) {
-                out.line(place(&pair[0]), place(&pair[1]), DrawKind::Object);
+        let curve = |(rank, runner): (usize, &Runner)| {
+            let share = (rank + 1) as f32 / RATES.len() as f32;
+            let is_drawn = |pair: &&[(f32, f32)]| (pair[1].0 / DASH - 0.01).rem_euclid(1.0) < share;
+            let pieces = runner.curve.windows(2).filter(is_drawn);
+            Curve {
+                name: format!("{} frames a second", runner.rate),
+                pieces: pieces.map(|pair| [place(&pair[0]), place(&pair[1])]).collect(),
             }
-        }
+        };
+        self.runners.iter().enumerate().rev().map(curve).collect()
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {
