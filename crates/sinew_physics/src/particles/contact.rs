@@ -484,14 +484,22 @@ impl ParticleGroup {
         changed
     }
 
-    /// Solves for the velocities; repeats while contacts open, close, stick or slip, or are still to come: for all particles where springs
-    /// join them, else for those whose own contacts do.
-    pub(super) fn solve_with_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
+    /// Chooses what is to be solved, and enters bends.
+    pub(super) fn prepare_solve(&mut self, h: f32) {
         self.choose_solved(h);
-        let bends_ahead = self.forest.has_trees() && !self.bends.is_empty();
-        if bends_ahead {
+        if self.bends_ahead() {
             self.bend_ahead(h);
         }
+    }
+
+    /// True if bends go into the solve.
+    fn bends_ahead(&self) -> bool {
+        self.forest.has_trees() && !self.bends.is_empty()
+    }
+
+    /// Solves for the velocities; repeats while contacts open, close, stick or slip, or are still to come: for all particles where springs
+    /// join them, else for those whose own contacts do.
+    pub(super) fn settle_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         self.system.load_springs(&self.forest, &self.springs, &self.positions, h);
         self.reactions.fill(Vec3::ZERO);
         let mut unsettled = core::mem::take(&mut self.unsettled);
@@ -525,7 +533,7 @@ impl ParticleGroup {
             }
         }
         self.unsettled = unsettled;
-        if bends_ahead {
+        if self.bends_ahead() {
             for (reaction, bend) in self.reactions.iter_mut().zip(&self.bend_impulses) {
                 *reaction += *bend;
             }

@@ -114,7 +114,9 @@ impl Forest {
         let mut reached: Vec<bool> = holders.iter().map(|&holder| holder == Holder::World).collect();
         let mut in_tree = vec![false; springs.len()];
         let mut frontier = Vec::new();
-        for root in 0..holders.len() as u32 {
+        // What a body gathers as a root is all that the group brings to it.
+        let first_held: Vec<u32> = forest.hubs.iter().map(|hub| hub[0]).collect();
+        for root in first_held.into_iter().chain(0..holders.len() as u32) {
             if reached[root as usize] {
                 continue;
             }
@@ -389,9 +391,9 @@ impl System {
             }
         }
         for hub in &self.hubs {
-            let own = f64::from(hub.merit());
-            sum += own;
-            size += own;
+            let (own, terms) = hub.merit();
+            sum += f64::from(own);
+            size += f64::from(terms);
         }
         for spring in forest.solved_springs() {
             let s = &springs[spring as usize];
@@ -457,6 +459,10 @@ impl System {
                 let hub = forest.hub_of[child];
                 let seen = self.hubs[hub].seen_at(self.points[child]);
                 self.hubs[hub].follow(self.points[child], velocities[child], seen);
+                let on_child =
+                    if springs[link.spring as usize].a == link.child { load.force } else { -load.force };
+                let pull = on_child * h + load.block * velocities[link.parent as usize];
+                self.hubs[hub].add_at(self.points[child], load.block, pull);
                 self.move_hub(forest, child, velocities);
             }
         }
