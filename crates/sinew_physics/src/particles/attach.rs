@@ -1,10 +1,11 @@
 //! Particles that bodies or places in the world hold.
 
-use super::contact::ObstacleBody;
+use super::contact::{Obstacle, ObstacleBody};
 use super::forest::Freedom;
+use super::hub::{Hub, Share};
 use super::{AddedMass, AttachmentTarget, Part, ParticleGroup};
 use crate::id::BodyId;
-use sinew_math::{Sym3, Vec3};
+use sinew_math::{Sym3, Vec3, max};
 
 /// The point that holds an attached particle, in one substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -90,6 +91,56 @@ impl ParticleGroup {
         self.attachment_impulses[k] += impulse;
         added.push(body, anchor.position, impulse);
         impulse
+    }
+
+    /// True if it can be solved together with other groups that one body holds: as trees of springs, in one piece.
+    pub(crate) fn is_joinable(&self) -> bool {
+        self.forest.has_trees() && self.iterations == 1
+    }
+
+    /// Bodies that hold particles of it.
+    pub(crate) fn bodies(&self) -> impl Iterator<Item = BodyId> {
+        self.forest.hubs().iter().filter_map(|hub| self.holder(hub[0]))
+    }
+
+    /// Body that holds a particle.
+    fn holder(&self, particle: u32) -> Option<BodyId> {
+        match self.attachments[self.attachment_of[particle as usize] as usize].target {
+            AttachmentTarget::Body { body, .. } => Some(body),
+            AttachmentTarget::World(_) => None,
+        }
+    }
+
+    /// Forgets what it and others bring to bodies.
+    pub(crate) fn forget_shares(&mut self) {
+        for hub in &mut self.system.hubs {
+            (hub.others, hub.own) = (Share::NONE, Share::NONE);
+        }
+    }
+
+    /// Takes over what another group brings to the bodies that hold both.
+    pub(crate) fn add_shares_of(&mut self, other: &Self) {
+        for k in 0..self.forest.hubs().len() {
+            let body = self.holder(self.forest.hubs()[k][0]);
+            for (hub, held) in other.system.hubs.iter().zip(other.forest.hubs()) {
+                if other.holder(held[0]) == body {
+                    self.system.hubs[k].others.add(&hub.own);
+                }
+            }
+        }
+    }
+
+    /// Forgets what others bring to its bodies.
+    pub(crate) fn forget_others(&mut self) {
+        self.system.hubs.iter_mut().for_each(|hub| hub.others = Share::NONE);
+    }
+
+    /// Solves again what [`begin_substep`](Self::begin_substep) has, with what others bring to its bodies now; the most by which a velocity of a body has changed,
+    /// over what the springs change it by.
+    pub(crate) fn solve_again(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> f32 {
+        self.system.hubs.iter_mut().for_each(Hub::remember);
+        self.settle_contacts(h, obstacles, bodies);
+        self.system.hubs.iter().map(Hub::change).fold(0.0, max)
     }
 
     /// Bodies that hold particles of it, each with the mass that moves along.

@@ -13,7 +13,7 @@ use super::{Part, ParticleGroup};
 use crate::body::material::{ContactMaterial, Material};
 use crate::body::shape::Shape;
 use crate::boxes::Aabb;
-use crate::particles::tuning::DETOUR;
+use crate::particles::tuning::{DETOUR, PINCHING};
 use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
 /// Slower than that, nothing moves, m/s.
@@ -24,6 +24,8 @@ const GRIP_ROUNDS: u32 = 16;
 const LOOSE_ROUNDS: u32 = 8;
 /// Depth at the end of an iteration below which a contact is left to impacts, metres.
 const IMPACT_DEPTH: f32 = 1e-5;
+/// Gap within which a particle is on a surface that nothing moves, metres.
+const WALL_GAP: f32 = 1e-4;
 
 /// The motion of a body that particles may touch. Its velocity changes as they do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -208,7 +210,7 @@ impl Touch {
     }
 
     /// The friction on the particle that goes with an impulse along the normal; the body is pushed the other way.
-    fn rub(&self, normal: f32, response: f32, velocity: Vec3, body: &mut ObstacleBody) -> Vec3 {
+    pub(super) fn rub(&self, normal: f32, response: f32, velocity: Vec3, body: &mut ObstacleBody) -> Vec3 {
         let relative = velocity - self.surface_velocity(body);
         let slip = relative - self.normal * relative.dot(self.normal);
         let along = normalize_or(slip, Vec3::ZERO);
@@ -217,6 +219,13 @@ impl Touch {
         let friction = along * -if holds { stick } else { self.material.friction * normal };
         body.push(self.point, -friction);
         friction
+    }
+
+    /// True if a particle on this surface cannot give way to that of another body, which can.
+    pub fn pinches(&self, other: &Self, bodies: &[ObstacleBody]) -> bool {
+        self.obstacle != other.obstacle
+            && bodies[other.body].inverse_mass > 0.0
+            && self.normal.dot(other.normal) < PINCHING
     }
 
     /// Height of a ball of this radius above the plane that it touches, at the end of the iteration, metres.
@@ -289,6 +298,7 @@ impl ParticleGroup {
         let mut beside = self.near.left_out_from(i, sight);
         let mut distance_now = beside;
         let mut nearest: Option<(usize, Meeting)> = None;
+        let mut wall: Option<(usize, Meeting)> = None;
         let mut clearance = f32::INFINITY;
         for index in self.near.within(i, sight, obstacles.len()) {
             let (o, placed) = (&obstacles[index], &self.placed[index]);
@@ -302,6 +312,10 @@ impl ParticleGroup {
             let gap = distance - radius;
             distance_now = min(distance_now, gap);
             let clear = gap - placed.way_of(position);
+            let fixed = bodies[o.body as usize].inverse_mass == 0.0;
+            if fixed && gap <= WALL_GAP && wall.is_none_or(|(_, best)| gap < best.gap) {
+                wall = Some((index, Meeting { fraction: 0.0, at, normal, gap }));
+            }
             if gap <= reach && nearest.is_none_or(|(_, best)| gap < best.gap) {
                 nearest = Some((index, Meeting { fraction: 0.0, at, normal, gap }));
                 beside = min(beside, clearance);
@@ -310,8 +324,16 @@ impl ParticleGroup {
                 beside = min(beside, clear);
             }
         }
-        self.touches[i] = nearest
-            .map(|(index, meeting)| Touch { beside, ..self.touch(i, h, index, &meeting, obstacles, bodies) });
+        let touch = |(index, meeting)| self.touch(i, h, index, &meeting, obstacles, bodies);
+        let mut touch_of_nearest = nearest.map(touch);
+        // What is on a wall stays there, whatever comes to it from the other side: see `pinch`.
+        if let (Some(near), Some(wall)) = (&mut touch_of_nearest, wall.map(touch))
+            && wall.pinches(near, bodies)
+        {
+            beside = min(beside, clearance);
+            *near = wall;
+        }
+        self.touches[i] = touch_of_nearest.map(|touch| Touch { beside, ..touch });
         self.clearances[i] = min(clearance, beside);
         self.near.note_distance(i, position, distance_now);
     }
@@ -462,14 +484,22 @@ impl ParticleGroup {
         changed
     }
 
-    /// Solves for the velocities; repeats while contacts open, close, stick or slip, or are still to come: for all particles where springs
-    /// join them, else for those whose own contacts do.
-    pub(super) fn solve_with_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
+    /// Chooses what is to be solved, and enters bends.
+    pub(super) fn prepare_solve(&mut self, h: f32) {
         self.choose_solved(h);
-        let bends_ahead = self.forest.has_trees() && !self.bends.is_empty();
-        if bends_ahead {
+        if self.bends_ahead() {
             self.bend_ahead(h);
         }
+    }
+
+    /// True if bends go into the solve.
+    fn bends_ahead(&self) -> bool {
+        self.forest.has_trees() && !self.bends.is_empty()
+    }
+
+    /// Solves for the velocities; repeats while contacts open, close, stick or slip, or are still to come: for all particles where springs
+    /// join them, else for those whose own contacts do.
+    pub(super) fn settle_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         self.system.load_springs(&self.forest, &self.springs, &self.positions, h);
         self.reactions.fill(Vec3::ZERO);
         let mut unsettled = core::mem::take(&mut self.unsettled);
@@ -503,7 +533,7 @@ impl ParticleGroup {
             }
         }
         self.unsettled = unsettled;
-        if bends_ahead {
+        if self.bends_ahead() {
             for (reaction, bend) in self.reactions.iter_mut().zip(&self.bend_impulses) {
                 *reaction += *bend;
             }

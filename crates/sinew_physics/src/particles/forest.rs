@@ -114,7 +114,9 @@ impl Forest {
         let mut reached: Vec<bool> = holders.iter().map(|&holder| holder == Holder::World).collect();
         let mut in_tree = vec![false; springs.len()];
         let mut frontier = Vec::new();
-        for root in 0..holders.len() as u32 {
+        // What a body gathers as a root is all that the group brings to it.
+        let first_held: Vec<u32> = forest.hubs.iter().map(|hub| hub[0]).collect();
+        for root in first_held.into_iter().chain(0..holders.len() as u32) {
             if reached[root as usize] {
                 continue;
             }
@@ -389,9 +391,9 @@ impl System {
             }
         }
         for hub in &self.hubs {
-            let own = f64::from(hub.merit());
-            sum += own;
-            size += own;
+            let (own, terms) = hub.merit();
+            sum += f64::from(own);
+            size += f64::from(terms);
         }
         for spring in forest.solved_springs() {
             let s = &springs[spring as usize];
@@ -447,16 +449,20 @@ impl System {
             }
             let inverse = self.gathered_inertia[root].inverse();
             self.response[root] = constrained(&inverse, &self.freedom[root]);
-            self.settle(root, &inverse, Vec3::ZERO, velocities);
+            velocities[root] = self.velocity(root, &inverse, Vec3::ZERO, velocities);
         }
         for link in forest.links.iter().rev() {
             let (child, load) = (link.child as usize, self.loads[link.spring as usize]);
             let inverse = (self.gathered_inertia[child] + load.block).inverse();
-            self.settle(child, &inverse, load.block * velocities[link.parent as usize], velocities);
+            velocities[child] = self.velocity(child, &inverse, velocities[link.parent as usize], velocities);
             if self.is_in_hub(forest, child) {
                 let hub = forest.hub_of[child];
                 let seen = self.hubs[hub].seen_at(self.points[child]);
                 self.hubs[hub].follow(self.points[child], velocities[child], seen);
+                let on_child =
+                    if springs[link.spring as usize].a == link.child { load.force } else { -load.force };
+                let pull = on_child * h + load.block * velocities[link.parent as usize];
+                self.hubs[hub].add_at(self.points[child], load.block, pull);
                 self.move_hub(forest, child, velocities);
             }
         }
@@ -496,7 +502,7 @@ impl System {
             self.gathered_momentum[i] = self.momentum[i] + self.added_momentum[i];
             let inverse = (self.inertia[i] + self.added_inertia[i]).inverse();
             self.response[i] = constrained(&inverse, &self.freedom[i]);
-            self.settle(i, &inverse, Vec3::ZERO, velocities);
+            velocities[i] = self.velocity(i, &inverse, Vec3::ZERO, velocities);
         }
     }
 
@@ -517,26 +523,46 @@ impl System {
             let inverse = (inertia + block).inverse();
             self.response[child] = constrained(&inverse, &self.freedom[child]);
             let velocity = self.velocity(child, &inverse, Vec3::ZERO, velocities);
-            self.gathered_momentum[parent] += block * velocity;
+            let momentum = self.passed_on(child, &inverse, &block, velocity);
+            self.gathered_momentum[parent] += momentum;
             self.gathered_inertia[parent] += felt_by_parent(&inertia, &inverse, &block, &self.freedom[child]);
         }
     }
 
-    fn settle(&self, i: usize, inverse: &Sym3, pull: Vec3, velocities: &mut [Vec3]) {
-        velocities[i] = self.velocity(i, inverse, pull, velocities);
-    }
-
-    /// Velocity of a particle under the momentum of what hangs below it and the pull of its parent.
-    fn velocity(&self, i: usize, inverse: &Sym3, pull: Vec3, velocities: &[Vec3]) -> Vec3 {
-        let free = || self.response[i] * (self.gathered_momentum[i] + pull);
+    /// Velocity of a particle under the momentum of what hangs below it, on a parent that has a velocity, m/s.
+    ///
+    /// The pull of a stiff spring on what moves along with it is many thousand times their momentum, and its rounding would be as large as that: so it is that of
+    /// what they have more than the parent's velocity gives them.
+    fn velocity(&self, i: usize, inverse: &Sym3, parent: Vec3, velocities: &[Vec3]) -> Vec3 {
+        let free = || {
+            let more = self.gathered_momentum[i] - self.gathered_inertia[i] * parent;
+            parent + self.response[i] * more
+        };
         match self.freedom[i] {
             Freedom::Free => free(),
             Freedom::Along { normal, speed } => {
                 let along = *inverse * normal;
-                free() + along * (speed / normal.dot(along))
+                free() + along * ((speed - normal.dot(parent)) / normal.dot(along))
             }
             Freedom::Fixed => velocities[i],
         }
+    }
+
+    /// Momentum that a child hands on to its parent, kg·m/s: the spring's block times the velocity that it has while the parent rests. Of a stiff spring it is what
+    /// the child does not keep.
+    fn passed_on(&self, child: usize, inverse: &Sym3, block: &Sym3, velocity: Vec3) -> Vec3 {
+        let (inertia, momentum) = (self.gathered_inertia[child], self.gathered_momentum[child]);
+        if self.freedom[child] == Freedom::Fixed || !is_stiff(block, &inertia) {
+            return *block * velocity;
+        }
+        let pushed = match self.freedom[child] {
+            Freedom::Along { normal, speed } => {
+                let along = *inverse * normal;
+                normal * ((speed - along.dot(momentum)) / normal.dot(along))
+            }
+            Freedom::Free | Freedom::Fixed => Vec3::ZERO,
+        };
+        momentum + pushed - inertia * velocity
     }
 
     /// The impulse of the tree springs on each particle.
@@ -578,15 +604,27 @@ fn constrained(inverse: &Sym3, freedom: &Freedom) -> Sym3 {
     }
 }
 
+/// True if a spring's block outweighs the inertia below it, so that this is what is left of their difference.
+fn is_stiff(block: &Sym3, inertia: &Sym3) -> bool {
+    let size = |m: &Sym3| m.to_mat3().x_axis.x + m.to_mat3().y_axis.y + m.to_mat3().z_axis.z;
+    size(block) > size(inertia)
+}
+
 /// With S the child's inertia, B the spring's block and W its response, the parent gains `B − B W B`. Free, that is
-/// `S (S + B)⁻¹ B`: in this form a stiff spring does not cancel itself out.
+/// `S (S + B)⁻¹ B`, or `S − S (S + B)⁻¹ S`: whichever of both is the smaller, the other one would cancel itself out.
 fn felt_by_parent(inertia: &Sym3, inverse: &Sym3, block: &Sym3, freedom: &Freedom) -> Sym3 {
-    let free = || Sym3::from_mat3(&(inertia.to_mat3() * inverse.to_mat3() * block.to_mat3()));
+    let stiff = is_stiff(block, inertia);
+    let free = || {
+        let last = if stiff { inertia } else { block };
+        let product = Sym3::from_mat3(&(inertia.to_mat3() * inverse.to_mat3() * last.to_mat3()));
+        if stiff { *inertia - product } else { product }
+    };
     match freedom {
         Freedom::Free => free(),
         Freedom::Along { normal, .. } => {
             let along = *inverse * *normal;
-            free() + Sym3::outer(*block * along) * (1.0 / normal.dot(along))
+            let back = if stiff { *normal - *inertia * along } else { *block * along };
+            free() + Sym3::outer(back) * (1.0 / normal.dot(along))
         }
         Freedom::Fixed => *block,
     }

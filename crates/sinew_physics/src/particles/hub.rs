@@ -4,6 +4,9 @@
 //! `S = M + Σ Gᵀ Iᵢ G` with `G = (1, −[r]×)`, and the particle by which it hangs on the next one towards the root feels `(G S⁻¹ Gᵀ)⁻¹`. A rope that
 //! goes on from one point of a body to another pulls through it then. Were its points solved one by one, each with its share of the
 //! body's inertia, they would part under the tension within the solve, and a bridge of planks on ropes would stretch and gain energy.
+//!
+//! Where several groups hang on one body, each adds to `S` and to the momentum what the others gather there, their **shares**. Where the body is the root of their
+//! trees that is all they do, whatever its velocity, and the solution is the one of all of them as one group.
 
 use super::added_mass::AddedMass;
 use super::contact::ObstacleBody;
@@ -11,6 +14,44 @@ use crate::spatial::{
     Mat6, UNITS, Vec6, ZERO6, ZERO66, add_scaled, angular, dot, join, linear, spd_inverse, wrench,
 };
 use sinew_math::{Mat3, Sym3, Vec3};
+
+/// Inertia and pull that a group's particles bring to a body that holds them: with all that hangs on them, about the body's centre.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Share {
+    inertia: Mat6,
+    /// Momentum that they give it beyond the velocity that is coming, N·s and N·m·s.
+    pull: Vec6,
+}
+
+impl Share {
+    pub const NONE: Self = Self { inertia: ZERO66, pull: ZERO6 };
+
+    /// Adds what acts at a point with an inertia, kg, and a momentum beyond the velocity that is coming, N·s.
+    fn add_at(&mut self, arm: Vec3, inertia: Sym3, pull: Vec3) {
+        for (row, axis) in self.inertia.iter_mut().zip(UNITS) {
+            add_scaled(row, &wrench(arm, inertia * velocity_at(&axis, arm)), 1.0);
+        }
+        add_scaled(&mut self.pull, &wrench(arm, pull), 1.0);
+    }
+
+    /// Adds another.
+    pub fn add(&mut self, other: &Self) {
+        for (row, more) in self.inertia.iter_mut().zip(&other.inertia) {
+            add_scaled(row, more, 1.0);
+        }
+        add_scaled(&mut self.pull, &other.pull, 1.0);
+    }
+
+    /// Part of the energy that the solve makes least at a velocity beyond the one that is coming, J, and the size of its terms.
+    fn merit(&self, gained: &Vec6) -> (f32, f32) {
+        let mut own = 0.0;
+        for (row, along) in self.inertia.iter().zip(gained) {
+            own += 0.5 * along * dot(row, gained);
+        }
+        let given = dot(&self.pull, gained);
+        (own - given, own + given.abs())
+    }
+}
 
 /// A body that holds particles, in one iteration.
 #[derive(Clone, Debug)]
@@ -22,6 +63,9 @@ pub(super) struct Hub {
     inertia: Sym3,
     /// Inertia that moves along with it.
     added: AddedMass,
+    /// What other groups bring to it, and what this one does.
+    pub others: Share,
+    pub own: Share,
     /// At the end of the iteration without springs and particles, and with those that hang below it.
     coming: Vec6,
     free: Vec6,
@@ -30,6 +74,8 @@ pub(super) struct Hub {
     /// As the solve found it, and as it was before the last step of Newton's method.
     pub velocity: Vec6,
     pub last_velocity: Vec6,
+    /// As the solve before found it.
+    found: Vec6,
 }
 
 impl Hub {
@@ -39,11 +85,14 @@ impl Hub {
             mass: 1.0,
             inertia: Sym3::IDENTITY,
             added: AddedMass::default(),
+            others: Share::NONE,
+            own: Share::NONE,
             coming: ZERO6,
             free: ZERO6,
             response: ZERO66,
             velocity: ZERO6,
             last_velocity: ZERO6,
+            found: ZERO6,
         }
     }
 
@@ -75,20 +124,28 @@ impl Hub {
             whole[3 + k] = join(Vec3::ZERO, axis);
         }
         self.added.add_to(&mut whole);
-        let mut pull = ZERO6;
+        self.own = Share::NONE;
         for (point, inertia, momentum) in particles {
-            let arm = point - self.center;
-            for (row, axis) in whole.iter_mut().zip(UNITS) {
-                add_scaled(row, &wrench(arm, inertia * velocity_at(&axis, arm)), 1.0);
+            self.add_at(point, inertia, momentum);
+        }
+        let mut pull = ZERO6;
+        for share in [&self.own, &self.others] {
+            for (row, more) in whole.iter_mut().zip(&share.inertia) {
+                add_scaled(row, more, 1.0);
             }
-            let gained = momentum - inertia * velocity_at(&self.coming, arm);
-            add_scaled(&mut pull, &wrench(arm, gained), 1.0);
+            add_scaled(&mut pull, &share.pull, 1.0);
         }
         self.response = spd_inverse(&whole, 6).unwrap_or(ZERO66);
         self.free = self.coming;
         let gained = self.respond(&pull);
         add_scaled(&mut self.free, &gained, 1.0);
         self.velocity = self.free;
+    }
+
+    /// Adds what acts at a point of it with an inertia and a momentum, kg and kg·m/s, to what this group brings.
+    pub fn add_at(&mut self, point: Vec3, inertia: Sym3, momentum: Vec3) {
+        let arm = point - self.center;
+        self.own.add_at(arm, inertia, momentum - inertia * velocity_at(&self.coming, arm));
     }
 
     /// Inertia and momentum that a point of it has for what pulls there, kg and kg·m/s.
@@ -108,13 +165,32 @@ impl Hub {
         add_scaled(&mut self.velocity, &gained, 1.0);
     }
 
-    /// Part of the energy that the solve makes least, J: see `merit` of `forest.rs`.
-    pub fn merit(&self) -> f32 {
+    /// Notes its velocity, to compare with that of the next solve.
+    pub fn remember(&mut self) {
+        self.found = self.velocity;
+    }
+
+    /// Change of its velocity since then, over what has been added to the velocity that was coming; both at the centre and about it, as energies.
+    pub fn change(&self) -> f32 {
+        let energy_from = |from: &Vec6| {
+            let mut gained = self.velocity;
+            add_scaled(&mut gained, from, -1.0);
+            self.mass * linear(&gained).length_squared()
+                + angular(&gained).dot(self.inertia * angular(&gained))
+        };
+        let all = energy_from(&self.coming);
+        if all > 0.0 { (energy_from(&self.found) / all).sqrt() } else { 0.0 }
+    }
+
+    /// Part of the energy that the solve makes least, J, and the size of its terms: see `merit` of `forest.rs`.
+    pub fn merit(&self) -> (f32, f32) {
         let mut gained = self.velocity;
         add_scaled(&mut gained, &self.coming, -1.0);
         let (along, turn) = (linear(&gained), angular(&gained));
-        0.5 * (self.mass * along.length_squared() + turn.dot(self.inertia * turn))
-            + self.added.energy(&gained)
+        let own = 0.5 * (self.mass * along.length_squared() + turn.dot(self.inertia * turn))
+            + self.added.energy(&gained);
+        let (others, size) = self.others.merit(&gained);
+        (own + others, own + size)
     }
 
     fn respond(&self, pull: &Vec6) -> Vec6 {

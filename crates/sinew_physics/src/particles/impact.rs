@@ -5,15 +5,15 @@ use super::ParticleGroup;
 use super::contact::{Obstacle, ObstacleBody, Touch};
 use super::sweep::Meeting;
 use crate::particles::tuning::DETOUR;
-use crate::particles::tuning::IMPACT_SPEED;
-use sinew_math::{Vec3, max};
+use crate::particles::tuning::{IMPACT_SPEED, PINCH_SPEED};
+use sinew_math::{Vec3, max, min};
 
 /// Surfaces that a particle is moved out of, one after the other; after that it stays where it met the next.
 const ROUNDS: usize = 2;
 /// Depths within rounding, metres.
 const ROUNDING: f32 = 1e-6;
-/// Impulses on bodies per particle and iteration: in the solve, of the net, of its bounce, and of impacts.
-pub(super) const MAX_TOUCHES: usize = 3 + ROUNDS + 1;
+/// Impulses on bodies per particle and iteration: in the solve, of the net, of its bounce, and of impacts, the last of which may be with two.
+pub(super) const MAX_TOUCHES: usize = 3 + ROUNDS + 2;
 
 impl ParticleGroup {
     /// Gives back their share to particles that the solve has stopped.
@@ -41,6 +41,7 @@ impl ParticleGroup {
             }
             self.near.follow(i, self.previous[i]);
             let mut but = None;
+            let mut wall = self.touches[i].filter(|touch| self.leans_on(i, touch, bodies));
             for round in 0..=ROUNDS {
                 let ends = (self.previous[i], self.positions[i]);
                 if self.is_clear(i, ends.1 - ends.0) {
@@ -50,6 +51,10 @@ impl ParticleGroup {
                 let mut touch = self.touch(i, h, obstacle, &meeting, obstacles, bodies);
                 let placed = &self.placed[obstacle];
                 touch.gap = meeting.height(placed.end.inverse_point(ends.1));
+                if let Some(wall) = wall.filter(|wall| wall.pinches(&touch, bodies)) {
+                    self.pinch(i, h, &wall, touch, h * (1.0 - meeting.fraction), bodies);
+                    break;
+                }
                 if round == ROUNDS {
                     // The corner of three surfaces.
                     self.positions[i] = placed.end.point(meeting.at);
@@ -61,9 +66,52 @@ impl ParticleGroup {
                 if !(known && touch.gap > -ROUNDING) {
                     self.respond(i, h, touch, h * (1.0 - meeting.fraction), bodies);
                 }
+                if bodies[touch.body].inverse_mass == 0.0 {
+                    wall = Some(touch);
+                }
                 but = Some(obstacle);
             }
         }
+    }
+
+    /// True if a particle has ended on a surface that nothing moves.
+    fn leans_on(&self, i: usize, touch: &Touch, bodies: &[ObstacleBody]) -> bool {
+        bodies[touch.body].inverse_mass == 0.0 && touch.height(self.positions[i], self.radii[i]) < ROUNDING
+    }
+
+    /// A particle between a wall and a body that comes to it: it does not leave the wall, so that what the body gives it along the normal of the wall the wall
+    /// gives back, and the body meets the wall's inertia there and the particle's along it. Both rub it, the wall last.
+    ///
+    /// Each surface in turn would push it into the other one, and the body, which feels no more than the particle's few grams, would go on.
+    fn pinch(
+        &mut self,
+        i: usize,
+        h: f32,
+        wall: &Touch,
+        mut touch: Touch,
+        left: f32,
+        bodies: &mut [ObstacleBody],
+    ) {
+        let (n, own) = (touch.normal, 1.0 / self.masses[i]);
+        let aside = n - wall.normal * n.dot(wall.normal);
+        let begun = self.velocities[i];
+        // What it is in the body by opens slowly.
+        touch.speed_min = min(-min(touch.gap, 0.0) / h, PINCH_SPEED);
+        let body = &mut bodies[touch.body];
+        let approach = (begun - touch.surface_velocity(body)).dot(n) - touch.speed_min;
+        let normal = max(-approach / (own * aside.length_squared() + body.yielding(touch.point, n)), 0.0);
+        body.push(touch.point, n * -normal);
+        let pushed = begun + aside * (own * normal);
+        let friction = touch.rub(normal, own, pushed, body);
+        self.velocities[i] = pushed + friction * own;
+        self.report(&touch, n * normal + friction, bodies);
+        let mut resting = bodies[wall.body];
+        let back = wall.rub(-normal * n.dot(wall.normal), own, self.velocities[i], &mut resting);
+        self.velocities[i] += back * own;
+        self.report(wall, back, bodies);
+        let change = self.velocities[i] - begun;
+        let along = change - wall.normal * change.dot(wall.normal);
+        self.positions[i] += along * left;
     }
 
     /// True if a particle has ended on the convex solid that it touches, and met nothing else.

@@ -467,6 +467,19 @@ impl ParticleGroup {
         obstacles: &[Obstacle],
         bodies: &mut [ObstacleBody],
     ) {
+        self.begin_substep(h, gravity, anchors, obstacles, bodies);
+        self.end_substep(h, anchors, obstacles, bodies);
+    }
+
+    /// The first half of a substep, up to where springs and contacts of its first iteration are solved. Pushes no body yet.
+    pub(crate) fn begin_substep(
+        &mut self,
+        h: f32,
+        gravity: Vec3,
+        anchors: &[Anchor],
+        obstacles: &[Obstacle],
+        bodies: &[ObstacleBody],
+    ) {
         assert_eq!(anchors.len(), self.attachments.len(), "each attachment needs its anchor");
         let gravity = gravity * self.gravity_scale;
         self.accelerations.clear();
@@ -481,18 +494,33 @@ impl ParticleGroup {
         self.attachment_impulses.fill(Vec3::ZERO);
         self.holders.clear();
         self.holders.extend_from_slice(bodies);
+        self.begin_iteration(Part { number: 0, of: self.iterations, whole: h }, anchors, obstacles, bodies);
+    }
+
+    /// What is left of a substep that has begun.
+    pub(crate) fn end_substep(
+        &mut self,
+        h: f32,
+        anchors: &[Anchor],
+        obstacles: &[Obstacle],
+        bodies: &mut [ObstacleBody],
+    ) {
         for number in 0..self.iterations {
-            self.iterate(Part { number, of: self.iterations, whole: h }, anchors, obstacles, bodies);
+            let part = Part { number, of: self.iterations, whole: h };
+            if number > 0 {
+                self.begin_iteration(part, anchors, obstacles, bodies);
+            }
+            self.end_iteration(part, anchors, obstacles, bodies);
         }
     }
 
-    /// Moves the group by a part of the substep.
-    fn iterate(
+    /// The first half of a part of the substep: finds velocities.
+    fn begin_iteration(
         &mut self,
         part: Part,
         anchors: &[Anchor],
         obstacles: &[Obstacle],
-        bodies: &mut [ObstacleBody],
+        bodies: &[ObstacleBody],
     ) {
         let h = part.h();
         self.span = h;
@@ -501,7 +529,19 @@ impl ParticleGroup {
         self.hold(part, anchors);
         self.find_near(h);
         self.find_contacts(h, obstacles, bodies);
-        self.solve_with_contacts(h, obstacles, bodies);
+        self.prepare_solve(h);
+        self.settle_contacts(h, obstacles, bodies);
+    }
+
+    /// The second one: moves the group.
+    fn end_iteration(
+        &mut self,
+        part: Part,
+        anchors: &[Anchor],
+        obstacles: &[Obstacle],
+        bodies: &mut [ObstacleBody],
+    ) {
+        let h = part.h();
         self.push_bodies(bodies);
         for i in 0..self.positions.len() {
             self.positions[i] += self.velocities[i] * h;

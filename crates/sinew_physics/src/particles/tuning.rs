@@ -86,3 +86,14 @@ pub(super) const LEAST_ADDED: f32 = 1e-3;
 /// Larger: what hangs taut and stands on the ground as well is solved as if it could not move, with what comes of that when it lifts off. Smaller: light
 /// planks hang lower under what is heavier than so many of them. Shown by the tests of `held`.
 pub(super) const MOST_ADDED: f32 = 1e3;
+
+/// Cosine between the normals of a fixed surface and of a body's below which a particle on the one cannot give way to the other, a ratio.
+///
+/// Larger: what leans on a wall at its side counts as under a body that slides along the wall. Smaller: what rolls over a rope takes it along through the
+/// floor. Shown by the tests of `pinched`.
+pub(super) const PINCHING: f32 = -0.1;
+
+/// Speed with which a body is lifted from a particle that lies between it and what is fixed, m/s.
+///
+/// Larger: a body that lies on a rope is thrown off it. Smaller than gravity times the substep: it sinks into it. Shown by the tests of `pinched`.
+pub(super) const PINCH_SPEED: f32 = 0.1;

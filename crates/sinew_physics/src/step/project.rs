@@ -2,13 +2,14 @@
 
 use crate::body::Velocity;
 use crate::body::def::BodyKind;
+use crate::id::BodyId;
 use crate::island::Island;
-use crate::particles::{AddedMass, Anchor, AttachmentTarget, Obstacle, ObstacleBody};
+use crate::particles::{AddedMass, Anchor, AttachmentTarget, Obstacle, ObstacleBody, ParticleGroup};
 use crate::solver::boundary::groups::TakenGroup;
 use crate::solver::{IslandSolver, SolverBody, View};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear, wrench};
-use crate::step::tuning::HEAVY_LOAD;
-use sinew_math::{Sym3, Transform, Vec3};
+use crate::step::tuning::{HEAVY_LOAD, JOINT_CHANGE, JOINT_ROUNDS};
+use sinew_math::{Sym3, Transform, Vec3, max};
 
 /// Bodies as a particle group sees them.
 #[derive(Clone, Debug, Default)]
@@ -21,8 +22,9 @@ pub(crate) struct Surroundings {
     starts: Vec<Transform>,
     /// Impulses on the bodies of the island, by local index.
     impulses: Vec<Vec6>,
-    /// Number of groups that hang on each of them.
+    /// Number of groups that hang on each of them, and of those that can be solved together.
     hung_on: Vec<u32>,
+    joinable: Vec<u32>,
     /// Velocities of the island's moving bodies before groups pushed them, and what these gave them since, N·s.
     untouched: Vec<Vec6>,
     pushed: Vec<Vec3>,
@@ -100,6 +102,8 @@ impl Surroundings {
         self.starts.reserve(island.bodies.len());
         self.hung_on.clear();
         self.hung_on.reserve(island.bodies.len());
+        self.joinable.clear();
+        self.joinable.reserve(island.bodies.len());
         self.untouched.clear();
         self.untouched.reserve(island.bodies.len());
         self.pushed.clear();
@@ -119,20 +123,80 @@ impl Surroundings {
             return;
         }
         self.look_at_bodies(groups, solver, view.pace.h);
+        self.solve_together(groups, solver, view, substep);
         for taken in groups.iter_mut() {
             self.see(taken, solver, view, substep);
             self.place_obstacles(taken, view);
-            taken.group.substep(
-                view.pace.h,
-                view.def.gravity,
-                &self.anchors,
-                &self.obstacles,
-                &mut self.bodies,
-            );
+            let begun = self.is_joined(&taken.group, solver);
+            let Self { anchors, obstacles, bodies, .. } = self;
+            let (h, gravity) = (view.pace.h, view.def.gravity);
+            if !begun {
+                taken.group.begin_substep(h, gravity, anchors, obstacles, bodies);
+            }
+            taken.group.end_substep(h, anchors, obstacles, bodies);
             self.push_bodies(taken, solver);
         }
-        if self.hung_on.iter().any(|&count| count > 1) {
+        if (0..self.hung_on.len()).any(|local| self.is_pushed_apart(local)) {
             groups.iter_mut().for_each(|taken| self.join_held(taken, solver, view, substep));
+        }
+    }
+
+    /// True if groups that hang on a body are not all solved together.
+    fn is_pushed_apart(&self, local: usize) -> bool {
+        self.hung_on[local] > 1 && self.joinable[local] < self.hung_on[local]
+    }
+
+    /// True if a group is solved together with others, which hang on the same body.
+    fn is_joined(&self, group: &ParticleGroup, solver: &IslandSolver) -> bool {
+        let shared = |id: BodyId| {
+            local_of(solver.moving_bodies(), id.index).is_some_and(|local| self.joinable[local] > 1)
+        };
+        group.is_joinable() && group.bodies().any(shared)
+    }
+
+    /// Begins the substep of groups that hang on one body, as one system: each is solved with the inertia and the pull that the others bring to the body, in
+    /// turns, until its velocity stays. Where one body is all that they share, each brings what the others' velocities do not change, and the first round is the
+    /// solution but for springs that turn.
+    ///
+    /// One after the other, each would find the whole body turn about its corner as if nothing else held it, and the one rope take from the other what it gave.
+    fn solve_together(
+        &mut self,
+        groups: &mut [TakenGroup],
+        solver: &IslandSolver,
+        view: &View<'_>,
+        substep: u32,
+    ) {
+        groups.iter_mut().for_each(|taken| taken.group.forget_shares());
+        if self.joinable.iter().all(|&count| count < 2) {
+            return;
+        }
+        for round in 0..=JOINT_ROUNDS {
+            let mut change = 0.0;
+            for k in 0..groups.len() {
+                if !self.is_joined(&groups[k].group, solver) {
+                    continue;
+                }
+                let (before, rest) = groups.split_at_mut(k);
+                let Some((taken, after)) = rest.split_first_mut() else { continue };
+                taken.group.forget_others();
+                for other in before.iter().chain(&*after).filter(|other| self.is_joined(&other.group, solver))
+                {
+                    taken.group.add_shares_of(&other.group);
+                }
+                self.see(taken, solver, view, substep);
+                self.place_obstacles(taken, view);
+                let Self { anchors, obstacles, bodies, .. } = self;
+                let (h, gravity) = (view.pace.h, view.def.gravity);
+                if round == 0 {
+                    taken.group.begin_substep(h, gravity, anchors, obstacles, bodies);
+                    change = f32::INFINITY;
+                } else {
+                    change = max(change, taken.group.solve_again(h, obstacles, bodies));
+                }
+            }
+            if change < JOINT_CHANGE {
+                break;
+            }
         }
     }
 
@@ -150,7 +214,7 @@ impl Surroundings {
         self.impulses.resize(solver.moving_bodies().len(), ZERO6);
         for (k, anchor) in self.anchors.iter().enumerate() {
             let Some(place) = anchor.body.map(|body| body as usize) else { continue };
-            if let Some(local) = self.seen[place].local.filter(|&local| self.hung_on[local] > 1) {
+            if let Some(local) = self.seen[place].local.filter(|&local| self.is_pushed_apart(local)) {
                 let impulse = taken.group.join_held(k, anchor, &mut self.bodies[place]);
                 let arm = anchor.position - self.bodies[place].center;
                 add_scaled(&mut self.impulses[local], &wrench(arm, impulse), 1.0);
@@ -181,6 +245,13 @@ impl Surroundings {
         self.pushed.resize(moving.len(), Vec3::ZERO);
         self.hung_on.clear();
         self.hung_on.resize(moving.len(), 0);
+        self.joinable.clear();
+        self.joinable.resize(moving.len(), 0);
+        for taken in groups.iter().filter(|taken| taken.group.is_joinable()) {
+            for local in taken.group.bodies().filter_map(|id| local_of(moving, id.index)) {
+                self.joinable[local] += 1;
+            }
+        }
         let mut bears = false;
         for (id, added) in groups.iter_mut().flat_map(|taken| taken.group.holders()) {
             if let Some(local) = local_of(moving, id.index) {
@@ -192,11 +263,11 @@ impl Surroundings {
     }
 
     /// Finds what moves along with the bodies that groups hold, by what these gained until the end of the substep of what they were given. Groups that
-    /// hold one together take their turns, and each finds it as the others have left it.
+    /// hold one together and are not solved together take their turns, and each finds it as the others have left it.
     pub fn find_added(&self, groups: &mut [TakenGroup], solver: &IslandSolver) {
         let moving = solver.moving_bodies();
         for (id, added) in groups.iter_mut().flat_map(|taken| taken.group.holders()) {
-            let local = local_of(moving, id.index).filter(|&local| self.hung_on[local] == 1);
+            let local = local_of(moving, id.index).filter(|&local| !self.is_pushed_apart(local));
             *added = local.map_or_else(AddedMass::default, |local| {
                 let gained = linear(&solver.velocities[local]) - linear(&self.untouched[local]);
                 AddedMass::of(moving[local].mass, self.pushed[local], gained)

@@ -55,3 +55,13 @@ pub(super) const BLOW_PASSES: usize = 6;
 /// Larger: a plank turns under what is heavier by so much, and gains energy. Smaller: more islands on ropes pay for sweeps, and light loads on ropes without
 /// damping tremble. Sensible from 2 to 10. Shown by the tests of `held`.
 pub(super) const HEAVY_LOAD: f32 = 4.0;
+
+/// Rounds over groups that hang on one body and are solved as one system, a number.
+///
+/// Larger: slower. Smaller: groups that hold several bodies in common pull against each other. Shown by the tests of `held`.
+pub(super) const JOINT_ROUNDS: u32 = 8;
+
+/// Change of such a body's velocity in a round, over what springs change it by in the substep, below which it is solved, a ratio.
+///
+/// Larger: ropes of a plank pull against each other. Smaller: more rounds. Shown by the tests of `held`.
+pub(super) const JOINT_CHANGE: f32 = 1e-4;

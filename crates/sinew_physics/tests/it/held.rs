@@ -18,17 +18,19 @@ struct Laden {
     world: World,
     plank: BodyId,
     load: BodyId,
-    ropes: GroupId,
+    ropes: Vec<GroupId>,
 }
 
-/// A plank on a rope at each corner, and so far above it a box.
-fn laden(mass: f32, height: f32) -> Laden {
+/// A plank on a rope at each corner, all in one group or each its own, and so far above it a box.
+fn laden(mass: f32, height: f32, apart: bool) -> Laden {
     let mut world = World::new(WorldDef::default());
     let mut def = BodyDef { sleeping: Sleeping::Off, ..box_body(PLANK, Vec3::ZERO) };
     def.shapes[0].density = PLANK_MASS / (8.0 * PLANK.x * PLANK.y * PLANK.z);
     let plank = world.add_body(&def);
-    let mut ropes = GroupDef { sleeping: Sleeping::Off, ..GroupDef::default() };
-    ropes.filter.mask = 0;
+    let mut none = GroupDef { sleeping: Sleeping::Off, ..GroupDef::default() };
+    none.filter.mask = 0;
+    let mut ropes = none.clone();
+    let mut ids = Vec::new();
     for (x, z) in [(-0.5, -0.18), (-0.5, 0.18), (0.5, -0.18), (0.5, 0.18)] {
         let corner = Vec3::new(x, 0.0, z);
         let def = RopeDef {
@@ -54,21 +56,26 @@ fn laden(mass: f32, height: f32) -> Laden {
         for (particle, target) in [(first, place), (first + LINKS, held)] {
             ropes.attachments.push(AttachmentDef { particle, target });
         }
+        if apart {
+            ids.push(world.add_particles(&core::mem::replace(&mut ropes, none.clone())));
+        }
     }
-    let ropes = world.add_particles(&ropes);
+    if !apart {
+        ids.push(world.add_particles(&ropes));
+    }
     let place = Vec3::Y * (PLANK.y + BOX + height);
     let mut def = BodyDef { sleeping: Sleeping::Off, ..box_body(Vec3::splat(BOX), place) };
     def.shapes[0].density = mass / (8.0 * BOX * BOX * BOX);
     let load = world.add_body(&def);
-    Laden { world, plank, load, ropes }
+    Laden { world, plank, load, ropes: ids }
 }
 
 impl Laden {
     /// Sum of what the ropes pull their places in the world down with, N, in the last substep.
     fn tension(&self) -> f32 {
-        let group = self.world.particles(self.ropes);
         let per_second = 60.0 * WorldDef::default().substeps as f32;
-        let pulls = group.attachments().iter().zip(group.attachment_impulses());
+        let groups = self.ropes.iter().map(|&id| self.world.particles(id));
+        let pulls = groups.flat_map(|group| group.attachments().iter().zip(group.attachment_impulses()));
         let of_world = pulls.filter(|(a, _)| matches!(a.target, AttachmentTarget::World(_)));
         of_world.map(|(_, impulse)| -impulse.y * per_second).sum()
     }
@@ -92,9 +99,19 @@ impl Laden {
 /// A body on ropes is borne with all that lies on it: the ropes' stretch is that of the whole weight, and so is their tension.
 #[test]
 fn what_lies_on_a_hung_plank_weighs_on_its_ropes() {
+    are_weighed_on(false);
+}
+
+/// As well where each rope is a group of its own.
+#[test]
+fn what_lies_on_a_plank_weighs_on_ropes_of_their_own_groups() {
+    are_weighed_on(true);
+}
+
+fn are_weighed_on(apart: bool) {
     for (mass, height) in [(1.0, 0.0), (10.0, 0.0), (100.0, 0.0), (10.0, 0.2), (100.0, 0.2)] {
-        let what = format!("{mass} kg from {height} m");
-        let mut laden = laden(mass, height);
+        let what = format!("{mass} kg from {height} m, apart: {apart}");
+        let mut laden = laden(mass, height, apart);
         let (gain, tremble) = laden.run(900);
         let sag = -laden.world.center_of_mass(laden.plank).y;
         // Each rope bears half of its own weight on the mean.
@@ -118,18 +135,20 @@ fn what_lies_on_a_hung_plank_weighs_on_its_ropes() {
 /// Snapshots hold the mass that moves along with a body on ropes.
 #[test]
 fn a_laden_plank_goes_on_alike_when_it_is_loaded() {
-    let mut laden = laden(20.0, 0.1);
-    for step in 0..60 {
-        laden.world.step();
-        let mut bytes = Writer::new();
-        laden.world.save(&mut bytes);
-        let mut copy = World::new(WorldDef::default());
-        copy.load(&mut Reader::new(bytes.as_bytes())).expect("own snapshot");
-        let mut other = laden.world.clone();
-        for _ in 0..3 {
-            copy.step();
-            other.step();
-            assert_eq!(copy.hash(), other.hash(), "saved after step {step}");
+    for apart in [false, true] {
+        let mut laden = laden(20.0, 0.1, apart);
+        for step in 0..60 {
+            laden.world.step();
+            let mut bytes = Writer::new();
+            laden.world.save(&mut bytes);
+            let mut copy = World::new(WorldDef::default());
+            copy.load(&mut Reader::new(bytes.as_bytes())).expect("own snapshot");
+            let mut other = laden.world.clone();
+            for _ in 0..3 {
+                copy.step();
+                other.step();
+                assert_eq!(copy.hash(), other.hash(), "saved after step {step}, apart: {apart}");
+            }
         }
     }
 }

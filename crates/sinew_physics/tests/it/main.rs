@@ -25,6 +25,7 @@ mod nets;
 mod objects;
 mod particle_worlds;
 mod particles;
+mod pinched;
 mod pins;
 mod quality;
 mod queries;

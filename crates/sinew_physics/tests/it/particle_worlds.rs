@@ -1,8 +1,8 @@
 //! Random worlds with ropes, strands, cloth, blobs and grains among bodies: numbers stay finite, no particle is deeper in a fixed
 //! shape than its radius, no world comes to have more energy than it began with, and two threads make the bits that one makes.
 //!
-//! `SINEW_WORLDS=100..200 cargo test --release -p sinew_physics --test it -- --nocapture worlds_of_particles` runs other seeds. Of 0 to 199
-//! three gain energy (113, 117, 171) and three sink (21, 117, 171).
+//! `SINEW_WORLDS=100..200 cargo test --release -p sinew_physics --test it -- --nocapture worlds_of_particles` runs other seeds; none of 0 to 699
+//! fails.
 
 use crate::random_worlds::asked_seeds;
 use sinew_math::{Random, Rotation, Vec3, max};
@@ -11,8 +11,8 @@ use sinew_physics::{BodyDef, BodyKind, Shape, ShapeDef, Threads, World, WorldDef
 
 const STEPS: usize = 600;
 
-/// Worlds that are run without being asked for: the first, and those whose ropes once gained hundreds of joules.
-const SEEDS: [u64; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 20, 101];
+/// Worlds that are run without being asked for: the first, and those whose ropes once gained joules or whose cloth was once pushed into the ground.
+const SEEDS: [u64; 17] = [0, 1, 2, 3, 4, 5, 6, 7, 20, 21, 101, 113, 117, 171, 382, 564, 689];
 
 /// Depth beyond its radius that a particle is allowed in a fixed shape, metres.
 const DEPTH: f32 = 1e-4;
