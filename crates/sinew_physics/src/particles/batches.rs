@@ -16,24 +16,22 @@ use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
 /// Numbers of a particle: position when the iteration began, way since, weight, backing of the surface that it touches, normal of that, room
 /// before it presses.
-const FIELDS: usize = 12;
-const WAY: usize = 3;
-const WEIGHT: usize = 6;
-const BACKING: usize = 7;
-const NORMAL: usize = 8;
-const ROOM: usize = 11;
+pub(super) const FIELDS: usize = 12;
+pub(super) const WAY: usize = 3;
+pub(super) const WEIGHT: usize = 6;
+pub(super) const BACKING: usize = 7;
+pub(super) const NORMAL: usize = 8;
+pub(super) const ROOM: usize = 11;
+/// Kinds among which that of eight rows is looked for.
+const LATEST: usize = 64;
 /// Fewest aligned rows that make a block.
 const LEAST_ALIGNED: usize = 4;
 /// Blocks that a row to be gathered may still go into.
 const OPEN: usize = 32;
 
-/// Eight rows of `K` particles each.
-#[derive(Clone, Debug)]
-struct Rows<const K: usize> {
-    /// Blocks of the particles of aligned rows.
-    blocks: [u32; K],
-    /// Slots of the particles of rows that are gathered, of each lane.
-    slots: Option<[[u32; WIDTH]; K]>,
+/// Constants of eight rows. Few kinds serve most rows of a cloth, so that they stay in the first cache.
+#[derive(Clone, Debug, PartialEq)]
+struct Kind {
     rest: [f32; WIDTH],
     /// Compliance: 1 over the stiffness, m/N.
     compliance: [f32; WIDTH],
@@ -44,11 +42,9 @@ struct Rows<const K: usize> {
     is_damped: bool,
 }
 
-impl<const K: usize> Rows<K> {
+impl Kind {
     fn empty() -> Self {
         Self {
-            blocks: [0; K],
-            slots: None,
             rest: [0.0; WIDTH],
             compliance: [1.0; WIDTH],
             damping: [0.0; WIDTH],
@@ -57,12 +53,44 @@ impl<const K: usize> Rows<K> {
         }
     }
 
-    fn set(&mut self, lane: usize, row: &Row<K>) {
+    fn set<const K: usize>(&mut self, lane: usize, row: &Row<K>) {
         self.rest[lane] = row.rest;
         self.compliance[lane] = 1.0 / row.stiffness;
         self.damping[lane] = row.damping;
         self.least[lane] = row.least;
         self.is_damped |= row.damping > 0.0;
+    }
+}
+
+/// Rows of `K` particles each, eight by eight, each with the index of its kind.
+#[derive(Clone, Debug)]
+struct Rows<const K: usize> {
+    /// Blocks of the particles of aligned rows.
+    aligned: Vec<([u32; K], u32)>,
+    /// Slots of the particles of rows that are gathered, of each lane.
+    gathered: Vec<([[u32; WIDTH]; K], u32)>,
+    kinds: Vec<Kind>,
+}
+
+impl<const K: usize> Default for Rows<K> {
+    fn default() -> Self {
+        Self { aligned: Vec::new(), gathered: Vec::new(), kinds: Vec::new() }
+    }
+}
+
+impl<const K: usize> Rows<K> {
+    fn is_empty(&self) -> bool {
+        self.aligned.is_empty() && self.gathered.is_empty()
+    }
+
+    /// Index of a kind, among the latest if it is there.
+    fn kind(&mut self, kind: Kind) -> u32 {
+        let latest = self.kinds.iter().rev().take(LATEST).position(|other| *other == kind);
+        let index = latest.map_or(self.kinds.len(), |back| self.kinds.len() - 1 - back);
+        if latest.is_none() {
+            self.kinds.push(kind);
+        }
+        index as u32
     }
 }
 
@@ -79,10 +107,10 @@ struct Row<const K: usize> {
 /// The rows of a group that are solved eight at a time, and its particles as they need them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Batches {
-    springs: Vec<Rows<2>>,
-    bends: Vec<Rows<3>>,
+    springs: Rows<2>,
+    bends: Rows<3>,
     /// Particles, and a block for lanes without a row.
-    particles: Vec<Block<FIELDS>>,
+    pub particles: Vec<Block<FIELDS>>,
     /// Number of particles, and of those in a lane.
     count: usize,
     per_lane: usize,
@@ -137,6 +165,25 @@ impl Batches {
         }
     }
 
+    /// Takes in where a particle was when the iteration began, how far it has come since, and its weight.
+    pub fn put_way(&mut self, i: usize, from: Vec3, way: Vec3, weight: f32) {
+        let (block, lane) = (&mut self.particles[i % self.per_lane].0, i / self.per_lane);
+        let numbers = [from.x, from.y, from.z, way.x, way.y, way.z, weight];
+        for (field, number) in numbers.into_iter().enumerate() {
+            block[field][lane] = number;
+        }
+    }
+
+    /// A number of a particle.
+    pub fn number_of(&self, i: usize, field: usize) -> f32 {
+        self.particles[i % self.per_lane].0[field][i / self.per_lane]
+    }
+
+    /// A vector of a particle, by the first of its fields.
+    pub fn vector_of(&self, i: usize, field: usize) -> Vec3 {
+        Vec3::new(self.number_of(i, field), self.number_of(i, field + 1), self.number_of(i, field + 2))
+    }
+
     /// Takes in the surface that a particle touches, with the impulse onto it after which it presses, N·s².
     pub fn put_surface(&mut self, i: usize, normal: Vec3, backing: f32, room: f32) {
         let (block, lane) = (&mut self.particles[i % self.per_lane].0, i / self.per_lane);
@@ -170,7 +217,7 @@ impl Batches {
 }
 
 /// Aligned rows in blocks by how far apart their particles are, then the others.
-fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) -> Vec<Rows<K>> {
+fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) -> Rows<K> {
     let mut keyed: Vec<([i64; K], u32, usize, usize, Row<K>)> = Vec::new();
     let mut others = Vec::new();
     for (order, row) in rows.enumerate() {
@@ -190,30 +237,31 @@ fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) 
         keyed.push((steps, turn as u32, block, order, row));
     }
     keyed.sort_by_key(|&(steps, turn, block, order, _)| (steps, turn, block, order));
-    let mut blocks = Vec::new();
+    let mut rows = Rows::default();
     for aligned in keyed.chunk_by(|p, q| (p.0, p.2) == (q.0, q.2)) {
         if aligned.len() < LEAST_ALIGNED {
             others.extend(aligned.iter().map(|entry| entry.4));
             continue;
         }
-        let mut rows = Rows::empty();
-        rows.blocks = aligned[0].4.particles.map(|i| (i as usize % per_lane) as u32);
+        let mut kind = Kind::empty();
+        let blocks = aligned[0].4.particles.map(|i| (i as usize % per_lane) as u32);
         for &(.., row) in aligned {
             let lane = row.particles[0] as usize / per_lane;
-            if rows.least[lane] == f32::INFINITY {
-                rows.set(lane, &row);
+            if kind.least[lane] == f32::INFINITY {
+                kind.set(lane, &row);
             } else {
                 others.push(row);
             }
         }
-        blocks.push(rows);
+        let kind = rows.kind(kind);
+        rows.aligned.push((blocks, kind));
     }
-    gather(&others, per_lane, &mut blocks);
-    blocks
+    gather(&others, per_lane, &mut rows);
+    rows
 }
 
 /// Blocks of rows that share no particle: each row goes into the first that has room for it.
-fn gather<const K: usize>(rows: &[Row<K>], per_lane: usize, out: &mut Vec<Rows<K>>) {
+fn gather<const K: usize>(rows: &[Row<K>], per_lane: usize, out: &mut Rows<K>) {
     let mut open: Vec<Vec<Row<K>>> = Vec::new();
     for &row in rows {
         let meets = |other: &Row<K>| other.particles.iter().any(|i| row.particles.contains(i));
@@ -222,26 +270,28 @@ fn gather<const K: usize>(rows: &[Row<K>], per_lane: usize, out: &mut Vec<Rows<K
             None => open.push(vec![row]),
         }
         if let Some(full) = open.iter().position(|block| block.len() == WIDTH) {
-            out.push(gathered(&open.remove(full), per_lane));
+            push_gathered(&open.remove(full), per_lane, out);
         } else if open.len() > OPEN {
-            out.push(gathered(&open.remove(0), per_lane));
+            push_gathered(&open.remove(0), per_lane, out);
         }
     }
-    out.extend(open.iter().map(|block| gathered(block, per_lane)));
+    for block in &open {
+        push_gathered(block, per_lane, out);
+    }
 }
 
-fn gathered<const K: usize>(block: &[Row<K>], per_lane: usize) -> Rows<K> {
-    let mut rows = Rows::empty();
+fn push_gathered<const K: usize>(block: &[Row<K>], per_lane: usize, out: &mut Rows<K>) {
+    let mut kind = Kind::empty();
     // Lanes without a row have a place of their own, after all particles.
     let mut slots = [core::array::from_fn(|lane| (per_lane * WIDTH + lane) as u32); K];
     for (lane, row) in block.iter().enumerate() {
-        rows.set(lane, row);
+        kind.set(lane, row);
         for (slot, &i) in slots.iter_mut().zip(&row.particles) {
             slot[lane] = (i as usize % per_lane * WIDTH + i as usize / per_lane) as u32;
         }
     }
-    rows.slots = Some(slots);
-    rows
+    let kind = out.kind(kind);
+    out.gathered.push((slots, kind));
 }
 
 /// Projects each row once.
@@ -260,278 +310,232 @@ impl Kernel for Project<'_> {
     fn run<L: Lanes>(self) {
         let Batches { springs, bends, particles, .. } = self.batches;
         let times = (L::splat(self.h), L::splat(1.0 / (self.h * self.h)));
-        for rows in springs.iter() {
-            match &rows.slots {
-                None => project_springs::<L, _>(particles, rows, &rows.blocks, times, self.touching),
-                Some(slots) => project_springs::<L, _>(particles, rows, slots, times, self.touching),
+        for (places, kind) in &springs.aligned {
+            if let Ok([Block(a), Block(b)]) = particles.get_disjoint_mut(places.map(|block| block as usize)) {
+                project_springs::<L>([a, b], &springs.kinds[*kind as usize], times, self.touching);
             }
         }
-        for rows in bends.iter() {
-            match &rows.slots {
-                None => project_bends::<L, _>(particles, rows, &rows.blocks, times, self.touching),
-                Some(slots) => project_bends::<L, _>(particles, rows, slots, times, self.touching),
+        for (slots, kind) in &springs.gathered {
+            let mut ends = fetch(particles, slots);
+            let [a, b] = &mut ends;
+            project_springs::<L>([a, b], &springs.kinds[*kind as usize], times, self.touching);
+            put_back(particles, slots, &ends);
+        }
+        for (places, kind) in &bends.aligned {
+            if let Ok([Block(a), Block(b), Block(c)]) =
+                particles.get_disjoint_mut(places.map(|block| block as usize))
+            {
+                project_bends::<L>([a, b, c], &bends.kinds[*kind as usize], times, self.touching);
+            }
+        }
+        for (slots, kind) in &bends.gathered {
+            let mut ends = fetch(particles, slots);
+            let [a, b, c] = &mut ends;
+            project_bends::<L>([a, b, c], &bends.kinds[*kind as usize], times, self.touching);
+            put_back(particles, slots, &ends);
+        }
+    }
+}
+
+/// Numbers of eight particles.
+type Numbers = [[f32; WIDTH]; FIELDS];
+
+/// Copies of particles that each have their block and lane.
+#[inline(always)]
+fn fetch<const K: usize>(particles: &[Block<FIELDS>], slots: &[[u32; WIDTH]; K]) -> [Numbers; K] {
+    let mut ends = [[[0.0; WIDTH]; FIELDS]; K];
+    for k in 0..K {
+        for lane in 0..WIDTH {
+            let slot = slots[k][lane] as usize;
+            let Block(from) = &particles[slot / WIDTH];
+            for field in 0..FIELDS {
+                ends[k][field][lane] = from[field][slot % WIDTH];
+            }
+        }
+    }
+    ends
+}
+
+/// Writes what has changed of these.
+#[inline(always)]
+fn put_back<const K: usize>(particles: &mut [Block<FIELDS>], slots: &[[u32; WIDTH]; K], ends: &[Numbers; K]) {
+    for k in 0..K {
+        for lane in 0..WIDTH {
+            let slot = slots[k][lane] as usize;
+            let Block(to) = &mut particles[slot / WIDTH];
+            for field in [WAY, WAY + 1, WAY + 2, ROOM] {
+                to[field][slot % WIDTH] = ends[k][field][lane];
             }
         }
     }
 }
 
-/// Places of eight particles.
-trait Place {
-    /// One number of each.
-    fn load<L: Lanes>(&self, particles: &[Block<FIELDS>], field: usize) -> L;
-
-    /// Writes one number of each.
-    fn store<L: Lanes>(&self, value: L, particles: &mut [Block<FIELDS>], field: usize);
-}
-
-/// All in one block.
-impl Place for u32 {
-    #[inline(always)]
-    fn load<L: Lanes>(&self, particles: &[Block<FIELDS>], field: usize) -> L {
-        L::load(&particles[*self as usize].0[field])
-    }
-
-    #[inline(always)]
-    fn store<L: Lanes>(&self, value: L, particles: &mut [Block<FIELDS>], field: usize) {
-        value.store(&mut particles[*self as usize].0[field]);
-    }
-}
-
-/// Each in its block and lane.
-impl Place for [u32; WIDTH] {
-    #[inline(always)]
-    fn load<L: Lanes>(&self, particles: &[Block<FIELDS>], field: usize) -> L {
-        let mut numbers = [0.0; WIDTH];
-        for lane in 0..WIDTH {
-            let slot = self[lane] as usize;
-            numbers[lane] = particles[slot / WIDTH].0[field][slot % WIDTH];
-        }
-        L::load(&numbers)
-    }
-
-    #[inline(always)]
-    fn store<L: Lanes>(&self, value: L, particles: &mut [Block<FIELDS>], field: usize) {
-        let mut numbers = [0.0; WIDTH];
-        value.store(&mut numbers);
-        for lane in 0..WIDTH {
-            let slot = self[lane] as usize;
-            particles[slot / WIDTH].0[field][slot % WIDTH] = numbers[lane];
-        }
-    }
-}
-
-/// One vector of eight particles, from its first field.
+/// A vector of eight particles, from its first field.
 #[inline(always)]
-fn vector<L: Lanes>(particles: &[Block<FIELDS>], place: &impl Place, field: usize) -> Vector3<L> {
-    Vector3::new(
-        place.load(particles, field),
-        place.load(particles, field + 1),
-        place.load(particles, field + 2),
-    )
+fn vector<L: Lanes>(numbers: &Numbers, field: usize) -> Vector3<L> {
+    Vector3::load(&numbers[field], &numbers[field + 1], &numbers[field + 2])
 }
 
 #[inline(always)]
-fn project_springs<L: Lanes, P: Place>(
-    particles: &mut [Block<FIELDS>],
-    rows: &Rows<2>,
-    places: &[P; 2],
-    times: (L, L),
-    touching: bool,
-) {
-    let ends = [Particle::load(particles, &places[0]), Particle::load(particles, &places[1])];
-    let way = ends[1].way - ends[0].way;
-    let apart = ends[1].from - ends[0].from + way;
-    project::<L, P, 2>(particles, (rows, places), ends, (apart, way), [-1.0, 1.0], times, touching);
+fn project_springs<L: Lanes>(ends: [&mut Numbers; 2], kind: &Kind, times: (L, L), touching: bool) {
+    let way = vector::<L>(ends[1], WAY) - vector(ends[0], WAY);
+    let apart = vector::<L>(ends[1], 0) - vector(ends[0], 0) + way;
+    project::<L, 2>(ends, kind, (apart, way), [-1.0, 1.0], times, touching);
 }
 
 #[inline(always)]
-fn project_bends<L: Lanes, P: Place>(
-    particles: &mut [Block<FIELDS>],
-    rows: &Rows<3>,
-    places: &[P; 3],
-    times: (L, L),
-    touching: bool,
-) {
+fn project_bends<L: Lanes>(ends: [&mut Numbers; 3], kind: &Kind, times: (L, L), touching: bool) {
     let two = L::splat(2.0);
-    let ends = [
-        Particle::load(particles, &places[0]),
-        Particle::load(particles, &places[1]),
-        Particle::load(particles, &places[2]),
-    ];
-    let way = ends[0].way - ends[1].way * two + ends[2].way;
-    let apart = ends[0].from - ends[1].from * two + ends[2].from + way;
-    project::<L, P, 3>(particles, (rows, places), ends, (apart, way), [1.0, -2.0, 1.0], times, touching);
-}
-
-/// Eight particles.
-#[derive(Clone, Copy)]
-struct Particle<L> {
-    from: Vector3<L>,
-    way: Vector3<L>,
-    weight: L,
-}
-
-impl<L: Lanes> Particle<L> {
-    #[inline(always)]
-    fn load(particles: &[Block<FIELDS>], place: &impl Place) -> Self {
-        let (from, way) = (vector(particles, place, 0), vector(particles, place, WAY));
-        Self { from, way, weight: place.load(particles, WEIGHT) }
-    }
-
-    #[inline(always)]
-    fn store(&self, particles: &mut [Block<FIELDS>], place: &impl Place) {
-        place.store(self.way.x, particles, WAY);
-        place.store(self.way.y, particles, WAY + 1);
-        place.store(self.way.z, particles, WAY + 2);
-    }
-}
-
-/// Surfaces that eight particles touch.
-#[derive(Clone, Copy, Debug)]
-struct Surface<L> {
-    normal: Vector3<L>,
-    backing: L,
-    room: L,
-}
-
-impl<L: Lanes> Surface<L> {
-    #[inline(always)]
-    fn load(particles: &[Block<FIELDS>], place: &impl Place) -> Self {
-        Self {
-            normal: vector(particles, place, NORMAL),
-            backing: place.load(particles, BACKING),
-            room: place.load(particles, ROOM),
-        }
-    }
-
-    /// The part of an impulse along the normal that goes on to the bodies.
-    #[inline(always)]
-    fn handed_on(&self, along: L) -> L {
-        let zero = L::splat(0.0);
-        (L::min(self.room + along, zero) - L::min(self.room, zero)) * self.backing
-    }
-
-    /// Mobility, 1/kg, of a particle of some weight that is pulled by a force of which so much is along the normal and whose square is `square`, while
-    /// it has some room.
-    #[inline(always)]
-    fn mobility(&self, (weight, along, square): (L, L, L), room: L) -> L {
-        let zero = L::splat(0.0);
-        let presses = L::lt(room, zero) | (L::lt(along, zero) & L::le(room, zero));
-        weight * (square - along * (along * self.backing).masked(presses))
-    }
-
-    /// Length that a particle of some weight comes along that force by as many times an impulse.
-    #[inline(always)]
-    fn moved(&self, (weight, along, square): (L, L, L), impulse: L) -> L {
-        weight * (square * impulse - along * self.handed_on(along * impulse))
-    }
-
-    /// The part of an impulse along a unit `direction`, times the length of the iteration, N·s², that is left to particles: the rest presses them onto
-    /// their surface and goes on.
-    #[inline(always)]
-    fn pass_on(&mut self, direction: Vector3<L>, impulse: L) -> Vector3<L> {
-        let along = direction.dot(self.normal) * impulse;
-        let handed_on = self.handed_on(along);
-        self.room = self.room + along;
-        direction * impulse - self.normal * handed_on
-    }
+    let way = vector::<L>(ends[0], WAY) - vector(ends[1], WAY) * two + vector(ends[2], WAY);
+    let apart = vector::<L>(ends[0], 0) - vector(ends[1], 0) * two + vector(ends[2], 0) + way;
+    project::<L, 3>(ends, kind, (apart, way), [1.0, -2.0, 1.0], times, touching);
 }
 
 /// True if a particle of the rows touches a surface.
 #[inline(always)]
-fn any_touching<L: Lanes, P: Place, const K: usize>(particles: &[Block<FIELDS>], places: &[P; K]) -> bool {
-    let mut any = false;
-    for place in places {
-        any |= L::gt(place.load::<L>(particles, BACKING), L::splat(0.0)).any();
+fn any_touching<L: Lanes, const K: usize>(ends: &[&mut Numbers; K]) -> bool {
+    let mut most = L::load(&ends[0][BACKING]);
+    for k in 1..K {
+        most = L::max(most, L::load(&ends[k][BACKING]));
     }
-    any
+    L::gt(most, L::splat(0.0)).any()
 }
 
-/// The impulse, N·s², that takes eight rows by `error` along their `direction`, and the mobility there, 1/kg. Mobility changes where a particle comes to
-/// press and where it ceases to: a second step of Newton's method, exact for one such change.
+/// The surface at one end of eight rows, as a pull on it sees it.
+#[derive(Clone, Copy, Debug)]
+struct Surface<L> {
+    /// Room before it presses, N·s².
+    room: L,
+    /// Part of the pull along its normal.
+    along: L,
+    /// Share of an impulse that presses and goes on, as the mobility, 1/kg, that it takes from the row for each part along the normal.
+    passed: L,
+    /// Room below which it presses: more than none if the pull is onto it.
+    brink: L,
+}
+
+impl<L: Lanes> Surface<L> {
+    /// For a pull of so much for each N·s along a unit direction.
+    #[inline(always)]
+    fn load(end: &Numbers, direction: Vector3<L>, pull: L) -> Self {
+        let zero = L::splat(0.0);
+        let along = direction.dot(vector(end, NORMAL)) * pull;
+        let passed = L::load(&end[BACKING]) * L::load(&end[WEIGHT]) * along;
+        let brink = L::splat(f32::MIN_POSITIVE).masked(L::lt(along, zero));
+        Self { room: L::load(&end[ROOM]), along, passed, brink }
+    }
+
+    /// Mobility that the row lacks, 1/kg, with that much room.
+    #[inline(always)]
+    fn lacking(&self, room: L) -> L {
+        (self.passed * self.along).masked(L::lt(room, self.brink))
+    }
+
+    /// Room that is left after so much impulse.
+    #[inline(always)]
+    fn after(&self, impulse: L) -> L {
+        self.room + self.along * impulse
+    }
+
+    /// The part along the normal of an impulse that takes the room to `after` that goes on to the body.
+    #[inline(always)]
+    fn pressed(&self, after: L) -> L {
+        let zero = L::splat(0.0);
+        L::min(after, zero) - L::min(self.room, zero)
+    }
+}
+
+/// The impulse, N·s², that takes eight rows by `error`, which is not negative, and the mobility there, 1/kg. Mobility, `most` without surfaces, changes where a
+/// particle comes to press and where it ceases to: a second step of Newton's method, exact for one such change.
 #[inline(always)]
 fn impulse_on_surfaces<L: Lanes, const K: usize>(
     surfaces: &[Surface<L>; K],
-    ends: &[Particle<L>; K],
-    (direction, error): (Vector3<L>, L),
-    shares: [f32; K],
-    compliance: L,
+    (most, compliance): (L, L),
+    error: L,
 ) -> (L, L) {
-    let zero = L::splat(0.0);
-    // Ends are pulled against the error.
-    let sign = L::select(L::lt(error, zero), L::splat(1.0), L::splat(-1.0));
-    let mut pulls = [(zero, zero, zero); K];
-    let mut mobility = zero;
-    for k in 0..K {
-        let share = sign * L::splat(shares[k]);
-        let along = direction.dot(surfaces[k].normal) * share;
-        pulls[k] = (ends[k].weight, along, L::splat(shares[k] * shares[k]));
-        mobility = mobility + surfaces[k].mobility(pulls[k], surfaces[k].room);
+    let mut mobility = most;
+    for surface in surfaces {
+        mobility = mobility - surface.lacking(surface.room);
     }
-    let first = error.abs() / (mobility + compliance);
-    let mut left = error.abs() - compliance * first;
-    mobility = zero;
-    for k in 0..K {
-        left = left - surfaces[k].moved(pulls[k], first);
-        mobility = mobility + surfaces[k].mobility(pulls[k], surfaces[k].room + pulls[k].1 * first);
+    let first = error / (mobility + compliance);
+    let mut left = error - (most + compliance) * first;
+    mobility = most;
+    for surface in surfaces {
+        let after = surface.after(first);
+        left = left + surface.passed * surface.pressed(after);
+        mobility = mobility - surface.lacking(after);
     }
-    let impulse = first + left / (mobility + compliance);
-    (zero - sign * impulse, mobility)
+    (first + left / (mobility + compliance), mobility)
 }
 
 /// Solves eight rows. `apart` is the vector whose length is their error and rest, `way` how far it has come in the iteration, and
 /// each end moves it by its share.
 #[inline(always)]
-fn project<L: Lanes, P: Place, const K: usize>(
-    particles: &mut [Block<FIELDS>],
-    (rows, places): (&Rows<K>, &[P; K]),
-    mut ends: [Particle<L>; K],
+fn project<L: Lanes, const K: usize>(
+    ends: [&mut Numbers; K],
+    kind: &Kind,
     (apart, way): (Vector3<L>, Vector3<L>),
     shares: [f32; K],
     (h, per_square): (L, L),
     touching: bool,
 ) {
+    let zero = L::splat(0.0);
     let length = apart.dot(apart).sqrt();
     let direction = apart * (L::splat(1.0) / length);
-    let error = length - L::load(&rows.rest);
-    let active = L::gt(error, L::load(&rows.least)) & L::gt(length, L::splat(1e-9));
-    let compliance = L::load(&rows.compliance) * per_square;
-    let mut surfaces = None;
-    let (mut impulse, mut sum);
-    if touching && any_touching::<L, P, K>(particles, places) {
-        let mut found = [Surface::load(particles, &places[0]); K];
-        for k in 1..K {
-            found[k] = Surface::load(particles, &places[k]);
-        }
-        (impulse, sum) = impulse_on_surfaces(&found, &ends, (direction, error), shares, compliance);
-        surfaces = Some(found);
-    } else {
-        sum = L::splat(0.0);
-        for k in 0..K {
-            sum = sum + ends[k].weight * L::splat(shares[k] * shares[k]);
-        }
-        impulse = error / (sum + compliance);
-    }
-    if rows.is_damped {
-        // Damping of the speed that this leaves.
-        let left = way.dot(direction) - impulse * sum;
-        let damping = h * L::load(&rows.damping);
-        impulse = impulse + left * damping / (L::splat(1.0) + damping * sum);
-    }
-    // Rows without an error, a direction or anything that moves do nothing.
-    let active = active & L::gt(sum, L::splat(0.0));
-    let impulse = impulse.masked(active);
+    let error = length - L::load(&kind.rest);
+    let active = L::gt(error, L::load(&kind.least)) & L::gt(length, L::splat(1e-9));
     let direction =
         Vector3::new(direction.x.masked(active), direction.y.masked(active), direction.z.masked(active));
+    let compliance = L::load(&kind.compliance) * per_square;
+    let mut most = zero;
     for k in 0..K {
-        let on_end = impulse * L::splat(-shares[k]);
-        match &mut surfaces {
-            Some(surfaces) => {
-                ends[k].way = ends[k].way + surfaces[k].pass_on(direction, on_end) * ends[k].weight;
-                places[k].store(surfaces[k].room, particles, ROOM);
-            }
-            None => ends[k].way = ends[k].way + direction * (on_end * ends[k].weight),
-        }
-        ends[k].store(particles, &places[k]);
+        most = most + L::load(&ends[k][WEIGHT]) * L::splat(shares[k] * shares[k]);
     }
+    // Rows without an error, a direction or anything that moves do nothing.
+    let active = active & L::gt(most, zero);
+    if !(touching && any_touching::<L, K>(&ends)) {
+        let impulse = damped((error / (most + compliance), most), kind, direction.dot(way), h).masked(active);
+        for k in 0..K {
+            let by = impulse * L::splat(-shares[k]) * L::load(&ends[k][WEIGHT]);
+            store(vector::<L>(ends[k], WAY) + direction * by, ends[k]);
+        }
+        return;
+    }
+    // Ends are pulled against the error.
+    let sign = L::select(L::lt(error, zero), L::splat(1.0), L::splat(-1.0));
+    let mut surfaces = [Surface::load(ends[0], direction, sign * L::splat(shares[0])); K];
+    for k in 1..K {
+        surfaces[k] = Surface::load(ends[k], direction, sign * L::splat(shares[k]));
+    }
+    let (impulse, mobility) = impulse_on_surfaces(&surfaces, (most, compliance), error.abs());
+    let impulse = damped((impulse, mobility), kind, zero - sign * direction.dot(way), h);
+    let impulse = impulse.masked(active & L::gt(mobility, zero));
+    for k in 0..K {
+        let surface = &surfaces[k];
+        let after = surface.after(impulse);
+        let weight = L::load(&ends[k][WEIGHT]);
+        let by = sign * L::splat(shares[k]) * impulse * weight;
+        let kept = L::load(&ends[k][BACKING]) * weight * surface.pressed(after);
+        let way = vector::<L>(ends[k], WAY) + direction * by - vector::<L>(ends[k], NORMAL) * kept;
+        store(way, ends[k]);
+        after.store(&mut ends[k][ROOM]);
+    }
+}
+
+#[inline(always)]
+fn store<L: Lanes>(way: Vector3<L>, end: &mut Numbers) {
+    way.x.store(&mut end[WAY]);
+    way.y.store(&mut end[WAY + 1]);
+    way.z.store(&mut end[WAY + 2]);
+}
+
+/// An impulse with that which damps the speed that it leaves, of so much way along the row in the iteration.
+#[inline(always)]
+fn damped<L: Lanes>((impulse, mobility): (L, L), kind: &Kind, way: L, h: L) -> L {
+    if !kind.is_damped {
+        return impulse;
+    }
+    let left = way - impulse * mobility;
+    let damping = h * L::load(&kind.damping);
+    impulse + left * damping / (L::splat(1.0) + damping * mobility)
 }

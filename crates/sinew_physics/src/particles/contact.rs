@@ -7,17 +7,16 @@
 //! solution tell who must let go, slip or stick; grips are kept from substep to substep, so that at rest one solve is
 //! enough. On bodies that can move, the body's inertia at the point is added instead.
 
+use super::eights::NO_SPEED;
 use super::forest::{Freedom, NO_HUB};
 use super::sweep::{Meeting, sweep_ball};
 use super::{Part, ParticleGroup};
 use crate::body::material::{ContactMaterial, Material};
 use crate::body::shape::Shape;
 use crate::boxes::Aabb;
-use crate::particles::tuning::{DETOUR, PINCHING};
+use crate::particles::tuning::{DETOUR, PINCHING, REACH_SHARE};
 use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
-/// Slower than that, nothing moves, m/s.
-const NO_SPEED: f32 = 1e-6;
 /// Solves per iteration until grips have to be right.
 const GRIP_ROUNDS: u32 = 16;
 /// Solves after which surfaces no longer let go: grips only tighten from there on, so that they come to an end.
@@ -73,7 +72,7 @@ impl ObstacleBody {
     }
 
     /// True of what neither moves nor can be moved.
-    fn rests(&self) -> bool {
+    pub(super) fn rests(&self) -> bool {
         self.inverse_mass == 0.0 && self.linear_velocity == Vec3::ZERO && self.angular_velocity == Vec3::ZERO
     }
 
@@ -289,10 +288,10 @@ impl ParticleGroup {
     /// Gap that a particle may close by sinking, metres.
     fn contact_reach(&self, i: usize, h: f32) -> f32 {
         // Gravity included, and a share of the other forces.
-        2.0 * h * h * self.pulls[i] + 0.05 * self.radii[i]
+        2.0 * h * h * self.pulls[i] + REACH_SHARE * self.radii[i]
     }
 
-    fn find_contact(&mut self, i: usize, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
+    pub(super) fn find_contact(&mut self, i: usize, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         let (position, radius) = (self.positions[i], self.radii[i]);
         let (reach, sight) = (self.contact_reach(i, h), self.sights[i]);
         let mut beside = self.near.left_out_from(i, sight);
@@ -501,7 +500,9 @@ impl ParticleGroup {
     /// join them, else for those whose own contacts do.
     pub(super) fn settle_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         self.system.load_springs(&self.forest, &self.springs, &self.positions, h);
-        self.reactions.fill(Vec3::ZERO);
+        if !self.eights.on {
+            self.reactions.fill(Vec3::ZERO);
+        }
         let mut unsettled = core::mem::take(&mut self.unsettled);
         unsettled.clone_from(&self.solved);
         let mut met = true;
@@ -586,10 +587,11 @@ impl ParticleGroup {
             self.enter(i, h);
         }
         // What is free flies on; the solve finds all others' velocities.
-        let begun = self.begun.iter().zip(&self.accelerations);
-        let particles = self.velocities.iter_mut().zip(begun).zip(&self.attachment_of);
-        for ((velocity, (begun, acceleration)), _) in particles.filter(|(_, held)| **held == u32::MAX) {
-            *velocity = *begun + *acceleration * h;
+        for at in 0..self.one_by_one() {
+            let i = self.one(at);
+            if self.attachment_of[i] == u32::MAX {
+                self.velocities[i] = self.begun[i] + self.accelerations[i] * h;
+            }
         }
     }
 

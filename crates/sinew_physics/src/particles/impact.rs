@@ -3,6 +3,7 @@
 
 use super::ParticleGroup;
 use super::contact::{Obstacle, ObstacleBody, Touch};
+use super::eights::ROUNDING;
 use super::sweep::Meeting;
 use crate::particles::tuning::DETOUR;
 use crate::particles::tuning::{IMPACT_SPEED, PINCH_SPEED};
@@ -10,8 +11,6 @@ use sinew_math::{Vec3, max, min};
 
 /// Surfaces that a particle is moved out of, one after the other; after that it stays where it met the next.
 const ROUNDS: usize = 2;
-/// Depths within rounding, metres.
-const ROUNDING: f32 = 1e-6;
 /// Impulses on bodies per particle and iteration: in the solve, of the net, of its bounce, and of impacts, the last of which may be with two.
 pub(super) const MAX_TOUCHES: usize = 3 + ROUNDS + 2;
 
@@ -35,7 +34,8 @@ impl ParticleGroup {
     /// Puts particles that are inside a shape, or crossed one, on its surface, on the side they came from. They stop
     /// or bounce, and rub.
     pub(super) fn stop_impacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &mut [ObstacleBody]) {
-        for i in 0..self.positions.len() {
+        for at in 0..self.one_by_one() {
+            let i = self.one(at);
             if self.is_clear(i, self.positions[i] - self.previous[i]) || self.rests(i, obstacles) {
                 continue;
             }

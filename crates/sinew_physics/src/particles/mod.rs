@@ -20,11 +20,13 @@ mod builders;
 mod check;
 mod contact;
 mod def;
+mod eights;
 mod elastic;
 mod forest;
 mod geodesic;
 mod hub;
 mod impact;
+mod in_eights;
 mod near;
 mod net;
 mod rest;
@@ -51,6 +53,7 @@ use crate::id::GroupId;
 use crate::particles::tuning::STRIKE_GAP;
 use batches::Batches;
 use contact::{Grip, Placed, Touch};
+use eights::Eights;
 use forest::{Forest, Freedom, Holder, System};
 use impact::MAX_TOUCHES;
 use near::Near;
@@ -140,6 +143,8 @@ pub struct ParticleGroup {
     backings: Vec<f32>,
     /// Rows of the net that hold no attached particle.
     batches: Batches,
+    /// Its particles in lanes.
+    eights: Eights,
     /// Projected springs that hold one.
     held_springs: Vec<u32>,
     /// Bends that hold one.
@@ -494,6 +499,7 @@ impl ParticleGroup {
         self.attachment_impulses.fill(Vec3::ZERO);
         self.holders.clear();
         self.holders.extend_from_slice(bodies);
+        self.enter_eights(obstacles, bodies);
         self.begin_iteration(Part { number: 0, of: self.iterations, whole: h }, anchors, obstacles, bodies);
     }
 
@@ -512,6 +518,19 @@ impl ParticleGroup {
             }
             self.end_iteration(part, anchors, obstacles, bodies);
         }
+        if self.eights.on {
+            self.leave_eights();
+        }
+    }
+
+    /// Number of particles that are solved one by one: all but those in lanes.
+    fn one_by_one(&self) -> usize {
+        if self.eights.on { self.eights.others.len() } else { self.positions.len() }
+    }
+
+    /// Particle `at` of these.
+    fn one(&self, at: usize) -> usize {
+        if self.eights.on { self.eights.others[at] as usize } else { at }
     }
 
     /// The first half of a part of the substep: finds velocities.
@@ -525,7 +544,11 @@ impl ParticleGroup {
         let h = part.h();
         self.span = h;
         self.place(part, obstacles, bodies);
-        self.begin(h);
+        if self.eights.on {
+            self.approach(h);
+        } else {
+            self.begin(h);
+        }
         self.hold(part, anchors);
         self.find_near(h);
         self.find_contacts(h, obstacles, bodies);
@@ -543,15 +566,26 @@ impl ParticleGroup {
     ) {
         let h = part.h();
         self.push_bodies(bodies);
-        for i in 0..self.positions.len() {
+        for at in 0..self.one_by_one() {
+            let i = self.one(at);
             self.positions[i] += self.velocities[i] * h;
         }
         self.back_contacts(bodies);
-        self.project_net(h);
+        if self.eights.on {
+            self.project_in_eights(h);
+        } else {
+            self.project_net(h);
+        }
         self.press_bodies(h, bodies);
         self.let_go(part, anchors);
         self.bounce(h, bodies);
+        if self.eights.on {
+            self.depart(h, obstacles, bodies);
+        }
         self.stop_impacts(h, obstacles, bodies);
+        if self.eights.on {
+            self.put_back();
+        }
     }
 
     /// Damping, and what particles bring into the system: all where springs are solved in it, else those that are held.

@@ -181,7 +181,8 @@ impl ParticleGroup {
     /// Lists the particles that are held or may see a shape; the others let go of what they touched.
     fn find_close(&mut self, h: f32) {
         self.close.clear();
-        for i in 0..self.positions.len() {
+        for at in 0..self.one_by_one() {
+            let i = self.one(at);
             let sight = self.sight(i, h);
             let clearance = self.near.clearance(i, self.positions[i]);
             if clearance > sight && self.attachment_of[i] == u32::MAX {

@@ -12,6 +12,7 @@
 //! Rows that hold an attached particle come one by one, since the impulse on it counts; all others eight at a time, see `batches.rs`.
 
 use super::batches::Batches;
+use super::eights::Eights;
 use super::{BendDef, ParticleGroup, Resists, SpringDef, TetherDef, VolumeDef};
 use sinew_math::{Vec3, dispatch, max, min};
 
@@ -19,6 +20,18 @@ impl ParticleGroup {
     /// Tethers, springs that the forest does not solve, bends, volumes, particles that touch each other: coarse first, so that what is fine has the
     /// last word but on pressure, and on what is not to pass through what.
     pub(super) fn project_net(&mut self, h: f32) {
+        self.project_held(h);
+        self.project_batches(h);
+        let volumes = core::mem::take(&mut self.volumes);
+        for volume in &volumes {
+            self.project_volume(volume, h);
+        }
+        self.volumes = volumes;
+        self.part_particles(h);
+    }
+
+    /// Tethers, and rows that hold an attached particle.
+    pub(super) fn project_held(&mut self, h: f32) {
         for k in 0..self.tethers.len() {
             self.project_tether(self.tethers[k], h);
         }
@@ -28,13 +41,6 @@ impl ParticleGroup {
         for k in 0..self.held_bends.len() {
             self.project_bend(self.bends[self.held_bends[k] as usize], h);
         }
-        self.project_batches(h);
-        let volumes = core::mem::take(&mut self.volumes);
-        for volume in &volumes {
-            self.project_volume(volume, h);
-        }
-        self.volumes = volumes;
-        self.part_particles(h);
     }
 
     /// Sorts rows into those that hold an attached particle, whose impulses are counted, and batches of the others.
@@ -53,6 +59,15 @@ impl ParticleGroup {
             batched_bends.iter().map(|&k| bends[k as usize]),
         );
         (self.held_springs, self.held_bends) = (held, held_bends);
+        let springs = self.held_springs.iter().map(|&k| &self.springs[k as usize]);
+        let bends = self.held_bends.iter().flat_map(|&k| self.bends[k as usize].particles);
+        let tethers = self.tethers.iter().flat_map(|t| [t.particle, t.to]);
+        let outside = springs.flat_map(|s| [s.a, s.b]).chain(bends).chain(tethers).collect();
+        let particles: Vec<_> = self.masses.iter().copied().zip(self.radii.iter().copied()).collect();
+        let per_lane = if self.batches.is_empty() { 0 } else { self.batches.particles.len() - 1 };
+        if per_lane > 0 {
+            self.eights = Eights::new(per_lane, &particles, &self.attachment_of, outside);
+        }
     }
 
     fn project_batches(&mut self, h: f32) {

@@ -44,6 +44,17 @@ pub(super) const LENGTH_TOLERANCE: f32 = 1e-3;
 /// `fast_particle` and the tests of `particles`.
 pub(super) const DETOUR: f32 = 1.5;
 
+/// Gap that a particle counts as touching whatever its speed, as a share of its radius, a ratio.
+///
+/// Larger: contacts that never close. Smaller: what trembles on a surface is solved as if it were not there. Shown by the tests of `particles`.
+pub(super) const REACH_SHARE: f32 = 0.05;
+
+/// Most obstacles near a net with which its particles are solved eight side by side, a number.
+///
+/// Larger: eight particles are tried against what only one of them is near to. Smaller: cloth over a heap is solved one by one. Shown by
+/// the scene `cloth` of `bench/peers`.
+pub(super) const MOST_SOLIDS: usize = 16;
+
 /// Gap from which on a way has come to what it strikes, metres.
 ///
 /// What falls gains no more within a step. Larger: what passes closely is struck. Smaller: more strides along a way. Shown by the tests of

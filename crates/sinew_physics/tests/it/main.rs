@@ -9,6 +9,7 @@ mod build;
 mod cases;
 mod changes;
 mod closed_forms;
+mod eights;
 mod events;
 mod fields;
 mod finite;

@@ -1,0 +1,214 @@
+//! The way of a group through the lanes of `eights.rs`: in, out of them for what is solved one by one, and back.
+
+use super::ParticleGroup;
+use super::batches::{BACKING, NORMAL, ROOM, WAY};
+use super::contact::{Grip, Obstacle, ObstacleBody};
+use super::eights::{ACCELERATION, Approach, Depart, Form, Solid};
+use crate::body::material::ContactMaterial;
+use crate::body::shape::Shape;
+use crate::particles::tuning::MOST_SOLIDS;
+use sinew_math::lanes::{Block, WIDTH};
+use sinew_math::{Vec3, dispatch};
+
+impl Solid {
+    /// The obstacle, if it is such a solid.
+    fn of(group: &ParticleGroup, o: &Obstacle, bodies: &[ObstacleBody]) -> Option<Self> {
+        if !bodies[o.body as usize].rests() || o.previous != o.world_from_shape || o.material.runs() {
+            return None;
+        }
+        let turn = o.world_from_shape.rotation;
+        let form = match o.shape {
+            Shape::Box { half_extents } => {
+                Form::Box(half_extents, [Vec3::X, Vec3::Y, Vec3::Z].map(|e| turn * e))
+            }
+            Shape::Sphere { radius } => Form::Round(0.0, Vec3::Y, radius),
+            Shape::Capsule { half_height, radius } => Form::Round(half_height, turn * Vec3::Y, radius),
+            Shape::HalfSpace => Form::Half(turn * Vec3::Y),
+            _ => return None,
+        };
+        let material = ContactMaterial::of(&group.material, &o.material);
+        Some(Self {
+            form,
+            at: o.world_from_shape.translation,
+            friction: material.friction,
+            static_friction: material.static_friction,
+            bounces: material.restitution > 0.0,
+        })
+    }
+}
+
+impl ParticleGroup {
+    /// Decides whether a substep goes through lanes, and brings all particles there.
+    pub(super) fn enter_eights(&mut self, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
+        self.eights.on = !self.forest.has_trees()
+            && !self.batches.is_empty()
+            && self.volumes.is_empty()
+            && self.self_collision.is_none()
+            && obstacles.len() <= MOST_SOLIDS;
+        if !self.eights.on {
+            return;
+        }
+        let mut eights = core::mem::take(&mut self.eights);
+        (eights.solids.clear(), eights.foreign.clear(), eights.others.clear());
+        for (index, o) in obstacles.iter().enumerate() {
+            match Solid::of(self, o, bodies) {
+                Some(solid) => eights.solids.push(solid),
+                None => eights.foreign.push(index as u32),
+            }
+        }
+        let per_lane = eights.strips.len();
+        let lanes = self.positions.chunks(per_lane).zip(self.velocities.chunks(per_lane));
+        let lanes = lanes.zip(self.accelerations.chunks(per_lane)).enumerate();
+        for (lane, ((positions, velocities), accelerations)) in lanes {
+            let numbers = positions.iter().zip(velocities).zip(accelerations);
+            let blocks = self.batches.particles.iter_mut().zip(&mut eights.strips);
+            for ((Block(particle), Block(strip)), ((at, velocity), acceleration)) in blocks.zip(numbers) {
+                (particle[0][lane], particle[1][lane], particle[2][lane]) = (at.x, at.y, at.z);
+                (strip[0][lane], strip[1][lane], strip[2][lane]) = (velocity.x, velocity.y, velocity.z);
+                strip[ACCELERATION][lane] = acceleration.x;
+                strip[ACCELERATION + 1][lane] = acceleration.y;
+                strip[ACCELERATION + 2][lane] = acceleration.z;
+            }
+        }
+        for (weight, mass) in self.weights.iter_mut().zip(&self.masses) {
+            *weight = 1.0 / *mass;
+        }
+        let gripped = self.grips.iter().enumerate().filter(|(_, grip)| **grip != Grip::Off);
+        eights.others.extend(gripped.map(|(i, _)| i as u32));
+        self.eights = eights;
+    }
+
+    /// Brings all particles back at the end of the substep.
+    pub(super) fn leave_eights(&mut self) {
+        let per_lane = self.eights.strips.len();
+        for (block, &present) in self.eights.present.iter().enumerate() {
+            let (particle, strip) = (&self.batches.particles[block].0, &self.eights.strips[block].0);
+            for lane in (0..WIDTH).filter(|lane| present >> lane & 1 == 1) {
+                let i = lane * per_lane + block;
+                self.positions[i] = Vec3::new(particle[0][lane], particle[1][lane], particle[2][lane]);
+                self.velocities[i] = Vec3::new(strip[0][lane], strip[1][lane], strip[2][lane]);
+            }
+        }
+    }
+
+    /// Begins an iteration of `h` seconds: finds what each particle touches, and its velocity; takes out those that are not solved in lanes.
+    pub(super) fn approach(&mut self, h: f32) {
+        let Self { eights, placed, batches, linear_damping, .. } = self;
+        eights.foreign_bounds.clear();
+        eights.foreign_bounds.extend(eights.foreign.iter().map(|&k| placed[k as usize].bounds));
+        let damping = 1.0 / (1.0 + h * *linear_damping);
+        dispatch::run(Approach { eights, particles: &mut batches.particles, h, damping });
+        for at in 0..self.eights.others.len() {
+            let i = self.eights.others[at] as usize;
+            if self.eights.is_easy(i) {
+                (self.grips[i], self.contact_impulses[i]) = (Grip::Off, Vec3::ZERO);
+            }
+        }
+        self.eights.others.clear();
+        for k in 0..self.attachments.len() {
+            let i = self.attachments[k].particle;
+            self.eights.others.push(i);
+            self.velocities[i as usize] *= damping;
+        }
+        let per_lane = self.eights.strips.len();
+        for block in 0..per_lane {
+            let mut left = self.eights.present[block] & !self.eights.easy[block];
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let i = lane * per_lane + block;
+                self.eights.others.push(i as u32);
+                let (particle, strip) = (&self.batches.particles[block].0, &self.eights.strips[block].0);
+                self.positions[i] = Vec3::new(particle[0][lane], particle[1][lane], particle[2][lane]);
+                self.velocities[i] = Vec3::new(strip[0][lane], strip[1][lane], strip[2][lane]);
+            }
+        }
+        self.eights.others.sort_unstable();
+        for at in 0..self.eights.others.len() {
+            let i = self.eights.others[at] as usize;
+            self.previous[i] = self.positions[i];
+            self.begun[i] = self.velocities[i];
+            self.weights[i] = 1.0 / self.masses[i];
+            self.reactions[i] = Vec3::ZERO;
+        }
+        for k in 0..self.attachments.len() {
+            self.enter(self.attachments[k].particle as usize, h);
+        }
+    }
+
+    /// Projects the rows, those in lanes and those beside.
+    pub(super) fn project_in_eights(&mut self, h: f32) {
+        let per_second = 1.0 / h;
+        let outside = core::mem::take(&mut self.eights.outside);
+        for i in outside.iter().map(|&i| i as usize).filter(|&i| self.eights.is_easy(i)) {
+            let [from, way, normal] = [0, WAY, NORMAL].map(|field| self.batches.vector_of(i, field));
+            (self.previous[i], self.positions[i], self.velocities[i]) = (from, from + way, way * per_second);
+            (self.press_normals[i], self.backings[i]) = (normal, self.batches.number_of(i, BACKING));
+            self.rooms[i] = self.batches.number_of(i, ROOM) * per_second;
+        }
+        self.project_held(h);
+        let others = core::mem::take(&mut self.eights.others);
+        for &i in outside.iter().chain(&others) {
+            let i = i as usize;
+            self.batches.put_way(i, self.previous[i], self.velocities[i] * h, self.weights[i]);
+            self.batches.put_surface(i, self.press_normals[i], self.backings[i], self.rooms[i] * h);
+            if self.eights.is_easy(i) {
+                (self.backings[i], self.press_normals[i], self.rooms[i]) = (0.0, Vec3::ZERO, 0.0);
+            }
+        }
+        dispatch::run(self.batches.project(h, true));
+        for i in others.iter().map(|&i| i as usize).filter(|&i| self.attachment_of[i] == u32::MAX) {
+            let way = self.batches.vector_of(i, WAY);
+            (self.velocities[i], self.positions[i]) = (way * per_second, self.previous[i] + way);
+            if self.backings[i] > 0.0 {
+                self.rooms[i] = self.batches.number_of(i, ROOM) * per_second;
+            }
+        }
+        (self.eights.outside, self.eights.others) = (outside, others);
+    }
+
+    /// Ends the iteration of those in lanes; takes out those that may have met something on their way.
+    pub(super) fn depart(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
+        dispatch::run(Depart { eights: &mut self.eights, particles: &mut self.batches.particles, h });
+        let per_lane = self.eights.strips.len();
+        let mut others = core::mem::take(&mut self.eights.others);
+        let solved = others.len();
+        for block in 0..per_lane {
+            let mut left = self.eights.strayed[block];
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let i = lane * per_lane + block;
+                others.push(i as u32);
+                let strip = &self.eights.strips[block].0;
+                self.velocities[i] = Vec3::new(strip[0][lane], strip[1][lane], strip[2][lane]);
+                let from = self.batches.vector_of(i, 0);
+                (self.previous[i], self.positions[i]) = (from, from);
+                self.sights[i] = self.sight(i, h);
+                self.near.follow(i, from);
+                self.find_contact(i, h, obstacles, bodies);
+                self.positions[i] = from + self.batches.vector_of(i, WAY);
+            }
+        }
+        others[solved..].sort_unstable();
+        self.eights.others = others;
+    }
+
+    /// Puts back those that were taken out.
+    pub(super) fn put_back(&mut self) {
+        let per_lane = self.eights.strips.len();
+        for at in 0..self.eights.others.len() {
+            let i = self.eights.others[at] as usize;
+            let (block, lane) = (i % per_lane, i / per_lane);
+            if self.eights.strayed[block] >> lane & 1 == 1 {
+                self.touches[i] = None;
+            }
+            let (at, velocity) = (self.positions[i], self.velocities[i]);
+            let (particle, strip) = (&mut self.batches.particles[block].0, &mut self.eights.strips[block].0);
+            for (k, (at, velocity)) in at.to_array().into_iter().zip(velocity.to_array()).enumerate() {
+                (particle[k][lane], strip[k][lane]) = (at, velocity);
+            }
+            particle[BACKING][lane] = 0.0;
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Cloth on solids at rest: Coulomb's law on a slope, whatever makes the slope and however many obstacles are near.
+
+use sinew_math::{Rotation, Transform, Vec3, trig};
+use sinew_physics::particles::{ClothDef, GroupDef, Obstacle, ObstacleBody, ParticleGroup};
+use sinew_physics::{Material, Shape};
+
+const H: f32 = 1.0 / 240.0;
+const GRAVITY: f32 = 9.81;
+const RADIUS: f32 = 0.02;
+const FRICTION: f32 = 0.5;
+
+fn obstacle(shape: Shape, frame: Transform) -> Obstacle {
+    let material = Material { friction: FRICTION, ..Material::DEFAULT };
+    Obstacle { shape, previous: frame, world_from_shape: frame, body: 0, material }
+}
+
+/// Solids whose surface goes through the origin, turned by `slope` about z.
+fn slopes(slope: Rotation) -> [Obstacle; 4] {
+    let below = |depth: f32, turn| Transform::new(slope * Vec3::Y * -depth, turn);
+    let along = slope * Rotation::from_axis_angle(Vec3::Z, -90_f32.to_radians());
+    [
+        obstacle(Shape::HalfSpace, below(0.0, slope)),
+        obstacle(Shape::Box { half_extents: Vec3::new(5.0, 0.5, 5.0) }, below(0.5, slope)),
+        obstacle(Shape::Sphere { radius: 100.0 }, below(100.0, slope)),
+        obstacle(Shape::Capsule { half_height: 5.0, radius: 100.0 }, below(100.0, along)),
+    ]
+}
+
+/// A cloth that lies on the slope.
+fn cloth(slope: Rotation) -> GroupDef {
+    let (across, down) = (slope * Vec3::X * 0.2, Vec3::Z * 0.2);
+    let corner = slope * Vec3::Y * RADIUS - (across + down) * 0.5;
+    let def = ClothDef {
+        corner,
+        across,
+        down,
+        columns: 5,
+        rows: 5,
+        mass: 0.1,
+        stretching: 1e3,
+        shearing: 1e3,
+        bending: 1e-3,
+        damping_ratio: 0.0,
+        radius: RADIUS,
+    };
+    let mut group = def.build().group;
+    group.material.friction = FRICTION;
+    group.linear_damping = 0.0;
+    group
+}
+
+/// Way of the mean of all particles down the slope in `substeps`, metres, beside so many boxes far away.
+fn way_down(angle: f32, solid: usize, beside: usize, substeps: usize) -> f32 {
+    let slope = Rotation::from_axis_angle(Vec3::Z, angle);
+    let mut obstacles = vec![slopes(slope)[solid].clone()];
+    for k in 0..beside {
+        let far = Transform::from_translation(Vec3::new(1e3, 0.0, 10.0 * k as f32));
+        obstacles.push(obstacle(Shape::Box { half_extents: Vec3::ONE }, far));
+    }
+    let mut group = ParticleGroup::new(&cloth(slope));
+    let mean = |group: &ParticleGroup| {
+        group.positions().iter().copied().sum::<Vec3>() / group.positions().len() as f32
+    };
+    let start = mean(&group);
+    let mut bodies = [ObstacleBody::default()];
+    for _ in 0..substeps {
+        group.substep(H, Vec3::Y * -GRAVITY, &[], &obstacles, &mut bodies);
+    }
+    let moved = mean(&group) - start;
+    let off = moved.dot(slope * Vec3::Y).abs() + moved.z.abs();
+    assert!(off < 2e-3, "solid {solid}: it has left the slope by {off} m");
+    moved.dot(slope * -Vec3::X)
+}
+
+#[test]
+fn cloth_slides_down_a_slope_by_coulombs_law() {
+    let (angle, substeps) = (45_f32.to_radians(), 120);
+    let pull = GRAVITY * (trig::sin(angle) - FRICTION * trig::cos(angle));
+    let time = substeps as f32 * H;
+    let expected = 0.5 * pull * time * (time + H);
+    for solid in 0..4 {
+        for beside in [0, 16] {
+            let way = way_down(angle, solid, beside, substeps);
+            assert!(
+                (way / expected - 1.0).abs() < 0.02,
+                "solid {solid}, {beside} others: {way} m for {expected} m"
+            );
+        }
+    }
+}
+
+#[test]
+fn cloth_stays_on_a_slope_that_friction_holds() {
+    for solid in 0..4 {
+        for beside in [0, 16] {
+            let way = way_down(trig::atan2(0.4, 1.0), solid, beside, 120);
+            assert!(way.abs() < 2e-3, "solid {solid}, {beside} others: it has come {way} m");
+        }
+    }
+}
