@@ -312,26 +312,26 @@ impl Kernel for Project<'_> {
         let times = (L::splat(self.h), L::splat(1.0 / (self.h * self.h)));
         for (places, kind) in &springs.aligned {
             if let Ok([Block(a), Block(b)]) = particles.get_disjoint_mut(places.map(|block| block as usize)) {
-                project_springs::<L>([a, b], &springs.kinds[*kind as usize], times, self.touching);
+                project_springs::<L>(&mut [a, b], &springs.kinds[*kind as usize], times, self.touching);
             }
         }
         for (slots, kind) in &springs.gathered {
             let mut ends = fetch(particles, slots);
             let [a, b] = &mut ends;
-            project_springs::<L>([a, b], &springs.kinds[*kind as usize], times, self.touching);
+            project_springs::<L>(&mut [a, b], &springs.kinds[*kind as usize], times, self.touching);
             put_back(particles, slots, &ends);
         }
         for (places, kind) in &bends.aligned {
             if let Ok([Block(a), Block(b), Block(c)]) =
                 particles.get_disjoint_mut(places.map(|block| block as usize))
             {
-                project_bends::<L>([a, b, c], &bends.kinds[*kind as usize], times, self.touching);
+                project_bends::<L>(&mut [a, b, c], &bends.kinds[*kind as usize], times, self.touching);
             }
         }
         for (slots, kind) in &bends.gathered {
             let mut ends = fetch(particles, slots);
             let [a, b, c] = &mut ends;
-            project_bends::<L>([a, b, c], &bends.kinds[*kind as usize], times, self.touching);
+            project_bends::<L>(&mut [a, b, c], &bends.kinds[*kind as usize], times, self.touching);
             put_back(particles, slots, &ends);
         }
     }
@@ -377,14 +377,14 @@ fn vector<L: Lanes>(numbers: &Numbers, field: usize) -> Vector3<L> {
 }
 
 #[inline(always)]
-fn project_springs<L: Lanes>(ends: [&mut Numbers; 2], kind: &Kind, times: (L, L), touching: bool) {
+fn project_springs<L: Lanes>(ends: &mut [&mut Numbers; 2], kind: &Kind, times: (L, L), touching: bool) {
     let way = vector::<L>(ends[1], WAY) - vector(ends[0], WAY);
     let apart = vector::<L>(ends[1], 0) - vector(ends[0], 0) + way;
     project::<L, 2>(ends, kind, (apart, way), [-1.0, 1.0], times, touching);
 }
 
 #[inline(always)]
-fn project_bends<L: Lanes>(ends: [&mut Numbers; 3], kind: &Kind, times: (L, L), touching: bool) {
+fn project_bends<L: Lanes>(ends: &mut [&mut Numbers; 3], kind: &Kind, times: (L, L), touching: bool) {
     let two = L::splat(2.0);
     let way = vector::<L>(ends[0], WAY) - vector(ends[1], WAY) * two + vector(ends[2], WAY);
     let apart = vector::<L>(ends[0], 0) - vector(ends[1], 0) * two + vector(ends[2], 0) + way;
@@ -472,7 +472,7 @@ fn impulse_on_surfaces<L: Lanes, const K: usize>(
 /// each end moves it by its share.
 #[inline(always)]
 fn project<L: Lanes, const K: usize>(
-    ends: [&mut Numbers; K],
+    ends: &mut [&mut Numbers; K],
     kind: &Kind,
     (apart, way): (Vector3<L>, Vector3<L>),
     shares: [f32; K],
@@ -493,7 +493,7 @@ fn project<L: Lanes, const K: usize>(
     }
     // Rows without an error, a direction or anything that moves do nothing.
     let active = active & L::gt(most, zero);
-    if !(touching && any_touching::<L, K>(&ends)) {
+    if !(touching && any_touching::<L, K>(ends)) {
         let impulse = damped((error / (most + compliance), most), kind, direction.dot(way), h).masked(active);
         for k in 0..K {
             let by = impulse * L::splat(-shares[k]) * L::load(&ends[k][WEIGHT]);

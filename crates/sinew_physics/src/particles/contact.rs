@@ -14,7 +14,7 @@ use super::{Part, ParticleGroup};
 use crate::body::material::{ContactMaterial, Material};
 use crate::body::shape::Shape;
 use crate::boxes::Aabb;
-use crate::particles::tuning::{DETOUR, PINCHING, REACH_SHARE};
+use crate::particles::tuning::{DETOUR, PINCHING, REACH_SHARE, WALL_GAP};
 use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
 /// Solves per iteration until grips have to be right.
@@ -23,8 +23,6 @@ const GRIP_ROUNDS: u32 = 16;
 const LOOSE_ROUNDS: u32 = 8;
 /// Depth at the end of an iteration below which a contact is left to impacts, metres.
 const IMPACT_DEPTH: f32 = 1e-5;
-/// Gap within which a particle is on a surface that nothing moves, metres.
-const WALL_GAP: f32 = 1e-4;
 
 /// The motion of a body that particles may touch. Its velocity changes as they do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -63,7 +63,7 @@ pub(super) struct Hub {
     inertia: Sym3,
     /// Inertia that moves along with it.
     added: AddedMass,
-    /// What other groups bring to it, and what this one does.
+    /// Shares that other groups bring to it, and that this one does.
     pub others: Share,
     pub own: Share,
     /// At the end of the iteration without springs and particles, and with those that hang below it.

@@ -49,7 +49,9 @@ impl ParticleGroup {
             return;
         }
         let mut eights = core::mem::take(&mut self.eights);
-        (eights.solids.clear(), eights.foreign.clear(), eights.others.clear());
+        eights.solids.clear();
+        eights.foreign.clear();
+        eights.others.clear();
         for (index, o) in obstacles.iter().enumerate() {
             match Solid::of(self, o, bodies) {
                 Some(solid) => eights.solids.push(solid),

@@ -503,7 +503,7 @@ impl ParticleGroup {
         self.begin_iteration(Part { number: 0, of: self.iterations, whole: h }, anchors, obstacles, bodies);
     }
 
-    /// What is left of a substep that has begun.
+    /// The second half of a substep, with all other iterations.
     pub(crate) fn end_substep(
         &mut self,
         h: f32,

@@ -108,3 +108,8 @@ pub(super) const PINCHING: f32 = -0.1;
 ///
 /// Larger: a body that lies on a rope is thrown off it. Smaller than gravity times the substep: it sinks into it. Shown by the tests of `pinched`.
 pub(super) const PINCH_SPEED: f32 = 0.1;
+
+/// Gap within which a particle is on a surface that nothing moves, metres.
+///
+/// Larger: what hovers over a floor bears as if it lay there. Smaller: rounding lifts it off, and a body pushes it in. Shown by the tests of `pinched`.
+pub(super) const WALL_GAP: f32 = 1e-4;

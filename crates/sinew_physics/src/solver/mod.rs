@@ -142,7 +142,7 @@ pub(crate) struct IslandSolver {
     displaced: bool,
     /// Fastest rate that a hit may give a joint, rad/s: limits within reach of it get rows.
     hit_rate: f32,
-    /// What limits and contacts were foreseen to pass by far, the substep's sweeps have dealt with.
+    /// Sweeps have dealt with all limits and contacts that the substep was foreseen to pass by far.
     is_settled: bool,
     /// Substep, seconds, how many there are in the step, and how many times as long as the world's they are: a power of two.
     h: f32,
@@ -525,7 +525,7 @@ impl IslandSolver {
         self.h * moving.map(power).fold(0.0, |sum, power| sum + power)
     }
 
-    /// True if the substep is longer than the world's, and what its limits and contacts were foreseen to pass it could not deal with.
+    /// True if the substep is longer than the world's, and could not deal with limits and contacts that it was foreseen to pass.
     pub fn overreaches(&self) -> bool {
         self.stretch > 1.0 && !self.is_settled
     }

@@ -464,7 +464,6 @@ fn it_gets_up_where_nobody_stands_on_it() {
         let was = fallen.state();
         fallen.update(&mut world);
         let begins = was == State::Limp && fallen.state() == State::GettingUp;
-        if step % 30 == 0 { println!("{step} {:?} other {:?} pelvis {:?} {:?} ground {:?}", fallen.state(), place(&other), world.center_of_mass(fallen.bodies()[0]), other.state(), stands); }
         assert!(!(begins && stands), "it gets up at {step} while somebody stands on it");
         stood += u32::from(stands && was == State::Limp);
         other.update(&mut world);

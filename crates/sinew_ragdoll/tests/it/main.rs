@@ -20,6 +20,8 @@ mod lives;
 mod mapping;
 mod pops;
 mod quality;
+
+mod retaken;
 mod rig_variants;
 mod rollback;
 mod settings;

@@ -1,0 +1,96 @@
+//! Steps that an island in long substeps takes again in the world's.
+
+use crate::actor::{floor, walker};
+use core::sync::atomic::{AtomicUsize, Ordering};
+use sinew_math::{Random, ReadError, Reader, Transform, Vec3, Writer, min};
+use sinew_physics::stage::{Counter, Profiler, Stage};
+use sinew_physics::{PhysicsObject, Serial, Velocity, World, WorldDef};
+use sinew_ragdoll::quality::random_pose;
+use sinew_ragdoll::{BodySettings, BodyState, Ragdoll, RagdollDef};
+
+/// Counts how often islands were prepared, and islands.
+#[derive(Default)]
+struct Prepared {
+    times: AtomicUsize,
+    islands: AtomicUsize,
+}
+
+impl Profiler for Prepared {
+    fn begin(&self, stage: Stage) {
+        self.times.fetch_add(usize::from(stage == Stage::Prepare), Ordering::Relaxed);
+    }
+    fn end(&self, _: Stage) {}
+    fn is_counting(&self) -> bool {
+        true
+    }
+    fn count(&self, counter: Counter, _: u64) {
+        self.islands.fetch_add(usize::from(counter == Counter::Bodies), Ordering::Relaxed);
+    }
+}
+
+/// Steps, and tells whether an island took the step twice.
+fn step_is_retaken(world: &mut World) -> bool {
+    let prepared = Prepared::default();
+    world.step_with(&Serial, &prepared);
+    prepared.times.into_inner() > prepared.islands.into_inner()
+}
+
+/// An object that does nothing: islands beside one take the world's substeps.
+struct Idle;
+
+impl PhysicsObject for Idle {
+    fn kind(&self) -> &'static str {
+        "idle"
+    }
+    fn save(&self, _: &mut Writer) {}
+    fn load(&mut self, _: &mut Reader<'_>) -> Result<(), ReadError> {
+        Ok(())
+    }
+}
+
+/// Thrown down at 9 m/s from just above the floor, in a random pose and spin.
+fn thrown(world: &mut World, def: &RagdollDef, seed: u64) -> Ragdoll {
+    let mut random = Random::new(seed);
+    let (turn, spin) = (random.rotation(), random.in_cube() * 10.0);
+    let pose = random_pose(def, &mut random);
+    let turned = Transform::new(Vec3::ZERO, turn);
+    let bottoms = pose.iter().zip(&def.bodies).map(|(&at, body)| body.shape.aabb(&(turned * at)).min.y);
+    let world_from_character = Transform::new(Vec3::Y * (0.1 - bottoms.fold(f32::INFINITY, min)), turn);
+    let pivot = world_from_character.point(pose[0].translation);
+    let state = |(&at, body): (&Transform, &sinew_ragdoll::RagdollBodyDef)| {
+        let world_from_body = world_from_character * at;
+        let arm = world_from_body.point(body.mass.center) - pivot;
+        let velocity = Velocity { linear: Vec3::Y * -9.0 + spin.cross(arm), angular: spin };
+        BodyState { world_from_body, velocity }
+    };
+    let states: Vec<BodyState> = pose.iter().zip(&def.bodies).map(state).collect();
+    Ragdoll::spawn(world, def, &states, &BodySettings::default())
+}
+
+#[test]
+fn a_step_that_long_substeps_overreach_is_that_of_short_ones() {
+    let def = walker().ragdoll;
+    let mut retaken = 0;
+    for seed in 0..500 {
+        let mut world = World::new(WorldDef::default());
+        world.add_body(&floor());
+        let ragdoll = thrown(&mut world, &def, seed);
+        for step in 0..15 {
+            let mut before = Writer::default();
+            world.save(&mut before);
+            if !step_is_retaken(&mut world) {
+                continue;
+            }
+            retaken += 1;
+            let mut short = World::new(WorldDef::default());
+            short.load(&mut Reader::new(before.as_bytes())).expect("it was saved just now");
+            short.add_object(Box::new(Idle));
+            short.step();
+            for &body in &ragdoll.bodies {
+                assert_eq!(world.transform(body), short.transform(body), "fall {seed}, step {step}");
+                assert_eq!(world.velocity(body), short.velocity(body), "fall {seed}, step {step}");
+            }
+        }
+    }
+    assert!(retaken >= 3, "{retaken} steps were taken again");
+}
