@@ -172,7 +172,7 @@ fn inspect_tells_all_settings_of_springs() {
     assert_eq!(object["springs"][1]["bones"][0]["limit_deg"], json!([57.29578, 28.64789]));
 }
 
-/// Of avatars with anything in them, `inspect` tells as many bones as the reader reads, for either version.
+/// `inspect` tells as many spring bones as the reader reads, of random avatars of either version.
 #[test]
 fn inspect_tells_springs_of_both_versions() {
     let folder = Folder::new("versions");

@@ -7,14 +7,13 @@
 //! solution tell who must let go, slip or stick; grips are kept from substep to substep, so that at rest one solve is
 //! enough. On bodies that can move, the body's inertia at the point is added instead.
 
-use super::eights::NO_SPEED;
 use super::forest::{Freedom, NO_HUB};
 use super::sweep::{Meeting, sweep_ball};
 use super::{Part, ParticleGroup};
 use crate::body::material::{ContactMaterial, Material};
 use crate::body::shape::Shape;
 use crate::boxes::Aabb;
-use crate::particles::tuning::{DETOUR, PINCHING, REACH_SHARE, WALL_GAP};
+use crate::particles::tuning::{DETOUR, NO_SPEED, PINCHING, REACH_SHARE, WALL_GAP};
 use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
 /// Solves per iteration until grips have to be right.
@@ -498,6 +497,7 @@ impl ParticleGroup {
     /// join them, else for those whose own contacts do.
     pub(super) fn settle_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         self.system.load_springs(&self.forest, &self.springs, &self.positions, h);
+        // Those of particles beside the lanes are cleared when they are taken out.
         if !self.eights.on {
             self.reactions.fill(Vec3::ZERO);
         }

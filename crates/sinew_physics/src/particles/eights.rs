@@ -8,15 +8,10 @@
 
 use super::batches::{BACKING, NORMAL, ROOM, WAY, WEIGHT};
 use crate::boxes::Aabb;
-use crate::particles::tuning::{DETOUR, IMPACT_SPEED, REACH_SHARE};
+use crate::particles::tuning::{DETOUR, IMPACT_SPEED, NO_SPEED, REACH_SHARE, ROUNDING};
 use sinew_math::Vec3;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
-
-/// Slower than that, nothing moves, m/s.
-pub(super) const NO_SPEED: f32 = 1e-6;
-/// Depths within rounding, metres.
-pub(super) const ROUNDING: f32 = 1e-6;
 
 /// Numbers of a particle beside those of `batches.rs`: velocity, height above the plane that it touches when the iteration begins, distance from all else, its
 /// friction and static friction, radius, mass, acceleration.

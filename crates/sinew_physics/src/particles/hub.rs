@@ -5,8 +5,8 @@
 //! goes on from one point of a body to another pulls through it then. Were its points solved one by one, each with its share of the
 //! body's inertia, they would part under the tension within the solve, and a bridge of planks on ropes would stretch and gain energy.
 //!
-//! Where several groups hang on one body, each adds to `S` and to the momentum what the others gather there, their **shares**. Where the body is the root of their
-//! trees that is all they do, whatever its velocity, and the solution is the one of all of them as one group.
+//! Several groups that hang on one body are solved as one: each adds to `S` and to the momentum the **shares** that the others gather
+//! there. Of a body that is the root of their trees shares are all that they bring, whatever its velocity, and the solution is exact.
 
 use super::added_mass::AddedMass;
 use super::contact::ObstacleBody;

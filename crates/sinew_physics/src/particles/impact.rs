@@ -3,10 +3,8 @@
 
 use super::ParticleGroup;
 use super::contact::{Obstacle, ObstacleBody, Touch};
-use super::eights::ROUNDING;
 use super::sweep::Meeting;
-use crate::particles::tuning::DETOUR;
-use crate::particles::tuning::{IMPACT_SPEED, PINCH_SPEED};
+use crate::particles::tuning::{DETOUR, IMPACT_SPEED, PINCH_SPEED, ROUNDING};
 use sinew_math::{Vec3, max, min};
 
 /// Surfaces that a particle is moved out of, one after the other; after that it stays where it met the next.

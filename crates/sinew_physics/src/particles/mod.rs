@@ -528,7 +528,7 @@ impl ParticleGroup {
         if self.eights.on { self.eights.others.len() } else { self.positions.len() }
     }
 
-    /// Particle `at` of these.
+    /// Index of particle `at` of those that are solved one by one.
     fn one(&self, at: usize) -> usize {
         if self.eights.on { self.eights.others[at] as usize } else { at }
     }
@@ -556,7 +556,7 @@ impl ParticleGroup {
         self.settle_contacts(h, obstacles, bodies);
     }
 
-    /// The second one: moves the group.
+    /// The second half of a part of the substep: moves the group.
     fn end_iteration(
         &mut self,
         part: Part,

@@ -64,8 +64,8 @@ impl ParticleGroup {
         let tethers = self.tethers.iter().flat_map(|t| [t.particle, t.to]);
         let outside = springs.flat_map(|s| [s.a, s.b]).chain(bends).chain(tethers).collect();
         let particles: Vec<_> = self.masses.iter().copied().zip(self.radii.iter().copied()).collect();
-        let per_lane = if self.batches.is_empty() { 0 } else { self.batches.particles.len() - 1 };
-        if per_lane > 0 {
+        if !self.batches.is_empty() {
+            let per_lane = self.batches.particles.len() - 1;
             self.eights = Eights::new(per_lane, &particles, &self.attachment_of, outside);
         }
     }

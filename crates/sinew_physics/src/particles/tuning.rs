@@ -113,3 +113,13 @@ pub(super) const PINCH_SPEED: f32 = 0.1;
 ///
 /// Larger: what hovers over a floor bears as if it lay there. Smaller: rounding lifts it off, and a body pushes it in. Shown by the tests of `pinched`.
 pub(super) const WALL_GAP: f32 = 1e-4;
+
+/// Speed below which nothing moves, m/s.
+///
+/// Rounding of speeds of some metres a second. Larger: what creeps counts as held. Smaller: noise decides who touches and who lets go. No scene shows it.
+pub(super) const NO_SPEED: f32 = 1e-6;
+
+/// Depth below which a particle is on a surface and not in it, metres.
+///
+/// Rounding of places of some metres. Larger: particles sink in by so much. Smaller: what lies is moved out in each iteration. No scene shows it.
+pub(super) const ROUNDING: f32 = 1e-6;

@@ -1,4 +1,4 @@
-//! What lies on a cloth that heavy blocks hold: it sleeps and wakes with both.
+//! A box on a cloth that heavy blocks hold sleeps and wakes with both.
 
 use crate::actor::floor;
 use sinew_math::Vec3;
