@@ -40,6 +40,9 @@ pub(crate) struct SolverJoint {
     pub(super) start_rate: Vec6,
     pub saturated: Saturation,
     pub limits: [LimitImpulse; MAX_LIMITS],
+    /// Least slack of its hard rotational stops that are in reach, and what it was a substep before, radians.
+    pub(super) least_slack: f32,
+    pub(super) slack_before: f32,
     /// Impulses of the limits in the substep so far, world axes.
     pub(super) limit_impulse: [Vec3; MAX_LIMITS],
     pub force: Vec3,

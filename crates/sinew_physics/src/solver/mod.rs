@@ -525,9 +525,10 @@ impl IslandSolver {
         self.h * moving.map(power).fold(0.0, |sum, power| sum + power)
     }
 
-    /// True if the substep is longer than the world's, and could not deal with limits and contacts that it was foreseen to pass.
+    /// True if the substep is longer than the world's, and could not deal with limits and contacts that it was foreseen to pass, or has
+    /// taken a joint far beyond a limit.
     pub fn overreaches(&self) -> bool {
-        self.stretch > 1.0 && !self.is_settled
+        self.stretch > 1.0 && (!self.is_settled || self.leaps_limits())
     }
 
     /// Number of substeps of the island in this step.

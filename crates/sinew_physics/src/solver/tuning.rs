@@ -66,6 +66,12 @@ pub(super) const RESPONSE_CONTACTS_PER_LINK: usize = 4;
 /// where they are cut, since rows of loops beyond [`MAX_EXACT_ROWS`] are iterated. No scene shows it alone.
 pub(super) const MAX_TREE: usize = 1024;
 
+/// Angle by which a joint may go farther beyond a hard limit within a long substep, radians.
+///
+/// Beyond it the island takes its step again in the world's substeps. Larger: limbs are over-extended in crashes. Smaller: crashes cost more.
+/// Sensible from 0.02 to 0.1. Shown by `ragdoll_pile` of `cargo xtask bench`.
+pub(super) const LIMIT_LEAP: f32 = 0.05;
+
 /// Rounds a substep in which limits and contacts that it would pass by far are tightened, a number.
 ///
 /// Each is a resumed pass of sweeps. Sensible from 1 to 8. More: violent crashes cost more. Fewer: a limb that whirls leaves its cone

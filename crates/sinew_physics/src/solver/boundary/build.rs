@@ -290,6 +290,8 @@ impl IslandSolver {
                 start_rate: ZERO6,
                 saturated: joint.saturated,
                 limits: joint.limits.map(|limit| limit.of_substeps(self.stretch)),
+                least_slack: f32::NEG_INFINITY,
+                slack_before: f32::NEG_INFINITY,
                 limit_impulse: [Vec3::ZERO; MAX_LIMITS],
                 force: joint.force,
                 impulse: ZERO6,

@@ -6,7 +6,7 @@ use crate::solver::articulation::tree::NONE;
 use crate::solver::joint::SolverJoint;
 use crate::solver::limits::row::LimitRow;
 use crate::solver::limits::row::{Hardness, share};
-use crate::solver::tuning::{HIT_LEVER, LIMIT_MARGIN_ANGLE, LIMIT_MARGIN_LENGTH};
+use crate::solver::tuning::{HIT_LEVER, LIMIT_LEAP, LIMIT_MARGIN_ANGLE, LIMIT_MARGIN_LENGTH};
 use crate::spatial::{angular, linear};
 use sinew_math::{Vec3, max, min};
 
@@ -53,6 +53,18 @@ impl IslandSolver {
                 }
             });
         }
+        for joint in &mut self.joints {
+            joint.slack_before = core::mem::replace(&mut joint.least_slack, 0.0);
+        }
+        for row in self.limits.iter().filter(|row| row.hardness == Hardness::Hard && turns(row.limit)) {
+            let least = &mut self.joints[row.joint as usize].least_slack;
+            *least = min(*least, row.slack);
+        }
+    }
+
+    /// True if a rotation has gone farther beyond a hard limit within the substep than any may.
+    pub(in crate::solver) fn leaps_limits(&self) -> bool {
+        self.joints.iter().any(|joint| joint.least_slack < joint.slack_before - LIMIT_LEAP)
     }
 
     /// Looks where the velocities lead: a limit row is linear, and a limb that turns by much of a radian within the
