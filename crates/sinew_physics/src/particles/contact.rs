@@ -19,7 +19,7 @@ use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 /// Solves per iteration until grips have to be right.
 const GRIP_ROUNDS: u32 = 16;
 /// Solves after which surfaces no longer let go: grips only tighten from there on, so that they come to an end.
-const LOOSE_ROUNDS: u32 = 8;
+const LOOSE_ROUNDS: u32 = 4;
 /// Depth at the end of an iteration below which a contact is left to impacts, metres.
 const IMPACT_DEPTH: f32 = 1e-5;
 
@@ -243,6 +243,8 @@ pub(super) enum Grip {
     Off,
     /// Along the normal; friction is a force.
     Slide,
+    /// Along the normal; friction is a viscosity.
+    Slow,
     /// In all directions.
     Stick,
     /// In the corner with another surface, until the iteration ends.
@@ -272,6 +274,7 @@ impl ParticleGroup {
             self.grips[i] = match self.grips[i] {
                 _ if self.touches[i].is_none() => Grip::Off,
                 Grip::Wedged => Grip::Stick,
+                Grip::Slow => Grip::Slide,
                 grip => grip,
             };
         }
@@ -639,13 +642,16 @@ impl ParticleGroup {
                 let movable = body.inverse_mass > 0.0;
                 match self.grips[i] {
                     Grip::Off => {}
-                    Grip::Slide if movable => {
-                        inertia = Sym3::outer(n) * (1.0 / (body.yielding(touch.point, n) * touch.lightness));
-                        momentum = inertia * target + self.friction(i, n);
-                    }
-                    Grip::Slide => {
-                        freedom = Freedom::Along { normal: n, speed: target.dot(n) };
-                        momentum = self.friction(i, n);
+                    Grip::Slide | Grip::Slow => {
+                        (inertia, momentum) = self.rubbing(i, touch, body);
+                        if movable {
+                            let yielding = body.yielding(touch.point, n) * touch.lightness;
+                            let along = Sym3::outer(n) * (1.0 / yielding);
+                            inertia += along;
+                            momentum += along * target;
+                        } else {
+                            freedom = Freedom::Along { normal: n, speed: target.dot(n) };
+                        }
                     }
                     Grip::Stick if movable => {
                         inertia = body.inertia_at(touch.point, n) * (1.0 / touch.lightness);
@@ -665,6 +671,21 @@ impl ParticleGroup {
             self.system.added_inertia[i] = inertia;
             self.system.added_momentum[i] = momentum;
         }
+    }
+
+    /// Friction on a particle that slides, as what it adds to its inertia, kg, and momentum, kg·m/s: a force, or a viscosity by Coulomb's law at the
+    /// slip last found, which slows it and never drives it.
+    fn rubbing(&self, i: usize, touch: &Touch, body: &ObstacleBody) -> (Sym3, Vec3) {
+        let n = touch.normal;
+        if self.grips[i] == Grip::Slide {
+            return (Sym3::ZERO, self.friction(i, n));
+        }
+        let surface = touch.surface_velocity(body);
+        let relative = self.velocities[i] - surface;
+        let slip = max((relative - n * relative.dot(n)).length(), NO_SPEED);
+        let most = touch.material.friction * max(self.contact_impulses[i].dot(n), 0.0);
+        let viscosity = (Sym3::IDENTITY - Sym3::outer(n)) * (most / slip);
+        (viscosity, viscosity * surface)
     }
 
     /// The part along the surface of the last contact impulse.
@@ -706,16 +727,18 @@ impl ParticleGroup {
             }
             Grip::Off => (Grip::Off, Vec3::ZERO),
             Grip::Wedged => (Grip::Wedged, impulse),
-            Grip::Stick if !may_loosen => (Grip::Stick, impulse),
-            Grip::Slide if !may_loosen && normal <= 0.0 => (Grip::Slide, n * normal),
+            held if !may_loosen && normal <= 0.0 => (held, impulse),
             // A surface does not pull.
             _ if normal <= 0.0 => (Grip::Off, Vec3::ZERO),
             Grip::Stick if friction.length() > touch.material.static_friction * normal => {
                 (Grip::Slide, n * normal + friction * (limit / friction.length()))
             }
             Grip::Stick => (Grip::Stick, impulse),
+            Grip::Slow => (Grip::Slow, impulse),
             // Friction that drives the motion has stopped it on the way.
-            Grip::Slide if limit > 0.0 && slip.dot(friction) > 0.0 => (Grip::Stick, impulse),
+            Grip::Slide if limit > 0.0 && slip.dot(friction) > 0.0 => {
+                (if may_loosen { Grip::Stick } else { Grip::Slow }, impulse)
+            }
             Grip::Slide => (Grip::Slide, n * normal - normalize_or(slip, Vec3::ZERO) * limit),
         };
         let changed = grip != self.grips[i];

@@ -43,7 +43,8 @@ impl ParticleGroup {
             out.vec3(self.contact_impulses[i]);
             out.u8(match self.grips[i] {
                 Grip::Off => 0,
-                Grip::Slide => 1,
+                // The next iteration begins with its last friction as a force.
+                Grip::Slide | Grip::Slow => 1,
                 // A corner holds for an iteration.
                 Grip::Stick | Grip::Wedged => 2,
             });

@@ -1,8 +1,8 @@
 //! Random worlds with ropes, strands, cloth, blobs and grains among bodies: numbers stay finite, no particle is deeper in a fixed
 //! shape than its radius, no world comes to have more energy than it began with, and two threads make the bits that one makes.
 //!
-//! `SINEW_WORLDS=100..200 cargo test --release -p sinew_physics --test it -- --nocapture worlds_of_particles` runs other seeds; none of 0 to 699
-//! fails.
+//! `SINEW_WORLDS=100..200 cargo test --release -p sinew_physics --test it -- --nocapture worlds_of_particles` runs other seeds; of
+//! 0 to 9,999 six fail, nets that gain 0.01 to 0.05 J as they begin to swing.
 
 use crate::random_worlds::asked_seeds;
 use sinew_math::{Random, Rotation, Vec3, max};
@@ -12,7 +12,10 @@ use sinew_physics::{BodyDef, BodyKind, Shape, ShapeDef, Threads, World, WorldDef
 const STEPS: usize = 600;
 
 /// Worlds that are run without being asked for: the first, and those whose ropes once gained joules or whose cloth was once pushed into the ground.
-const SEEDS: [u64; 17] = [0, 1, 2, 3, 4, 5, 6, 7, 20, 21, 101, 113, 117, 171, 382, 564, 689];
+const SEEDS: [u64; 24] = [
+    0, 1, 2, 3, 4, 5, 6, 7, 20, 21, 101, 113, 117, 171, 382, 564, 689, 3271, 4023, 4087, 6871, 9488, 9553,
+    9775,
+];
 
 /// Depth beyond its radius that a particle is allowed in a fixed shape, metres.
 const DEPTH: f32 = 1e-4;
