@@ -4,13 +4,23 @@
 use super::ParticleGroup;
 use super::contact::{Obstacle, ObstacleBody, Touch};
 use super::sweep::Meeting;
-use crate::particles::tuning::{DETOUR, IMPACT_SPEED, PINCH_SPEED, ROUNDING};
-use sinew_math::{Vec3, max, min};
+use crate::particles::tuning::{DETOUR, IMPACT_SPEED, PINCH_SPEED, PINCHING, ROUNDING, SQUEEZE_SPEED};
+use sinew_math::{Vec3, clamp, max, min, normalize_or};
 
 /// Surfaces that a particle is moved out of, one after the other; after that it stays where it met the next.
 const ROUNDS: usize = 2;
 /// Impulses on bodies per particle and iteration: in the solve, of the net, of its bounce, and of impacts, the last of which may be with two.
 pub(super) const MAX_TOUCHES: usize = 3 + ROUNDS + 2;
+
+/// A particle as the solve has brought it to the end of the iteration.
+struct Came {
+    /// World, metres.
+    position: Vec3,
+    /// m/s.
+    velocity: Vec3,
+    /// Impulses on bodies reported before.
+    reported: usize,
+}
 
 impl ParticleGroup {
     /// Gives back their share to particles that the solve has stopped.
@@ -39,6 +49,11 @@ impl ParticleGroup {
             }
             self.near.follow(i, self.previous[i]);
             let mut but = None;
+            let came = Came {
+                position: self.positions[i],
+                velocity: self.velocities[i],
+                reported: self.body_impulses.len(),
+            };
             let mut wall = self.touches[i].filter(|touch| self.leans_on(i, touch, bodies));
             for round in 0..=ROUNDS {
                 let ends = (self.previous[i], self.positions[i]);
@@ -47,15 +62,20 @@ impl ParticleGroup {
                 }
                 let Some((obstacle, meeting)) = self.entered(i, ends, but, obstacles) else { break };
                 let mut touch = self.touch(i, h, obstacle, &meeting, obstacles, bodies);
-                let placed = &self.placed[obstacle];
-                touch.gap = meeting.height(placed.end.inverse_point(ends.1));
+                let end = self.placed[obstacle].end;
+                touch.gap = meeting.height(end.inverse_point(ends.1));
                 if let Some(wall) = wall.filter(|wall| wall.pinches(&touch, bodies)) {
                     self.pinch(i, h, &wall, touch, h * (1.0 - meeting.fraction), bodies);
                     break;
                 }
+                if let Some(other) = but
+                    && self.squeeze(i, h, &came, [other, obstacle], (obstacles, bodies))
+                {
+                    break;
+                }
                 if round == ROUNDS {
                     // The corner of three surfaces.
-                    self.positions[i] = placed.end.point(meeting.at);
+                    self.positions[i] = end.point(meeting.at);
                     self.velocities[i] = touch.surface_velocity(&bodies[touch.body]);
                     break;
                 }
@@ -75,6 +95,39 @@ impl ParticleGroup {
     /// True if a particle has ended on a surface that nothing moves.
     fn leans_on(&self, i: usize, touch: &Touch, bodies: &[ObstacleBody]) -> bool {
         bodies[touch.body].inverse_mass == 0.0 && touch.height(self.positions[i], self.radii[i]) < ROUNDING
+    }
+
+    /// A particle between two surfaces that leave it no room, each of which would push it into the other: it comes midway between them, goes with
+    /// them, and stays free along them, so that its springs take it out and nothing pulls it from them. Whether they leave it none.
+    fn squeeze(
+        &mut self,
+        i: usize,
+        h: f32,
+        came: &Came,
+        shapes: [usize; 2],
+        (obstacles, bodies): (&[Obstacle], &[ObstacleBody]),
+    ) -> bool {
+        let (at, radius) = (came.position, self.radii[i]);
+        let [(gap, normal, speed), (opposite_gap, opposite, opposite_speed)] = shapes.map(|k| {
+            let (o, end) = (&obstacles[k], &self.placed[k].end);
+            let (distance, normal) = o.shape.ball_distance(end.inverse_point(at), radius, radius);
+            (distance - radius, end.rotation * normal, bodies[o.body as usize].velocity_at(at))
+        });
+        if normal.dot(opposite) >= PINCHING || gap + opposite_gap >= 0.0 {
+            return false;
+        }
+        let across = normalize_or(normal - opposite, normal);
+        let most = SQUEEZE_SPEED * h;
+        self.positions[i] = at + across * clamp(0.5 * (opposite_gap - gap), -most, most);
+        let behind = (speed + opposite_speed) * 0.5 - came.velocity;
+        self.velocities[i] = came.velocity + across * behind.dot(across);
+        // What pushed it on the way here has felt that, or cannot.
+        let mut at = 0;
+        self.body_impulses.retain(|hit| {
+            at += 1;
+            at <= came.reported || bodies[hit.body as usize].inverse_mass > 0.0
+        });
+        true
     }
 
     /// A particle between a wall and a body that comes to it: it does not leave the wall, so that what the body gives it along the normal of the wall the wall

@@ -109,6 +109,12 @@ pub(super) const PINCHING: f32 = -0.1;
 /// Larger: a body that lies on a rope is thrown off it. Smaller than gravity times the substep: it sinks into it. Shown by the tests of `pinched`.
 pub(super) const PINCH_SPEED: f32 = 0.1;
 
+/// Speed with which a particle comes midway between two surfaces that leave it no room, m/s.
+///
+/// What hangs beside a limb and is caught in its joint has some centimetres to go. Larger: it jerks. Smaller: it is seen in one of them for longer. Shown by
+/// `cape`.
+pub(super) const SQUEEZE_SPEED: f32 = 0.5;
+
 /// Gap within which a particle is on a surface that nothing moves, metres.
 ///
 /// Larger: what hovers over a floor bears as if it lay there. Smaller: rounding lifts it off, and a body pushes it in. Shown by the tests of `pinched`.

@@ -97,3 +97,44 @@ fn cloth_on_the_ground_bears_a_roller() {
     let height = world.center_of_mass(roller).y - ROLLER;
     assert!(height > 1.8 * RADIUS, "{height} m above the ground");
 }
+
+/// The end of a rope that is made in the crease between two limbs, where there is no room for it, comes out of it, and nobody pays for that.
+#[test]
+fn what_is_made_in_a_crease_comes_out_of_it() {
+    for bend in [0.2_f32, 0.8, 1.6] {
+        let mut world = World::new(WorldDef::default());
+        let limb = |turn: f32| {
+            let along = Rotation::from_axis_angle(Vec3::X, turn);
+            BodyDef {
+                kind: BodyKind::Static,
+                // Their ends are 5 mm apart.
+                position: Vec3::Y + along * (Vec3::Y * 0.1825),
+                rotation: along,
+                shapes: vec![ShapeDef::new(Shape::Capsule { half_height: 0.15, radius: 0.03 })],
+                ..BodyDef::default()
+            }
+        };
+        world.add_body(&limb(bend * 0.5));
+        world.add_body(&limb(core::f32::consts::PI - bend * 0.5));
+        let mut rope = RopeDef {
+            from: Vec3::new(0.6, 1.005, 0.002),
+            to: Vec3::new(0.0, 1.005, 0.002),
+            links: 12,
+            mass: 0.1,
+            stiffness: 500.0,
+            radius: 0.015,
+        }
+        .build();
+        rope.group.hold_in_world(&[rope.first]);
+        rope.group.linear_damping = 1.0;
+        let id = world.add_particles(&rope.group);
+        let most = world.energy().total() + 1e-3;
+        for step in 0..240 {
+            world.step();
+            let energy = world.energy().total();
+            assert!(energy < most, "bent by {bend}, step {step}: {energy} J of {most}");
+        }
+        let end = world.particles(id).positions()[rope.last as usize];
+        assert!(end.x > 0.05, "bent by {bend}: it is still at {end:?}");
+    }
+}

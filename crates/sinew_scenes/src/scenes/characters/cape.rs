@@ -29,12 +29,12 @@ pub(in crate::scenes) const CAPE: Scene = Scene {
 };
 
 /// Middle of the cape's upper edge, in front of which the shoulders are, from the soles, metres.
-const NAPE: Vec3 = Vec3::new(0.0, 1.42, -0.15);
+const NAPE: Vec3 = Vec3::new(0.0, 1.42, -0.17);
 /// Width and length, metres.
-const WIDE: f32 = 0.44;
+const WIDE: f32 = 0.36;
 const LONG: f32 = 0.96;
 /// Springs along its edges: apart by less than two of the particles.
-const COLUMNS: u32 = 11;
+const COLUMNS: u32 = 9;
 const ROWS: u32 = 24;
 /// Radius of each particle, metres.
 const RADIUS: f32 = 0.02;
