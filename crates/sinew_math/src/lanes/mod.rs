@@ -154,6 +154,16 @@ pub trait Lanes: Real<Mask: LaneMask> {
     /// Lane `k` into item `k`.
     fn store(self, to: &mut [f32; WIDTH]);
 
+    /// Lane `k` gets the number of lane `k + by`, counted round. `by` is less than eight.
+    #[inline(always)]
+    fn turn(self, by: usize) -> Self {
+        let mut twice = [[0.0; WIDTH]; 2];
+        self.store(&mut twice[0]);
+        self.store(&mut twice[1]);
+        let twice = twice.as_flattened();
+        Self::load(&core::array::from_fn(|k| twice[by + k]))
+    }
+
     /// Rows become columns: lane `j` of row `i` goes to lane `i` of row `j`. Eight records become eight fields, and back.
     #[inline(always)]
     fn transpose(rows: [Self; WIDTH]) -> [Self; WIDTH] {

@@ -254,6 +254,29 @@ fn a_foreign_level_is_refused() {
     dispatch::run_at(foreign.expect("no processor has them all"), Masks);
 }
 
+struct Turned(usize);
+
+impl Kernel for Turned {
+    type Output = [f32; WIDTH];
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let mut numbers = core::array::from_fn(|lane| lane as f32);
+        L::load(&numbers).turn(self.0).store(&mut numbers);
+        numbers
+    }
+}
+
+#[test]
+fn lanes_turn_round() {
+    for level in Level::available() {
+        for by in 0..WIDTH {
+            let expected = core::array::from_fn(|lane| ((lane + by) % WIDTH) as f32);
+            assert_eq!(dispatch::run_at(level, Turned(by)), expected, "{level:?} by {by}");
+        }
+    }
+}
+
 struct Transposed;
 
 impl Kernel for Transposed {

@@ -3,8 +3,8 @@
 //! Particles lie in blocks of eight that are far apart in the group: of `8 m` the lanes of block `j` are `j`, `m + j`, `2 m + j` and so
 //! on. Rows that join a particle to the one `o` further on are then **aligned**: eight of them, one in each eighth of the group, join
 //! block `j` to block `j + o`, lane by lane, without a shuffle. In cloth that is made row by row that holds for both threads,
-//! both diagonals and all bends, but for those that cross from one eighth into the next. Those, and what irregular meshes
-//! have, are gathered. Aligned rows that follow each other share no block either, so that none waits for the one before.
+//! both diagonals and all bends. Rows that cross from one eighth into the next join lanes of block `j` to the next lanes of another: they are **turned**, that is the
+//! lanes of this one move up while they are solved. What irregular meshes have beside these is gathered. Aligned rows that follow each other share no block either, so that none waits for the one before.
 //!
 //! A projection moves particles within the iteration: what is kept is how far each has come since it began, which gives the velocity
 //! without cancellation. Rows that hold an attached particle are left to `net.rs`.
@@ -22,6 +22,11 @@ pub(super) const WEIGHT: usize = 6;
 pub(super) const BACKING: usize = 7;
 pub(super) const NORMAL: usize = 8;
 pub(super) const ROOM: usize = 11;
+/// Fields that projections change.
+const CHANGED: [usize; 4] = [WAY, WAY + 1, WAY + 2, ROOM];
+/// Shares of the ends in the vector whose length is a spring's, and a bend's.
+const SPRING: [f32; 2] = [-1.0, 1.0];
+const BEND: [f32; 3] = [1.0, -2.0, 1.0];
 /// Kinds among which that of eight rows is looked for.
 const LATEST: usize = 64;
 /// Fewest aligned rows that make a block.
@@ -67,6 +72,8 @@ impl Kind {
 struct Rows<const K: usize> {
     /// Blocks of the particles of aligned rows.
     aligned: Vec<([u32; K], u32)>,
+    /// Blocks of the particles of turned rows, and by how many lanes each lies above that of the first particle.
+    turned: Vec<([u32; K], [u8; K], u32)>,
     /// Slots of the particles of rows that are gathered, of each lane.
     gathered: Vec<([[u32; WIDTH]; K], u32)>,
     kinds: Vec<Kind>,
@@ -74,13 +81,13 @@ struct Rows<const K: usize> {
 
 impl<const K: usize> Default for Rows<K> {
     fn default() -> Self {
-        Self { aligned: Vec::new(), gathered: Vec::new(), kinds: Vec::new() }
+        Self { aligned: Vec::new(), turned: Vec::new(), gathered: Vec::new(), kinds: Vec::new() }
     }
 }
 
 impl<const K: usize> Rows<K> {
     fn is_empty(&self) -> bool {
-        self.aligned.is_empty() && self.gathered.is_empty()
+        self.aligned.is_empty() && self.turned.is_empty() && self.gathered.is_empty()
     }
 
     /// Index of a kind, among the latest if it is there.
@@ -216,14 +223,14 @@ impl Batches {
     }
 }
 
-/// Aligned rows in blocks by how far apart their particles are, then the others.
+/// Aligned and turned rows in blocks by how far apart their particles are, then the others.
 fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) -> Rows<K> {
     let mut keyed: Vec<([i64; K], u32, usize, usize, Row<K>)> = Vec::new();
     let mut others = Vec::new();
     for (order, row) in rows.enumerate() {
         let places = row.particles.map(|i| i as usize);
-        let lane = places[0] / per_lane;
-        if places.iter().any(|place| place / per_lane != lane) {
+        let blocks = places.map(|place| place % per_lane);
+        if (1..K).any(|k| blocks[..k].contains(&blocks[k])) {
             others.push(row);
             continue;
         }
@@ -231,12 +238,12 @@ fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) 
         for k in 1..K {
             steps[k] = places[k] as i64 - places[k - 1] as i64;
         }
-        let block = places[0] % per_lane;
+        let block = blocks[0];
         // Neighbours of a thread along which the blocks lie would wait for each other.
-        let turn = if steps[1].abs() == 1 { block % K } else { 0 };
-        keyed.push((steps, turn as u32, block, order, row));
+        let color = if steps[1].abs() == 1 { block % K } else { 0 };
+        keyed.push((steps, color as u32, block, order, row));
     }
-    keyed.sort_by_key(|&(steps, turn, block, order, _)| (steps, turn, block, order));
+    keyed.sort_by_key(|&(steps, color, block, order, _)| (steps, color, block, order));
     let mut rows = Rows::default();
     for aligned in keyed.chunk_by(|p, q| (p.0, p.2) == (q.0, q.2)) {
         if aligned.len() < LEAST_ALIGNED {
@@ -244,7 +251,9 @@ fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) 
             continue;
         }
         let mut kind = Kind::empty();
-        let blocks = aligned[0].4.particles.map(|i| (i as usize % per_lane) as u32);
+        let places = aligned[0].4.particles.map(|i| i as usize);
+        let blocks = places.map(|place| (place % per_lane) as u32);
+        let lanes = places.map(|place| ((WIDTH + place / per_lane - places[0] / per_lane) % WIDTH) as u8);
         for &(.., row) in aligned {
             let lane = row.particles[0] as usize / per_lane;
             if kind.least[lane] == f32::INFINITY {
@@ -254,7 +263,11 @@ fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) 
             }
         }
         let kind = rows.kind(kind);
-        rows.aligned.push((blocks, kind));
+        if lanes == [0; K] {
+            rows.aligned.push((blocks, kind));
+        } else {
+            rows.turned.push((blocks, lanes, kind));
+        }
     }
     gather(&others, per_lane, &mut rows);
     rows
@@ -308,37 +321,75 @@ impl Kernel for Project<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Batches { springs, bends, particles, .. } = self.batches;
-        let times = (L::splat(self.h), L::splat(1.0 / (self.h * self.h)));
-        for (places, kind) in &springs.aligned {
-            if let Ok([Block(a), Block(b)]) = particles.get_disjoint_mut(places.map(|block| block as usize)) {
-                project_springs::<L>(&mut [a, b], &springs.kinds[*kind as usize], times, self.touching);
-            }
+        let Self { batches: Batches { springs, bends, particles, .. }, h, touching } = self;
+        let times = (L::splat(h), L::splat(1.0 / (h * h)));
+        project_all::<L, 2>(particles, springs, SPRING, times, touching);
+        project_all::<L, 3>(particles, bends, BEND, times, touching);
+    }
+}
+
+/// Projects each row of a kind once.
+#[inline(always)]
+fn project_all<L: Lanes, const K: usize>(
+    particles: &mut [Block<FIELDS>],
+    rows: &Rows<K>,
+    shares: [f32; K],
+    times: (L, L),
+    touching: bool,
+) {
+    for (places, kind) in &rows.aligned {
+        if let Ok(blocks) = particles.get_disjoint_mut(places.map(|block| block as usize)) {
+            let mut ends = blocks.map(|Block(numbers)| numbers);
+            project::<L, K>(&mut ends, &rows.kinds[*kind as usize], shares, times, touching);
         }
-        for (slots, kind) in &springs.gathered {
-            let mut ends = fetch(particles, slots);
-            let [a, b] = &mut ends;
-            project_springs::<L>(&mut [a, b], &springs.kinds[*kind as usize], times, self.touching);
-            put_back(particles, slots, &ends);
-        }
-        for (places, kind) in &bends.aligned {
-            if let Ok([Block(a), Block(b), Block(c)]) =
-                particles.get_disjoint_mut(places.map(|block| block as usize))
-            {
-                project_bends::<L>(&mut [a, b, c], &bends.kinds[*kind as usize], times, self.touching);
-            }
-        }
-        for (slots, kind) in &bends.gathered {
-            let mut ends = fetch(particles, slots);
-            let [a, b, c] = &mut ends;
-            project_bends::<L>(&mut [a, b, c], &bends.kinds[*kind as usize], times, self.touching);
-            put_back(particles, slots, &ends);
-        }
+    }
+    for (places, lanes, kind) in &rows.turned {
+        let mut ends = turned::<L, K>(particles, places, lanes);
+        project::<L, K>(&mut ends.each_mut(), &rows.kinds[*kind as usize], shares, times, touching);
+        turn_back::<L, K>(particles, places, lanes, &ends);
+    }
+    for (slots, kind) in &rows.gathered {
+        let mut ends = fetch(particles, slots);
+        project::<L, K>(&mut ends.each_mut(), &rows.kinds[*kind as usize], shares, times, touching);
+        put_back(particles, slots, &ends);
     }
 }
 
 /// Numbers of eight particles.
 type Numbers = [[f32; WIDTH]; FIELDS];
+
+/// Copies of blocks, each turned so that its lanes meet those of the first.
+#[inline(always)]
+fn turned<L: Lanes, const K: usize>(
+    particles: &[Block<FIELDS>],
+    places: &[u32; K],
+    lanes: &[u8; K],
+) -> [Numbers; K] {
+    let mut ends = [[[0.0; WIDTH]; FIELDS]; K];
+    for k in 0..K {
+        let Block(from) = &particles[places[k] as usize];
+        for field in 0..FIELDS {
+            L::load(&from[field]).turn(usize::from(lanes[k])).store(&mut ends[k][field]);
+        }
+    }
+    ends
+}
+
+/// Writes what has changed of these: nothing in lanes without a row.
+#[inline(always)]
+fn turn_back<L: Lanes, const K: usize>(
+    particles: &mut [Block<FIELDS>],
+    places: &[u32; K],
+    lanes: &[u8; K],
+    ends: &[Numbers; K],
+) {
+    for k in 0..K {
+        let Block(to) = &mut particles[places[k] as usize];
+        for field in CHANGED {
+            L::load(&ends[k][field]).turn((WIDTH - usize::from(lanes[k])) % WIDTH).store(&mut to[field]);
+        }
+    }
+}
 
 /// Copies of particles that each have their block and lane.
 #[inline(always)]
@@ -363,7 +414,7 @@ fn put_back<const K: usize>(particles: &mut [Block<FIELDS>], slots: &[[u32; WIDT
         for lane in 0..WIDTH {
             let slot = slots[k][lane] as usize;
             let Block(to) = &mut particles[slot / WIDTH];
-            for field in [WAY, WAY + 1, WAY + 2, ROOM] {
+            for field in CHANGED {
                 to[field][slot % WIDTH] = ends[k][field][lane];
             }
         }
@@ -376,19 +427,18 @@ fn vector<L: Lanes>(numbers: &Numbers, field: usize) -> Vector3<L> {
     Vector3::load(&numbers[field], &numbers[field + 1], &numbers[field + 2])
 }
 
+/// The vector of eight rows: that of their ends, from its first field, by their shares.
 #[inline(always)]
-fn project_springs<L: Lanes>(ends: &mut [&mut Numbers; 2], kind: &Kind, times: (L, L), touching: bool) {
-    let way = vector::<L>(ends[1], WAY) - vector(ends[0], WAY);
-    let apart = vector::<L>(ends[1], 0) - vector(ends[0], 0) + way;
-    project::<L, 2>(ends, kind, (apart, way), [-1.0, 1.0], times, touching);
-}
-
-#[inline(always)]
-fn project_bends<L: Lanes>(ends: &mut [&mut Numbers; 3], kind: &Kind, times: (L, L), touching: bool) {
-    let two = L::splat(2.0);
-    let way = vector::<L>(ends[0], WAY) - vector(ends[1], WAY) * two + vector(ends[2], WAY);
-    let apart = vector::<L>(ends[0], 0) - vector(ends[1], 0) * two + vector(ends[2], 0) + way;
-    project::<L, 3>(ends, kind, (apart, way), [1.0, -2.0, 1.0], times, touching);
+fn combined<L: Lanes, const K: usize>(
+    ends: &[&mut Numbers; K],
+    shares: [f32; K],
+    field: usize,
+) -> Vector3<L> {
+    let mut sum = vector::<L>(ends[0], field) * L::splat(shares[0]);
+    for k in 1..K {
+        sum = sum + vector::<L>(ends[k], field) * L::splat(shares[k]);
+    }
+    sum
 }
 
 /// True if a particle of the rows touches a surface.
@@ -468,32 +518,41 @@ fn impulse_on_surfaces<L: Lanes, const K: usize>(
     (first + left / (mobility + compliance), mobility)
 }
 
-/// Solves eight rows. `apart` is the vector whose length is their error and rest, `way` how far it has come in the iteration, and
-/// each end moves it by its share.
+/// Solves eight rows. What their ends make together, by their shares, is the vector whose length is their error and rest.
 #[inline(always)]
 fn project<L: Lanes, const K: usize>(
     ends: &mut [&mut Numbers; K],
     kind: &Kind,
-    (apart, way): (Vector3<L>, Vector3<L>),
     shares: [f32; K],
     (h, per_square): (L, L),
     touching: bool,
 ) {
     let zero = L::splat(0.0);
+    let way = combined::<L, K>(ends, shares, WAY);
+    let apart = combined::<L, K>(ends, shares, 0) + way;
     let length = apart.dot(apart).sqrt();
-    let direction = apart * (L::splat(1.0) / length);
     let error = length - L::load(&kind.rest);
     let active = L::gt(error, L::load(&kind.least)) & L::gt(length, L::splat(1e-9));
-    let direction =
-        Vector3::new(direction.x.masked(active), direction.y.masked(active), direction.z.masked(active));
     let compliance = L::load(&kind.compliance) * per_square;
     let mut most = zero;
     for k in 0..K {
         most = most + L::load(&ends[k][WEIGHT]) * L::splat(shares[k] * shares[k]);
     }
+    let is_free = !(touching && any_touching::<L, K>(ends));
     // Rows without an error, a direction or anything that moves do nothing.
+    if is_free && !kind.is_damped {
+        let pull = (error / (length * (most + compliance))).masked(active & L::gt(most, zero));
+        for k in 0..K {
+            let by = pull * L::splat(-shares[k]) * L::load(&ends[k][WEIGHT]);
+            store(vector::<L>(ends[k], WAY) + apart * by, ends[k]);
+        }
+        return;
+    }
+    let direction = apart * (L::splat(1.0) / length);
+    let direction =
+        Vector3::new(direction.x.masked(active), direction.y.masked(active), direction.z.masked(active));
     let active = active & L::gt(most, zero);
-    if !(touching && any_touching::<L, K>(ends)) {
+    if is_free {
         let impulse = damped((error / (most + compliance), most), kind, direction.dot(way), h).masked(active);
         for k in 0..K {
             let by = impulse * L::splat(-shares[k]) * L::load(&ends[k][WEIGHT]);

@@ -127,6 +127,8 @@ impl Eights {
     /// For particles, of which some are attached; rows that are projected one by one reach those of `outside`.
     pub fn new(per_lane: usize, particles: &[(f32, f32)], attached: &[u32], mut outside: Vec<u32>) -> Self {
         let mut strips = vec![Block::splat([0.0; STRIP]); per_lane];
+        // In lanes without a particle something is as well, and stays where it is.
+        strips.iter_mut().for_each(|strip| strip.0[MASS] = [1.0; WIDTH]);
         let mut present = vec![0; per_lane];
         for (i, &(mass, radius)) in particles.iter().enumerate() {
             let (block, lane) = (i % per_lane, i / per_lane);

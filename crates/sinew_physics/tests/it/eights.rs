@@ -21,8 +21,8 @@ fn slopes(slope: Rotation) -> [Obstacle; 4] {
     [
         obstacle(Shape::HalfSpace, below(0.0, slope)),
         obstacle(Shape::Box { half_extents: Vec3::new(5.0, 0.5, 5.0) }, below(0.5, slope)),
-        obstacle(Shape::Sphere { radius: 100.0 }, below(100.0, slope)),
-        obstacle(Shape::Capsule { half_height: 5.0, radius: 100.0 }, below(100.0, along)),
+        obstacle(Shape::Sphere { radius: 80.0 }, below(80.0, slope)),
+        obstacle(Shape::Capsule { half_height: 5.0, radius: 80.0 }, below(80.0, along)),
     ]
 }
 
