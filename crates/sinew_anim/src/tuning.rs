@@ -97,6 +97,18 @@ pub(crate) const BALL_AHEAD: f32 = 0.14;
 /// Smaller: an offset that already runs home stops with a jerk. Larger: it swings past. Shown by the tests of `transitions`.
 pub(crate) const SHORTEST_DECAY: f32 = 1.0 / 3.0;
 
+// garments/columns.rs
+
+/// Share of the last bone's length beyond which the skin of a chain's last joint makes a hem of its own, a ratio.
+///
+/// Larger: hems stay stiff, as long as a bone. Smaller: a bone of its own for a seam. Shown by the tests of `garments`.
+pub(crate) const HEM_SHARE: f32 = 0.25;
+
+/// Gap between the last column and the first, over the widest between neighbours, up to which a garment goes round, a ratio.
+///
+/// Larger: an open coat is sewn up. Smaller: a skirt with uneven columns has a slit. Shown by the tests of `garments`.
+pub(crate) const RING_GAP: f32 = 1.5;
+
 // retarget/align.rs
 
 /// Cosine of the angle between two reference poses, 30°, up to which both are taken to stand upright.

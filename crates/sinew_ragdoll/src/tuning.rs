@@ -220,6 +220,35 @@ pub(crate) const FINEST: f32 = 0.03;
 /// Larger: slow fits of figures with few triangles. Smaller: as a larger [`FINEST`]. Shown by the tests of `rig_variants`.
 pub(crate) const MOST_CUTS: f32 = 8.0;
 
+// garments/sheet.rs
+
+/// Number of times that a particle is taken out of the nearest body when a sheet is made: between two legs it takes some.
+///
+/// Larger: work for nothing. Smaller: sheets begin within a body, which throws them out. Shown by the tests of `garments`.
+pub(crate) const CLEARINGS: usize = 4;
+
+/// Number of parts that a substep of a sheet is moved in, as in scene `cape`.
+///
+/// Larger: slower, and stiffer. Smaller: it stretches like rubber. Shown by scene `skirt`.
+pub(crate) const SHEET_ITERATIONS: u32 = 4;
+
+/// Length over the spacing below which a thread has the stiffness of one of that length, a ratio.
+///
+/// Larger: short threads are soft. Smaller: where columns meet in a point, springs are too stiff to be solved. Shown by the tests of `garments`.
+pub(crate) const SHORTEST_THREAD: f32 = 0.1;
+
+// garments/wear.rs
+
+/// Length of a thread over that at rest, or over the spacing of its sheet if that is longer, from which the body has caught it, a ratio.
+///
+/// Larger: a skirt that a clip sits down on stays caught. Smaller: cloth that is only pulled jumps. Shown by scene `skirt`.
+pub(crate) const CAUGHT: f32 = 2.0;
+
+/// Number of times that a sheet which is put on is pulled to its lengths and taken out of the bodies.
+///
+/// Larger: work for nothing. Smaller: a sheet that is put on in mid-stride begins with a jerk. Shown by the tests of `garments`.
+pub(crate) const DRAPINGS: usize = 8;
+
 // limits/friction.rs
 
 /// Least torque with which a creature's limp joint resists, as a share of that which gravity has on what it carries.

@@ -5,6 +5,7 @@ pub mod blueprint;
 pub mod cabin;
 pub mod crowd;
 pub mod demo;
+pub mod dressed;
 pub mod fallen;
 mod framework;
 pub mod maned;

@@ -5,6 +5,7 @@ use crate::input::files::{CharacterFile, Outputs, must_end_in, never_over};
 use crate::input::ragdoll_file::RagdollFile;
 use crate::input::settings_arg::SettingsArg;
 use crate::report::Report;
+use crate::report::garments_report;
 use crate::report::skin_report::SkinReport;
 use crate::report::springs_report::proposal;
 use crate::report::table::{Table, counted, shown};
@@ -82,6 +83,7 @@ impl RagdollDoctor {
                 let springs = SpringSource::Names.springs(rig, character.analysis.up_axis);
                 notes.extend(proposal(rig, &springs, &repair.def));
             }
+            notes.extend(garments_report::proposal(rig, &repair.def));
         }
         let findings = match &self.output {
             None => doctor(&repair),

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
-use sinew::anim::{Hints, RigAnalysis, Role, UnitGuess};
+use sinew::anim::{Garment, Hints, RigAnalysis, Role, UnitGuess};
 use sinew::formats::{Textures, read_bytes, read_ragdoll_settings, settings_path};
 use sinew::ragdoll::build::{BuildReport, takes};
 use sinew::ragdoll::quality::Doubt;
@@ -236,6 +236,12 @@ impl LoadedSettings {
         notes.append(&mut report.notes);
         report.notes = notes;
         Ok((def, report))
+    }
+
+    /// Garments that the character shall wear.
+    pub fn garments(&self, character: &CharacterFile) -> Result<Vec<Garment>> {
+        let garments = self.settings.garments.garments(&character.document.rig);
+        garments.map_err(|error| self.failure(&character.name, error))
     }
 
     /// Doubt about the mass, with what to do; nothing where the user gave it, or the unit that it comes from.

@@ -1,6 +1,7 @@
 //! Report of a command.
 
 pub(crate) mod footsteps;
+pub(crate) mod garments_report;
 pub(crate) mod progress;
 pub(crate) mod quality_report;
 pub(crate) mod ragdoll_report;

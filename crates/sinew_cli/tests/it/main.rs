@@ -7,6 +7,7 @@ mod convert;
 mod corrections;
 mod demo;
 mod export;
+mod garments;
 mod manners;
 mod ragdoll;
 mod readme;

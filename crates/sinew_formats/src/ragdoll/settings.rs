@@ -20,7 +20,8 @@
 //!   "ignore": ["Flag"],
 //!   "disable_pairs": [["leftHand", "leftUpperLeg"]],
 //!   "enable_pairs": [["leftUpperLeg", "rightUpperLeg"]],
-//!   "springs": "names"
+//!   "springs": "names",
+//!   "garments": [{ "chains": ["Cape_*"], "area_density": 0.5 }]
 //! }
 //! ```
 //!
@@ -31,7 +32,8 @@
 //! whatever shape and names say (only by the joint's name), `body` (`keep` or `drop`), `shape` (`box`, `capsule`, `sphere`), `scale` of it, `mass` in kg, `type` and `limits_deg` of the joint to its
 //! parent as in [ragdoll files](super), each range by itself, and `friction_torque` in N·m. Joints that `ignore` names are no part
 //! of the body, with all that hangs below them. `springs` that the character wears are those that the `file` states, where it states
-//! none those that `names` of joints tell of, or `none`.
+//! none those that `names` of joints tell of, or `none`. `garments` are those that `names` tell of, `none`, or a list: each with the `chains` of joints that
+//! it is sewn of, and its cloth ([`Garment`](sinew_anim::Garment)).
 //!
 //! ```
 //! use sinew_formats::read_ragdoll_settings;
@@ -44,16 +46,17 @@
 use super::{read_range, read_up_axis};
 use crate::container::json::{self, At};
 use crate::error::{Error, Result, quoted};
-use sinew_anim::Role;
+use sinew_anim::{Garment, Role};
 use sinew_math::Range;
 use sinew_ragdoll::settings::{
-    BodyWish, BoneSettings, JointWish, Settings, ShapeWish, SpringSource, Unit, nearest, role_named,
+    BodyWish, BoneSettings, GarmentSettings, GarmentSource, JointWish, Settings, ShapeWish, SpringSource,
+    Unit, nearest, role_named,
 };
 use sinew_ragdoll::{LimitSource, Sex, ShapeChoice};
 
 const VERSION: usize = 1;
 
-const ROOT_KEYS: [&str; 15] = [
+const ROOT_KEYS: [&str; 16] = [
     "sinew",
     "version",
     "comment",
@@ -69,6 +72,25 @@ const ROOT_KEYS: [&str; 15] = [
     "disable_pairs",
     "enable_pairs",
     "springs",
+    "garments",
+];
+
+const GARMENT_KEYS: [&str; 15] = [
+    "comment",
+    "name",
+    "chains",
+    "closed",
+    "area_density",
+    "radius",
+    "spacing",
+    "stretching",
+    "shearing",
+    "bending",
+    "damping_ratio",
+    "drag",
+    "friction",
+    "meets_arms",
+    "thickness",
 ];
 
 const BONE_KEYS: [&str; 9] =
@@ -103,6 +125,7 @@ pub fn read_ragdoll_settings(bytes: &[u8]) -> Result<Settings> {
         disable: read_pairs(root, "disable_pairs")?,
         enable: read_pairs(root, "enable_pairs")?,
         springs: word(root, "springs", &SPRINGS)?,
+        garments: root.get("garments")?.map(read_garments).transpose()?.unwrap_or_default(),
     };
     if let Some(bones) = root.get("bones")? {
         let object = bones.value().as_object().ok_or_else(|| bones.malformed("must be an object"))?;
@@ -158,6 +181,41 @@ fn read_bone(at: At<'_>) -> Result<BoneSettings> {
     Ok(bone)
 }
 
+fn read_garments(at: At<'_>) -> Result<GarmentSource> {
+    if at.value().as_str().is_some() {
+        return one_of(at, &[("names", GarmentSource::Names), ("none", GarmentSource::None)]);
+    }
+    at.items()?.into_iter().map(read_garment).collect::<Result<_>>().map(GarmentSource::Listed)
+}
+
+fn read_garment(at: At<'_>) -> Result<GarmentSettings> {
+    only(at, &GARMENT_KEYS)?;
+    at.need("chains")?;
+    let usual = Garment::default();
+    let positive = |key: &str, usual: f32| at.get(key)?.map_or(Ok(usual), At::positive);
+    let not_negative = |key: &str, usual: f32| at.get(key)?.map_or(Ok(usual), At::not_negative);
+    let cloth = Garment {
+        name: at.get("name")?.map(At::str).transpose()?.unwrap_or_default().to_owned(),
+        area_density: positive("area_density", usual.area_density)?,
+        radius: positive("radius", usual.radius)?,
+        spacing: positive("spacing", usual.spacing)?,
+        stretching: positive("stretching", usual.stretching)?,
+        shearing: not_negative("shearing", usual.shearing)?,
+        bending: not_negative("bending", usual.bending)?,
+        damping_ratio: not_negative("damping_ratio", usual.damping_ratio)?,
+        drag: not_negative("drag", usual.drag)?,
+        friction: not_negative("friction", usual.friction)?,
+        meets_arms: at.get("meets_arms")?.map(At::bool).transpose()?,
+        thickness: not_negative("thickness", usual.thickness)?,
+        ..usual
+    };
+    Ok(GarmentSettings {
+        chains: read_names(at, "chains")?,
+        closed: at.get("closed")?.map(At::bool).transpose()?,
+        cloth,
+    })
+}
+
 fn read_role(at: At<'_>) -> Result<Role> {
     role_named(at.str()?).map_err(|what| at.malformed(what))
 }
@@ -175,12 +233,16 @@ fn read_pairs(root: At<'_>, key: &str) -> Result<Vec<[String; 2]>> {
 }
 
 /// Meaning of a word of a list; `None` where the key is absent.
-fn word<T: Copy>(at: At<'_>, key: &str, words: &[(&str, T)]) -> Result<Option<T>> {
-    let Some(at) = at.get(key)? else { return Ok(None) };
+fn word<T: Clone>(at: At<'_>, key: &str, words: &[(&str, T)]) -> Result<Option<T>> {
+    at.get(key)?.map(|at| one_of(at, words)).transpose()
+}
+
+/// Meaning of a word of a list.
+fn one_of<T: Clone>(at: At<'_>, words: &[(&str, T)]) -> Result<T> {
     let said = at.str()?;
-    let found = words.iter().find(|(word, _)| *word == said).map(|&(_, meaning)| meaning);
-    found.map(Some).ok_or_else(|| {
-        let known: Vec<&str> = words.iter().map(|&(word, _)| word).collect();
+    let found = words.iter().find(|(word, _)| *word == said).map(|(_, meaning)| meaning.clone());
+    found.ok_or_else(|| {
+        let known: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
         unknown(at, "word", said, &known)
     })
 }

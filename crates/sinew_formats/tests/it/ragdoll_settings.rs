@@ -99,3 +99,36 @@ fn the_examples_of_the_page_are_read() {
     assert!(sinew_formats::read_ragdoll(definition.as_bytes()).is_ok());
     assert_eq!(read_ragdoll_settings(settings.as_bytes()), read_ragdoll_settings(example().as_bytes()));
 }
+
+#[test]
+fn garments_are_named_or_listed() {
+    use sinew_ragdoll::settings::GarmentSource;
+    let read = |garments: &str| {
+        let text = format!(r#"{{"sinew": "ragdoll-settings", "version": 1, "garments": {garments}}}"#);
+        read_ragdoll_settings(text.as_bytes())
+    };
+    assert_eq!(read(r#""names""#).unwrap().garments, GarmentSource::Names);
+    assert_eq!(read(r#""none""#).unwrap().garments, GarmentSource::None);
+    let all = r#"[{"comment": "wool", "name": "kilt", "chains": ["Kilt_*"], "closed": true, "area_density": 0.8, "radius": 0.01,
+        "spacing": 0.04, "stretching": 900, "shearing": 0, "bending": 0, "damping_ratio": 0.1, "drag": 0, "friction": 0.5,
+        "meets_arms": true, "thickness": 0.02}]"#;
+    let GarmentSource::Listed(listed) = read(all).unwrap().garments else { panic!("a list") };
+    assert_eq!(
+        (listed[0].chains.as_slice(), listed[0].closed),
+        (["Kilt_*".to_owned()].as_slice(), Some(true))
+    );
+    let cloth = &listed[0].cloth;
+    assert_eq!((cloth.name.as_str(), cloth.area_density, cloth.meets_arms), ("kilt", 0.8, Some(true)));
+    assert_eq!((cloth.spacing, cloth.stretching, cloth.thickness), (0.04, 900.0, 0.02));
+    for (garments, message) in [
+        (r#""all""#, "names"),
+        (r#"[{}]"#, "chains"),
+        (r#"[{"chains": ["a"], "raduis": 1}]"#, "radius"),
+        (r#"[{"chains": ["a"], "radius": 0}]"#, "garments[0].radius"),
+        (r#"[{"chains": ["a"]}, {"chains": ["b"], "closed": 1}]"#, "garments[1].closed"),
+        (r#"[{"chains": ["a"], "shearing": -1}]"#, "garments[0].shearing"),
+    ] {
+        let error = read(garments).unwrap_err().to_string();
+        assert!(error.contains(message), "{garments}: {error}");
+    }
+}

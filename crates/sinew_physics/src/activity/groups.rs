@@ -80,7 +80,7 @@ fn is_disturbed(group: &ParticleGroup, bodies: &Arena<Body>, proxies: &Proxies, 
         let (body, shape) = (bodies.at(index), shape as usize);
         let touches = comes(body)
             && !body.quarantined
-            && body.surface(shape).is_wall_to(group.filter())
+            && group.meets(bodies.id(index), body.surface(shape))
             && group.is_near(
                 &body.shapes[shape].shape,
                 &body.world_from_shape(shape),

@@ -171,7 +171,7 @@ impl Activity {
         let _ = proxies.overlapping(bounds, |Owner { body: index, shape }| {
             let (body, shape) = (bodies.at(index), shape as usize);
             let is_met = !body.is_awake()
-                && body.surface(shape).is_wall_to(group.filter())
+                && group.meets(bodies.id(index), body.surface(shape))
                 && meets(&body.shapes[shape].shape, &body.world_from_shape(shape));
             met.extend(is_met.then_some(index));
             ControlFlow::<()>::Continue(())

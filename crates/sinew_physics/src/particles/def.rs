@@ -186,6 +186,8 @@ pub struct GroupDef {
     pub thickness: f32,
     /// Filter of the shapes that it meets.
     pub filter: Filter,
+    /// Bodies that it passes through whatever the filter says: arms that swing by the skirt of who wears it. Default none.
+    pub passes: Vec<BodyId>,
     /// Permission to fall asleep when it lies still, with all that hangs together with it. Default on.
     pub sleeping: Sleeping,
 }
@@ -206,6 +208,7 @@ impl Default for GroupDef {
             gravity_scale: 1.0,
             thickness: 0.0,
             filter: Filter::default(),
+            passes: Vec::new(),
             sleeping: Sleeping::On,
         }
     }

@@ -48,8 +48,9 @@ use crate::arena::Item;
 use crate::body::def::Sleeping;
 use crate::body::material::Material;
 use crate::body::shape::{Filter, Shape};
+use crate::body::surface::Surface;
 use crate::boxes::Aabb;
-use crate::id::GroupId;
+use crate::id::{BodyId, GroupId};
 use crate::particles::tuning::STRIKE_GAP;
 use batches::Batches;
 use contact::{Grip, Placed, Touch};
@@ -82,6 +83,8 @@ pub struct ParticleGroup {
     linear_damping: f32,
     gravity_scale: f32,
     filter: Filter,
+    /// Bodies that it passes through, ascending.
+    passes: Vec<BodyId>,
     /// Grip of a surface on each particle.
     grips: Vec<Grip>,
     /// Length of the last iteration, seconds; 0 before the first.
@@ -200,6 +203,8 @@ impl ParticleGroup {
             contact_impulses: vec![Vec3::ZERO; count],
             ..Self::default()
         };
+        group.passes.clone_from(&def.passes);
+        group.passes.sort_unstable();
         group.self_collision =
             (def.thickness > 0.0).then(|| SelfCollision::new(count, def.thickness, &group.springs));
         group.derive();
@@ -330,6 +335,16 @@ impl ParticleGroup {
     /// Filter of the shapes that it meets.
     pub fn filter(&self) -> Filter {
         self.filter
+    }
+
+    /// Bodies that it passes through, ascending.
+    pub fn passes(&self) -> &[BodyId] {
+        &self.passes
+    }
+
+    /// True if it cannot get through a shape of this surface, of a body with this id.
+    pub(crate) fn meets(&self, body: BodyId, surface: &Surface) -> bool {
+        surface.is_wall_to(self.filter) && self.passes.binary_search(&body).is_err()
     }
 
     /// Around all particles, with their radii. Empty, with infinite corners the wrong way round, for a group without

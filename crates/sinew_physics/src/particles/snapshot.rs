@@ -28,9 +28,14 @@ impl ParticleGroup {
         out.f32(self.gravity_scale);
         save_filter(out, self.filter);
         let (projected, thickness) = (self.scheme == SpringScheme::Projected, self.thickness());
-        out.u8(u8::from(projected) | u8::from(thickness > 0.0) << 1);
+        let passes = !self.passes.is_empty();
+        out.u8(u8::from(projected) | u8::from(thickness > 0.0) << 1 | u8::from(passes) << 2);
         if thickness > 0.0 {
             out.f32(thickness);
+        }
+        if passes {
+            out.count(self.passes.len());
+            self.passes.iter().for_each(|body| out.u64(body.to_bits()));
         }
         out.u32(self.iterations);
         out.f32(self.span);
@@ -119,16 +124,18 @@ impl ParticleGroup {
         let material = load_material(input)?;
         let (linear_damping, gravity_scale) = (input.f32()?, input.f32()?);
         let filter = load_filter(input)?;
-        let scheme_and_thickness = input.u8()?;
-        let scheme = match scheme_and_thickness & 1 {
-            0 => SpringScheme::Implicit,
-            _ => SpringScheme::Projected,
-        };
-        let thickness = match scheme_and_thickness >> 1 {
-            0 => 0.0,
-            1 => input.f32()?,
-            _ => return Err(input.error("a scheme is neither of the two")),
-        };
+        let has = input.u8()?;
+        if has > 0b111 {
+            return Err(input.error("a scheme is neither of the two"));
+        }
+        let scheme = if has & 1 == 0 { SpringScheme::Implicit } else { SpringScheme::Projected };
+        let thickness = if has & 0b10 == 0 { 0.0 } else { input.f32()? };
+        let mut passes = Vec::new();
+        if has & 0b100 != 0 {
+            for _ in 0..input.count(8)? {
+                passes.push(BodyId::from_bits(input.u64()?));
+            }
+        }
         let (iterations, span) = (input.u32()?, input.f32()?);
         let mut def = GroupDef {
             material,
@@ -137,6 +144,7 @@ impl ParticleGroup {
             filter,
             scheme,
             thickness,
+            passes,
             iterations,
             ..GroupDef::default()
         };

@@ -535,3 +535,34 @@ fn a_particle_that_has_struck_a_wall_goes_on_alike_in_a_loaded_world() {
         assert!((speed - 1.5).abs() < 0.01, "the wall gives back {speed} m/s of 1.5");
     }
 }
+
+/// A particle falls through the body that its group passes and rests on the one beneath, also from a snapshot on.
+#[test]
+fn a_group_passes_through_the_bodies_that_it_names() {
+    let mut world = World::new(WorldDef { gravity: GRAVITY, ..WorldDef::default() });
+    let shelf = |height: f32| {
+        BodyDef::fixed(Shape::Box { half_extents: Vec3::new(1.0, 0.1, 1.0) })
+            .at(Transform::from_translation(Vec3::Y * height))
+    };
+    let (upper, lower) = (world.add_body(&shelf(2.0)), world.add_body(&shelf(0.0)));
+    let group = |passes: Vec<BodyId>| GroupDef {
+        particles: vec![particle(Vec3::Y * 2.5, 0.1, 0.05)],
+        passes,
+        ..GroupDef::default()
+    };
+    let through = world.add_particles(&group(vec![upper]));
+    let stopped = world.add_particles(&group(Vec::new()));
+    assert_eq!(world.particles(through).passes(), [upper]);
+    (0..20).for_each(|_| world.step());
+    let mut w = Writer::new();
+    world.save(&mut w);
+    let mut again = World::new(WorldDef::default());
+    again.load(&mut Reader::new(w.as_bytes())).expect("it was saved");
+    for world in [&mut world, &mut again] {
+        (0..120).for_each(|_| world.step());
+        let height = |group| world.particles(group).positions()[0].y;
+        assert!((height(through) - 0.15).abs() < 1e-3 && (height(stopped) - 2.15).abs() < 1e-3);
+    }
+    assert_eq!(world.particles(through).positions(), again.particles(through).positions());
+    _ = lower;
+}

@@ -16,7 +16,7 @@
 
 mod keys;
 
-use crate::character::{Character, CharacterDef, CharacterEvent, InWorld, State};
+use crate::character::{Character, CharacterDef, CharacterEvent, InWorld, State, Toughness};
 use crate::quality::{FallQuality, QualityMeter};
 use sinew_anim::{Clip, KeyBound, KeyError, LocalTransform, Reduced, reduce_keys};
 use sinew_math::hash::hash_bytes;
@@ -190,14 +190,18 @@ struct Run {
     ahead: usize,
 }
 
-/// The character as it starts: in the world, if pushes may let it flinch, for that takes bodies.
+/// The character as it starts: in the world, if pushes may let it flinch or it wears garments, for that takes bodies.
 fn spawned(input: &BakeInput<'_>, world: &mut World) -> Character {
-    if input.hit_effect == HitEffect::Falls {
+    let falls = input.hit_effect == HitEffect::Falls;
+    if falls && input.character.garments().is_empty() {
         return Character::new(input.character.clone(), input.world_from_character, input.phase);
     }
     let mut def = CharacterDef::clone(&input.character);
     // It goes where its clips go, and feels what it is told of.
     def.in_world = InWorld { mover: None, feels: f32::INFINITY, ..def.in_world };
+    if falls {
+        def.in_world.toughness = Toughness::None;
+    }
     let mut character = Character::new(Arc::new(def), input.world_from_character, input.phase);
     character.enter(world);
     character

@@ -5,12 +5,13 @@ use super::in_world::InWorld;
 use super::moves::{MotionError, Moves};
 use crate::def::RagdollDef;
 use crate::drive::DriveMode;
+use crate::garments::GarmentRig;
 use crate::hand_over::SpeedBound;
 use crate::mapping::Mapping;
 use crate::ragdoll::BodySettings;
 use crate::springs::SpringRig;
 use sinew_anim::{
-    AnimationSet, Animator, Clip, ClipId, LocalTransform, Rig, Springs, TrackDef, TrackId, rest_pose,
+    AnimationSet, Animator, Clip, ClipId, Garment, LocalTransform, Rig, Springs, TrackDef, TrackId, rest_pose,
 };
 use sinew_math::Affine;
 use std::sync::Arc;
@@ -119,6 +120,8 @@ pub struct CharacterDef {
     feet: Option<Feet>,
     /// Hair and the like, which swing.
     springs: SpringRig,
+    /// Capes and the like, which are cloth in the world.
+    garments: GarmentRig,
     motions: MotionSet,
     /// Clips and stances made of the motions.
     moves: Arc<Moves>,
@@ -135,6 +138,7 @@ impl CharacterDef {
         let bind: Vec<Affine> = bind_model.iter().map(|&bind| root * bind).collect();
         Self {
             springs: SpringRig::new(&rig, &ragdoll, &mapping, bind_model, &rig.springs),
+            garments: GarmentRig::default(),
             feet: Feet::of(&rig, &ragdoll, &bind),
             moves: Arc::new(Moves::none(&rig, &ragdoll, &mapping)),
             in_world: InWorld::of(&ragdoll),
@@ -183,6 +187,28 @@ impl CharacterDef {
     /// Springs of this kind of character.
     pub fn springs(&self) -> &SpringRig {
         &self.springs
+    }
+
+    /// Dresses it in garments, or in none, instead of those that it had; their joints are taken out of its springs. Characters that are there already
+    /// are of the definition before.
+    ///
+    /// # Panics
+    /// If they name a joint that is not there.
+    pub fn set_garments(&mut self, garments: &[Garment]) {
+        let bind_model = self.bind_model();
+        self.garments = GarmentRig::new(&self.rig, &self.ragdoll, &self.mapping, &bind_model, garments);
+        let worn: Vec<_> = self.garments.joints().collect();
+        let mut springs = self.springs.source().clone();
+        springs.chains.iter_mut().for_each(|chain| chain.bones.retain(|bone| !worn.contains(&bone.joint)));
+        springs.chains.retain(|chain| !chain.bones.is_empty());
+        if springs != *self.springs.source() {
+            self.set_springs(&springs);
+        }
+    }
+
+    /// Garments of this kind of character.
+    pub fn garments(&self) -> &GarmentRig {
+        &self.garments
     }
 
     /// Bind pose of every joint in model space.

@@ -50,6 +50,7 @@ impl Character {
     }
 
     fn remove_bodies(&mut self, world: &mut World) {
+        self.undress(world);
         let Some(presence) = &mut self.presence else { return };
         presence.before.clear();
         for body in presence.bodies.drain(..) {

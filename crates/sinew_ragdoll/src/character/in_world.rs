@@ -195,6 +195,7 @@ impl Character {
         if let Some(presence) = &mut self.presence {
             (presence.bodies, presence.bearer) = (bodies, None);
         }
+        self.dress(world);
     }
 
     /// Takes all of it out of the world: bodies, joints, drives, mover.
@@ -211,6 +212,7 @@ impl Character {
     /// If something of it is no longer there, or it is not animated.
     fn leave(&mut self, world: &mut World) {
         self.release_all(world, false);
+        self.undress(world);
         if let Some(ragdoll) = self.ragdoll.take() {
             self.drives.release(world, &ragdoll);
             ragdoll.despawn(world);

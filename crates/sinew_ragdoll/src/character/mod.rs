@@ -66,6 +66,7 @@ pub use moves::MotionError;
 pub use powered::{Part, Preset};
 
 use crate::drive::Drives;
+use crate::garments::Worn;
 use crate::mapping::Physical;
 use crate::ragdoll::Ragdoll;
 use crate::springs::SpringSwing;
@@ -89,8 +90,9 @@ pub struct Character {
     planting: Planting,
     /// The pose with the feet planted, while they are.
     planted: Vec<LocalTransform>,
-    /// Springs that it wears, and the pose with them; empty of a character that wears none.
+    /// Springs and garments that it wears, and the pose with them; empty of a character that wears none.
     swing: SpringSwing,
+    worn: Worn,
     swung: Vec<LocalTransform>,
     /// Speed over the ground in the last step, m/s.
     speed: f32,
@@ -159,6 +161,7 @@ impl Character {
             planting: Planting::default(),
             planted: Vec::new(),
             swing: SpringSwing::new(),
+            worn: Worn::default(),
             swung: Vec::new(),
             speed: 0.0,
             climbing: 0.0,
@@ -201,12 +204,12 @@ impl Character {
         &self.drives
     }
 
-    /// Local transform of every joint of the rig, springs and all; nodes above the pelvis are at rest (see [`crate::mapping`]).
+    /// Local transform of every joint of the rig, springs, garments and all; nodes above the pelvis are at rest (see [`crate::mapping`]).
     pub fn pose(&self) -> &[LocalTransform] {
         if self.swung.is_empty() { self.pose_without_springs() } else { &self.swung }
     }
 
-    /// [`pose`](Self::pose) as clips and bodies have it, with all springs at rest.
+    /// [`pose`](Self::pose) as clips and bodies have it, with all springs and garments at rest.
     pub fn pose_without_springs(&self) -> &[LocalTransform] {
         if self.planting.is_over() { &self.pose } else { &self.planted }
     }

@@ -173,7 +173,10 @@ impl Character {
                 presence.before.clear();
                 ragdoll.lull(world, self.def.in_world.rule());
             }
-            None => ragdoll.despawn(world),
+            None => {
+                self.undress(world);
+                ragdoll.despawn(world);
+            }
         }
     }
 

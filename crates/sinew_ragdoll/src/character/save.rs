@@ -6,6 +6,7 @@ use super::memory::{Hold, Planting, Preparation, Rising, Stillness};
 use super::stumble::Stumble;
 use super::{Character, Earlier, State};
 use crate::drive::Drives;
+use crate::garments::Worn;
 use crate::ragdoll::Ragdoll;
 use crate::springs::SpringSwing;
 use sinew_anim::{Animator, Inertia, LocalTransform, TrackId};
@@ -18,6 +19,8 @@ const MAGIC: &[u8; 8] = b"sinew-c\x05";
 const IN_WORLD: u8 = 0x80;
 /// Bit of a state: its springs follow at the end.
 const WEARS: u8 = 0x40;
+/// Bit of a state: its garments follow at the end.
+const DRESSED: u8 = 0x20;
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
 
@@ -35,7 +38,8 @@ impl Character {
         };
         let in_world = if self.presence.is_some() { IN_WORLD } else { 0 };
         let wears = if self.def.springs().is_empty() { 0 } else { WEARS };
-        w.u8(state | in_world | wears);
+        let dressed = if self.def.garments().is_empty() { 0 } else { DRESSED };
+        w.u8(state | in_world | wears | dressed);
         w.transform(self.world_from_character);
         w.f32(self.climbing);
         w.vec3(self.lean);
@@ -75,6 +79,9 @@ impl Character {
         if wears != 0 {
             self.swing.save(self.def.springs(), w);
         }
+        if dressed != 0 {
+            self.worn.save(w);
+        }
     }
 
     /// Brings back a saved state of a character of the same definition. Its bodies are those of the world's snapshot
@@ -87,7 +94,7 @@ impl Character {
             return Err(ReadError { at: 0, what: "is not a character of this version" });
         }
         let tag = r.u8()?;
-        let state = match tag & !(IN_WORLD | WEARS) {
+        let state = match tag & !(IN_WORLD | WEARS | DRESSED) {
             0 => State::Animated,
             1 => State::Limp,
             2 => State::GettingUp,
@@ -116,9 +123,12 @@ impl Character {
         let (flinching, speed) = if presence.is_some() { (r.f32()?, r.f32()?) } else { (0.0, self.speed) };
         let springs = self.def.springs();
         let swing = if tag & WEARS != 0 { SpringSwing::load(springs, r)? } else { SpringSwing::new() };
+        let garments = self.def.garments();
+        let worn = if tag & DRESSED != 0 { Worn::load(garments, r)? } else { Worn::default() };
         let has_bodies = !matches!(state, State::Animated | State::GettingUp);
         let fits = pose.len() == joints
             && springs.is_empty() == (tag & WEARS == 0)
+            && garments.is_empty() == (tag & DRESSED == 0)
             && earlier.pose.len() == joints
             && has_bodies == ragdoll.is_some()
             && (state != State::Preparing || !self.def.moves().get_ups.is_empty())
@@ -139,17 +149,22 @@ impl Character {
         if !planting.is_over() {
             self.show_planted();
         }
-        self.swing = swing;
-        self.swung.clear();
-        if !self.swing.turns().is_empty() {
-            self.swung = self.pose_without_springs().to_vec();
-            self.show_springs();
-        }
+        (self.swing, self.worn) = (swing, worn);
+        self.show_loaded();
         self.keep_shown();
         self.events.clear();
         self.told = 0;
         self.scratch.posed.clear();
         Ok(())
+    }
+
+    /// The pose with what it wears, as it was shown when it was saved.
+    fn show_loaded(&mut self) {
+        self.swung.clear();
+        if !(self.swing.turns().is_empty() && self.worn.turns.is_empty()) {
+            self.swung = self.pose_without_springs().to_vec();
+            self.show_worn();
+        }
     }
 
     fn load_preparation(&self, r: &mut Reader<'_>) -> Result<Preparation, ReadError> {

@@ -3,7 +3,7 @@
 use super::{CharacterDef, HitBodies, Locomotion, MotionSet, Toughness};
 use crate::def::RagdollDef;
 use crate::doctor::scaled;
-use sinew_anim::{Animator, LocalTransform, local_to_model};
+use sinew_anim::{Animator, Garment, LocalTransform, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, max3};
 use sinew_physics::Yields;
 
@@ -43,6 +43,17 @@ impl CharacterDef {
         assert!(factor > 0.0 && factor < f32::INFINITY, "a factor of a size is above 0 and finite");
         let mut def = Self::new(self.rig.clone(), larger(&self.ragdoll, factor), &self.bind_model());
         def.set_springs(self.springs().source());
+        let wider = |garment: &Garment| Garment {
+            radius: garment.radius * factor,
+            spacing: garment.spacing * factor,
+            thickness: garment.thickness * factor,
+            // As far as it stretches and bends under its weight, over its size.
+            stretching: garment.stretching * factor,
+            shearing: garment.shearing * factor,
+            bending: garment.bending * factor * factor * factor,
+            ..garment.clone()
+        };
+        def.set_garments(&self.garments().source().iter().map(wider).collect::<Vec<_>>());
         def.after_settling = self.after_settling;
         def.getting_ready = self.getting_ready;
         def.falling = self.falling;

@@ -55,8 +55,8 @@ impl Character {
         }
     }
 
-    /// Puts it elsewhere at once, standing; what lies between is not asked. A character that lies is brought there as it lies, and springs as
-    /// they swing; [`reset_springs`](Self::reset_springs) starts those over.
+    /// Puts it elsewhere at once, standing; what lies between is not asked. A character that lies is brought there as it lies, springs and
+    /// garments as they swing; [`reset_springs`](Self::reset_springs) and [`reset_garments`](Self::reset_garments) start those over.
     ///
     /// # Panics
     /// If the place is not finite.
@@ -79,6 +79,7 @@ impl Character {
         }
         self.scratch.posed.clear();
         self.swing.carry(self.def.springs(), moved);
+        self.worn.carry(world, moved);
         let Some(presence) = &mut self.presence else { return };
         presence.before.iter_mut().for_each(|pose| *pose = moved * *pose);
         (presence.air, presence.over, presence.velocity) = (0.0, 0.0, Vec3::ZERO);

@@ -1,12 +1,25 @@
-//! Springs that a character wears, over the pose that clips or bodies give it.
+//! Springs and garments that a character wears, over the pose that clips or bodies give it.
 
 use super::Character;
+use crate::garments::Wearer;
 use crate::springs::SpringStep;
-use sinew_physics::World;
+use sinew_physics::{GroupId, World};
 
 impl Character {
-    /// Takes its springs forward by a step of the world, about the pose that it has now.
-    pub(super) fn wear(&mut self, world: &World) {
+    /// Takes what it wears forward by a step of the world, about the pose that it has now.
+    pub(super) fn wear(&mut self, world: &mut World) {
+        let def = self.def.clone();
+        if def.springs().is_empty() && def.garments().is_empty() {
+            return;
+        }
+        self.swung.clear();
+        self.swung.extend_from_slice(if self.planting.is_over() { &self.pose } else { &self.planted });
+        self.swing_springs(world);
+        self.wear_garments(world);
+        self.show_worn();
+    }
+
+    fn swing_springs(&mut self, world: &World) {
         let def = self.def.clone();
         let rig = def.springs();
         if rig.is_empty() {
@@ -15,8 +28,6 @@ impl Character {
         let place = self.world_from_character;
         let mut bodies = core::mem::take(&mut self.scratch.after);
         bodies.clear();
-        self.swung.clear();
-        self.swung.extend_from_slice(if self.planting.is_over() { &self.pose } else { &self.planted });
         if rig.meets_bodies() {
             let pose = core::mem::take(&mut self.swung);
             self.bodies_of(&pose, place, &mut bodies);
@@ -36,12 +47,53 @@ impl Character {
             seconds: world.def().dt(),
         });
         self.scratch.after = bodies;
-        self.show_springs();
     }
 
-    /// Turns the bones of the springs as they swing, in the pose that is shown.
-    pub(super) fn show_springs(&mut self) {
-        for (joint, &turn) in self.def.springs().joints().zip(self.swing.turns()) {
+    /// Puts its garments on if it has bodies to wear them, mends what its clips have caught, and looks how they lie. Springs about which they hang have swung.
+    fn wear_garments(&mut self, world: &mut World) {
+        if self.def.garments().is_empty() {
+            return;
+        }
+        let mut worn = core::mem::take(&mut self.worn);
+        if worn.groups.is_empty() && !self.bodies().is_empty() {
+            worn.groups = self.wearer(&self.swung).put_on(world);
+        }
+        if !worn.groups.is_empty() {
+            if self.ragdoll.is_none() {
+                self.wearer(&self.swung).mend(world, &worn.groups);
+            }
+            self.wearer(&self.swung).turns(world, &worn.groups, &mut worn.turns);
+        }
+        self.worn = worn;
+    }
+
+    fn wearer<'a>(&'a self, pose: &'a [sinew_anim::LocalTransform]) -> Wearer<'a> {
+        Wearer {
+            rig: self.def.garments(),
+            ragdoll: &self.def.ragdoll,
+            pose,
+            world_from_model: self.world_from_model(),
+            bodies: self.bodies(),
+        }
+    }
+
+    /// Puts its garments on, before the first step in which it has bodies.
+    pub(super) fn dress(&mut self, world: &mut World) {
+        if !self.def.garments().is_empty() && self.worn.groups.is_empty() {
+            self.worn.groups = self.wearer(self.pose_without_springs()).put_on(world);
+        }
+    }
+
+    /// Takes its garments off, before its bodies leave the world.
+    pub(super) fn undress(&mut self, world: &mut World) {
+        self.worn.take_off(world);
+    }
+
+    /// Turns the bones of springs and garments as they are, in the pose that is shown.
+    pub(super) fn show_worn(&mut self) {
+        let def = self.def.clone();
+        let springs = def.springs().joints().zip(self.swing.turns());
+        for (joint, &turn) in springs.chain(def.garments().joints().zip(&self.worn.turns)) {
             self.swung[joint].rotation = turn;
         }
     }
@@ -49,5 +101,21 @@ impl Character {
     /// Has its springs start over at rest with the next step: after a cut, where the way from the place before is none.
     pub fn reset_springs(&mut self) {
         self.swing.reset();
+    }
+
+    /// Has its garments start over at rest: after a cut, where the way from the place before is none.
+    ///
+    /// # Panics
+    /// If the world is not the one that the character is in.
+    pub fn reset_garments(&mut self, world: &mut World) {
+        if !self.worn.groups.is_empty() {
+            self.undress(world);
+            self.dress(world);
+        }
+    }
+
+    /// Particles of its garments in the world, in the order of [`CharacterDef::garments`](super::CharacterDef::garments); none while it has no bodies.
+    pub fn garments(&self) -> &[GroupId] {
+        &self.worn.groups
     }
 }

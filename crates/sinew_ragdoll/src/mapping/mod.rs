@@ -139,6 +139,18 @@ impl Mapping {
         self.moves_bodies[joint]
     }
 
+    /// Body that carries a joint from above: the nearest that moves it or one above it.
+    pub(crate) fn body_above(&self, rig: &Rig, joint: JointIdx) -> Option<usize> {
+        let mut at = Some(joint);
+        while let Some(joint) = at {
+            if let Some(driven) = self.driven[joint] {
+                return Some(driven.body);
+            }
+            at = rig.joints[joint].parent;
+        }
+        None
+    }
+
     /// World pose of every body for a model pose: `bodies` is cleared and filled.
     ///
     /// # Panics

@@ -22,8 +22,10 @@
 mod apply;
 mod bodies;
 mod correct;
+mod garments;
 mod nearest;
 
+pub use garments::{GarmentSettings, GarmentSource};
 pub use nearest::{instead, nearest, nearest_three, role_named};
 
 use crate::build::{BuildError, BuildOptions, BuildReport};
@@ -61,6 +63,8 @@ pub struct Settings {
     pub enable: Vec<[String; 2]>,
     /// Source of the springs that the character wears; `None`: what the file states. The build of bodies does not ask for it.
     pub springs: Option<SpringSource>,
+    /// Garments that the character wears. Their bones are no part of the body, as if [`ignore`](Self::ignore) named them. Default none.
+    pub garments: GarmentSource,
 }
 
 /// Source of the springs that a character wears.

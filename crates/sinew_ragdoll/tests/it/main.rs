@@ -13,6 +13,7 @@ mod doctor;
 mod drive;
 mod falls;
 mod filter;
+mod garments;
 mod hand_over;
 mod in_world;
 mod learned;

@@ -17,6 +17,7 @@ use crate::input::ragdoll_file::read_definition;
 use crate::input::settings_arg::{SettingsArg, unit_note};
 use crate::render::film::{FILM_SIZE, FLOOR_HALF_SIZE, Film, View, body_models};
 use crate::report::Report;
+use crate::report::garments_report::GarmentsReport;
 use crate::report::skin_report::{SkinReport, skin_json};
 use crate::report::springs_report::SpringsReport;
 use crate::report::table::shown;
@@ -27,7 +28,7 @@ use clips::{CLIP_NAME, Motions};
 use door::door;
 use hit::HitArg;
 use place::{Place, degrees, metres, place, point};
-use sinew::anim::KeyBound;
+use sinew::anim::{Garment, KeyBound};
 use sinew::formats::{Textures, load_world};
 use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
@@ -95,6 +96,9 @@ pub struct Bake {
     /// Let what is called hair, ear, tail, skirt, ribbon, breast or cape swing where the file states no springs
     #[arg(long, conflicts_with = "no_springs")]
     guess_springs: bool,
+    /// Leave capes, skirts and coats that the settings list as clips and bodies have them
+    #[arg(long)]
+    no_garments: bool,
     /// Push a bone: joint name or role, impulse in N·s along the world's axes (+Y up), time in seconds; repeatable. A role
     /// without a body means the nearest one that has
     #[arg(long = "hit", value_name = "BONE=IX,IY,IZ@T", allow_hyphen_values = true)]
@@ -126,6 +130,16 @@ pub struct Bake {
     picture: Option<PictureFile>,
 }
 
+/// Who falls, and what is to be said of it.
+struct Cast {
+    file: CharacterFile,
+    ragdoll: RagdollDef,
+    garments: Vec<Garment>,
+    /// About its mass.
+    doubt: Option<Doubt>,
+    notes: Vec<String>,
+}
+
 /// Largest error of keys, mm: what is worse is no copy of the motion.
 const LARGEST_KEY_ERROR: f32 = 100.0;
 
@@ -147,13 +161,16 @@ impl Bake {
         self.check_times()?;
         let textures = if self.picture.is_some() { Textures::Decode } else { Textures::Skip };
         let bodies = self.bodies()?;
-        let (file, ragdoll, doubt, mut notes) = self.character(textures, &bodies)?;
+        let Cast { file, ragdoll, garments, doubt, mut notes } = self.character(textures, &bodies)?;
         let name = self.clip_name(&file)?;
         let motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
         let place = self.place(&bodies, ragdoll.height)?;
-        let (character, gets_up_by) = actor(&file, ragdoll, motions, !self.no_builtin_motions)?;
+        let (mut character, gets_up_by) = actor(&file, ragdoll, motions, !self.no_builtin_motions)?;
+        character.set_garments(&garments);
         let springs = SpringsReport::of(&character);
         notes.extend(springs.notes());
+        let garments = GarmentsReport::of(&character);
+        notes.extend(garments.notes());
         let character = Arc::new(character);
         let aimed = self.hits.iter().map(|hit| aim(hit, &character, &file, &mut notes));
         let hits = aimed.collect::<Result<Vec<_>>>()?;
@@ -182,6 +199,7 @@ impl Bake {
         let mut report = self.report(&file, &fall, &once(notes));
         report.json["skin"] = skin_json(&skin.figures);
         report.json["springs"] = springs.to_json();
+        report.json["garments"] = garments.to_json();
         Ok(report)
     }
 
@@ -219,34 +237,31 @@ impl Bake {
         }
     }
 
-    /// The character, and the definition that was given or what a build gives, with the doubt about its mass and what is to be said of it all.
-    fn character(
-        &self,
-        textures: Textures,
-        world: &[BodyDef],
-    ) -> Result<(CharacterFile, RagdollDef, Option<Doubt>, Vec<String>)> {
+    /// The character with the definition that was given or what a build gives.
+    fn character(&self, textures: Textures, world: &[BodyDef]) -> Result<Cast> {
         let Some(path) = &self.ragdoll else {
             let door = || self.world.as_ref().and_then(|_| door(world));
             let (mut file, settings) = self.settings.load_into(&self.character, textures, door)?;
             self.wear(&mut file, settings.settings.springs);
-            let (def, _) = settings.build(&file, &BuildOptions::default())?;
+            let garments = if self.no_garments { Vec::new() } else { settings.garments(&file)? };
+            let (ragdoll, _) = settings.build(&file, &BuildOptions::default())?;
             let guess = file.analysis.unit_guess.as_ref().filter(|guess| !guess.is_sure);
             let mut notes: Vec<String> = guess.map(unit_note).into_iter().collect();
             notes.extend(file.analysis.notes.iter().filter(|note| note.contains("--character")).cloned());
-            let doubt = settings.doubt(&def);
+            let doubt = settings.doubt(&ragdoll);
             notes.extend(doubt.iter().map(|doubt| doubt.reason.clone()));
-            return Ok((file, def, doubt, notes));
+            return Ok(Cast { file, ragdoll, garments, doubt, notes });
         };
         let mut file = CharacterFile::load(&self.character, textures)?;
         self.wear(&mut file, None);
-        let def = read_definition(path, &file)?;
+        let ragdoll = read_definition(path, &file)?;
         // Nobody knows whether its mass was guessed or given.
-        let mut doubt = Doubt::of(&def);
+        let mut doubt = Doubt::of(&ragdoll);
         if let Some(doubt) = &mut doubt {
             doubt.reason += "; --height, --unit or --mass of `ragdoll build` sets it";
         }
         let notes = doubt.iter().map(|doubt| doubt.reason.clone()).collect();
-        Ok((file, def, doubt, notes))
+        Ok(Cast { file, ragdoll, garments: Vec::new(), doubt, notes })
     }
 
     /// Gives the character the springs that are asked for: by an option, else by the settings.

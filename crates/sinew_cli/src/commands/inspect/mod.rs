@@ -5,6 +5,7 @@ mod clips;
 use crate::failure::Result;
 use crate::input::motion::Motion;
 use crate::input::settings_arg::assumed;
+use crate::report::garments_report::{garments_json, garments_text};
 use crate::report::ragdoll_report::axis_name;
 use crate::report::springs_report::{colliders_json, springs_json, springs_text};
 use crate::report::table::{Table, counted, shown};
@@ -68,6 +69,7 @@ impl Content<'_> {
             "spring_format": file.spring_format.map(SpringFormat::name),
             "springs": springs_json(&file.rig),
             "spring_colliders": colliders_json(&file.rig),
+            "garments": garments_json(&file.rig),
             "notes": self.notes(),
             "warnings": self.warnings(),
         })
@@ -115,6 +117,7 @@ impl Content<'_> {
             text += &events.to_text();
         }
         text += &springs_text(rig, file.spring_format.map(SpringFormat::name));
+        text += &garments_text(rig);
         if !rig.joints.is_empty() {
             text += "\nJoints\n";
             text += &self.joint_table().to_text();

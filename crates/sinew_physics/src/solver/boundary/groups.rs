@@ -49,11 +49,12 @@ impl Neighbors {
         let bounds = group.bounds().expand(reach);
         self.found.clear();
         let near = |Owner { body, shape }| {
+            let id = view.bodies.id(body);
             let body = view.bodies.at(body);
             let frame = body.world_from_shape(shape as usize);
             // What is quarantined still holds what hangs on it, as a fixed point.
             !body.quarantined
-                && body.surface(shape as usize).is_wall_to(group.filter())
+                && group.meets(id, body.surface(shape as usize))
                 && body.shapes[shape as usize].shape.aabb(&frame).overlaps(&bounds)
         };
         let _ = view.proxies.overlapping(&bounds, |owner| {

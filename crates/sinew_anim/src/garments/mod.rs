@@ -1,0 +1,117 @@
+//! Garments of a rig: capes, skirts and coats that hang on chains of joints, as they are stated ([`Garment::on_chains`]) or as
+//! they are guessed from names ([`guess_garments`]).
+//!
+//! Plain data: `sinew_ragdoll::garments` makes cloth of them. Where springs are light and each chain swings by itself, a garment
+//! is **one sheet**: its chains are sewn together side by side, and it bears on bodies and is borne by them.
+//!
+//! ```
+//! use sinew_anim::{Garment, Joint, LocalTransform, Rig};
+//! use sinew_math::Vec3;
+//!
+//! let mut rig = Rig::default();
+//! let mut add = |name: &str, parent, x: f32, y: f32| {
+//!     let rest = LocalTransform { translation: Vec3::new(x, y, 0.0), ..LocalTransform::default() };
+//!     rig.joints.push(Joint { name: name.into(), parent, rest, source: rig.joints.len() });
+//!     rig.joints.len() - 1
+//! };
+//! let chest = add("chest", None, 0.0, 1.4);
+//! for (name, x) in [("cape_l", 0.2), ("cape_r", -0.2), ("cape_m", 0.0)] {
+//!     let top = add(&format!("{name}_1"), Some(chest), x, 0.0);
+//!     let middle = add(&format!("{name}_2"), Some(top), 0.0, -0.4);
+//!     add(&format!("{name}_3"), Some(middle), 0.0, -0.4);
+//! }
+//! // Side by side, whatever the order in the file.
+//! let cape = &sinew_anim::guess_garments(&rig)[0];
+//! let tops = cape.columns.iter().map(|column| rig.joints[column.joints[0]].name.as_str());
+//! assert_eq!((tops.collect::<Vec<_>>(), cape.closed), (vec!["cape_l_1", "cape_m_1", "cape_r_1"], false));
+//! ```
+
+mod columns;
+mod guess;
+
+pub use columns::{is_ring, side_by_side};
+pub use guess::guess_garments;
+
+use crate::rig::{JointIdx, Rig};
+use sinew_math::Vec3;
+
+/// Garment of cloth on the bones of a rig. Default: no columns, and the cloth of a cape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Garment {
+    /// Name of it for people, or `""`.
+    pub name: String,
+    /// Chains of joints that it hangs on, side by side; no joint is in two.
+    pub columns: Vec<GarmentColumn>,
+    /// True: the last column is sewn to the first, as a skirt's are. Default false.
+    pub closed: bool,
+    /// Mass of a square metre of it, kg. Default 0.4: wool.
+    pub area_density: f32,
+    /// Distance that its middle keeps from bodies, metres. Default 0.015.
+    pub radius: f32,
+    /// Most distance between particles of it that are beside each other, metres: a limb of radius `R` does not come between four of them if its square is
+    /// below `2 (2 R radius + radius²)`. Default 0.05, which holds for shins.
+    pub spacing: f32,
+    /// Stiffness of a square of it against being pulled along a thread, N/m. Default 2000.
+    pub stretching: f32,
+    /// Stiffness of a square of it against being pulled along a diagonal, N/m, ≥ 0. Default 100.
+    pub shearing: f32,
+    /// Bending stiffness per width, N·m, ≥ 0. Default 1e-4.
+    pub bending: f32,
+    /// Share of its critical damping that each spring has, ≥ 0. Default 0.2.
+    pub damping_ratio: f32,
+    /// Drag of still air in proportion to velocity, 1/s, ≥ 0. Default 0.5.
+    pub drag: f32,
+    /// Friction on bodies, ≥ 0. Default 0.3.
+    pub friction: f32,
+    /// True if the wearer's own arms do not pass through it; `None`: if what holds it is above the pelvis. Arms that swing by a skirt would catch it against the
+    /// thigh in every step.
+    pub meets_arms: Option<bool>,
+    /// Distance that its folds keep from each other, metres, ≥ 0. Default 0: they pass through each other.
+    pub thickness: f32,
+}
+
+impl Default for Garment {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            columns: Vec::new(),
+            closed: false,
+            area_density: 0.4,
+            radius: 0.015,
+            spacing: 0.05,
+            stretching: 2000.0,
+            shearing: 100.0,
+            bending: 1e-4,
+            damping_ratio: 0.2,
+            drag: 0.5,
+            friction: 0.3,
+            meets_arms: None,
+            thickness: 0.0,
+        }
+    }
+}
+
+/// Column of a garment: a chain of joints from the seam, where the body holds it, to the hem.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GarmentColumn {
+    /// Joints from the seam to the hem, each the parent of the next.
+    pub joints: Vec<JointIdx>,
+    /// Place of the hem in the last joint's own space, file units; zero: the last joint is at the hem, and does not turn.
+    pub tip: Vec3,
+}
+
+impl Garment {
+    /// A garment on the chains that start at these joints, side by side; closed if they stand in a ring.
+    ///
+    /// # Panics
+    /// If there is no such joint.
+    pub fn on_chains(rig: &Rig, tops: &[JointIdx]) -> Self {
+        let columns: Vec<GarmentColumn> = tops.iter().map(|&top| GarmentColumn::below(rig, top)).collect();
+        Self { closed: is_ring(rig, &columns), columns, ..Self::default() }
+    }
+
+    /// All its joints, by column.
+    pub fn joints(&self) -> impl Iterator<Item = JointIdx> {
+        self.columns.iter().flat_map(|column| column.joints.iter().copied())
+    }
+}

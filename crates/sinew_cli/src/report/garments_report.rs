@@ -1,0 +1,95 @@
+//! Garments of a character, and what names of joints tell of them.
+
+use super::springs_report::listed;
+use super::table::counted;
+use serde_json::{Value, json};
+use sinew::anim::{Garment, JointIdx, Rig, guess_garments};
+use sinew::ragdoll::{CharacterDef, RagdollDef};
+use std::fmt::Write as _;
+
+/// Garments that a character wears in a bake.
+pub struct GarmentsReport {
+    names: Vec<String>,
+    bones: usize,
+    particles: usize,
+    /// Names of joints that were to be worn and are not.
+    left_out: Vec<String>,
+}
+
+impl GarmentsReport {
+    /// Garments of a character.
+    pub fn of(character: &CharacterDef) -> Self {
+        let garments = character.garments();
+        let name = |&joint: &JointIdx| character.rig.joints[joint].name.clone();
+        Self {
+            names: garments.source().iter().map(|garment| garment.name.clone()).collect(),
+            bones: garments.joints().len(),
+            particles: garments.particles().sum(),
+            left_out: garments.left_out().iter().map(name).collect(),
+        }
+    }
+
+    /// Keys of a report.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "names": self.names,
+            "bones": self.bones,
+            "particles": self.particles,
+            "left_out": self.left_out,
+        })
+    }
+
+    /// Notes for a person, a sentence each.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self.bones > 0 {
+            let bones = counted(self.bones, "bone moves", "bones move");
+            notes.push(format!(
+                "{bones} with {}, of {} particles; --no-garments leaves them",
+                counted(self.names.len(), "garment", "garments"),
+                self.particles
+            ));
+        }
+        if !self.left_out.is_empty() {
+            let names = listed(&self.left_out);
+            notes.push(format!(
+                "no garment on {names}: bodies of the ragdoll move them, no body holds them, or they have no length"
+            ));
+        }
+        notes
+    }
+}
+
+/// Garments that the names of a rig's joints tell.
+pub fn garments_json(rig: &Rig) -> Value {
+    let name = |joint: JointIdx| rig.joints[joint].name.as_str();
+    let garment = |garment: &Garment| {
+        let chains: Vec<&str> = garment.columns.iter().map(|column| name(column.joints[0])).collect();
+        json!({ "name": garment.name, "closed": garment.closed, "chains": chains, "joints": garment.joints().count() })
+    };
+    guess_garments(rig).iter().map(garment).collect()
+}
+
+/// The same for people; nothing where there are none.
+pub fn garments_text(rig: &Rig) -> String {
+    let mut text = String::new();
+    for garment in guess_garments(rig) {
+        let tops: Vec<String> =
+            garment.columns.iter().map(|column| rig.joints[column.joints[0]].name.clone()).collect();
+        let round = if garment.closed { "all round" } else { "open" };
+        let chains = counted(garment.columns.len(), "chain", "chains");
+        let _ = writeln!(text, "\nGarment by names: {}, {round}, {chains}: {}", garment.name, listed(&tops));
+    }
+    text
+}
+
+/// Garments that a rig could wear by the names of its joints, as advice; nothing where there are none, or bodies of its ragdoll move them.
+pub fn proposal(rig: &Rig, ragdoll: &RagdollDef) -> Option<String> {
+    let has_body = |joint: JointIdx| ragdoll.bodies.iter().any(|body| body.bone == rig.joints[joint].name);
+    let garments = guess_garments(rig);
+    let could = garments.iter().filter(|garment| !garment.joints().any(has_body));
+    let names: Vec<String> = could.map(|garment| garment.name.clone()).collect();
+    (!names.is_empty()).then(|| {
+        format!("{} could be worn as cloth, by the names of bones: \"garments\": \"names\" in the settings does it", listed(&names))
+    })
+}

@@ -1,0 +1,234 @@
+//! Garments as they are worn: sheets, and the joints that turn with them, parents first.
+
+use super::sheet::Sheet;
+use crate::def::RagdollDef;
+use crate::mapping::Mapping;
+use sinew_anim::{Garment, JointIdx, Rig};
+use sinew_math::{Affine, Mat3, Rotation, Vec3, any_orthonormal, direction};
+
+/// Joint that garments hang on, or that turns with one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Node {
+    pub joint: JointIdx,
+    /// Index among the nodes; smaller than its own.
+    pub parent: Option<usize>,
+    /// Bone that turns it.
+    pub bone: Option<usize>,
+}
+
+/// Bone that lies in a sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bone {
+    pub node: usize,
+    pub sheet: usize,
+    /// Line of the sheet that its column is.
+    pub line: usize,
+    /// Shares of the way from the seam to the hem at which it begins and ends.
+    pub from: f32,
+    pub to: f32,
+    /// Rotation of the bone in the frame of the sheet under it, at rest.
+    pub frame_from_bone: Rotation,
+}
+
+/// Column of a sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Column {
+    pub nodes: Vec<usize>,
+    /// Place of the hem in the space of the last joint, if that is not at the hem itself.
+    pub tip: Option<Vec3>,
+}
+
+/// Garments of a kind of character, ready to be worn. Immutable.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GarmentRig {
+    source: Vec<Garment>,
+    pub(super) nodes: Vec<Node>,
+    /// By node, ascending.
+    pub(super) bones: Vec<Bone>,
+    /// One for each garment that has one.
+    pub(super) sheets: Vec<Sheet>,
+    /// Columns of each sheet.
+    pub(super) columns: Vec<Vec<Column>>,
+    left_out: Vec<JointIdx>,
+}
+
+/// Column of a garment in the bind pose.
+struct Hung<'a> {
+    joints: &'a [JointIdx],
+    tip: Option<Vec3>,
+    /// Body that holds it.
+    body: usize,
+    /// Places of its joints and hem, character space, metres.
+    way: Vec<Vec3>,
+}
+
+impl GarmentRig {
+    /// Garments of a rig with a ragdoll, `bind_model` its bind pose in model space. Columns are left out ([`left_out`](Self::left_out)) that no body
+    /// carries, that have no length, or a joint of which moves a body or is in another column; so are garments of less than two.
+    ///
+    /// # Panics
+    /// If a joint is named that is not there, or a number of a garment makes no sense.
+    pub fn new(
+        rig: &Rig,
+        ragdoll: &RagdollDef,
+        mapping: &Mapping,
+        bind_model: &[Affine],
+        garments: &[Garment],
+    ) -> Self {
+        let mut it = Self { source: garments.to_vec(), ..Self::default() };
+        let mut taken = vec![false; rig.joints.len()];
+        let mut worn: Vec<(&Garment, Vec<Hung<'_>>)> = Vec::new();
+        for garment in garments {
+            let hung = it.hang(rig, mapping, bind_model, garment, &mut taken);
+            if hung.len() < 2 {
+                it.left_out.extend(hung.iter().flat_map(|column| column.joints));
+            } else {
+                worn.push((garment, hung));
+            }
+        }
+        let needed = worn.iter().flat_map(|(_, hung)| hung).flat_map(|column| column.joints);
+        let node_of = it.add_nodes(rig, needed.copied());
+        let bind = |joint: JointIdx| mapping.character_from_model() * bind_model[joint];
+        for (garment, hung) in &worn {
+            let ways: Vec<Vec<Vec3>> = hung.iter().map(|column| column.way.clone()).collect();
+            let held_by: Vec<usize> = hung.iter().map(|column| column.body).collect();
+            let garment = Garment { closed: garment.closed && hung.len() > 2, ..Garment::clone(garment) };
+            let sheet = Sheet::new(&garment, &ways, &held_by, ragdoll);
+            it.add_bones(&sheet, hung, &node_of, bind);
+            let node = |&joint: &JointIdx| node_of[joint].expect("its joints are nodes");
+            let column = |column: &Hung<'_>| Column {
+                nodes: column.joints.iter().map(node).collect(),
+                tip: column.tip,
+            };
+            it.columns.push(hung.iter().map(column).collect());
+            it.sheets.push(sheet);
+        }
+        it.bones.sort_by_key(|bone| bone.node);
+        for (index, bone) in it.bones.iter().enumerate() {
+            it.nodes[bone.node].bone = Some(index);
+        }
+        it
+    }
+
+    /// Columns of a garment that can be worn.
+    fn hang<'a>(
+        &mut self,
+        rig: &Rig,
+        mapping: &Mapping,
+        bind_model: &[Affine],
+        garment: &'a Garment,
+        taken: &mut [bool],
+    ) -> Vec<Hung<'a>> {
+        let character = mapping.character_from_model();
+        let mut hung = Vec::new();
+        for column in &garment.columns {
+            let joints = column.joints.as_slice();
+            let tip = (column.tip != Vec3::ZERO).then_some(column.tip);
+            let is_free = joints.iter().all(|&joint| !mapping.moves_bodies(joint) && !taken[joint]);
+            let place = |&joint: &JointIdx| character.point(bind_model[joint].translation);
+            let mut way: Vec<Vec3> = joints.iter().map(place).collect();
+            way.extend(tip.map(|tip| character.point(bind_model[joints[joints.len() - 1]].point(tip))));
+            let body = joints.first().and_then(|&top| mapping.body_above(rig, top));
+            match body {
+                Some(body) if is_free && super::grid::length(&way) > 0.0 => {
+                    joints.iter().for_each(|&joint| taken[joint] = true);
+                    hung.push(Hung { joints, tip, body, way });
+                }
+                _ => self.left_out.extend(joints),
+            }
+        }
+        hung
+    }
+
+    /// Nodes: the joints that are needed, and all above them. Gives the node of every joint.
+    fn add_nodes(&mut self, rig: &Rig, joints: impl Iterator<Item = JointIdx>) -> Vec<Option<usize>> {
+        let mut needed = vec![false; rig.joints.len()];
+        joints.for_each(|joint| needed[joint] = true);
+        for joint in (0..needed.len()).rev() {
+            if let Some(parent) = rig.joints[joint].parent.filter(|_| needed[joint]) {
+                needed[parent] = true;
+            }
+        }
+        let mut node_of: Vec<Option<usize>> = vec![None; needed.len()];
+        for joint in (0..needed.len()).filter(|&joint| needed[joint]) {
+            let parent = rig.joints[joint].parent.and_then(|parent| node_of[parent]);
+            node_of[joint] = Some(self.nodes.len());
+            self.nodes.push(Node { joint, parent, bone: None });
+        }
+        node_of
+    }
+
+    /// Bones of a sheet: each joint but a last one at the hem.
+    fn add_bones(
+        &mut self,
+        sheet: &Sheet,
+        hung: &[Hung<'_>],
+        node_of: &[Option<usize>],
+        bind: impl Fn(JointIdx) -> Affine,
+    ) {
+        let places: Vec<Vec3> = sheet.group.particles.iter().map(|particle| particle.position).collect();
+        for (index, column) in hung.iter().enumerate() {
+            let on_column = |line: &super::grid::Line| line.column == index && line.share == 0.0;
+            let line = sheet.grid.lines.iter().position(on_column).expect("each column has a line");
+            let whole = super::grid::length(&column.way);
+            let share = |at: usize| super::grid::length(&column.way[..=at]) / whole;
+            for (at, &joint) in column.joints.iter().enumerate().take(column.way.len() - 1) {
+                let mut bone = Bone {
+                    node: node_of[joint].expect("its joints are nodes"),
+                    sheet: self.sheets.len(),
+                    line,
+                    from: share(at),
+                    to: share(at + 1),
+                    frame_from_bone: Rotation::IDENTITY,
+                };
+                if bone.to <= bone.from {
+                    continue;
+                }
+                if let Some(frame) = bone.frame(sheet, &places) {
+                    bone.frame_from_bone = frame.inverse() * bind(joint).to_rigid().rotation;
+                    self.bones.push(bone);
+                }
+            }
+        }
+    }
+
+    /// Garments that this was made from.
+    pub fn source(&self) -> &[Garment] {
+        &self.source
+    }
+
+    /// Joints that turn, parents first.
+    pub fn joints(&self) -> impl ExactSizeIterator<Item = JointIdx> {
+        self.bones.iter().map(|bone| self.nodes[bone.node].joint)
+    }
+
+    /// Joints of columns that were left out.
+    pub fn left_out(&self) -> &[JointIdx] {
+        &self.left_out
+    }
+
+    /// Number of particles of each sheet.
+    pub fn particles(&self) -> impl ExactSizeIterator<Item = usize> {
+        self.sheets.iter().map(|sheet| sheet.group.particles.len())
+    }
+
+    /// True if nothing is worn.
+    pub fn is_empty(&self) -> bool {
+        self.sheets.is_empty()
+    }
+}
+
+impl Bone {
+    /// Rotation of the sheet under it, where its particles are at `places`: y along the bone, x across, as far as there is a width. `None` if it is
+    /// crumpled to a point.
+    pub fn frame(&self, sheet: &Sheet, places: &[Vec3]) -> Option<Rotation> {
+        let grid = &sheet.grid;
+        let on = |line: usize, share: f32| grid.on_line(places, line, share);
+        let y = direction(on(self.line, self.to) - on(self.line, self.from))?;
+        let [before, after] = grid.beside(self.line);
+        let across = |share: f32| on(after, share) - on(before, share);
+        let across = across(self.from) + across(self.to);
+        let x = direction(across - y * across.dot(y)).unwrap_or_else(|| any_orthonormal(y));
+        Some(Rotation::from_mat3(&Mat3::from_cols(x, y, x.cross(y))))
+    }
+}

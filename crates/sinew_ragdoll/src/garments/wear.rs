@@ -1,0 +1,223 @@
+//! Sheets in the world: put on, shown, taken off.
+
+use super::rig::{Column, GarmentRig};
+use super::sheet::{Sheet, cleared};
+use crate::def::RagdollDef;
+use crate::tuning::{CAUGHT, DRAPINGS};
+use sinew_anim::LocalTransform;
+use sinew_math::{Affine, ReadError, Reader, Rotation, Transform, Vec3, Writer, max};
+use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, SpringDef};
+use sinew_physics::{BodyId, GroupId, World};
+
+/// Garments as one character wears them. Default: none are on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Worn {
+    /// Particles of each sheet; empty while none are on.
+    pub groups: Vec<GroupId>,
+    /// Local rotation of every bone, as it is shown.
+    pub turns: Vec<Rotation>,
+}
+
+impl Worn {
+    /// Takes them out of the world.
+    pub fn take_off(&mut self, world: &mut World) {
+        self.groups.drain(..).for_each(|group| world.remove_particles(group));
+        self.turns.clear();
+    }
+
+    /// Takes them along to where their wearer was put, as they are.
+    pub fn carry(&self, world: &mut World, moved: Transform) {
+        for &id in &self.groups {
+            let group = world.particles_mut(id);
+            for particle in 0..group.positions().len() {
+                let (position, velocity) = (group.positions()[particle], group.velocities()[particle]);
+                group.set_position(particle as u32, moved.point(position));
+                group.set_velocity(particle as u32, moved.rotation * velocity);
+            }
+        }
+    }
+
+    /// Writes what is in the world, and what is shown.
+    pub fn save(&self, w: &mut Writer) {
+        w.count(self.groups.len());
+        self.groups.iter().for_each(|group| w.u64(group.to_bits()));
+        w.count(self.turns.len());
+        self.turns.iter().for_each(|&turn| w.rotation(turn));
+    }
+
+    /// Garments of the same rig as they were saved.
+    ///
+    /// # Errors
+    /// If they are of another rig, or the bytes end too early.
+    pub fn load(rig: &GarmentRig, r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut worn = Self::default();
+        for _ in 0..r.count(8)? {
+            worn.groups.push(GroupId::from_bits(r.u64()?));
+        }
+        for _ in 0..r.count(16)? {
+            worn.turns.push(r.rotation()?);
+        }
+        let fits = |count: usize, whole: usize| count == 0 || count == whole;
+        if !fits(worn.groups.len(), rig.sheets.len()) || !fits(worn.turns.len(), rig.bones.len()) {
+            return Err(r.error("wears other garments"));
+        }
+        Ok(worn)
+    }
+}
+
+/// Who wears garments: pose and bodies of the same moment.
+#[derive(Clone, Copy)]
+pub(crate) struct Wearer<'a> {
+    pub rig: &'a GarmentRig,
+    pub ragdoll: &'a RagdollDef,
+    /// Local transform of every joint of the rig.
+    pub pose: &'a [LocalTransform],
+    pub world_from_model: Affine,
+    /// Bodies in the world, in the order of the definition.
+    pub bodies: &'a [BodyId],
+}
+
+impl Wearer<'_> {
+    /// Puts a group of particles into the world for each sheet, where the pose has it and out of the bodies.
+    pub fn put_on(&self, world: &mut World) -> Vec<GroupId> {
+        let nodes = self.nodes();
+        let mut groups = Vec::with_capacity(self.rig.sheets.len());
+        for index in 0..self.rig.sheets.len() {
+            let places = self.places(index, &nodes);
+            groups.push(self.put_on_sheet(world, &self.rig.sheets[index], &places));
+        }
+        groups
+    }
+
+    /// Places of a sheet's particles in the world as the pose has them, with the nodes there.
+    fn places(&self, sheet: usize, nodes: &[Affine]) -> Vec<Vec3> {
+        let way = |column: &Column| {
+            let mut way: Vec<Vec3> = column.nodes.iter().map(|&node| nodes[node].translation).collect();
+            let last = column.nodes[column.nodes.len() - 1];
+            way.extend(column.tip.map(|tip| nodes[last].point(tip)));
+            way
+        };
+        let ways: Vec<Vec<Vec3>> = self.rig.columns[sheet].iter().map(way).collect();
+        let mut places = Vec::new();
+        self.rig.sheets[sheet].grid.places(&ways, &mut places);
+        places
+    }
+
+    /// Brings back to the pose what the bodies have caught: of each thread that is far too long, the end that is farther from there. A clip that folds the body
+    /// on its skirt may leave a part of it on the other side.
+    pub fn mend(&self, world: &mut World, groups: &[GroupId]) {
+        let mut nodes = Vec::new();
+        for (index, (sheet, &id)) in self.rig.sheets.iter().zip(groups).enumerate() {
+            let at = world.particles(id).positions();
+            let length = |thread: &SpringDef| (at[thread.b as usize] - at[thread.a as usize]).length();
+            let is_caught =
+                |thread: &&SpringDef| length(thread) > CAUGHT * max(thread.rest_length, sheet.spacing);
+            let caught: Vec<SpringDef> = sheet.group.springs.iter().filter(is_caught).copied().collect();
+            if caught.is_empty() {
+                continue;
+            }
+            if nodes.is_empty() {
+                nodes = self.nodes();
+            }
+            let places = self.places(index, &nodes);
+            for thread in caught {
+                let at = world.particles(id).positions();
+                let [a, b] =
+                    [thread.a, thread.b].map(|end| (at[end as usize] - places[end as usize]).length());
+                let particle = if a > b { thread.a } else { thread.b };
+                let line = particle as usize / (sheet.grid.rows + 1);
+                let velocity = self.carried(world, sheet.held_by[line], places[particle as usize]);
+                let group = world.particles_mut(id);
+                group.set_position(particle, places[particle as usize]);
+                group.set_velocity(particle, velocity);
+            }
+        }
+    }
+
+    /// Velocity of a body of the wearer at a point.
+    fn carried(&self, world: &World, body: usize, point: Vec3) -> Vec3 {
+        let body = self.bodies[body];
+        let velocity = world.velocity(body);
+        velocity.linear + velocity.angular.cross(point - world.center_of_mass(body))
+    }
+
+    fn put_on_sheet(&self, world: &mut World, sheet: &Sheet, places: &[Vec3]) -> GroupId {
+        let mut group = sheet.group.clone();
+        let bind = |body: usize| self.ragdoll.bodies[body].character_from_body;
+        for (index, particle) in group.particles.iter_mut().enumerate() {
+            let body = sheet.held_by[index / (sheet.grid.rows + 1)];
+            let frame = world.transform(self.bodies[body]);
+            if index % (sheet.grid.rows + 1) == 0 {
+                // Where it was in the bind pose, whatever the clip does: joints of bodies do not stretch.
+                let point = bind(body).inverse_point(particle.position);
+                let target = AttachmentTarget::Body { body: self.bodies[body], point };
+                group.attachments.push(AttachmentDef { particle: index as u32, target });
+                particle.position = frame.point(point);
+            } else {
+                let turn = frame.rotation * bind(body).rotation.inverse();
+                particle.position = places[index] + turn * sheet.moved_out[index];
+            }
+        }
+        group.passes = sheet.passed.iter().map(|&body| self.bodies[body]).collect();
+        self.drape(world, sheet, &mut group);
+        for (index, particle) in group.particles.iter_mut().enumerate() {
+            let body = sheet.held_by[index / (sheet.grid.rows + 1)];
+            particle.velocity = self.carried(world, body, particle.position);
+        }
+        world.add_particles(&group)
+    }
+
+    /// Takes a sheet that is held out of the bodies, and pulls it to its lengths.
+    fn drape(&self, world: &World, sheet: &Sheet, group: &mut GroupDef) {
+        let bodies = self.ragdoll.bodies.iter().zip(self.bodies).enumerate();
+        let met = bodies.filter(|(body, _)| !sheet.passed.contains(body));
+        let shapes = met.map(|(_, (body, &id))| (&body.shape, world.transform(id)));
+        let is_held = |particle: usize| particle % (sheet.grid.rows + 1) == 0;
+        for _ in 0..DRAPINGS {
+            for spring in &group.springs {
+                let ends = [spring.a, spring.b].map(|at| at as usize);
+                let [a, b] = ends.map(|at| group.particles[at].position);
+                let length = (b - a).length();
+                if length > spring.rest_length {
+                    let free = ends.map(|at| if is_held(at) { 0.0 } else { 1.0 });
+                    let by = (b - a) * ((1.0 - spring.rest_length / length) / (free[0] + free[1]));
+                    group.particles[ends[0]].position += by * free[0];
+                    group.particles[ends[1]].position -= by * free[1];
+                }
+            }
+            for (_, particle) in group.particles.iter_mut().enumerate().filter(|(at, _)| !is_held(*at)) {
+                particle.position = cleared(particle.position, particle.radius, shapes.clone());
+            }
+        }
+    }
+
+    /// Local rotations of the joints that turn, in the order of [`GarmentRig::joints`], as their sheets lie in the world.
+    pub fn turns(&self, world: &World, groups: &[GroupId], turns: &mut Vec<Rotation>) {
+        turns.clear();
+        let mut rotations: Vec<Rotation> = Vec::with_capacity(self.rig.nodes.len());
+        let root = self.world_from_model.to_rigid().rotation;
+        for node in &self.rig.nodes {
+            let above = node.parent.map_or(root, |parent| rotations[parent]);
+            let rest = self.pose[node.joint].rotation;
+            let mut turn = rest;
+            if let Some(bone) = node.bone.map(|bone| &self.rig.bones[bone]) {
+                let positions = world.particles(groups[bone.sheet]).positions();
+                if let Some(frame) = bone.frame(&self.rig.sheets[bone.sheet], positions) {
+                    turn = (above.inverse() * frame * bone.frame_from_bone).normalize().toward(rest);
+                }
+                turns.push(turn);
+            }
+            rotations.push(above * turn);
+        }
+    }
+
+    /// Places of the nodes in the world.
+    fn nodes(&self) -> Vec<Affine> {
+        let mut nodes: Vec<Affine> = Vec::with_capacity(self.rig.nodes.len());
+        for node in &self.rig.nodes {
+            let above = node.parent.map_or(self.world_from_model, |parent| nodes[parent]);
+            nodes.push(above * self.pose[node.joint].to_affine());
+        }
+        nodes
+    }
+}
