@@ -229,7 +229,7 @@ pub(crate) const CLEARINGS: usize = 4;
 
 /// Number of parts that a substep of a sheet is moved in, as in scene `cape`.
 ///
-/// Larger: slower, and stiffer. Smaller: it stretches like rubber. Shown by scene `skirt`.
+/// Larger: slower, and stiffer. Smaller: it stretches like rubber. Shown by the tests of `garments`.
 pub(crate) const SHEET_ITERATIONS: u32 = 4;
 
 /// Length over the spacing below which a thread has the stiffness of one of that length, a ratio.
@@ -239,10 +239,10 @@ pub(crate) const SHORTEST_THREAD: f32 = 0.1;
 
 // garments/wear.rs
 
-/// Length of a thread over that at rest, or over the spacing of its sheet if that is longer, from which the body has caught it, a ratio.
+/// Length of a thread over that at rest, or over half the spacing of its sheet if that is longer, from which the body has caught it, a ratio.
 ///
-/// Larger: a skirt that a clip sits down on stays caught. Smaller: cloth that is only pulled jumps. Shown by scene `skirt`.
-pub(crate) const CAUGHT: f32 = 2.0;
+/// Larger: a skirt that a clip sits down on stays caught. Smaller: cloth that is only pulled jumps. Shown by the tests of `garments`.
+pub(crate) const CAUGHT: f32 = 1.5;
 
 /// Number of times that a sheet which is put on is pulled to its lengths and taken out of the bodies.
 ///

@@ -1,6 +1,6 @@
 //! Springs and garments that a character wears, over the pose that clips or bodies give it.
 
-use super::Character;
+use super::{Character, State};
 use crate::garments::Wearer;
 use crate::springs::SpringStep;
 use sinew_physics::{GroupId, World};
@@ -59,7 +59,8 @@ impl Character {
             worn.groups = self.wearer(&self.swung).put_on(world);
         }
         if !worn.groups.is_empty() {
-            if self.ragdoll.is_none() {
+            // Where the pose of one who is getting up has the sheet is ground.
+            if self.state == State::Animated {
                 self.wearer(&self.swung).mend(world, &worn.groups);
             }
             self.wearer(&self.swung).turns(world, &worn.groups, &mut worn.turns);

@@ -7,7 +7,7 @@ use crate::tuning::{CAUGHT, DRAPINGS};
 use sinew_anim::LocalTransform;
 use sinew_math::{Affine, ReadError, Reader, Rotation, Transform, Vec3, Writer, max};
 use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, SpringDef};
-use sinew_physics::{BodyId, GroupId, World};
+use sinew_physics::{BodyId, GroupId, Shape, World};
 
 /// Garments as one character wears them. Default: none are on.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -103,35 +103,45 @@ impl Wearer<'_> {
         places
     }
 
-    /// Brings back to the pose what the bodies have caught: of each thread that is far too long, the end that is farther from there. A clip that folds the body
-    /// on its skirt may leave a part of it on the other side.
+    /// Brings back to the pose the lines of which the bodies have caught a thread, so that it is far too long. A clip that folds the body on its skirt may
+    /// leave a part of it on the other side.
     pub fn mend(&self, world: &mut World, groups: &[GroupId]) {
-        let mut nodes = Vec::new();
         for (index, (sheet, &id)) in self.rig.sheets.iter().zip(groups).enumerate() {
             let at = world.particles(id).positions();
-            let length = |thread: &SpringDef| (at[thread.b as usize] - at[thread.a as usize]).length();
-            let is_caught =
-                |thread: &&SpringDef| length(thread) > CAUGHT * max(thread.rest_length, sheet.spacing);
-            let caught: Vec<SpringDef> = sheet.group.springs.iter().filter(is_caught).copied().collect();
-            if caught.is_empty() {
+            let is_caught = |thread: &&SpringDef| {
+                let length = (at[thread.b as usize] - at[thread.a as usize]).length();
+                length > CAUGHT * max(thread.rest_length, 0.5 * sheet.spacing)
+            };
+            let line_of = |particle: u32| particle as usize / (sheet.grid.rows + 1);
+            let caught = sheet.group.springs.iter().filter(is_caught);
+            let mut lines: Vec<usize> =
+                caught.flat_map(|thread| [line_of(thread.a), line_of(thread.b)]).collect();
+            lines.sort_unstable();
+            lines.dedup();
+            if lines.is_empty() {
                 continue;
             }
-            if nodes.is_empty() {
-                nodes = self.nodes();
-            }
-            let places = self.places(index, &nodes);
-            for thread in caught {
-                let at = world.particles(id).positions();
-                let [a, b] =
-                    [thread.a, thread.b].map(|end| (at[end as usize] - places[end as usize]).length());
-                let particle = if a > b { thread.a } else { thread.b };
-                let line = particle as usize / (sheet.grid.rows + 1);
-                let velocity = self.carried(world, sheet.held_by[line], places[particle as usize]);
+            let places = self.places(index, &self.nodes());
+            let shapes = self.shapes(world, sheet);
+            for (line, row) in
+                lines.iter().flat_map(|&line| (1..=sheet.grid.rows).map(move |row| (line, row)))
+            {
+                let particle = sheet.grid.particle(line, row);
+                let radius = sheet.group.particles[particle].radius;
+                let place = cleared(places[particle], radius, shapes.iter().copied());
+                let velocity = self.carried(world, sheet.held_by[line], place);
                 let group = world.particles_mut(id);
-                group.set_position(particle, places[particle as usize]);
-                group.set_velocity(particle, velocity);
+                group.set_position(particle as u32, place);
+                group.set_velocity(particle as u32, velocity);
             }
         }
+    }
+
+    /// Shapes of the wearer that a sheet meets, where they are in the world.
+    fn shapes(&self, world: &World, sheet: &Sheet) -> Vec<(&Shape, Transform)> {
+        let bodies = self.ragdoll.bodies.iter().zip(self.bodies).enumerate();
+        let met = bodies.filter(|(body, _)| !sheet.passed.contains(body));
+        met.map(|(_, (body, &id))| (&body.shape, world.transform(id))).collect()
     }
 
     /// Velocity of a body of the wearer at a point.
@@ -169,9 +179,7 @@ impl Wearer<'_> {
 
     /// Takes a sheet that is held out of the bodies, and pulls it to its lengths.
     fn drape(&self, world: &World, sheet: &Sheet, group: &mut GroupDef) {
-        let bodies = self.ragdoll.bodies.iter().zip(self.bodies).enumerate();
-        let met = bodies.filter(|(body, _)| !sheet.passed.contains(body));
-        let shapes = met.map(|(_, (body, &id))| (&body.shape, world.transform(id)));
+        let shapes = self.shapes(world, sheet);
         let is_held = |particle: usize| particle % (sheet.grid.rows + 1) == 0;
         for _ in 0..DRAPINGS {
             for spring in &group.springs {
@@ -186,7 +194,7 @@ impl Wearer<'_> {
                 }
             }
             for (_, particle) in group.particles.iter_mut().enumerate().filter(|(at, _)| !is_held(*at)) {
-                particle.position = cleared(particle.position, particle.radius, shapes.clone());
+                particle.position = cleared(particle.position, particle.radius, shapes.iter().copied());
             }
         }
     }
