@@ -16,8 +16,10 @@ pub(super) struct Node {
     pub parent: Option<usize>,
     /// Bone that turns it.
     pub bone: Option<usize>,
-    /// It swings, or something above it does.
+    /// It swings, or something above it does: such nodes come after all that do not.
     pub swings: bool,
+    /// Another node, a collider or a centre hangs on it.
+    pub carries: bool,
 }
 
 /// Bone that swings.
@@ -28,6 +30,8 @@ pub(super) struct Bone {
     /// Tip in the joint's space, file units, and its direction there.
     pub tail: Vec3,
     pub axis: Vec3,
+    /// File units.
+    pub length: f32,
     /// m/s toward the rest pose.
     pub stiffness: f32,
     /// m/s, character axes: where the character stands does not turn it.
@@ -60,6 +64,8 @@ pub(super) struct Collider {
 pub struct SpringRig {
     source: Springs,
     pub(super) nodes: Vec<Node>,
+    /// Number of nodes that do not swing; they are the first.
+    pub(super) stills: usize,
     /// By node, ascending, so that what hangs on a bone comes after it.
     pub(super) bones: Vec<Bone>,
     pub(super) chains: Vec<Chain>,
@@ -120,6 +126,7 @@ impl SpringRig {
                 hits_body: chain.hits_body,
             })
             .collect();
+        it.mark_carriers();
         it.swinging_colliders = it.colliders.iter().any(|collider| it.nodes[collider.node].swings);
         it.meet_bodies(ragdoll, mapping, bind_model);
         it.add_anchors(mapping, bind_model);
@@ -144,17 +151,31 @@ impl SpringRig {
                 needed[parent] = true;
             }
         }
+        let mut swings: Vec<bool> = Vec::with_capacity(needed.len());
+        for (joint, bone) in rig.joints.iter().zip(bone_at) {
+            swings.push(bone.is_some() || joint.parent.is_some_and(|parent| swings[parent]));
+        }
+        let swings = &swings;
+        let joints = |swing: bool| (0..swings.len()).filter(move |&joint| swings[joint] == swing);
         let mut node_of: Vec<Option<usize>> = vec![None; needed.len()];
         let mut bones = 0;
-        for joint in (0..needed.len()).filter(|&joint| needed[joint]) {
+        for joint in joints(false).chain(joints(true)).filter(|&joint| needed[joint]) {
             let parent = rig.joints[joint].parent.and_then(|parent| node_of[parent]);
             let bone = bone_at[joint].map(|_| bones);
             bones += usize::from(bone.is_some());
-            let swings = bone.is_some() || parent.is_some_and(|parent| self.nodes[parent].swings);
             node_of[joint] = Some(self.nodes.len());
-            self.nodes.push(Node { joint, parent, bone, swings });
+            self.nodes.push(Node { joint, parent, bone, swings: swings[joint], carries: false });
         }
+        self.stills = self.nodes.iter().filter(|node| !node.swings).count();
         node_of
+    }
+
+    fn mark_carriers(&mut self) {
+        let parents = self.nodes.iter().filter_map(|node| node.parent);
+        let centers = self.chains.iter().filter_map(|chain| chain.center);
+        let colliders = self.colliders.iter().map(|collider| collider.node);
+        let carriers: Vec<usize> = parents.chain(centers).chain(colliders).collect();
+        carriers.into_iter().for_each(|node| self.nodes[node].carries = true);
     }
 
     fn add_bones(&mut self, mapping: &Mapping, springs: &Springs, bone_at: &[Option<(usize, usize)>]) {
@@ -169,6 +190,7 @@ impl SpringRig {
                 chain,
                 tail: bone.tail,
                 axis,
+                length: bone.tail.length(),
                 stiffness: bone.stiffness * metres,
                 gravity: character.vector(bone.gravity),
                 drag: bone.drag,
