@@ -1,8 +1,9 @@
 //! Colliders of tips.
 
+use super::tuning::{CLOSE, MOST_LEAPS, THIN};
 use sinew_anim::springs::{ColliderShape, Side};
 use sinew_math::{Affine, Mat3, Vec3, clamp, max, normalize_or};
-use sinew_physics::{BodyId, NearestTo, World};
+use sinew_physics::{BodyId, NearestTo, Probe, Shape, ShapeCast, World};
 
 /// Way out of a collider: unit direction, and how far the surface of a ball is from it, metres; negative: so deep in it.
 #[derive(Clone, Copy)]
@@ -83,6 +84,44 @@ impl Placed {
     }
 }
 
+impl Placed {
+    /// Where a ball comes that goes so far that it could pass through, and would: along the surface that it meets first. Places are those in the
+    /// collider's own motion. `None` if it meets nothing.
+    #[inline]
+    pub fn stop(&self, from: Vec3, to: Vec3, radius: f32) -> Option<Vec3> {
+        let Self::Round { head, along, radius: own, keeps: Side::Outside } = *self else { return None };
+        let way = to - from;
+        let reach = own + radius;
+        // A shorter way ends in it, and on this side.
+        if way.length_squared() <= reach * reach {
+            return None;
+        }
+        let (length, square) = (way.length(), along.length_squared());
+        let mut gone = 0.0;
+        for _ in 0..MOST_LEAPS {
+            let mut out = from + way * (gone / length) - head;
+            if square > 0.0 {
+                out -= along * clamp(out.dot(along) / square, 0.0, 1.0);
+            }
+            let distance = out.length() - reach;
+            if distance < CLOSE {
+                return along_surface(from + way * (gone / length), to, normalize_or(out, Vec3::Y));
+            }
+            gone += distance;
+            if gone >= length {
+                return None;
+            }
+        }
+        None
+    }
+}
+
+/// The end of a way that has met a surface at a place, without what leads into it.
+fn along_surface(met: Vec3, to: Vec3, normal: Vec3) -> Option<Vec3> {
+    let into = (to - met).dot(normal);
+    (into < 0.0).then(|| to - normal * into)
+}
+
 /// Normals go by the inverse transpose; the cofactors of the matrix have its direction without a division.
 fn turned_normal(m: &Mat3, normal: Vec3) -> Vec3 {
     let (x, y, z) = (m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
@@ -108,6 +147,22 @@ impl Surroundings<'_> {
     pub fn are_near(&self, center: Vec3, reach: f32) -> bool {
         let question = NearestTo { point: center, within: reach };
         self.world.query().accept(|body, _| !self.own.contains(&body)).any(&question)
+    }
+
+    /// Where a ball comes that goes so far that it could pass through something thin, and would.
+    pub fn stop(&self, from: Vec3, to: Vec3, radius: f32) -> Option<Vec3> {
+        let translation = to - from;
+        if translation.length() <= max(radius, THIN) {
+            return None;
+        }
+        // Half of it, so that one that slides on something does not meet it.
+        let ball = Shape::Sphere { radius: 0.5 * radius };
+        let question = ShapeCast { probe: Probe::at(ball, from), translation };
+        let hit = self.world.query().accept(|body, _| !self.own.contains(&body)).first(&question)?;
+        if hit.start.is_some() {
+            return None;
+        }
+        along_surface(from + translation * hit.fraction, to, hit.normal)
     }
 
     /// Gap between a ball and what is deepest in it.

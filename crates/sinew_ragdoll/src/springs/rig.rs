@@ -3,9 +3,9 @@
 use super::limit::Limit;
 use crate::def::RagdollDef;
 use crate::mapping::Mapping;
-use sinew_anim::springs::{ColliderShape, Springs};
+use sinew_anim::springs::{ColliderShape, SpringLink, Springs};
 use sinew_anim::{JointIdx, Rig};
-use sinew_math::{Affine, Transform, Vec3, max, normalize_or};
+use sinew_math::{Affine, Transform, Vec3, clamp, max, normalize_or};
 use sinew_physics::Shape;
 
 /// Joint that springs hang on, swing with, or carry colliders.
@@ -59,6 +59,16 @@ pub(super) struct Collider {
     pub shape: ColliderShape,
 }
 
+/// Link between two tips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Link {
+    pub bones: [usize; 2],
+    /// Metres.
+    pub length: f32,
+    pub share: f32,
+    pub holds_apart: bool,
+}
+
 /// Springs of a kind of character, ready to be stepped. Immutable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SpringRig {
@@ -70,6 +80,7 @@ pub struct SpringRig {
     pub(super) bones: Vec<Bone>,
     pub(super) chains: Vec<Chain>,
     pub(super) colliders: Vec<Collider>,
+    pub(super) links: Vec<Link>,
     /// A collider hangs on what swings.
     pub(super) swinging_colliders: bool,
     /// Shapes of the ragdoll's bodies, for chains that meet them.
@@ -128,6 +139,7 @@ impl SpringRig {
             .collect();
         it.mark_carriers();
         it.swinging_colliders = it.colliders.iter().any(|collider| it.nodes[collider.node].swings);
+        it.add_links(mapping, bind_model);
         it.meet_bodies(ragdoll, mapping, bind_model);
         it.add_anchors(mapping, bind_model);
         it
@@ -198,6 +210,22 @@ impl SpringRig {
                 limit: bone.limit.map(|limit| Limit::new(&limit, axis)),
             });
         }
+    }
+
+    /// Links between bones that swing, as long as the bind pose has them.
+    fn add_links(&mut self, mapping: &Mapping, bind_model: &[Affine]) {
+        let character = mapping.character_from_model();
+        let bone_of = |joint| self.bones.iter().position(|bone| self.nodes[bone.node].joint == joint);
+        let tip = |bone: usize| {
+            let bone = &self.bones[bone];
+            character.point(bind_model[self.nodes[bone.node].joint].point(bone.tail))
+        };
+        let link = |link: &SpringLink| {
+            let bones = [bone_of(link.joints[0])?, bone_of(link.joints[1])?];
+            let length = (tip(bones[1]) - tip(bones[0])).length();
+            Some(Link { bones, length, share: clamp(link.share, 0.0, 1.0), holds_apart: link.holds_apart })
+        };
+        self.links = self.source.links.iter().filter_map(link).collect();
     }
 
     /// Anchors, with their reach along the bones as the bind pose has them.

@@ -4,7 +4,7 @@ use super::TICK;
 use super::collide::{Placed, Surroundings};
 use super::rig::{Bone, SpringRig};
 use super::tip::{Around, Held};
-use super::tuning::{ALIKE, SNAP};
+use super::tuning::{ALIKE, LINK_SWEEPS, SNAP};
 use sinew_anim::LocalTransform;
 use sinew_math::{Affine, Mat3, Rotation, Transform, Vec3, max, normalize_or};
 use sinew_physics::{BodyId, World};
@@ -50,6 +50,11 @@ pub struct SpringSwing {
     /// All nodes at the time of a tick, and the colliders on them.
     at: Vec<Affine>,
     placed: Vec<Placed>,
+    /// Nodes that do not swing at the tick before, and the way of each collider since then; `None` on what swings.
+    last: Vec<Affine>,
+    moved: Vec<Option<Affine>>,
+    /// What links pull each tip by in a tick, metres.
+    pulls: Vec<Vec3>,
 }
 
 impl SpringSwing {
@@ -100,11 +105,13 @@ impl SpringSwing {
         let span = step.seconds / TICK;
         let end = self.phase + span;
         let ticks = (end + SNAP).floor();
+        self.look_back();
         let first = max(ticks - MOST_TICKS as f32, 0.0) as u32 + 1;
         for tick in first..=ticks as u32 {
             let due = tick as f32;
             let share = if end - due < SNAP { 1.0 } else { max((due - self.phase) / span, 0.0) };
             self.advance(step, meets, share, 1.0);
+            self.last.copy_from_slice(&self.at[..step.rig.stills]);
         }
         let phase = end - ticks;
         self.phase = if phase < SNAP { 0.0 } else { phase };
@@ -114,6 +121,22 @@ impl SpringSwing {
         core::mem::swap(&mut self.earlier, &mut self.before);
         core::mem::swap(&mut self.before, &mut self.now);
         self.stride = step.seconds;
+    }
+
+    /// Places of the nodes that do not swing at the last tick: on the straight way through the ends of the last two steps.
+    fn look_back(&mut self) {
+        let back = if self.stride > 0.0 { self.phase * TICK / self.stride } else { 0.0 };
+        self.last.clear();
+        for (earlier, before) in self.earlier.iter().zip(&self.before) {
+            let column = |a: Vec3, b: Vec3| b - (b - a) * back;
+            let (a, b) = (&earlier.linear, &before.linear);
+            let linear = Mat3::from_cols(
+                column(a.x_axis, b.x_axis),
+                column(a.y_axis, b.y_axis),
+                column(a.z_axis, b.z_axis),
+            );
+            self.last.push(Affine { linear, translation: column(earlier.translation, before.translation) });
+        }
     }
 
     /// Places of the nodes that do not swing.
@@ -155,8 +178,8 @@ impl SpringSwing {
         self.stride = 0.0;
     }
 
-    fn center(&self, rig: &SpringRig, bone: &Bone) -> Option<Affine> {
-        rig.chains[bone.chain].center.map(|node| self.at[node])
+    fn center(&self, rig: &SpringRig, bone: &Bone) -> Option<&Affine> {
+        rig.chains[bone.chain].center.map(|node| &self.at[node])
     }
 
     /// True if something of the world is where a bone could come.
@@ -185,6 +208,10 @@ impl SpringSwing {
         let placed =
             rig.colliders.iter().map(|collider| Placed::new(&collider.shape, &self.at[collider.node]));
         self.placed.extend(placed);
+        self.moved.clear();
+        let still = |node: usize| (node < rig.stills).then(|| self.at[node] * self.last[node].inverse());
+        self.moved.extend(rig.colliders.iter().map(|collider| still(collider.node)));
+        self.pull(rig);
         self.turn_all(step, meets, rho);
     }
 
@@ -248,15 +275,57 @@ impl SpringSwing {
             (tip, way) = (center.point(tip), center.vector(way));
         }
         if rho == 0.0 {
-            return held.hold(tip);
+            return held.hold(tip, Vec3::ZERO);
         }
         let wind = step.world.map_or(Vec3::ZERO, |(world, _)| world.air_velocity(held.place));
         let force = held.axis * bone.stiffness + bone.gravity + wind * bone.drag;
-        let around = Around { placed: &self.placed, step, meets, index, held };
-        let whole = around.tick(tip, way, force * TICK);
+        let push = force * TICK + self.pulls.get(index).copied().unwrap_or(Vec3::ZERO);
+        let from = self.last_place(step.rig, index, tip);
+        let around = Around { placed: &self.placed, moved: &self.moved, step, meets, index, held };
+        let whole = around.tick(tip, from, way, push);
         let next = if rho < 1.0 { around.part(tip, way, whole, rho) } else { whole };
         // What numbers cannot hold starts over at rest.
         if next.is_finite() { next } else { held.rest() }
+    }
+
+    /// Place in the world where a tip was at the last tick; `tip` is where the chain's centre has carried it since.
+    #[inline]
+    fn last_place(&self, rig: &SpringRig, index: usize, tip: Vec3) -> Vec3 {
+        match rig.chains[rig.bones[index].chain].center {
+            Some(center) if center < rig.stills => self.last[center].point(self.tips[index]),
+            _ => tip,
+        }
+    }
+
+    /// Has links pull at the tips where their motion would bring them.
+    fn pull(&mut self, rig: &SpringRig) {
+        self.pulls.clear();
+        if rig.links.is_empty() {
+            return;
+        }
+        // Free places at first, and the way from there at the end.
+        for (index, bone) in rig.bones.iter().enumerate() {
+            let free = self.tips[index] + self.ways[index] * (1.0 - bone.drag);
+            self.pulls.push(self.center(rig, bone).map_or(free, |center| center.point(free)));
+        }
+        for _ in 0..LINK_SWEEPS {
+            for link in &rig.links {
+                let [a, b] = link.bones;
+                let apart = self.pulls[b] - self.pulls[a];
+                let length = apart.length();
+                let beyond = length - link.length;
+                if beyond > 0.0 || (link.holds_apart && beyond < 0.0) {
+                    let by = apart * (0.5 * link.share * beyond / max(length, f32::MIN_POSITIVE));
+                    self.pulls[a] += by;
+                    self.pulls[b] -= by;
+                }
+            }
+        }
+        for (index, bone) in rig.bones.iter().enumerate() {
+            let free = self.tips[index] + self.ways[index] * (1.0 - bone.drag);
+            let free = self.center(rig, bone).map_or(free, |center| center.point(free));
+            self.pulls[index] -= free;
+        }
     }
 
     /// Keeps the place of a tip after a whole tick.

@@ -6,7 +6,7 @@ use super::step::SpringStep;
 use super::tuning::SLIGHT_DRAG;
 use sinew_anim::LocalTransform;
 use sinew_math::trig::pow;
-use sinew_math::{Mat3, Rotation, Vec3, normalize_or};
+use sinew_math::{Affine, Mat3, Rotation, Vec3, normalize_or};
 
 /// Times that a tip is pushed out of the world within a tick: a corner has two sides.
 const PUSHES: usize = 2;
@@ -14,6 +14,8 @@ const PUSHES: usize = 2;
 /// A bone with all that holds its tip or pushes it.
 pub(super) struct Around<'a> {
     pub placed: &'a [Placed],
+    /// Way of each collider since the last tick, of those that are looked at on the way.
+    pub moved: &'a [Option<Affine>],
     pub step: &'a SpringStep<'a>,
     pub meets: Option<Surroundings<'a>>,
     pub index: usize,
@@ -21,11 +23,31 @@ pub(super) struct Around<'a> {
 }
 
 impl Around<'_> {
-    /// Place of the tip a tick on, from where and on which way it is, pushed by `push` a tick.
+    /// Place of the tip a tick on, from where and on which way it is, pushed by `push` a tick; `from` is where it was in the world.
     #[inline]
-    pub fn tick(&self, tip: Vec3, way: Vec3, push: Vec3) -> Vec3 {
+    pub fn tick(&self, tip: Vec3, from: Vec3, way: Vec3, push: Vec3) -> Vec3 {
         let [keeps, pushed] = flight(self.held.bone.drag, 1.0);
-        self.push_out(self.held.hold(tip + (way * keeps + push * pushed)), None)
+        let next = self.held.hold(tip, way * keeps + push * pushed);
+        self.push_out(self.stopped(from, next), None)
+    }
+
+    /// Where a tip comes that goes from one place to another: not through a collider or the world, where it is so fast that the end of its way
+    /// does not tell.
+    #[inline]
+    fn stopped(&self, from: Vec3, mut next: Vec3) -> Vec3 {
+        let (rig, bone) = (self.step.rig, self.held.bone);
+        if !self.placed.is_empty() {
+            for &collider in &rig.chains[bone.chain].colliders {
+                let Some(moved) = &self.moved[collider] else { continue };
+                if let Some(to) = self.placed[collider].stop(moved.point(from), next, bone.radius) {
+                    next = self.held.hold(to, Vec3::ZERO);
+                }
+            }
+        }
+        if let Some(to) = self.meets.and_then(|meets| meets.stop(from, next, bone.radius)) {
+            next = self.held.hold(to, Vec3::ZERO);
+        }
+        next
     }
 
     /// Place of the tip the share `rho` of a tick on, which leads to `whole`: what holds and pushes it acts as evenly in time as its spring
@@ -34,7 +56,7 @@ impl Around<'_> {
         let drag = self.held.bone.drag;
         let acts = whole - tip - way * flight(drag, 1.0)[0];
         let [keeps, pushed] = flight(drag, rho);
-        self.push_out(self.held.hold(tip + (way * keeps + acts * pushed)), Some(whole))
+        self.push_out(self.held.hold(tip, way * keeps + acts * pushed), Some(whole))
     }
 
     /// Out of every collider, one after the other; where a place is given, only as far as that one is.
@@ -129,10 +151,11 @@ impl<'a> Held<'a> {
         self.place + self.axis * self.length
     }
 
-    /// The nearest place at the bone's length, in a direction that its limit allows.
+    /// The nearest place to one `by` beyond a tip at the bone's length, in a direction that its limit allows.
     #[inline]
-    pub fn hold(&self, tip: Vec3) -> Vec3 {
-        let mut direction = normalize_or(tip - self.place, self.axis);
+    pub fn hold(&self, tip: Vec3, by: Vec3) -> Vec3 {
+        // The difference first, which is exact: small ways lose no digits to where in the world they are.
+        let mut direction = normalize_or((tip - self.place) + by, self.axis);
         if let Some(limit) = &self.bone.limit {
             let seen = self.rest.inverse() * self.seen(direction);
             let held = limit.hold(seen);
@@ -154,7 +177,7 @@ impl<'a> Held<'a> {
         let gap = touch(tip)?;
         let depth = as_far_as.and_then(&touch).map_or(0.0, |gap| gap.distance);
         let by = gap.distance - depth;
-        (by < 0.0).then(|| self.hold(tip - gap.direction * by))
+        (by < 0.0).then(|| self.hold(tip, -gap.direction * by))
     }
 }
 
