@@ -30,7 +30,7 @@ pub(super) enum Placed {
 }
 
 impl Placed {
-    /// What its joint carries to `world_from_joint`.
+    /// Collider that its joint carries to `world_from_joint`.
     pub fn new(shape: &ColliderShape, world_from_joint: &Affine) -> Self {
         match *shape {
             ColliderShape::Sphere { offset, radius, keeps } => Self::Round {
@@ -85,7 +85,7 @@ impl Placed {
 }
 
 impl Placed {
-    /// Where a ball comes that goes so far that it could pass through, and would: along the surface that it meets first. Places are those in the
+    /// Place to which a ball comes that goes so far that it could pass through, and would: along the surface that it meets first. Places are those in the
     /// collider's own motion. `None` if it meets nothing.
     #[inline]
     pub fn stop(&self, from: Vec3, to: Vec3, radius: f32) -> Option<Vec3> {
@@ -149,7 +149,7 @@ impl Surroundings<'_> {
         self.world.query().accept(|body, _| !self.own.contains(&body)).any(&question)
     }
 
-    /// Where a ball comes that goes so far that it could pass through something thin, and would.
+    /// Place to which a ball comes that goes so far that it could pass through something thin, and would.
     pub fn stop(&self, from: Vec3, to: Vec3, radius: f32) -> Option<Vec3> {
         let translation = to - from;
         if translation.length() <= max(radius, THIN) {

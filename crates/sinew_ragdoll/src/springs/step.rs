@@ -53,7 +53,7 @@ pub struct SpringSwing {
     /// Nodes that do not swing at the tick before, and the way of each collider since then; `None` on what swings.
     last: Vec<Affine>,
     moved: Vec<Option<Affine>>,
-    /// What links pull each tip by in a tick, metres.
+    /// Pull of links on each tip in a tick, metres.
     pulls: Vec<Vec3>,
 }
 

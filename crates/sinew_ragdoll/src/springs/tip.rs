@@ -31,7 +31,7 @@ impl Around<'_> {
         self.push_out(self.stopped(from, next), None)
     }
 
-    /// Where a tip comes that goes from one place to another: not through a collider or the world, where it is so fast that the end of its way
+    /// Place to which a tip comes that goes from one place to another: not through a collider or the world, where it is so fast that the end of its way
     /// does not tell.
     #[inline]
     fn stopped(&self, from: Vec3, mut next: Vec3) -> Vec3 {
