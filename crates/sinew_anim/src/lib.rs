@@ -51,5 +51,5 @@ pub use roles::{
 };
 pub use set::{AnimatedClip, AnimationSet, ClipId, MaskId};
 pub use skinning::{skin_palette, skin_vertices};
-pub use springs::{SpringBone, SpringChain, SpringCollider, SpringLimit, Springs, guess_springs};
+pub use springs::{SpringBone, SpringChain, SpringCollider, SpringLimit, SpringLink, Springs, guess_springs};
 pub use tuning::MAX_SPEED;

@@ -63,7 +63,7 @@ pub fn maned_rig(settings: &SpringBone) -> Rig {
     let shape = ColliderShape::Sphere { offset: Vec3::Y * 0.1, radius: 0.09, keeps: Side::Outside };
     let colliders = vec![SpringCollider { joint: head, shape }];
     let chains = STRANDS.iter().map(|strand| grow(&mut rig, head, strand, settings)).collect();
-    rig.springs = Springs { chains, colliders };
+    rig.springs = Springs { chains, colliders, ..Springs::default() };
     rig
 }
 

@@ -102,7 +102,7 @@ pub fn guess_springs(rig: &Rig, up: Vec3) -> Springs {
             chains.push(chain(&rig.joints[root].name, &bones, &MATERIALS[kind], up));
         }
     }
-    Springs { chains, colliders: Vec::new() }
+    Springs { chains, ..Springs::default() }
 }
 
 fn chain(name: &str, bones: &[(JointIdx, Vec3)], material: &Material, up: Vec3) -> SpringChain {

@@ -19,6 +19,19 @@ pub struct Springs {
     pub chains: Vec<SpringChain>,
     /// Colliders that chains refer to by index.
     pub colliders: Vec<SpringCollider>,
+    /// Links across strands.
+    pub links: Vec<SpringLink>,
+}
+
+/// Link that keeps the tips of two bones at their distance in the bind pose: strands of a skirt hold together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringLink {
+    /// Joints of the bones, of chains. One that does not swing has no link.
+    pub joints: [JointIdx; 2],
+    /// Share of what the distance is off by that a sixtieth of a second takes back at a time, 0..=1.
+    pub share: f32,
+    /// False: it keeps them from going farther apart alone, as cloth does. True: from coming nearer, too.
+    pub holds_apart: bool,
 }
 
 impl Springs {

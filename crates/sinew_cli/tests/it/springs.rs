@@ -113,6 +113,7 @@ fn stated(rig: &mut Rig) {
     rig.springs = Springs {
         chains: vec![chain("braid", first, Some(head), &[0, 1, 2]), chain("", second, None, &[0, 2])],
         colliders: shapes.map(|shape| SpringCollider { joint: head, shape }).to_vec(),
+        ..Springs::default()
     };
 }
 

@@ -541,8 +541,7 @@ fn a_particle_that_has_struck_a_wall_goes_on_alike_in_a_loaded_world() {
 fn a_group_passes_through_the_bodies_that_it_names() {
     let mut world = World::new(WorldDef { gravity: GRAVITY, ..WorldDef::default() });
     let shelf = |height: f32| {
-        BodyDef::fixed(Shape::Box { half_extents: Vec3::new(1.0, 0.1, 1.0) })
-            .at(Vec3::Y * height)
+        BodyDef::fixed(Shape::Box { half_extents: Vec3::new(1.0, 0.1, 1.0) }).at(Vec3::Y * height)
     };
     let (upper, lower) = (world.add_body(&shelf(2.0)), world.add_body(&shelf(0.0)));
     let group = |passes: Vec<BodyId>| GroupDef {

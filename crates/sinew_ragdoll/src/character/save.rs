@@ -77,7 +77,7 @@ impl Character {
             w.f32(self.speed);
         }
         if wears != 0 {
-            self.swing.save(self.def.springs(), w);
+            self.swing.save(w);
         }
         if dressed != 0 {
             self.worn.save(w);

@@ -1,8 +1,9 @@
 //! Colliders of tips.
 
+use super::tuning::{CLOSE, MOST_LEAPS, THIN};
 use sinew_anim::springs::{ColliderShape, Side};
-use sinew_math::{Affine, Vec3, clamp, max, normalize_or};
-use sinew_physics::{BodyId, NearestTo, World};
+use sinew_math::{Affine, Mat3, Vec3, clamp, max, normalize_or};
+use sinew_physics::{BodyId, NearestTo, Probe, Shape, ShapeCast, World};
 
 /// Way out of a collider: unit direction, and how far the surface of a ball is from it, metres; negative: so deep in it.
 #[derive(Clone, Copy)]
@@ -11,41 +12,122 @@ pub(super) struct Gap {
     pub distance: f32,
 }
 
-/// Gap between a ball and a collider that its joint carries to `world_from_joint` (VRMC_springBone, and the appendix of its
-/// extended colliders). A joint's scale enters by its largest axis.
-pub(super) fn gap(shape: &ColliderShape, world_from_joint: &Affine, center: Vec3, radius: f32) -> Gap {
-    match *shape {
-        ColliderShape::Sphere { offset, radius: own, keeps } => {
-            let from = center - world_from_joint.point(offset);
-            round(from, own * scale(world_from_joint), radius, keeps)
+/// A collider where its joint has carried it (VRMC_springBone, and the appendix of its extended colliders). A joint's scale enters by its
+/// largest axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Placed {
+    /// A ball, or a capsule whose other end is `along` from here.
+    Round {
+        head: Vec3,
+        along: Vec3,
+        radius: f32,
+        keeps: Side,
+    },
+    Plane {
+        point: Vec3,
+        normal: Vec3,
+    },
+}
+
+impl Placed {
+    /// Collider that its joint carries to `world_from_joint`.
+    pub fn new(shape: &ColliderShape, world_from_joint: &Affine) -> Self {
+        match *shape {
+            ColliderShape::Sphere { offset, radius, keeps } => Self::Round {
+                head: world_from_joint.point(offset),
+                along: Vec3::ZERO,
+                radius: radius * scale(world_from_joint),
+                keeps,
+            },
+            ColliderShape::Capsule { offset, tail, radius, keeps } => {
+                let head = world_from_joint.point(offset);
+                let along = world_from_joint.point(tail) - head;
+                Self::Round { head, along, radius: radius * scale(world_from_joint), keeps }
+            }
+            ColliderShape::Plane { offset, normal } => {
+                let normal = turned_normal(&world_from_joint.linear, normal);
+                Self::Plane { point: world_from_joint.point(offset), normal }
+            }
         }
-        ColliderShape::Capsule { offset, tail, radius: own, keeps } => {
-            let head = world_from_joint.point(offset);
-            let along = world_from_joint.point(tail) - head;
-            let from = center - head;
-            let square = along.length_squared();
-            let share = if square > 0.0 { clamp(from.dot(along) / square, 0.0, 1.0) } else { 0.0 };
-            round(from - along * share, own * scale(world_from_joint), radius, keeps)
-        }
-        ColliderShape::Plane { offset, normal } => {
-            // Normals go by the inverse transpose; the cofactors of the matrix have its direction without a division.
-            let m = &world_from_joint.linear;
-            let (x, y, z) = (m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
-            let mirrored = m.x_axis.dot(x) < 0.0;
-            let turned = x * normal.x + y * normal.y + z * normal.z;
-            let direction = normalize_or(if mirrored { -turned } else { turned }, Vec3::Y);
-            Gap { direction, distance: (center - world_from_joint.point(offset)).dot(direction) - radius }
+    }
+
+    /// Gap between it and a ball that is in it; `None` for one that is clear of it.
+    #[inline]
+    pub fn touch(&self, center: Vec3, radius: f32) -> Option<Gap> {
+        match *self {
+            Self::Round { head, along, radius: own, keeps } => {
+                let mut from = center - head;
+                let square = along.length_squared();
+                if square > 0.0 {
+                    from -= along * clamp(from.dot(along) / square, 0.0, 1.0);
+                }
+                // Nearly all are clear of nearly all: no root for those.
+                let square = from.length_squared();
+                let is_clear = match keeps {
+                    Side::Outside => square >= (own + radius) * (own + radius),
+                    Side::Inside => own >= radius && square <= (own - radius) * (own - radius),
+                };
+                if is_clear {
+                    return None;
+                }
+                let (length, out) = (square.sqrt(), normalize_or(from, Vec3::Y));
+                Some(match keeps {
+                    Side::Outside => Gap { direction: out, distance: length - own - radius },
+                    Side::Inside => Gap { direction: -out, distance: own - radius - length },
+                })
+            }
+            Self::Plane { point, normal } => {
+                let distance = (center - point).dot(normal) - radius;
+                (distance < 0.0).then_some(Gap { direction: normal, distance })
+            }
         }
     }
 }
 
-fn round(from: Vec3, own: f32, radius: f32, keeps: Side) -> Gap {
-    let length = from.length();
-    let out = normalize_or(from, Vec3::Y);
-    match keeps {
-        Side::Outside => Gap { direction: out, distance: length - own - radius },
-        Side::Inside => Gap { direction: -out, distance: own - radius - length },
+impl Placed {
+    /// Place to which a ball comes that goes so far that it could pass through, and would: along the surface that it meets first. Places are those in the
+    /// collider's own motion. `None` if it meets nothing.
+    #[inline]
+    pub fn stop(&self, from: Vec3, to: Vec3, radius: f32) -> Option<Vec3> {
+        let Self::Round { head, along, radius: own, keeps: Side::Outside } = *self else { return None };
+        let way = to - from;
+        let reach = own + radius;
+        // A shorter way ends in it, and on this side.
+        if way.length_squared() <= reach * reach {
+            return None;
+        }
+        let (length, square) = (way.length(), along.length_squared());
+        let mut gone = 0.0;
+        for _ in 0..MOST_LEAPS {
+            let mut out = from + way * (gone / length) - head;
+            if square > 0.0 {
+                out -= along * clamp(out.dot(along) / square, 0.0, 1.0);
+            }
+            let distance = out.length() - reach;
+            if distance < CLOSE {
+                return along_surface(from + way * (gone / length), to, normalize_or(out, Vec3::Y));
+            }
+            gone += distance;
+            if gone >= length {
+                return None;
+            }
+        }
+        None
     }
+}
+
+/// The end of a way that has met a surface at a place, without what leads into it.
+fn along_surface(met: Vec3, to: Vec3, normal: Vec3) -> Option<Vec3> {
+    let into = (to - met).dot(normal);
+    (into < 0.0).then(|| to - normal * into)
+}
+
+/// Normals go by the inverse transpose; the cofactors of the matrix have its direction without a division.
+fn turned_normal(m: &Mat3, normal: Vec3) -> Vec3 {
+    let (x, y, z) = (m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+    let mirrored = m.x_axis.dot(x) < 0.0;
+    let turned = x * normal.x + y * normal.y + z * normal.z;
+    normalize_or(if mirrored { -turned } else { turned }, Vec3::Y)
 }
 
 fn scale(m: &Affine) -> f32 {
@@ -67,10 +149,27 @@ impl Surroundings<'_> {
         self.world.query().accept(|body, _| !self.own.contains(&body)).any(&question)
     }
 
+    /// Place to which a ball comes that goes so far that it could pass through something thin, and would.
+    pub fn stop(&self, from: Vec3, to: Vec3, radius: f32) -> Option<Vec3> {
+        let translation = to - from;
+        if translation.length() <= max(radius, THIN) {
+            return None;
+        }
+        // Half of it, so that one that slides on something does not meet it.
+        let ball = Shape::Sphere { radius: 0.5 * radius };
+        let question = ShapeCast { probe: Probe::at(ball, from), translation };
+        let hit = self.world.query().accept(|body, _| !self.own.contains(&body)).first(&question)?;
+        if hit.start.is_some() {
+            return None;
+        }
+        along_surface(from + translation * hit.fraction, to, hit.normal)
+    }
+
     /// Gap between a ball and what is deepest in it.
-    pub fn gap(&self, center: Vec3, radius: f32) -> Option<Gap> {
+    pub fn touch(&self, center: Vec3, radius: f32) -> Option<Gap> {
         let question = NearestTo { point: center, within: radius };
         let near = self.world.query().accept(|body, _| !self.own.contains(&body)).first(&question)?;
-        Some(Gap { direction: near.normal, distance: near.distance - radius })
+        let distance = near.distance - radius;
+        (distance < 0.0).then_some(Gap { direction: near.normal, distance })
     }
 }

@@ -48,6 +48,7 @@ mod limit;
 mod rig;
 mod save;
 mod step;
+mod tip;
 mod tuning;
 
 pub use rig::SpringRig;

@@ -3,9 +3,9 @@
 use super::limit::Limit;
 use crate::def::RagdollDef;
 use crate::mapping::Mapping;
-use sinew_anim::springs::{ColliderShape, Springs};
+use sinew_anim::springs::{ColliderShape, SpringLink, Springs};
 use sinew_anim::{JointIdx, Rig};
-use sinew_math::{Affine, Transform, Vec3, max, normalize_or};
+use sinew_math::{Affine, Transform, Vec3, clamp, max, normalize_or};
 use sinew_physics::Shape;
 
 /// Joint that springs hang on, swing with, or carry colliders.
@@ -16,8 +16,10 @@ pub(super) struct Node {
     pub parent: Option<usize>,
     /// Bone that turns it.
     pub bone: Option<usize>,
-    /// It swings, or something above it does.
+    /// It swings, or something above it does: such nodes come after all that do not.
     pub swings: bool,
+    /// Another node, a collider or a centre hangs on it.
+    pub carries: bool,
 }
 
 /// Bone that swings.
@@ -28,6 +30,8 @@ pub(super) struct Bone {
     /// Tip in the joint's space, file units, and its direction there.
     pub tail: Vec3,
     pub axis: Vec3,
+    /// File units.
+    pub length: f32,
     /// m/s toward the rest pose.
     pub stiffness: f32,
     /// m/s, character axes: where the character stands does not turn it.
@@ -55,15 +59,28 @@ pub(super) struct Collider {
     pub shape: ColliderShape,
 }
 
+/// Link between two tips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Link {
+    pub bones: [usize; 2],
+    /// Metres.
+    pub length: f32,
+    pub share: f32,
+    pub holds_apart: bool,
+}
+
 /// Springs of a kind of character, ready to be stepped. Immutable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SpringRig {
     source: Springs,
     pub(super) nodes: Vec<Node>,
+    /// Number of nodes that do not swing; they are the first.
+    pub(super) stills: usize,
     /// By node, ascending, so that what hangs on a bone comes after it.
     pub(super) bones: Vec<Bone>,
     pub(super) chains: Vec<Chain>,
     pub(super) colliders: Vec<Collider>,
+    pub(super) links: Vec<Link>,
     /// A collider hangs on what swings.
     pub(super) swinging_colliders: bool,
     /// Shapes of the ragdoll's bodies, for chains that meet them.
@@ -120,7 +137,9 @@ impl SpringRig {
                 hits_body: chain.hits_body,
             })
             .collect();
+        it.mark_carriers();
         it.swinging_colliders = it.colliders.iter().any(|collider| it.nodes[collider.node].swings);
+        it.add_links(mapping, bind_model);
         it.meet_bodies(ragdoll, mapping, bind_model);
         it.add_anchors(mapping, bind_model);
         it
@@ -144,17 +163,31 @@ impl SpringRig {
                 needed[parent] = true;
             }
         }
+        let mut swings: Vec<bool> = Vec::with_capacity(needed.len());
+        for (joint, bone) in rig.joints.iter().zip(bone_at) {
+            swings.push(bone.is_some() || joint.parent.is_some_and(|parent| swings[parent]));
+        }
+        let swings = &swings;
+        let joints = |swing: bool| (0..swings.len()).filter(move |&joint| swings[joint] == swing);
         let mut node_of: Vec<Option<usize>> = vec![None; needed.len()];
         let mut bones = 0;
-        for joint in (0..needed.len()).filter(|&joint| needed[joint]) {
+        for joint in joints(false).chain(joints(true)).filter(|&joint| needed[joint]) {
             let parent = rig.joints[joint].parent.and_then(|parent| node_of[parent]);
             let bone = bone_at[joint].map(|_| bones);
             bones += usize::from(bone.is_some());
-            let swings = bone.is_some() || parent.is_some_and(|parent| self.nodes[parent].swings);
             node_of[joint] = Some(self.nodes.len());
-            self.nodes.push(Node { joint, parent, bone, swings });
+            self.nodes.push(Node { joint, parent, bone, swings: swings[joint], carries: false });
         }
+        self.stills = self.nodes.iter().filter(|node| !node.swings).count();
         node_of
+    }
+
+    fn mark_carriers(&mut self) {
+        let parents = self.nodes.iter().filter_map(|node| node.parent);
+        let centers = self.chains.iter().filter_map(|chain| chain.center);
+        let colliders = self.colliders.iter().map(|collider| collider.node);
+        let carriers: Vec<usize> = parents.chain(centers).chain(colliders).collect();
+        carriers.into_iter().for_each(|node| self.nodes[node].carries = true);
     }
 
     fn add_bones(&mut self, mapping: &Mapping, springs: &Springs, bone_at: &[Option<(usize, usize)>]) {
@@ -169,6 +202,7 @@ impl SpringRig {
                 chain,
                 tail: bone.tail,
                 axis,
+                length: bone.tail.length(),
                 stiffness: bone.stiffness * metres,
                 gravity: character.vector(bone.gravity),
                 drag: bone.drag,
@@ -176,6 +210,22 @@ impl SpringRig {
                 limit: bone.limit.map(|limit| Limit::new(&limit, axis)),
             });
         }
+    }
+
+    /// Links between bones that swing, as long as the bind pose has them.
+    fn add_links(&mut self, mapping: &Mapping, bind_model: &[Affine]) {
+        let character = mapping.character_from_model();
+        let bone_of = |joint| self.bones.iter().position(|bone| self.nodes[bone.node].joint == joint);
+        let tip = |bone: usize| {
+            let bone = &self.bones[bone];
+            character.point(bind_model[self.nodes[bone.node].joint].point(bone.tail))
+        };
+        let link = |link: &SpringLink| {
+            let bones = [bone_of(link.joints[0])?, bone_of(link.joints[1])?];
+            let length = (tip(bones[1]) - tip(bones[0])).length();
+            Some(Link { bones, length, share: clamp(link.share, 0.0, 1.0), holds_apart: link.holds_apart })
+        };
+        self.links = self.source.links.iter().filter_map(link).collect();
     }
 
     /// Anchors, with their reach along the bones as the bind pose has them.

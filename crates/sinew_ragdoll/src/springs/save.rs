@@ -5,7 +5,7 @@ use sinew_math::{Affine, Mat3, ReadError, Reader, Writer};
 
 impl SpringSwing {
     /// Writes what decides the future, and what is shown.
-    pub fn save(&self, rig: &SpringRig, w: &mut Writer) {
+    pub fn save(&self, w: &mut Writer) {
         w.bool(self.started);
         if !self.started {
             return;
@@ -18,7 +18,7 @@ impl SpringSwing {
         }
         w.f32(self.stride);
         for places in [&self.before, &self.earlier] {
-            for (at, _) in places.iter().zip(&rig.nodes).filter(|(_, node)| !node.swings) {
+            for at in places {
                 let m = &at.linear;
                 [m.x_axis, m.y_axis, m.z_axis, at.translation].into_iter().for_each(|v| w.vec3(v));
             }
@@ -46,13 +46,9 @@ impl SpringSwing {
         }
         swing.stride = r.f32()?;
         for places in [&mut swing.before, &mut swing.earlier] {
-            for node in &rig.nodes {
-                places.push(if node.swings {
-                    Affine::IDENTITY
-                } else {
-                    let linear = Mat3::from_cols(r.vec3()?, r.vec3()?, r.vec3()?);
-                    Affine { linear, translation: r.vec3()? }
-                });
+            for _ in 0..rig.stills {
+                let linear = Mat3::from_cols(r.vec3()?, r.vec3()?, r.vec3()?);
+                places.push(Affine { linear, translation: r.vec3()? });
             }
         }
         Ok(swing)

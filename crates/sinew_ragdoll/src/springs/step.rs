@@ -1,18 +1,16 @@
 //! Ticks of springs, and what is shown between two of them.
 
 use super::TICK;
-use super::collide::{Gap, Surroundings, gap};
+use super::collide::{Placed, Surroundings};
 use super::rig::{Bone, SpringRig};
-use super::tuning::{ALIKE, SLIGHT_DRAG, SNAP};
+use super::tip::{Around, Held};
+use super::tuning::{ALIKE, LINK_SWEEPS, SNAP};
 use sinew_anim::LocalTransform;
-use sinew_math::trig::pow;
-use sinew_math::{Affine, Mat3, Rotation, Transform, Vec3, direction, max, min, normalize_or};
+use sinew_math::{Affine, Mat3, Rotation, Transform, Vec3, max, normalize_or};
 use sinew_physics::{BodyId, World};
 
 /// Most ticks of one step: what takes longer than a second at once starts over from its last second.
 const MOST_TICKS: u32 = 60;
-/// Times that a tip is pushed out of the world within a tick: a corner has two sides.
-const PUSHES: usize = 2;
 
 /// Input of a step of springs.
 #[derive(Clone, Copy)]
@@ -41,7 +39,7 @@ pub struct SpringSwing {
     /// Tips at the last tick, and their way in it: metres, in the space of the chain's centre, else of the world.
     pub(super) tips: Vec<Vec3>,
     pub(super) ways: Vec<Vec3>,
-    /// Nodes at the end of the last step, in the world; those that swing are not looked at.
+    /// Nodes that do not swing at the end of the last step, in the world.
     pub(super) before: Vec<Affine>,
     /// The same a step earlier, and the length of that step, seconds: what the way between two poses is bent by.
     pub(super) earlier: Vec<Affine>,
@@ -49,7 +47,14 @@ pub struct SpringSwing {
     /// Local rotation of every bone, as it is shown.
     pub(super) turns: Vec<Rotation>,
     now: Vec<Affine>,
+    /// All nodes at the time of a tick, and the colliders on them.
     at: Vec<Affine>,
+    placed: Vec<Placed>,
+    /// Nodes that do not swing at the tick before, and the way of each collider since then; `None` on what swings.
+    last: Vec<Affine>,
+    moved: Vec<Option<Affine>>,
+    /// Pull of links on each tip in a tick, metres.
+    pulls: Vec<Vec3>,
 }
 
 impl SpringSwing {
@@ -100,11 +105,13 @@ impl SpringSwing {
         let span = step.seconds / TICK;
         let end = self.phase + span;
         let ticks = (end + SNAP).floor();
+        self.look_back();
         let first = max(ticks - MOST_TICKS as f32, 0.0) as u32 + 1;
         for tick in first..=ticks as u32 {
             let due = tick as f32;
             let share = if end - due < SNAP { 1.0 } else { max((due - self.phase) / span, 0.0) };
             self.advance(step, meets, share, 1.0);
+            self.last.copy_from_slice(&self.at[..step.rig.stills]);
         }
         let phase = end - ticks;
         self.phase = if phase < SNAP { 0.0 } else { phase };
@@ -116,13 +123,28 @@ impl SpringSwing {
         self.stride = step.seconds;
     }
 
+    /// Places of the nodes that do not swing at the last tick: on the straight way through the ends of the last two steps.
+    fn look_back(&mut self) {
+        let back = if self.stride > 0.0 { self.phase * TICK / self.stride } else { 0.0 };
+        self.last.clear();
+        for (earlier, before) in self.earlier.iter().zip(&self.before) {
+            let column = |a: Vec3, b: Vec3| b - (b - a) * back;
+            let (a, b) = (&earlier.linear, &before.linear);
+            let linear = Mat3::from_cols(
+                column(a.x_axis, b.x_axis),
+                column(a.y_axis, b.y_axis),
+                column(a.z_axis, b.z_axis),
+            );
+            self.last.push(Affine { linear, translation: column(earlier.translation, before.translation) });
+        }
+    }
+
     /// Places of the nodes that do not swing.
     fn look(&mut self, step: &SpringStep<'_>) {
         self.now.clear();
-        for node in &step.rig.nodes {
+        for node in &step.rig.nodes[..step.rig.stills] {
             let parent = node.parent.map_or(step.world_from_model, |parent| self.now[parent]);
-            let now = if node.swings { Affine::IDENTITY } else { parent * step.pose[node.joint].to_affine() };
-            self.now.push(now);
+            self.now.push(parent * step.pose[node.joint].to_affine());
         }
     }
 
@@ -138,6 +160,7 @@ impl SpringSwing {
         self.turns.clear();
         self.turns.extend(step.rig.bones.iter().map(|b| step.pose[step.rig.nodes[b.node].joint].rotation));
         self.at.clone_from(&self.now);
+        self.at.resize(step.rig.nodes.len(), Affine::IDENTITY);
         for (k, node) in step.rig.nodes.iter().enumerate() {
             if node.swings {
                 let parent = node.parent.map_or(step.world_from_model, |parent| self.at[parent]);
@@ -155,8 +178,8 @@ impl SpringSwing {
         self.stride = 0.0;
     }
 
-    fn center(&self, rig: &SpringRig, bone: &Bone) -> Option<Affine> {
-        rig.chains[bone.chain].center.map(|node| self.at[node])
+    fn center(&self, rig: &SpringRig, bone: &Bone) -> Option<&Affine> {
+        rig.chains[bone.chain].center.map(|node| &self.at[node])
     }
 
     /// True if something of the world is where a bone could come.
@@ -172,178 +195,156 @@ impl SpringSwing {
     /// by then.
     fn advance(&mut self, step: &SpringStep<'_>, meets: Option<Surroundings<'_>>, share: f32, rho: f32) {
         let ratio = self.stride / step.seconds;
-        self.at.clear();
-        for ((earlier, before), now) in self.earlier.iter().zip(&self.before).zip(&self.now) {
-            self.at.push(between([earlier, before, now], ratio, share));
+        let rig = step.rig;
+        self.at.resize(rig.nodes.len(), Affine::IDENTITY);
+        for (k, at) in self.at[..rig.stills].iter_mut().enumerate() {
+            *at = between([&self.earlier[k], &self.before[k], &self.now[k]], ratio, share);
         }
-        if step.rig.swinging_colliders {
+        if rig.swinging_colliders {
+            self.placed.clear();
             self.turn_all(step, None, 0.0);
         }
+        self.placed.clear();
+        let placed =
+            rig.colliders.iter().map(|collider| Placed::new(&collider.shape, &self.at[collider.node]));
+        self.placed.extend(placed);
+        self.moved.clear();
+        let still = |node: usize| (node < rig.stills).then(|| self.at[node] * self.last[node].inverse());
+        self.moved.extend(rig.colliders.iter().map(|collider| still(collider.node)));
+        self.pull(rig);
         self.turn_all(step, meets, rho);
     }
 
+    /// Turns all that swings. Colliders are looked at where they are placed, if they are.
     fn turn_all(&mut self, step: &SpringStep<'_>, meets: Option<Surroundings<'_>>, rho: f32) {
-        for (k, node) in step.rig.nodes.iter().enumerate().filter(|(_, node)| node.swings) {
-            let parent = node.parent.map_or(step.world_from_model, |parent| self.at[parent]);
-            let mut local = step.pose[node.joint];
-            self.at[k] = parent * local.to_affine();
+        let rig = step.rig;
+        for (k, node) in rig.nodes.iter().enumerate().skip(rig.stills) {
+            let local = &step.pose[node.joint];
+            let parent = node.parent.map_or(&step.world_from_model, |parent| &self.at[parent]);
+            let mut turn = local.rotation;
+            let mut moved = None;
+            let place = parent.point(local.translation);
             if let Some(index) = node.bone {
-                local.rotation = self.turn(step, meets, index, rho, local.rotation);
-                self.turns[index] = local.rotation;
-                self.at[k] = parent * local.to_affine();
+                let bone = &rig.bones[index];
+                let held = Held::new(bone, local, &parent.linear, place);
+                if held.has_length() {
+                    let next = self.next(step, meets, index, rho, &held);
+                    turn = held.turn_to(next);
+                    moved = Some(next);
+                }
+            }
+            let linear =
+                if node.carries { parent.linear * scaled(turn, local.scale) } else { Mat3::IDENTITY };
+            if let Some(index) = node.bone {
+                self.turns[index] = turn;
+                if let Some(next) = moved.filter(|_| rho == 1.0) {
+                    self.keep(rig, index, next);
+                }
+            }
+            if node.carries {
+                self.at[k] = Affine { linear, translation: place };
+                if rig.swinging_colliders {
+                    self.place_on(rig, k);
+                }
             }
         }
     }
 
-    /// Local rotation of a bone after the share `rho` of a tick; `at` has its joint at rest.
-    fn turn(
-        &mut self,
+    /// Places the colliders on a node that swings.
+    fn place_on(&mut self, rig: &SpringRig, node: usize) {
+        for (placed, collider) in self.placed.iter_mut().zip(&rig.colliders) {
+            if collider.node == node {
+                *placed = Placed::new(&collider.shape, &self.at[node]);
+            }
+        }
+    }
+
+    /// Place of a tip after the share `rho` of a tick.
+    #[inline]
+    fn next(
+        &self,
         step: &SpringStep<'_>,
         meets: Option<Surroundings<'_>>,
         index: usize,
         rho: f32,
-        rest: Rotation,
-    ) -> Rotation {
-        let bone = &step.rig.bones[index];
-        let joint = self.at[bone.node];
-        let along = joint.vector(bone.tail);
-        let Some(axis) = direction(along) else { return rest };
-        let center = self.center(step.rig, bone);
-        let tip = center.map_or(self.tips[index], |center| center.point(self.tips[index]));
-        let way = center.map_or(self.ways[index], |center| center.vector(self.ways[index]));
-        let wind = step.world.map_or(Vec3::ZERO, |(world, _)| world.air_velocity(joint.translation));
-        let force = axis * bone.stiffness + bone.gravity + wind * bone.drag;
-        let held = Held {
-            joint: &joint,
-            joint_from_world: joint.linear.inverse(),
-            length: along.length(),
-            axis,
-            bone,
-        };
-        let around = Around { swing: self, step, meets, index, held: &held };
-        let mut next = if rho > 0.0 {
-            let whole = around.tick(tip, way, force * TICK);
-            if rho < 1.0 { around.part(tip, way, whole, rho) } else { whole }
-        } else {
-            held.hold(tip)
-        };
-        let mut to = normalize_or(held.joint_from_world * (next - joint.translation), bone.axis);
-        if !(next.is_finite() && to.is_finite()) {
-            // What numbers cannot hold starts over at rest.
-            next = joint.point(bone.tail);
-            to = bone.axis;
+        held: &Held<'_>,
+    ) -> Vec3 {
+        let bone = held.bone;
+        let (mut tip, mut way) = (self.tips[index], self.ways[index]);
+        if let Some(center) = self.center(step.rig, bone) {
+            (tip, way) = (center.point(tip), center.vector(way));
         }
-        if rho == 1.0 {
-            let tip = center.map_or(next, |center| center.inverse().point(next));
-            self.ways[index] = tip - self.tips[index];
-            self.tips[index] = tip;
+        if rho == 0.0 {
+            return held.hold(tip, Vec3::ZERO);
         }
-        (rest * Rotation::from_arc(bone.axis, to)).normalize()
-    }
-}
-
-/// A bone with all that holds its tip or pushes it.
-struct Around<'a> {
-    swing: &'a SpringSwing,
-    step: &'a SpringStep<'a>,
-    meets: Option<Surroundings<'a>>,
-    index: usize,
-    held: &'a Held<'a>,
-}
-
-impl Around<'_> {
-    /// Place of the tip a tick on, from where and on which way it is, pushed by `push` a tick.
-    fn tick(&self, tip: Vec3, way: Vec3, push: Vec3) -> Vec3 {
-        let [keeps, pushed] = flight(self.held.bone.drag, 1.0);
-        self.push_out(self.held.hold(tip + (way * keeps + push * pushed)), None)
+        let wind = step.world.map_or(Vec3::ZERO, |(world, _)| world.air_velocity(held.place));
+        let force = held.axis * bone.stiffness + bone.gravity + wind * bone.drag;
+        let push = force * TICK + self.pulls.get(index).copied().unwrap_or(Vec3::ZERO);
+        let from = self.last_place(step.rig, index, tip);
+        let around = Around { placed: &self.placed, moved: &self.moved, step, meets, index, held };
+        let whole = around.tick(tip, from, way, push);
+        let next = if rho < 1.0 { around.part(tip, way, whole, rho) } else { whole };
+        // What numbers cannot hold starts over at rest.
+        if next.is_finite() { next } else { held.rest() }
     }
 
-    /// Place of the tip the share `rho` of a tick on, which leads to `whole`: what holds and pushes it acts as evenly in time as its spring
-    /// does, so that a tip at rest is where it is. Colliders let it as deep into them as they let it at the end of the tick.
-    fn part(&self, tip: Vec3, way: Vec3, whole: Vec3, rho: f32) -> Vec3 {
-        let drag = self.held.bone.drag;
-        let acts = whole - tip - way * flight(drag, 1.0)[0];
-        let [keeps, pushed] = flight(drag, rho);
-        self.push_out(self.held.hold(tip + (way * keeps + acts * pushed)), Some(whole))
+    /// Place in the world where a tip was at the last tick; `tip` is where the chain's centre has carried it since.
+    #[inline]
+    fn last_place(&self, rig: &SpringRig, index: usize, tip: Vec3) -> Vec3 {
+        match rig.chains[rig.bones[index].chain].center {
+            Some(center) if center < rig.stills => self.last[center].point(self.tips[index]),
+            _ => tip,
+        }
     }
 
-    /// Out of every collider, one after the other; where a place is given, only as far as that one is.
-    fn push_out(&self, mut next: Vec3, as_far_as: Option<Vec3>) -> Vec3 {
-        let (rig, bone) = (self.step.rig, self.held.bone);
-        let depth = |gap: &dyn Fn(Vec3) -> Gap| as_far_as.map_or(0.0, |there| min(gap(there).distance, 0.0));
-        for &collider in &rig.chains[bone.chain].colliders {
-            let collider = &rig.colliders[collider];
-            let gap = |tip| gap(&collider.shape, &self.swing.at[collider.node], tip, bone.radius);
-            next = self.held.out_of(gap(next), depth(&gap), next);
+    /// Has links pull at the tips where their motion would bring them.
+    fn pull(&mut self, rig: &SpringRig) {
+        self.pulls.clear();
+        if rig.links.is_empty() {
+            return;
         }
-        for (body, (shape, frame)) in rig.bodies.iter().zip(self.step.bodies).enumerate() {
-            if rig.meets[self.index] >> body & 1 == 1 {
-                let gap = |tip| {
-                    let (distance, direction) = shape.signed_distance(frame, tip);
-                    Gap { direction, distance: distance - bone.radius }
-                };
-                next = self.held.out_of(gap(next), depth(&gap), next);
-            }
+        // Free places at first, and the way from there at the end.
+        for (index, bone) in rig.bones.iter().enumerate() {
+            let free = self.tips[index] + self.ways[index] * (1.0 - bone.drag);
+            self.pulls.push(self.center(rig, bone).map_or(free, |center| center.point(free)));
         }
-        let Some(meets) = self.meets else { return next };
-        let free = Gap { direction: Vec3::Y, distance: 0.0 };
-        for _ in 0..PUSHES {
-            match meets.gap(next, bone.radius) {
-                Some(gap) if gap.distance < 0.0 => {
-                    let depth = depth(&|tip| meets.gap(tip, bone.radius).unwrap_or(free));
-                    next = self.held.out_of(gap, depth, next);
+        for _ in 0..LINK_SWEEPS {
+            for link in &rig.links {
+                let [a, b] = link.bones;
+                let apart = self.pulls[b] - self.pulls[a];
+                let length = apart.length();
+                let beyond = length - link.length;
+                if beyond > 0.0 || (link.holds_apart && beyond < 0.0) {
+                    let by = apart * (0.5 * link.share * beyond / max(length, f32::MIN_POSITIVE));
+                    self.pulls[a] += by;
+                    self.pulls[b] -= by;
                 }
-                _ => break,
             }
         }
-        next
-    }
-}
-
-/// Hold of a joint on the tip of its bone.
-struct Held<'a> {
-    joint: &'a Affine,
-    joint_from_world: Mat3,
-    /// Metres.
-    length: f32,
-    /// Direction at rest, world.
-    axis: Vec3,
-    bone: &'a Bone,
-}
-
-impl Held<'_> {
-    /// The nearest place at the bone's length, in a direction that its limit allows.
-    fn hold(&self, tip: Vec3) -> Vec3 {
-        let from = self.joint.translation;
-        let mut direction = normalize_or(tip - from, self.axis);
-        if let Some(limit) = &self.bone.limit {
-            let seen = normalize_or(self.joint_from_world * direction, self.bone.axis);
-            let held = limit.hold(seen);
-            if held != seen {
-                direction = normalize_or(self.joint.vector(held), self.axis);
-            }
+        for (index, bone) in rig.bones.iter().enumerate() {
+            let free = self.tips[index] + self.ways[index] * (1.0 - bone.drag);
+            let free = self.center(rig, bone).map_or(free, |center| center.point(free));
+            self.pulls[index] -= free;
         }
-        from + direction * self.length
     }
 
-    /// Out of a collider until it is no deeper in it than `depth`, ≤ 0.
-    fn out_of(&self, gap: Gap, depth: f32, tip: Vec3) -> Vec3 {
-        let by = gap.distance - depth;
-        if by < 0.0 { self.hold(tip - gap.direction * by) } else { tip }
+    /// Keeps the place of a tip after a whole tick.
+    #[inline]
+    fn keep(&mut self, rig: &SpringRig, index: usize, next: Vec3) {
+        let tip = self.center(rig, &rig.bones[index]).map_or(next, |center| center.inverse().point(next));
+        self.ways[index] = tip - self.tips[index];
+        self.tips[index] = tip;
     }
 }
 
-/// Way of a free tip in the share `rho` of a tick, as shares of its way in the tick before and of what pushes it in a tick.
-fn flight(drag: f32, rho: f32) -> [f32; 2] {
-    let keeps = 1.0 - drag;
-    if rho == 1.0 {
-        return [keeps, 1.0];
+/// A turn after a scale.
+#[inline]
+fn scaled(turn: Rotation, scale: Vec3) -> Mat3 {
+    let m = turn.to_mat3();
+    if scale == Vec3::ONE {
+        return m;
     }
-    if drag < SLIGHT_DRAG {
-        return [keeps * rho, 0.5 * rho * (rho + 1.0)];
-    }
-    let slowed = if keeps > 0.0 { keeps * (1.0 - pow(keeps, rho)) / drag } else { 0.0 };
-    [slowed, (rho - slowed) / drag]
+    Mat3::from_cols(m.x_axis * scale.x, m.y_axis * scale.y, m.z_axis * scale.z)
 }
 
 /// Place of a node at a share of the step from the second place to the third, on the parabola through all three; `ratio` is the length
@@ -372,28 +373,5 @@ fn between([a, b, c]: [&Affine; 3], ratio: f32, share: f32) -> Affine {
             column(l.z_axis, m.z_axis, n.z_axis),
         ),
         translation: point(a.translation, b.translation, c.translation),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_part_of_a_tick_leads_to_the_whole() {
-        let (way, push) = (Vec3::new(0.03, -0.01, 0.02), Vec3::new(0.0, 0.016, -0.004));
-        for drag in [0.0, 5e-4, 0.01, 0.4, 0.9, 1.0] {
-            let flight = |way: Vec3, push: Vec3, drag, rho| {
-                let [keeps, pushed] = flight(drag, rho);
-                way * keeps + push * pushed
-            };
-            let near = flight(way, push, drag, 0.999_999);
-            let whole = flight(way, push, drag, 1.0);
-            assert!((near - whole).length() < 1e-4 * (1.0 + drag) * 0.1, "drag {drag}: {near} {whole}");
-            assert_eq!(flight(way, push, drag, 0.0), Vec3::ZERO);
-        }
-        // Free flight against drag, closed form: half a tick twice is a tick, where nothing pushes.
-        let [half, _] = flight(0.64, 0.5);
-        assert!((half - 0.36 * 0.4 / 0.64).abs() < 1e-7, "{half}");
     }
 }

@@ -21,3 +21,25 @@ pub(super) const SLIGHT_DRAG: f32 = 1e-3;
 /// Larger: a hitch of the host's clock bends the way after it. Smaller: a frame rate that wavers has corners in its ways. Shown by the tests of
 /// `springs` with uneven steps.
 pub(super) const ALIKE: f32 = 4.0;
+
+/// Distance at which a tip on its way touches a collider, metres.
+///
+/// Larger: fast tips stop short. Smaller: more leaps to come that near. Shown by `a_fast_tip_does_not_pass_through_a_thin_collider`.
+pub(super) const CLOSE: f32 = 1e-4;
+
+/// Leaps toward a collider within a tick, each by the distance that is left: what has not come close by then passes by.
+///
+/// Larger: nothing but work. Smaller: a tip that grazes a collider is let through. Shown by `a_fast_tip_does_not_pass_through_a_thin_collider`.
+pub(super) const MOST_LEAPS: usize = 24;
+
+/// Way in a tick from which on a tip is looked for on its way through the world, metres, if its radius is less.
+///
+/// Larger: tips without a radius pass through what is thin. Smaller: every tip near the world asks for its way. Shown by
+/// `a_fast_tip_does_not_pass_through_a_thin_wall`.
+pub(super) const THIN: f32 = 0.002;
+
+/// Times within a tick that links between strands are gone through, one after the other.
+///
+/// Larger: a pull on one strand of a skirt comes to more of the others at once. Smaller: the skirt is torn apart where a leg pulls. Shown by
+/// `links_hold_strands_together`.
+pub(super) const LINK_SWEEPS: usize = 4;

@@ -1,7 +1,7 @@
 //! Springs against VRM's reference in double precision, at other frame rates, at rest, and on a character's way through its states.
 
 use sinew_anim::springs::{ColliderShape, LimitKind, Side};
-use sinew_anim::{Rig, SpringBone, SpringCollider, SpringLimit, Springs, analyze, rest_pose};
+use sinew_anim::{Rig, SpringBone, SpringCollider, SpringLimit, SpringLink, Springs, analyze, rest_pose};
 use sinew_formats::gltf::SpringFormat;
 use sinew_formats::{ReadOptions, no_files, read_gltf};
 use sinew_math::{Affine, Random, Reader, Rotation, Transform, Vec3, Writer, trig};
@@ -503,4 +503,132 @@ fn what_the_body_moves_does_not_swing() {
     };
     assert_eq!(def.springs().left_out(), [arm]);
     assert_eq!(def.springs().joints().len(), rig.springs.bone_count() - 1);
+}
+
+/// One bone of a ponytail that is thrown to the side: carried along by 3 cm a tick, and stopped. Gives how far the tip comes to that side of
+/// its place at rest, metres, within ten ticks.
+fn thrown(colliders: Vec<SpringCollider>, world: Option<&World>) -> f32 {
+    let mut def =
+        maned(&SpringBone { stiffness: 1.5, gravity: Vec3::ZERO, radius: 0.002, drag: 0.1, ..HAIR });
+    let mut springs = def.springs().source().clone();
+    springs.chains.truncate(1);
+    springs.chains[0].bones.truncate(1);
+    springs.chains[0].colliders = (0..colliders.len()).collect();
+    springs.colliders = colliders;
+    def.set_springs(&springs);
+    let pose = rest_pose(&def.rig);
+    let mut swing = SpringSwing::new();
+    let mut most = 0.0_f32;
+    for frame in 0..20u8 {
+        let x = 0.03 * (f32::from(frame.min(10)) - 10.0);
+        let root = Affine::from(Transform::from_translation(Vec3::X * x));
+        let world = world.map(|world| (world, [].as_slice()));
+        swing.step(&SpringStep { world, ..still(&def, &pose, root, 1.0 / 60.0) });
+        if frame >= 10 {
+            most = most.max(tips(&def, &pose, root, &swing)[0].x);
+        }
+    }
+    most
+}
+
+/// Joint of the ponytail's parent, and where the ends of its first bone are at rest, in that joint's space.
+fn ponytail() -> (usize, Vec3, Vec3) {
+    let rig = maned_rig(&HAIR);
+    let bone = rig.springs.chains[0].bones[0];
+    let root = rig.joints[bone.joint].rest.translation;
+    (rig.joints[bone.joint].parent.unwrap(), root, root + bone.tail)
+}
+
+#[test]
+fn a_fast_tip_does_not_pass_through_a_thin_collider() {
+    let free = thrown(Vec::new(), None);
+    let (joint, root, tip) = ponytail();
+    // A needle of 2 mm beside it, along the bone.
+    let out = (tip - root) * 0.5;
+    let needle = |offset: Vec3, tail: Vec3| {
+        let shape = ColliderShape::Capsule { offset, tail, radius: 0.001, keeps: Side::Outside };
+        thrown(vec![SpringCollider { joint, shape }], None)
+    };
+    let aside = Vec3::X * 0.012;
+    let stopped = needle(tip + aside - out, tip + aside + out);
+    println!("free {free}, stopped at {stopped}");
+    assert!(free > 0.02, "it is fast: {free}");
+    assert!(stopped < 0.013, "it came through: {stopped}");
+    // One that is not in its way is nothing to it.
+    assert_eq!(needle(tip + aside - Vec3::Y, tip + aside - Vec3::Y * 0.9), free);
+}
+
+#[test]
+fn a_fast_tip_does_not_pass_through_a_thin_wall() {
+    let mut world = World::new(WorldDef::default());
+    let wall = |x: f32| BodyDef {
+        position: Vec3::X * x,
+        ..BodyDef::fixed(Shape::Box { half_extents: Vec3::new(0.001, 5.0, 5.0) })
+    };
+    let free = thrown(Vec::new(), Some(&world));
+    assert_eq!(free, thrown(Vec::new(), None));
+    world.add_body(&wall(0.012));
+    let stopped = thrown(Vec::new(), Some(&world));
+    println!("free {free}, stopped at {stopped}");
+    assert!(free > 0.02 && stopped < 0.012, "it came through: {stopped} of {free}");
+}
+
+/// Braids that are blown apart, with and without links between them: least and most distance of their ends at the times of 30 frames a second over
+/// what it is in the bind pose.
+fn parted(links: bool, holds_apart: bool, push: f32, rate: f32) -> Vec<f32> {
+    let mut def = maned(&HAIR);
+    let mut springs = def.springs().source().clone();
+    let (mut ends, mut linked) = (Vec::new(), Vec::new());
+    for (chain, side) in springs.chains[1..].iter_mut().zip([push, -push]) {
+        chain.bones.iter_mut().for_each(|bone| bone.gravity += Vec3::X * side);
+        ends.push(chain.bones.len());
+        linked.push(chain.bones.iter().map(|bone| bone.joint).collect::<Vec<_>>());
+    }
+    if links {
+        let pairs = linked[0].iter().zip(&linked[1]);
+        springs.links.extend(pairs.map(|(&a, &b)| SpringLink { joints: [a, b], share: 1.0, holds_apart }));
+    }
+    let first = springs.chains[0].bones.len();
+    def.set_springs(&springs);
+    let pose = rest_pose(&def.rig);
+    let rest = {
+        let mut swing = SpringSwing::new();
+        swing.step(&still(&def, &pose, Affine::from(place_at(0.0)), 0.0));
+        tips(&def, &pose, Affine::from(place_at(0.0)), &swing)
+    };
+    let apart = |tips: &[Vec3]| (tips[first + ends[0] - 1] - tips[first + ends[0] + ends[1] - 1]).length();
+    let every = (rate / 30.0).round() as usize;
+    let ways = run(&def, rate, 3.0);
+    ways.iter().skip(every - 1).step_by(every).map(|tips| apart(tips) / apart(&rest)).collect()
+}
+
+#[test]
+fn links_hold_strands_together() {
+    let range = |apart: &[f32]| {
+        (
+            apart.iter().copied().fold(f32::MAX, sinew_math::min),
+            apart.iter().copied().fold(0.0, sinew_math::max),
+        )
+    };
+    let (_, free) = range(&parted(false, false, 0.5, 60.0));
+    let (_, held) = range(&parted(true, false, 0.5, 60.0));
+    println!("blown apart: {free} of their distance, linked {held}");
+    assert!(free > 1.4 && held < 1.0 + 0.2 * (free - 1.0), "{free} {held}");
+    let (close, _) = range(&parted(false, false, -0.5, 60.0));
+    let (still_close, _) = range(&parted(true, false, -0.5, 60.0));
+    let (apart, _) = range(&parted(true, true, -0.5, 60.0));
+    println!("blown together: {close}, by links that only hold together {still_close}, by both {apart}");
+    let least = 1.0 - 0.2 * (1.0 - close);
+    assert!(close < 0.6 && still_close == close && apart > least, "{close} {still_close} {apart}");
+}
+
+#[test]
+fn links_swing_alike_at_every_frame_rate() {
+    let due = parted(true, true, 0.5, 60.0);
+    for rate in [30.0, 90.0, 240.0] {
+        for (frame, (now, due)) in parted(true, true, 0.5, rate).iter().zip(&due).enumerate() {
+            // The braids are 0.34 m apart, a bone 0.063 m long.
+            assert!((now - due).abs() * 0.34 < 0.05 * 0.063, "frame {frame} at {rate}: {now} {due}");
+        }
+    }
 }

@@ -1,0 +1,218 @@
+//! One tip: its way in a tick and in a part of one, and what holds it.
+
+use super::collide::{Gap, Placed, Surroundings};
+use super::rig::Bone;
+use super::step::SpringStep;
+use super::tuning::SLIGHT_DRAG;
+use sinew_anim::LocalTransform;
+use sinew_math::trig::pow;
+use sinew_math::{Affine, Mat3, Rotation, Vec3, normalize_or};
+
+/// Times that a tip is pushed out of the world within a tick: a corner has two sides.
+const PUSHES: usize = 2;
+
+/// A bone with all that holds its tip or pushes it.
+pub(super) struct Around<'a> {
+    pub placed: &'a [Placed],
+    /// Way of each collider since the last tick, of those that are looked at on the way.
+    pub moved: &'a [Option<Affine>],
+    pub step: &'a SpringStep<'a>,
+    pub meets: Option<Surroundings<'a>>,
+    pub index: usize,
+    pub held: &'a Held<'a>,
+}
+
+impl Around<'_> {
+    /// Place of the tip a tick on, from where and on which way it is, pushed by `push` a tick; `from` is where it was in the world.
+    #[inline]
+    pub fn tick(&self, tip: Vec3, from: Vec3, way: Vec3, push: Vec3) -> Vec3 {
+        let [keeps, pushed] = flight(self.held.bone.drag, 1.0);
+        let next = self.held.hold(tip, way * keeps + push * pushed);
+        self.push_out(self.stopped(from, next), None)
+    }
+
+    /// Place to which a tip comes that goes from one place to another: not through a collider or the world, where it is so fast that the end of its way
+    /// does not tell.
+    #[inline]
+    fn stopped(&self, from: Vec3, mut next: Vec3) -> Vec3 {
+        let (rig, bone) = (self.step.rig, self.held.bone);
+        if !self.placed.is_empty() {
+            for &collider in &rig.chains[bone.chain].colliders {
+                let Some(moved) = &self.moved[collider] else { continue };
+                if let Some(to) = self.placed[collider].stop(moved.point(from), next, bone.radius) {
+                    next = self.held.hold(to, Vec3::ZERO);
+                }
+            }
+        }
+        if let Some(to) = self.meets.and_then(|meets| meets.stop(from, next, bone.radius)) {
+            next = self.held.hold(to, Vec3::ZERO);
+        }
+        next
+    }
+
+    /// Place of the tip the share `rho` of a tick on, which leads to `whole`: what holds and pushes it acts as evenly in time as its spring
+    /// does, so that a tip at rest is where it is. Colliders let it as deep into them as they let it at the end of the tick.
+    pub fn part(&self, tip: Vec3, way: Vec3, whole: Vec3, rho: f32) -> Vec3 {
+        let drag = self.held.bone.drag;
+        let acts = whole - tip - way * flight(drag, 1.0)[0];
+        let [keeps, pushed] = flight(drag, rho);
+        self.push_out(self.held.hold(tip, way * keeps + acts * pushed), Some(whole))
+    }
+
+    /// Out of every collider, one after the other; where a place is given, only as far as that one is.
+    #[inline]
+    fn push_out(&self, mut next: Vec3, as_far_as: Option<Vec3>) -> Vec3 {
+        let (rig, bone) = (self.step.rig, self.held.bone);
+        if !self.placed.is_empty() {
+            for &collider in &rig.chains[bone.chain].colliders {
+                let touch = |tip| self.placed[collider].touch(tip, bone.radius);
+                next = self.held.out_of(touch, as_far_as, next).unwrap_or(next);
+            }
+        }
+        let mut meets = rig.meets[self.index];
+        while meets != 0 {
+            let body = meets.trailing_zeros() as usize;
+            meets &= meets - 1;
+            let Some(frame) = self.step.bodies.get(body) else { break };
+            let touch = |tip| {
+                let (distance, direction) = rig.bodies[body].signed_distance(frame, tip);
+                let distance = distance - bone.radius;
+                (distance < 0.0).then_some(Gap { direction, distance })
+            };
+            next = self.held.out_of(touch, as_far_as, next).unwrap_or(next);
+        }
+        let Some(meets) = self.meets else { return next };
+        for _ in 0..PUSHES {
+            let Some(out) = self.held.out_of(|tip| meets.touch(tip, bone.radius), as_far_as, next) else {
+                break;
+            };
+            next = out;
+        }
+        next
+    }
+}
+
+/// Hold of a joint on the tip of its bone.
+pub(super) struct Held<'a> {
+    pub bone: &'a Bone,
+    /// Rotation at rest in the space of the joint's parent, and where the tip points then there, unit.
+    rest: Rotation,
+    seen_axis: Vec3,
+    world_from_parent: &'a Mat3,
+    /// Place of the joint, world.
+    pub place: Vec3,
+    /// Metres.
+    length: f32,
+    /// Direction at rest, world, unit.
+    pub axis: Vec3,
+}
+
+impl<'a> Held<'a> {
+    /// By a joint that has come to `place`.
+    #[inline(always)]
+    pub fn new(bone: &'a Bone, local: &LocalTransform, world_from_parent: &'a Mat3, place: Vec3) -> Self {
+        let rest = local.rotation;
+        let (seen_axis, along) = if local.scale == Vec3::ONE {
+            let axis = rest * bone.axis;
+            (axis, axis * bone.length)
+        } else {
+            let along = rest * (bone.tail * local.scale);
+            (normalize_or(along, bone.axis), along)
+        };
+        let along = *world_from_parent * along;
+        let length = along.length();
+        Self { bone, rest, seen_axis, world_from_parent, place, length, axis: along / length }
+    }
+
+    /// False where the bone has no length: it does not swing.
+    #[inline(always)]
+    pub fn has_length(&self) -> bool {
+        self.length > 1e-12 && self.length < f32::INFINITY
+    }
+
+    /// A direction of the world in the space of the joint's parent, unit.
+    #[inline]
+    fn seen(&self, v: Vec3) -> Vec3 {
+        // The rows of the inverse, but for their common factor.
+        let m = self.world_from_parent;
+        let (x, y, z) = (m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+        let seen = Vec3::new(v.dot(x), v.dot(y), v.dot(z));
+        normalize_or(if m.x_axis.dot(x) < 0.0 { -seen } else { seen }, self.seen_axis)
+    }
+
+    /// Local rotation with which the tip is there.
+    #[inline]
+    pub fn turn_to(&self, tip: Vec3) -> Rotation {
+        (Rotation::from_arc(self.seen_axis, self.seen(tip - self.place)) * self.rest).normalize()
+    }
+
+    /// Place of the tip at rest.
+    pub fn rest(&self) -> Vec3 {
+        self.place + self.axis * self.length
+    }
+
+    /// The nearest place to one `by` beyond a tip at the bone's length, in a direction that its limit allows.
+    #[inline]
+    pub fn hold(&self, tip: Vec3, by: Vec3) -> Vec3 {
+        // The difference first, which is exact: small ways lose no digits to where in the world they are.
+        let mut direction = normalize_or((tip - self.place) + by, self.axis);
+        if let Some(limit) = &self.bone.limit {
+            let seen = self.rest.inverse() * self.seen(direction);
+            let held = limit.hold(seen);
+            if held != seen {
+                direction = normalize_or(*self.world_from_parent * (self.rest * held), self.axis);
+            }
+        }
+        self.place + direction * self.length
+    }
+
+    /// Out of a collider until it is no deeper in it than the place `as_far_as` is, if one is given; `None`: it is out.
+    #[inline]
+    fn out_of(
+        &self,
+        touch: impl Fn(Vec3) -> Option<Gap>,
+        as_far_as: Option<Vec3>,
+        tip: Vec3,
+    ) -> Option<Vec3> {
+        let gap = touch(tip)?;
+        let depth = as_far_as.and_then(&touch).map_or(0.0, |gap| gap.distance);
+        let by = gap.distance - depth;
+        (by < 0.0).then(|| self.hold(tip, -gap.direction * by))
+    }
+}
+
+/// Way of a free tip in the share `rho` of a tick, as shares of its way in the tick before and of what pushes it in a tick.
+fn flight(drag: f32, rho: f32) -> [f32; 2] {
+    let keeps = 1.0 - drag;
+    if rho == 1.0 {
+        return [keeps, 1.0];
+    }
+    if drag < SLIGHT_DRAG {
+        return [keeps * rho, 0.5 * rho * (rho + 1.0)];
+    }
+    let slowed = if keeps > 0.0 { keeps * (1.0 - pow(keeps, rho)) / drag } else { 0.0 };
+    [slowed, (rho - slowed) / drag]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_a_tick_leads_to_the_whole() {
+        let (way, push) = (Vec3::new(0.03, -0.01, 0.02), Vec3::new(0.0, 0.016, -0.004));
+        for drag in [0.0, 5e-4, 0.01, 0.4, 0.9, 1.0] {
+            let flight = |way: Vec3, push: Vec3, drag, rho| {
+                let [keeps, pushed] = flight(drag, rho);
+                way * keeps + push * pushed
+            };
+            let near = flight(way, push, drag, 0.999_999);
+            let whole = flight(way, push, drag, 1.0);
+            assert!((near - whole).length() < 1e-4 * (1.0 + drag) * 0.1, "drag {drag}: {near} {whole}");
+            assert_eq!(flight(way, push, drag, 0.0), Vec3::ZERO);
+        }
+        // Free flight against drag, closed form: half a tick twice is a tick, where nothing pushes.
+        let [half, _] = flight(0.64, 0.5);
+        assert!((half - 0.36 * 0.4 / 0.64).abs() < 1e-7, "{half}");
+    }
+}
