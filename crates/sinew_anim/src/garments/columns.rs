@@ -79,8 +79,8 @@ fn middles(rig: &Rig, columns: &[GarmentColumn]) -> Vec<Vec3> {
 }
 
 /// Columns in the order in which they lie side by side: from the one that is farthest from their middle, each time on to the nearest.
-pub fn side_by_side(rig: &Rig, columns: Vec<GarmentColumn>) -> Vec<GarmentColumn> {
-    let places = middles(rig, &columns);
+pub fn side_by_side(rig: &Rig, columns: &[GarmentColumn]) -> Vec<GarmentColumn> {
+    let places = middles(rig, columns);
     let middle = places.iter().copied().sum::<Vec3>() / max(places.len() as f32, 1.0);
     let mut left: Vec<usize> = (0..columns.len()).collect();
     let mut order: Vec<usize> = Vec::with_capacity(columns.len());

@@ -19,7 +19,7 @@ pub fn guess_garments(rig: &Rig) -> Vec<Garment> {
         let of_kind = |joint: JointIdx| kind_of[joint] == Some(kind);
         let columns = tops(rig, of_kind).into_iter().map(|top| GarmentColumn::below(rig, top));
         let columns: Vec<GarmentColumn> = columns.filter(|column| column.joints.len() > 1).collect();
-        let columns = side_by_side(rig, columns);
+        let columns = side_by_side(rig, &columns);
         let closed = is_ring(rig, &columns);
         Garment { name: (*name).to_owned(), columns, closed, ..Garment::default() }
     };

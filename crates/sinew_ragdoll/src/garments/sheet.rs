@@ -38,7 +38,7 @@ impl Sheet {
             let free = grid.particle(line, 1)..=grid.particle(line, grid.rows);
             places[free]
                 .iter_mut()
-                .for_each(|place| *place = cleared(*place, garment.radius, bodies.clone()));
+                .for_each(|place| *place = cleared(*place, garment.radius, &bodies));
         }
         let moved_out = places.iter().zip(&drawn).map(|(&place, &drawn)| place - drawn).collect();
         let held_by = (0..grid.lines.len()).map(|line| held_by[grid.nearest_column(line)]).collect();
@@ -60,7 +60,7 @@ fn passed(garment: &Garment, held_by: &[usize], ragdoll: &RagdollDef) -> Vec<usi
 pub(super) fn cleared<'a>(
     place: Vec3,
     radius: f32,
-    bodies: impl Iterator<Item = (&'a Shape, Transform)> + Clone,
+    bodies: &(impl Iterator<Item = (&'a Shape, Transform)> + Clone),
 ) -> Vec3 {
     let mut place = place;
     for _ in 0..CLEARINGS {

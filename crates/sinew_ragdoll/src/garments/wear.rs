@@ -128,7 +128,7 @@ impl Wearer<'_> {
             {
                 let particle = sheet.grid.particle(line, row);
                 let radius = sheet.group.particles[particle].radius;
-                let place = cleared(places[particle], radius, shapes.iter().copied());
+                let place = cleared(places[particle], radius, &shapes.iter().copied());
                 let velocity = self.carried(world, sheet.held_by[line], place);
                 let group = world.particles_mut(id);
                 group.set_position(particle as u32, place);
@@ -157,7 +157,7 @@ impl Wearer<'_> {
         for (index, particle) in group.particles.iter_mut().enumerate() {
             let body = sheet.held_by[index / (sheet.grid.rows + 1)];
             let frame = world.transform(self.bodies[body]);
-            if index % (sheet.grid.rows + 1) == 0 {
+            if index.is_multiple_of(sheet.grid.rows + 1) {
                 // Where it was in the bind pose, whatever the clip does: joints of bodies do not stretch.
                 let point = bind(body).inverse_point(particle.position);
                 let target = AttachmentTarget::Body { body: self.bodies[body], point };
@@ -180,7 +180,7 @@ impl Wearer<'_> {
     /// Takes a sheet that is held out of the bodies, and pulls it to its lengths.
     fn drape(&self, world: &World, sheet: &Sheet, group: &mut GroupDef) {
         let shapes = self.shapes(world, sheet);
-        let is_held = |particle: usize| particle % (sheet.grid.rows + 1) == 0;
+        let is_held = |particle: usize| particle.is_multiple_of(sheet.grid.rows + 1);
         for _ in 0..DRAPINGS {
             for spring in &group.springs {
                 let ends = [spring.a, spring.b].map(|at| at as usize);
@@ -194,7 +194,7 @@ impl Wearer<'_> {
                 }
             }
             for (_, particle) in group.particles.iter_mut().enumerate().filter(|(at, _)| !is_held(*at)) {
-                particle.position = cleared(particle.position, particle.radius, shapes.iter().copied());
+                particle.position = cleared(particle.position, particle.radius, &shapes.iter().copied());
             }
         }
     }

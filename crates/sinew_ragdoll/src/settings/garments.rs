@@ -51,8 +51,8 @@ impl GarmentSettings {
         for (chain, name) in self.chains.iter().enumerate() {
             let place = format!("garments[{index}].chains[{chain}]");
             let found = tops(rig, name, &place)?;
-            let below = found.iter().map(|&top| GarmentColumn::below(rig, top)).collect();
-            columns.extend(if name.ends_with('*') { side_by_side(rig, below) } else { below });
+            let below: Vec<GarmentColumn> = found.iter().map(|&top| GarmentColumn::below(rig, top)).collect();
+            columns.extend(if name.ends_with('*') { side_by_side(rig, &below) } else { below });
         }
         if columns.len() < 2 {
             let what = format!("a garment is sewn of two chains at least, and this has {}", columns.len());

@@ -20,7 +20,7 @@ pub(in crate::scenes) const CAPE: Scene = Scene {
     chapter: Chapter::Characters,
     name: "cape",
     about: "the mannequin in a cape walks, is hit, falls down the stairs, gets up and walks on, still in its cape",
-    steps: 480,
+    steps: 720,
     settings: &[
         Setting::number("impulse", 110.0, (0.0, 200.0), "in the back, N·s"),
         Setting::number("mass", 0.6, (0.1, 3.0), "of the cape, kg"),
