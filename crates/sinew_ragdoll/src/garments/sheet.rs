@@ -36,9 +36,7 @@ impl Sheet {
         let mut places = drawn.clone();
         for line in 0..grid.lines.len() {
             let free = grid.particle(line, 1)..=grid.particle(line, grid.rows);
-            places[free]
-                .iter_mut()
-                .for_each(|place| *place = cleared(*place, garment.radius, &bodies));
+            places[free].iter_mut().for_each(|place| *place = cleared(*place, garment.radius, &bodies));
         }
         let moved_out = places.iter().zip(&drawn).map(|(&place, &drawn)| place - drawn).collect();
         let held_by = (0..grid.lines.len()).map(|line| held_by[grid.nearest_column(line)]).collect();
