@@ -29,7 +29,7 @@
 //!     hero.update(&mut world);
 //! }
 //! let sheet = world.particles(hero.garments()[0]);
-//! assert_eq!(sheet.positions().len(), def.garments().particles().sum());
+//! assert_eq!(sheet.positions().len(), def.garments().particles().sum::<usize>());
 //! let turned = def.garments().joints().map(|joint| hero.pose()[joint].rotation.angle_to(def.rest()[joint].rotation));
 //! assert!(turned.fold(0.0, f32::max) > 0.01, "it swings as he walks");
 //! ```
