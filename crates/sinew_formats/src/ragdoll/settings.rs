@@ -33,7 +33,7 @@
 //! parent as in [ragdoll files](super), each range by itself, and `friction_torque` in N·m. Joints that `ignore` names are no part
 //! of the body, with all that hangs below them. `springs` that the character wears are those that the `file` states, where it states
 //! none those that `names` of joints tell of, or `none`. `garments` are those that `names` tell of, `none`, or a list: each with the `chains` of joints that
-//! it is sewn of, and its cloth ([`Garment`](sinew_anim::Garment)).
+//! it is sewn of, and its cloth ([`Garment`]).
 //!
 //! ```
 //! use sinew_formats::read_ragdoll_settings;
