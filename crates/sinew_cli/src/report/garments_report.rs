@@ -29,7 +29,7 @@ impl GarmentsReport {
         }
     }
 
-    /// Keys of a report.
+    /// JSON object that a report has of them.
     pub fn to_json(&self) -> Value {
         json!({
             "names": self.names,
@@ -60,7 +60,7 @@ impl GarmentsReport {
     }
 }
 
-/// Garments that the names of a rig's joints tell.
+/// JSON list of the garments that the names of a rig's joints tell.
 pub fn garments_json(rig: &Rig) -> Value {
     let name = |joint: JointIdx| rig.joints[joint].name.as_str();
     let garment = |garment: &Garment| {
@@ -70,7 +70,7 @@ pub fn garments_json(rig: &Rig) -> Value {
     guess_garments(rig).iter().map(garment).collect()
 }
 
-/// The same for people; nothing where there are none.
+/// Text of the garments that the names of a rig's joints tell; empty where there are none.
 pub fn garments_text(rig: &Rig) -> String {
     let mut text = String::new();
     for garment in guess_garments(rig) {

@@ -24,8 +24,9 @@ pub(super) const NORMAL: usize = 8;
 pub(super) const ROOM: usize = 11;
 /// Fields that projections change.
 const CHANGED: [usize; 4] = [WAY, WAY + 1, WAY + 2, ROOM];
-/// Shares of the ends in the vector whose length is a spring's, and a bend's.
+/// Shares of a spring's ends in the vector whose length it keeps.
 const SPRING: [f32; 2] = [-1.0, 1.0];
+/// Shares of a bend's particles in the vector whose length it keeps.
 const BEND: [f32; 3] = [1.0, -2.0, 1.0];
 /// Kinds among which that of eight rows is looked for.
 const LATEST: usize = 64;

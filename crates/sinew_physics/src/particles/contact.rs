@@ -18,7 +18,8 @@ use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
 /// Solves per iteration until grips have to be right.
 const GRIP_ROUNDS: u32 = 16;
-/// Solves after which surfaces no longer let go: grips only tighten from there on, so that they come to an end.
+/// Solves after which surfaces no longer let go, so that grips come to an end, and slow what is about to stop instead of holding it: knots of a stiff
+/// rope would else take turns to slip and to stick, each for what the others did (ADR 0023).
 const LOOSE_ROUNDS: u32 = 4;
 /// Depth at the end of an iteration below which a contact is left to impacts, metres.
 const IMPACT_DEPTH: f32 = 1e-5;
@@ -243,7 +244,7 @@ pub(super) enum Grip {
     Off,
     /// Along the normal; friction is a force.
     Slide,
-    /// Along the normal; friction is a viscosity.
+    /// Along the normal; friction is a viscosity, until the iteration ends.
     Slow,
     /// In all directions.
     Stick,

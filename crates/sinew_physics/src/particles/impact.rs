@@ -122,11 +122,15 @@ impl ParticleGroup {
         let behind = (speed + opposite_speed) * 0.5 - came.velocity;
         self.velocities[i] = came.velocity + across * behind.dot(across);
         // What pushed it on the way here has felt that, or cannot.
-        let mut at = 0;
-        self.body_impulses.retain(|hit| {
-            at += 1;
-            at <= came.reported || bodies[hit.body as usize].inverse_mass > 0.0
-        });
+        let mut kept = came.reported;
+        for k in came.reported..self.body_impulses.len() {
+            let hit = self.body_impulses[k];
+            if bodies[hit.body as usize].inverse_mass > 0.0 {
+                self.body_impulses[kept] = hit;
+                kept += 1;
+            }
+        }
+        self.body_impulses.truncate(kept);
         true
     }
 
