@@ -35,7 +35,7 @@ const OTHERS: &[(&str, &str)] = &[
     ("sinew_physics/src/mover/segment.rs", "NEARER"),
     ("sinew_physics/src/mover/sweep.rs", "ALONG"),
     ("sinew_physics/src/particles/contact.rs", "IMPACT_DEPTH"),
-    ("sinew_physics/src/particles/forest.rs", "MERIT_ROUNDING"),
+    ("sinew_physics/src/particles/system.rs", "MERIT_ROUNDING"),
     ("sinew_physics/src/particles/sweep.rs", "SUNK"),
     ("sinew_physics/src/query/candidates.rs", "FARTHEST"),
     ("sinew_physics/src/query/candidates.rs", "SHORTEST"),

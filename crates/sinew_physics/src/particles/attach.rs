@@ -1,8 +1,8 @@
 //! Particles that bodies or places in the world hold.
 
 use super::contact::{Obstacle, ObstacleBody};
-use super::forest::Freedom;
 use super::hub::{Hub, Share};
+use super::system::Freedom;
 use super::{AddedMass, AttachmentTarget, Part, ParticleGroup};
 use crate::id::BodyId;
 use sinew_math::{Sym3, Vec3, max};

@@ -7,8 +7,9 @@
 //! solution tell who must let go, slip or stick; grips are kept from substep to substep, so that at rest one solve is
 //! enough. On bodies that can move, the body's inertia at the point is added instead.
 
-use super::forest::{Freedom, NO_HUB};
+use super::forest::NO_HUB;
 use super::sweep::{Meeting, sweep_ball};
+use super::system::Freedom;
 use super::{Part, ParticleGroup};
 use crate::body::material::{ContactMaterial, Material};
 use crate::body::shape::Shape;

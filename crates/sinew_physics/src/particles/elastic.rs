@@ -12,7 +12,7 @@ impl ParticleGroup {
             let s = &self.springs[index as usize];
             energy(stretch(s, &self.positions), 1.0 / s.stiffness, 0.0)
         });
-        let projected = self.forest.loops().iter().map(|&index| {
+        let projected = self.forest.projected().iter().map(|&index| {
             let s = &self.springs[index as usize];
             let weights = self.weight(s.a) + self.weight(s.b);
             energy(stretch(s, &self.positions), 1.0 / s.stiffness, self.span * self.span * weights)

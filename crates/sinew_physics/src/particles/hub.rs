@@ -28,10 +28,14 @@ impl Share {
 
     /// Adds what acts at a point with an inertia, kg, and a momentum beyond the velocity that is coming, N·s.
     fn add_at(&mut self, arm: Vec3, inertia: Sym3, pull: Vec3) {
+        self.add_inertia(arm, inertia);
+        add_scaled(&mut self.pull, &wrench(arm, pull), 1.0);
+    }
+
+    fn add_inertia(&mut self, arm: Vec3, inertia: Sym3) {
         for (row, axis) in self.inertia.iter_mut().zip(UNITS) {
             add_scaled(row, &wrench(arm, inertia * velocity_at(&axis, arm)), 1.0);
         }
-        add_scaled(&mut self.pull, &wrench(arm, pull), 1.0);
     }
 
     /// Adds another.
@@ -71,6 +75,8 @@ pub(super) struct Hub {
     free: Vec6,
     /// Velocity gained per impulse, with the particles below it.
     response: Mat6,
+    /// Inertia of the point by which it hangs on the next node, kg.
+    seen: Sym3,
     /// As the solve found it, and as it was before the last step of Newton's method.
     pub velocity: Vec6,
     pub last_velocity: Vec6,
@@ -90,6 +96,7 @@ impl Hub {
             coming: ZERO6,
             free: ZERO6,
             response: ZERO66,
+            seen: Sym3::IDENTITY,
             velocity: ZERO6,
             last_velocity: ZERO6,
             found: ZERO6,
@@ -115,8 +122,9 @@ impl Hub {
         velocity_at(&self.velocity, point - self.center)
     }
 
-    /// Gathers what it holds: point, inertia and momentum of each particle with all that hangs below it.
-    pub fn gather(&mut self, particles: impl Iterator<Item = (Vec3, Sym3, Vec3)>) {
+    /// Gathers the inertia of what it holds: point and inertia of each particle with all that hangs below it. One of its points is that by which it hangs on
+    /// the next node.
+    pub fn factor(&mut self, particles: impl Iterator<Item = (Vec3, Sym3)>, link: Vec3) {
         let mut whole = ZERO66;
         let turning = self.inertia.to_mat3();
         for (k, axis) in [turning.x_axis, turning.y_axis, turning.z_axis].into_iter().enumerate() {
@@ -124,19 +132,37 @@ impl Hub {
             whole[3 + k] = join(Vec3::ZERO, axis);
         }
         self.added.add_to(&mut whole);
-        self.own = Share::NONE;
-        for (point, inertia, momentum) in particles {
-            self.add_at(point, inertia, momentum);
+        self.own.inertia = ZERO66;
+        for (point, inertia) in particles {
+            self.own.add_inertia(point - self.center, inertia);
         }
-        let mut pull = ZERO6;
         for share in [&self.own, &self.others] {
             for (row, more) in whole.iter_mut().zip(&share.inertia) {
                 add_scaled(row, more, 1.0);
             }
-            add_scaled(&mut pull, &share.pull, 1.0);
         }
         self.response = spd_inverse(&whole, 6).unwrap_or(ZERO66);
-        self.free = self.coming;
+        let arm = link - self.center;
+        let column = |axis: Vec3| velocity_at(&self.respond(&wrench(arm, axis)), arm);
+        let (x, y, z) = (column(Vec3::X), column(Vec3::Y), column(Vec3::Z));
+        self.seen = Sym3::from_mat3(&Mat3::from_cols(x, y, z)).inverse();
+    }
+
+    /// Gathers what pulls at it: point, inertia and momentum of each particle with all that hangs below it. `WHOLE`: beside its own momentum and the shares of
+    /// others.
+    pub fn gather<const WHOLE: bool>(&mut self, particles: impl Iterator<Item = (Vec3, Sym3, Vec3)>) {
+        let mut pull = ZERO6;
+        for (point, inertia, momentum) in particles {
+            let arm = point - self.center;
+            let coming = if WHOLE { inertia * velocity_at(&self.coming, arm) } else { Vec3::ZERO };
+            add_scaled(&mut pull, &wrench(arm, momentum - coming), 1.0);
+        }
+        self.free = ZERO6;
+        if WHOLE {
+            self.own.pull = pull;
+            add_scaled(&mut pull, &self.others.pull, 1.0);
+            self.free = self.coming;
+        }
         let gained = self.respond(&pull);
         add_scaled(&mut self.free, &gained, 1.0);
         self.velocity = self.free;
@@ -148,18 +174,19 @@ impl Hub {
         self.own.add_at(arm, inertia, momentum - inertia * velocity_at(&self.coming, arm));
     }
 
-    /// Inertia and momentum that a point of it has for what pulls there, kg and kg·m/s.
-    pub fn seen_at(&self, point: Vec3) -> (Sym3, Vec3) {
-        let arm = point - self.center;
-        let column = |axis: Vec3| velocity_at(&self.respond(&wrench(arm, axis)), arm);
-        let inertia =
-            Sym3::from_mat3(&Mat3::from_cols(column(Vec3::X), column(Vec3::Y), column(Vec3::Z))).inverse();
-        (inertia, inertia * velocity_at(&self.free, arm))
+    /// Inertia of the point by which it hangs on the next node, for what pulls there, kg.
+    pub fn seen(&self) -> Sym3 {
+        self.seen
     }
 
-    /// Moves it as a pull at a point does that brings this to a velocity.
-    pub fn follow(&mut self, point: Vec3, velocity: Vec3, (inertia, momentum): (Sym3, Vec3)) {
-        let pull = wrench(point - self.center, inertia * velocity - momentum);
+    /// Momentum of that point, kg·m/s.
+    pub fn momentum_seen_at(&self, point: Vec3) -> Vec3 {
+        self.seen * velocity_at(&self.free, point - self.center)
+    }
+
+    /// Moves it as a pull at that point does that brings this to a velocity.
+    pub fn follow(&mut self, point: Vec3, velocity: Vec3) {
+        let pull = wrench(point - self.center, self.seen * velocity - self.momentum_seen_at(point));
         self.velocity = self.free;
         let gained = self.respond(&pull);
         add_scaled(&mut self.velocity, &gained, 1.0);
@@ -182,7 +209,7 @@ impl Hub {
         if all > 0.0 { (energy_from(&self.found) / all).sqrt() } else { 0.0 }
     }
 
-    /// Part of the energy that the solve makes least, J, and the size of its terms: see `merit` of `forest.rs`.
+    /// Part of the energy that the solve makes least, J, and the size of its terms: see `merit` of `system.rs`.
     pub fn merit(&self) -> (f32, f32) {
         let mut gained = self.velocity;
         add_scaled(&mut gained, &self.coming, -1.0);

@@ -3,9 +3,9 @@
 //! [`ParticleGroup::substep`] moves a group under gravity, springs, attachments and contacts, after the bodies have
 //! moved. It acts back on the bodies that particles are attached to and on those they touch.
 //!
-//! Springs that form no loops (a mass on a spring, a rope, a strand of hair) are solved in one implicit step, see
-//! `forest.rs`: the stretch at rest is the exact one, `m g / k`, for a chain as for a single mass, whatever the
-//! substeps. What forms loops (cloth, blobs) is projected, each spring once, see `net.rs`: exact at rest for one mass
+//! Springs of an implicit group (ropes, strands, bridges, nets that bear) are solved as one, see `system.rs`: the stretch at rest is the exact one,
+//! `m g / k`, for a chain as for a single mass, whatever the
+//! substeps. Those of cloth and blobs are projected, each spring once, see `net.rs`: exact at rest for one mass
 //! on one spring, softer by `h² (w₁ + w₂)` per spring in a net.
 //! Damping acts on the velocity at the start of the substep, before forces.
 //!
@@ -18,21 +18,25 @@ mod attach;
 mod batches;
 mod builders;
 mod check;
+mod conjugate;
 mod contact;
 mod def;
 mod eights;
 mod elastic;
+mod elimination;
 mod forest;
 mod geodesic;
 mod hub;
 mod impact;
 mod in_eights;
+mod load;
 mod near;
 mod net;
 mod rest;
 mod self_collision;
 mod snapshot;
 mod sweep;
+mod system;
 mod tuning;
 
 pub(crate) use added_mass::AddedMass;
@@ -55,12 +59,13 @@ use crate::particles::tuning::STRIKE_GAP;
 use batches::Batches;
 use contact::{Grip, Placed, Touch};
 use eights::Eights;
-use forest::{Forest, Freedom, Holder, System};
+use forest::{Forest, Holder};
 use impact::MAX_TOUCHES;
 use near::Near;
 use rest::{Bed, GroupRest};
 use self_collision::SelfCollision;
 use sinew_math::{Sym3, Transform, Vec3, max};
+use system::{Freedom, System};
 
 /// Most strides in which the way of a particle is looked along.
 const STRIDES: usize = 16;

@@ -1,4 +1,4 @@
-//! Rows that form loops, each solved once per iteration: `Δx = −C / (Σ w ∇C² + α/h²) w ∇C` with `α = 1/k` (Macklin et al.,
+//! Rows of cloth and blobs, each solved once per iteration: `Δx = −C / (Σ w ∇C² + α/h²) w ∇C` with `α = 1/k` (Macklin et al.,
 //! "Small Steps in Physics Simulation", SCA 2019, without its multipliers). A row alone is a step of implicit Euler. Rows that
 //! share particles are solved one after the other, and those before do not hear of those
 //! after: each spring of a net yields by about `h² (w₁ + w₂)` more.
@@ -49,7 +49,7 @@ impl ParticleGroup {
         let is_free = |i: u32| attachment_of[i as usize] == u32::MAX;
         let free_spring = |&k: &u32| is_free(springs[k as usize].a) && is_free(springs[k as usize].b);
         let free_bend = |&k: &u32| bends[k as usize].particles.into_iter().all(is_free);
-        let (batched, held): (Vec<u32>, _) = forest.loops().iter().partition(|k| free_spring(k));
+        let (batched, held): (Vec<u32>, _) = forest.projected().iter().partition(|k| free_spring(k));
         // Those of groups with trees go into the solve.
         let bent_later = if forest.has_trees() { 0 } else { bends.len() as u32 };
         let (batched_bends, held_bends): (Vec<u32>, _) = (0..bent_later).partition(free_bend);

@@ -38,6 +38,17 @@ pub(super) const BEARING: f32 = 0.2;
 /// Larger: ropes stretch visibly in jerks. Smaller: more iterations. Shown by `catenary`, `spring_chain`.
 pub(super) const LENGTH_TOLERANCE: f32 = 1e-3;
 
+/// Energy of the error of velocities at which springs that close loops are solved, as a share of that of the velocities, a ratio.
+///
+/// Larger: nets that hang taut tremble. Smaller: more rounds of conjugate gradients. Shown by the tests of `nets`.
+pub(super) const CONJUGATE_TOLERANCE: f64 = 1e-9;
+
+/// Most rounds of conjugate gradients in one solve, a number.
+///
+/// A net takes as many as it is wide. Larger: nets of thousands of particles are solved for as long as they take. Smaller: they give way.
+/// Shown by the tests of `nets`.
+pub(super) const CONJUGATE_ROUNDS: u32 = 200;
+
 /// Factor on the length of a way within which everything is looked for, a ratio.
 ///
 /// What is still to push may turn the way a little. Larger: more to look at. Smaller: particles pass what they are pushed into. Shown by

@@ -20,6 +20,7 @@ mod humanoid;
 mod ids;
 mod joints;
 mod large_islands;
+mod loads;
 mod meshes;
 mod mover;
 mod nets;

@@ -1,0 +1,342 @@
+//! The linear system of a step: elimination along the trees, and conjugate gradients where springs close loops.
+//!
+//! A tree is factored from the leaves to the roots and solved for any momenta in two passes. A spring that closes a loop joins what
+//! elimination holds apart. The trees' factor then has that spring as well, with its other end held, and is the preconditioner of
+//! conjugate gradients (Hestenes and Stiefel 1952; Concus, Golub and O'Leary 1976) over the whole system: `M z = r` leaves of
+//! `A d` no more than what the closing springs pass from end to end, so that the trees are never multiplied. Few loops take few rounds;
+//! nets as many as they are wide.
+
+use super::SpringDef;
+use super::conjugate::{Conjugate, dot};
+use super::forest::{Forest, NO_HUB};
+use super::system::{Freedom, System};
+use crate::particles::tuning::{CONJUGATE_ROUNDS, CONJUGATE_TOLERANCE, NO_SPEED};
+use sinew_math::{Sym3, Vec3};
+
+impl System {
+    /// Velocities at the end of the step; those that are given are where springs that close loops start from.
+    pub fn solve(&mut self, forest: &Forest, springs: &[SpringDef], h: f32, velocities: &mut [Vec3]) {
+        self.factor(forest);
+        if forest.closings().is_empty() {
+            self.load_momenta(forest, springs, h, velocities);
+            self.substitute::<true>(forest, velocities);
+            return;
+        }
+        let mut conjugate = core::mem::take(&mut self.conjugate);
+        self.solve_loops(&mut conjugate, (forest, springs), h, velocities);
+        self.conjugate = conjugate;
+    }
+
+    /// Velocities where springs close loops.
+    fn solve_loops(
+        &mut self,
+        of: &mut Conjugate,
+        (forest, springs): (&Forest, &[SpringDef]),
+        h: f32,
+        velocities: &mut [Vec3],
+    ) {
+        // What the other ends of closing springs pass on at the velocities at hand, which the first solve takes as it is.
+        self.load_momenta(forest, springs, h, velocities);
+        self.pass_across(forest, velocities, &mut of.passed);
+        for (momentum, passed) in self.gathered_momentum.iter_mut().zip(&of.passed) {
+            *momentum += *passed;
+        }
+        of.residual.copy_from_slice(&of.passed);
+        self.substitute::<true>(forest, velocities);
+        // It leaves over by how much that has changed.
+        self.pass_across(forest, velocities, &mut of.passed);
+        of.start(self.hubs.iter().map(|hub| &hub.velocity));
+        let most = self.conjugate_tolerance(velocities);
+        let mut last = f64::INFINITY;
+        for _ in 0..CONJUGATE_ROUNDS {
+            let found = self.precondition(of, forest);
+            of.turn((found / last) as f32, self.hubs.iter().map(|hub| &hub.velocity));
+            self.pass_across(forest, &of.direction, &mut of.passed);
+            let taken = dot(&of.needed, &of.direction) - dot(&of.passed, &of.direction);
+            // Also where one is no number.
+            let goes_on = found > most && taken > 0.0;
+            if !goes_on {
+                break;
+            }
+            of.go((found / taken) as f32, velocities);
+            last = found;
+        }
+        for (kept, hub) in of.hubs.iter().zip(&mut self.hubs) {
+            hub.velocity = kept[0];
+        }
+    }
+
+    /// Twice the energy of an error of the velocities that is small enough, J.
+    fn conjugate_tolerance(&self, velocities: &[Vec3]) -> f64 {
+        let energies = velocities.iter().zip(&self.inertia).map(|(v, inertia)| {
+            f64::from((*inertia * *v).dot(*v)) + f64::from(inertia.diagonal.x * NO_SPEED * NO_SPEED)
+        });
+        energies.sum::<f64>() * CONJUGATE_TOLERANCE
+    }
+
+    /// Gains by the preconditioner of what is left over; gives the product of both, J.
+    fn precondition(&mut self, of: &mut Conjugate, forest: &Forest) -> f64 {
+        self.gathered_momentum.copy_from_slice(&of.residual);
+        self.substitute::<false>(forest, &mut of.gain);
+        dot(&of.residual, &of.gain)
+    }
+
+    /// Adds what each end of a closing spring gets from the velocity of the other, kg·m/s.
+    fn pass_across(&self, forest: &Forest, velocities: &[Vec3], passed: &mut [Vec3]) {
+        passed.fill(Vec3::ZERO);
+        for &(k, ends) in forest.closings() {
+            let ([a, b], block) = (ends.map(|i| i as usize), &self.loads[k as usize].block);
+            passed[a] += *block * velocities[b];
+            passed[b] += *block * velocities[a];
+        }
+    }
+
+    /// Velocities of particles that no springs of the forest join.
+    pub fn solve_apart(&mut self, particles: &[u32], velocities: &mut [Vec3]) {
+        for &i in particles {
+            let i = i as usize;
+            self.gathered_momentum[i] = self.momentum[i] + self.added_momentum[i];
+            self.gathered_inertia[i] = self.inertia[i] + self.added_inertia[i];
+            self.inverses[i] = self.gathered_inertia[i].inverse();
+            self.responses[i] = constrained(&self.inverses[i], &self.freedom[i]);
+            let own = self.gathered_inertia[i];
+            velocities[i] = self.velocity::<true>(i, &own, Vec3::ZERO, velocities);
+        }
+    }
+
+    /// Factors the trees: each parent feels the inertia of what hangs below it.
+    fn factor(&mut self, forest: &Forest) {
+        for i in 0..self.inertia.len() {
+            self.gathered_inertia[i] = self.inertia[i] + self.added_inertia[i];
+        }
+        for tie in forest.ties() {
+            self.gathered_inertia[tie.particle as usize] += self.loads[tie.spring as usize].block;
+        }
+        for &(k, ends) in forest.closings() {
+            for end in ends {
+                self.gathered_inertia[end as usize] += self.loads[k as usize].block;
+            }
+        }
+        for link in forest.links() {
+            let (child, parent) = (link.child as usize, link.parent as usize);
+            let block = self.loads[link.spring as usize].block;
+            self.factor_hub(forest, child);
+            let inertia = self.below(forest, child);
+            self.inverses[child] = (inertia + block).inverse();
+            self.responses[child] = constrained(&self.inverses[child], &self.freedom[child]);
+            let felt = felt_by_parent(&inertia, &self.inverses[child], &block, &self.freedom[child]);
+            self.gathered_inertia[parent] += felt;
+        }
+        for &root in forest.roots() {
+            let root = root as usize;
+            if !self.factor_hub(forest, root) {
+                self.inverses[root] = self.gathered_inertia[root].inverse();
+                self.responses[root] = constrained(&self.inverses[root], &self.freedom[root]);
+            }
+        }
+    }
+
+    /// Momenta without those of hubs: of particles and contacts, of springs from where they are linearised, of ends that are held.
+    fn load_momenta(&mut self, forest: &Forest, springs: &[SpringDef], h: f32, velocities: &[Vec3]) {
+        for i in 0..velocities.len() {
+            self.gathered_momentum[i] = self.momentum[i] + self.added_momentum[i];
+        }
+        for tie in forest.ties() {
+            let (i, load) = (tie.particle as usize, self.loads[tie.spring as usize]);
+            let force = if springs[tie.spring as usize].a == tie.particle { load.force } else { -load.force };
+            self.gathered_momentum[i] += force * h + load.block * velocities[tie.held as usize];
+        }
+        for &(k, [a, b]) in forest.closings() {
+            let impulse = self.loads[k as usize].force * h;
+            self.gathered_momentum[a as usize] += impulse;
+            self.gathered_momentum[b as usize] -= impulse;
+        }
+        for link in forest.links() {
+            self.tensions[link.child as usize] = {
+                let force = self.loads[link.spring as usize].force;
+                if springs[link.spring as usize].a == link.child { force * h } else { -force * h }
+            };
+        }
+    }
+
+    /// Velocities for the gathered momenta. `WHOLE`: with the pull of springs along the trees, the velocities of bodies and surfaces, and those that are
+    /// given; else what the momenta alone gain.
+    fn substitute<const WHOLE: bool>(&mut self, forest: &Forest, velocities: &mut [Vec3]) {
+        if !WHOLE {
+            velocities.fill(Vec3::ZERO);
+        }
+        for link in forest.links() {
+            let (child, parent) = (link.child as usize, link.parent as usize);
+            let block = self.loads[link.spring as usize].block;
+            if self.pull_hub::<WHOLE>(forest, child) {
+                self.gathered_momentum[child] =
+                    self.hubs[forest.hub_of(child)].momentum_seen_at(self.points[child]);
+            }
+            if WHOLE {
+                self.gathered_momentum[child] += self.tensions[child];
+                self.gathered_momentum[parent] -= self.tensions[child];
+            }
+            let inertia = self.below(forest, child);
+            let velocity = self.velocity::<WHOLE>(child, &inertia, Vec3::ZERO, velocities);
+            let momentum = self.passed_on::<WHOLE>(child, (&inertia, &block), velocity);
+            self.gathered_momentum[parent] += momentum;
+        }
+        for &root in forest.roots() {
+            let root = root as usize;
+            if self.pull_hub::<WHOLE>(forest, root) {
+                self.move_hub(forest, root, velocities);
+            } else {
+                let own = self.gathered_inertia[root];
+                velocities[root] = self.velocity::<WHOLE>(root, &own, Vec3::ZERO, velocities);
+            }
+        }
+        for link in forest.links().iter().rev() {
+            let (child, block) = (link.child as usize, self.loads[link.spring as usize].block);
+            let inertia = self.below(forest, child);
+            let parent = velocities[link.parent as usize];
+            velocities[child] = self.velocity::<WHOLE>(child, &inertia, parent, velocities);
+            if self.is_in_hub(forest, child) {
+                let (hub, point) = (&mut self.hubs[forest.hub_of(child)], self.points[child]);
+                hub.follow(point, velocities[child]);
+                if WHOLE {
+                    hub.add_at(point, block, self.tensions[child] + block * parent);
+                }
+                self.move_hub(forest, child, velocities);
+            }
+        }
+    }
+
+    /// Inertia of a child with all that hangs below it, kg: that of a point of its body, if one that moves holds it.
+    fn below(&self, forest: &Forest, child: usize) -> Sym3 {
+        if self.is_in_hub(forest, child) {
+            self.hubs[forest.hub_of(child)].seen()
+        } else {
+            self.gathered_inertia[child]
+        }
+    }
+
+    /// True if a body that moves holds it.
+    fn is_in_hub(&self, forest: &Forest, i: usize) -> bool {
+        forest.hub_of(i) != NO_HUB && self.freedom[i] != Freedom::Fixed
+    }
+
+    /// Gathers the inertia of what the body of a particle holds, if one that moves does, as that particle sees it; whether there is one.
+    fn factor_hub(&mut self, forest: &Forest, i: usize) -> bool {
+        if !self.is_in_hub(forest, i) {
+            return false;
+        }
+        let held = |&i: &u32| (self.points[i as usize], self.gathered_inertia[i as usize]);
+        let hub = forest.hub_of(i);
+        self.hubs[hub].factor(forest.hubs()[hub].iter().map(held), self.points[i]);
+        true
+    }
+
+    /// Gathers what pulls at the body of a particle, if one that moves holds it; whether there is one.
+    fn pull_hub<const WHOLE: bool>(&mut self, forest: &Forest, i: usize) -> bool {
+        if !self.is_in_hub(forest, i) {
+            return false;
+        }
+        let hub = forest.hub_of(i);
+        let held = |&i: &u32| {
+            let i = i as usize;
+            (self.points[i], self.gathered_inertia[i], self.gathered_momentum[i])
+        };
+        self.hubs[hub].gather::<WHOLE>(forest.hubs()[hub].iter().map(held));
+        true
+    }
+
+    /// Gives all that the body of a particle holds the velocities of its points.
+    fn move_hub(&self, forest: &Forest, i: usize, velocities: &mut [Vec3]) {
+        let hub = forest.hub_of(i);
+        for &held in &forest.hubs()[hub] {
+            velocities[held as usize] = self.hubs[hub].velocity_at(self.points[held as usize]);
+        }
+    }
+
+    /// Velocity of a particle under the momentum of what hangs below it with an inertia, kg, on a parent that has a velocity, m/s.
+    ///
+    /// The pull of a stiff spring on what moves along with it is many thousand times their momentum, and its rounding would be as large as that: so it is that of
+    /// what they have more than the parent's velocity gives them.
+    fn velocity<const WHOLE: bool>(
+        &self,
+        i: usize,
+        inertia: &Sym3,
+        parent: Vec3,
+        velocities: &[Vec3],
+    ) -> Vec3 {
+        let free = || {
+            let more = self.gathered_momentum[i] - *inertia * parent;
+            parent + self.responses[i] * more
+        };
+        match self.freedom[i] {
+            Freedom::Free => free(),
+            Freedom::Along { normal, speed } => {
+                let along = self.inverses[i] * normal;
+                let speed = if WHOLE { speed } else { 0.0 };
+                free() + along * ((speed - normal.dot(parent)) / normal.dot(along))
+            }
+            Freedom::Fixed => velocities[i],
+        }
+    }
+
+    /// Momentum that a child hands on to its parent, kg·m/s: the spring's block times the velocity that it has while the parent rests. Of a stiff spring it is what
+    /// the child does not keep.
+    fn passed_on<const WHOLE: bool>(
+        &self,
+        child: usize,
+        (inertia, block): (&Sym3, &Sym3),
+        velocity: Vec3,
+    ) -> Vec3 {
+        if self.freedom[child] == Freedom::Fixed || !is_stiff(block, inertia) {
+            return *block * velocity;
+        }
+        let momentum = self.gathered_momentum[child];
+        let pushed = match self.freedom[child] {
+            Freedom::Along { normal, speed } => {
+                let along = self.inverses[child] * normal;
+                let speed = if WHOLE { speed } else { 0.0 };
+                normal * ((speed - along.dot(momentum)) / normal.dot(along))
+            }
+            Freedom::Free | Freedom::Fixed => Vec3::ZERO,
+        };
+        momentum + pushed - *inertia * velocity
+    }
+}
+
+/// The inverse inertia of a particle that may not gain velocity along the normal: `W − W n nᵀ W / (n·W n)`.
+fn constrained(inverse: &Sym3, freedom: &Freedom) -> Sym3 {
+    match freedom {
+        Freedom::Free => *inverse,
+        Freedom::Along { normal, .. } => {
+            let along = *inverse * *normal;
+            *inverse - Sym3::outer(along) * (1.0 / normal.dot(along))
+        }
+        Freedom::Fixed => Sym3::ZERO,
+    }
+}
+
+/// True if a spring's block outweighs the inertia below it, so that this is what is left of their difference.
+fn is_stiff(block: &Sym3, inertia: &Sym3) -> bool {
+    let size = |m: &Sym3| m.to_mat3().x_axis.x + m.to_mat3().y_axis.y + m.to_mat3().z_axis.z;
+    size(block) > size(inertia)
+}
+
+/// With S the child's inertia, B the spring's block and W its response, the parent gains `B − B W B`. Free, that is
+/// `S (S + B)⁻¹ B`, or `S − S (S + B)⁻¹ S`: whichever of both is the smaller, the other one would cancel itself out.
+fn felt_by_parent(inertia: &Sym3, inverse: &Sym3, block: &Sym3, freedom: &Freedom) -> Sym3 {
+    let stiff = is_stiff(block, inertia);
+    let free = || {
+        let last = if stiff { inertia } else { block };
+        let product = Sym3::from_mat3(&(inertia.to_mat3() * inverse.to_mat3() * last.to_mat3()));
+        if stiff { *inertia - product } else { product }
+    };
+    match freedom {
+        Freedom::Free => free(),
+        Freedom::Along { normal, .. } => {
+            let along = *inverse * *normal;
+            let back = if stiff { *normal - *inertia * along } else { *block * along };
+            free() + Sym3::outer(back) * (1.0 / normal.dot(along))
+        }
+        Freedom::Fixed => *block,
+    }
+}

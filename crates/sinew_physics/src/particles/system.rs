@@ -1,0 +1,226 @@
+//! The linear system of a step over the springs of a group, solved again until springs are where they were foreseen.
+//!
+//! Unknown are the velocities at the end of the step: `(M + h² K + h D) v⁺ = M v + h f` (Baraff & Witkin 1998), with
+//! the axial stiffness `k n nᵀ`, the geometric stiffness `k max(0, 1 − L₀/L) (I − n nᵀ)` and the axial damping of
+//! each spring. At rest the right-hand side is
+//! zero, so that a chain hangs exactly where its forces balance, whatever the length of the step.
+
+use super::SpringDef;
+use super::conjugate::Conjugate;
+use super::forest::Forest;
+use super::hub::Hub;
+use super::load::Load;
+use sinew_math::{Sym3, Vec3};
+
+/// Rounds of Newton's method until springs have to be where they were foreseen.
+const NEWTON_ROUNDS: u32 = 16;
+/// Times that a round is halved.
+const HALVINGS: u32 = 8;
+/// Rounding of the energy that it lowers, as a share of the terms in it.
+const MERIT_ROUNDING: f64 = 1e-7;
+
+/// Freedom of a particle in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Freedom {
+    /// Anything.
+    #[default]
+    Free,
+    /// Only at right angles to a unit normal; along it, its velocity is given.
+    Along { normal: Vec3, speed: f32 },
+    /// Nothing: its velocity is given.
+    Fixed,
+}
+
+/// Memory of one step's system, by particle and by spring.
+#[derive(Clone, Debug, Default)]
+pub(super) struct System {
+    /// kg: the particle's own, and where nothing is in trees what its anchor adds.
+    pub inertia: Vec<Sym3>,
+    /// kg·m/s: momentum at the end of the step without springs and contacts.
+    pub momentum: Vec<Vec3>,
+    /// Inertia that contacts add, kg.
+    pub added_inertia: Vec<Sym3>,
+    /// Momentum that contacts add, kg·m/s.
+    pub added_momentum: Vec<Vec3>,
+    /// The velocity of a fixed particle is read from the velocities.
+    pub freedom: Vec<Freedom>,
+    /// Bodies that hold particles.
+    pub hubs: Vec<Hub>,
+    /// Place of each held particle on its body, world, metres.
+    pub points: Vec<Vec3>,
+    pub(super) loads: Vec<Load>,
+    /// Velocities and impulses of springs that Newton's method has come from.
+    last_velocities: Vec<Vec3>,
+    last_impulses: Vec<Vec3>,
+    /// Inertia and momentum of each particle with all that hangs below it.
+    pub(super) gathered_inertia: Vec<Sym3>,
+    pub(super) gathered_momentum: Vec<Vec3>,
+    /// Impulse of the spring to its parent on each particle, from where that is linearised, N·s.
+    pub(super) tensions: Vec<Vec3>,
+    /// Inverse of its inertia with that spring's, 1/kg, and velocity gained per impulse while the parent keeps its velocity.
+    pub(super) inverses: Vec<Sym3>,
+    pub(super) responses: Vec<Sym3>,
+    pub(super) conjugate: Conjugate,
+}
+
+impl System {
+    pub fn new(particles: usize, springs: usize, hubs: usize) -> Self {
+        let (matrices, vectors) = (vec![Sym3::ZERO; particles], vec![Vec3::ZERO; particles]);
+        Self {
+            inertia: matrices.clone(),
+            momentum: vectors.clone(),
+            added_inertia: matrices.clone(),
+            added_momentum: vectors.clone(),
+            freedom: vec![Freedom::Free; particles],
+            hubs: vec![Hub::new(); hubs],
+            points: vectors.clone(),
+            loads: vec![Load::default(); springs],
+            last_velocities: vectors.clone(),
+            last_impulses: vectors.clone(),
+            gathered_inertia: matrices.clone(),
+            gathered_momentum: vectors.clone(),
+            tensions: vectors,
+            inverses: matrices.clone(),
+            responses: matrices,
+            conjugate: Conjugate::new(particles, hubs),
+        }
+    }
+
+    /// Evaluates the springs of the forest for a step of `h` seconds.
+    pub fn load_springs(&mut self, forest: &Forest, springs: &[SpringDef], positions: &[Vec3], h: f32) {
+        for spring in forest.solved_springs() {
+            let s = &springs[spring as usize];
+            let from_a = positions[s.b as usize] - positions[s.a as usize];
+            self.loads[spring as usize] = Load::new(s, from_a, h);
+        }
+    }
+
+    /// Velocities at the end of the step, and the impulses of springs with which they come about, by Newton's method: springs
+    /// are linearised anew where the velocities just found would bring them, until none is there other than foreseen.
+    ///
+    /// A link of a whip that turns far within the step would else be stretched by that, and hold energy that nobody paid.
+    /// A step of the method is shortened until it lowers the energy of which the end of the step is the least (`merit`), so that none
+    /// makes it worse.
+    pub fn settle_springs(
+        &mut self,
+        forest: &Forest,
+        springs: &[SpringDef],
+        positions: &[Vec3],
+        h: f32,
+        (velocities, impulses): (&mut [Vec3], &mut [Vec3]),
+    ) {
+        self.solve(forest, springs, h, velocities);
+        self.spring_impulses(forest, springs, h, velocities, impulses);
+        let mut merit = None;
+        for _ in 0..NEWTON_ROUNDS {
+            if !self.follow_springs(forest, springs, (positions, velocities), h) {
+                return;
+            }
+            let before = merit.unwrap_or_else(|| self.merit(forest, springs, (positions, velocities), h));
+            self.last_velocities.copy_from_slice(velocities);
+            self.hubs.iter_mut().for_each(|hub| hub.last_velocity = hub.velocity);
+            self.last_impulses.copy_from_slice(impulses);
+            self.solve(forest, springs, h, velocities);
+            self.spring_impulses(forest, springs, h, velocities, impulses);
+            let mut after = self.merit(forest, springs, (positions, velocities), h);
+            for _ in 0..HALVINGS {
+                if after.0 <= before.0 + MERIT_ROUNDING * before.1 {
+                    break;
+                }
+                for (now, last) in velocities.iter_mut().zip(&self.last_velocities) {
+                    *now = (*now + *last) * 0.5;
+                }
+                for hub in &mut self.hubs {
+                    hub.velocity = core::array::from_fn(|k| (hub.velocity[k] + hub.last_velocity[k]) * 0.5);
+                }
+                for (now, last) in impulses.iter_mut().zip(&self.last_impulses) {
+                    *now = (*now + *last) * 0.5;
+                }
+                after = self.merit(forest, springs, (positions, velocities), h);
+            }
+            merit = Some(after);
+        }
+    }
+
+    /// The energy of which the velocities at the end of the step are the least, J, and the size of its terms:
+    /// `½ v·M v − p·v`, and what springs have there.
+    fn merit(
+        &self,
+        forest: &Forest,
+        springs: &[SpringDef],
+        (positions, velocities): (&[Vec3], &[Vec3]),
+        h: f32,
+    ) -> (f64, f64) {
+        let (mut sum, mut size) = (0.0, 0.0);
+        for (i, &v) in velocities.iter().enumerate() {
+            if self.freedom[i] != Freedom::Fixed {
+                let own = 0.5 * v.dot((self.inertia[i] + self.added_inertia[i]) * v);
+                let given = (self.momentum[i] + self.added_momentum[i]).dot(v);
+                sum += f64::from(own) - f64::from(given);
+                size += f64::from(own) + f64::from(given.abs());
+            }
+        }
+        for hub in &self.hubs {
+            let (own, terms) = hub.merit();
+            sum += f64::from(own);
+            size += f64::from(terms);
+        }
+        for spring in forest.solved_springs() {
+            let s = &springs[spring as usize];
+            let energy = self.loads[spring as usize].energy(s, at_end(s, positions, velocities, h).0);
+            sum += energy;
+            size += energy;
+        }
+        (sum, size)
+    }
+
+    /// Linearises the springs anew where these velocities would bring them, if any would be there other than foreseen; whether there was
+    /// one.
+    fn follow_springs(
+        &mut self,
+        forest: &Forest,
+        springs: &[SpringDef],
+        (positions, velocities): (&[Vec3], &[Vec3]),
+        h: f32,
+    ) -> bool {
+        let bent = forest.solved_springs().any(|spring| {
+            let s = &springs[spring as usize];
+            let (from_a, ahead) = at_end(s, positions, velocities, h);
+            self.loads[spring as usize].is_bent(s, from_a, ahead, h)
+        });
+        if bent {
+            for spring in forest.solved_springs() {
+                let s = &springs[spring as usize];
+                let (from_a, ahead) = at_end(s, positions, velocities, h);
+                self.loads[spring as usize].linearise(s, from_a, ahead, h);
+            }
+        }
+        bent
+    }
+
+    /// The impulse of the springs on each particle.
+    fn spring_impulses(
+        &self,
+        forest: &Forest,
+        springs: &[SpringDef],
+        h: f32,
+        velocities: &[Vec3],
+        sums: &mut [Vec3],
+    ) {
+        sums.fill(Vec3::ZERO);
+        for spring in forest.solved_springs() {
+            let s = &springs[spring as usize];
+            let (a, b) = (s.a as usize, s.b as usize);
+            let impulse = self.loads[spring as usize].impulse(h, velocities[a], velocities[b]);
+            sums[a] += impulse;
+            sums[b] -= impulse;
+        }
+    }
+}
+
+/// Vector from A to B of a spring at the end of the step, and how far the velocity of A is ahead of that of B.
+fn at_end(s: &SpringDef, positions: &[Vec3], velocities: &[Vec3], h: f32) -> (Vec3, Vec3) {
+    let [a, b] = [s.a as usize, s.b as usize];
+    let ahead = velocities[a] - velocities[b];
+    (positions[b] - positions[a] - ahead * h, ahead)
+}
