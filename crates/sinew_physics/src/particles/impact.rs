@@ -4,7 +4,9 @@
 use super::ParticleGroup;
 use super::contact::{Obstacle, ObstacleBody, Touch};
 use super::sweep::Meeting;
-use crate::particles::tuning::{DETOUR, IMPACT_SPEED, PINCH_SPEED, PINCHING, ROUNDING, SQUEEZE_SPEED};
+use crate::particles::tuning::{
+    DETOUR, IMPACT_SPEED, PINCH_RATE, PINCH_SPEED, PINCHING, ROUNDING, SQUEEZE_SPEED,
+};
 use sinew_math::{Vec3, clamp, max, min, normalize_or};
 
 /// Surfaces that a particle is moved out of, one after the other; after that it stays where it met the next.
@@ -151,7 +153,7 @@ impl ParticleGroup {
         let aside = n - wall.normal * n.dot(wall.normal);
         let begun = self.velocities[i];
         // What it is in the body by opens slowly.
-        touch.speed_min = min(-min(touch.gap, 0.0) / h, PINCH_SPEED);
+        touch.speed_min = min(PINCH_RATE * -min(touch.gap, 0.0), PINCH_SPEED);
         let body = &mut bodies[touch.body];
         let approach = (begun - touch.surface_velocity(body)).dot(n) - touch.speed_min;
         let normal = max(-approach / (own * aside.length_squared() + body.yielding(touch.point, n)), 0.0);

@@ -7,9 +7,6 @@ use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, Settings, find, re
 const NOT_YET: &[(&str, &[&str])] = &[
     // 2.07 mm instead of 2; its line of thrust is nearer to the middle than when it met this.
     ("arch", &["shift_max_m"]),
-    // 1.2: cloth under a limp body that lies on it, and that begins to get up, is lifted out of it; the work of the led bodies is counted too low. Six of eleven blows from
-    // 90 to 150 N·s miss it, by 0.04 to 1.2; all other figures hold with all of them, but a depth of 20.3 mm with 95.
-    ("cape", &["energy_gain_max"]),
     // Heaps are chaotic: from starts that differ by 1 mm the sticks sleep after 212 to 226 steps.
     ("mesh_drop", &["asleep_steps"]),
 ];

@@ -28,14 +28,16 @@ pub(in crate::scenes) const CAPE: Scene = Scene {
     build: cape,
 };
 
-/// Middle of the cape's upper edge, in front of which the shoulders are, from the soles, metres.
-const NAPE: Vec3 = Vec3::new(0.0, 1.42, -0.17);
+/// Middle of the cape's upper edge, on the back between the shoulders, from the soles, metres.
+const NAPE: Vec3 = Vec3::new(0.0, 1.42, -0.09);
 /// Width and length, metres.
 const WIDE: f32 = 0.36;
 const LONG: f32 = 0.96;
 /// Springs along its edges: apart by less than two of the particles.
 const COLUMNS: u32 = 9;
 const ROWS: u32 = 24;
+/// Threads from the shoulders straight back, clear of the arms; from there it hangs.
+const STANDS_OFF: u32 = 2;
 /// Radius of each particle, metres.
 const RADIUS: f32 = 0.02;
 /// Distance before the edge of the porch at which the hit comes, metres.
@@ -85,6 +87,11 @@ fn worn(world: &World, body: BodyId, nape: Vec3, mass: f32) -> GroupDef {
         radius: RADIUS,
     }
     .build();
+    let thread = LONG / ROWS as f32;
+    for (k, particle) in cloth.group.particles.iter_mut().enumerate() {
+        let row = k as u32 / (COLUMNS + 1);
+        particle.position += (Vec3::Y - Vec3::Z) * (thread * u32::min(row, STANDS_OFF) as f32);
+    }
     for particle in cloth.row(0) {
         let place = cloth.group.particles[particle as usize].position;
         let target = AttachmentTarget::Body { body, point: world.transform(body).inverse_point(place) };
