@@ -22,6 +22,7 @@ mod contact;
 mod def;
 mod eights;
 mod elastic;
+mod faces;
 mod forest;
 mod geodesic;
 mod hub;
@@ -55,6 +56,7 @@ use crate::particles::tuning::STRIKE_GAP;
 use batches::Batches;
 use contact::{Grip, Placed, Touch};
 use eights::Eights;
+use faces::Faces;
 use forest::{Forest, Freedom, Holder, System};
 use impact::MAX_TOUCHES;
 use near::Near;
@@ -76,6 +78,7 @@ pub struct ParticleGroup {
     bends: Vec<BendDef>,
     tethers: Vec<TetherDef>,
     volumes: Vec<VolumeDef>,
+    faces: Faces,
     attachments: Vec<AttachmentDef>,
     scheme: SpringScheme,
     iterations: u32,
@@ -191,6 +194,7 @@ impl ParticleGroup {
             bends: def.bends.clone(),
             tethers: def.tethers.clone(),
             volumes: def.volumes.clone(),
+            faces: Faces::new(&def.faces, count),
             scheme: def.scheme,
             iterations: def.iterations,
             attachments: def.attachments.clone(),
