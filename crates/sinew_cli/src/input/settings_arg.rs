@@ -228,6 +228,8 @@ impl LoadedSettings {
     fn analyze(&self, character: &mut CharacterFile) -> Result<()> {
         let analysis = analyze_with(&character.document.rig, &character.analysis, &self.settings);
         character.analysis = analysis.map_err(|error| self.failure(&character.name, error))?;
+        let worn = self.settings.garments.joints(&character.document.rig);
+        character.worn = worn.map_err(|error| self.failure(&character.name, error))?;
         Ok(())
     }
 
@@ -252,7 +254,7 @@ impl LoadedSettings {
         character: &CharacterFile,
         options: &BuildOptions,
     ) -> Result<(RagdollDef, BuildReport)> {
-        let CharacterFile { name, document, analysis } = character;
+        let CharacterFile { name, document, analysis, .. } = character;
         let moves = takes(&document.rig, &document.clips);
         let built = build_moving(&document.rig, analysis, &moves, options, &self.settings);
         let (def, mut report) = built.map_err(|error| self.failure(name, error))?;

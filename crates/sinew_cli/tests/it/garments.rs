@@ -115,6 +115,13 @@ fn a_mesh_becomes_cloth_in_the_bake_that_settings_ask_for() {
     assert_eq!(bake(&["--no-garments"]).json()["garments"]["particles"], 0);
     let bare = load_gltf(&out, ReadOptions::default()).expect("it can be read").rig;
     assert_eq!(bare.meshes, before.meshes, "the file as it was");
+}
+
+#[test]
+fn settings_of_meshes_that_are_wrong_name_file_and_place() {
+    let folder = Folder::new("mesh_garment_errors");
+    let file = folder.file("skirted.glb", glb(&skirted_rig(CELLS), &[]));
+    let out = folder.path("fall.glb");
     for (garment, place, told) in [
         (r#"{"mesh": "Skrit"}"#, "garments[0].mesh", "Skirt"),
         (r#"{"mesh": "Skirt", "chains": ["hips"]}"#, "garments[0].chains", "not of both"),
@@ -123,7 +130,8 @@ fn a_mesh_becomes_cloth_in_the_bake_that_settings_ask_for() {
         (r#"{"mesh": "Skirt", "most_particles": 2}"#, "garments[0].most_particles", "between 4 and 4000"),
         (r#"{"mesh": "Skirt"}, {"mesh": "Tartan"}"#, "garments[1].mesh", "a garment already"),
     ] {
-        settings(garment);
+        let text = format!(r#"{{"sinew": "ragdoll-settings", "version": 1, "garments": [{garment}]}}"#);
+        folder.file("skirted.ragdoll.json", text);
         let error = sinew(&["bake", &file, "-o", &out]).stderr;
         assert!(
             error.contains(place) && error.contains(told) && error.contains("skirted.ragdoll.json"),

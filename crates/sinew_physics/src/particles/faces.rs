@@ -1,6 +1,5 @@
 //! Faces of a sheet: triangles between its particles, by which the air finds it.
 
-use super::ParticleGroup;
 use sinew_math::Vec3;
 
 /// Faces of a group, and which of them each particle is a corner of.
@@ -14,7 +13,7 @@ pub(super) struct Faces {
 }
 
 impl Faces {
-    /// Of `count` particles.
+    /// Faces of a group of `count` particles.
     pub fn new(list: &[[u32; 3]], count: usize) -> Self {
         if list.is_empty() {
             return Self::default();
@@ -37,30 +36,23 @@ impl Faces {
         Self { list: list.to_vec(), starts, corners }
     }
 
+    /// True if a particle is a corner of a face.
+    pub fn has(&self, particle: usize) -> bool {
+        !self.at(particle).is_empty()
+    }
+
+    /// Third of the vector area of each face that a particle is a corner of, m²: the part of the face that moves with it.
+    pub fn parts<'a>(&'a self, positions: &'a [Vec3], particle: usize) -> impl Iterator<Item = Vec3> + 'a {
+        let at = positions[particle];
+        let side = move |corner: u32| positions[corner as usize] - at;
+        self.at(particle).iter().map(move |&[b, c]| side(b).cross(side(c)) / 6.0)
+    }
+
     /// The two other corners of each face of a particle.
     fn at(&self, particle: usize) -> &[[u32; 2]] {
         match self.starts.get(particle..particle + 2) {
             Some(range) => &self.corners[range[0] as usize..range[1] as usize],
             None => &[],
         }
-    }
-}
-
-impl ParticleGroup {
-    /// As they were defined.
-    pub fn faces(&self) -> &[[u32; 3]] {
-        &self.faces.list
-    }
-
-    /// True if a particle is a corner of a face.
-    pub(crate) fn has_faces(&self, particle: usize) -> bool {
-        !self.faces.at(particle).is_empty()
-    }
-
-    /// Third of the vector area of each face that a particle is a corner of, m²: the part of the face that moves with it.
-    pub(crate) fn face_parts(&self, particle: usize) -> impl Iterator<Item = Vec3> + '_ {
-        let at = self.positions[particle];
-        let side = move |corner: u32| self.positions[corner as usize] - at;
-        self.faces.at(particle).iter().map(move |&[b, c]| side(b).cross(side(c)) / 6.0)
     }
 }

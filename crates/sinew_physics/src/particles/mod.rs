@@ -326,6 +326,21 @@ impl ParticleGroup {
         &self.volumes
     }
 
+    /// As they were defined.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces.list
+    }
+
+    /// True if a particle is a corner of a face.
+    pub(crate) fn has_faces(&self, particle: usize) -> bool {
+        self.faces.has(particle)
+    }
+
+    /// Third of the vector area of each face that a particle is a corner of, m².
+    pub(crate) fn face_parts(&self, particle: usize) -> impl Iterator<Item = Vec3> + '_ {
+        self.faces.parts(&self.positions, particle)
+    }
+
     /// As they were defined; [`substep`](Self::substep) takes one [`Anchor`] for each.
     pub fn attachments(&self) -> &[AttachmentDef] {
         &self.attachments

@@ -141,12 +141,7 @@ impl ParticleGroup {
                 passes.push(BodyId::from_bits(input.u64()?));
             }
         }
-        let mut faces = Vec::new();
-        if has & 0b1000 != 0 {
-            for _ in 0..input.count(TRIANGLE_BYTES)? {
-                faces.push(read_triangle(input)?);
-            }
-        }
+        let faces = if has & 0b1000 == 0 { Vec::new() } else { read_triangles(input)? };
         let (iterations, span) = (input.u32()?, input.f32()?);
         let mut def = GroupDef {
             material,
@@ -209,11 +204,15 @@ fn load_net(input: &mut Reader<'_>, def: &mut GroupDef) -> Result<(), ReadError>
     }
     for _ in 0..input.count(VOLUME_BYTES)? {
         let (rest_volume, bulk_modulus) = (input.f32()?, input.f32()?);
-        let count = input.count(TRIANGLE_BYTES)?;
-        let triangles = (0..count).map(|_| read_triangle(input)).collect::<Result<_, _>>()?;
+        let triangles = read_triangles(input)?;
         def.volumes.push(VolumeDef { triangles, rest_volume, bulk_modulus });
     }
     Ok(())
+}
+
+fn read_triangles(input: &mut Reader<'_>) -> Result<Vec<[u32; 3]>, ReadError> {
+    let count = input.count(TRIANGLE_BYTES)?;
+    (0..count).map(|_| read_triangle(input)).collect()
 }
 
 fn read_triangle(input: &mut Reader<'_>) -> Result<[u32; 3], ReadError> {

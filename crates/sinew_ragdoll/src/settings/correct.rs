@@ -19,7 +19,6 @@ pub(super) fn correction(rig: &Rig, settings: &Settings) -> Result<Correction, S
         correction.ignored.extend(joints_named(rig, name, &format!("ignore[{index}]"))?);
     }
     correction.ignored.extend(settings.garments.joints(rig)?);
-    correction.ignored.extend(rig.sheets.iter().flat_map(|sheet| &sheet.joints));
     Ok(correction)
 }
 

@@ -97,8 +97,11 @@ impl GarmentSource {
         Ok(())
     }
 
-    /// Joints that are no part of the body, those of sheets aside.
-    pub(super) fn joints(&self, rig: &Rig) -> Result<Vec<JointIdx>, SettingsError> {
+    /// Joints of garments, which are no part of the body: those of the chains that it lists, and of all sheets.
+    ///
+    /// # Errors
+    /// As [`garments`](Self::garments).
+    pub fn joints(&self, rig: &Rig) -> Result<Vec<JointIdx>, SettingsError> {
         let garments = match self {
             Self::Listed(listed) => {
                 let chains = listed.iter().enumerate().filter(|(_, garment)| garment.mesh.is_none());
@@ -106,7 +109,8 @@ impl GarmentSource {
             }
             other => other.garments(rig)?,
         };
-        Ok(garments.iter().flat_map(Garment::joints).collect())
+        let of_sheets = rig.sheets.iter().flat_map(|sheet| sheet.joints.iter().copied());
+        Ok(garments.iter().flat_map(Garment::joints).chain(of_sheets).collect())
     }
 
     /// Garments of a rig, whose sheets have been laid ([`lay_sheets`](Self::lay_sheets)).

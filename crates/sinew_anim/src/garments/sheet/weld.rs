@@ -15,7 +15,7 @@ pub(super) struct Welded {
     pub slots: Vec<u16>,
     /// Triangles with three corners, each once, whichever way round.
     pub faces: Vec<[usize; 3]>,
-    /// Which of these a vertex of each primitive is; `None` if it is of no triangle.
+    /// Index of the one that each vertex of each primitive is; `None` if it is of no triangle.
     pub of_vertex: Vec<Vec<Option<usize>>>,
 }
 
