@@ -1,5 +1,6 @@
 //! Parts of a character: joints, skins, meshes.
 
+use crate::garments::mesh_sheet::MeshSheet;
 use crate::springs::Springs;
 use sinew_math::{Affine, Rotation, Vec2, Vec3};
 
@@ -75,6 +76,8 @@ pub struct Primitive {
     pub base_color: [f32; 4],
     /// Index into [`Rig::textures`] of the base colour texture.
     pub texture: Option<usize>,
+    /// Name of its material in the file, or `""`.
+    pub material: String,
 }
 
 /// A mesh as placed by one node.
@@ -116,4 +119,6 @@ pub struct Rig {
     pub stated_roles: Vec<(String, JointIdx)>,
     /// Springs that the file itself states (VRM).
     pub springs: Springs,
+    /// Meshes that were made sheets of cloth ([`lay_sheet`](crate::garments::lay_sheet)); of no file.
+    pub sheets: Vec<MeshSheet>,
 }

@@ -109,6 +109,24 @@ pub(crate) const HEM_SHARE: f32 = 0.25;
 /// Larger: an open coat is sewn up. Smaller: a skirt with uneven columns has a slit. Shown by the tests of `garments`.
 pub(crate) const RING_GAP: f32 = 1.5;
 
+// garments/sheet
+
+/// Most particles that a mesh becomes as a sheet of cloth if nothing else is said, a number.
+///
+/// Each is a joint of the file that is written, and of the skin on the graphics card. Larger: slower, and old viewers lose joints. Smaller: a long coat has
+/// coarse folds. Shown by the tests of `sheets`.
+pub const MOST_PARTICLES: usize = 400;
+
+/// Share of a sheet's height, from its highest point down, in which bodies hold it if nothing else is said, 0 to 1.
+///
+/// Larger: a skirt is stiff to the hips. Smaller: of a waistband that is not level a part hangs down. Shown by the tests of `sheets`.
+pub(crate) const HELD_SHARE: f32 = 0.1;
+
+/// Factor by which the distance between particles grows until there are few enough, a ratio.
+///
+/// Larger: coarser sheets than need be. Smaller: more tries. Shown by the tests of `sheets`.
+pub(crate) const COARSER: f32 = 1.1;
+
 // retarget/align.rs
 
 /// Cosine of the angle between two reference poses, 30°, up to which both are taken to stand upright.

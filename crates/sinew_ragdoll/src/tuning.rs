@@ -237,6 +237,19 @@ pub(crate) const SHEET_ITERATIONS: u32 = 4;
 /// Larger: short threads are soft. Smaller: where columns meet in a point, springs are too stiff to be solved. Shown by the tests of `garments`.
 pub(crate) const SHORTEST_THREAD: f32 = 0.1;
 
+// garments/mesh.rs
+
+/// Cosine of the angle, 75°, from which on the edge that lies opposite to it in both of its triangles is the diagonal of a cell, a ratio.
+///
+/// Larger: equal triangles are taken for halves of cells, and are soft along one side. Smaller: cells that are not quite square are stiff across. Shown by the
+/// tests of `mesh_garments`.
+pub(crate) const SQUARE: f32 = 0.26;
+
+/// Cosine of the angle, 143°, from which on two neighbours of a particle lie opposite each other, a ratio.
+///
+/// Larger: folds at corners are resisted that are none. Smaller: uneven meshes do not resist bending. Shown by the tests of `mesh_garments`.
+pub(crate) const STRAIGHT: f32 = -0.8;
+
 // garments/wear.rs
 
 /// Length of a thread over that at rest, or over half the spacing of its sheet if that is longer, from which the body has caught it, a ratio.

@@ -11,6 +11,7 @@ mod framework;
 pub mod maned;
 pub mod played;
 pub mod recording;
+pub mod skirted;
 pub use sinew::mannequin;
 mod parts;
 pub mod scenes;

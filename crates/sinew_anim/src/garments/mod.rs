@@ -1,5 +1,5 @@
 //! Garments of a rig: capes, skirts and coats that hang on chains of joints, as they are stated ([`Garment::on_chains`]) or as
-//! they are guessed from names ([`guess_garments`]).
+//! they are guessed from names ([`guess_garments`]), and meshes that are cloth themselves ([`lay_sheet`]).
 //!
 //! Plain data: `sinew_ragdoll::garments` makes cloth of them. Where springs are light and each chain swings by itself, a garment
 //! is **one sheet**: its chains are sewn together side by side, and it bears on bodies and is borne by them.
@@ -28,9 +28,14 @@
 
 mod columns;
 mod guess;
+pub(crate) mod mesh_sheet;
+mod sheet;
 
+pub use crate::tuning::MOST_PARTICLES;
 pub use columns::{is_ring, side_by_side};
 pub use guess::guess_garments;
+pub use mesh_sheet::MeshSheet;
+pub use sheet::{MeshPart, SheetError, SheetOptions, lay_sheet};
 
 use crate::rig::{JointIdx, Rig};
 use sinew_math::Vec3;
@@ -40,8 +45,10 @@ use sinew_math::Vec3;
 pub struct Garment {
     /// Name of it for people, or `""`.
     pub name: String,
-    /// Chains of joints that it hangs on, side by side; no joint is in two.
+    /// Chains of joints that it hangs on, side by side; no joint is in two. None if it is a sheet.
     pub columns: Vec<GarmentColumn>,
+    /// Mesh that it is, if not chains.
+    pub sheet: Option<MeshSheet>,
     /// True: the last column is sewn to the first, as a skirt's are. Default false.
     pub closed: bool,
     /// Mass of a square metre of it, kg. Default 0.4: wool.
@@ -75,6 +82,7 @@ impl Default for Garment {
         Self {
             name: String::new(),
             columns: Vec::new(),
+            sheet: None,
             closed: false,
             area_density: 0.4,
             radius: 0.015,
@@ -110,8 +118,14 @@ impl Garment {
         Self { closed: is_ring(rig, &columns), columns, ..Self::default() }
     }
 
-    /// All its joints, by column.
+    /// A garment that is a sheet.
+    pub fn of_sheet(sheet: &MeshSheet) -> Self {
+        Self { sheet: Some(sheet.clone()), ..Self::default() }
+    }
+
+    /// All its joints, by column or particle.
     pub fn joints(&self) -> impl Iterator<Item = JointIdx> {
-        self.columns.iter().flat_map(|column| column.joints.iter().copied())
+        let of_columns = self.columns.iter().flat_map(|column| column.joints.iter().copied());
+        of_columns.chain(self.sheet.iter().flat_map(|sheet| sheet.joints.iter().copied()))
     }
 }

@@ -22,6 +22,7 @@ mod roles;
 mod root_motion;
 mod sample;
 mod saving;
+mod sheets;
 mod skinning;
 mod spaces;
 mod stage;

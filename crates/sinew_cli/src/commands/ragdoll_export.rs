@@ -92,7 +92,7 @@ impl RagdollExport {
             return Err(Failure::of_file(self.file.display().to_string(), what));
         }
         let (character, def, mut told) = self.character()?;
-        let CharacterFile { name, document, analysis } = &character;
+        let CharacterFile { name, document, analysis, .. } = &character;
         let KhrFile { bytes, notes } =
             write_khr(document, &analysis.bind_model, &def).map_err(|error| error.with_file(name))?;
         told.extend(notes);

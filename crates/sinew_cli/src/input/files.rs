@@ -2,11 +2,13 @@
 
 use crate::failure::{Failure, Result};
 use crate::input::kin::units_beside;
-use sinew::anim::{Hints, RigAnalysis, analyze_hinted, characters};
+use sinew::anim::roles::Correction;
+use sinew::anim::{Hints, JointIdx, Rig, RigAnalysis, analyze_hinted, characters};
 use sinew::formats::{
     Document, MotionFormat, MotionOptions, ReadOptions, Textures, load_gltf, load_motion, no_files,
     read_bytes, read_gltf, write_all_atomic, write_motion,
 };
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// A character file: what it holds, and what its joints are.
@@ -17,6 +19,8 @@ pub struct CharacterFile {
     pub document: Document,
     /// Analysis of its joints.
     pub analysis: RigAnalysis,
+    /// Joints of garments that settings list: no part of the body.
+    pub worn: Vec<JointIdx>,
 }
 
 impl CharacterFile {
@@ -38,13 +42,18 @@ impl CharacterFile {
         };
         let analysis =
             analyze_hinted(&document.rig, &hints).map_err(|error| Failure::of_file(&name, error))?;
-        let mut file = Self { name, document, analysis };
+        let mut file = Self { name, document, analysis, worn: Vec::new() };
         // A file in metres is taken at its word; of another the others beside it may know more.
         if file.is_in_doubt() && file.analysis.unit_scale != 1.0 {
             let kin = units_beside(path);
             file.hint(&Hints { kin, ..hints })?;
         }
         Ok(file)
+    }
+
+    /// The rig without the skin of garments, which lies on no body.
+    pub fn body(&self) -> Cow<'_, Rig> {
+        Correction { ignored: self.worn.clone(), ..Correction::default() }.seen(&self.document.rig)
     }
 
     /// True if the file's unit may as well be another.

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
-use sinew::anim::{Garment, Hints, RigAnalysis, Role, UnitGuess};
+use sinew::anim::{Garment, Hints, RigAnalysis, Role, UnitGuess, analyze_hinted};
 use sinew::formats::{Textures, read_bytes, read_ragdoll_settings, settings_path};
 use sinew::ragdoll::build::{BuildReport, takes};
 use sinew::ragdoll::quality::Doubt;
@@ -136,15 +136,17 @@ impl SettingsArg {
 
     /// A character with its settings: its roles and its unit are what they say.
     pub fn load_character(&self, path: &Path, textures: Textures) -> Result<(CharacterFile, LoadedSettings)> {
-        self.load_into(path, textures, || None)
+        self.load_into(path, textures, || None, true)
     }
 
-    /// [`Self::load_character`] for a world with doors of a free height (metres) that is asked for if the unit is in doubt.
+    /// [`Self::load_character`] for a world with doors of a free height (metres) that is asked for if the unit is in doubt; with meshes as the garments that the
+    /// settings list, or as they are.
     pub fn load_into(
         &self,
         path: &Path,
         textures: Textures,
         door: impl FnOnce() -> Option<f32>,
+        wears_garments: bool,
     ) -> Result<(CharacterFile, LoadedSettings)> {
         let mut character = CharacterFile::load(path, textures)?;
         character.choose(self.character.map(usize::from))?;
@@ -157,9 +159,14 @@ impl SettingsArg {
             character.hint(&hints)?;
             character.analysis.notes = notes;
         }
-        let loaded = self.load(path)?;
-        let analysis = analyze_with(&character.document.rig, &character.analysis, &loaded.settings);
-        character.analysis = analysis.map_err(|error| loaded.failure(&character.name, error))?;
+        let mut loaded = self.load(path)?;
+        if !wears_garments {
+            loaded.settings.garments.leave_meshes();
+        }
+        loaded.analyze(&mut character)?;
+        if loaded.settings.garments.has_meshes() {
+            loaded.lay_sheets(&mut character)?;
+        }
         Ok((character, loaded))
     }
 
@@ -217,13 +224,37 @@ pub fn assumed(analysis: &RigAnalysis) -> Vec<String> {
 }
 
 impl LoadedSettings {
+    /// Corrects the analysis of a character.
+    fn analyze(&self, character: &mut CharacterFile) -> Result<()> {
+        let analysis = analyze_with(&character.document.rig, &character.analysis, &self.settings);
+        character.analysis = analysis.map_err(|error| self.failure(&character.name, error))?;
+        let worn = self.settings.garments.joints(&character.document.rig);
+        character.worn = worn.map_err(|error| self.failure(&character.name, error))?;
+        Ok(())
+    }
+
+    /// Makes cloth of the meshes that are to be garments, and looks at the character anew, which has more joints now.
+    fn lay_sheets(&self, character: &mut CharacterFile) -> Result<()> {
+        let nodes = character.document.node_count();
+        let rig = &mut character.document.rig;
+        let laid = self.settings.garments.lay_sheets(rig, &character.analysis, nodes);
+        laid.map_err(|error| self.failure(&character.name, error))?;
+        let hints = character.analysis.hints.clone();
+        let notes = core::mem::take(&mut character.analysis.notes);
+        let analysis = analyze_hinted(&character.document.rig, &hints);
+        character.analysis = analysis.map_err(|no_skin| Failure::of_file(&character.name, no_skin))?;
+        self.analyze(character)?;
+        character.analysis.notes = notes;
+        Ok(())
+    }
+
     /// The ragdoll of a character and its clips, and what the build says of it.
     pub fn build(
         &self,
         character: &CharacterFile,
         options: &BuildOptions,
     ) -> Result<(RagdollDef, BuildReport)> {
-        let CharacterFile { name, document, analysis } = character;
+        let CharacterFile { name, document, analysis, .. } = character;
         let moves = takes(&document.rig, &document.clips);
         let built = build_moving(&document.rig, analysis, &moves, options, &self.settings);
         let (def, mut report) = built.map_err(|error| self.failure(name, error))?;

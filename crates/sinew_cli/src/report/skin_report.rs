@@ -22,7 +22,7 @@ impl SkinReport {
     pub fn of(character: &CharacterFile, def: &RagdollDef, tested: &DropReport) -> Self {
         let CharacterFile { document, analysis, .. } = character;
         let moves = takes(&document.rig, &document.clips);
-        let figures = measure_skin(&document.rig, def, &analysis.bind_model, &moves, &tested.falls);
+        let figures = measure_skin(&character.body(), def, &analysis.bind_model, &moves, &tested.falls);
         let flaws = figures.flaws(def);
         Self { figures, flaws }
     }
@@ -32,7 +32,8 @@ impl SkinReport {
         let CharacterFile { document, analysis, .. } = character;
         let moves = takes(&document.rig, &document.clips);
         let (def, baked) = (&fall.input.character.ragdoll, &fall.baked);
-        let mut meter = SkinMeter::new(&document.rig, def, &analysis.bind_model, &moves);
+        let body = character.body();
+        let mut meter = SkinMeter::new(&body, def, &analysis.bind_model, &moves);
         let limp: Vec<&Frame> = baked.frames.iter().filter(|frame| frame.state == State::Limp).collect();
         // Of a bake of minutes a sample: memory goes with the frames.
         for frame in limp.iter().step_by(limp.len().div_ceil(MOST_FRAMES).max(1)) {

@@ -4,8 +4,11 @@ use crate::contract::check_keys;
 use crate::sinew::{Folder, glb, sinew};
 use serde_json::json;
 use sinew::anim::Property;
+use sinew::anim::{local_to_model, skin_vertices};
 use sinew::formats::{ReadOptions, load_gltf};
+use sinew::math::Affine;
 use sinew_scenes::dressed::{CAPE, SKIRT, dressed_rig};
+use sinew_scenes::skirted::{CELLS, skirted_rig};
 
 #[test]
 fn a_cape_moves_in_the_bake_that_settings_ask_for() {
@@ -52,4 +55,87 @@ fn a_cape_moves_in_the_bake_that_settings_ask_for() {
     settings(r#"[{"chains": ["caep_0_0", "cape_1_0"]}]"#);
     let error = sinew(&["bake", &file, "-o", &out]).stderr;
     assert!(error.contains("garments[0].chains[0]") && error.contains("cape_0_0"), "{error}");
+}
+
+/// A skirt that is a mesh becomes cloth in the file that is written: one joint more for each particle, on which its vertices hang, and nothing else changes.
+#[test]
+fn a_mesh_becomes_cloth_in_the_bake_that_settings_ask_for() {
+    let folder = Folder::new("mesh_garments");
+    let rig = skirted_rig(CELLS);
+    let file = folder.file("skirted.glb", glb(&rig, &[]));
+    let settings = |garment: &str| {
+        let text = format!(r#"{{"sinew": "ragdoll-settings", "version": 1, "garments": [{garment}]}}"#);
+        folder.file("skirted.ragdoll.json", text);
+    };
+    settings(r#"{"name": "skirt", "mesh": "Skirt"}"#);
+    let out = folder.path("fall.glb");
+    let bake =
+        |more: &[&str]| sinew(&[&["bake", &file, "--seconds", "2", "-o", &out, "--json"], more].concat());
+    let object = bake(&[]).json();
+    check_keys("bake", &object);
+    let particles = object["garments"]["particles"].as_u64().expect("a number") as usize;
+    assert!((200..=400).contains(&particles), "{particles}");
+    assert!(object["skin"]["covered_share"].as_f64().expect("a number") > 0.95, "{}", object["skin"]);
+
+    let before = load_gltf(&file, ReadOptions::default()).expect("the input").rig;
+    let baked = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+    assert_eq!(baked.rig.joints.len(), before.joints.len() + particles);
+    let skirt =
+        |rig: &sinew::anim::Rig| rig.meshes.iter().position(|mesh| mesh.name == "Skirt").expect("a skirt");
+    let (old, new) =
+        (&before.meshes[skirt(&before)].primitives[0], &baked.rig.meshes[skirt(&baked.rig)].primitives[0]);
+    assert_eq!((&old.positions, &old.indices), (&new.positions, &new.indices));
+    let skin = &baked.rig.skins[baked.rig.meshes[skirt(&baked.rig)].skin.expect("a skin")];
+    let is_cloth = |slot: u16| baked.rig.joints[skin.joints[usize::from(slot)]].name.starts_with("cloth_0_");
+    for (slots, weights) in new.joints.iter().zip(&new.weights) {
+        let hangs = slots.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
+        assert!(
+            hangs.clone().count() > 0 && hangs.clone().all(|(&slot, _)| is_cloth(slot)),
+            "all of it is cloth"
+        );
+    }
+    // At rest it is drawn as it was.
+    let drawn = |rig: &sinew::anim::Rig| {
+        let rest: Vec<_> = rig.joints.iter().map(|joint| joint.rest).collect();
+        let (mut model, mut places, mut normals) = (Vec::new(), Vec::new(), Vec::new());
+        local_to_model(rig, &rest, &Affine::IDENTITY, &mut model);
+        skin_vertices(rig, skirt(rig), 0, &model, &mut places, &mut normals);
+        places
+    };
+    let pairs = drawn(&before).into_iter().zip(drawn(&baked.rig));
+    let off = pairs.map(|(a, b)| (a - b).length()).fold(0.0, f32::max);
+    assert!(off < 1e-5, "off by {off} m");
+    let moving = |property: Property| {
+        let clip = baked.clips.last().expect("a clip");
+        let named = |joint: usize| baked.rig.joints[joint].name.starts_with("cloth_0_");
+        clip.channels.iter().filter(|channel| channel.property == property && named(channel.joint)).count()
+    };
+    assert!(moving(Property::Translation) > particles / 2, "{}", moving(Property::Translation));
+
+    assert_eq!(bake(&["--no-garments"]).json()["garments"]["particles"], 0);
+    let bare = load_gltf(&out, ReadOptions::default()).expect("it can be read").rig;
+    assert_eq!(bare.meshes, before.meshes, "the file as it was");
+}
+
+#[test]
+fn settings_of_meshes_that_are_wrong_name_file_and_place() {
+    let folder = Folder::new("mesh_garment_errors");
+    let file = folder.file("skirted.glb", glb(&skirted_rig(CELLS), &[]));
+    let out = folder.path("fall.glb");
+    for (garment, place, told) in [
+        (r#"{"mesh": "Skrit"}"#, "garments[0].mesh", "Skirt"),
+        (r#"{"mesh": "Skirt", "chains": ["hips"]}"#, "garments[0].chains", "not of both"),
+        (r#"{"mesh": "Skirt", "held": 2}"#, "garments[0].held", "nothing of it is left to hang"),
+        (r#"{"chains": ["hips"], "held": 0.1}"#, "garments[0].held", "only a garment of a `mesh`"),
+        (r#"{"mesh": "Skirt", "most_particles": 2}"#, "garments[0].most_particles", "between 4 and 4000"),
+        (r#"{"mesh": "Skirt"}, {"mesh": "Tartan"}"#, "garments[1].mesh", "a garment already"),
+    ] {
+        let text = format!(r#"{{"sinew": "ragdoll-settings", "version": 1, "garments": [{garment}]}}"#);
+        folder.file("skirted.ragdoll.json", text);
+        let error = sinew(&["bake", &file, "-o", &out]).stderr;
+        assert!(
+            error.contains(place) && error.contains(told) && error.contains("skirted.ragdoll.json"),
+            "{error}"
+        );
+    }
 }

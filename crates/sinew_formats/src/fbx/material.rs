@@ -23,10 +23,9 @@ impl<'a, 'r> Materials<'a, 'r> {
 
     /// Linear RGBA of a part, white where no material says anything, and its picture.
     pub fn look(&mut self, node: &Node, mesh: &ufbx::Mesh, part: &MeshPart) -> ([f32; 4], Option<usize>) {
-        let at = part.index as usize;
-        let material: Option<&Material> =
-            node.materials.get(at).or_else(|| mesh.materials.get(at)).map(|material| &**material);
-        let Some(map) = material.map(|material| &material.pbr.base_color) else { return ([1.0; 4], None) };
+        let Some(map) = of_part(node, mesh, part).map(|material| &material.pbr.base_color) else {
+            return ([1.0; 4], None);
+        };
         // A picture stands in for the colour, it is not tinted by it.
         if let Some(picture) = map.texture.as_ref().and_then(|texture| self.picture(texture)) {
             return ([1.0; 4], Some(picture));
@@ -95,4 +94,15 @@ fn beside(relative: &str, any: &str) -> Vec<String> {
     paths.retain(|path| !path.is_empty());
     paths.dedup();
     paths
+}
+
+/// Material of a part.
+fn of_part<'a>(node: &'a Node, mesh: &'a ufbx::Mesh, part: &MeshPart) -> Option<&'a Material> {
+    let at = part.index as usize;
+    node.materials.get(at).or_else(|| mesh.materials.get(at)).map(|material| &**material)
+}
+
+/// Name of the material of a part, or `""`.
+pub fn name(node: &Node, mesh: &ufbx::Mesh, part: &MeshPart) -> String {
+    of_part(node, mesh, part).map_or(String::new(), |material| material.element.name.to_string())
 }

@@ -1,6 +1,6 @@
 //! Meshes and skins.
 
-use super::material::Materials;
+use super::material::{self, Materials};
 use super::{affine, index, vector};
 use crate::error::{Error, Result};
 use crate::gltf::strongest_four;
@@ -26,6 +26,7 @@ pub(super) fn read_all(scene: &Scene, rig: &mut Rig, materials: &mut Materials<'
         for part in mesh.material_parts.iter().filter(|part| part.num_triangles > 0) {
             let mut primitive = Corners::new(mesh, skin.as_ref(), &name).read(part)?;
             (primitive.base_color, primitive.texture) = materials.look(node, mesh, part);
+            primitive.material = material::name(node, mesh, part);
             primitives.push(primitive);
         }
         if !primitives.is_empty() {

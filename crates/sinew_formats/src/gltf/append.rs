@@ -38,6 +38,8 @@ pub fn append_clip(document: &Document, clip: &Clip, name: &str, extras: Option<
 /// is a prefix of the new one. New are, for each clip, one buffer view, the accessors of the keys and the animation, each at
 /// the end of its list. Channels point at the nodes that the joints came from.
 ///
+/// Where the rig has sheets of cloth ([`sinew_anim::Rig::sheets`]), there is a node for each particle, and the primitives that became cloth hang on these.
+///
 /// What has to change in old entries, and nothing else does:
 /// - `buffers[0].byteLength` grows.
 /// - A `.gltf` becomes one file that can be moved: `buffers[0]` loses its `uri` and becomes the binary chunk, pictures
@@ -57,6 +59,7 @@ pub fn append_clip(document: &Document, clip: &Clip, name: &str, extras: Option<
 pub fn append_clips(document: &Document, clips: &[NewClip<'_>]) -> Result<Vec<u8>> {
     let mut editor = Editor::open(document)?;
     editor.embed_external(document)?;
+    editor.write_sheets(document)?;
     for clip in clips {
         editor.append(document, clip)?;
     }
@@ -238,7 +241,7 @@ impl Editor {
         self.push("accessors", accessor)
     }
 
-    fn push_view(&mut self, bytes: &[u8]) -> Result<usize> {
+    pub(super) fn push_view(&mut self, bytes: &[u8]) -> Result<usize> {
         self.align();
         let view = json!({"buffer": 0, "byteOffset": self.bin.len(), "byteLength": bytes.len()});
         self.bin.extend(bytes);
@@ -250,7 +253,7 @@ impl Editor {
         self.bin.resize(self.bin.len().div_ceil(4) * 4, 0);
     }
 
-    fn list(&mut self, name: &str) -> Result<&mut Vec<Value>> {
+    pub(super) fn list(&mut self, name: &str) -> Result<&mut Vec<Value>> {
         let list = self.root.entry(name).or_insert_with(|| Value::Array(Vec::new()));
         list.as_array_mut().ok_or_else(|| Error::malformed("must be an array", name))
     }

@@ -35,6 +35,8 @@ pub(super) struct Look {
     pub(super) texture: Option<usize>,
     /// Index of the set of texture coordinates that the texture uses.
     pub(super) uv_set: usize,
+    /// Name of the material, or `""`.
+    pub(super) name: String,
 }
 
 impl<'s, 'a> Materials<'s, 'a> {
@@ -58,9 +60,10 @@ impl<'s, 'a> Materials<'s, 'a> {
 
     /// The look of a primitive; white without a material.
     pub(super) fn look(&mut self, primitive: At<'a>) -> Result<Look> {
-        let mut look = Look { base_color: [1.0; 4], texture: None, uv_set: 0 };
+        let mut look = Look { base_color: [1.0; 4], texture: None, uv_set: 0, name: String::new() };
         let Some(material_at) = primitive.get("material")? else { return Ok(look) };
         let material = self.materials[material_at.index(self.materials.len(), "materials")?];
+        look.name = material.name();
         let Some(pbr) = material.get("pbrMetallicRoughness")? else { return Ok(look) };
         look.base_color = pbr.numbers_or("baseColorFactor", [1.0; 4])?.map(|x| clamp(x, 0.0, 1.0));
         let Some(texture) = pbr.get("baseColorTexture")? else { return Ok(look) };

@@ -115,6 +115,7 @@ fn read_primitive<'a>(
         weights,
         base_color: look.base_color,
         texture: look.texture,
+        material: look.name,
     }))
 }
 

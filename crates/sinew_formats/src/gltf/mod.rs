@@ -29,6 +29,7 @@ mod material;
 mod mesh;
 mod meshopt;
 mod scene;
+mod sheets;
 mod source;
 mod springs;
 mod vrm;
@@ -106,6 +107,11 @@ impl Document {
     /// `asset.generator`: the program that wrote the file, or `""`.
     pub fn generator(&self) -> &str {
         self.json["asset"]["generator"].as_str().unwrap_or_default()
+    }
+
+    /// Number of nodes of the file.
+    pub fn node_count(&self) -> usize {
+        self.json["nodes"].as_array().map_or(0, Vec::len)
     }
 
     /// Names of the extensions that the file uses.

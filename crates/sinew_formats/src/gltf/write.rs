@@ -158,9 +158,13 @@ impl Writer {
         }
         let indices = part.indices.iter().flat_map(|i| i.to_le_bytes());
         let indices = self.push(UNSIGNED_INT, "SCALAR", part.indices.len(), indices);
-        self.materials.push(json!({"pbrMetallicRoughness": {
+        let mut material = json!({"pbrMetallicRoughness": {
             "baseColorFactor": part.base_color, "metallicFactor": 0.0, "roughnessFactor": 0.8,
-        }}));
+        }});
+        if !part.material.is_empty() {
+            material["name"] = part.material.as_str().into();
+        }
+        self.materials.push(material);
         json!({"attributes": attributes, "indices": indices, "material": self.materials.len() - 1})
     }
 

@@ -33,7 +33,7 @@
 //! parent as in [ragdoll files](super), each range by itself, and `friction_torque` in N·m. Joints that `ignore` names are no part
 //! of the body, with all that hangs below them. `springs` that the character wears are those that the `file` states, where it states
 //! none those that `names` of joints tell of, or `none`. `garments` are those that `names` tell of, `none`, or a list: each with the `chains` of joints that
-//! it is sewn of, and its cloth ([`Garment`]).
+//! it is sewn of, or the `mesh` that it is, and its cloth ([`Garment`]).
 //!
 //! ```
 //! use sinew_formats::read_ragdoll_settings;
@@ -49,8 +49,8 @@ use crate::error::{Error, Result, quoted};
 use sinew_anim::{Garment, Role};
 use sinew_math::Range;
 use sinew_ragdoll::settings::{
-    BodyWish, BoneSettings, GarmentSettings, GarmentSource, JointWish, Settings, ShapeWish, SpringSource,
-    Unit, nearest, role_named,
+    BodyWish, BoneSettings, GarmentSettings, GarmentSource, JointWish, MeshSettings, Settings, ShapeWish,
+    SpringSource, Unit, nearest, role_named,
 };
 use sinew_ragdoll::{LimitSource, Sex, ShapeChoice};
 
@@ -75,10 +75,13 @@ const ROOT_KEYS: [&str; 16] = [
     "garments",
 ];
 
-const GARMENT_KEYS: [&str; 15] = [
+const GARMENT_KEYS: [&str; 18] = [
     "comment",
     "name",
     "chains",
+    "mesh",
+    "held",
+    "most_particles",
     "closed",
     "area_density",
     "radius",
@@ -92,6 +95,9 @@ const GARMENT_KEYS: [&str; 15] = [
     "meets_arms",
     "thickness",
 ];
+
+/// Particles that a sheet may have at most: each is a joint in the file.
+const SHEET_PARTICLES: core::ops::RangeInclusive<usize> = 4..=4000;
 
 const BONE_KEYS: [&str; 9] =
     ["comment", "role", "body", "shape", "scale", "mass", "type", "limits_deg", "friction_torque"];
@@ -190,7 +196,7 @@ fn read_garments(at: At<'_>) -> Result<GarmentSource> {
 
 fn read_garment(at: At<'_>) -> Result<GarmentSettings> {
     only(at, &GARMENT_KEYS)?;
-    at.need("chains")?;
+    let mesh = read_mesh(at)?;
     let usual = Garment::default();
     let positive = |key: &str, usual: f32| at.get(key)?.map_or(Ok(usual), At::positive);
     let not_negative = |key: &str, usual: f32| at.get(key)?.map_or(Ok(usual), At::not_negative);
@@ -211,9 +217,44 @@ fn read_garment(at: At<'_>) -> Result<GarmentSettings> {
     };
     Ok(GarmentSettings {
         chains: read_names(at, "chains")?,
+        mesh,
         closed: at.get("closed")?.map(At::bool).transpose()?,
         cloth,
     })
+}
+
+/// The mesh that a garment is; `None` if it is of chains.
+fn read_mesh(at: At<'_>) -> Result<Option<MeshSettings>> {
+    let Some(mesh) = at.get("mesh")? else {
+        for key in ["held", "most_particles"] {
+            if let Some(there) = at.get(key)? {
+                return Err(there.malformed("only a garment of a `mesh` has it"));
+            }
+        }
+        at.need("chains")?;
+        return Ok(None);
+    };
+    for key in ["chains", "closed"] {
+        if let Some(there) = at.get(key)? {
+            return Err(there.malformed("a garment is of `chains` or of a `mesh`, not of both"));
+        }
+    }
+    let usual = MeshSettings::new(mesh.str()?);
+    let most_particles = match at.get("most_particles")? {
+        None => usual.most_particles,
+        Some(most) => {
+            let number = most.usize()?;
+            if !SHEET_PARTICLES.contains(&number) {
+                return Err(most.malformed("must lie between 4 and 4000"));
+            }
+            number
+        }
+    };
+    Ok(Some(MeshSettings {
+        held: at.get("held")?.map(At::not_negative).transpose()?,
+        most_particles,
+        ..usual
+    }))
 }
 
 fn read_role(at: At<'_>) -> Result<Role> {

@@ -171,6 +171,24 @@ fn box_panels(half: Vec3, at: &Transform, visit: &mut impl FnMut(Panel)) {
     }
 }
 
+/// Force of a stream on a face of a sheet with that vector area, m², from either side, N, and how it brakes, N·s/m: see [`Wind`](super::Wind).
+pub(super) fn face_force(area: Vec3, stream: Vec3, density: f32, drag: f32, lift: f32) -> (Vec3, f32) {
+    let (size, speed) = (area.length(), stream.length());
+    if size <= 0.0 || speed <= 0.0 {
+        return (Vec3::ZERO, 0.0);
+    }
+    let normal = area / size;
+    let through = stream.dot(normal);
+    let pressure = 0.5 * density * size * through.abs();
+    let aside = normal * speed * sign(through) - stream * (through.abs() / speed);
+    let force = normal * (pressure * drag * through) + aside * (pressure * lift);
+    (force, density * size * (drag * through.abs() + lift * speed))
+}
+
+fn sign(x: f32) -> f32 {
+    if x < 0.0 { -1.0 } else { 1.0 }
+}
+
 /// Force of a stream on a panel, N, and how it brakes, N·s/m: see [`Wind`](super::Wind).
 pub(super) fn stream_force(panel: &Panel, stream: Vec3, density: f32, drag: f32, lift: f32) -> (Vec3, f32) {
     let speed = stream.length();

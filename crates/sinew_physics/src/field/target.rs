@@ -20,10 +20,12 @@ pub(crate) struct Target<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Form<'a> {
     Body(&'a Body),
-    /// Ball of a radius, on some layers.
+    /// Ball of a radius, on some layers; to the air the faces of its group that it is a corner of, if there are any.
     Particle {
         radius: f32,
         layers: u32,
+        group: &'a ParticleGroup,
+        index: usize,
     },
 }
 
@@ -38,13 +40,18 @@ impl<'a> Target<'a> {
         Self { pose, velocity, mass: body.mass, gravity_scale: body.gravity_scale, form }
     }
 
-    pub fn of_particle(group: &ParticleGroup, index: usize) -> Self {
+    pub fn of_particle(group: &'a ParticleGroup, index: usize) -> Self {
         Self {
             pose: Transform::from_translation(group.positions()[index]),
             velocity: Velocity { linear: group.velocities()[index], angular: Vec3::ZERO },
             mass: group.masses()[index],
             gravity_scale: group.gravity_scale(),
-            form: Form::Particle { radius: group.radii()[index], layers: group.filter().layers },
+            form: Form::Particle {
+                radius: group.radii()[index],
+                layers: group.filter().layers,
+                group,
+                index,
+            },
         }
     }
 
@@ -65,6 +72,14 @@ impl<'a> Target<'a> {
                 body.shapes.is_empty() || surfaces.any(|surface| surface.filter.layers & layers != 0)
             }
             Form::Particle { layers: own, .. } => own & layers != 0,
+        }
+    }
+
+    /// The faces that it is a corner of, if it is a particle of a sheet.
+    pub(super) fn face_parts(&self) -> Option<impl Iterator<Item = Vec3> + 'a> {
+        match self.form {
+            Form::Particle { group, index, .. } if group.has_faces(index) => Some(group.face_parts(index)),
+            _ => None,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Moving air.
 
 use super::def::{not_negative, positive};
-use super::exposed::{exposed, stream_force};
+use super::exposed::{exposed, face_force, stream_force};
 use super::noise::turbulence;
 use super::{Load, Target};
 use sinew_geometry::DefError;
@@ -21,6 +21,16 @@ use sinew_math::Vec3;
 /// `½ ρ C_d A |w|²`). Sheltered sides feel nothing, and bodies shelter no others. A force acts where its panel is, so
 /// a plate turns in the wind, and spin is braked. Steady speed of a ball that falls through still air: `√(2 m g / (ρ C_d π
 /// r²))`.
+///
+/// A sheet of particles that knows its [faces](crate::particles::GroupDef::faces) is thin: the air presses on either side, along its
+/// normal, by the square of what comes straight at it, and slides along it without friction. With `n` on the lee side
+///
+/// ```text
+/// pressure = ½ ρ C_d (w·n)² A n        lift = ½ ρ C_l |w| (w·n) A (n − c ŵ), c = n·ŵ > 0
+/// ```
+///
+/// of each face in three equal parts, each moving with one of its corners: a flat sheet at rest bears `½ ρ C_d A |w|² cos²θ` in a wind that comes at `θ` from its
+/// normal, and falls flat through still air at `√(2 m g / (ρ C_d A))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -88,6 +98,14 @@ impl Wind {
     }
 
     pub(super) fn act(&self, target: &Target<'_>, nanoseconds: u64, load: &mut Load) {
+        if let Some(parts) = target.face_parts() {
+            let stream = self.at(target.center(), nanoseconds) - target.velocity.linear;
+            for area in parts {
+                let (force, brake) = face_force(area, stream, self.density, self.drag, self.lift);
+                load.push_at(Vec3::ZERO, force, brake);
+            }
+            return;
+        }
         target.for_each_shape(|shape, at| {
             let air = self.at(at.translation, nanoseconds);
             let stream = air - target.velocity_at(at.translation);

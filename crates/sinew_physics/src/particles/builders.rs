@@ -278,6 +278,12 @@ impl ClothDef {
                 join_row(&mut cloth, [0, 1], [[column, row]], high, stiffness);
             }
         }
+        for row in 0..rows {
+            for column in 0..columns {
+                let [a, b] = [row, row + 1].map(|row| cloth.particle(column, row));
+                cloth.group.faces.extend([[a, b, b + 1], [a, b + 1, a + 1]]);
+            }
+        }
         if self.shearing > 0.0 {
             self.brace(&mut cloth, (wide * wide + high * high).sqrt());
         }

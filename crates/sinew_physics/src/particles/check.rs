@@ -31,6 +31,7 @@ impl GroupDef {
         self.springs.iter().try_for_each(|s| s.check(count))?;
         self.bends.iter().try_for_each(|b| b.check(count))?;
         self.volumes.iter().try_for_each(|v| v.check(count))?;
+        check_faces(&self.faces, count)?;
         let mut held = vec![false; count];
         for a in &self.attachments {
             let taken = held.get_mut(a.particle as usize).is_none_or(|held| core::mem::replace(held, true));
@@ -50,6 +51,19 @@ impl GroupDef {
         must(not_negative(self.thickness), "the thickness must not be negative")?;
         must((1..=MAX_ITERATIONS).contains(&self.iterations), "there must be 1 to 64 iterations")
     }
+}
+
+fn check_faces(faces: &[[u32; 3]], count: usize) -> Result<(), DefError> {
+    let sorted = |face: &[u32; 3]| {
+        let mut corners = *face;
+        corners.sort_unstable();
+        corners
+    };
+    let mut all: Vec<[u32; 3]> = faces.iter().map(sorted).collect();
+    let is_face = |&[a, b, c]: &[u32; 3]| a < b && b < c && (c as usize) < count;
+    must(all.iter().all(is_face), "a face must be of three different particles of its group")?;
+    all.sort_unstable();
+    must(all.windows(2).all(|pair| pair[0] != pair[1]), "a face must not be there twice")
 }
 
 impl ParticleDef {

@@ -164,6 +164,9 @@ pub struct GroupDef {
     pub tethers: Vec<TetherDef>,
     /// Volumes that particles enclose; projected last.
     pub volumes: Vec<VolumeDef>,
+    /// Faces of a sheet, each with three of its particles, in any order, and each at most once: [`Wind`](crate::Wind) presses on them, from either side,
+    /// where it would else find balls. For what encloses a volume leave them out: its lee side would be pressed on as well. Default none.
+    pub faces: Vec<[u32; 3]>,
     /// Held particles; each at most once.
     pub attachments: Vec<AttachmentDef>,
     /// Scheme by which springs are solved. Default implicit.
@@ -200,6 +203,7 @@ impl Default for GroupDef {
             bends: Vec::new(),
             tethers: Vec::new(),
             volumes: Vec::new(),
+            faces: Vec::new(),
             attachments: Vec::new(),
             scheme: SpringScheme::Implicit,
             iterations: 1,

@@ -24,6 +24,7 @@ mod def;
 mod eights;
 mod elastic;
 mod elimination;
+mod faces;
 mod forest;
 mod geodesic;
 mod hub;
@@ -59,6 +60,7 @@ use crate::particles::tuning::STRIKE_GAP;
 use batches::Batches;
 use contact::{Grip, Placed, Touch};
 use eights::Eights;
+use faces::Faces;
 use forest::{Forest, Holder};
 use impact::MAX_TOUCHES;
 use near::Near;
@@ -81,6 +83,7 @@ pub struct ParticleGroup {
     bends: Vec<BendDef>,
     tethers: Vec<TetherDef>,
     volumes: Vec<VolumeDef>,
+    faces: Faces,
     attachments: Vec<AttachmentDef>,
     scheme: SpringScheme,
     iterations: u32,
@@ -196,6 +199,7 @@ impl ParticleGroup {
             bends: def.bends.clone(),
             tethers: def.tethers.clone(),
             volumes: def.volumes.clone(),
+            faces: Faces::new(&def.faces, count),
             scheme: def.scheme,
             iterations: def.iterations,
             attachments: def.attachments.clone(),
@@ -325,6 +329,21 @@ impl ParticleGroup {
     /// As they were defined.
     pub fn volumes(&self) -> &[VolumeDef] {
         &self.volumes
+    }
+
+    /// As they were defined.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces.list
+    }
+
+    /// True if a particle is a corner of a face.
+    pub(crate) fn has_faces(&self, particle: usize) -> bool {
+        self.faces.has(particle)
+    }
+
+    /// Third of the vector area of each face that a particle is a corner of, m².
+    pub(crate) fn face_parts(&self, particle: usize) -> impl Iterator<Item = Vec3> + '_ {
+        self.faces.parts(&self.positions, particle)
     }
 
     /// As they were defined; [`substep`](Self::substep) takes one [`Anchor`] for each.

@@ -28,14 +28,19 @@ impl ParticleGroup {
         out.f32(self.gravity_scale);
         save_filter(out, self.filter);
         let (projected, thickness) = (self.scheme == SpringScheme::Projected, self.thickness());
-        let passes = !self.passes.is_empty();
-        out.u8(u8::from(projected) | u8::from(thickness > 0.0) << 1 | u8::from(passes) << 2);
+        let (passes, faces) = (!self.passes.is_empty(), !self.faces().is_empty());
+        let has = u8::from(projected) | u8::from(thickness > 0.0) << 1;
+        out.u8(has | u8::from(passes) << 2 | u8::from(faces) << 3);
         if thickness > 0.0 {
             out.f32(thickness);
         }
         if passes {
             out.count(self.passes.len());
             self.passes.iter().for_each(|body| out.u64(body.to_bits()));
+        }
+        if faces {
+            out.count(self.faces().len());
+            self.faces().iter().flatten().for_each(|&i| out.u32(i));
         }
         out.u32(self.iterations);
         out.f32(self.span);
@@ -125,7 +130,7 @@ impl ParticleGroup {
         let (linear_damping, gravity_scale) = (input.f32()?, input.f32()?);
         let filter = load_filter(input)?;
         let has = input.u8()?;
-        if has > 0b111 {
+        if has > 0b1111 {
             return Err(input.error("a scheme is neither of the two"));
         }
         let scheme = if has & 1 == 0 { SpringScheme::Implicit } else { SpringScheme::Projected };
@@ -136,6 +141,7 @@ impl ParticleGroup {
                 passes.push(BodyId::from_bits(input.u64()?));
             }
         }
+        let faces = if has & 0b1000 == 0 { Vec::new() } else { read_triangles(input)? };
         let (iterations, span) = (input.u32()?, input.f32()?);
         let mut def = GroupDef {
             material,
@@ -145,6 +151,7 @@ impl ParticleGroup {
             scheme,
             thickness,
             passes,
+            faces,
             iterations,
             ..GroupDef::default()
         };
@@ -197,11 +204,15 @@ fn load_net(input: &mut Reader<'_>, def: &mut GroupDef) -> Result<(), ReadError>
     }
     for _ in 0..input.count(VOLUME_BYTES)? {
         let (rest_volume, bulk_modulus) = (input.f32()?, input.f32()?);
-        let count = input.count(TRIANGLE_BYTES)?;
-        let triangles = (0..count).map(|_| read_triangle(input)).collect::<Result<_, _>>()?;
+        let triangles = read_triangles(input)?;
         def.volumes.push(VolumeDef { triangles, rest_volume, bulk_modulus });
     }
     Ok(())
+}
+
+fn read_triangles(input: &mut Reader<'_>) -> Result<Vec<[u32; 3]>, ReadError> {
+    let count = input.count(TRIANGLE_BYTES)?;
+    (0..count).map(|_| read_triangle(input)).collect()
 }
 
 fn read_triangle(input: &mut Reader<'_>) -> Result<[u32; 3], ReadError> {

@@ -28,7 +28,7 @@ impl World {
         for id in groups {
             for particle in 0..self.particles(id).positions().len() {
                 let target = Target::of_particle(self.particles(id), particle);
-                let Form::Particle { radius, layers } = target.form else { continue };
+                let Form::Particle { radius, layers, .. } = target.form else { continue };
                 let (impulse, to) = explosion.push(&Shape::Sphere { radius }, &target.pose);
                 if layers & explosion.layers != 0 && !self.shelters(explosion, to) {
                     self.particles_mut(id).apply_impulse(particle as u32, impulse);

@@ -2,4 +2,5 @@
 
 mod closed_forms;
 mod forces;
+mod sheets;
 mod state;

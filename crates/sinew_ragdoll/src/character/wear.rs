@@ -63,7 +63,7 @@ impl Character {
             if self.state == State::Animated {
                 self.wearer(&self.swung).mend(world, &worn.groups);
             }
-            self.wearer(&self.swung).turns(world, &worn.groups, &mut worn.turns);
+            self.wearer(&self.swung).turns(world, &mut worn);
         }
         self.worn = worn;
     }
@@ -96,6 +96,9 @@ impl Character {
         let springs = def.springs().joints().zip(self.swing.turns());
         for (joint, &turn) in springs.chain(def.garments().joints().zip(&self.worn.turns)) {
             self.swung[joint].rotation = turn;
+        }
+        for (joint, &place) in def.garments().moving().zip(&self.worn.places) {
+            self.swung[joint].translation = place;
         }
     }
 

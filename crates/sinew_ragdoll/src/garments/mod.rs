@@ -35,6 +35,7 @@
 //! ```
 
 mod grid;
+mod mesh;
 mod rig;
 mod sheet;
 mod wear;

@@ -1,8 +1,10 @@
 //! Garments as they are worn: sheets, and the joints that turn with them, parents first.
 
+use super::mesh::Grain;
 use super::sheet::Sheet;
 use crate::def::RagdollDef;
 use crate::mapping::Mapping;
+use sinew_anim::garments::MeshSheet;
 use sinew_anim::{Garment, JointIdx, Rig};
 use sinew_math::{Affine, Mat3, Rotation, Vec3, any_orthonormal, direction};
 
@@ -12,8 +14,27 @@ pub(super) struct Node {
     pub joint: JointIdx,
     /// Index among the nodes; smaller than its own.
     pub parent: Option<usize>,
-    /// Bone that turns it.
-    pub bone: Option<usize>,
+    /// Reason for which it moves.
+    pub moves: Moves,
+}
+
+/// Reason for which a joint moves with a garment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Moves {
+    /// It does not.
+    Nothing,
+    /// It turns: index of the bone that it is.
+    Bone(usize),
+    /// It is a particle: index of the grain.
+    Particle(usize),
+}
+
+/// Nodes that a sheet lies on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Hanging {
+    Columns(Vec<Column>),
+    /// One for each particle.
+    Particles(Vec<usize>),
 }
 
 /// Bone that lies in a sheet.
@@ -47,8 +68,12 @@ pub struct GarmentRig {
     pub(super) bones: Vec<Bone>,
     /// One for each garment that has one.
     pub(super) sheets: Vec<Sheet>,
-    /// Columns of each sheet.
-    pub(super) columns: Vec<Vec<Column>>,
+    /// Particles that are joints, by node, ascending.
+    pub(super) grains: Vec<Grain>,
+    /// Nodes of each sheet.
+    pub(super) hung: Vec<Hanging>,
+    /// Joints that turn, parents first.
+    turning: Vec<JointIdx>,
     left_out: Vec<JointIdx>,
 }
 
@@ -64,7 +89,8 @@ struct Hung<'a> {
 
 impl GarmentRig {
     /// Garments of a rig with a ragdoll, `bind_model` its bind pose in model space. Columns are left out ([`left_out`](Self::left_out)) that no body
-    /// carries, that have no length, or a joint of which moves a body or is in another column; so are garments of less than two.
+    /// carries, that have no length, or a joint of which moves a body or is in another column; so are garments of less than two, and sheets of a mesh a
+    /// particle of which no body carries.
     ///
     /// # Panics
     /// If a joint is named that is not there, or a number of a garment makes no sense.
@@ -78,7 +104,15 @@ impl GarmentRig {
         let mut it = Self { source: garments.to_vec(), ..Self::default() };
         let mut taken = vec![false; rig.joints.len()];
         let mut worn: Vec<(&Garment, Vec<Hung<'_>>)> = Vec::new();
+        let mut sheets: Vec<(&Garment, &MeshSheet, Vec<usize>)> = Vec::new();
         for garment in garments {
+            if let Some(mesh) = &garment.sheet {
+                match it.holders(rig, mapping, mesh, &mut taken) {
+                    Some(bodies) => sheets.push((garment, mesh, bodies)),
+                    None => it.left_out.extend(&mesh.joints),
+                }
+                continue;
+            }
             let hung = it.hang(rig, mapping, bind_model, garment, &mut taken);
             if hung.len() < 2 {
                 it.left_out.extend(hung.iter().flat_map(|column| column.joints));
@@ -87,7 +121,8 @@ impl GarmentRig {
             }
         }
         let needed = worn.iter().flat_map(|(_, hung)| hung).flat_map(|column| column.joints);
-        let node_of = it.add_nodes(rig, needed.copied());
+        let of_meshes = sheets.iter().flat_map(|(_, mesh, _)| &mesh.joints);
+        let node_of = it.add_nodes(rig, needed.chain(of_meshes).copied());
         let bind = |joint: JointIdx| mapping.character_from_model() * bind_model[joint];
         for (garment, hung) in &worn {
             let ways: Vec<Vec<Vec3>> = hung.iter().map(|column| column.way.clone()).collect();
@@ -100,14 +135,65 @@ impl GarmentRig {
                 nodes: column.joints.iter().map(node).collect(),
                 tip: column.tip,
             };
-            it.columns.push(hung.iter().map(column).collect());
+            it.hung.push(Hanging::Columns(hung.iter().map(column).collect()));
             it.sheets.push(sheet);
         }
-        it.bones.sort_by_key(|bone| bone.node);
-        for (index, bone) in it.bones.iter().enumerate() {
-            it.nodes[bone.node].bone = Some(index);
+        for (garment, mesh, bodies) in sheets {
+            it.add_mesh(garment, mesh, &bodies, &node_of, ragdoll, bind);
         }
+        it.finish();
         it
+    }
+
+    /// Says for each node why it moves.
+    fn finish(&mut self) {
+        let it = self;
+        it.bones.sort_by_key(|bone| bone.node);
+        it.grains.sort_by_key(|grain| grain.node);
+        for (index, bone) in it.bones.iter().enumerate() {
+            it.nodes[bone.node].moves = Moves::Bone(index);
+        }
+        for (index, grain) in it.grains.iter().enumerate() {
+            it.nodes[grain.node].moves = Moves::Particle(index);
+        }
+        let turning = it.nodes.iter().filter(|node| node.moves != Moves::Nothing);
+        it.turning = turning.map(|node| node.joint).collect();
+    }
+
+    /// Bodies that the particles of a mesh hang from; `None` if no body carries one, or one moves a body or is in another garment.
+    fn holders(
+        &self,
+        rig: &Rig,
+        mapping: &Mapping,
+        mesh: &MeshSheet,
+        taken: &mut [bool],
+    ) -> Option<Vec<usize>> {
+        let body = |&joint: &JointIdx| {
+            let is_free = !mapping.moves_bodies(joint) && !core::mem::replace(&mut taken[joint], true);
+            mapping.body_above(rig, joint).filter(|_| is_free)
+        };
+        mesh.joints.iter().map(body).collect()
+    }
+
+    fn add_mesh(
+        &mut self,
+        garment: &Garment,
+        mesh: &MeshSheet,
+        bodies: &[usize],
+        node_of: &[Option<usize>],
+        ragdoll: &RagdollDef,
+        bind: impl Fn(JointIdx) -> Affine,
+    ) {
+        let drawn: Vec<Vec3> = mesh.joints.iter().map(|&joint| bind(joint).translation).collect();
+        let sheet = Sheet::of_mesh(garment, mesh, &drawn, bodies, ragdoll);
+        let nodes: Vec<usize> =
+            mesh.joints.iter().map(|&joint| node_of[joint].expect("its joints are nodes")).collect();
+        for (particle, &node) in nodes.iter().enumerate() {
+            let bone = bind(mesh.joints[particle]).to_rigid().rotation;
+            self.grains.push(Grain::new(node, self.sheets.len(), &sheet, mesh, particle, bone));
+        }
+        self.hung.push(Hanging::Particles(nodes));
+        self.sheets.push(sheet);
     }
 
     /// Columns of a garment that can be worn.
@@ -153,7 +239,7 @@ impl GarmentRig {
         for joint in (0..needed.len()).filter(|&joint| needed[joint]) {
             let parent = rig.joints[joint].parent.and_then(|parent| node_of[parent]);
             node_of[joint] = Some(self.nodes.len());
-            self.nodes.push(Node { joint, parent, bone: None });
+            self.nodes.push(Node { joint, parent, moves: Moves::Nothing });
         }
         node_of
     }
@@ -169,7 +255,8 @@ impl GarmentRig {
         let places: Vec<Vec3> = sheet.group.particles.iter().map(|particle| particle.position).collect();
         for (index, column) in hung.iter().enumerate() {
             let on_column = |line: &super::grid::Line| line.column == index && line.share == 0.0;
-            let line = sheet.grid.lines.iter().position(on_column).expect("each column has a line");
+            let grid = sheet.grid.as_ref().expect("a sheet on columns is a grid");
+            let line = grid.lines.iter().position(on_column).expect("each column has a line");
             let whole = super::grid::length(&column.way);
             let share = |at: usize| super::grid::length(&column.way[..=at]) / whole;
             for (at, &joint) in column.joints.iter().enumerate().take(column.way.len() - 1) {
@@ -199,7 +286,12 @@ impl GarmentRig {
 
     /// Joints that turn, parents first.
     pub fn joints(&self) -> impl ExactSizeIterator<Item = JointIdx> {
-        self.bones.iter().map(|bone| self.nodes[bone.node].joint)
+        self.turning.iter().copied()
+    }
+
+    /// Joints that are particles and so move as well, parents first.
+    pub fn moving(&self) -> impl ExactSizeIterator<Item = JointIdx> {
+        self.grains.iter().map(|grain| self.nodes[grain.node].joint)
     }
 
     /// Joints of columns that were left out.
@@ -222,7 +314,7 @@ impl Bone {
     /// Rotation of the sheet under it, where its particles are at `places`: y along the bone, x across, as far as there is a width. `None` if it is
     /// crumpled to a point.
     pub fn frame(&self, sheet: &Sheet, places: &[Vec3]) -> Option<Rotation> {
-        let grid = &sheet.grid;
+        let grid = sheet.grid.as_ref()?;
         let on = |line: usize, share: f32| grid.on_line(places, line, share);
         let y = direction(on(self.line, self.to) - on(self.line, self.from))?;
         let [before, after] = grid.beside(self.line);

@@ -1,25 +1,32 @@
 //! The sheet of a garment: its particles at rest, and what joins them.
 
 use super::grid::Grid;
+use super::mesh;
 use crate::def::RagdollDef;
 use crate::tuning::{CLEARINGS, SHEET_ITERATIONS, SHORTEST_THREAD};
 use sinew_anim::Garment;
+use sinew_anim::garments::MeshSheet;
 use sinew_math::{Transform, Vec3, max};
 use sinew_physics::particles::{GroupDef, ParticleDef, SpringDef, SpringScheme, TetherDef};
 use sinew_physics::{Material, Shape};
 
-/// Sheet of a garment. Its particles stand line by line, from the seam to the hem.
+/// Sheet of a garment. Particles of a grid stand line by line, from the seam to the hem, those of a mesh in the order of its joints.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sheet {
-    pub grid: Grid,
+    /// Lines and rows, if it hangs on columns.
+    pub grid: Option<Grid>,
     /// Particles at rest outside of the bodies, character space, metres, with springs, bends and tethers; nothing holds them yet.
     pub group: GroupDef,
     /// Way out of the bodies that each particle was taken at rest, character space, metres.
     pub moved_out: Vec<Vec3>,
     /// Most distance between particles beside each other, metres.
     pub spacing: f32,
-    /// Body that holds each line at the seam.
+    /// Particles that bodies hold.
+    pub is_held: Vec<bool>,
+    /// Body that holds each particle, or that it hangs from.
     pub held_by: Vec<usize>,
+    /// Number of what each particle hangs in: its line, or those that hang from one held particle.
+    pub strand: Vec<usize>,
     /// Bodies of the wearer that pass through it, ascending.
     pub passed: Vec<usize>,
 }
@@ -28,21 +35,85 @@ impl Sheet {
     /// A sheet of a garment on `columns` (ways from the seam to the hem in the bind pose, character space, metres), each held by a body of the ragdoll.
     pub fn new(garment: &Garment, columns: &[Vec<Vec3>], held_by: &[usize], ragdoll: &RagdollDef) -> Self {
         let passed = passed(garment, held_by, ragdoll);
-        let met = ragdoll.bodies.iter().enumerate().filter(|(body, _)| !passed.contains(body));
-        let bodies = met.map(|(_, body)| (&body.shape, body.character_from_body));
         let grid = Grid::new(columns, garment.closed, garment.spacing);
         let mut drawn = Vec::new();
         grid.places(columns, &mut drawn);
-        let mut places = drawn.clone();
-        for line in 0..grid.lines.len() {
-            let free = grid.particle(line, 1)..=grid.particle(line, grid.rows);
-            places[free].iter_mut().for_each(|place| *place = cleared(*place, garment.radius, &bodies));
-        }
+        let strand: Vec<usize> = (0..drawn.len()).map(|particle| particle / (grid.rows + 1)).collect();
+        let is_held: Vec<bool> =
+            (0..drawn.len()).map(|particle| particle.is_multiple_of(grid.rows + 1)).collect();
+        let places = places_outside(&drawn, &is_held, garment.radius, ragdoll, &passed);
         let moved_out = places.iter().zip(&drawn).map(|(&place, &drawn)| place - drawn).collect();
-        let held_by = (0..grid.lines.len()).map(|line| held_by[grid.nearest_column(line)]).collect();
+        let held_by = strand.iter().map(|&line| held_by[grid.nearest_column(line)]).collect();
         let group = Weave { garment, grid: &grid, places: &places }.group();
-        Self { grid, group, moved_out, spacing: garment.spacing, held_by, passed }
+        let spacing = garment.spacing;
+        Self { grid: Some(grid), group, moved_out, spacing, is_held, held_by, strand, passed }
     }
+
+    /// A sheet of a mesh, whose particles are drawn at these places in the bind pose, character space, metres; each hangs from a body of the ragdoll.
+    pub fn of_mesh(
+        garment: &Garment,
+        mesh: &MeshSheet,
+        drawn: &[Vec3],
+        held_by: &[usize],
+        ragdoll: &RagdollDef,
+    ) -> Self {
+        let holders: Vec<usize> =
+            held_by.iter().zip(&mesh.held).filter(|(_, held)| **held).map(|(&body, _)| body).collect();
+        let passed = passed(garment, &holders, ragdoll);
+        let places = places_outside(drawn, &mesh.held, garment.radius, ragdoll, &passed);
+        let moved_out = places.iter().zip(drawn).map(|(&place, &drawn)| place - drawn).collect();
+        let (group, strand) = mesh::weave(garment, mesh, &places);
+        Self {
+            grid: None,
+            group,
+            moved_out,
+            spacing: garment.spacing,
+            is_held: mesh.held.clone(),
+            held_by: held_by.to_vec(),
+            strand,
+            passed,
+        }
+    }
+}
+
+/// Places of particles outside of the bodies that they meet, but for those that are held.
+fn places_outside(
+    drawn: &[Vec3],
+    is_held: &[bool],
+    radius: f32,
+    ragdoll: &RagdollDef,
+    passed: &[usize],
+) -> Vec<Vec3> {
+    let met = ragdoll.bodies.iter().enumerate().filter(|(body, _)| !passed.contains(body));
+    let bodies = met.map(|(_, body)| (&body.shape, body.character_from_body));
+    let place = |(&place, &held): (&Vec3, &bool)| if held { place } else { cleared(place, radius, &bodies) };
+    drawn.iter().zip(is_held).map(place).collect()
+}
+
+/// A group of cloth of a garment, without springs.
+pub(super) fn unsprung(garment: &Garment, particles: Vec<ParticleDef>) -> GroupDef {
+    GroupDef {
+        particles,
+        scheme: SpringScheme::Projected,
+        iterations: SHEET_ITERATIONS,
+        material: Material { friction: garment.friction, ..Material::default() },
+        linear_damping: garment.drag,
+        thickness: garment.thickness,
+        ..GroupDef::default()
+    }
+}
+
+/// Particles of cloth, each with the mass of its area (m²).
+pub(super) fn particles(garment: &Garment, places: &[Vec3], areas: &[f32]) -> Vec<ParticleDef> {
+    // No particle is a hundred times lighter than the mean: where columns meet in a point, cells have no area.
+    let least = 0.01 * areas.iter().sum::<f32>() / areas.len() as f32;
+    let particle = |(&position, &area): (&Vec3, &f32)| ParticleDef {
+        position,
+        velocity: Vec3::ZERO,
+        mass: garment.area_density * max(area, max(least, f32::MIN_POSITIVE)),
+        radius: garment.radius,
+    };
+    places.iter().zip(areas).map(particle).collect()
 }
 
 /// Bodies of the wearer that pass through a garment: arms, unless it meets them.
@@ -87,15 +158,8 @@ struct Weave<'a> {
 impl Weave<'_> {
     fn group(&self) -> GroupDef {
         let (grid, garment) = (self.grid, self.garment);
-        let mut group = GroupDef {
-            particles: self.particles(),
-            scheme: SpringScheme::Projected,
-            iterations: SHEET_ITERATIONS,
-            material: Material { friction: garment.friction, ..Material::default() },
-            linear_damping: garment.drag,
-            thickness: garment.thickness,
-            ..GroupDef::default()
-        };
+        let mut group = unsprung(garment, self.particles());
+        group.faces = self.faces();
         let lines = grid.lines.len();
         for line in 0..lines {
             let [before, after] = grid.beside(line);
@@ -142,15 +206,21 @@ impl Weave<'_> {
                 corners.iter().for_each(|&[line, row]| areas[grid.particle(line, row)] += 0.25 * area);
             }
         }
-        // No particle is a hundred times lighter than the mean: where columns meet in a point, cells have no area.
-        let least = 0.01 * areas.iter().sum::<f32>() / areas.len() as f32;
-        let particle = |(&position, &area): (&Vec3, &f32)| ParticleDef {
-            position,
-            velocity: Vec3::ZERO,
-            mass: self.garment.area_density * max(area, max(least, f32::MIN_POSITIVE)),
-            radius: self.garment.radius,
+        particles(self.garment, self.places, &areas)
+    }
+
+    /// Two triangles for each cell.
+    fn faces(&self) -> Vec<[u32; 3]> {
+        let grid = self.grid;
+        let cells = (0..grid.lines.len()).flat_map(|line| (0..grid.rows).map(move |row| (line, row)));
+        let cells = cells.filter(|&(line, _)| grid.beside(line)[1] != line);
+        let split = |(line, row)| {
+            let after = grid.beside(line)[1];
+            let [a, b, c, d] = [[line, row], [after, row], [after, row + 1], [line, row + 1]]
+                .map(|[line, row]| grid.particle(line, row) as u32);
+            [[a, b, c], [a, c, d]]
         };
-        self.places.iter().zip(&areas).map(particle).collect()
+        cells.flat_map(split).collect()
     }
 
     /// A spring, whose stiffness is `strip` (N) over its length.

@@ -1,6 +1,6 @@
 //! Sheets in the world: put on, shown, taken off.
 
-use super::rig::{Column, GarmentRig};
+use super::rig::{Column, GarmentRig, Hanging, Moves};
 use super::sheet::{Sheet, cleared};
 use crate::def::RagdollDef;
 use crate::tuning::{CAUGHT, DRAPINGS};
@@ -14,8 +14,10 @@ use sinew_physics::{BodyId, GroupId, Shape, World};
 pub(crate) struct Worn {
     /// Particles of each sheet; empty while none are on.
     pub groups: Vec<GroupId>,
-    /// Local rotation of every bone, as it is shown.
+    /// Local rotation of every bone and every particle's joint, as it is shown.
     pub turns: Vec<Rotation>,
+    /// Local place of every particle's joint, file units.
+    pub places: Vec<Vec3>,
 }
 
 impl Worn {
@@ -23,6 +25,7 @@ impl Worn {
     pub fn take_off(&mut self, world: &mut World) {
         self.groups.drain(..).for_each(|group| world.remove_particles(group));
         self.turns.clear();
+        self.places.clear();
     }
 
     /// Takes them along to where their wearer was put, as they are.
@@ -43,6 +46,7 @@ impl Worn {
         self.groups.iter().for_each(|group| w.u64(group.to_bits()));
         w.count(self.turns.len());
         self.turns.iter().for_each(|&turn| w.rotation(turn));
+        self.places.iter().for_each(|&place| w.vec3(place));
     }
 
     /// Garments of the same rig as they were saved.
@@ -58,8 +62,12 @@ impl Worn {
             worn.turns.push(r.rotation()?);
         }
         let fits = |count: usize, whole: usize| count == 0 || count == whole;
-        if !fits(worn.groups.len(), rig.sheets.len()) || !fits(worn.turns.len(), rig.bones.len()) {
+        if !fits(worn.groups.len(), rig.sheets.len()) || !fits(worn.turns.len(), rig.joints().len()) {
             return Err(r.error("wears other garments"));
+        }
+        let places = if worn.turns.is_empty() { 0 } else { rig.moving().len() };
+        for _ in 0..places {
+            worn.places.push(r.vec3()?);
         }
         Ok(worn)
     }
@@ -97,10 +105,18 @@ impl Wearer<'_> {
             way.extend(column.tip.map(|tip| nodes[last].point(tip)));
             way
         };
-        let ways: Vec<Vec<Vec3>> = self.rig.columns[sheet].iter().map(way).collect();
-        let mut places = Vec::new();
-        self.rig.sheets[sheet].grid.places(&ways, &mut places);
-        places
+        match (&self.rig.sheets[sheet].grid, &self.rig.hung[sheet]) {
+            (Some(grid), Hanging::Columns(columns)) => {
+                let ways: Vec<Vec<Vec3>> = columns.iter().map(way).collect();
+                let mut places = Vec::new();
+                grid.places(&ways, &mut places);
+                places
+            }
+            (_, Hanging::Columns(_)) => Vec::new(),
+            (_, Hanging::Particles(particles)) => {
+                particles.iter().map(|&node| nodes[node].translation).collect()
+            }
+        }
     }
 
     /// Brings back to the pose the lines of which the bodies have caught a thread, so that it is far too long. A clip that folds the body on its skirt may
@@ -112,24 +128,22 @@ impl Wearer<'_> {
                 let length = (at[thread.b as usize] - at[thread.a as usize]).length();
                 length > CAUGHT * max(thread.rest_length, 0.5 * sheet.spacing)
             };
-            let line_of = |particle: u32| particle as usize / (sheet.grid.rows + 1);
             let caught = sheet.group.springs.iter().filter(is_caught);
-            let mut lines: Vec<usize> =
-                caught.flat_map(|thread| [line_of(thread.a), line_of(thread.b)]).collect();
-            lines.sort_unstable();
-            lines.dedup();
-            if lines.is_empty() {
+            let mut strands: Vec<usize> =
+                caught.flat_map(|thread| [thread.a, thread.b]).map(|at| sheet.strand[at as usize]).collect();
+            strands.sort_unstable();
+            strands.dedup();
+            if strands.is_empty() {
                 continue;
             }
             let places = self.places(index, &self.nodes());
             let shapes = self.shapes(world, sheet);
-            for (line, row) in
-                lines.iter().flat_map(|&line| (1..=sheet.grid.rows).map(move |row| (line, row)))
-            {
-                let particle = sheet.grid.particle(line, row);
+            let is_free = |particle: &usize| !sheet.is_held[*particle];
+            let hangs = |particle: &usize| strands.binary_search(&sheet.strand[*particle]).is_ok();
+            for particle in (0..sheet.strand.len()).filter(is_free).filter(hangs) {
                 let radius = sheet.group.particles[particle].radius;
                 let place = cleared(places[particle], radius, &shapes.iter().copied());
-                let velocity = self.carried(world, sheet.held_by[line], place);
+                let velocity = self.carried(world, sheet.held_by[particle], place);
                 let group = world.particles_mut(id);
                 group.set_position(particle as u32, place);
                 group.set_velocity(particle as u32, velocity);
@@ -155,9 +169,9 @@ impl Wearer<'_> {
         let mut group = sheet.group.clone();
         let bind = |body: usize| self.ragdoll.bodies[body].character_from_body;
         for (index, particle) in group.particles.iter_mut().enumerate() {
-            let body = sheet.held_by[index / (sheet.grid.rows + 1)];
+            let body = sheet.held_by[index];
             let frame = world.transform(self.bodies[body]);
-            if index.is_multiple_of(sheet.grid.rows + 1) {
+            if sheet.is_held[index] {
                 // Where it was in the bind pose, whatever the clip does: joints of bodies do not stretch.
                 let point = bind(body).inverse_point(particle.position);
                 let target = AttachmentTarget::Body { body: self.bodies[body], point };
@@ -171,7 +185,7 @@ impl Wearer<'_> {
         group.passes = sheet.passed.iter().map(|&body| self.bodies[body]).collect();
         self.drape(world, sheet, &mut group);
         for (index, particle) in group.particles.iter_mut().enumerate() {
-            let body = sheet.held_by[index / (sheet.grid.rows + 1)];
+            let body = sheet.held_by[index];
             particle.velocity = self.carried(world, body, particle.position);
         }
         world.add_particles(&group)
@@ -180,7 +194,7 @@ impl Wearer<'_> {
     /// Takes a sheet that is held out of the bodies, and pulls it to its lengths.
     fn drape(&self, world: &World, sheet: &Sheet, group: &mut GroupDef) {
         let shapes = self.shapes(world, sheet);
-        let is_held = |particle: usize| particle.is_multiple_of(sheet.grid.rows + 1);
+        let is_held = |particle: usize| sheet.is_held[particle];
         for _ in 0..DRAPINGS {
             for spring in &group.springs {
                 let ends = [spring.a, spring.b].map(|at| at as usize);
@@ -199,23 +213,46 @@ impl Wearer<'_> {
         }
     }
 
-    /// Local rotations of the joints that turn, in the order of [`GarmentRig::joints`], as their sheets lie in the world.
-    pub fn turns(&self, world: &World, groups: &[GroupId], turns: &mut Vec<Rotation>) {
+    /// Local rotations of the joints that turn, in the order of [`GarmentRig::joints`], and local places of those that are particles, as their sheets lie in
+    /// the world.
+    pub fn turns(&self, world: &World, worn: &mut Worn) {
+        let Worn { groups, turns, places } = worn;
         turns.clear();
+        places.clear();
         let mut rotations: Vec<Rotation> = Vec::with_capacity(self.rig.nodes.len());
+        let mut frames: Vec<Affine> = Vec::with_capacity(self.rig.nodes.len());
         let root = self.world_from_model.to_rigid().rotation;
         for node in &self.rig.nodes {
             let above = node.parent.map_or(root, |parent| rotations[parent]);
-            let rest = self.pose[node.joint].rotation;
-            let mut turn = rest;
-            if let Some(bone) = node.bone.map(|bone| &self.rig.bones[bone]) {
-                let positions = world.particles(groups[bone.sheet]).positions();
-                if let Some(frame) = bone.frame(&self.rig.sheets[bone.sheet], positions) {
-                    turn = (above.inverse() * frame * bone.frame_from_bone).normalize().toward(rest);
+            let above_frame = node.parent.map_or(self.world_from_model, |parent| frames[parent]);
+            let mut local = self.pose[node.joint];
+            let rest = local.rotation;
+            match node.moves {
+                Moves::Nothing => {}
+                Moves::Bone(bone) => {
+                    let bone = &self.rig.bones[bone];
+                    let positions = world.particles(groups[bone.sheet]).positions();
+                    if let Some(frame) = bone.frame(&self.rig.sheets[bone.sheet], positions) {
+                        local.rotation =
+                            (above.inverse() * frame * bone.frame_from_bone).normalize().toward(rest);
+                    }
+                    turns.push(local.rotation);
                 }
-                turns.push(turn);
+                Moves::Particle(grain) => {
+                    let grain = &self.rig.grains[grain];
+                    let positions = world.particles(groups[grain.sheet]).positions();
+                    let (place, turn) = grain.drawn(positions);
+                    if let Some(frame) = turn {
+                        local.rotation =
+                            (above.inverse() * frame * grain.frame_from_bone).normalize().toward(rest);
+                    }
+                    local.translation = above_frame.inverse().point(place);
+                    turns.push(local.rotation);
+                    places.push(local.translation);
+                }
             }
-            rotations.push(above * turn);
+            rotations.push(above * local.rotation);
+            frames.push(above_frame * local.to_affine());
         }
     }
 

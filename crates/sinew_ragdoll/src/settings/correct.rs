@@ -18,9 +18,7 @@ pub(super) fn correction(rig: &Rig, settings: &Settings) -> Result<Correction, S
     for (index, name) in settings.ignore.iter().enumerate() {
         correction.ignored.extend(joints_named(rig, name, &format!("ignore[{index}]"))?);
     }
-    for garment in settings.garments.garments(rig)? {
-        correction.ignored.extend(garment.joints());
-    }
+    correction.ignored.extend(settings.garments.joints(rig)?);
     Ok(correction)
 }
 

@@ -2,8 +2,11 @@
 
 use super::{SettingsError, instead};
 use crate::build::joint_name;
-use sinew_anim::garments::{is_ring, side_by_side};
-use sinew_anim::{Garment, GarmentColumn, JointIdx, Rig, guess_garments};
+use sinew_anim::garments::{
+    MOST_PARTICLES, MeshPart, MeshSheet, SheetError, SheetOptions, is_ring, lay_sheet, side_by_side,
+};
+use sinew_anim::{Garment, GarmentColumn, JointIdx, Rig, RigAnalysis, guess_garments};
+use sinew_math::{Affine, Rotation, Vec3};
 
 /// Source of the garments that a character wears.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,17 +26,97 @@ pub struct GarmentSettings {
     /// Names of the joints that its chains start at, side by side; one that ends in `*` stands for all joints whose names begin so and that do not hang on
     /// another such, in the order in which they lie side by side.
     pub chains: Vec<String>,
+    /// Mesh that it is, instead of chains.
+    pub mesh: Option<MeshSettings>,
     /// True: the last chain is sewn to the first. `None`: if they stand in a ring.
     pub closed: Option<bool>,
     /// Name and cloth; its columns do not matter.
     pub cloth: Garment,
 }
 
+/// Mesh of the character that is a garment, as settings describe it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshSettings {
+    /// Name of its node, its own, or that of a material of it.
+    pub name: String,
+    /// Depth below its highest point down to which bodies hold it, metres, ≥ 0; `None`: a tenth of its height.
+    pub held: Option<f32>,
+    /// Most particles, 4 at least: finer meshes are reduced. Default [`MOST_PARTICLES`].
+    pub most_particles: usize,
+}
+
+impl MeshSettings {
+    /// A mesh, as far as nothing else is said.
+    pub fn new(name: &str) -> Self {
+        Self { name: name.to_owned(), held: None, most_particles: MOST_PARTICLES }
+    }
+}
+
 impl GarmentSource {
-    /// Garments of a rig.
+    /// True if it lists a mesh.
+    pub fn has_meshes(&self) -> bool {
+        matches!(self, Self::Listed(listed) if listed.iter().any(|garment| garment.mesh.is_some()))
+    }
+
+    /// Leaves meshes as they are: those that it lists are no garments any more.
+    pub fn leave_meshes(&mut self) {
+        if let Self::Listed(listed) = self {
+            listed.retain(|garment| garment.mesh.is_none());
+        }
+    }
+
+    /// Makes sheets of the meshes that it lists ([`Rig::sheets`]), with one joint more for each particle: before the rig is analysed for the build. `analysis`
+    /// is of the rig as it is now, with its unit and axis as they are wanted; nodes of its file have numbers below `nodes`.
     ///
     /// # Errors
-    /// Names that the rig does not have, with the nearest ones, and less than two chains: with the place.
+    /// Names that the rig does not have, with the nearest ones, and meshes that cannot be cloth: with the place.
+    pub fn lay_sheets(
+        &self,
+        rig: &mut Rig,
+        analysis: &RigAnalysis,
+        nodes: usize,
+    ) -> Result<(), SettingsError> {
+        let Self::Listed(listed) = self else { return Ok(()) };
+        // Joints that come in have no bind pose yet, and none of them moves what is still to be laid.
+        for (index, garment) in listed.iter().enumerate() {
+            let Some(mesh) = &garment.mesh else { continue };
+            let said = |error: SheetError| mesh.error(rig, index, &error);
+            let part = MeshPart::named(rig, &mesh.name).map_err(said)?;
+            let options = SheetOptions {
+                bind_model: &analysis.bind_model,
+                metres_from_model: metres_from_model(analysis),
+                spacing: garment.cloth.spacing,
+                held: mesh.held,
+                most_particles: mesh.most_particles,
+                first_source: nodes + rig.sheets.iter().map(|sheet| sheet.joints.len()).sum::<usize>(),
+            };
+            if let Err(error) = lay_sheet(rig, &part, &options) {
+                return Err(mesh.error(rig, index, &error));
+            }
+        }
+        Ok(())
+    }
+
+    /// Joints of garments, which are no part of the body: those of the chains that it lists, and of all sheets.
+    ///
+    /// # Errors
+    /// As [`garments`](Self::garments).
+    pub fn joints(&self, rig: &Rig) -> Result<Vec<JointIdx>, SettingsError> {
+        let garments = match self {
+            Self::Listed(listed) => {
+                let chains = listed.iter().enumerate().filter(|(_, garment)| garment.mesh.is_none());
+                chains.map(|(index, garment)| garment.on(rig, index)).collect::<Result<Vec<_>, _>>()?
+            }
+            other => other.garments(rig)?,
+        };
+        let of_sheets = rig.sheets.iter().flat_map(|sheet| sheet.joints.iter().copied());
+        Ok(garments.iter().flat_map(Garment::joints).chain(of_sheets).collect())
+    }
+
+    /// Garments of a rig, whose sheets have been laid ([`lay_sheets`](Self::lay_sheets)).
+    ///
+    /// # Errors
+    /// Names that the rig does not have, with the nearest ones, less than two chains, and a mesh that is no sheet: with the place.
     pub fn garments(&self, rig: &Rig) -> Result<Vec<Garment>, SettingsError> {
         match self {
             Self::None => Ok(Vec::new()),
@@ -47,6 +130,15 @@ impl GarmentSource {
 
 impl GarmentSettings {
     fn on(&self, rig: &Rig, index: usize) -> Result<Garment, SettingsError> {
+        if let Some(mesh) = &self.mesh {
+            return match rig.sheets.iter().find(|sheet| sheet.name == mesh.name) {
+                Some(sheet) => Ok(Garment { sheet: Some(MeshSheet::clone(sheet)), ..self.cloth.clone() }),
+                None => Err(SettingsError::at(
+                    format!("garments[{index}].mesh"),
+                    "no sheet was made of that mesh",
+                )),
+            };
+        }
         let mut columns = Vec::new();
         for (chain, name) in self.chains.iter().enumerate() {
             let place = format!("garments[{index}].chains[{chain}]");
@@ -61,6 +153,31 @@ impl GarmentSettings {
         let closed = self.closed.unwrap_or_else(|| is_ring(rig, &columns));
         Ok(Garment { columns, closed, ..self.cloth.clone() })
     }
+}
+
+impl MeshSettings {
+    fn error(&self, rig: &Rig, index: usize, error: &SheetError) -> SettingsError {
+        let place = |key: &str| format!("garments[{index}].{key}");
+        match error {
+            SheetError::Unknown => {
+                let names = MeshPart::names(rig);
+                let shown = self.name.escape_debug();
+                let instead = instead(&self.name, names.iter().map(String::as_str));
+                SettingsError::at(place("mesh"), format!("no mesh or material `{shown}` on bones; {instead}"))
+            }
+            SheetError::AllHeld if self.held.is_some() => SettingsError::at(place("held"), error.to_string()),
+            error => SettingsError::at(place("mesh"), error.to_string()),
+        }
+    }
+}
+
+/// From the space of the model to metres with +Y up, somewhere.
+fn metres_from_model(analysis: &RigAnalysis) -> Affine {
+    Affine::from_scale_rotation_translation(
+        Vec3::splat(analysis.unit_scale),
+        Rotation::from_arc(analysis.up_axis, Vec3::Y),
+        Vec3::ZERO,
+    )
 }
 
 /// Joints that a name of a chain stands for, at least one.

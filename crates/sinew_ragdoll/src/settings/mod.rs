@@ -25,7 +25,7 @@ mod correct;
 mod garments;
 mod nearest;
 
-pub use garments::{GarmentSettings, GarmentSource};
+pub use garments::{GarmentSettings, GarmentSource, MeshSettings};
 pub use nearest::{instead, nearest, nearest_three, role_named};
 
 use crate::build::{BuildError, BuildOptions, BuildReport};

@@ -19,6 +19,7 @@ mod in_world;
 mod learned;
 mod lives;
 mod mapping;
+mod mesh_garments;
 mod pops;
 mod quality;
 

@@ -28,7 +28,7 @@ pub fn actor(
     motions: Motions,
     builtin: bool,
 ) -> Result<(CharacterDef, GetsUpBy)> {
-    let CharacterFile { name, document, analysis } = file;
+    let CharacterFile { name, document, analysis, .. } = file;
     let failed = |error| Failure::of_file(name, error);
     let mut def = CharacterDef::new(document.rig.clone(), ragdoll, &analysis.bind_model);
     let mut get_ups = def.get_ups_among(&motions.clips);

@@ -241,7 +241,8 @@ impl Bake {
     fn character(&self, textures: Textures, world: &[BodyDef]) -> Result<Cast> {
         let Some(path) = &self.ragdoll else {
             let door = || self.world.as_ref().and_then(|_| door(world));
-            let (mut file, settings) = self.settings.load_into(&self.character, textures, door)?;
+            let (mut file, settings) =
+                self.settings.load_into(&self.character, textures, door, !self.no_garments)?;
             self.wear(&mut file, settings.settings.springs);
             let garments = if self.no_garments { Vec::new() } else { settings.garments(&file)? };
             let (ragdoll, _) = settings.build(&file, &BuildOptions::default())?;

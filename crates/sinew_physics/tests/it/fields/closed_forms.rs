@@ -27,7 +27,7 @@ pub fn particle(mass: f32, radius: f32, position: Vec3) -> GroupDef {
     GroupDef { particles: vec![ParticleDef { position, velocity, mass, radius }], ..GroupDef::default() }
 }
 
-fn close(found: f32, expected: f32, share: f32, what: &str) {
+pub fn close(found: f32, expected: f32, share: f32, what: &str) {
     let off = (found / expected - 1.0).abs();
     assert!(off <= share, "{what}: {found} for {expected}, off by {off:e}");
 }

@@ -1,0 +1,51 @@
+//! Vertices on the particles of their sheet.
+
+use super::nearest_on_triangle;
+use super::reduce::Reduced;
+use super::weld::Welded;
+use sinew_math::Vec3;
+
+/// Particles that a vertex hangs on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bound {
+    pub particles: [usize; 4],
+    pub weights: [f32; 4],
+}
+
+impl Bound {
+    fn to_one(particle: usize) -> Self {
+        Self { particles: [particle; 4], weights: [1.0, 0.0, 0.0, 0.0] }
+    }
+}
+
+/// Each vertex on its own particle, or on those of the triangle that is nearest to it: among the triangles of the particle that it belongs to, or, where it
+/// belongs to none, among all.
+pub(super) fn bind(welded: &Welded, reduced: &Reduced) -> Vec<Bound> {
+    let all: Vec<u32> = (0..reduced.faces.len() as u32).collect();
+    let mut of_particle: Vec<Vec<u32>> = vec![Vec::new(); reduced.seeds.len()];
+    for (face, corners) in reduced.faces.iter().enumerate() {
+        corners.iter().for_each(|&corner| of_particle[corner as usize].push(face as u32));
+    }
+    let bound = |(vertex, owner): (usize, &Option<usize>)| match *owner {
+        Some(own) if reduced.is_whole => Bound::to_one(own),
+        Some(own) => nearest(welded, reduced, vertex, &of_particle[own]).unwrap_or(Bound::to_one(own)),
+        None => nearest(welded, reduced, vertex, &all).unwrap_or(Bound::to_one(0)),
+    };
+    reduced.owner.iter().enumerate().map(bound).collect()
+}
+
+/// The triangle of these that is nearest to a vertex.
+fn nearest(welded: &Welded, reduced: &Reduced, vertex: usize, faces: &[u32]) -> Option<Bound> {
+    let place = welded.places[vertex];
+    let mut best: Option<(f32, Bound)> = None;
+    for &face in faces {
+        let [a, b, c] = reduced.faces[face as usize].map(|corner| corner as usize);
+        let corners: [Vec3; 3] = [a, b, c].map(|particle| welded.places[reduced.seeds[particle]]);
+        let [u, v, w] = nearest_on_triangle(place, corners);
+        let off = (corners[0] * u + corners[1] * v + corners[2] * w - place).length_squared();
+        if best.is_none_or(|(least, _)| off < least) {
+            best = Some((off, Bound { particles: [a, b, c, a], weights: [u, v, w, 0.0] }));
+        }
+    }
+    best.map(|(_, bound)| bound)
+}

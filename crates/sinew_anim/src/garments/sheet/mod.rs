@@ -1,0 +1,289 @@
+//! Meshes of a character as sheets of cloth: one joint for each particle, on which the vertices hang.
+
+mod bind;
+mod graph;
+mod reduce;
+mod weld;
+
+use super::MeshSheet;
+use crate::rig::{Joint, JointIdx, LocalTransform, Rig, RigMesh, Skin};
+use bind::Bound;
+use sinew_math::{Affine, Vec3};
+use weld::Welded;
+
+/// Part of a rig that a sheet is to be made of: all of a mesh, or what of it has one material.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MeshPart {
+    /// Name by which it was asked for.
+    pub name: String,
+    /// Index into [`Rig::meshes`].
+    pub mesh: usize,
+    /// Its primitives, ascending.
+    pub primitives: Vec<usize>,
+}
+
+/// Trouble with the part of a rig that is to be cloth.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SheetError {
+    /// Nothing has the name.
+    #[error("no mesh or material has that name")]
+    Unknown,
+    /// Several meshes have it: their nodes.
+    #[error("{} meshes have that name or material, and a garment is of one: {}", .0.len(), .0.join(", "))]
+    Several(Vec<String>),
+    /// It has no weights, and another part of its mesh has.
+    #[error("that part of the mesh has no weights, and others have: give it some")]
+    NoSkin,
+    /// It is cloth already.
+    #[error("that mesh is a garment already")]
+    Twice,
+    /// There are no triangles, or all of them lie in a point.
+    #[error("that mesh has no triangles with an area")]
+    Empty,
+    /// All of it is held.
+    #[error("all of that mesh is held: nothing of it is left to hang")]
+    AllHeld,
+    /// The skin would have more joints than can be told apart.
+    #[error("its skin has no room for {0} joints more: 65536 is the most")]
+    TooManyJoints(usize),
+}
+
+/// Settings of a sheet, and where the rig stands.
+#[derive(Clone, Copy, Debug)]
+pub struct SheetOptions<'a> {
+    /// Bind pose of every joint in model space.
+    pub bind_model: &'a [Affine],
+    /// From there to where +Y is up and the unit is a metre.
+    pub metres_from_model: Affine,
+    /// Most distance between particles beside each other where the mesh is reduced, metres, positive; more where there would be too many.
+    pub spacing: f32,
+    /// Depth below its highest point down to which it is held, metres; `None`: a tenth of its height.
+    pub held: Option<f32>,
+    /// Most particles, at least 4: finer meshes are reduced.
+    pub most_particles: usize,
+    /// Number of the first new joint's node in the file ([`Joint::source`]); the others follow.
+    pub first_source: usize,
+}
+
+impl MeshPart {
+    /// The mesh of a node of that name, of that name itself, or what has a material of that name.
+    ///
+    /// # Errors
+    /// There is none, more than one, or it has no skin.
+    pub fn named(rig: &Rig, name: &str) -> Result<Self, SheetError> {
+        let node = |mesh: usize| rig.joints[rig.meshes[mesh].joint].name.as_str();
+        let all = |mesh: usize| (0..rig.meshes[mesh].primitives.len()).collect::<Vec<usize>>();
+        let of_material = |mesh: usize| {
+            let mut found = all(mesh);
+            found.retain(|&at| rig.meshes[mesh].primitives[at].material == name);
+            found
+        };
+        let by_node = |mesh: usize| if node(mesh) == name { all(mesh) } else { Vec::new() };
+        let by_name = |mesh: usize| if rig.meshes[mesh].name == name { all(mesh) } else { Vec::new() };
+        let ways: [&dyn Fn(usize) -> Vec<usize>; 3] = [&by_node, &by_name, &of_material];
+        for way in ways {
+            let found = (0..rig.meshes.len()).map(|mesh| (mesh, way(mesh)));
+            let found: Vec<(usize, Vec<usize>)> = found.filter(|(_, part)| !part.is_empty()).collect();
+            if found.is_empty() {
+                continue;
+            }
+            return match found.as_slice() {
+                [(mesh, _)] if rig.is_beside_skin(*mesh) => Err(SheetError::NoSkin),
+                [(mesh, primitives)] => {
+                    Ok(Self { name: name.to_owned(), mesh: *mesh, primitives: primitives.clone() })
+                }
+                several => {
+                    Err(SheetError::Several(several.iter().map(|(mesh, _)| node(*mesh).to_owned()).collect()))
+                }
+            };
+        }
+        Err(SheetError::Unknown)
+    }
+
+    /// Names of all meshes, their nodes and their materials, each once.
+    pub fn names(rig: &Rig) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        for mesh in &rig.meshes {
+            let materials = mesh.primitives.iter().map(|primitive| &primitive.material);
+            for name in [&rig.joints[mesh.joint].name, &mesh.name].into_iter().chain(materials) {
+                if !name.is_empty() && !names.contains(name) {
+                    names.push(name.clone());
+                }
+            }
+        }
+        names
+    }
+}
+
+/// Makes a part of a rig a sheet of cloth: vertices in one place are one; where there are more than a sheet may have particles, such are chosen all over it
+/// that lie no farther apart than the spacing, its edges first. The rig gets a joint for each particle, and the vertices hang on these instead of those that
+/// moved them: each on its own, or on the three of the triangle that it lies on. As long as nothing moves the new joints, the mesh goes along with the old ones.
+///
+/// Parts of the mesh that do not hang together with what is held (buttons, a buckle) move with the cloth that they lie on.
+///
+/// Gives the index of the sheet in [`Rig::sheets`].
+///
+/// # Errors
+/// The part cannot be a sheet; then the rig is as it was.
+///
+/// # Panics
+/// If the part or the bind pose is of another rig.
+pub fn lay_sheet(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> Result<usize, SheetError> {
+    let overlaps = |sheet: &MeshSheet| {
+        sheet.mesh == part.mesh
+            && sheet.primitives.iter().any(|primitive| part.primitives.contains(primitive))
+    };
+    if rig.sheets.iter().any(overlaps) {
+        return Err(SheetError::Twice);
+    }
+    if rig.meshes[part.mesh].skin.is_some() {
+        return lay(rig, part, options);
+    }
+    rig.hang_on_its_joint(part.mesh);
+    let laid = lay(rig, part, options);
+    if laid.is_err() {
+        rig.hang_rigidly(part.mesh);
+    }
+    laid
+}
+
+impl Rig {
+    /// True if a mesh without a skin is a part of one that has one.
+    fn is_beside_skin(&self, mesh: usize) -> bool {
+        let RigMesh { joint, skin, .. } = self.meshes[mesh];
+        skin.is_none() && self.meshes.iter().any(|other| other.joint == joint && other.skin.is_some())
+    }
+
+    /// Gives a mesh that moves rigidly a skin of its own, all on the joint that carries it.
+    fn hang_on_its_joint(&mut self, mesh: usize) {
+        let mesh = &mut self.meshes[mesh];
+        mesh.skin = Some(self.skins.len());
+        let joints = vec![mesh.joint];
+        self.skins.push(Skin { name: mesh.name.clone(), joints, inverse_bind: vec![Affine::IDENTITY] });
+        for primitive in &mut mesh.primitives {
+            primitive.joints = vec![[0; 4]; primitive.positions.len()];
+            primitive.weights = vec![[1.0, 0.0, 0.0, 0.0]; primitive.positions.len()];
+        }
+    }
+
+    /// Takes that skin, the last one, away again.
+    fn hang_rigidly(&mut self, mesh: usize) {
+        self.skins.pop();
+        let mesh = &mut self.meshes[mesh];
+        mesh.skin = None;
+        for primitive in &mut mesh.primitives {
+            (primitive.joints, primitive.weights) = (Vec::new(), Vec::new());
+        }
+    }
+}
+
+fn lay(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> Result<usize, SheetError> {
+    let welded = weld::weld(rig, part, options);
+    let (low, high) = welded.heights().ok_or(SheetError::Empty)?;
+    let graph = graph::Graph::new(&welded);
+    let above = high - options.held.unwrap_or(crate::tuning::HELD_SHARE * (high - low));
+    let is_held = |vertex: usize| welded.places[vertex].y >= above;
+    let reduced = reduce::reduce(&welded, &graph, is_held, options);
+    let held: Vec<bool> = reduced.seeds.iter().map(|&seed| is_held(seed)).collect();
+    if held.iter().all(|&held| held) {
+        return Err(SheetError::AllHeld);
+    }
+    let bound = bind::bind(&welded, &reduced);
+    let joints = add_joints(rig, part, &welded, &reduced.seeds, options)?;
+    rewrite(rig, part, &welded, &bound, joints.len());
+    let sheet = MeshSheet {
+        name: part.name.clone(),
+        mesh: part.mesh,
+        primitives: part.primitives.clone(),
+        joints,
+        held,
+        faces: reduced.faces,
+        links: reduced.links,
+        vertices: welded.places.len(),
+    };
+    rig.sheets.push(sheet);
+    Ok(rig.sheets.len() - 1)
+}
+
+/// A joint for each particle, and its slot at the end of the skin: where it is, it moves with its parent.
+fn add_joints(
+    rig: &mut Rig,
+    part: &MeshPart,
+    welded: &Welded,
+    seeds: &[usize],
+    options: &SheetOptions<'_>,
+) -> Result<Vec<JointIdx>, SheetError> {
+    let number = rig.sheets.len();
+    let skin = &mut rig.skins[rig.meshes[part.mesh].skin.expect("a part has a skin")];
+    if skin.joints.len() + seeds.len() > usize::from(u16::MAX) + 1 {
+        return Err(SheetError::TooManyJoints(seeds.len()));
+    }
+    let mut joints = Vec::with_capacity(seeds.len());
+    for (particle, &seed) in seeds.iter().enumerate() {
+        let slot = usize::from(welded.slots[seed]);
+        let inverse = skin.inverse_bind[slot];
+        let translation = inverse.point(welded.at[seed]);
+        joints.push(rig.joints.len());
+        skin.joints.push(rig.joints.len());
+        skin.inverse_bind.push(Affine { translation: inverse.translation - translation, ..inverse });
+        rig.joints.push(Joint {
+            name: format!("cloth_{number}_{particle}"),
+            parent: Some(skin.joints[slot]),
+            rest: LocalTransform { translation, ..LocalTransform::default() },
+            source: options.first_source + particle,
+        });
+    }
+    Ok(joints)
+}
+
+/// Hangs the vertices on the last `particles` slots of their skin.
+fn rewrite(rig: &mut Rig, part: &MeshPart, welded: &Welded, bound: &[Bound], particles: usize) {
+    let mesh = &mut rig.meshes[part.mesh];
+    let first = rig.skins[mesh.skin.expect("a part has a skin")].joints.len() - particles;
+    for (&at, of_vertex) in part.primitives.iter().zip(&welded.of_vertex) {
+        let primitive = &mut mesh.primitives[at];
+        for (vertex, of) in of_vertex.iter().enumerate() {
+            // Vertices of no triangle are not drawn.
+            let Some(Bound { particles, weights }) = of.map_or(bound.first(), |of| bound.get(of)) else {
+                continue;
+            };
+            // A slot without a weight is 0, as glTF 2.0 §3.7.3.3 wants it.
+            let slot = |k: usize| if weights[k] > 0.0 { (first + particles[k]) as u16 } else { 0 };
+            primitive.joints[vertex] = [0, 1, 2, 3].map(slot);
+            primitive.weights[vertex] = *weights;
+        }
+    }
+}
+
+/// Point of a triangle that is nearest to a place, as shares of its corners (Ericson, "Real-Time Collision Detection", 2005, §5.1.5).
+fn nearest_on_triangle(place: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
+    let (ab, ac) = (b - a, c - a);
+    let (d1, d2) = (ab.dot(place - a), ac.dot(place - a));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let (d3, d4) = (ab.dot(place - b), ac.dot(place - b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return [0.0, 1.0, 0.0];
+    }
+    let (d5, d6) = (ab.dot(place - c), ac.dot(place - c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return [0.0, 0.0, 1.0];
+    }
+    let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let along = d1 / (d1 - d3);
+        return [1.0 - along, along, 0.0];
+    }
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let along = d2 / (d2 - d6);
+        return [1.0 - along, 0.0, along];
+    }
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        let along = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return [0.0, 1.0 - along, along];
+    }
+    let whole = 1.0 / (va + vb + vc);
+    let (v, w) = (vb * whole, vc * whole);
+    [1.0 - v - w, v, w]
+}

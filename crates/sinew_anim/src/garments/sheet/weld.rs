@@ -1,0 +1,103 @@
+//! Vertices in one place, made one.
+
+use super::{MeshPart, SheetOptions};
+use crate::rig::{Primitive, Rig};
+use sinew_math::{Affine, Vec3, max, min};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A mesh whose vertices in one place are one.
+pub(super) struct Welded {
+    /// Place of each as it was bound, metres, +Y up.
+    pub places: Vec<Vec3>,
+    /// Place in mesh space.
+    pub at: Vec<Vec3>,
+    /// Slot of the skin that moves it most.
+    pub slots: Vec<u16>,
+    /// Triangles with three corners, each once, whichever way round.
+    pub faces: Vec<[usize; 3]>,
+    /// Index of the one that each vertex of each primitive is; `None` if it is of no triangle.
+    pub of_vertex: Vec<Vec<Option<usize>>>,
+}
+
+impl Welded {
+    /// Heights of its lowest and highest place, metres; `None` if it has no area.
+    pub fn heights(&self) -> Option<(f32, f32)> {
+        let area = |&[a, b, c]: &[usize; 3]| {
+            let [a, b, c] = [a, b, c].map(|at| self.places[at]);
+            (b - a).cross(c - a).length()
+        };
+        let is_there = self.faces.iter().any(|face| area(face) > 0.0);
+        let heights = self.places.iter().map(|place| place.y);
+        let bounds =
+            heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), y| (min(low, y), max(high, y)));
+        is_there.then_some(bounds)
+    }
+}
+
+pub(super) fn weld(rig: &Rig, part: &MeshPart, options: &SheetOptions<'_>) -> Welded {
+    let mesh = &rig.meshes[part.mesh];
+    let skin = &rig.skins[mesh.skin.expect("a part has a skin")];
+    let bound = |(&joint, inverse): (&usize, &Affine)| {
+        options.metres_from_model
+            * (options.bind_model.get(joint).copied().unwrap_or(Affine::IDENTITY) * *inverse)
+    };
+    let palette: Vec<Affine> = skin.joints.iter().zip(&skin.inverse_bind).map(bound).collect();
+    let mut welded = Welded {
+        places: Vec::new(),
+        at: Vec::new(),
+        slots: Vec::new(),
+        faces: Vec::new(),
+        of_vertex: Vec::new(),
+    };
+    let mut known: BTreeMap<[u32; 3], usize> = BTreeMap::new();
+    let mut faces: BTreeSet<[usize; 3]> = BTreeSet::new();
+    for &at in &part.primitives {
+        let primitive = &mesh.primitives[at];
+        let mut of_vertex = vec![None; primitive.positions.len()];
+        for triangle in primitive.indices.chunks_exact(3) {
+            let corners = [0, 1, 2].map(|corner| {
+                let vertex = triangle[corner] as usize;
+                let one = welded.one(primitive, vertex, &palette, &mut known);
+                of_vertex[vertex] = Some(one);
+                one
+            });
+            let [a, b, c] = corners;
+            let mut sorted = corners;
+            sorted.sort_unstable();
+            if a != b && b != c && c != a && faces.insert(sorted) {
+                welded.faces.push(corners);
+            }
+        }
+        welded.of_vertex.push(of_vertex);
+    }
+    welded
+}
+
+impl Welded {
+    /// The one that a vertex is.
+    fn one(
+        &mut self,
+        primitive: &Primitive,
+        vertex: usize,
+        palette: &[Affine],
+        known: &mut BTreeMap<[u32; 3], usize>,
+    ) -> usize {
+        let at = primitive.positions[vertex];
+        // Both zeros are in one place.
+        let key = at.to_array().map(|x| (x + 0.0).to_bits());
+        *known.entry(key).or_insert_with(|| {
+            let (mut place, mut heaviest) = (Vec3::ZERO, 0);
+            let (slots, weights) = (primitive.joints[vertex], primitive.weights[vertex]);
+            for k in 0..4 {
+                place += palette[usize::from(slots[k])].point(at) * weights[k];
+                if weights[k] > weights[heaviest] {
+                    heaviest = k;
+                }
+            }
+            self.places.push(place);
+            self.at.push(at);
+            self.slots.push(slots[heaviest]);
+            self.places.len() - 1
+        })
+    }
+}

@@ -1,0 +1,262 @@
+//! Sheets of meshes: what joins their particles, and how the joints turn that the particles are.
+
+use super::sheet::{Sheet, particles, unsprung};
+use crate::tuning::{SHORTEST_THREAD, SQUARE, STRAIGHT};
+use core::cmp::Reverse;
+use sinew_anim::Garment;
+use sinew_anim::garments::MeshSheet;
+use sinew_math::{Mat3, Rotation, Vec3, any_orthonormal, direction, max};
+use sinew_physics::particles::{GroupDef, SpringDef, TetherDef};
+use std::collections::{BTreeMap, BinaryHeap};
+
+/// Particle that is a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Grain {
+    pub node: usize,
+    pub sheet: usize,
+    pub particle: usize,
+    /// Corners of its triangles, each with the next two.
+    around: Vec<[u32; 3]>,
+    /// Particles beside it, with their shares of its direction x, 1/m: `Σ share (place − own)` is along it at rest.
+    beside: Vec<(u32, f32)>,
+    /// Rotation of the bone in the frame of the sheet about it, at rest.
+    pub frame_from_bone: Rotation,
+    /// From where it is drawn at rest to where it is, in that frame, metres.
+    moved_out: Vec3,
+}
+
+impl Grain {
+    /// A particle of a sheet, whose joint is turned so in the bind pose.
+    pub fn new(
+        node: usize,
+        number: usize,
+        sheet: &Sheet,
+        mesh: &MeshSheet,
+        particle: usize,
+        bone: Rotation,
+    ) -> Self {
+        let own = particle as u32;
+        let places: Vec<Vec3> = sheet.group.particles.iter().map(|particle| particle.position).collect();
+        let turned = |&[a, b, c]: &[u32; 3]| match own {
+            own if own == a => Some([a, b, c]),
+            own if own == b => Some([b, c, a]),
+            own if own == c => Some([c, a, b]),
+            _ => None,
+        };
+        let around: Vec<[u32; 3]> = mesh.faces.iter().filter_map(turned).collect();
+        let others = mesh.links.iter().filter(|link| link.contains(&own));
+        let others: Vec<u32> = others.map(|&[a, b]| if a == own { b } else { a }).collect();
+        let mut grain = Self {
+            node,
+            sheet: number,
+            particle,
+            around,
+            beside: Vec::new(),
+            frame_from_bone: Rotation::IDENTITY,
+            moved_out: sheet.moved_out[particle],
+        };
+        let normal = grain.normal(&places).unwrap_or(Vec3::Z);
+        let x = any_orthonormal(normal);
+        for other in others {
+            let way = places[other as usize] - places[particle];
+            if way.length_squared() > 0.0 {
+                grain.beside.push((other, way.dot(x) / way.length_squared()));
+            }
+        }
+        if let Some(frame) = grain.frame(&places) {
+            let back = frame.inverse();
+            grain.frame_from_bone = back * bone;
+            grain.moved_out = back * grain.moved_out;
+        }
+        grain
+    }
+
+    fn normal(&self, places: &[Vec3]) -> Option<Vec3> {
+        let area = |[a, b, c]: [u32; 3]| {
+            let [a, b, c] = [a, b, c].map(|at| places[at as usize]);
+            (b - a).cross(c - a)
+        };
+        direction(self.around.iter().map(|&face| area(face)).sum())
+    }
+
+    /// Rotation of the sheet about it: z along the normal, x along its neighbours as at rest. `None` if it is crumpled to a point.
+    fn frame(&self, places: &[Vec3]) -> Option<Rotation> {
+        let z = self.normal(places)?;
+        let own = places[self.particle];
+        let along: Vec3 =
+            self.beside.iter().map(|&(other, share)| (places[other as usize] - own) * share).sum();
+        let x = direction(along - z * along.dot(z)).unwrap_or_else(|| any_orthonormal(z));
+        Some(Rotation::from_mat3(&Mat3::from_cols(x, z.cross(x), z)))
+    }
+
+    /// Place where it is drawn, and rotation of the sheet about it, where the particles are at `places`.
+    pub fn drawn(&self, places: &[Vec3]) -> (Vec3, Option<Rotation>) {
+        let frame = self.frame(places);
+        let out = frame.map_or(Vec3::ZERO, |frame| frame * self.moved_out);
+        (places[self.particle] - out, frame)
+    }
+}
+
+/// The group of a mesh's sheet with its springs, bends and tethers, and the strand of each particle: the held one that it hangs from.
+pub(super) fn weave(garment: &Garment, mesh: &MeshSheet, places: &[Vec3]) -> (GroupDef, Vec<usize>) {
+    let weave = Weave { garment, mesh, places };
+    let mut areas = vec![0.0; places.len()];
+    for face in &mesh.faces {
+        face.iter().for_each(|&corner| areas[corner as usize] += weave.area(face) / 3.0);
+    }
+    let mut group = unsprung(garment, particles(garment, places, &areas));
+    group.faces.clone_from(&mesh.faces);
+    weave.join_all(&mut group);
+    weave.stiffen(&mut group, &areas);
+    let strand = weave.tether(&mut group);
+    (group, strand)
+}
+
+struct Weave<'a> {
+    garment: &'a Garment,
+    mesh: &'a MeshSheet,
+    places: &'a [Vec3],
+}
+
+impl Weave<'_> {
+    fn way(&self, [a, b]: [u32; 2]) -> Vec3 {
+        self.places[b as usize] - self.places[a as usize]
+    }
+
+    fn area(&self, &[a, b, c]: &[u32; 3]) -> f32 {
+        0.5 * self.way([a, b]).cross(self.way([a, c])).length()
+    }
+
+    /// True if two sides meet at nearly a right angle, or a larger one.
+    fn is_square(&self, at: u32, ends: [u32; 2]) -> bool {
+        let [a, b] = ends.map(|end| direction(self.way([at, end])).unwrap_or(Vec3::ZERO));
+        a.dot(b) < SQUARE
+    }
+
+    /// Springs along edges, each with the stiffness that the triangles beside it have along it (Van Gelder, "Approximate Simulation of Elastic Membranes",
+    /// 1998), and weaker ones from corner to corner across them. The diagonal of a cell between threads is as weak as its other one, and there is none across the
+    /// threads of such cells.
+    fn join_all(&self, group: &mut GroupDef) {
+        let mut beside: BTreeMap<[u32; 2], Vec<usize>> =
+            self.mesh.links.iter().map(|&link| (link, Vec::new())).collect();
+        for (index, &[a, b, c]) in self.mesh.faces.iter().enumerate() {
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                beside.entry([u32::min(from, to), u32::max(from, to)]).or_default().push(index);
+            }
+        }
+        let tip = |edge: [u32; 2], face: usize| {
+            let corners = self.mesh.faces[face];
+            corners.into_iter().find(|corner| !edge.contains(corner)).unwrap_or(corners[0])
+        };
+        let is_diagonal = |edge: [u32; 2], faces: &[usize]| {
+            faces.len() == 2 && faces.iter().all(|&face| self.is_square(tip(edge, face), edge))
+        };
+        let mut in_cell = vec![false; self.mesh.faces.len()];
+        for (&edge, faces) in beside.iter().filter(|(edge, faces)| is_diagonal(**edge, faces)) {
+            debug_assert!(edge[0] < edge[1], "links have the smaller first");
+            faces.iter().for_each(|&face| in_cell[face] = true);
+        }
+        let shear = 0.5 * self.garment.shearing;
+        for (&edge, faces) in &beside {
+            let length = max(self.way(edge).length(), SHORTEST_THREAD * self.garment.spacing);
+            let area: f32 = faces.iter().map(|&face| self.area(&self.mesh.faces[face])).sum();
+            let diagonal = is_diagonal(edge, faces);
+            self.join(
+                group,
+                edge,
+                match faces.as_slice() {
+                    _ if diagonal => shear,
+                    // What is beside no triangle is a thread all the same.
+                    [] => self.garment.stretching,
+                    _ => self.garment.stretching * area / (length * length),
+                },
+            );
+            if let [left, right] = *faces.as_slice() {
+                let pair = [tip(edge, left), tip(edge, right)];
+                let pair = [u32::min(pair[0], pair[1]), u32::max(pair[0], pair[1])];
+                let is_loose = diagonal || !in_cell[left] && !in_cell[right];
+                if is_loose && pair[0] != pair[1] && !beside.contains_key(&pair) {
+                    self.join(group, pair, shear);
+                }
+            }
+        }
+    }
+
+    fn join(&self, group: &mut GroupDef, ends: [u32; 2], stiffness: f32) {
+        // Nothing moves between what is held.
+        let is_free = ends.iter().any(|&end| !self.mesh.held[end as usize]);
+        if is_free && stiffness > 0.0 && stiffness.is_finite() {
+            let mass = |at: u32| {
+                let held = self.mesh.held[at as usize];
+                if held { f32::INFINITY } else { group.particles[at as usize].mass }
+            };
+            let spring = SpringDef::new(ends, self.way(ends).length(), stiffness);
+            group.springs.push(spring.damped(self.garment.damping_ratio, ends.map(mass)));
+        }
+    }
+
+    /// Bends through each particle, between those neighbours that lie opposite each other about it.
+    fn stiffen(&self, group: &mut GroupDef, areas: &[f32]) {
+        if self.garment.bending <= 0.0 {
+            return;
+        }
+        let mut beside: Vec<Vec<u32>> = vec![Vec::new(); self.places.len()];
+        for &[a, b] in &self.mesh.links {
+            beside[a as usize].push(b);
+            beside[b as usize].push(a);
+        }
+        for (middle, others) in (0..).zip(&beside) {
+            let facing = |other: u32| direction(self.way([middle, other])).unwrap_or(Vec3::ZERO);
+            let across = |from: u32| {
+                let cosine = |&to: &u32| facing(from).dot(facing(to));
+                let farther = |a: u32, b: u32| if cosine(&b) < cosine(&a) { b } else { a };
+                others.iter().copied().reduce(farther).filter(|to| cosine(to) < STRAIGHT)
+            };
+            for &from in others {
+                let Some(to) = across(from).filter(|&to| from < to && across(to) == Some(from)) else {
+                    continue;
+                };
+                if [from, middle, to].iter().all(|&at| self.mesh.held[at as usize]) {
+                    continue;
+                }
+                let side = 0.5 * (self.way([from, middle]).length() + self.way([middle, to]).length());
+                group.stiffen(&[from, middle, to], self.garment.bending * areas[middle as usize] / side);
+            }
+        }
+        group.bends.retain(|bend| bend.stiffness > 0.0 && bend.stiffness.is_finite());
+    }
+
+    /// Tethers every particle to the held one that is nearest along the edges (Dijkstra), as long as the way there; gives that of each.
+    fn tether(&self, group: &mut GroupDef) -> Vec<usize> {
+        let count = self.places.len();
+        let mut beside: Vec<Vec<(usize, f32)>> = vec![Vec::new(); count];
+        for &link in &self.mesh.links {
+            let (length, [a, b]) = (self.way(link).length(), link.map(|at| at as usize));
+            beside[a].push((b, length));
+            beside[b].push((a, length));
+        }
+        let (mut way, mut from) = (vec![f32::INFINITY; count], (0..count).collect::<Vec<usize>>());
+        let mut open = BinaryHeap::new();
+        for held in (0..count).filter(|&particle| self.mesh.held[particle]) {
+            way[held] = 0.0;
+            open.push((Reverse(0), Reverse(held)));
+        }
+        while let Some((Reverse(bits), Reverse(at))) = open.pop() {
+            // Lengths are not negative, so their bits are in their order.
+            if f32::from_bits(bits) > way[at] {
+                continue;
+            }
+            for &(next, length) in &beside[at] {
+                if way[at] + length < way[next] {
+                    (way[next], from[next]) = (way[at] + length, from[at]);
+                    open.push((Reverse(way[next].to_bits()), Reverse(next)));
+                }
+            }
+        }
+        for particle in (0..count).filter(|&particle| way[particle] > 0.0 && way[particle].is_finite()) {
+            let [to, own] = [from[particle], particle].map(|at| at as u32);
+            group.tethers.push(TetherDef { particle: own, to, length: way[particle] });
+        }
+        from
+    }
+}
