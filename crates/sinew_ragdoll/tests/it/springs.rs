@@ -12,6 +12,7 @@ use sinew_scenes::mannequin::mannequin;
 use std::sync::Arc;
 
 mod avatar;
+mod changes;
 mod reference;
 
 use avatar::{Calming, random_avatar, strands, vrm};
