@@ -1,15 +1,17 @@
 //! Instructions that the kernels take, counted under valgrind: the same on a busy machine and on a quiet one.
 //!
 //! Six scenes as whole steps (`scene_step`), then kernels, one character in each of its states (`character_step`: the world and its
-//! update), and a hundred that walk, with hit bodies and without (`walkers_step`). `cargo xtask bench --counts` runs these and compares them with
+//! update), a hundred that walk, with hit bodies and without (`walkers_step`), and the springs of a hundred (`springs_step`). `cargo xtask bench --counts` runs these and compares them with
 //! `bench/counts/baseline.txt`. What is not public is measured as the step of a world in which it is nearly all there is.
 
 use gungraun::Callgrind;
 use gungraun::prelude::*;
-use sinew::math::{Random, Rotation, Transform, Vec3};
+use sinew::anim::springs::{ColliderShape, Side, SpringBone, SpringChain, SpringCollider, Springs};
+use sinew::anim::{Joint, LocalTransform, analyze};
+use sinew::math::{Random, Rotation, Transform, Vec3, trig};
 use sinew::physics::collide::{Manifold, collide};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef, SleepThresholds, Sleeping, World, WorldDef};
-use sinew::ragdoll::{Character, Detail, Preset};
+use sinew::ragdoll::{BuildOptions, Character, CharacterDef, Detail, Preset, SpringStep, SpringSwing, build};
 use sinew_scenes::blueprint;
 use sinew_scenes::crowd::{Crowd, CrowdScene};
 use sinew_scenes::scenes::{self, Instance};
@@ -328,9 +330,94 @@ fn walkers_step(mut walkers: Walkers) -> Walkers {
     walkers
 }
 
+/// A hundred figures with eight strands of five spring bones each, whose heads walk and sway.
+struct Maned {
+    def: CharacterDef,
+    swings: Vec<SpringSwing>,
+    frame: u16,
+}
+
+impl Maned {
+    fn step(&mut self, moves: fn(&mut SpringSwing, &SpringStep<'_>)) {
+        self.frame += 1;
+        let (rig, mapping) = (self.def.springs(), self.def.mapping());
+        let (seconds, pose) = (1.0 / 60.0, self.def.rest());
+        let time = f32::from(self.frame) * seconds;
+        let turn = Rotation::from_axis_angle(Vec3::Y, 0.5 * trig::sin(5.0 * time));
+        for (number, swing) in (0u8..).zip(&mut self.swings) {
+            let way = Vec3::new(f32::from(number) + 0.1 * trig::sin(8.0 * time), 0.0, time);
+            let world_from_model = mapping.world_from_model(Transform::new(way, turn));
+            moves(swing, &SpringStep { rig, pose, world_from_model, bodies: &[], world: None, seconds });
+        }
+    }
+}
+
+/// The mannequin with eight strands around its head, each of which meets a ball for the head.
+fn strands() -> CharacterDef {
+    let mut rig = sinew::mannequin::mannequin().rig;
+    let head = rig.joints.iter().position(|joint| joint.name == "head").expect("it has a head");
+    let shape = ColliderShape::Sphere { offset: Vec3::Y * 0.1, radius: 0.09, keeps: Side::Outside };
+    let mut springs =
+        Springs { colliders: vec![SpringCollider { joint: head, shape }], ..Springs::default() };
+    for strand in 0..8u8 {
+        let angle = f32::from(strand) * core::f32::consts::FRAC_PI_4;
+        let out = Vec3::new(trig::cos(angle), 0.0, trig::sin(angle));
+        let tail = out * 0.02 - Vec3::Y * 0.06;
+        let (mut parent, mut bones) = (head, Vec::new());
+        for link in 0..=5u8 {
+            let joint = rig.joints.len();
+            let translation = if link == 0 { (out + Vec3::Y) * 0.1 } else { tail };
+            let rest = LocalTransform { translation, ..LocalTransform::default() };
+            rig.joints.push(Joint {
+                name: format!("hair_{strand}_{link}"),
+                parent: Some(parent),
+                rest,
+                source: joint,
+            });
+            bones.push(SpringBone { joint, tail, ..sinew_scenes::maned::HAIR });
+            parent = joint;
+        }
+        bones.pop();
+        springs.chains.push(SpringChain { bones, colliders: vec![0], ..SpringChain::default() });
+    }
+    rig.springs = springs;
+    let analysis = analyze(&rig).expect("the mannequin has a skin");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
+    CharacterDef::new(rig, ragdoll, &analysis.bind_model)
+}
+
+/// After a second of swinging, then so many steps of easing.
+fn maned(eased: u32) -> Maned {
+    let mut maned = Maned { def: strands(), swings: vec![SpringSwing::new(); 100], frame: 0 };
+    assert_eq!(maned.def.springs().joints().len(), 40);
+    (0..60).for_each(|_| maned.step(SpringSwing::step));
+    (0..eased).for_each(|_| maned.step(SpringSwing::ease));
+    assert_eq!(maned.swings.iter().all(SpringSwing::is_away), eased > 300);
+    maned
+}
+
+// 4,000 spring bones, a step: 7.5 million instructions are some 1 ms.
+#[library_benchmark]
+#[bench::near(maned(0), SpringSwing::step)]
+#[bench::easing(maned(10), SpringSwing::ease)]
+#[bench::far(maned(360), SpringSwing::ease)]
+fn springs_step(mut maned: Maned, moves: fn(&mut SpringSwing, &SpringStep<'_>)) -> Maned {
+    maned.step(moves);
+    maned
+}
+
 library_benchmark_group!(
     name = kernels,
-    benchmarks = [scene_step, ragdoll_step, step, collide_64, blend_two_clips, character_step, walkers_step]
+    benchmarks = [
+        scene_step,
+        ragdoll_step,
+        step,
+        collide_64,
+        blend_two_clips,
+        character_step,
+        walkers_step,
+        springs_step
+    ]
 );
 // Caches are not simulated: instructions alone are compared, in half the time.
 main!(

@@ -166,3 +166,10 @@ pub(crate) const CLEARLY_STANDING: f32 = 0.85;
 ///
 /// Larger: hair stands off the head. Smaller: it sinks into what it lies on. Shown by the tests of `springs`.
 pub(crate) const SPRING_RADIUS: f32 = 0.15;
+
+// springs/mod.rs
+
+/// Share of what a link between strands is off by that a sixtieth of a second takes back at a time, if nothing else is said.
+///
+/// Larger: a skirt is one stiff sheet. Smaller: its strands part where a leg pulls. Shown by `links_hold_strands_together`.
+pub(crate) const SPRING_LINK_SHARE: f32 = 0.5;

@@ -1,6 +1,7 @@
 //! Springs where the file states none: by the names of joints.
 
-use super::{LimitKind, SpringBone, SpringChain, SpringLimit, Springs};
+use super::{LimitKind, SpringBone, SpringChain, SpringLimit, SpringLink, Springs};
+use crate::garments::guess_garments;
 use crate::rig::{JointIdx, Rig};
 use crate::roles::words;
 use crate::tuning::SPRING_RADIUS;
@@ -70,7 +71,7 @@ const MATERIALS: [Material; 6] = [
 
 /// Springs by the names of joints: hair, ears, tails, skirts, coats and capes, ribbons and straps, breasts, for files that state none.
 /// `up` is the file's axis that points up, unit. Chains run along children of one kind; a joint without a child ends one and does not
-/// swing, for nobody knows how long it is. They meet the body of the character.
+/// swing, for nobody knows how long it is. They meet the body of the character. Strands of skirts, coats and capes that lie side by side are linked.
 pub fn guess_springs(rig: &Rig, up: Vec3) -> Springs {
     let material: Vec<Option<usize>> = rig.joints.iter().map(|joint| material_of(&joint.name)).collect();
     let mut children: Vec<Vec<JointIdx>> = vec![Vec::new(); rig.joints.len()];
@@ -102,7 +103,12 @@ pub fn guess_springs(rig: &Rig, up: Vec3) -> Springs {
             chains.push(chain(&rig.joints[root].name, &bones, &MATERIALS[kind], up));
         }
     }
-    Springs { chains, ..Springs::default() }
+    let mut springs = Springs { chains, ..Springs::default() };
+    let across = |garment: &crate::Garment| SpringLink::default().across(&garment.columns, garment.closed);
+    let mut links: Vec<SpringLink> = guess_garments(rig).iter().flat_map(across).collect();
+    links.retain(|link| link.joints.iter().all(|&joint| springs.swings(joint)));
+    springs.links = links;
+    springs
 }
 
 fn chain(name: &str, bones: &[(JointIdx, Vec3)], material: &Material, up: Vec3) -> SpringChain {

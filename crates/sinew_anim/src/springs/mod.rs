@@ -9,7 +9,9 @@ mod guess;
 
 pub use guess::guess_springs;
 
+use crate::garments::GarmentColumn;
 use crate::rig::JointIdx;
+use crate::tuning::SPRING_LINK_SHARE;
 use sinew_math::{Rotation, Vec3};
 
 /// Springs of a character. Default: none.
@@ -34,10 +36,32 @@ pub struct SpringLink {
     pub holds_apart: bool,
 }
 
+impl Default for SpringLink {
+    /// Half of what it is off by at a time, against going farther apart alone; between no two joints.
+    fn default() -> Self {
+        Self { joints: [0; 2], share: SPRING_LINK_SHARE, holds_apart: false }
+    }
+}
+
+impl SpringLink {
+    /// Links like this one between strands that lie side by side, each joint with that beside it as far down; `closed`: and between the last and the first.
+    pub fn across(self, strands: &[GarmentColumn], closed: bool) -> Vec<Self> {
+        let last = if closed && strands.len() > 2 { Some([strands.len() - 1, 0]) } else { None };
+        let pairs = (1..strands.len()).map(|k| [k - 1, k]).chain(last);
+        let link = |(&a, &b): (&JointIdx, &JointIdx)| Self { joints: [a, b], ..self };
+        pairs.flat_map(|[a, b]| strands[a].joints.iter().zip(&strands[b].joints).map(link)).collect()
+    }
+}
+
 impl Springs {
     /// True if nothing swings.
     pub fn is_empty(&self) -> bool {
         self.chains.is_empty()
+    }
+
+    /// True if a bone of a chain turns about the joint.
+    pub fn swings(&self, joint: JointIdx) -> bool {
+        self.chains.iter().flat_map(|chain| &chain.bones).any(|bone| bone.joint == joint)
     }
 
     /// Number of bones of all chains.

@@ -2,11 +2,11 @@
 
 use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
-use sinew::anim::{Garment, Hints, RigAnalysis, Role, UnitGuess, analyze_hinted};
+use sinew::anim::{Garment, Hints, RigAnalysis, Role, Springs, UnitGuess, analyze_hinted};
 use sinew::formats::{Textures, read_bytes, read_ragdoll_settings, settings_path};
 use sinew::ragdoll::build::{BuildReport, takes};
 use sinew::ragdoll::quality::Doubt;
-use sinew::ragdoll::settings::{BodyWish, BoneSettings, Unit, analyze_with, role_named};
+use sinew::ragdoll::settings::{BodyWish, BoneSettings, SpringSource, Unit, analyze_with, role_named};
 use sinew::ragdoll::{BuildError, BuildOptions, RagdollDef, Settings, SettingsError, build_moving};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -267,6 +267,12 @@ impl LoadedSettings {
         notes.append(&mut report.notes);
         report.notes = notes;
         Ok((def, report))
+    }
+
+    /// Springs that the character shall wear, of that source.
+    pub fn springs(&self, source: SpringSource, character: &CharacterFile) -> Result<Springs> {
+        let springs = self.settings.springs_of(source, &character.document.rig, character.analysis.up_axis);
+        springs.map_err(|error| self.failure(&character.name, error))
     }
 
     /// Garments that the character shall wear.

@@ -4,7 +4,7 @@ use super::number;
 use super::table::{Table, counted, shown};
 use serde_json::{Value, json};
 use sinew::anim::springs::{
-    ColliderShape, LimitKind, Side, SpringBone, SpringChain, SpringCollider, Springs,
+    ColliderShape, LimitKind, Side, SpringBone, SpringChain, SpringCollider, SpringLink, Springs,
 };
 use sinew::anim::{JointIdx, Rig};
 use sinew::math::{Vec3, direction, max, min};
@@ -17,6 +17,7 @@ const MOST_NAMES: usize = 6;
 pub struct SpringsReport {
     chains: usize,
     bones: usize,
+    links: usize,
     /// Names of joints that were to swing and do not.
     left_out: Vec<String>,
 }
@@ -29,13 +30,14 @@ impl SpringsReport {
         Self {
             chains: springs.source().chains.len(),
             bones: springs.joints().len(),
+            links: springs.link_count(),
             left_out: springs.left_out().iter().map(name).collect(),
         }
     }
 
     /// Keys of a report.
     pub fn to_json(&self) -> Value {
-        json!({ "chains": self.chains, "bones": self.bones, "left_out": self.left_out })
+        json!({ "chains": self.chains, "bones": self.bones, "links": self.links, "left_out": self.left_out })
     }
 
     /// Notes for a person, a sentence each.
@@ -43,8 +45,12 @@ impl SpringsReport {
         let mut notes = Vec::new();
         if self.bones > 0 {
             let bones = counted(self.bones, "spring bone swings", "spring bones swing");
+            let linked = match self.links {
+                0 => String::new(),
+                links => format!(" with {} across", counted(links, "link", "links")),
+            };
             notes.push(format!(
-                "{bones}, in {}; --no-springs leaves them",
+                "{bones}, in {}{linked}; --no-springs leaves them",
                 counted(self.chains, "chain", "chains")
             ));
         }
@@ -116,6 +122,32 @@ pub fn colliders_json(rig: &Rig) -> Value {
         })
     };
     rig.springs.colliders.iter().map(collider).collect()
+}
+
+/// Links across strands: which joints' tips, and how.
+pub fn links_json(rig: &Rig, links: &[SpringLink]) -> Value {
+    let link = |link: &SpringLink| {
+        json!({
+            "joints": link.joints.map(|joint| rig.joints[joint].name.as_str()),
+            "share": number(link.share),
+            "holds_apart": link.holds_apart,
+        })
+    };
+    links.iter().map(link).collect()
+}
+
+/// Links across strands for people; empty where there are none.
+pub fn links_text(rig: &Rig, links: &[SpringLink]) -> String {
+    if links.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::titled(&["from", "to", "share", "holds apart"]);
+    for link in links {
+        let [from, to] = link.joints.map(|joint| shown(&rig.joints[joint].name));
+        let holds = if link.holds_apart { "yes" } else { "no" };
+        table.row([from, to, short(link.share), holds.to_owned()]);
+    }
+    format!("\nLinks of springs\n{}", table.to_text())
 }
 
 /// The springs of a file for people: its chains, with the settings of their joints in the file's units, each as one number or from the least

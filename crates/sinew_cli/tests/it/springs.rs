@@ -53,7 +53,7 @@ fn an_avatars_hair_moves_in_its_bake() {
         (object["springs"].clone(), swings(clip, &document.rig), object["hash"].clone())
     };
     let (springs, moved, hash) = bake(&[]);
-    assert_eq!(springs, json!({"chains": 3, "bones": 13, "left_out": []}));
+    assert_eq!(springs, json!({"chains": 3, "bones": 13, "links": 0, "left_out": []}));
     assert!(moved > 0.3, "the hair of one who falls turns by {moved} rad");
     let (springs, moved, bare) = bake(&["--no-springs"]);
     assert_eq!((&springs["bones"], moved), (&json!(0), 0.0));
@@ -61,6 +61,61 @@ fn an_avatars_hair_moves_in_its_bake() {
     folder.file("avatar.ragdoll.json", r#"{"sinew":"ragdoll-settings","version":1,"springs":"none"}"#);
     assert_eq!(bake(&[]).0["bones"], 0);
     assert_eq!(bake(&["--guess-springs"]).0["bones"], 13, "what the file states goes before names");
+}
+
+#[test]
+fn settings_link_braids() {
+    let folder = Folder::new("links");
+    let file = folder.file("avatar.vrm", vrm(&maned_rig(&HAIR), SpringFormat::Vrm1));
+    let out = folder.path("fall.vrm");
+    let settings = |springs: &str| {
+        let text = format!(r#"{{"sinew":"ragdoll-settings","version":1,"springs":{springs}}}"#);
+        folder.file("avatar.ragdoll.json", text);
+    };
+    let bake = || {
+        let object = sinew(&["bake", &file, "--seconds", "1", "-o", &out, "--json"]).json();
+        check_keys("bake", &object);
+        (object["springs"]["links"].clone(), object["hash"].clone())
+    };
+    let (none, loose) = bake();
+    settings(r#"{"links": [{"chains": ["hair_left_0", "hair_right_0"], "share": 1}]}"#);
+    let (four, tied) = bake();
+    assert_eq!((none, four), (json!(0), json!(4)));
+    assert_ne!(loose, tied, "they swing otherwise");
+    let object = sinew(&["inspect", &file, "--json"]).json();
+    check_keys("inspect", &object);
+    let first = json!({"joints": ["hair_left_0", "hair_right_0"], "share": 1.0, "holds_apart": false});
+    assert_eq!(
+        (&object["spring_links"][0], object["spring_links"].as_array().map(Vec::len)),
+        (&first, Some(4))
+    );
+    let text = sinew(&["inspect", &file]).stdout;
+    let table = text.split("Links of springs").nth(1).expect("a table");
+    let row = table.lines().nth(2).expect("a row").split_whitespace().collect::<Vec<_>>();
+    assert_eq!(row, ["hair_left_0", "hair_right_0", "1", "no"], "{table}");
+    println!("{text}");
+    for (springs, place, what) in [
+        (
+            r#"{"links": [{"chains": ["hair_left_0", "hair_rihgt_0"]}]}"#,
+            "springs.links[0].chains[1]",
+            "hair_right_0",
+        ),
+        (r#"{"links": [{"chains": ["hair_left_0"]}]}"#, "springs.links[0].chains", "names 1"),
+        (
+            r#"{"links": [{"chains": ["hips", "hair_left_0"]}]}"#,
+            "springs.links[0].chains[0]",
+            "has no spring",
+        ),
+        (r#"{"links": [{"chians": []}]}"#, "springs.links[0]", "did you mean `chains`?"),
+    ] {
+        settings(springs);
+        let error = sinew(&["bake", &file, "-o", &out]).stderr;
+        println!("{error}");
+        let told = error.contains(place) && error.contains(what) && error.contains("avatar.ragdoll.json");
+        assert!(told, "{springs}: {error}");
+        let warned = sinew(&["inspect", &file]).stdout;
+        assert!(warned.contains(what), "{springs}: {warned}");
+    }
 }
 
 /// Two strands with all that a file can say, and what `inspect` is to say of them.

@@ -32,7 +32,9 @@
 //! whatever shape and names say (only by the joint's name), `body` (`keep` or `drop`), `shape` (`box`, `capsule`, `sphere`), `scale` of it, `mass` in kg, `type` and `limits_deg` of the joint to its
 //! parent as in [ragdoll files](super), each range by itself, and `friction_torque` in N·m. Joints that `ignore` names are no part
 //! of the body, with all that hangs below them. `springs` that the character wears are those that the `file` states, where it states
-//! none those that `names` of joints tell of, or `none`. `garments` are those that `names` tell of, `none`, or a list: each with the `chains` of joints that
+//! none those that `names` of joints tell of, or `none`; an object says it as `source`, and has `links`: a list, each with the `chains` of joints that lie side by side
+//! and are tied across ([`LinkSettings`]), `closed` (default: if they stand in a ring), the `share` (0.5) and whether it `holds_apart` (false); without it links are
+//! those that come with the springs. `garments` are those that `names` tell of, `none`, or a list: each with the `chains` of joints that
 //! it is sewn of, or the `mesh` that it is, and its cloth ([`Garment`]).
 //!
 //! ```
@@ -46,11 +48,11 @@
 use super::{read_range, read_up_axis};
 use crate::container::json::{self, At};
 use crate::error::{Error, Result, quoted};
-use sinew_anim::{Garment, Role};
+use sinew_anim::{Garment, Role, SpringLink};
 use sinew_math::Range;
 use sinew_ragdoll::settings::{
-    BodyWish, BoneSettings, GarmentSettings, GarmentSource, JointWish, MeshSettings, Settings, ShapeWish,
-    SpringSource, Unit, nearest, role_named,
+    BodyWish, BoneSettings, GarmentSettings, GarmentSource, JointWish, LinkSettings, MeshSettings, Settings,
+    ShapeWish, SpringSource, Unit, nearest, role_named,
 };
 use sinew_ragdoll::{LimitSource, Sex, ShapeChoice};
 
@@ -130,9 +132,13 @@ pub fn read_ragdoll_settings(bytes: &[u8]) -> Result<Settings> {
         ignore: read_names(root, "ignore")?,
         disable: read_pairs(root, "disable_pairs")?,
         enable: read_pairs(root, "enable_pairs")?,
-        springs: word(root, "springs", &SPRINGS)?,
+        springs: None,
+        spring_links: None,
         garments: root.get("garments")?.map(read_garments).transpose()?.unwrap_or_default(),
     };
+    if let Some(springs) = root.get("springs")? {
+        (settings.springs, settings.spring_links) = read_springs(springs)?;
+    }
     if let Some(bones) = root.get("bones")? {
         let object = bones.value().as_object().ok_or_else(|| bones.malformed("must be an object"))?;
         for name in object.keys() {
@@ -185,6 +191,37 @@ fn read_bone(at: At<'_>) -> Result<BoneSettings> {
         bone.twist = limits.get("twist")?.map(read_range).transpose()?;
     }
     Ok(bone)
+}
+
+fn read_springs(at: At<'_>) -> Result<(Option<SpringSource>, Option<Vec<LinkSettings>>)> {
+    if at.value().as_str().is_some() {
+        return Ok((Some(one_of(at, &SPRINGS)?), None));
+    }
+    only(at, &["comment", "source", "links"])?;
+    let links = at.get("links")?.map(|links| links.items()?.into_iter().map(read_links).collect());
+    Ok((word(at, "source", &SPRINGS)?, links.transpose()?))
+}
+
+fn read_links(at: At<'_>) -> Result<LinkSettings> {
+    only(at, &["comment", "chains", "closed", "share", "holds_apart"])?;
+    at.need("chains")?;
+    let usual = SpringLink::default();
+    let share = match at.get("share")? {
+        Some(at) => {
+            let share = at.positive()?;
+            if share > 1.0 {
+                return Err(at.malformed("a share is at most 1"));
+            }
+            share
+        }
+        None => usual.share,
+    };
+    let holds_apart = at.get("holds_apart")?.map_or(Ok(usual.holds_apart), At::bool)?;
+    Ok(LinkSettings {
+        chains: read_names(at, "chains")?,
+        closed: at.get("closed")?.map(At::bool).transpose()?,
+        link: SpringLink { share, holds_apart, ..usual },
+    })
 }
 
 fn read_garments(at: At<'_>) -> Result<GarmentSource> {

@@ -2,7 +2,7 @@
 
 use crate::data::shared_data;
 use sinew_anim::springs::{ColliderShape, LimitKind, Side};
-use sinew_anim::{SpringCollider, Springs};
+use sinew_anim::{SpringCollider, SpringLink, Springs};
 use sinew_formats::{Document, ReadOptions, Result, load_gltf, no_files, read_gltf, read_ragdoll_settings};
 use sinew_math::{Rotation, Vec3};
 use sinew_ragdoll::settings::SpringSource;
@@ -171,6 +171,46 @@ fn settings_name_the_source() {
     assert_eq!(read("none").unwrap().springs, Some(SpringSource::None));
     let error = read("name").unwrap_err();
     assert!(error.what.contains("did you mean `names`?"), "{error}");
+}
+
+#[test]
+fn settings_link_strands() {
+    let read = |springs: &str| {
+        let json = format!(r#"{{"sinew":"ragdoll-settings","version":1,"springs":{springs}}}"#);
+        read_ragdoll_settings(json.as_bytes())
+    };
+    let settings = read(
+        r#"{"comment": "a kilt", "source": "names", "links": [
+            {"comment": "all round", "chains": ["Kilt_*"], "closed": true, "share": 0.8, "holds_apart": true}, {"chains": ["a", "b"]}]}"#,
+    )
+    .unwrap();
+    let links = settings.spring_links.unwrap();
+    assert_eq!(settings.springs, Some(SpringSource::Names));
+    assert_eq!((links[0].chains.as_slice(), links[0].closed), (["Kilt_*".to_owned()].as_slice(), Some(true)));
+    assert_eq!((links[0].link.share, links[0].link.holds_apart), (0.8, true));
+    assert_eq!((links[1].closed, links[1].link), (None, SpringLink::default()));
+    // Without links, those that come with the springs; with none, none.
+    assert_eq!(read(r#"{"source": "file"}"#).unwrap().spring_links, None);
+    let none = read(r#"{"links": []}"#).unwrap();
+    assert_eq!((none.springs, none.spring_links), (None, Some(Vec::new())));
+    for (springs, at, what) in [
+        (r#"{"sorce": "names"}"#, "springs", "did you mean `source`?"),
+        (r#"{"source": "nams"}"#, "springs.source", "did you mean `names`?"),
+        (r#"{"links": [{}]}"#, "springs.links[0]", "chains"),
+        (r#"{"links": [{"chains": ["a"], "shair": 1}]}"#, "springs.links[0]", "did you mean `share`?"),
+        (
+            r#"{"links": [{"chains": ["a"]}, {"chains": ["b"], "share": 1.5}]}"#,
+            "springs.links[1].share",
+            "at most 1",
+        ),
+        (r#"{"links": [{"chains": ["a"], "share": 0}]}"#, "springs.links[0].share", ""),
+        (r#"{"links": [{"chains": ["a"], "holds_apart": 1}]}"#, "springs.links[0].holds_apart", ""),
+        (r#"{"links": "all"}"#, "springs.links", ""),
+        ("7", "springs", ""),
+    ] {
+        let error = read(springs).unwrap_err().to_string();
+        assert!(error.contains(at) && error.contains(what), "{springs}: {error}");
+    }
 }
 
 #[test]

@@ -67,7 +67,7 @@ impl ParticleGroup {
                 let end = self.placed[obstacle].end;
                 touch.gap = meeting.height(end.inverse_point(ends.1));
                 if let Some(wall) = wall.filter(|wall| wall.pinches(&touch, bodies)) {
-                    self.pinch(i, h, &wall, touch, h * (1.0 - meeting.fraction), bodies);
+                    self.pinch(i, &wall, touch, h * (1.0 - meeting.fraction), bodies);
                     break;
                 }
                 if let Some(other) = but
@@ -140,15 +140,7 @@ impl ParticleGroup {
     /// gives back, and the body meets the wall's inertia there and the particle's along it. Both rub it, the wall last.
     ///
     /// Each surface in turn would push it into the other one, and the body, which feels no more than the particle's few grams, would go on.
-    fn pinch(
-        &mut self,
-        i: usize,
-        h: f32,
-        wall: &Touch,
-        mut touch: Touch,
-        left: f32,
-        bodies: &mut [ObstacleBody],
-    ) {
+    fn pinch(&mut self, i: usize, wall: &Touch, mut touch: Touch, left: f32, bodies: &mut [ObstacleBody]) {
         let (n, own) = (touch.normal, 1.0 / self.masses[i]);
         let aside = n - wall.normal * n.dot(wall.normal);
         let begun = self.velocities[i];

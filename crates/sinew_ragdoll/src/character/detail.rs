@@ -12,7 +12,8 @@ impl Character {
 
     /// Gives it as much detail as that: at once if its clips move it, else once they do again, for what flinches, lies or gets up goes on
     /// until then. The pose and the place are the same before and after. Less than hit bodies takes its bodies out of the world,
-    /// unless it holds something; they come back with other ids. Without a world nothing happens.
+    /// unless it holds something; they come back with other ids. Its springs ease to the pose with less than hit bodies, whatever it does, and cost nothing from there
+    /// until they return with the motion of the pose. Without a world nothing happens.
     pub fn set_level_of_detail(&mut self, world: &mut World, detail: Detail) {
         if let Some(presence) = &mut self.presence {
             presence.detail = detail;

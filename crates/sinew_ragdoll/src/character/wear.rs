@@ -1,6 +1,6 @@
 //! Springs and garments that a character wears, over the pose that clips or bodies give it.
 
-use super::{Character, State};
+use super::{Character, Detail, State};
 use crate::garments::Wearer;
 use crate::springs::SpringStep;
 use sinew_physics::{GroupId, World};
@@ -12,23 +12,30 @@ impl Character {
         if def.springs().is_empty() && def.garments().is_empty() {
             return;
         }
+        let is_far = self.level_of_detail() <= Detail::Keyed;
+        let is_bare = self.worn.groups.is_empty() && (def.garments().is_empty() || self.bodies().is_empty());
         self.swung.clear();
+        if is_bare && is_far && self.swing.is_away() {
+            return;
+        }
         self.swung.extend_from_slice(if self.planting.is_over() { &self.pose } else { &self.planted });
-        self.swing_springs(world);
+        self.swing_springs(world, is_far);
         self.wear_garments(world);
         self.show_worn();
     }
 
-    fn swing_springs(&mut self, world: &World) {
+    /// Springs of one who is far away are the pose, and return with its motion: that which was shown.
+    fn swing_springs(&mut self, world: &World, is_far: bool) {
         let def = self.def.clone();
         let rig = def.springs();
         if rig.is_empty() {
             return;
         }
         let place = self.world_from_character;
+        let returns = self.swing.is_eased() && !is_far;
         let mut bodies = core::mem::take(&mut self.scratch.after);
         bodies.clear();
-        if rig.meets_bodies() {
+        if rig.meets_bodies() && !is_far && !returns {
             let pose = core::mem::take(&mut self.swung);
             self.bodies_of(&pose, place, &mut bodies);
             self.swung = pose;
@@ -38,14 +45,22 @@ impl Character {
             (None, Some(presence)) => presence.bodies.as_slice(),
             (None, None) => &[],
         };
-        self.swing.step(&SpringStep {
+        let step = SpringStep {
             rig,
             pose: &self.swung,
             world_from_model: def.mapping().world_from_model(place),
             bodies: &bodies,
             world: Some((world, own)),
             seconds: world.def().dt(),
-        });
+        };
+        if is_far {
+            self.swing.ease(&step);
+        } else if returns {
+            let root = def.mapping().world_from_model(self.shown.world_from_character);
+            self.swing.take_up(&step, &self.shown.pose, root);
+        } else {
+            self.swing.step(&step);
+        }
         self.scratch.after = bodies;
     }
 

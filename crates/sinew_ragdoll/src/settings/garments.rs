@@ -141,10 +141,7 @@ impl GarmentSettings {
         }
         let mut columns = Vec::new();
         for (chain, name) in self.chains.iter().enumerate() {
-            let place = format!("garments[{index}].chains[{chain}]");
-            let found = tops(rig, name, &place)?;
-            let below: Vec<GarmentColumn> = found.iter().map(|&top| GarmentColumn::below(rig, top)).collect();
-            columns.extend(if name.ends_with('*') { side_by_side(rig, &below) } else { below });
+            columns.extend(self::columns(rig, name, &format!("garments[{index}].chains[{chain}]"))?);
         }
         if columns.len() < 2 {
             let what = format!("a garment is sewn of two chains at least, and this has {}", columns.len());
@@ -178,6 +175,13 @@ fn metres_from_model(analysis: &RigAnalysis) -> Affine {
         Rotation::from_arc(analysis.up_axis, Vec3::Y),
         Vec3::ZERO,
     )
+}
+
+/// Chains that a name stands for, side by side, at least one.
+pub(super) fn columns(rig: &Rig, name: &str, place: &str) -> Result<Vec<GarmentColumn>, SettingsError> {
+    let tops = tops(rig, name, place)?;
+    let below: Vec<GarmentColumn> = tops.iter().map(|&top| GarmentColumn::below(rig, top)).collect();
+    Ok(if name.ends_with('*') { side_by_side(rig, &below) } else { below })
 }
 
 /// Joints that a name of a chain stands for, at least one.

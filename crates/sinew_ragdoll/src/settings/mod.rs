@@ -23,9 +23,11 @@ mod apply;
 mod bodies;
 mod correct;
 mod garments;
+mod links;
 mod nearest;
 
 pub use garments::{GarmentSettings, GarmentSource, MeshSettings};
+pub use links::LinkSettings;
 pub use nearest::{instead, nearest, nearest_three, role_named};
 
 use crate::build::{BuildError, BuildOptions, BuildReport};
@@ -63,6 +65,8 @@ pub struct Settings {
     pub enable: Vec<[String; 2]>,
     /// Source of the springs that the character wears; `None`: what the file states. The build of bodies does not ask for it.
     pub springs: Option<SpringSource>,
+    /// Links across strands of those springs; `None`: those that come with them.
+    pub spring_links: Option<Vec<LinkSettings>>,
     /// Garments that the character wears. Their bones are no part of the body, as if [`ignore`](Self::ignore) named them. Default none.
     pub garments: GarmentSource,
 }

@@ -44,6 +44,7 @@
 //! ```
 
 mod collide;
+mod distance;
 mod limit;
 mod rig;
 mod save;

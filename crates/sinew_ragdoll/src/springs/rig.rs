@@ -287,6 +287,11 @@ impl SpringRig {
         self.bones.iter().map(|bone| self.nodes[bone.node].joint)
     }
 
+    /// Number of links between bones that swing.
+    pub fn link_count(&self) -> usize {
+        self.links.len()
+    }
+
     /// Joints of bones that were left out.
     pub fn left_out(&self) -> &[JointIdx] {
         &self.left_out

@@ -1,15 +1,26 @@
 //! Springs in snapshots.
 
+use super::step::Mode;
 use super::{SpringRig, SpringSwing};
 use sinew_math::{Affine, Mat3, ReadError, Reader, Writer};
 
 impl SpringSwing {
     /// Writes what decides the future, and what is shown.
     pub fn save(&self, w: &mut Writer) {
-        w.bool(self.started);
-        if !self.started {
-            return;
+        w.u8(self.mode as u8);
+        match self.mode {
+            Mode::Fresh | Mode::Away => {}
+            Mode::Swinging => self.save_swing(w),
+            Mode::Easing => {
+                for (&offset, &turn) in self.offsets.iter().zip(&self.turns) {
+                    w.vec3(offset);
+                    w.rotation(turn);
+                }
+            }
         }
+    }
+
+    fn save_swing(&self, w: &mut Writer) {
         w.f32(self.phase);
         for ((&tip, &way), &turn) in self.tips.iter().zip(&self.ways).zip(&self.turns) {
             w.vec3(tip);
@@ -31,10 +42,28 @@ impl SpringSwing {
     /// If the bytes end too early, or the phase is none.
     pub fn load(rig: &SpringRig, r: &mut Reader<'_>) -> Result<Self, ReadError> {
         let mut swing = Self::default();
-        if !r.bool()? {
-            return Ok(swing);
+        swing.mode = match r.u8()? {
+            0 => Mode::Fresh,
+            1 => Mode::Swinging,
+            2 => Mode::Easing,
+            3 => Mode::Away,
+            _ => return Err(r.error("springs that neither swing nor rest")),
+        };
+        match swing.mode {
+            Mode::Fresh | Mode::Away => {}
+            Mode::Swinging => swing.load_swing(rig, r)?,
+            Mode::Easing => {
+                for _ in &rig.bones {
+                    swing.offsets.push(r.vec3()?);
+                    swing.turns.push(r.rotation()?);
+                }
+            }
         }
-        swing.started = true;
+        Ok(swing)
+    }
+
+    fn load_swing(&mut self, rig: &SpringRig, r: &mut Reader<'_>) -> Result<(), ReadError> {
+        let swing = self;
         swing.phase = r.f32()?;
         if !(0.0..1.0).contains(&swing.phase) {
             return Err(r.error("a part of a tick that is none"));
@@ -51,6 +80,6 @@ impl SpringSwing {
                 places.push(Affine { linear, translation: r.vec3()? });
             }
         }
-        Ok(swing)
+        Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use super::TICK;
 use super::collide::{Placed, Surroundings};
-use super::rig::{Bone, SpringRig};
+use super::rig::{Bone, Node, SpringRig};
 use super::tip::{Around, Held};
 use super::tuning::{ALIKE, LINK_SWEEPS, SNAP};
 use sinew_anim::LocalTransform;
@@ -29,11 +29,23 @@ pub struct SpringStep<'a> {
     pub seconds: f32,
 }
 
+/// Motion of springs about the pose.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Mode {
+    /// Nothing has been stepped yet: the first step starts at rest.
+    #[default]
+    Fresh,
+    Swinging,
+    /// They are seen from afar: what they are off from the pose goes away.
+    Easing,
+    /// They are the pose, and nothing is computed.
+    Away,
+}
+
 /// Springs as they swing: the state of one character's.
 #[derive(Clone, Debug, Default)]
 pub struct SpringSwing {
-    /// Nothing has been stepped yet: the first step starts at rest.
-    pub(super) started: bool,
+    pub(super) mode: Mode,
     /// Part of a tick that has passed since the last, 0..1.
     pub(super) phase: f32,
     /// Tips at the last tick, and their way in it: metres, in the space of the chain's centre, else of the world.
@@ -46,9 +58,11 @@ pub struct SpringSwing {
     pub(super) stride: f32,
     /// Local rotation of every bone, as it is shown.
     pub(super) turns: Vec<Rotation>,
-    now: Vec<Affine>,
+    /// Turn of every bone from the pose while it eases, scaled axis.
+    pub(super) offsets: Vec<Vec3>,
+    pub(super) now: Vec<Affine>,
     /// All nodes at the time of a tick, and the colliders on them.
-    at: Vec<Affine>,
+    pub(super) at: Vec<Affine>,
     placed: Vec<Placed>,
     /// Nodes that do not swing at the tick before, and the way of each collider since then; `None` on what swings.
     last: Vec<Affine>,
@@ -65,12 +79,12 @@ impl SpringSwing {
 
     /// Has the next step start at rest, whatever has been before.
     pub fn reset(&mut self) {
-        self.started = false;
+        self.mode = Mode::Fresh;
     }
 
     /// Takes the springs along to where the character was put, as they are.
     pub fn carry(&mut self, rig: &SpringRig, moved: Transform) {
-        if !self.started {
+        if self.mode != Mode::Swinging {
             return;
         }
         let affine = Affine::from(moved);
@@ -83,22 +97,46 @@ impl SpringSwing {
         }
     }
 
-    /// Local rotations of the bones, in the order of [`SpringRig::joints`].
+    /// Takes the springs along where the character has become larger by `factor` about a point of the world, metres, as they are.
+    pub fn resize(&mut self, rig: &SpringRig, about: Vec3, factor: f32) {
+        if self.mode != Mode::Swinging {
+            return;
+        }
+        let larger = |at: Vec3| about + (at - about) * factor;
+        for node in self.before.iter_mut().chain(&mut self.earlier) {
+            let l = &node.linear;
+            let linear = Mat3::from_cols(l.x_axis * factor, l.y_axis * factor, l.z_axis * factor);
+            *node = Affine { linear, translation: larger(node.translation) };
+        }
+        for (index, bone) in rig.bones.iter().enumerate() {
+            // The space of a centre grows with it.
+            if rig.chains[bone.chain].center.is_none() {
+                self.tips[index] = larger(self.tips[index]);
+                self.ways[index] *= factor;
+            }
+        }
+    }
+
+    /// Local rotations of the bones, in the order of [`SpringRig::joints`]; none while they are the pose's.
     pub fn turns(&self) -> &[Rotation] {
         &self.turns
     }
 
-    /// Follows the character by a step. Allocates the first time only.
+    /// Follows the character by a step, from rest where they have not swung before; one of no length changes nothing. Allocates the first time only.
     ///
     /// # Panics
     /// If the pose is not as long as the rig the springs were made from.
     pub fn step(&mut self, step: &SpringStep<'_>) {
         self.look(step);
         if !self.now.iter().all(Affine::is_finite) {
-            self.started = false;
+            self.mode = Mode::Fresh;
         }
-        if !self.started {
+        if self.mode != Mode::Swinging {
             return self.rest(step);
+        }
+        // A pause: the way goes on where it was.
+        if step.seconds == 0.0 {
+            return;
         }
         let meets = step.world.map(|(world, own)| Surroundings { world, own });
         let meets = meets.filter(|around| self.are_near(step.rig, around));
@@ -140,7 +178,7 @@ impl SpringSwing {
     }
 
     /// Places of the nodes that do not swing.
-    fn look(&mut self, step: &SpringStep<'_>) {
+    pub(super) fn look(&mut self, step: &SpringStep<'_>) {
         self.now.clear();
         for node in &step.rig.nodes[..step.rig.stills] {
             let parent = node.parent.map_or(step.world_from_model, |parent| self.now[parent]);
@@ -150,32 +188,43 @@ impl SpringSwing {
 
     /// Starts with every bone at rest.
     fn rest(&mut self, step: &SpringStep<'_>) {
-        let count = step.rig.bones.len();
-        self.started = self.now.iter().all(Affine::is_finite);
-        self.phase = 0.0;
-        for list in [&mut self.tips, &mut self.ways] {
-            list.clear();
-            list.resize(count, Vec3::ZERO);
-        }
+        let rig = step.rig;
         self.turns.clear();
-        self.turns.extend(step.rig.bones.iter().map(|b| step.pose[step.rig.nodes[b.node].joint].rotation));
-        self.at.clone_from(&self.now);
-        self.at.resize(step.rig.nodes.len(), Affine::IDENTITY);
-        for (k, node) in step.rig.nodes.iter().enumerate() {
-            if node.swings {
-                let parent = node.parent.map_or(step.world_from_model, |parent| self.at[parent]);
-                self.at[k] = parent * step.pose[node.joint].to_affine();
-            }
-            if let Some(index) = node.bone {
-                let bone = &step.rig.bones[index];
-                let tip = self.at[k].point(bone.tail);
-                self.tips[index] =
-                    self.center(step.rig, bone).map_or(tip, |center| center.inverse().point(tip));
-            }
+        self.turns.extend(rig.joints().map(|joint| step.pose[joint].rotation));
+        self.place_all(rig, step.world_from_model, |node| step.pose[node.joint]);
+        self.mode = if self.now.iter().all(Affine::is_finite) { Mode::Swinging } else { Mode::Fresh };
+        self.phase = 0.0;
+        self.tips.clear();
+        for index in 0..rig.bones.len() {
+            let tip = self.placed_tip(rig, index);
+            self.tips.push(tip);
         }
+        self.ways.clear();
+        self.ways.resize(rig.bones.len(), Vec3::ZERO);
         self.earlier.clone_from(&self.now);
         core::mem::swap(&mut self.before, &mut self.now);
         self.stride = 0.0;
+    }
+
+    /// Places all nodes as a pose has them.
+    pub(super) fn place_all(
+        &mut self,
+        rig: &SpringRig,
+        root: Affine,
+        local: impl Fn(&Node) -> LocalTransform,
+    ) {
+        self.at.clear();
+        for node in &rig.nodes {
+            let parent = node.parent.map_or(root, |parent| self.at[parent]);
+            self.at.push(parent * local(node).to_affine());
+        }
+    }
+
+    /// Tip where its node has been placed, in the space of its chain's centre.
+    pub(super) fn placed_tip(&self, rig: &SpringRig, index: usize) -> Vec3 {
+        let bone = &rig.bones[index];
+        let tip = self.at[bone.node].point(bone.tail);
+        self.center(rig, bone).map_or(tip, |center| center.inverse().point(tip))
     }
 
     fn center(&self, rig: &SpringRig, bone: &Bone) -> Option<&Affine> {

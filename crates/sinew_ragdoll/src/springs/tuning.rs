@@ -43,3 +43,14 @@ pub(super) const THIN: f32 = 0.002;
 /// Larger: a pull on one strand of a skirt comes to more of the others at once. Smaller: the skirt is torn apart where a leg pulls. Shown by
 /// `links_hold_strands_together`.
 pub(super) const LINK_SWEEPS: usize = 4;
+
+/// Time in which what springs seen from afar are off from the pose falls to 1/e, seconds.
+///
+/// Larger: they cost something for longer. Smaller: a strand that hangs far from its pose is seen to fly there. Shown by the tests of `springs::changes`.
+pub(super) const EASE: f32 = 0.3;
+
+/// Turn from the pose below which springs seen from afar are the pose, radians: the tip of a strand of half a metre then goes on by 0.01 mm,
+/// which is 2 mm/s at 240 frames a second.
+///
+/// Larger: the end of the way is a jerk. Smaller: they cost something for longer, 0.3 s for each factor of e. Shown by the tests of `springs::changes`.
+pub(super) const GONE: f32 = 2e-5;

@@ -1,17 +1,22 @@
 //! Springs against VRM's reference in double precision, at other frame rates, at rest, and on a character's way through its states.
 
 use sinew_anim::springs::{ColliderShape, LimitKind, Side};
-use sinew_anim::{Rig, SpringBone, SpringCollider, SpringLimit, SpringLink, Springs, analyze, rest_pose};
+use sinew_anim::{
+    GarmentColumn, Rig, SpringBone, SpringCollider, SpringLimit, SpringLink, Springs, analyze,
+    guess_garments, guess_springs, rest_pose,
+};
 use sinew_formats::gltf::SpringFormat;
 use sinew_formats::{ReadOptions, no_files, read_gltf};
 use sinew_math::{Affine, Random, Reader, Rotation, Transform, Vec3, Writer, trig};
 use sinew_physics::{BodyDef, FieldDef, FieldKind, Shape, Wind, World, WorldDef};
 use sinew_ragdoll::{BuildOptions, Character, CharacterDef, SpringStep, SpringSwing, State, build};
+use sinew_scenes::dressed::{SKIRT, dressed, dressed_rig};
 use sinew_scenes::maned::{HAIR, maned, maned_rig};
 use sinew_scenes::mannequin::mannequin;
 use std::sync::Arc;
 
 mod avatar;
+mod changes;
 mod reference;
 
 use avatar::{Calming, random_avatar, strands, vrm};
@@ -620,6 +625,38 @@ fn links_hold_strands_together() {
     println!("blown together: {close}, by links that only hold together {still_close}, by both {apart}");
     let least = 1.0 - 0.2 * (1.0 - close);
     assert!(close < 0.6 && still_close == close && apart > least, "{close} {still_close} {apart}");
+}
+
+#[test]
+fn names_link_the_strands_of_a_skirt() {
+    let rig = dressed_rig(&[&SKIRT]);
+    let springs = guess_springs(&rig, Vec3::Y);
+    let strands = |links: &[SpringLink]| {
+        let strand = |joint: usize| rig.joints[joint].name.rsplit_once('_').unwrap().0.to_owned();
+        links.iter().map(|link| link.joints.map(strand)).collect::<std::collections::BTreeSet<_>>()
+    };
+    // Ten strands in a ring, each linked to the next as far down: the names are in the order in which they stand.
+    assert_eq!(springs.links.len(), SKIRT.columns * SKIRT.bones);
+    for [a, b] in strands(&springs.links) {
+        let number = |name: &str| name.rsplit_once('_').unwrap().1.parse::<usize>().unwrap();
+        let apart = number(&a).abs_diff(number(&b));
+        assert!(apart == 1 || apart == SKIRT.columns - 1, "{a} {b}");
+    }
+    assert!(springs.links.iter().all(|link| link.joints.iter().all(|&joint| springs.swings(joint))));
+    // Open: one gap less. Two strands have one between them, closed or not.
+    let columns: Vec<_> = guess_garments(&rig)[0].columns.clone();
+    let count = |columns: &[GarmentColumn], closed| SpringLink::default().across(columns, closed).len();
+    let long = columns[0].joints.len();
+    assert_eq!([count(&columns, true), count(&columns, false)], [10 * long, 9 * long]);
+    assert_eq!([count(&columns[..2], true), count(&columns[..1], true)], [long, 0]);
+    // Hair has none.
+    assert!(guess_springs(&maned_rig(&HAIR), Vec3::Y).links.is_empty());
+    // A character that wears the skirt as springs has them; as a garment it has no springs there.
+    let mut def = dressed(&[&SKIRT], |_| ());
+    def.set_springs(&springs);
+    assert_eq!(def.springs().link_count(), springs.links.len());
+    def.set_garments(&guess_garments(&rig));
+    assert_eq!(def.springs().link_count(), 0);
 }
 
 #[test]

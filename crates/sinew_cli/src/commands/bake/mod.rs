@@ -243,7 +243,8 @@ impl Bake {
             let door = || self.world.as_ref().and_then(|_| door(world));
             let (mut file, settings) =
                 self.settings.load_into(&self.character, textures, door, !self.no_garments)?;
-            self.wear(&mut file, settings.settings.springs);
+            let source = self.spring_source(settings.settings.springs);
+            file.document.rig.springs = settings.springs(source, &file)?;
             let garments = if self.no_garments { Vec::new() } else { settings.garments(&file)? };
             let (ragdoll, _) = settings.build(&file, &BuildOptions::default())?;
             let guess = file.analysis.unit_guess.as_ref().filter(|guess| !guess.is_sure);
@@ -254,7 +255,8 @@ impl Bake {
             return Ok(Cast { file, ragdoll, garments, doubt, notes });
         };
         let mut file = CharacterFile::load(&self.character, textures)?;
-        self.wear(&mut file, None);
+        let rig = &mut file.document.rig;
+        rig.springs = self.spring_source(None).springs(rig, file.analysis.up_axis);
         let ragdoll = read_definition(path, &file)?;
         // Nobody knows whether its mass was guessed or given.
         let mut doubt = Doubt::of(&ragdoll);
@@ -265,15 +267,13 @@ impl Bake {
         Ok(Cast { file, ragdoll, garments: Vec::new(), doubt, notes })
     }
 
-    /// Gives the character the springs that are asked for: by an option, else by the settings.
-    fn wear(&self, file: &mut CharacterFile, setting: Option<SpringSource>) {
-        let source = match (self.no_springs, self.guess_springs) {
+    /// Source of the springs that are asked for: by an option, else by the settings.
+    fn spring_source(&self, setting: Option<SpringSource>) -> SpringSource {
+        match (self.no_springs, self.guess_springs) {
             (true, _) => SpringSource::None,
             (_, true) => SpringSource::Names,
             _ => setting.unwrap_or_default(),
-        };
-        let rig = &mut file.document.rig;
-        rig.springs = source.springs(rig, file.analysis.up_axis);
+        }
     }
 
     /// Name of the new clip: as the user says, else `sinew`, with a number where the file has that already.

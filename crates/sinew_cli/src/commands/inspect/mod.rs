@@ -2,18 +2,21 @@
 
 mod clips;
 
-use crate::failure::Result;
+use crate::failure::{Failure, Result};
 use crate::input::motion::Motion;
 use crate::input::settings_arg::assumed;
 use crate::report::garments_report::{garments_json, garments_text};
 use crate::report::ragdoll_report::axis_name;
-use crate::report::springs_report::{colliders_json, springs_json, springs_text};
+use crate::report::springs_report::{colliders_json, links_json, links_text, springs_json, springs_text};
 use crate::report::table::{Table, counted, shown};
 use crate::report::{Report, number};
 use clips::{ClipFacts, clip_table, event_table};
 use serde_json::{Value, json};
-use sinew::formats::MotionOptions;
+use sinew::anim::SpringLink;
 use sinew::formats::gltf::SpringFormat;
+use sinew::formats::{MotionOptions, read_bytes, read_ragdoll_settings, settings_path};
+use sinew::math::Vec3;
+use sinew::ragdoll::SettingsError;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -34,8 +37,29 @@ impl Inspect {
     /// Reads the file and describes it.
     pub fn run(&self) -> Result<Report> {
         let motion = Motion::load(&self.file, &MotionOptions::default())?;
-        let content = Content { clips: ClipFacts::of(&motion), motion: &motion };
+        let (links, trouble) = match self.links(&motion) {
+            Ok(links) => (links, None),
+            Err(failure) => (Vec::new(), Some(failure.to_string())),
+        };
+        let content = Content { clips: ClipFacts::of(&motion), motion: &motion, links, trouble };
         Ok(Report { json: content.to_json(), text: content.to_text() })
+    }
+
+    /// Links across strands that the settings beside the file ask for.
+    fn links(&self, motion: &Motion) -> Result<Vec<SpringLink>> {
+        let path = settings_path(&self.file);
+        if !path.is_file() {
+            return Ok(motion.file.rig.springs.links.clone());
+        }
+        let name = path.display().to_string();
+        let read = read_bytes(&path).and_then(|bytes| read_ragdoll_settings(&bytes));
+        let settings = read.map_err(|error| error.with_file(&name))?;
+        let up = motion.analysis.as_ref().map_or(Vec3::Y, |analysis| analysis.up_axis);
+        match settings.springs_of(settings.springs.unwrap_or_default(), &motion.file.rig, up) {
+            Ok(springs) => Ok(springs.links),
+            Err(SettingsError::Setting { what, place }) => Err(Failure::at(&name, what, &place)),
+            Err(SettingsError::Build(error)) => Err(Failure::of_file(&name, error)),
+        }
     }
 }
 
@@ -43,6 +67,9 @@ impl Inspect {
 struct Content<'a> {
     motion: &'a Motion,
     clips: Vec<ClipFacts<'a>>,
+    /// Links of its springs, and what is wrong in the settings that ask for them.
+    links: Vec<SpringLink>,
+    trouble: Option<String>,
 }
 
 impl Content<'_> {
@@ -69,6 +96,7 @@ impl Content<'_> {
             "spring_format": file.spring_format.map(SpringFormat::name),
             "springs": springs_json(&file.rig),
             "spring_colliders": colliders_json(&file.rig),
+            "spring_links": links_json(&file.rig, &self.links),
             "garments": garments_json(&file.rig),
             "notes": self.notes(),
             "warnings": self.warnings(),
@@ -117,6 +145,7 @@ impl Content<'_> {
             text += &events.to_text();
         }
         text += &springs_text(rig, file.spring_format.map(SpringFormat::name));
+        text += &links_text(rig, &self.links);
         text += &garments_text(rig);
         if !rig.joints.is_empty() {
             text += "\nJoints\n";
@@ -183,7 +212,7 @@ impl Content<'_> {
     /// Warnings of what could not be read, and what cannot be played.
     fn warnings(&self) -> Vec<String> {
         let unplayable = self.clips.iter().filter_map(ClipFacts::warning);
-        self.motion.file.notes.iter().cloned().chain(unplayable).collect()
+        self.motion.file.notes.iter().cloned().chain(unplayable).chain(self.trouble.clone()).collect()
     }
 
     /// Vertices and triangles of all meshes.
