@@ -2,11 +2,11 @@
 //! shape than its radius, no world comes to have more energy than it began with, and two threads make the bits that one makes.
 //!
 //! `SINEW_WORLDS=100..200 cargo test --release -p sinew_physics --test it -- --nocapture worlds_of_particles` runs other seeds; of
-//! 0 to 2,999 two fail (953, 1093), nets that gain 0.02 and 0.05 J as they begin to swing.
+//! 0 to 4,999 three fail (953, 1093, 4402), nets that gain 0.01 to 0.05 J as they begin to swing.
 
 use crate::random_worlds::asked_seeds;
 use sinew_math::{Random, Rotation, Vec3, max};
-use sinew_physics::particles::{BlobDef, ClothDef, GroupDef, ParticleDef, RopeDef, StrandDef};
+use sinew_physics::particles::{BlobDef, ClothDef, GroupDef, ParticleDef, RopeDef, SpringScheme, StrandDef};
 use sinew_physics::{BodyDef, BodyKind, Shape, ShapeDef, Threads, World, WorldDef};
 
 const STEPS: usize = 600;
@@ -101,7 +101,8 @@ fn group(random: &mut Random) -> GroupDef {
     group
 }
 
-fn world(seed: u64) -> World {
+/// `whole`: springs of nets and blobs are solved as one as well.
+fn world(seed: u64, whole: bool) -> World {
     let mut random = Random::new(seed);
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -122,7 +123,10 @@ fn world(seed: u64) -> World {
         });
     }
     for _ in 0..1 + random.index(2) {
-        let group = group(&mut random);
+        let mut group = group(&mut random);
+        if whole {
+            group.scheme = SpringScheme::Implicit;
+        }
         world.add_particles(&group);
     }
     world
@@ -156,11 +160,20 @@ fn mass(world: &World) -> f32 {
 
 #[test]
 fn worlds_of_particles_stay_finite_and_give_no_energy() {
-    let seeds = asked_seeds().map_or_else(|| SEEDS.to_vec(), Iterator::collect);
+    are_sound(&asked_seeds().map_or_else(|| SEEDS.to_vec(), Iterator::collect), false);
+}
+
+/// As well where no spring is projected. Asked for, 0 to 199 pass.
+#[test]
+fn worlds_of_implicit_nets_stay_finite_and_give_no_energy() {
+    are_sound(&asked_seeds().map_or_else(|| SEEDS[..8].to_vec(), Iterator::collect), true);
+}
+
+fn are_sound(seeds: &[u64], whole: bool) {
     let two = Threads::new(2);
     let mut bad = Vec::new();
-    for seed in seeds {
-        let [mut one, mut other] = [world(seed), world(seed)];
+    for &seed in seeds {
+        let [mut one, mut other] = [world(seed, whole), world(seed, whole)];
         let most = one.energy().total() + GAIN * mass(&one);
         let (mut gain, mut depth) = (f32::NEG_INFINITY, f32::NEG_INFINITY);
         for step in 0..STEPS {
