@@ -6,7 +6,8 @@
 //! body's inertia, they would part under the tension within the solve, and a bridge of planks on ropes would stretch and gain energy.
 //!
 //! Several groups that hang on one body are solved as one: each adds to `S` and to the momentum the **shares** that the others gather
-//! there. Of a body that is the root of their trees shares are all that they bring, whatever its velocity, and the solution is exact.
+//! there. Of a body that is the root of their trees shares are all that they bring, whatever its velocity, and the solution is exact. Where springs
+//! close loops, shares hold for the velocities that the round before has found.
 
 use super::added_mass::AddedMass;
 use super::contact::ObstacleBody;

@@ -131,7 +131,7 @@ impl ParticleGroup {
         let filter = load_filter(input)?;
         let has = input.u8()?;
         if has > 0b1111 {
-            return Err(input.error("a scheme is neither of the two"));
+            return Err(input.error("a group has no such flags"));
         }
         let scheme = if has & 1 == 0 { SpringScheme::Implicit } else { SpringScheme::Projected };
         let thickness = if has & 0b10 == 0 { 0.0 } else { input.f32()? };

@@ -40,13 +40,13 @@ pub(super) const LENGTH_TOLERANCE: f32 = 1e-3;
 
 /// Energy of the error of velocities at which springs that close loops are solved, as a share of that of the velocities, a ratio.
 ///
-/// Larger: nets that hang taut tremble. Smaller: more rounds of conjugate gradients. Shown by the tests of `nets`.
+/// Larger: nets that hang taut tremble. Smaller: more rounds of conjugate gradients. Shown by the tests of `loads`.
 pub(super) const CONJUGATE_TOLERANCE: f64 = 1e-9;
 
 /// Most rounds of conjugate gradients in one solve, a number.
 ///
 /// A net takes as many as it is wide. Larger: nets of thousands of particles are solved for as long as they take. Smaller: they give way.
-/// Shown by the tests of `nets`.
+/// Shown by the tests of `loads`.
 pub(super) const CONJUGATE_ROUNDS: u32 = 200;
 
 /// Factor on the length of a way within which everything is looked for, a ratio.

@@ -156,7 +156,7 @@ impl Surroundings {
 
     /// Begins the substep of groups that hang on one body, as one system: each is solved with the inertia and the pull that the others bring to the body, in
     /// turns, until its velocity stays. Where one body is all that they share, each brings what the others' velocities do not change, and the first round is the
-    /// solution but for springs that turn.
+    /// solution but for springs that turn or close loops.
     ///
     /// One after the other, each would find the whole body turn about its corner as if nothing else held it, and the one rope take from the other what it gave.
     fn solve_together(
