@@ -43,7 +43,7 @@ pub enum SheetError {
     /// All of it is held.
     #[error("all of that mesh is held: nothing of it is left to hang")]
     AllHeld,
-    /// What is held is so little that most of it does not hang on it.
+    /// Most of it does not hang together with what is held.
     #[error(
         "most of that mesh does not hang together with what is held at its top: a larger `held` holds more"
     )]
