@@ -127,6 +127,11 @@ pub(crate) const HELD_SHARE: f32 = 0.1;
 /// Larger: coarser sheets than need be. Smaller: more tries. Shown by the tests of `sheets`.
 pub(crate) const COARSER: f32 = 1.1;
 
+/// Share of a sheet's extent below which no distance between particles is tried, a ratio.
+///
+/// Larger: less fine sheets of what is long and narrow. Smaller: more tries where the spacing is tiny. Shown by the tests of `sheets`.
+pub(crate) const FINEST: f32 = 1e-4;
+
 // retarget/align.rs
 
 /// Cosine of the angle between two reference poses, 30°, up to which both are taken to stand upright.

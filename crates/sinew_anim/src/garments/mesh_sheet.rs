@@ -19,6 +19,8 @@ pub struct MeshSheet {
     pub faces: Vec<[u32; 3]>,
     /// Pairs of particles that are beside each other, each once, the smaller first.
     pub links: Vec<[u32; 2]>,
+    /// Area of the mesh about each particle as it was bound, m²: what hangs together has all of its area, however far it was reduced.
+    pub areas: Vec<f32>,
     /// Places of vertices of the mesh, those that are in one place counted once.
     pub vertices: usize,
 }

@@ -173,3 +173,143 @@ fn a_mesh_without_a_skin_gets_one_and_errors_change_nothing() {
     flat.meshes[0].primitives[0].positions.iter_mut().for_each(|place| *place = Vec3::ZERO);
     assert_eq!(lay(&mut flat, 400, None), Err(SheetError::Empty));
 }
+
+/// The cloth as one that hangs in strips of so many cells, each a piece by itself.
+fn strips(cells: usize, across: usize) -> Rig {
+    let mut it = rig(cells);
+    let primitive = &mut it.meshes[0].primitives[0];
+    let column = |vertex: u32| vertex as usize % (cells + 1);
+    let at = |face: &[u32]| face.iter().map(|&vertex| column(vertex)).min().unwrap_or(0);
+    let faces = primitive.indices.chunks_exact(3).filter(|face| at(face).is_multiple_of(across));
+    primitive.indices = faces.flatten().copied().collect();
+    it
+}
+
+#[test]
+fn pieces_have_a_particle_each_or_there_are_too_many() {
+    let mut it = strips(10, 2);
+    let untouched = it.clone();
+    assert_eq!(lay(&mut it, 4, None), Err(SheetError::TooManyPieces(5)));
+    assert_eq!(it, untouched);
+    let sheet = lay(&mut it, 12, None).expect("there is room");
+    assert!(it.sheets[sheet].held.iter().filter(|held| **held).count() >= 5);
+}
+
+#[test]
+fn a_spacing_of_nearly_nothing_is_no_endless_loop() {
+    let mut it = rig(20);
+    let bind_model = bind(&it);
+    let part = MeshPart::named(&it, "Flag").expect("it is there");
+    let first_source = it.joints.len();
+    let options = SheetOptions {
+        bind_model: &bind_model,
+        metres_from_model: Affine::IDENTITY,
+        spacing: 1e-45,
+        held: None,
+        most_particles: 100,
+        first_source,
+    };
+    let sheet = lay_sheet(&mut it, &part, &options).expect("it can be cloth");
+    assert!((50..=100).contains(&it.sheets[sheet].joints.len()));
+}
+
+/// Each piece of a reduced sheet is held, though nothing but the highest vertices is.
+#[test]
+fn reduced_sheets_are_held() {
+    for most in [4, 20, 100] {
+        let mut it = rig(80);
+        // A corner is lifted a little, so that one vertex is held: of those on the border not the first.
+        it.meshes[0].primitives[0].positions[37].y += 1e-3;
+        let sheet = lay(&mut it, most, Some(0.0)).expect("it can be cloth");
+        assert_eq!(it.sheets[sheet].held.iter().filter(|held| **held).count(), 1, "{most}");
+    }
+    let mut it = strips(40, 5);
+    let sheet = lay(&mut it, 40, Some(0.0)).expect("it can be cloth");
+    assert!(it.sheets[sheet].held.iter().filter(|held| **held).count() >= 8);
+}
+
+/// A ribbon of which nothing is left but a row of particles weighs what it did.
+#[test]
+fn areas_are_those_of_the_mesh() {
+    for (across, most, area) in [(1, 2000, 1.0), (1, 30, 1.0), (80, 40, 1.0 / 80.0)] {
+        let mut it = strips(80, across);
+        let sheet = lay(&mut it, most, None).expect("it can be cloth");
+        let sheet = &it.sheets[sheet];
+        assert_eq!(sheet.areas.len(), sheet.joints.len());
+        assert!(sheet.areas.iter().all(|area| *area > 0.0));
+        let sum: f32 = sheet.areas.iter().sum();
+        assert!((sum / area - 1.0).abs() < 1e-4, "{sum} of {area} m²");
+        assert_eq!(sheet.faces.is_empty(), across == 80);
+    }
+}
+
+/// A brooch above a cape is not what the cape is.
+#[test]
+fn what_lies_above_the_cloth_does_not_take_the_hold_from_it() {
+    let mut it = rig(10);
+    let primitive = &mut it.meshes[0].primitives[0];
+    let first = primitive.positions.len() as u32;
+    for place in [Vec3::new(0.4, 1.3, 0.0), Vec3::new(0.6, 1.3, 0.0), Vec3::new(0.5, 1.4, 0.0)] {
+        primitive.positions.push(place);
+        primitive.normals.push(Vec3::Z);
+        primitive.joints.push([0; 4]);
+        primitive.weights.push([1.0, 0.0, 0.0, 0.0]);
+    }
+    primitive.indices.extend([first, first + 1, first + 2]);
+    let untouched = it.clone();
+    assert_eq!(lay(&mut it, 400, None), Err(SheetError::MostlyLoose));
+    assert_eq!(it, untouched);
+    assert!(lay(&mut it, 400, Some(0.6)).is_ok());
+    // Where it has no area, it is not there.
+    let mut it = untouched;
+    it.meshes[0].primitives[0].positions[first as usize + 2] = Vec3::new(0.5, 1.3, 0.0);
+    let sheet = lay(&mut it, 400, None).expect("it can be cloth");
+    assert_eq!(it.sheets[sheet].held.iter().filter(|held| **held).count(), 22 + 3);
+}
+
+/// Vertices of a triangle without an area, two corners of which lie in one place once they are bound, beside loose parts that look for the nearest one.
+#[test]
+fn weights_are_numbers_where_triangles_are_none() {
+    let mut it = rig(10);
+    let primitive = &mut it.meshes[0].primitives[0];
+    let first = primitive.positions.len() as u32;
+    // So near to a vertex of the cloth that their difference is nothing once it is turned, and a loose one before the middle of the triangle.
+    for place in [
+        Vec3::new(1.0, 0.5, 1e-30),
+        Vec3::new(2.0, 0.5, 0.1),
+        Vec3::new(1.6, 0.4, 0.1),
+        Vec3::new(1.6, 0.5, 0.1),
+    ] {
+        primitive.positions.push(place);
+        primitive.normals.push(Vec3::Z);
+        primitive.joints.push([0; 4]);
+        primitive.weights.push([1.0, 0.0, 0.0, 0.0]);
+    }
+    let edge = 5 * 11 + 10;
+    primitive.indices.splice(0..0, [edge, first, edge - 1, first + 1, first + 2, first + 3]);
+    lay(&mut it, 400, None).expect("it can be cloth");
+    let weights = &it.meshes[0].primitives[0].weights;
+    assert!(weights.iter().flatten().all(|weight| weight.is_finite()), "{:?}", &weights[first as usize..]);
+}
+
+#[test]
+fn the_rigid_part_of_a_skinned_mesh_is_no_sheet() {
+    let mut it = rig(4);
+    let mut rigid = it.meshes[0].clone();
+    rigid.skin = None;
+    rigid.primitives[0].joints.clear();
+    rigid.primitives[0].weights.clear();
+    it.meshes.push(rigid);
+    let part = MeshPart { name: "Flag".into(), mesh: 1, primitives: vec![0] };
+    let (bind_model, untouched) = (bind(&it), it.clone());
+    let options = SheetOptions {
+        bind_model: &bind_model,
+        metres_from_model: Affine::IDENTITY,
+        spacing: SPACING,
+        held: None,
+        most_particles: 400,
+        first_source: it.joints.len(),
+    };
+    assert_eq!(lay_sheet(&mut it, &part, &options), Err(SheetError::NoSkin));
+    assert_eq!(it, untouched);
+}

@@ -235,21 +235,28 @@ fn read_garment(at: At<'_>) -> Result<GarmentSettings> {
     only(at, &GARMENT_KEYS)?;
     let mesh = read_mesh(at)?;
     let usual = Garment::default();
-    let positive = |key: &str, usual: f32| at.get(key)?.map_or(Ok(usual), At::positive);
-    let not_negative = |key: &str, usual: f32| at.get(key)?.map_or(Ok(usual), At::not_negative);
+    let within = |key: &str, usual: f32, [least, most]: [f32; 2]| {
+        let Some(at) = at.get(key)? else { return Ok(usual) };
+        // Below 0 and at it other messages say more.
+        let number = if least > 0.0 { at.positive()? } else { at.not_negative()? };
+        if number < least || number > most {
+            return Err(at.malformed(format!("must lie between {least} and {most}")));
+        }
+        Ok(number)
+    };
     let cloth = Garment {
         name: at.get("name")?.map(At::str).transpose()?.unwrap_or_default().to_owned(),
-        area_density: positive("area_density", usual.area_density)?,
-        radius: positive("radius", usual.radius)?,
-        spacing: positive("spacing", usual.spacing)?,
-        stretching: positive("stretching", usual.stretching)?,
-        shearing: not_negative("shearing", usual.shearing)?,
-        bending: not_negative("bending", usual.bending)?,
-        damping_ratio: not_negative("damping_ratio", usual.damping_ratio)?,
-        drag: not_negative("drag", usual.drag)?,
-        friction: not_negative("friction", usual.friction)?,
+        area_density: within("area_density", usual.area_density, [1e-3, 1e3])?,
+        radius: within("radius", usual.radius, [1e-4, 10.0])?,
+        spacing: within("spacing", usual.spacing, [1e-4, 10.0])?,
+        stretching: within("stretching", usual.stretching, [1e-3, 1e9])?,
+        shearing: within("shearing", usual.shearing, [0.0, 1e9])?,
+        bending: within("bending", usual.bending, [0.0, 1e9])?,
+        damping_ratio: within("damping_ratio", usual.damping_ratio, [0.0, 100.0])?,
+        drag: within("drag", usual.drag, [0.0, 100.0])?,
+        friction: within("friction", usual.friction, [0.0, 100.0])?,
         meets_arms: at.get("meets_arms")?.map(At::bool).transpose()?,
-        thickness: not_negative("thickness", usual.thickness)?,
+        thickness: within("thickness", usual.thickness, [0.0, 1.0])?,
         ..usual
     };
     Ok(GarmentSettings {

@@ -127,6 +127,17 @@ fn garments_are_named_or_listed() {
         (r#"[{"chains": ["a"], "radius": 0}]"#, "garments[0].radius"),
         (r#"[{"chains": ["a"]}, {"chains": ["b"], "closed": 1}]"#, "garments[1].closed"),
         (r#"[{"chains": ["a"], "shearing": -1}]"#, "garments[0].shearing"),
+        // What no particle could weigh, or no spring be.
+        (r#"[{"chains": ["a"], "area_density": 3e38}]"#, "between 0.001 and 1000"),
+        (r#"[{"chains": ["a"], "area_density": 1e-44}]"#, "between 0.001 and 1000"),
+        (r#"[{"mesh": "a", "spacing": 1e-30}]"#, "garments[0].spacing"),
+        (r#"[{"mesh": "a", "radius": 11}]"#, "garments[0].radius"),
+        (r#"[{"mesh": "a", "stretching": 1e38}]"#, "garments[0].stretching"),
+        (r#"[{"mesh": "a", "bending": 1e38}]"#, "garments[0].bending"),
+        (r#"[{"mesh": "a", "damping_ratio": 3e38}]"#, "garments[0].damping_ratio"),
+        (r#"[{"mesh": "a", "drag": 101}]"#, "garments[0].drag"),
+        (r#"[{"mesh": "a", "friction": 101}]"#, "garments[0].friction"),
+        (r#"[{"mesh": "a", "thickness": 1.5}]"#, "garments[0].thickness"),
     ] {
         let error = read(garments).unwrap_err().to_string();
         assert!(error.contains(message), "{garments}: {error}");

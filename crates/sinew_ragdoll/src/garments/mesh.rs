@@ -67,6 +67,10 @@ impl Grain {
             let back = frame.inverse();
             grain.frame_from_bone = back * bone;
             grain.moved_out = back * grain.moved_out;
+        } else {
+            // Without a frame at rest it never has one: it moves, and does not turn.
+            grain.around.clear();
+            grain.moved_out = Vec3::ZERO;
         }
         grain
     }
@@ -100,14 +104,10 @@ impl Grain {
 /// The group of a mesh's sheet with its springs, bends and tethers, and the strand of each particle: the held one that it hangs from.
 pub(super) fn weave(garment: &Garment, mesh: &MeshSheet, places: &[Vec3]) -> (GroupDef, Vec<usize>) {
     let weave = Weave { garment, mesh, places };
-    let mut areas = vec![0.0; places.len()];
-    for face in &mesh.faces {
-        face.iter().for_each(|&corner| areas[corner as usize] += weave.area(face) / 3.0);
-    }
-    let mut group = unsprung(garment, particles(garment, places, &areas));
+    let mut group = unsprung(garment, particles(garment, places, &mesh.areas));
     group.faces.clone_from(&mesh.faces);
     weave.join_all(&mut group);
-    weave.stiffen(&mut group, &areas);
+    weave.stiffen(&mut group, &mesh.areas);
     let strand = weave.tether(&mut group);
     (group, strand)
 }
@@ -228,35 +228,42 @@ impl Weave<'_> {
 
     /// Tethers every particle to the held one that is nearest along the edges (Dijkstra), as long as the way there; gives that of each.
     fn tether(&self, group: &mut GroupDef) -> Vec<usize> {
-        let count = self.places.len();
-        let mut beside: Vec<Vec<(usize, f32)>> = vec![Vec::new(); count];
-        for &link in &self.mesh.links {
-            let (length, [a, b]) = (self.way(link).length(), link.map(|at| at as usize));
-            beside[a].push((b, length));
-            beside[b].push((a, length));
-        }
-        let (mut way, mut from) = (vec![f32::INFINITY; count], (0..count).collect::<Vec<usize>>());
-        let mut open = BinaryHeap::new();
-        for held in (0..count).filter(|&particle| self.mesh.held[particle]) {
-            way[held] = 0.0;
-            open.push((Reverse(0), Reverse(held)));
-        }
-        while let Some((Reverse(bits), Reverse(at))) = open.pop() {
-            // Lengths are not negative, so their bits are in their order.
-            if f32::from_bits(bits) > way[at] {
-                continue;
-            }
-            for &(next, length) in &beside[at] {
-                if way[at] + length < way[next] {
-                    (way[next], from[next]) = (way[at] + length, from[at]);
-                    open.push((Reverse(way[next].to_bits()), Reverse(next)));
-                }
-            }
-        }
-        for particle in (0..count).filter(|&particle| way[particle] > 0.0 && way[particle].is_finite()) {
+        let (way, from) = ways_from_held(self.mesh, self.places);
+        for particle in (0..way.len()).filter(|&particle| way[particle] > 0.0 && way[particle].is_finite()) {
             let [to, own] = [from[particle], particle].map(|at| at as u32);
             group.tethers.push(TetherDef { particle: own, to, length: way[particle] });
         }
         from
     }
+}
+
+/// Length of the way along the edges from each particle to the nearest that is held (Dijkstra), metres, and which that is; itself where there is no way.
+pub(super) fn ways_from_held(mesh: &MeshSheet, places: &[Vec3]) -> (Vec<f32>, Vec<usize>) {
+    let count = places.len();
+    let mut beside: Vec<Vec<(usize, f32)>> = vec![Vec::new(); count];
+    for &link in &mesh.links {
+        let [a, b] = link.map(|at| at as usize);
+        let length = (places[b] - places[a]).length();
+        beside[a].push((b, length));
+        beside[b].push((a, length));
+    }
+    let (mut way, mut from) = (vec![f32::INFINITY; count], (0..count).collect::<Vec<usize>>());
+    let mut open = BinaryHeap::new();
+    for held in (0..count).filter(|&particle| mesh.held[particle]) {
+        way[held] = 0.0;
+        open.push((Reverse(0), Reverse(held)));
+    }
+    while let Some((Reverse(bits), Reverse(at))) = open.pop() {
+        // Lengths are not negative, so their bits are in their order.
+        if f32::from_bits(bits) > way[at] {
+            continue;
+        }
+        for &(next, length) in &beside[at] {
+            if way[at] + length < way[next] {
+                (way[next], from[next]) = (way[at] + length, from[at]);
+                open.push((Reverse(way[next].to_bits()), Reverse(next)));
+            }
+        }
+    }
+    (way, from)
 }

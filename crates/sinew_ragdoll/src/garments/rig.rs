@@ -89,8 +89,8 @@ struct Hung<'a> {
 
 impl GarmentRig {
     /// Garments of a rig with a ragdoll, `bind_model` its bind pose in model space. Columns are left out ([`left_out`](Self::left_out)) that no body
-    /// carries, that have no length, or a joint of which moves a body or is in another column; so are garments of less than two, and sheets of a mesh a
-    /// particle of which no body carries.
+    /// carries, that have no length, or a joint of which moves a body or is in another column; so are garments of less than two, and sheets of a mesh
+    /// that holds a particle which no body carries. Free particles that none carries hang from the body of the held one that is nearest.
     ///
     /// # Panics
     /// If a joint is named that is not there, or a number of a garment makes no sense.
@@ -107,7 +107,7 @@ impl GarmentRig {
         let mut sheets: Vec<(&Garment, &MeshSheet, Vec<usize>)> = Vec::new();
         for garment in garments {
             if let Some(mesh) = &garment.sheet {
-                match it.holders(rig, mapping, mesh, &mut taken) {
+                match holders(rig, mapping, bind_model, mesh, &mut taken) {
                     Some(bodies) => sheets.push((garment, mesh, bodies)),
                     None => it.left_out.extend(&mesh.joints),
                 }
@@ -158,21 +158,6 @@ impl GarmentRig {
         }
         let turning = it.nodes.iter().filter(|node| node.moves != Moves::Nothing);
         it.turning = turning.map(|node| node.joint).collect();
-    }
-
-    /// Bodies that the particles of a mesh hang from; `None` if no body carries one, or one moves a body or is in another garment.
-    fn holders(
-        &self,
-        rig: &Rig,
-        mapping: &Mapping,
-        mesh: &MeshSheet,
-        taken: &mut [bool],
-    ) -> Option<Vec<usize>> {
-        let body = |&joint: &JointIdx| {
-            let is_free = !mapping.moves_bodies(joint) && !core::mem::replace(&mut taken[joint], true);
-            mapping.body_above(rig, joint).filter(|_| is_free)
-        };
-        mesh.joints.iter().map(body).collect()
     }
 
     fn add_mesh(
@@ -294,7 +279,7 @@ impl GarmentRig {
         self.grains.iter().map(|grain| self.nodes[grain.node].joint)
     }
 
-    /// Joints of columns that were left out.
+    /// Joints of columns and sheets that were left out.
     pub fn left_out(&self) -> &[JointIdx] {
         &self.left_out
     }
@@ -308,6 +293,29 @@ impl GarmentRig {
     pub fn is_empty(&self) -> bool {
         self.sheets.is_empty()
     }
+}
+
+/// Bodies that the particles of a mesh hang from, that of the held one where no body carries a free one; `None` if no body carries what is held, or one moves
+/// a body or is in another garment.
+fn holders(
+    rig: &Rig,
+    mapping: &Mapping,
+    bind_model: &[Affine],
+    mesh: &MeshSheet,
+    taken: &mut [bool],
+) -> Option<Vec<usize>> {
+    if mesh.joints.iter().any(|&joint| mapping.moves_bodies(joint) || taken[joint]) {
+        return None;
+    }
+    let above: Vec<Option<usize>> = mesh.joints.iter().map(|&joint| mapping.body_above(rig, joint)).collect();
+    let places: Vec<Vec3> = mesh.joints.iter().map(|&joint| bind_model[joint].translation).collect();
+    let (_, from) = super::mesh::ways_from_held(mesh, &places);
+    let bodies: Option<Vec<usize>> =
+        above.iter().zip(&from).map(|(own, &held)| own.or(above[held])).collect();
+    if bodies.is_some() {
+        mesh.joints.iter().for_each(|&joint| taken[joint] = true);
+    }
+    bodies
 }
 
 impl Bone {

@@ -69,6 +69,11 @@ impl Worn {
         for _ in 0..places {
             worn.places.push(r.vec3()?);
         }
+        let is_finite = worn.turns.iter().all(|turn| turn.is_finite())
+            && worn.places.iter().all(|place| place.is_finite());
+        if !is_finite {
+            return Err(r.error("wears what is nowhere"));
+        }
         Ok(worn)
     }
 }
@@ -97,6 +102,15 @@ impl Wearer<'_> {
         groups
     }
 
+    /// True if these groups are in the world and have the particles of the sheets: a snapshot may be of another world.
+    fn fits(&self, world: &World, groups: &[GroupId]) -> bool {
+        let is_there = |&id: &GroupId| world.group_ids().any(|known| known == id);
+        let fits = |(sheet, &id): (&Sheet, &GroupId)| {
+            is_there(&id) && world.particles(id).positions().len() == sheet.strand.len()
+        };
+        groups.len() == self.rig.sheets.len() && self.rig.sheets.iter().zip(groups).all(fits)
+    }
+
     /// Places of a sheet's particles in the world as the pose has them, with the nodes there.
     fn places(&self, sheet: usize, nodes: &[Affine]) -> Vec<Vec3> {
         let way = |column: &Column| {
@@ -122,6 +136,9 @@ impl Wearer<'_> {
     /// Brings back to the pose the lines of which the bodies have caught a thread, so that it is far too long. A clip that folds the body on its skirt may
     /// leave a part of it on the other side.
     pub fn mend(&self, world: &mut World, groups: &[GroupId]) {
+        if !self.fits(world, groups) {
+            return;
+        }
         for (index, (sheet, &id)) in self.rig.sheets.iter().zip(groups).enumerate() {
             let at = world.particles(id).positions();
             let is_caught = |thread: &&SpringDef| {
@@ -214,11 +231,15 @@ impl Wearer<'_> {
     }
 
     /// Local rotations of the joints that turn, in the order of [`GarmentRig::joints`], and local places of those that are particles, as their sheets lie in
-    /// the world.
+    /// the world. If there are no such sheets in it, none are on any more, and the next step puts them on.
     pub fn turns(&self, world: &World, worn: &mut Worn) {
         let Worn { groups, turns, places } = worn;
         turns.clear();
         places.clear();
+        if !self.fits(world, groups) {
+            groups.clear();
+            return;
+        }
         let mut rotations: Vec<Rotation> = Vec::with_capacity(self.rig.nodes.len());
         let mut frames: Vec<Affine> = Vec::with_capacity(self.rig.nodes.len());
         let root = self.world_from_model.to_rigid().rotation;
@@ -246,7 +267,11 @@ impl Wearer<'_> {
                         local.rotation =
                             (above.inverse() * frame * grain.frame_from_bone).normalize().toward(rest);
                     }
-                    local.translation = above_frame.inverse().point(place);
+                    // Under a joint that a clip scales to nothing there is no such place.
+                    let at = above_frame.inverse().point(place);
+                    if at.is_finite() {
+                        local.translation = at;
+                    }
                     turns.push(local.rotation);
                     places.push(local.translation);
                 }

@@ -162,7 +162,9 @@ impl MeshSettings {
                 let instead = instead(&self.name, names.iter().map(String::as_str));
                 SettingsError::at(place("mesh"), format!("no mesh or material `{shown}` on bones; {instead}"))
             }
-            SheetError::AllHeld if self.held.is_some() => SettingsError::at(place("held"), error.to_string()),
+            SheetError::AllHeld | SheetError::MostlyLoose if self.held.is_some() => {
+                SettingsError::at(place("held"), error.to_string())
+            }
             error => SettingsError::at(place("mesh"), error.to_string()),
         }
     }

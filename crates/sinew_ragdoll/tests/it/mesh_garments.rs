@@ -1,11 +1,13 @@
 //! Garments that are meshes of the character: reduced, held at the top, worn, drawn; through walks, falls, snapshots and other sizes.
 
-use sinew_anim::{Garment, local_to_model, skin_vertices};
+use sinew_anim::{
+    Channel, Clip, Garment, Interpolation, Joint, LocalTransform, Property, local_to_model, skin_vertices,
+};
 use sinew_math::{Affine, Reader, Transform, Vec3, Writer, max};
-use sinew_physics::particles::ParticleGroup;
+use sinew_physics::particles::{GroupDef, ParticleDef, ParticleGroup};
 use sinew_physics::{BodyDef, Shape, World, WorldDef};
-use sinew_ragdoll::{Character, CharacterDef};
-use sinew_scenes::skirted::{CELLS, lay_skirt, skirted, skirted_rig};
+use sinew_ragdoll::{Character, CharacterDef, MotionSet};
+use sinew_scenes::skirted::{CELLS, joint, lay_skirt, skirted, skirted_rig};
 use std::sync::Arc;
 
 fn ground(gravity: Vec3) -> World {
@@ -81,6 +83,8 @@ fn it_is_put_on_where_it_is_drawn_and_held_at_the_top() {
         })
         .sum();
     assert!((mass / (0.4 * area) - 1.0).abs() < 0.1, "{mass} kg on {area} m²");
+    let whole = 0.4 * sheet.areas.iter().sum::<f32>();
+    assert!((mass / whole - 1.0).abs() < 1e-3, "all of the mesh: {mass} of {whole} kg");
     assert!(deepest(&world, &character) < 1e-3, "it begins outside of the body");
 }
 
@@ -187,4 +191,97 @@ fn a_coarse_mesh_is_its_own_sheet() {
     assert!(group.bends().len() > 20 * 8, "{} bends", group.bends().len());
     let free = group.positions().len() - group.attachments().len();
     assert_eq!(group.tethers().len(), free);
+}
+
+/// A coarse skirt whose hem hangs on a joint more, called `flare`, below another joint or below none.
+fn flared(parent: Option<&str>) -> CharacterDef {
+    let mut rig = skirted_rig([20, 8]);
+    let source = rig.joints.len();
+    let parent = parent.map(|name| joint(&rig, name));
+    rig.joints.push(Joint { name: "flare".into(), parent, rest: LocalTransform::default(), source });
+    let skin = &mut rig.skins[0];
+    let above = parent.and_then(|parent| skin.joints.iter().position(|&joint| joint == parent));
+    skin.inverse_bind.push(above.map_or(Affine::IDENTITY, |slot| skin.inverse_bind[slot]));
+    skin.joints.push(source);
+    let slot = skin.joints.len() as u16 - 1;
+    let skirt = rig.meshes.iter_mut().find(|mesh| mesh.name == "Skirt").expect("it is there");
+    let primitive = &mut skirt.primitives[0];
+    for (vertex, place) in primitive.positions.iter().enumerate().filter(|(_, place)| place.y < 0.65) {
+        assert!(place.y > 0.4, "of the skirt");
+        primitive.joints[vertex] = [slot, 0, 0, 0];
+        primitive.weights[vertex] = [1.0, 0.0, 0.0, 0.0];
+    }
+    let sheet = lay_skirt(&mut rig, 400).expect("it can be cloth");
+    let flare = rig.sheets[sheet].joints.iter().filter(|&&at| rig.joints[at].parent == Some(source)).count();
+    assert!(flare >= 20, "{flare} particles hang on it");
+    let garment = Garment::of_sheet(&rig.sheets[sheet]);
+    let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
+    let mut def = CharacterDef::new(rig, skirted(|_| ()).ragdoll.clone(), &analysis.bind_model);
+    def.set_garments(&[garment]);
+    def
+}
+
+/// Clips scale to nothing what they hide.
+#[test]
+fn nothing_is_nowhere_under_a_joint_without_a_size() {
+    let mut def = flared(Some("hips"));
+    let hidden = Channel {
+        joint: joint(&def.rig, "flare"),
+        property: Property::Scale,
+        interpolation: Interpolation::Linear,
+        times: vec![0.0, 1.0],
+        values: vec![0.0; 6],
+    };
+    let clip = Clip { name: "hidden".into(), duration: 1.0, channels: vec![hidden] };
+    def.set_motions(MotionSet { clips: vec![clip], looped: Some(0), ..MotionSet::default() })
+        .expect("it can");
+    let mut world = ground(WorldDef::default().gravity);
+    let mut character = Character::spawn(&mut world, &Arc::new(def), Transform::IDENTITY);
+    go_on(&mut world, &mut character, 20);
+    let flare = joint(&character.def().rig, "flare");
+    assert_eq!(character.pose()[flare].scale, Vec3::ZERO, "or this says nothing");
+    assert!(character.pose().iter().all(|local| local.to_affine().is_finite()));
+}
+
+/// The root of an armature moves some of the hem; the rest of the skirt is held as ever.
+#[test]
+fn what_no_body_carries_goes_with_what_it_hangs_from() {
+    let def = flared(None);
+    assert!(def.garments().left_out().is_empty(), "{} are left out", def.garments().left_out().len());
+    let mut world = ground(WorldDef::default().gravity);
+    let mut character = Character::spawn(&mut world, &Arc::new(def), Transform::IDENTITY);
+    go_on(&mut world, &mut character, 30);
+    assert_eq!(character.garments().len(), 1);
+    assert!(mean_stretch(world.particles(character.garments()[0])) < 0.03);
+}
+
+/// Snapshots of a character and of a world that do not belong together: its garments are put on anew.
+#[test]
+fn garments_that_are_not_there_are_put_on_anew() {
+    let mut def = flared(Some("hips"));
+    let mut world = ground(WorldDef::default().gravity);
+    let mut character = Character::spawn(&mut world, &Arc::new(def.clone()), Transform::IDENTITY);
+    go_on(&mut world, &mut character, 2);
+    let mut w = Writer::new();
+    character.save(&mut w);
+    let garments = def.garments().source().to_vec();
+    def.set_garments(&[]);
+    for has_another in [true, false] {
+        let mut other = ground(WorldDef::default().gravity);
+        let mut bare = Character::spawn(&mut other, &Arc::new(def.clone()), Transform::IDENTITY);
+        go_on(&mut other, &mut bare, 2);
+        if has_another {
+            let particle = ParticleDef { position: Vec3::Y, velocity: Vec3::ZERO, mass: 1.0, radius: 0.01 };
+            let id = other.add_particles(&GroupDef { particles: vec![particle], ..GroupDef::default() });
+            assert_eq!(id, character.garments()[0], "or this says nothing");
+        }
+        let mut dressed = def.clone();
+        dressed.set_garments(&garments);
+        let mut copy = Character::new(Arc::new(dressed), Transform::IDENTITY, 0.0);
+        copy.load(&mut Reader::new(w.as_bytes())).expect("it was saved");
+        go_on(&mut other, &mut copy, 2);
+        let group = other.particles(copy.garments()[0]);
+        assert_eq!(group.positions().len(), 20 * 9);
+        assert!(mean_stretch(group) < 0.03);
+    }
 }

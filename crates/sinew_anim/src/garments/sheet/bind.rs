@@ -21,10 +21,12 @@ impl Bound {
 /// Each vertex on its own particle, or on those of the triangle that is nearest to it: among the triangles of the particle that it belongs to, or, where it
 /// belongs to none, among all.
 pub(super) fn bind(welded: &Welded, reduced: &Reduced) -> Vec<Bound> {
-    let all: Vec<u32> = (0..reduced.faces.len() as u32).collect();
+    let area = |face: u32| welded.area(&reduced.faces[face as usize].map(|at| reduced.seeds[at as usize]));
+    // Nothing lies on what has no area.
+    let all: Vec<u32> = (0..reduced.faces.len() as u32).filter(|&face| area(face) > 0.0).collect();
     let mut of_particle: Vec<Vec<u32>> = vec![Vec::new(); reduced.seeds.len()];
-    for (face, corners) in reduced.faces.iter().enumerate() {
-        corners.iter().for_each(|&corner| of_particle[corner as usize].push(face as u32));
+    for &face in &all {
+        reduced.faces[face as usize].iter().for_each(|&corner| of_particle[corner as usize].push(face));
     }
     let bound = |(vertex, owner): (usize, &Option<usize>)| match *owner {
         Some(own) if reduced.is_whole => Bound::to_one(own),
@@ -43,7 +45,8 @@ fn nearest(welded: &Welded, reduced: &Reduced, vertex: usize, faces: &[u32]) -> 
         let corners: [Vec3; 3] = [a, b, c].map(|particle| welded.places[reduced.seeds[particle]]);
         let [u, v, w] = nearest_on_triangle(place, corners);
         let off = (corners[0] * u + corners[1] * v + corners[2] * w - place).length_squared();
-        if best.is_none_or(|(least, _)| off < least) {
+        // What is not a number is not nearer than anything.
+        if off < best.map_or(f32::INFINITY, |(least, _)| least) {
             best = Some((off, Bound { particles: [a, b, c, a], weights: [u, v, w, 0.0] }));
         }
     }

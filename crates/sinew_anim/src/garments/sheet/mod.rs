@@ -43,6 +43,16 @@ pub enum SheetError {
     /// All of it is held.
     #[error("all of that mesh is held: nothing of it is left to hang")]
     AllHeld,
+    /// Most of it does not hang together with what is held.
+    #[error(
+        "most of that mesh does not hang together with what is held at its top: a larger `held` holds more"
+    )]
+    MostlyLoose,
+    /// More pieces are held than there may be particles.
+    #[error(
+        "{0} separate pieces of that mesh are held, and each takes a particle at least: a larger `most_particles` has room for them"
+    )]
+    TooManyPieces(usize),
     /// The skin would have more joints than can be told apart.
     #[error("its skin has no room for {0} joints more: 65536 is the most")]
     TooManyJoints(usize),
@@ -69,7 +79,7 @@ impl MeshPart {
     /// The mesh of a node of that name, of that name itself, or what has a material of that name.
     ///
     /// # Errors
-    /// There is none, more than one, or it has no skin.
+    /// There is none, more than one, or it is the part without weights of a mesh that has a skin.
     pub fn named(rig: &Rig, name: &str) -> Result<Self, SheetError> {
         let node = |mesh: usize| rig.joints[rig.meshes[mesh].joint].name.as_str();
         let all = |mesh: usize| (0..rig.meshes[mesh].primitives.len()).collect::<Vec<usize>>();
@@ -136,6 +146,9 @@ pub fn lay_sheet(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> 
     if rig.sheets.iter().any(overlaps) {
         return Err(SheetError::Twice);
     }
+    if rig.is_beside_skin(part.mesh) {
+        return Err(SheetError::NoSkin);
+    }
     if rig.meshes[part.mesh].skin.is_some() {
         return lay(rig, part, options);
     }
@@ -183,7 +196,7 @@ fn lay(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> Result<usi
     let graph = graph::Graph::new(&welded);
     let above = high - options.held.unwrap_or(crate::tuning::HELD_SHARE * (high - low));
     let is_held = |vertex: usize| welded.places[vertex].y >= above;
-    let reduced = reduce::reduce(&welded, &graph, is_held, options);
+    let reduced = reduce::reduce(&welded, &graph, is_held, options)?;
     let held: Vec<bool> = reduced.seeds.iter().map(|&seed| is_held(seed)).collect();
     if held.iter().all(|&held| held) {
         return Err(SheetError::AllHeld);
@@ -199,6 +212,7 @@ fn lay(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> Result<usi
         held,
         faces: reduced.faces,
         links: reduced.links,
+        areas: reduced.areas,
         vertices: welded.places.len(),
     };
     rig.sheets.push(sheet);

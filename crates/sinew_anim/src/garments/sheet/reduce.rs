@@ -1,9 +1,10 @@
 //! Particles of a sheet among the vertices of its mesh.
 
-use super::SheetOptions;
 use super::graph::{Graph, Ways};
 use super::weld::Welded;
-use crate::tuning::COARSER;
+use super::{SheetError, SheetOptions};
+use crate::tuning::{COARSER, FINEST};
+use sinew_math::{Vec3, max, max3, min3};
 use std::collections::BTreeSet;
 
 /// A mesh reduced to particles.
@@ -14,47 +15,72 @@ pub(super) struct Reduced {
     pub owner: Vec<Option<usize>>,
     pub faces: Vec<[u32; 3]>,
     pub links: Vec<[u32; 2]>,
+    /// Area of the mesh about each particle, m².
+    pub areas: Vec<f32>,
     /// Every vertex is a particle of its own.
     pub is_whole: bool,
 }
 
+/// # Errors
+/// What hangs on something held has no area, is less than half of the mesh, or is in more pieces than there may be particles.
 pub(super) fn reduce(
     welded: &Welded,
     graph: &Graph,
     is_held: impl Fn(usize) -> bool,
     options: &SheetOptions<'_>,
-) -> Reduced {
+) -> Result<Reduced, SheetError> {
     let count = welded.places.len();
     let held: BTreeSet<usize> =
         (0..count).filter(|&vertex| is_held(vertex)).map(|vertex| graph.component[vertex]).collect();
     let hangs: Vec<usize> = (0..count).filter(|&vertex| held.contains(&graph.component[vertex])).collect();
+    let sum = |faces: &mut dyn Iterator<Item = &[usize; 3]>| faces.map(|face| welded.area(face)).sum::<f32>();
+    let hanging =
+        sum(&mut welded.faces.iter().filter(|&&[corner, ..]| held.contains(&graph.component[corner])));
+    if hanging.partial_cmp(&0.0) != Some(core::cmp::Ordering::Greater) || !hanging.is_finite() {
+        return Err(SheetError::Empty);
+    }
+    if hanging < 0.5 * sum(&mut welded.faces.iter()) {
+        return Err(SheetError::MostlyLoose);
+    }
     let is_whole = hangs.len() <= options.most_particles;
     let mut owner = vec![None; count];
     let seeds = if is_whole {
         hangs.iter().enumerate().for_each(|(particle, &vertex)| owner[vertex] = Some(particle));
         hangs
+    } else if held.len() > options.most_particles {
+        return Err(SheetError::TooManyPieces(held.len()));
     } else {
-        let (seeds, ways) = spread(graph, &hangs, options);
+        let (seeds, ways) = spread(welded, graph, &hangs, is_held, options);
         let mut particle_of = vec![None; count];
         seeds.iter().enumerate().for_each(|(particle, &seed)| particle_of[seed] = Some(particle));
         hangs.iter().for_each(|&vertex| owner[vertex] = particle_of[ways.from[vertex]]);
         seeds
     };
-    let (mut known, mut faces, mut links) = (BTreeSet::new(), Vec::new(), BTreeSet::new());
-    for face in &welded.faces {
-        let [Some(a), Some(b), Some(c)] = face.map(|vertex| owner[vertex]) else { continue };
-        for [from, to] in [[a, b], [b, c], [c, a]] {
-            if from != to {
-                links.insert([from, to].map(|at| at as u32).into_sorted());
+    Ok(Reduced::new(welded, seeds, owner, is_whole))
+}
+
+impl Reduced {
+    /// Triangles and edges between the particles that the vertices belong to, and what of the mesh's area is theirs: each vertex has a third of its triangles.
+    fn new(welded: &Welded, seeds: Vec<usize>, owner: Vec<Option<usize>>, is_whole: bool) -> Self {
+        let (mut known, mut faces, mut links) = (BTreeSet::new(), Vec::new(), BTreeSet::new());
+        let mut areas = vec![0.0; seeds.len()];
+        for face in &welded.faces {
+            let [Some(a), Some(b), Some(c)] = face.map(|vertex| owner[vertex]) else { continue };
+            let share = welded.area(face) / 3.0;
+            [a, b, c].iter().for_each(|&corner| areas[corner] += share);
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                if from != to {
+                    links.insert([from, to].map(|at| at as u32).into_sorted());
+                }
+            }
+            let mut sorted = [a, b, c];
+            sorted.sort_unstable();
+            if a != b && b != c && c != a && known.insert(sorted) {
+                faces.push([a, b, c].map(|at| at as u32));
             }
         }
-        let mut sorted = [a, b, c];
-        sorted.sort_unstable();
-        if a != b && b != c && c != a && known.insert(sorted) {
-            faces.push([a, b, c].map(|at| at as u32));
-        }
+        Self { seeds, owner, faces, links: links.into_iter().collect(), areas, is_whole }
     }
-    Reduced { seeds, owner, faces, links: links.into_iter().collect(), is_whole }
 }
 
 trait IntoSorted {
@@ -67,14 +93,26 @@ impl IntoSorted for [u32; 2] {
     }
 }
 
-/// Vertices that lie all over a mesh, each the farthest from those before it (Gonzalez 1985): first along its borders, so that a hem stays a hem. No vertex is
-/// farther from one of them than half the spacing; if that takes too many, the spacing grows.
-fn spread(graph: &Graph, among: &[usize], options: &SheetOptions<'_>) -> (Vec<usize>, Ways) {
-    let border: Vec<usize> = among.iter().copied().filter(|&vertex| graph.is_border[vertex]).collect();
-    let mut reach = 0.5 * options.spacing;
+/// Vertices that lie all over a mesh, each the farthest from those before it (Gonzalez 1985): first where it is held, so that every piece of it is, then along
+/// its borders, so that a hem stays a hem. No vertex is farther from one of them than half the spacing; if that takes too many, the spacing grows.
+fn spread(
+    welded: &Welded,
+    graph: &Graph,
+    among: &[usize],
+    is_held: impl Fn(usize) -> bool,
+    options: &SheetOptions<'_>,
+) -> (Vec<usize>, Ways) {
+    let only = |is_wanted: &dyn Fn(usize) -> bool| -> Vec<usize> {
+        among.iter().copied().filter(|&vertex| is_wanted(vertex)).collect()
+    };
+    let held_border = only(&|vertex| graph.is_border[vertex] && is_held(vertex));
+    let (held, border) = (only(&is_held), only(&|vertex| graph.is_border[vertex]));
+    let places = || among.iter().map(|&vertex| welded.places[vertex]);
+    let extent = places().fold(Vec3::NEG_INFINITY, max3) - places().fold(Vec3::INFINITY, min3);
+    let mut reach = max(0.5 * options.spacing, FINEST * extent.length());
     loop {
         let (mut seeds, mut ways) = (Vec::new(), Ways::new(graph.beside.len()));
-        for part in [border.as_slice(), among] {
+        for part in [held_border.as_slice(), held.as_slice(), border.as_slice(), among] {
             while let Some(farthest) = farthest(&ways, part).filter(|&vertex| ways.length[vertex] > reach) {
                 if seeds.len() > options.most_particles {
                     break;

@@ -20,17 +20,19 @@ pub(super) struct Welded {
 }
 
 impl Welded {
-    /// Heights of its lowest and highest place, metres; `None` if it has no area.
+    /// Area of a triangle, m².
+    pub fn area(&self, &[a, b, c]: &[usize; 3]) -> f32 {
+        let [a, b, c] = [a, b, c].map(|at| self.places[at]);
+        0.5 * (b - a).cross(c - a).length()
+    }
+
+    /// Heights of the lowest and highest place of what has an area, metres; `None` if nothing has.
     pub fn heights(&self) -> Option<(f32, f32)> {
-        let area = |&[a, b, c]: &[usize; 3]| {
-            let [a, b, c] = [a, b, c].map(|at| self.places[at]);
-            (b - a).cross(c - a).length()
-        };
-        let is_there = self.faces.iter().any(|face| area(face) > 0.0);
-        let heights = self.places.iter().map(|place| place.y);
-        let bounds =
+        let faces = self.faces.iter().filter(|face| self.area(face) > 0.0);
+        let heights = faces.flatten().map(|&corner| self.places[corner].y);
+        let (low, high) =
             heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), y| (min(low, y), max(high, y)));
-        is_there.then_some(bounds)
+        (low <= high).then_some((low, high))
     }
 }
 
