@@ -2,7 +2,8 @@
 
 use sinew_anim::garments::{MOST_PARTICLES, MeshPart, SheetError, SheetOptions, lay_sheet};
 use sinew_anim::{
-    Joint, LocalTransform, Primitive, Rig, RigMesh, Skin, local_to_model, rest_pose, skin_vertices,
+    GarmentColumn, Joint, LocalTransform, Primitive, Rig, RigMesh, Skin, guess_springs, local_to_model,
+    rest_pose, skin_vertices,
 };
 use sinew_math::{Affine, Rotation, Vec3};
 
@@ -172,4 +173,19 @@ fn a_mesh_without_a_skin_gets_one_and_errors_change_nothing() {
     let mut flat = rig(3);
     flat.meshes[0].primitives[0].positions.iter_mut().for_each(|place| *place = Vec3::ZERO);
     assert_eq!(lay(&mut flat, 400, None), Err(SheetError::Empty));
+}
+
+/// A strand of springs, or of a garment of chains, on the bones that bear a sheet is what it is without.
+#[test]
+fn joints_of_a_sheet_are_no_bones_of_a_strand() {
+    let mut it = rig(10);
+    it.joints[0].name = "cape_1".into();
+    it.joints[1].name = "cape_2".into();
+    let (springs, column) = (guess_springs(&it, Vec3::Y), GarmentColumn::below(&it, 0));
+    assert_eq!((springs.bone_count(), column.joints.as_slice()), (1, &[0, 1][..]));
+    let sheet = lay(&mut it, 400, None).expect("it can be cloth");
+    let borne = it.sheets[sheet].joints.iter().filter(|&&joint| it.joints[joint].parent == Some(1));
+    assert!(borne.count() > 0, "the last bone bears some of it");
+    assert_eq!(guess_springs(&it, Vec3::Y), springs);
+    assert_eq!(GarmentColumn::below(&it, 0), column);
 }
