@@ -187,5 +187,6 @@ fn joints_of_a_sheet_are_no_bones_of_a_strand() {
     let borne = it.sheets[sheet].joints.iter().filter(|&&joint| it.joints[joint].parent == Some(1));
     assert!(borne.count() > 0, "the last bone bears some of it");
     assert_eq!(guess_springs(&it, Vec3::Y), springs);
-    assert_eq!(GarmentColumn::below(&it, 0), column);
+    // What is cloth now is no skin of its last bone.
+    assert_eq!(GarmentColumn::below(&it, 0).joints, column.joints);
 }
