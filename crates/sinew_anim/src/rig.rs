@@ -122,3 +122,12 @@ pub struct Rig {
     /// Meshes that were made sheets of cloth ([`lay_sheet`](crate::garments::lay_sheet)); of no file.
     pub sheets: Vec<MeshSheet>,
 }
+
+impl Rig {
+    /// True for each joint that is a particle of a [sheet](Self::sheets): no bone of the file.
+    pub fn is_of_sheet(&self) -> Vec<bool> {
+        let mut is_of_sheet = vec![false; self.joints.len()];
+        self.sheets.iter().flat_map(|sheet| &sheet.joints).for_each(|&joint| is_of_sheet[joint] = true);
+        is_of_sheet
+    }
+}

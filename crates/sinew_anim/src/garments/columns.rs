@@ -6,15 +6,16 @@ use crate::tuning::{HEM_SHARE, RING_GAP};
 use sinew_math::{Affine, Vec3, max};
 
 impl GarmentColumn {
-    /// The chain from a joint down: where it forks, the longest way. If the skin of the last joint reaches on beyond it, the hem is where that ends.
+    /// The chain from a joint down: where it forks, the longest way; joints of [sheets](Rig::sheets) are not of it. If the skin of the last joint reaches on beyond it, the hem is where that ends.
     ///
     /// # Panics
     /// If there is no such joint.
     pub fn below(rig: &Rig, top: JointIdx) -> Self {
+        let is_cloth = rig.is_of_sheet();
         // Joints stand before their children.
         let mut longest = vec![(0, None); rig.joints.len()];
         for joint in (0..rig.joints.len()).rev() {
-            if let Some(parent) = rig.joints[joint].parent {
+            if let Some(parent) = rig.joints[joint].parent.filter(|_| !is_cloth[joint]) {
                 let length = longest[joint].0 + 1;
                 if length >= longest[parent].0 {
                     longest[parent] = (length, Some(joint));

@@ -71,12 +71,13 @@ const MATERIALS: [Material; 6] = [
 
 /// Springs by the names of joints: hair, ears, tails, skirts, coats and capes, ribbons and straps, breasts, for files that state none.
 /// `up` is the file's axis that points up, unit. Chains run along children of one kind; a joint without a child ends one and does not
-/// swing, for nobody knows how long it is. They meet the body of the character. Strands of skirts, coats and capes that lie side by side are linked.
+/// swing, for nobody knows how long it is (joints of [sheets](Rig::sheets) are no children). They meet the body of the character. Strands of skirts, coats and capes that lie side by side are linked.
 pub fn guess_springs(rig: &Rig, up: Vec3) -> Springs {
     let material: Vec<Option<usize>> = rig.joints.iter().map(|joint| material_of(&joint.name)).collect();
+    let is_cloth = rig.is_of_sheet();
     let mut children: Vec<Vec<JointIdx>> = vec![Vec::new(); rig.joints.len()];
     for (joint, node) in rig.joints.iter().enumerate() {
-        if let Some(parent) = node.parent {
+        if let Some(parent) = node.parent.filter(|_| !is_cloth[joint]) {
             children[parent].push(joint);
         }
     }

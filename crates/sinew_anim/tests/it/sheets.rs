@@ -2,7 +2,8 @@
 
 use sinew_anim::garments::{MOST_PARTICLES, MeshPart, SheetError, SheetOptions, lay_sheet};
 use sinew_anim::{
-    Joint, LocalTransform, Primitive, Rig, RigMesh, Skin, local_to_model, rest_pose, skin_vertices,
+    GarmentColumn, Joint, LocalTransform, Primitive, Rig, RigMesh, Skin, guess_springs, local_to_model,
+    rest_pose, skin_vertices,
 };
 use sinew_math::{Affine, Rotation, Vec3};
 
@@ -312,4 +313,20 @@ fn the_rigid_part_of_a_skinned_mesh_is_no_sheet() {
     };
     assert_eq!(lay_sheet(&mut it, &part, &options), Err(SheetError::NoSkin));
     assert_eq!(it, untouched);
+}
+
+/// A strand of springs, or of a garment of chains, on the bones that bear a sheet is what it is without.
+#[test]
+fn joints_of_a_sheet_are_no_bones_of_a_strand() {
+    let mut it = rig(10);
+    it.joints[0].name = "cape_1".into();
+    it.joints[1].name = "cape_2".into();
+    let (springs, column) = (guess_springs(&it, Vec3::Y), GarmentColumn::below(&it, 0));
+    assert_eq!((springs.bone_count(), column.joints.as_slice()), (1, &[0, 1][..]));
+    let sheet = lay(&mut it, 400, None).expect("it can be cloth");
+    let borne = it.sheets[sheet].joints.iter().filter(|&&joint| it.joints[joint].parent == Some(1));
+    assert!(borne.count() > 0, "the last bone bears some of it");
+    assert_eq!(guess_springs(&it, Vec3::Y), springs);
+    // What is cloth now is no skin of its last bone.
+    assert_eq!(GarmentColumn::below(&it, 0).joints, column.joints);
 }

@@ -197,9 +197,10 @@ impl CharacterDef {
     pub fn set_garments(&mut self, garments: &[Garment]) {
         let bind_model = self.bind_model();
         self.garments = GarmentRig::new(&self.rig, &self.ragdoll, &self.mapping, &bind_model, garments);
-        let worn: Vec<_> = self.garments.joints().collect();
+        let mut is_worn = vec![false; self.rig.joints.len()];
+        self.garments.joints().for_each(|joint| is_worn[joint] = true);
         let mut springs = self.springs.source().clone();
-        springs.chains.iter_mut().for_each(|chain| chain.bones.retain(|bone| !worn.contains(&bone.joint)));
+        springs.chains.iter_mut().for_each(|chain| chain.bones.retain(|bone| !is_worn[bone.joint]));
         springs.chains.retain(|chain| !chain.bones.is_empty());
         if springs != *self.springs.source() {
             self.set_springs(&springs);

@@ -163,7 +163,8 @@ impl Character {
         self.swung.clear();
         if !(self.swing.turns().is_empty() && self.worn.turns.is_empty()) {
             self.swung = self.pose_without_springs().to_vec();
-            self.show_worn();
+            self.show_springs();
+            self.show_garments();
         }
     }
 

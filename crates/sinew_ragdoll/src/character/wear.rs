@@ -20,8 +20,9 @@ impl Character {
         }
         self.swung.extend_from_slice(if self.planting.is_over() { &self.pose } else { &self.planted });
         self.swing_springs(world, is_far);
+        self.show_springs();
         self.wear_garments(world);
-        self.show_worn();
+        self.show_garments();
     }
 
     /// Springs of one who is far away are the pose, and return with its motion: that which was shown.
@@ -64,19 +65,20 @@ impl Character {
         self.scratch.after = bodies;
     }
 
-    /// Puts its garments on if it has bodies to wear them, mends what its clips have caught, and looks how they lie. Springs about which they hang have swung.
+    /// Puts its garments on if it has bodies to wear them, mends what its clips have caught, and looks how they lie. Their joints are shown below springs that have
+    /// swung; cloth itself lies as the pose without springs has it, from near and from afar.
     fn wear_garments(&mut self, world: &mut World) {
         if self.def.garments().is_empty() {
             return;
         }
         let mut worn = core::mem::take(&mut self.worn);
         if worn.groups.is_empty() && !self.bodies().is_empty() {
-            worn.groups = self.wearer(&self.swung).put_on(world);
+            worn.groups = self.wearer(self.pose_without_springs()).put_on(world);
         }
         if !worn.groups.is_empty() {
             // Where the pose of one who is getting up has the sheet is ground.
             if self.state == State::Animated {
-                self.wearer(&self.swung).mend(world, &worn.groups);
+                self.wearer(self.pose_without_springs()).mend(world, &worn.groups);
             }
             self.wearer(&self.swung).turns(world, &mut worn);
         }
@@ -105,11 +107,18 @@ impl Character {
         self.worn.take_off(world);
     }
 
-    /// Turns the bones of springs and garments as they are, in the pose that is shown.
-    pub(super) fn show_worn(&mut self) {
+    /// Turns the bones of springs as they are, in the pose that is shown.
+    pub(super) fn show_springs(&mut self) {
         let def = self.def.clone();
-        let springs = def.springs().joints().zip(self.swing.turns());
-        for (joint, &turn) in springs.chain(def.garments().joints().zip(&self.worn.turns)) {
+        for (joint, &turn) in def.springs().joints().zip(self.swing.turns()) {
+            self.swung[joint].rotation = turn;
+        }
+    }
+
+    /// Turns and moves the joints of garments as they are, in the pose that is shown.
+    pub(super) fn show_garments(&mut self) {
+        let def = self.def.clone();
+        for (joint, &turn) in def.garments().joints().zip(&self.worn.turns) {
             self.swung[joint].rotation = turn;
         }
         for (joint, &place) in def.garments().moving().zip(&self.worn.places) {

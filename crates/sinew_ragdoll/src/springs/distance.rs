@@ -19,9 +19,13 @@ impl SpringSwing {
             Mode::Fresh => return self.go_away(),
             Mode::Swinging => {
                 let turned = step.rig.joints().zip(&self.turns);
+                let offset = |(joint, &turn): (usize, &Rotation)| {
+                    let offset = (pose(joint).inverse() * turn).to_scaled_axis();
+                    // What numbers cannot hold never goes away by itself.
+                    if offset.is_finite() { offset } else { Vec3::ZERO }
+                };
                 self.offsets.clear();
-                self.offsets
-                    .extend(turned.map(|(joint, &turn)| (pose(joint).inverse() * turn).to_scaled_axis()));
+                self.offsets.extend(turned.map(offset));
                 self.mode = Mode::Easing;
             }
             Mode::Easing => {}

@@ -39,7 +39,7 @@ impl SpringSwing {
     /// Springs of the same rig as they were saved.
     ///
     /// # Errors
-    /// If the bytes end too early, or the phase is none.
+    /// If the bytes end too early, the phase is none, or what is left of a way is not finite.
     pub fn load(rig: &SpringRig, r: &mut Reader<'_>) -> Result<Self, ReadError> {
         let mut swing = Self::default();
         swing.mode = match r.u8()? {
@@ -54,7 +54,11 @@ impl SpringSwing {
             Mode::Swinging => swing.load_swing(rig, r)?,
             Mode::Easing => {
                 for _ in &rig.bones {
-                    swing.offsets.push(r.vec3()?);
+                    let offset = r.vec3()?;
+                    if !offset.is_finite() {
+                        return Err(r.error("springs that never come to rest"));
+                    }
+                    swing.offsets.push(offset);
                     swing.turns.push(r.rotation()?);
                 }
             }

@@ -1,7 +1,8 @@
 //! Garments that are meshes of the character: reduced, held at the top, worn, drawn; through walks, falls, snapshots and other sizes.
 
 use sinew_anim::{
-    Channel, Clip, Garment, Interpolation, Joint, LocalTransform, Property, local_to_model, skin_vertices,
+    Channel, Clip, Garment, Interpolation, Joint, LocalTransform, Property, SpringBone, SpringChain, Springs,
+    local_to_model, skin_vertices,
 };
 use sinew_math::{Affine, Reader, Transform, Vec3, Writer, max};
 use sinew_physics::particles::{GroupDef, ParticleDef, ParticleGroup};
@@ -284,4 +285,74 @@ fn garments_that_are_not_there_are_put_on_anew() {
         assert_eq!(group.positions().len(), 20 * 9);
         assert!(mean_stretch(group) < 0.03);
     }
+}
+
+/// The skirt on a bone of its own between it and the hips, and that bone, which swings as a spring if it shall.
+fn on_a_spring(is_sprung: bool) -> (CharacterDef, usize) {
+    let mut rig = skirted_rig([20, 8]);
+    let (hips, bone) = (joint(&rig, "hips"), rig.joints.len());
+    let bind_model = sinew_anim::analyze(&rig).expect("it has a skin").bind_model;
+    rig.joints.push(Joint {
+        name: "band".into(),
+        parent: Some(hips),
+        rest: LocalTransform::default(),
+        source: bone,
+    });
+    let skin = &mut rig.skins[0];
+    let slot = skin.joints.iter().position(|&at| at == hips).expect("it moves the skin");
+    let new = skin.joints.len() as u16;
+    skin.joints.push(bone);
+    skin.inverse_bind.push(bind_model[hips].inverse());
+    let skirt = rig.meshes.last_mut().expect("it has a skirt");
+    skirt.primitives[0].joints.iter_mut().flatten().filter(|at| **at == slot as u16).for_each(|at| *at = new);
+    lay_skirt(&mut rig, 400).expect("it can be cloth");
+    let garment = Garment::of_sheet(&rig.sheets[0]);
+    let bare = skirted(|_| ());
+    let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
+    let mut def = CharacterDef::new(rig, bare.ragdoll.clone(), &analysis.bind_model);
+    def.set_motions(bare.motions().clone()).expect("its clips can be played");
+    let swinging = SpringBone {
+        joint: bone,
+        tail: Vec3::NEG_Y * 0.3,
+        stiffness: 1.0,
+        gravity: Vec3::ZERO,
+        drag: 0.2,
+        radius: 0.0,
+        limit: None,
+    };
+    let chain = SpringChain { bones: vec![swinging], ..SpringChain::default() };
+    if is_sprung {
+        def.set_springs(&Springs { chains: vec![chain], ..Springs::default() });
+    }
+    def.set_garments(&[garment]);
+    (def, bone)
+}
+
+/// Springs above its joints change neither the cloth nor where it is drawn.
+#[test]
+fn it_is_drawn_where_it_is_below_bones_that_swing() {
+    let walk = |is_sprung| {
+        let (def, bone) = on_a_spring(is_sprung);
+        let borne = def.rig.sheets[0].joints.iter().filter(|&&at| def.rig.joints[at].parent == Some(bone));
+        assert!(borne.count() > 20, "the bone bears some of it");
+        let mut world = ground(WorldDef::default().gravity);
+        let mut character = Character::spawn(&mut world, &Arc::new(def), Transform::IDENTITY);
+        character.set_move(Vec3::Z * 1.3);
+        let mut frames = Vec::new();
+        for _ in 0..40 {
+            go_on(&mut world, &mut character, 1);
+            let turn = character.pose()[bone].rotation;
+            let turn = turn.angle_to(character.pose_without_springs()[bone].rotation);
+            frames.push((world.hash(), turn, drawn(&character).0));
+        }
+        frames
+    };
+    let mut swung = 0.0;
+    for ((hash, turn, places), (still_hash, _, still)) in walk(true).iter().zip(walk(false)) {
+        assert_eq!(*hash, still_hash, "the cloth is the same");
+        let off = places.iter().zip(&still).map(|(a, b)| (*a - *b).length()).fold(0.0, max);
+        assert!(off < 1e-4, "drawn {off} m off, its bone turned by {turn}");
+        swung = max(swung, *turn);
+    }
+    assert!(swung > 0.1, "the bone swings: {swung}");
 }

@@ -280,6 +280,34 @@ fn springs_that_are_far_away_cost_nothing() {
 }
 
 #[test]
+fn easing_goes_on_from_numbers_that_are_none() {
+    let def = maned(&HAIR);
+    let pose = rest_pose(&def.rig);
+    let mut swing = SpringSwing::new();
+    for frame in 0..60_u8 {
+        let at = Affine::from(place_at(f32::from(frame) / 60.0));
+        swing.step(&still(&def, &pose, at, 1.0 / 60.0));
+    }
+    // A clip without numbers for a bone in the frame in which it begins.
+    let first = def.springs().joints().next().expect("it has springs");
+    let mut broken = pose.clone();
+    broken[first].rotation = Rotation::from_scaled_axis(Vec3::splat(f32::NAN));
+    swing.ease(&still(&def, &broken, Affine::IDENTITY, 1.0 / 60.0));
+    swing.ease(&still(&def, &pose, Affine::IDENTITY, 1.0 / 60.0));
+    assert!(swing.turns().iter().all(|turn| turn.is_finite()) && !swing.is_away());
+    let mut w = Writer::new();
+    swing.save(&mut w);
+    let mut bytes = w.into_bytes();
+    assert!(SpringSwing::load(def.springs(), &mut Reader::new(&bytes)).is_ok());
+    bytes[1..5].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    assert!(SpringSwing::load(def.springs(), &mut Reader::new(&bytes)).is_err());
+    for _ in 0..300 {
+        swing.ease(&still(&def, &pose, Affine::IDENTITY, 1.0 / 60.0));
+    }
+    assert!(swing.is_away());
+}
+
+#[test]
 fn what_begins_far_away_comes_near_at_rest() {
     let (mut world, mut character) = walking(60);
     character.set_level_of_detail(&mut world, Detail::Keyed);
