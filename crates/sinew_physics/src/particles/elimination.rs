@@ -81,7 +81,7 @@ impl System {
         dot(&of.residual, &of.gain)
     }
 
-    /// Adds what each end of a closing spring gets from the velocity of the other, kg·m/s.
+    /// Momentum that each end of a closing spring gets from the velocity of the other, kg·m/s.
     fn pass_across(&self, forest: &Forest, velocities: &[Vec3], passed: &mut [Vec3]) {
         passed.fill(Vec3::ZERO);
         for &(k, ends) in forest.closings() {
