@@ -38,7 +38,7 @@ pub fn append_clip(document: &Document, clip: &Clip, name: &str, extras: Option<
 /// is a prefix of the new one. New are, for each clip, one buffer view, the accessors of the keys and the animation, each at
 /// the end of its list. Channels point at the nodes that the joints came from.
 ///
-/// Where the rig has sheets of cloth ([`sinew_anim::Rig::sheets`]), there is a node for each particle, and the primitives that became cloth hang on these.
+/// A rig with sheets of cloth ([`sinew_anim::Rig::sheets`]) brings a node for each of their particles, by which the primitives that became cloth are skinned.
 ///
 /// What has to change in old entries, and nothing else does:
 /// - `buffers[0].byteLength` grows.

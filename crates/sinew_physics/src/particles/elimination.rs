@@ -136,7 +136,8 @@ impl System {
         }
     }
 
-    /// Momenta without those of hubs: of particles and contacts, of springs from where they are linearised, of ends that are held.
+    /// Momenta without those of hubs: of particles and contacts, of springs from where they are linearised, of ends that are held; and the
+    /// pulls along the trees.
     fn load_momenta(&mut self, forest: &Forest, springs: &[SpringDef], h: f32, velocities: &[Vec3]) {
         for i in 0..velocities.len() {
             self.gathered_momentum[i] = self.momentum[i] + self.added_momentum[i];

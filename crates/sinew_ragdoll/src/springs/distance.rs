@@ -7,8 +7,8 @@ use sinew_anim::LocalTransform;
 use sinew_math::{Affine, Rotation, Vec3, trig};
 
 impl SpringSwing {
-    /// Takes the springs a step nearer to the pose, instead of [`step`](Self::step): what every bone is turned from it falls by 1/e in 0.3 s. Once all of it is
-    /// gone nothing is computed any more ([`is_away`](Self::is_away)); springs that have not been stepped yet are gone at once.
+    /// Takes the springs a step nearer to the pose, instead of [`step`](Self::step): what every bone is turned from it falls to 1/e in 0.3 s. Once nothing of that is left,
+    /// nothing is computed any more ([`is_away`](Self::is_away)); springs that have not been stepped yet are gone at once.
     ///
     /// # Panics
     /// If the pose is not as long as the rig the springs were made from.

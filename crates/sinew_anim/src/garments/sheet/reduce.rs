@@ -21,8 +21,10 @@ pub(super) struct Reduced {
     pub is_whole: bool,
 }
 
+/// Particles of a mesh, as many as there may be at most, with the particle of each welded vertex.
+///
 /// # Errors
-/// What hangs on something held has no area, is less than half of the mesh, or is in more pieces than there may be particles.
+/// If what hangs on something held has no area, is less than half of the mesh, or is in more pieces than there may be particles.
 pub(super) fn reduce(
     welded: &Welded,
     graph: &Graph,
