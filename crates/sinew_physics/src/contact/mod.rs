@@ -49,7 +49,20 @@ impl PartialOrd for ContactKey {
     }
 }
 
+/// First number of the parts that are contacts of two shapes through particles between them.
+const THROUGH_PARTICLES: u32 = 1 << 31;
+
 impl ContactKey {
+    /// Key of the contact of that number of two shapes through particles between them.
+    pub fn through_particles(self, number: u32) -> Self {
+        Self { part: THROUGH_PARTICLES | number, ..self }
+    }
+
+    /// True if particles lie between the shapes: their geometry does not say where its points are.
+    pub fn is_through_particles(self) -> bool {
+        self.part >= THROUGH_PARTICLES
+    }
+
     /// Key of two shapes, each given by body and shape number, in whatever order; part 0.
     pub fn new(p: (u32, u32), q: (u32, u32)) -> Self {
         let (a, b) = if p.0 < q.0 { (p, q) } else { (q, p) };

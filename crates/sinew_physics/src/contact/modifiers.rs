@@ -52,6 +52,11 @@ impl Modifiers {
         }
     }
 
+    /// Gives a contact a material for this step; its place is after those of all that were changed before.
+    pub fn set(&mut self, place: u32, material: ContactMaterial) {
+        self.changed.push((place, material));
+    }
+
     /// True if they made something of a contact in this step.
     pub fn have_changed(&self, place: u32) -> bool {
         self.find(place).is_some()

@@ -103,6 +103,11 @@ impl ParticleGroup {
         self.forest.hubs().iter().filter_map(|hub| self.holder(hub[0]))
     }
 
+    /// Target of a particle's attachment, if it has one.
+    pub(crate) fn holder_of(&self, i: usize) -> Option<AttachmentTarget> {
+        self.attachments.get(self.attachment_of[i] as usize).map(|attachment| attachment.target)
+    }
+
     /// Body that holds a particle.
     fn holder(&self, particle: u32) -> Option<BodyId> {
         match self.attachments[self.attachment_of[particle as usize] as usize].target {

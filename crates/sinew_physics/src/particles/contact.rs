@@ -70,6 +70,15 @@ impl ObstacleBody {
         (whole - coupling).inverse()
     }
 
+    /// Firmness with which it stands where two bodies leave a particle no room.
+    pub(super) fn firmness(&self) -> Firmness {
+        match self.inverse_mass {
+            0.0 if self.rests() => Firmness::Rests,
+            0.0 => Firmness::Led,
+            _ => Firmness::Yields,
+        }
+    }
+
     /// True of what neither moves nor can be moved.
     pub(super) fn rests(&self) -> bool {
         self.inverse_mass == 0.0 && self.linear_velocity == Vec3::ZERO && self.angular_velocity == Vec3::ZERO
@@ -86,6 +95,17 @@ impl ObstacleBody {
         self.linear_velocity += impulse * self.inverse_mass;
         self.angular_velocity += self.inverse_inertia * (point - self.center).cross(impulse);
     }
+}
+
+/// Firmness with which a body stands against others: the particles between two give way to the firmer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Firmness {
+    /// Forces move it.
+    Yields,
+    /// It moves by itself.
+    Led,
+    /// It is where it is.
+    Rests,
 }
 
 /// A shape that particles may touch.
@@ -219,10 +239,10 @@ impl Touch {
         friction
     }
 
-    /// True if a particle on this surface cannot give way to that of another body, which can.
+    /// True if a particle on this surface does not give way to that of another body, which is less firm.
     pub fn pinches(&self, other: &Self, bodies: &[ObstacleBody]) -> bool {
         self.obstacle != other.obstacle
-            && bodies[other.body].inverse_mass > 0.0
+            && bodies[other.body].firmness() < bodies[self.body].firmness()
             && self.normal.dot(other.normal) < PINCHING
     }
 
@@ -300,6 +320,7 @@ impl ParticleGroup {
         let mut distance_now = beside;
         let mut nearest: Option<(usize, Meeting)> = None;
         let mut wall: Option<(usize, Meeting)> = None;
+        let firmness = |index: usize| bodies[obstacles[index].body as usize].firmness();
         let mut clearance = f32::INFINITY;
         for index in self.near.within(i, sight, obstacles.len()) {
             let (o, placed) = (&obstacles[index], &self.placed[index]);
@@ -313,8 +334,10 @@ impl ParticleGroup {
             let gap = distance - radius;
             distance_now = min(distance_now, gap);
             let clear = gap - placed.way_of(position);
-            let fixed = bodies[o.body as usize].inverse_mass == 0.0;
-            if fixed && gap <= WALL_GAP && wall.is_none_or(|(_, best)| gap < best.gap) {
+            let is_firmer = |(than, best): (usize, Meeting)| {
+                firmness(index) > firmness(than) || firmness(index) == firmness(than) && gap < best.gap
+            };
+            if gap <= WALL_GAP && wall.is_none_or(is_firmer) {
                 wall = Some((index, Meeting { fraction: 0.0, at, normal, gap }));
             }
             if gap <= reach && nearest.is_none_or(|(_, best)| gap < best.gap) {
@@ -454,11 +477,12 @@ impl ParticleGroup {
     fn first_grip(&mut self, i: usize, touch: &Touch, bodies: &[ObstacleBody]) -> Grip {
         let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
         let normal = max(touch.speed_min - relative.dot(touch.normal), 0.0) * self.masses[i];
+        let borne = normal + self.pinched_by(i);
         let slip = relative - touch.normal * relative.dot(touch.normal);
-        if slip.length() * self.masses[i] <= touch.material.static_friction * normal {
+        if slip.length() * self.masses[i] <= touch.material.static_friction * borne {
             return Grip::Stick;
         }
-        let limit = touch.material.friction * normal;
+        let limit = touch.material.friction * borne;
         self.contact_impulses[i] = touch.normal * normal - normalize_or(slip, Vec3::ZERO) * limit;
         Grip::Slide
     }
@@ -605,7 +629,7 @@ impl ParticleGroup {
             let Some(touch) = self.touches[i] else { continue };
             let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
             let away = relative.dot(touch.normal) - touch.speed_min;
-            self.rooms[i] = max(away, 0.0) / self.weights[i];
+            self.rooms[i] = max(away, 0.0) / self.weights[i] - self.pinched_by(i);
             let yielding = bodies[touch.body].yielding(touch.point, touch.normal);
             self.press_normals[i] = touch.normal;
             // M / (m + M), of M = m / (load · yielding).
@@ -618,16 +642,23 @@ impl ParticleGroup {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
             if let Some(touch) = self.touches[i].filter(|_| self.backings[i] > 0.0) {
-                let impulse = self.press_normals[i] * (self.backings[i] * min(self.rooms[i], 0.0));
+                let pressing = self.backings[i] * min(self.rooms[i], 0.0);
+                // The contact of the two that pinch it has pushed with its load.
+                let impulse = self.press_normals[i] * (pressing + self.backings[i] * self.pinched_by(i));
                 (self.backings[i], self.press_normals[i], self.rooms[i]) = (0.0, Vec3::ZERO, 0.0);
                 let (body, weight) = (&mut bodies[touch.body], self.weights[i]);
                 body.push(touch.point, impulse);
-                let friction = touch.rub(impulse.length(), weight, self.velocities[i], body);
+                let friction = touch.rub(-pressing, weight, self.velocities[i], body);
                 self.velocities[i] += friction * weight;
                 self.positions[i] += friction * (weight * h);
                 self.report(&touch, friction - impulse, bodies);
             }
         }
+    }
+
+    /// Impulse in this iteration of what presses a particle from two sides, N·s.
+    pub(super) fn pinched_by(&self, i: usize) -> f32 {
+        self.pinched.loads[i] * self.span
     }
 
     /// Turns grips into what the linear system knows: fixed velocities, or the inertia of a body that yields.
@@ -685,7 +716,7 @@ impl ParticleGroup {
         let surface = touch.surface_velocity(body);
         let relative = self.velocities[i] - surface;
         let slip = max((relative - n * relative.dot(n)).length(), NO_SPEED);
-        let most = touch.material.friction * max(self.contact_impulses[i].dot(n), 0.0);
+        let most = touch.material.friction * (max(self.contact_impulses[i].dot(n), 0.0) + self.pinched_by(i));
         let viscosity = (Sym3::IDENTITY - Sym3::outer(n)) * (most / slip);
         (viscosity, viscosity * surface)
     }
@@ -721,7 +752,8 @@ impl ParticleGroup {
         let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
         let impulse = self.contact_impulse(i);
         let (normal, friction) = (impulse.dot(n), impulse - n * impulse.dot(n));
-        let limit = touch.material.friction * normal;
+        let borne = normal + self.pinched_by(i);
+        let limit = touch.material.friction * borne;
         let slip = relative - n * relative.dot(n);
         let (grip, impulse) = match self.grips[i] {
             Grip::Off if relative.dot(n) < touch.speed_min - NO_SPEED => {
@@ -729,10 +761,10 @@ impl ParticleGroup {
             }
             Grip::Off => (Grip::Off, Vec3::ZERO),
             Grip::Wedged => (Grip::Wedged, impulse),
-            held if !may_loosen && normal <= 0.0 => (held, impulse),
+            held if !may_loosen && borne <= 0.0 => (held, impulse),
             // A surface does not pull.
-            _ if normal <= 0.0 => (Grip::Off, Vec3::ZERO),
-            Grip::Stick if friction.length() > touch.material.static_friction * normal => {
+            _ if borne <= 0.0 => (Grip::Off, Vec3::ZERO),
+            Grip::Stick if friction.length() > touch.material.static_friction * borne => {
                 (Grip::Slide, n * normal + friction * (limit / friction.length()))
             }
             Grip::Stick => (Grip::Stick, impulse),

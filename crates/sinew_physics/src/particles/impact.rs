@@ -2,11 +2,11 @@
 //! its end. Each particle answers with its own mass.
 
 use super::ParticleGroup;
-use super::contact::{Obstacle, ObstacleBody, Touch};
+use super::contact::{Firmness, Obstacle, ObstacleBody, Touch};
+use super::pinched::is_nipped;
 use super::sweep::Meeting;
-use crate::particles::tuning::{
-    DETOUR, IMPACT_SPEED, PINCH_RATE, PINCH_SPEED, PINCHING, ROUNDING, SQUEEZE_SPEED,
-};
+use crate::particles::tuning::{DETOUR, IMPACT_SPEED, PINCHING, ROUNDING, SQUEEZE_SPEED};
+use core::cmp::Ordering;
 use sinew_math::{Vec3, clamp, max, min, normalize_or};
 
 /// Surfaces that a particle is moved out of, one after the other; after that it stays where it met the next.
@@ -56,7 +56,7 @@ impl ParticleGroup {
                 velocity: self.velocities[i],
                 reported: self.body_impulses.len(),
             };
-            let mut wall = self.touches[i].filter(|touch| self.leans_on(i, touch, bodies));
+            let mut wall = self.touches[i].filter(|touch| self.leans_on(i, touch));
             for round in 0..=ROUNDS {
                 let ends = (self.previous[i], self.positions[i]);
                 if self.is_clear(i, ends.1 - ends.0) {
@@ -67,12 +67,13 @@ impl ParticleGroup {
                 let end = self.placed[obstacle].end;
                 touch.gap = meeting.height(end.inverse_point(ends.1));
                 if let Some(wall) = wall.filter(|wall| wall.pinches(&touch, bodies)) {
-                    self.pinch(i, &wall, touch, h * (1.0 - meeting.fraction), bodies);
+                    self.pinch(i, &wall, &touch, h * (1.0 - meeting.fraction), bodies);
                     break;
                 }
                 if let Some(other) = but
                     && self.squeeze(i, h, &came, [other, obstacle], (obstacles, bodies))
                 {
+                    self.leave_walls(i, [other, obstacle], obstacles, bodies);
                     break;
                 }
                 if round == ROUNDS {
@@ -86,21 +87,19 @@ impl ParticleGroup {
                 if !(known && touch.gap > -ROUNDING) {
                     self.respond(i, h, touch, h * (1.0 - meeting.fraction), bodies);
                 }
-                if bodies[touch.body].inverse_mass == 0.0 {
-                    wall = Some(touch);
-                }
+                wall = Some(touch);
                 but = Some(obstacle);
             }
         }
     }
 
-    /// True if a particle has ended on a surface that nothing moves.
-    fn leans_on(&self, i: usize, touch: &Touch, bodies: &[ObstacleBody]) -> bool {
-        bodies[touch.body].inverse_mass == 0.0 && touch.height(self.positions[i], self.radii[i]) < ROUNDING
+    /// True if a particle has ended on a surface.
+    fn leans_on(&self, i: usize, touch: &Touch) -> bool {
+        touch.height(self.positions[i], self.radii[i]) < ROUNDING
     }
 
-    /// A particle between two surfaces that leave it no room, each of which would push it into the other: it comes midway between them, goes with
-    /// them, and stays free along them, so that its springs take it out and nothing pulls it from them. Whether they leave it none.
+    /// A particle between two surfaces that leave it no room, each of which would push it into the other: it comes out of the firmer, midway between
+    /// them where none is, goes with them, and stays free along them, so that its springs take it out and nothing pulls it from them. Whether they leave it none.
     fn squeeze(
         &mut self,
         i: usize,
@@ -110,18 +109,25 @@ impl ParticleGroup {
         (obstacles, bodies): (&[Obstacle], &[ObstacleBody]),
     ) -> bool {
         let (at, radius) = (came.position, self.radii[i]);
-        let [(gap, normal, speed), (opposite_gap, opposite, opposite_speed)] = shapes.map(|k| {
+        let [(gap, normal, body), (opposite_gap, opposite, opposite_body)] = shapes.map(|k| {
             let (o, end) = (&obstacles[k], &self.placed[k].end);
             let (distance, normal) = o.shape.ball_distance(end.inverse_point(at), radius, radius);
-            (distance - radius, end.rotation * normal, bodies[o.body as usize].velocity_at(at))
+            (distance - radius, end.rotation * normal, &bodies[o.body as usize])
         });
         if normal.dot(opposite) >= PINCHING || gap + opposite_gap >= 0.0 {
             return false;
         }
+        let (speed, opposite_speed) = (body.velocity_at(at), opposite_body.velocity_at(at));
         let across = normalize_or(normal - opposite, normal);
         let most = SQUEEZE_SPEED * h;
-        self.positions[i] = at + across * clamp(0.5 * (opposite_gap - gap), -most, most);
-        let behind = (speed + opposite_speed) * 0.5 - came.velocity;
+        // How far it comes out of the first, and how far its velocity is that of the first.
+        let (out, share) = match body.firmness().cmp(&opposite_body.firmness()) {
+            Ordering::Greater => (-gap, 1.0),
+            Ordering::Equal => (0.5 * (opposite_gap - gap), 0.5),
+            Ordering::Less => (opposite_gap, 0.0),
+        };
+        self.positions[i] = at + across * clamp(out, -most, most);
+        let behind = speed * share + opposite_speed * (1.0 - share) - came.velocity;
         self.velocities[i] = came.velocity + across * behind.dot(across);
         // What pushed it on the way here has felt that, or cannot.
         let mut kept = came.reported;
@@ -136,31 +142,50 @@ impl ParticleGroup {
         true
     }
 
-    /// A particle between a wall and a body that comes to it: it does not leave the wall, so that what the body gives it along the normal of the wall the wall
-    /// gives back, and the body meets the wall's inertia there and the particle's along it. Both rub it, the wall last.
-    ///
-    /// Each surface in turn would push it into the other one, and the body, which feels no more than the particle's few grams, would go on.
-    fn pinch(&mut self, i: usize, wall: &Touch, mut touch: Touch, left: f32, bodies: &mut [ObstacleBody]) {
-        let (n, own) = (touch.normal, 1.0 / self.masses[i]);
-        let aside = n - wall.normal * n.dot(wall.normal);
-        let begun = self.velocities[i];
-        // What it is in the body by opens slowly.
-        touch.speed_min = min(PINCH_RATE * -min(touch.gap, 0.0), PINCH_SPEED);
-        let body = &mut bodies[touch.body];
-        let approach = (begun - touch.surface_velocity(body)).dot(n) - touch.speed_min;
-        let normal = max(-approach / (own * aside.length_squared() + body.yielding(touch.point, n)), 0.0);
-        body.push(touch.point, n * -normal);
-        let pushed = begun + aside * (own * normal);
-        let friction = touch.rub(normal, own, pushed, body);
-        self.velocities[i] = pushed + friction * own;
-        self.report(&touch, n * normal + friction, bodies);
-        let mut resting = bodies[wall.body];
-        let back = wall.rub(-normal * n.dot(wall.normal), own, self.velocities[i], &mut resting);
-        self.velocities[i] += back * own;
-        self.report(wall, back, bodies);
-        let change = self.velocities[i] - begun;
-        let along = change - wall.normal * change.dot(wall.normal);
-        self.positions[i] += along * left;
+    /// Takes a particle out of all that rests but the two shapes that leave it no room: it has the last word.
+    fn leave_walls(&mut self, i: usize, but: [usize; 2], obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
+        let (at, radius) = (self.positions[i], self.radii[i]);
+        let way = DETOUR * (at - self.previous[i]).length();
+        let (mut out, mut velocity) = (at, self.velocities[i]);
+        for index in self.near.within(i, way, obstacles.len()) {
+            let (o, end) = (&obstacles[index], &self.placed[index].end);
+            if but.contains(&index) || bodies[o.body as usize].firmness() != Firmness::Rests {
+                continue;
+            }
+            let (distance, normal) = o.shape.ball_distance(end.inverse_point(out), radius, radius);
+            if distance < radius {
+                let normal = end.rotation * normal;
+                out += normal * (radius - distance);
+                velocity -= normal * min(velocity.dot(normal), 0.0);
+            }
+        }
+        (self.positions[i], self.velocities[i]) = (out, velocity);
+    }
+
+    /// A particle on a wall that a body comes to: it does not leave the wall, and both rub it, the wall last. What the body presses with goes on to the
+    /// wall by a contact of the two where it is nipped; else the body pushes it along the wall out of its way.
+    fn pinch(&mut self, i: usize, wall: &Touch, touch: &Touch, left: f32, bodies: &mut [ObstacleBody]) {
+        let (own, load, begun) = (1.0 / self.masses[i], self.pinched_by(i), self.velocities[i]);
+        let along_wall = |v: Vec3| v - wall.normal * v.dot(wall.normal);
+        let mut pushed = 0.0;
+        let friction = min(touch.material.static_friction, wall.material.static_friction);
+        if !is_nipped(touch.normal.dot(wall.normal), friction) {
+            let (n, aside) = (touch.normal, along_wall(touch.normal));
+            let body = &mut bodies[touch.body];
+            let approach = (begun - touch.surface_velocity(body)).dot(n);
+            pushed = max(-approach / (own * aside.length_squared() + body.yielding(touch.point, n)), 0.0);
+            body.push(touch.point, n * -pushed);
+            self.velocities[i] += aside * (own * pushed);
+            self.positions[i] -= aside * (touch.gap / aside.length_squared());
+        }
+        // What the body gives it along the wall's normal the wall gives back.
+        let back = -pushed * touch.normal.dot(wall.normal);
+        for (touch, pressing, push) in [(touch, pushed, touch.normal * pushed), (wall, back, Vec3::ZERO)] {
+            let friction = touch.rub(load + pressing, own, self.velocities[i], &mut bodies[touch.body]);
+            self.velocities[i] += friction * own;
+            self.report(touch, push + friction, bodies);
+        }
+        self.positions[i] += along_wall(self.velocities[i] - begun) * left;
     }
 
     /// True if a particle has ended on the convex solid that it touches, and met nothing else.

@@ -33,6 +33,7 @@ mod in_eights;
 mod load;
 mod near;
 mod net;
+mod pinched;
 mod rest;
 mod self_collision;
 mod snapshot;
@@ -48,6 +49,7 @@ pub use def::{
     AttachmentDef, AttachmentTarget, BendDef, GroupDef, ParticleDef, Resists, SpringDef, SpringScheme,
     TetherDef, VolumeDef,
 };
+pub(crate) use pinched::{Pinched, is_nipped};
 
 use crate::arena::Item;
 use crate::body::def::Sleeping;
@@ -164,6 +166,8 @@ pub struct ParticleGroup {
     press_normals: Vec<Vec3>,
     /// Impulse against the surface that brings each particle onto it, N·s; negative for what is pressed onto it already.
     rooms: Vec<f32>,
+    /// Contacts of shapes through its particles.
+    pub(crate) pinched: Pinched,
     /// Velocities that bring particles into the corner of two surfaces.
     wedges: Vec<Vec3>,
     /// Mass of the particles that touch each body.
@@ -259,6 +263,7 @@ impl ParticleGroup {
         self.rooms = vec![0.0; count];
         self.wedges = vec![Vec3::ZERO; count];
         self.body_impulses = Vec::with_capacity(MAX_TOUCHES * count * self.iterations as usize);
+        self.pinched.loads = vec![0.0; count];
         self.reactions = vec![Vec3::ZERO; count];
         self.bend_impulses = vec![Vec3::ZERO; count];
         self.sort_rows();
@@ -359,6 +364,11 @@ impl ParticleGroup {
     /// Filter of the shapes that it meets.
     pub fn filter(&self) -> Filter {
         self.filter
+    }
+
+    /// Surface of its particles.
+    pub(crate) fn material(&self) -> Material {
+        self.material
     }
 
     /// Bodies that it passes through, ascending.
@@ -499,7 +509,8 @@ impl ParticleGroup {
     /// `obstacles` and `bodies` are at the end of the substep; pass those that come near [`bounds`](Self::bounds). Which of
     /// them each particle may come to is kept from one substep to the next for as long as it holds, so pass them in the
     /// same order. Bodies are pushed back: their velocities change at once,
-    /// and [`body_impulses`](Self::body_impulses) lists how. Attached particles touch nothing.
+    /// and [`body_impulses`](Self::body_impulses) lists how. Attached particles touch nothing. What lies between two shapes does not keep these
+    /// apart: a [`World`](crate::World) has contacts for that.
     ///
     /// # Panics
     /// If there is not one anchor for each attachment, or the body of an anchor or an obstacle is not in `bodies`.

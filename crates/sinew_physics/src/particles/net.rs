@@ -165,7 +165,13 @@ impl ParticleGroup {
         }
         let direction = apart / length;
         let ends = [(i, direction), (to, -direction)];
-        let (impulse, _) = self.row_impulse(&ends.into_iter(), (length - tether.length) / h, 0.0);
+        let speed = (length - tether.length) / h;
+        let (mut impulse, _) = self.row_impulse(&ends.into_iter(), speed, 0.0);
+        if self.backings[i] == 1.0 || self.backings[to] == 1.0 {
+            // What is on a surface that nothing moves cannot come through it: it pulls no more than if it were not there, not all that is needed to take
+            // what holds it there.
+            impulse = min(impulse, speed / (self.weights[i] + self.weights[to]));
+        }
         if impulse > 0.0 {
             self.nudge(i, direction * impulse, h);
             self.nudge(to, direction * -impulse, h);

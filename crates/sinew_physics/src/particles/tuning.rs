@@ -115,16 +115,10 @@ pub(super) const MOST_ADDED: f32 = 1e3;
 /// floor. Shown by the tests of `pinched`.
 pub(super) const PINCHING: f32 = -0.1;
 
-/// Share of its depth in a particle that lies between it and what is fixed by which a body is lifted per second, 1/s.
+/// Least tangent of the half angle between two surfaces at which a particle between them is nipped, whatever the friction, a ratio.
 ///
-/// At rest it is in by `g h` over this, 1.4 mm. Larger: it is thrown off, falls back and never rests: all of its depth at once kept figures on their capes awake. Smaller: it sinks
-/// deeper. Shown by `cape`.
-pub(super) const PINCH_RATE: f32 = 30.0;
-
-/// Most speed with which it is lifted, m/s.
-///
-/// Larger: a body that lies on a rope is thrown off it. Smaller than gravity times the substep: it sinks into it. Shown by the tests of `pinched`.
-pub(super) const PINCH_SPEED: f32 = 0.1;
+/// Larger: what is smooth is borne where it would slip out. Smaller: rounding of normals lets go. Shown by the tests of `pinched`.
+pub(super) const LEAST_NIP: f32 = 0.1;
 
 /// Speed with which a particle comes midway between two surfaces that leave it no room, m/s.
 ///

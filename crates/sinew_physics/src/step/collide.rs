@@ -163,7 +163,7 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, ahead: Ahead, dt: f32
 /// Approach speed of the fastest point, m/s; not negative.
 ///
 /// Bodies are rigid: from one point to another a rate differs by the relative spin times the way between them.
-fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
+pub(super) fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
     let [first, others @ ..] = manifold.points() else { return 0.0 };
     let (p, n) = (first.position, manifold.normal);
     let rate = (b.velocity.at(p - b.center()) - a.velocity.at(p - a.center())).dot(n);
@@ -173,7 +173,7 @@ fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
 }
 
 /// True if a surface pushes, wherever it is met.
-fn is_plain(surface: &Surface) -> bool {
+pub(super) fn is_plain(surface: &Surface) -> bool {
     let pushes = matches!(surface.rule, ContactRule::Push | ContactRule::Modified { .. });
     pushes && surface.sensing == Sensing::Solid
 }

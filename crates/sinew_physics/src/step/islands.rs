@@ -1,6 +1,5 @@
 //! `islands` and `color`: which active bodies hang together through contacts, joints, particles and attraction.
 
-use crate::activity::follow;
 use crate::arena::Arena;
 use crate::body::external_work::Work;
 use crate::context::StepContext;
@@ -109,7 +108,6 @@ impl Islands {
     /// Finds the islands and takes the particle groups into them for the length of the step.
     pub fn find(&mut self, view: &View<'_>, groups: &mut Arena<ParticleGroup>) {
         self.is_known = true;
-        groups.iter_mut().for_each(|(_, group)| follow(view.bodies, group));
         self.number(view, groups.slot_count());
         self.join_touching_and_held();
         let first_group = self.active.len() as u32;

@@ -7,6 +7,7 @@ pub(crate) mod finalize;
 pub(crate) mod islands;
 pub(crate) mod pairs;
 pub(crate) mod phase;
+pub(crate) mod pinched;
 pub(crate) mod project;
 pub(crate) mod sensors;
 pub(crate) mod sleep;
@@ -15,6 +16,7 @@ pub(crate) mod tasks;
 pub(crate) mod touch;
 mod tuning;
 
+use crate::activity::follow;
 use crate::context::StepContext;
 use crate::field::Fields;
 use crate::mover;
@@ -27,7 +29,7 @@ use crate::world::World;
 pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
     let World { def, bodies, joints, contacts, groups, objects, .. } = world;
-    let World { events, broad, parts, activity, islands, parted, sleepers, meetings, .. } = world;
+    let World { events, broad, parts, pinches, activity, islands, parted, sleepers, meetings, .. } = world;
     let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
 
     stage(Stage::Pairs, &mut || {
@@ -39,6 +41,11 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     stage(Stage::Collide, &mut || collide::collide(bodies, broad, contacts, parts, context));
     meetings.hits.start(contacts.len(), def.hit_speed);
     stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, meetings, events));
+    stage(Stage::Touch, &mut || {
+        groups.iter_mut().for_each(|(_, group)| follow(bodies, group));
+        let around = (&*bodies, &broad.proxies, parted.filter(joints));
+        pinches.find(around, groups, contacts, &mut meetings.modifiers, context);
+    });
     let (proxies, modifiers, pace) =
         (&broad.proxies, &meetings.modifiers, Pace::new(context, objects.grading()));
     let view = View { bodies, activity, proxies, joints, contacts, modifiers, def, fields, pace };
@@ -51,7 +58,10 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         lockstep(objects, islands, &view, context);
         objects.rouse(bodies, activity);
     }
-    stage(Stage::Store, &mut || store::store(islands, joints, parted, contacts, groups, events, context));
+    stage(Stage::Store, &mut || {
+        store::store(islands, joints, parted, contacts, groups, events, context);
+        pinches.store(groups, contacts);
+    });
     stage(Stage::Finalize, &mut || finalize::finalize(islands, bodies, activity, events, context));
     let filter = parted.filter(joints);
     stage(Stage::Continuous, &mut || {

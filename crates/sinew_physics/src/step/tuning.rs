@@ -65,3 +65,23 @@ pub(super) const JOINT_ROUNDS: u32 = 8;
 ///
 /// Larger: ropes of a plank pull against each other. Smaller: more rounds. Shown by the tests of `held`.
 pub(super) const JOINT_CHANGE: f32 = 1e-4;
+
+/// Contacts of two shapes through the particles of a group at most, a number.
+///
+/// A limb in the corner of two walls of one mesh has two. Larger: slower. Smaller: of what touches on several sides some is not borne. No scene shows it.
+pub(super) const MOST_PINCHED: u32 = 4;
+
+/// Gap by which a particle may be farther from being pinched than the one that is pinched most and share the load, metres.
+///
+/// Larger: the load is spread over more particles than bear it, and each holds less. Smaller: all of it is on one. Shown by `cape`.
+pub(super) const BEARING_GAP: f32 = 0.005;
+
+/// Distance along a surface that outweighs a gap more when points of a contact are chosen, metres for each metre.
+///
+/// Larger: points close together. Smaller: points beside what bears. Shown by the tests of `pinched`.
+pub(super) const POINT_SLOPE: f32 = 5.0;
+
+/// Distance by which others must be farther away to take the place of a point of the step before, metres.
+///
+/// Larger: points stay where they no longer bear. Smaller: points jump from particle to particle, and their impulses with them. Shown by `cape`.
+pub(super) const KEPT_POINT: f32 = 0.005;

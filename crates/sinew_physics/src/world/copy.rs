@@ -39,6 +39,7 @@ impl Clone for World {
             events: self.events.clone(),
             broad: self.broad.clone(),
             parts: self.parts.clone(),
+            pinches: self.pinches.clone(),
             islands: self.islands.clone(),
             sleepers: self.sleepers,
             steps: self.steps,

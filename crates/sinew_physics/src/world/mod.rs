@@ -52,6 +52,7 @@ use crate::runner::{Serial, TaskRunner};
 use crate::stage::{NoProfiler, Profiler};
 use crate::step::islands::Islands;
 use crate::step::pairs::BroadPhase;
+use crate::step::pinched::Pinches;
 use crate::step::step;
 use crate::user_object::Objects;
 use sinew_math::{Transform, Vec3};
@@ -82,6 +83,7 @@ pub struct World {
     pub(crate) events: Events,
     pub(crate) broad: BroadPhase,
     pub(crate) parts: Parts,
+    pub(crate) pinches: Pinches,
     pub(crate) islands: Islands,
     /// Number of islands that fell asleep so far.
     pub(crate) sleepers: u32,
@@ -122,6 +124,7 @@ impl World {
             events: Events::default(),
             broad: BroadPhase::default(),
             parts: Parts::default(),
+            pinches: Pinches::default(),
             islands: Islands::default(),
             sleepers: 0,
             steps: 0,

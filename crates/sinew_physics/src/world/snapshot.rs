@@ -18,7 +18,7 @@ use crate::world::World;
 use sinew_math::{ReadError, Reader, Writer};
 
 /// First bytes of a snapshot; the last is its version.
-const MAGIC: &[u8; 8] = b"sinew-w\x09";
+const MAGIC: &[u8; 8] = b"sinew-w\x0a";
 /// A thousand steps a second for 280,000 years.
 const MOST_STEPS: u64 = 1 << 53;
 
@@ -39,7 +39,7 @@ impl World {
         let contacts: Vec<_> = self.contacts_in_order().filter(|contact| !contact.is_idle()).collect();
         w.count(contacts.len());
         contacts.into_iter().for_each(|contact| save_contact(w, contact));
-        self.groups.save(w, |w, group| group.save(w));
+        self.groups.save(w, save_group);
         self.fields.save(w, |w, field| field.save(w));
         w.count(self.parted.disabled.len());
         for &(a, b) in &self.parted.disabled {
@@ -158,8 +158,17 @@ impl World {
     }
 }
 
+fn save_group(w: &mut Writer, group: &ParticleGroup) {
+    group.save(w);
+    w.count(group.pinched.contacts.len());
+    group.pinched.contacts.iter().for_each(|contact| save_contact(w, contact));
+}
+
 fn load_group(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<ParticleGroup, ReadError> {
-    let group = ParticleGroup::load(r)?;
+    let mut group = ParticleGroup::load(r)?;
+    for _ in 0..r.count(8)? {
+        group.pinched.contacts.push(load_contact(r, bodies)?);
+    }
     let held = |target| match target {
         AttachmentTarget::Body { body, .. } => bodies.get(body).is_some(),
         AttachmentTarget::World(_) => true,

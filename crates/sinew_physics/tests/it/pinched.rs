@@ -1,8 +1,10 @@
 //! Particles between a body and what is fixed: they bear it, neither is pushed into the other, and nobody pays for nothing.
 
-use crate::build::floor;
-use sinew_math::{Rotation, Vec3};
-use sinew_physics::particles::{ClothDef, RopeDef};
+use crate::build::{floor, joint};
+use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, trig};
+use sinew_physics::particles::{
+    AttachmentDef, AttachmentTarget, ClothDef, GroupDef, ParticleDef, RopeDef, SpringScheme, TetherDef,
+};
 use sinew_physics::*;
 
 /// Radius of the roller, metres.
@@ -137,4 +139,177 @@ fn what_is_made_in_a_crease_comes_out_of_it() {
         let end = world.particles(id).positions()[rope.last as usize];
         assert!(end.x > 0.05, "bent by {bend}: it is still at {end:?}");
     }
+}
+
+/// Cloth that lies on the ground, of so many cells of 5 cm, 1 kg/m².
+fn carpet(corner: Vec3, cells: [u32; 2], friction: f32) -> GroupDef {
+    let [columns, rows] = cells;
+    let (across, down) = (Vec3::X * (0.05 * columns as f32), Vec3::Z * (0.05 * rows as f32));
+    let mut cloth = ClothDef {
+        corner: corner + Vec3::Y * RADIUS,
+        across,
+        down,
+        columns,
+        rows,
+        mass: across.x * down.z,
+        stretching: 2000.0,
+        shearing: 200.0,
+        bending: 1e-5,
+        damping_ratio: 0.2,
+        radius: RADIUS,
+    }
+    .build();
+    cloth.group.material.friction = friction;
+    cloth.group
+}
+
+/// A crate of so many kg, half a metre wide, at this height of its lower face.
+fn crate_of(world: &mut World, mass: f32, bottom: f32) -> BodyId {
+    let half_extents = Vec3::new(0.25, 0.15, 0.25);
+    let mut def = BodyDef {
+        position: Vec3::Y * (bottom + half_extents.y),
+        shapes: vec![ShapeDef::new(Shape::Box { half_extents })],
+        ..BodyDef::default()
+    };
+    def.shapes[0].density *= mass / world_mass(&def);
+    world.add_body(&def)
+}
+
+/// What weighs ten thousand times as much as the cloth under it lies on it as it would on the floor: at the thickness of the cloth, still, and asleep.
+#[test]
+fn crates_lie_and_sleep_on_cloth() {
+    for mass in [1.0, 100.0, 2000.0] {
+        let mut world = World::new(WorldDef::default());
+        floor(&mut world);
+        let cloth = world.add_particles(&carpet(Vec3::new(-0.4, 0.0, -0.4), [16, 16], 0.6));
+        let id = crate_of(&mut world, mass, 2.0 * RADIUS + 0.02);
+        for _ in 0..240 {
+            world.step();
+        }
+        let bottom = world.center_of_mass(id).y - 0.15;
+        // As deep as a crate sinks into the floor by itself: a fifth of a slop, and what is soft of the contact.
+        assert!((bottom - 2.0 * RADIUS).abs() < 2e-3, "{mass} kg: {bottom} m above the floor");
+        assert!(sunk(&world, cloth) < 1e-4, "{mass} kg: {} m in the floor", sunk(&world, cloth));
+        assert!(!world.is_awake(id), "{mass} kg: it is awake after 4 s");
+    }
+}
+
+/// Cloth under a crate is held by what presses it: pulled with less than the friction of its load it stays, with more it comes out.
+#[test]
+fn cloth_under_a_crate_is_held_by_its_friction() {
+    let (mass, friction) = (2.0, 0.5);
+    for (pull, stays) in [(0.6 * friction * mass * 9.81, true), (3.0 * friction * mass * 9.81, false)] {
+        let mut world = World::new(WorldDef::default());
+        floor(&mut world);
+        let columns = 16;
+        let def = carpet(Vec3::new(-0.2, 0.0, -0.2), [columns, 8], friction);
+        let cloth = world.add_particles(&def);
+        crate_of(&mut world, mass, 2.0 * RADIUS);
+        let edge: Vec<u32> = (0..9).map(|row| row * (columns + 1) + columns).collect();
+        for _ in 0..60 {
+            world.step();
+        }
+        let middle = (4 * (columns + 1) + 4) as usize;
+        let begin = world.particles(cloth).positions()[middle];
+        for _ in 0..60 {
+            for &particle in &edge {
+                let share = Vec3::X * (pull / edge.len() as f32 * world.def().dt());
+                world.particles_mut(cloth).apply_impulse(particle, share);
+            }
+            world.step();
+        }
+        let way = (world.particles(cloth).positions()[middle] - begin).x;
+        assert_eq!(way < 0.03, stays, "pulled with {pull} N: {way} m");
+    }
+}
+
+/// A ball in the wedge between the floor and a slab that leans on it from a hinge bears the slab if half the angle of the wedge is less than that of friction,
+/// 16.7°; else the slab comes down and drives it out along the floor, until it does.
+#[test]
+fn what_is_nipped_bears_and_what_is_not_slips_out() {
+    for (degrees, is_nipped) in [(30.0_f32, true), (80.0, false)] {
+        let mut world = World::new(WorldDef::default());
+        floor(&mut world);
+        let post = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
+        let along = Rotation::from_axis_angle(Vec3::Z, degrees.to_radians());
+        // Its lower face rises from the origin.
+        let half_extents = Vec3::new(0.4, 0.02, 0.3);
+        let slab = world.add_body(&BodyDef {
+            rotation: along,
+            position: along * Vec3::new(0.4, 0.02, 0.0),
+            shapes: vec![ShapeDef::new(Shape::Box { half_extents })],
+            ..BodyDef::default()
+        });
+        let axis = Transform::new(Vec3::ZERO, Rotation::from_arc(Vec3::X, Vec3::Z));
+        let hinge = joint(&world, post, slab, axis, JointKind::Hinge { limit: None });
+        world.add_joint(&hinge);
+        let (sine, cosine) = trig::sin_cos((0.5 * degrees).to_radians());
+        let at = RADIUS * cosine / sine;
+        let position = Vec3::new(at, RADIUS, 0.0);
+        let mut group = GroupDef {
+            particles: vec![ParticleDef { position, velocity: Vec3::ZERO, mass: 0.001, radius: RADIUS }],
+            ..GroupDef::default()
+        };
+        // The geometric mean with 0.6 is 0.3.
+        group.material.friction = 0.15;
+        let ball = world.add_particles(&group);
+        for _ in 0..120 {
+            world.step();
+        }
+        let way = world.particles(ball).positions()[0].x - at;
+        let rises = world.transform(slab).rotation * Vec3::X;
+        assert_eq!(way.abs() < 0.01, is_nipped, "{degrees}°: it went {way} m");
+        let least = if is_nipped { degrees - 2.0 } else { 20.0 };
+        assert!(rises.y > trig::sin(least.to_radians()), "{degrees}°: the slab rises along {rises}");
+    }
+}
+
+/// A world that goes on from a snapshot in the middle of what is pinched does so with the same bits.
+#[test]
+fn what_is_pinched_goes_on_from_a_snapshot() {
+    let mut world = World::new(WorldDef::default());
+    floor(&mut world);
+    world.add_particles(&carpet(Vec3::new(-0.4, 0.0, -0.4), [16, 16], 0.6));
+    let id = crate_of(&mut world, 40.0, 2.0 * RADIUS + 0.1);
+    world.set_velocity(id, Velocity { linear: Vec3::new(1.0, -1.0, 0.3), angular: Vec3::new(1.0, 2.0, 3.0) });
+    for step in 0..60 {
+        world.step();
+        if step % 15 != 14 {
+            continue;
+        }
+        let mut other = World::new(WorldDef::default());
+        let mut bytes = Writer::new();
+        world.save(&mut bytes);
+        other.load(&mut Reader::new(bytes.as_bytes())).expect("it is a snapshot");
+        let mut copy = world.clone();
+        for _ in 0..20 {
+            copy.step();
+            other.step();
+            assert_eq!(copy.hash(), other.hash(), "after step {step}");
+        }
+    }
+}
+
+/// A tether that a floor keeps from getting shorter, since its one end is below and the other lies on it, pulls the body that holds the one no harder than it would pull
+/// the other: not with all that would bring the body to it.
+#[test]
+fn a_tether_through_the_floor_does_not_tear() {
+    let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+    floor(&mut world);
+    let id = crate_of(&mut world, 1.0, 0.1);
+    let below = Vec3::Y * -0.05;
+    let particle =
+        |position: Vec3| ParticleDef { position, velocity: Vec3::ZERO, mass: 0.001, radius: RADIUS };
+    let target = AttachmentTarget::Body { body: id, point: below - world.transform(id).translation };
+    world.add_particles(&GroupDef {
+        particles: vec![particle(Vec3::Y * RADIUS), particle(below)],
+        tethers: vec![TetherDef { particle: 0, to: 1, length: 0.02 }],
+        attachments: vec![AttachmentDef { particle: 1, target }],
+        scheme: SpringScheme::Projected,
+        ..GroupDef::default()
+    });
+    world.step();
+    let speed = world.velocity(id).linear.length();
+    // Its error in each of some iterations, as a speed, times a gram over a kilogram.
+    assert!((0.01..0.5).contains(&speed), "{speed} m/s");
 }

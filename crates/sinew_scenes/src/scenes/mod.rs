@@ -155,6 +155,7 @@ const REGISTRY: &[Scene] = &[
     characters::mocap::RETARGET,
     characters::hair::HAIR_RATES,
     characters::cape::CAPE,
+    characters::skirt::SKIRT_SCENE,
 ];
 
 /// Scenes that need a file of the user's, and so are in no list.

@@ -235,7 +235,7 @@ scenes!(
         hair,
         crowd,
     ],
-    large: [cape, chain_100_links, joint_grid, net, ragdoll_pile],
+    large: [cape, chain_100_links, joint_grid, net, ragdoll_pile, skirt],
 );
 
 #[test]

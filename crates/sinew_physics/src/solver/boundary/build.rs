@@ -341,16 +341,17 @@ impl IslandSolver {
             // What turns or comes in fast may come down on more points within the step.
             let is_fast = contact.approach > FAST_APPROACH || sides[0].turns || sides[1].turns;
             let is_curved = sides[0].is_curved || sides[1].is_curved;
+            let of_shapes = !key.is_through_particles();
             let added = Added {
                 index,
                 contact,
                 bodies,
                 moves,
-                points: if is_fast { MAX_POINTS } else { contact.manifold.count },
+                points: if is_fast && of_shapes { MAX_POINTS } else { contact.manifold.count },
                 firmness: self.firmness(bodies),
                 slop,
                 material: faces.material(view, index, &sides),
-                curved: is_curved.then(|| placed(view, contact)),
+                curved: (is_curved && of_shapes).then(|| placed(view, contact)),
             };
             contacts.push(&added, &self.bodies);
         }
@@ -389,6 +390,7 @@ impl IslandSolver {
             let memory = ContactMemory { points, ..contact.memory };
             let source = ManifoldSource {
                 contact: index,
+                through_particles: contact.key.is_through_particles(),
                 a: self.local(contact.key.a),
                 b: self.local(contact.key.b),
                 a_moves: a.is_active(),

@@ -69,6 +69,7 @@ pub(crate) struct ManifoldRows {
     pub manifold: Manifold,
     /// It was found since the step's beginning.
     is_new: bool,
+    through_particles: bool,
     shapes: [PlacedShape; 2],
     /// Radii of the shapes' roundings around their cores, where they meet.
     rounds: [f32; 2],
@@ -126,6 +127,8 @@ pub(crate) struct ManifoldRows {
 /// Input from which a manifold's rows are made.
 pub(crate) struct ManifoldSource<'a> {
     pub contact: u32,
+    /// Its points are on particles between the shapes: they are not looked for anew.
+    pub through_particles: bool,
     pub a: u32,
     pub b: u32,
     pub a_moves: bool,
@@ -147,6 +150,7 @@ impl ManifoldRows {
             b: source.b,
             manifold: *source.manifold,
             is_new: false,
+            through_particles: source.through_particles,
             shapes: source.shapes.clone(),
             rounds: [0.0; 2],
             most_turn: REFRESH_TURN_RESPONSE,
@@ -213,10 +217,12 @@ impl ManifoldRows {
         let [a, b] = &self.shapes;
         let [in_a, in_b] = [pose_a, pose_b].map(|pose| pose.rotation.inverse() * n);
         let [a, b] = [a.placed(), b.placed()];
-        let [round_a, round_b] = [a.round(in_a), b.round(in_b)];
+        let [round_a, round_b] =
+            if self.through_particles { [0.0; 2] } else { [a.round(in_a), b.round(in_b)] };
         self.rounds = [round_a, round_b];
         // Of a rim, the points beside the one that it rolls on bear nothing.
         let (most_turn, bearing) = match a.has_rim(in_a) || b.has_rim(in_b) {
+            _ if self.through_particles => (f32::INFINITY, f32::INFINITY),
             true => (REFRESH_TURN_RIM, self.slop),
             false => (REFRESH_TURN_RESPONSE, f32::INFINITY),
         };

@@ -136,6 +136,9 @@ impl<const N: usize, const T: usize> Class<N, T> {
                     continue;
                 }
                 let of = &substep.view.contacts[contact as usize];
+                if of.key.is_through_particles() {
+                    continue;
+                }
                 let starts = bodies.map(|body| substep.starts[body as usize]);
                 let cores =
                     Cores::new(&of.manifold, starts, rounds(substep.view, contact, starts, &of.manifold));

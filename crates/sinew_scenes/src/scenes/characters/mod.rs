@@ -7,6 +7,7 @@ pub(super) mod cape;
 pub(super) mod hair;
 pub(super) mod mocap;
 pub(super) mod movers;
+pub(super) mod skirt;
 pub(super) mod street;
 pub(super) mod transitions;
 pub(super) mod walking;

@@ -1,0 +1,309 @@
+//! Contacts of two shapes through particles that lie between them: cloth under a foot, a rope under a wheel.
+//!
+//! A massless ball between two surfaces is pushed by each along the line through the two places where it touches, which lies in the
+//! middle of their normals: it stays there if that line is within both cones of friction (the angle of nip of roller mills), and what comes
+//! from the one surface goes on to the other. So such particles are points of a contact of the two shapes, with that line as its normal and the
+//! gaps of both as its separation. These contacts live in the world's list from after `touch` until `store`; in between, their group keeps them.
+
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::body::material::{ContactMaterial, Material};
+use crate::boxes::Aabb;
+use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
+use crate::contact::filter::PairFilter;
+use crate::contact::modifiers::Modifiers;
+use crate::contact::proxies::{Owner, Proxies};
+use crate::contact::tuning::{MARGIN, SAME_PART_COSINE};
+use crate::contact::{Contact, ContactKey, ContactMemory};
+use crate::context::StepContext;
+use crate::particles::{AttachmentTarget, ParticleGroup, Pinched, is_nipped};
+use crate::step::collide::{approach_of, is_plain};
+use crate::step::tuning::{BEARING_GAP, KEPT_POINT, MOST_PINCHED, POINT_SLOPE};
+use core::cmp::Ordering;
+use core::ops::ControlFlow;
+use sinew_math::{Transform, Vec3, max, max3, min};
+
+/// Contacts through particles that a step has found, and memory to find them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pinches {
+    /// Number of contacts of the world before those through particles.
+    own: usize,
+    /// Index of each group that has contacts, and how many.
+    groups: Vec<(u32, usize)>,
+    near: Vec<Near>,
+    found: Vec<Between>,
+}
+
+/// A shape near a group.
+#[derive(Clone, Copy, Debug)]
+struct Near {
+    body: u32,
+    shape: u32,
+    bounds: Aabb,
+    world_from_shape: Transform,
+    is_active: bool,
+}
+
+/// A particle between two shapes.
+#[derive(Clone, Copy, Debug)]
+struct Between {
+    key: ContactKey,
+    particle: u32,
+    /// From A to B.
+    normal: Vec3,
+    point: ManifoldPoint,
+}
+
+/// Surface near a particle: its distance from that of the particle, metres, and its outward normal, world.
+#[derive(Clone, Copy, Debug)]
+struct Facing {
+    gap: f32,
+    outward: Vec3,
+}
+
+impl Pinches {
+    /// Adds the contacts through particles of all groups that are awake to those of the world.
+    pub fn find(
+        &mut self,
+        (bodies, proxies, filter): (&Arena<Body>, &Proxies, PairFilter<'_>),
+        groups: &mut Arena<ParticleGroup>,
+        contacts: &mut Vec<Contact>,
+        modifiers: &mut Modifiers,
+        context: &StepContext<'_>,
+    ) {
+        self.own = contacts.len();
+        self.groups.clear();
+        for (index, group) in groups.iter_mut().filter(|(_, group)| group.is_awake()) {
+            self.list_near(group, bodies, proxies, context.dt);
+            self.find_between(group, bodies, filter, context.dt);
+            let first = contacts.len();
+            self.join(group, bodies, contacts, context);
+            for at in first..contacts.len() {
+                modifiers.set(at as u32, material(bodies, group.material(), contacts[at].key));
+            }
+            self.groups.push((index, contacts.len() - first));
+        }
+    }
+
+    /// Takes the contacts back, as the step has left them.
+    pub fn store(&mut self, groups: &mut Arena<ParticleGroup>, contacts: &mut Vec<Contact>) {
+        let mut solved = contacts.drain(self.own..);
+        for &(index, count) in &self.groups {
+            let kept = &mut groups.at_mut(index).pinched.contacts;
+            kept.clear();
+            kept.extend(solved.by_ref().take(count));
+        }
+    }
+
+    /// Lists the shapes that a group may come to within the step.
+    fn list_near(&mut self, group: &ParticleGroup, bodies: &Arena<Body>, proxies: &Proxies, dt: f32) {
+        let bounds = group.bounds().expand(MARGIN + group.fastest() * dt);
+        self.near.clear();
+        let _ = proxies.overlapping(&bounds, |Owner { body: index, shape }| {
+            let body = bodies.at(index);
+            let surface = body.surface(shape as usize);
+            if !body.quarantined && group.meets(bodies.id(index), surface) && is_plain(surface) {
+                let world_from_shape = body.world_from_shape(shape as usize);
+                let bounds = body.shapes[shape as usize].shape.aabb(&world_from_shape);
+                let is_active = body.is_active();
+                self.near.push(Near { body: index, shape, bounds, world_from_shape, is_active });
+            }
+            ControlFlow::<()>::Continue(())
+        });
+        self.near.sort_unstable_by_key(|near| (near.body, near.shape));
+    }
+
+    /// Lists the particles of a group that are between two shapes, one of which is active, or come between them within the step.
+    fn find_between(&mut self, group: &ParticleGroup, bodies: &Arena<Body>, filter: PairFilter<'_>, dt: f32) {
+        self.found.clear();
+        let fastest =
+            self.near.iter().fold(0.0, |most, near| max(most, bodies.at(near.body).fastest_point()));
+        let reach = MARGIN + 2.0 * fastest * dt;
+        for (at, near) in self.near.iter().enumerate().filter(|(_, near)| near.is_active) {
+            for i in 0..group.positions().len() {
+                let Some(facing) = near.facing(bodies, group, i, reach) else { continue };
+                for (other_at, other) in self.near.iter().enumerate() {
+                    // A pair of active ones is found once.
+                    if other.body == near.body || other.is_active && other_at < at {
+                        continue;
+                    }
+                    let Some(opposite) = other.facing(bodies, group, i, reach - facing.gap) else { continue };
+                    let pair = [(near, facing), (other, opposite)];
+                    if let Some(between) = between(bodies, group, i, pair, dt)
+                        && filter.lets_meet(bodies, between.key)
+                    {
+                        self.found.push(between);
+                    }
+                }
+            }
+        }
+        self.found.sort_unstable_by_key(|between| (between.key, between.particle));
+    }
+
+    /// Makes contacts of what was found, up to [`MOST_PINCHED`] of a pair, and finds the load of each particle.
+    fn join(
+        &mut self,
+        group: &mut ParticleGroup,
+        bodies: &Arena<Body>,
+        contacts: &mut Vec<Contact>,
+        context: &StepContext<'_>,
+    ) {
+        let count = group.positions().len();
+        let Pinched { contacts: old, loads } = &mut group.pinched;
+        loads.clear();
+        loads.resize(count, 0.0);
+        for pair in self.found.chunk_by_mut(|one, other| one.key == other.key) {
+            let mut rest = pair;
+            for number in 0..MOST_PINCHED {
+                let Some(deepest) = rest.iter().copied().min_by(Between::deeper) else { break };
+                let is_part = |normal: Vec3| normal.dot(deepest.normal) >= SAME_PART_COSINE;
+                // Those of the part come first, in order of particles.
+                rest.sort_unstable_by_key(|between| (!is_part(between.normal), between.particle));
+                let count = rest.partition_point(|between| is_part(between.normal));
+                let (part, others) = core::mem::take(&mut rest).split_at_mut(count);
+                let key = deepest.key.through_particles(number);
+                let goes_on =
+                    |contact: &Contact| contact.key.is_of_pair(key) && is_part(contact.manifold.normal);
+                let known = old.iter().position(goes_on).map(|at| old.remove(at));
+                let manifold = spread(part, &deepest, known.as_ref());
+                let memory = known.map_or_else(ContactMemory::default, |known| {
+                    known.memory.matched(&known.manifold, &manifold)
+                });
+                share_load(part, &deepest, &memory, context.h, loads);
+                let approach = approach_of(bodies.at(key.a), bodies.at(key.b), &manifold);
+                contacts.push(Contact { manifold, memory, approach, ..Contact::new(key) });
+                rest = others;
+            }
+        }
+    }
+}
+
+impl Between {
+    /// Order by depth, the deepest first.
+    fn deeper(&self, other: &Self) -> Ordering {
+        self.point.separation.total_cmp(&other.point.separation)
+    }
+
+    /// Height of it over another, metres: the difference of their separations.
+    fn above(&self, deepest: &Self) -> f32 {
+        self.point.separation - deepest.point.separation
+    }
+}
+
+impl Near {
+    /// Its surface as a particle faces it, if it is within `reach` metres of that.
+    fn facing(&self, bodies: &Arena<Body>, group: &ParticleGroup, i: usize, reach: f32) -> Option<Facing> {
+        let (position, radius) = (group.positions()[i], group.radii()[i]);
+        let beyond = max3(self.bounds.min - position, position - self.bounds.max);
+        if max(max(beyond.x, beyond.y), beyond.z) > radius + reach {
+            return None;
+        }
+        let shape = &bodies.at(self.body).shapes[self.shape as usize].shape;
+        let at = self.world_from_shape.inverse_point(position);
+        let (distance, normal) = shape.ball_distance(at, radius, radius + reach);
+        let gap = distance - radius;
+        (gap <= reach).then(|| Facing { gap, outward: self.world_from_shape.rotation * normal })
+    }
+}
+
+/// A particle as it lies between two shapes, if it is nipped between them or will be within the step.
+fn between(
+    bodies: &Arena<Body>,
+    group: &ParticleGroup,
+    i: usize,
+    [(near, facing), (other, opposite)]: [(&Near, Facing); 2],
+    dt: f32,
+) -> Option<Between> {
+    let (mut facing, mut opposite) = (facing, opposite);
+    match group.holder_of(i) {
+        None => {}
+        // As a ball on the body that holds it.
+        Some(AttachmentTarget::Body { body, .. }) if body.index == near.body => {
+            facing = Facing { gap: 0.0, outward: -opposite.outward };
+        }
+        Some(AttachmentTarget::Body { body, .. }) if body.index == other.body => {
+            opposite = Facing { gap: 0.0, outward: -facing.outward };
+        }
+        Some(_) => return None,
+    }
+    let along = facing.outward - opposite.outward;
+    let cosine = 0.5 * along.length();
+    let friction = |near: &Near| {
+        let surface = bodies.at(near.body).surface(near.shape as usize);
+        ContactMaterial::of(&group.material(), &surface.material).static_friction
+    };
+    if !is_nipped(facing.outward.dot(opposite.outward), min(friction(near), friction(other))) {
+        return None;
+    }
+    let normal = along / (2.0 * cosine);
+    let position = group.positions()[i];
+    let velocity = |near: &Near| {
+        let body = bodies.at(near.body);
+        body.velocity.at(position - body.center())
+    };
+    let separation = (facing.gap + opposite.gap) / cosine;
+    let closing = max((velocity(near) - velocity(other)).dot(normal), 0.0);
+    if separation > MARGIN + closing * dt {
+        return None;
+    }
+    let key = ContactKey::new((near.body, near.shape), (other.body, other.shape));
+    let point = ManifoldPoint {
+        position: position + normal * (0.5 * (opposite.gap - facing.gap)),
+        separation,
+        feature: i as u32,
+    };
+    let sign = if key.a == near.body { 1.0 } else { -1.0 };
+    Some(Between { key, particle: i as u32, normal: normal * sign, point })
+}
+
+/// Points far from each other among those of a part, the deepest first: each as far as may be from those that are chosen, less what it is less deep; points
+/// of the step before have precedence.
+fn spread(part: &[Between], deepest: &Between, known: Option<&Contact>) -> Manifold {
+    let mut manifold = Manifold { normal: deepest.normal, count: 1, ..Manifold::default() };
+    manifold.points[0] = deepest.point;
+    let was_one = |point: &ManifoldPoint| {
+        known.is_some_and(|known| known.manifold.points().iter().any(|old| old.feature == point.feature))
+    };
+    while manifold.count < MAX_POINTS {
+        let score = |between: &Between| {
+            let apart = |chosen: &ManifoldPoint| (chosen.position - between.point.position).length();
+            let distance = manifold.points().iter().map(apart).fold(f32::INFINITY, min);
+            let kept = if was_one(&between.point) { KEPT_POINT } else { 0.0 };
+            distance - POINT_SLOPE * between.above(deepest) + kept
+        };
+        let scored = part.iter().map(|between| (score(between), between));
+        let Some((score, best)) = scored.reduce(|best, next| if next.0 > best.0 { next } else { best })
+        else {
+            break;
+        };
+        // One that was chosen is no way away from itself.
+        if score <= KEPT_POINT {
+            break;
+        }
+        manifold.points[manifold.count] = best.point;
+        manifold.count += 1;
+    }
+    manifold
+}
+
+/// Shares the force that a contact bore lately among the particles that bear it.
+fn share_load(part: &[Between], deepest: &Between, memory: &ContactMemory, h: f32, loads: &mut [f32]) {
+    let force = memory.points.iter().fold(0.0, |sum, point| sum + point.lasting) / h;
+    let bearing = || part.iter().filter(|between| between.above(deepest) < BEARING_GAP);
+    let share = force / bearing().count() as f32;
+    bearing().for_each(|between| loads[between.particle as usize] += share);
+}
+
+/// Material of two surfaces that rub on particles between them: it holds no better than the slipperier of the two does.
+fn material(bodies: &Arena<Body>, particles: Material, key: ContactKey) -> ContactMaterial {
+    let [a, b] = [(key.a, key.shape_a), (key.b, key.shape_b)].map(|(body, shape)| {
+        ContactMaterial::of(&particles, &bodies.at(body).surface(shape as usize).material)
+    });
+    ContactMaterial {
+        friction: min(a.friction, b.friction),
+        static_friction: min(a.static_friction, b.static_friction),
+        restitution: min(a.restitution, b.restitution),
+        rolling: max(a.rolling, b.rolling),
+        ..ContactMaterial::default()
+    }
+}

@@ -1,0 +1,251 @@
+//! A skirt and a cape of bones that are worn through a walk, a fall, and getting up.
+
+use crate::dressed::{CAPE, SKIRT, dressed};
+use crate::framework::actors::Figure;
+use crate::framework::camera_hint::{CameraHint, Trails};
+use crate::framework::instance::{Instance, Script};
+use crate::framework::metric::{Expected, Metric};
+use crate::framework::scene::{Chapter, Scene};
+use crate::framework::setting::{Setting, Setup};
+use crate::parts::floor;
+use sinew::anim::local_to_model;
+use sinew::math::{Affine, ReadError, Reader, Transform, Vec3, Writer, max};
+use sinew::physics::boxes::{Aabb, Overlap};
+use sinew::physics::particles::{AttachmentTarget, ParticleGroup};
+use sinew::physics::{BodyId, GroupId, World};
+use sinew::ragdoll::{Character, CharacterEvent};
+use std::sync::Arc;
+
+pub(in crate::scenes) const SKIRT_SCENE: Scene = Scene {
+    chapter: Chapter::Characters,
+    name: "skirt",
+    about: "the mannequin in a skirt and a cape of bones walks, is hit, lies, gets up and walks on",
+    steps: 600,
+    settings: &[
+        Setting::number("impulse", 110.0, (0.0, 200.0), "in the side, N·s"),
+        Setting::number("area_density", 0.4, (0.1, 2.0), "of the cloth, kg/m²"),
+    ],
+    build: skirt,
+};
+
+/// Time of the hit, seconds.
+const HIT_AT: f64 = 1.5;
+/// Role of the body that is hit.
+const SHOULDERS: &str = "chest";
+
+fn skirt(setup: &Setup<'_>) -> Instance {
+    let mut world = setup.world();
+    world.add_body(&floor());
+    let density = setup.number("area_density");
+    let def = Arc::new(dressed(&[&SKIRT, &CAPE], |garment| garment.area_density = density));
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    character.set_move(Vec3::Z * sinew::mannequin::WALK_SPEED);
+    let mut script = Dressed {
+        character,
+        impulse: setup.number("impulse"),
+        was_hit: false,
+        model: Vec::new(),
+        watch: Watch::default(),
+    };
+    script.show();
+    Instance::new(world, script)
+}
+
+#[derive(Clone, Copy, Default)]
+struct Watch {
+    /// Depth of a free particle's middle in a body of the wearer, metres; 0: it was in none.
+    deepest_in_wearer: f32,
+    /// The same of those between two bodies of the wearer.
+    deepest_pinched: f32,
+    /// In anything else.
+    deepest_in_world: f32,
+    /// Largest mean over the threads of how much a thread is longer or shorter than at rest, over its length.
+    stretch: f32,
+    /// Sum of that mean over steps.
+    stretch_sum: f32,
+    /// Furthest that a held particle was from its place, metres.
+    torn: f32,
+    /// Speed of the fastest particle, m/s.
+    fastest: f32,
+    falls: u32,
+    /// When it was up again, seconds.
+    up: f32,
+    work_in: f32,
+}
+
+struct Dressed {
+    character: Character,
+    /// N·s.
+    impulse: f32,
+    was_hit: bool,
+    /// World from joint.
+    model: Vec<Affine>,
+    watch: Watch,
+}
+
+/// Mean over the threads of how far their lengths are from those at rest, as a share; what braces cells diagonally is no thread.
+fn stretch(group: &ParticleGroup, closed: bool) -> f32 {
+    let lines = group.attachments().len();
+    let rows = group.positions().len() / lines - 1;
+    let threads = (lines + lines - usize::from(!closed)) * rows;
+    let positions = group.positions();
+    let off = group.springs()[..threads].iter().map(|thread| {
+        let length = (positions[thread.b as usize] - positions[thread.a as usize]).length();
+        (length / thread.rest_length - 1.0).abs()
+    });
+    off.sum::<f32>() / threads as f32
+}
+
+impl Dressed {
+    fn show(&mut self) {
+        let root = self.character.world_from_model();
+        local_to_model(&self.character.def().rig, self.character.pose(), &root, &mut self.model);
+    }
+
+    /// Depth of the deepest free particle's middle in a body of the wearer and in another that it meets, metres; 0: outside. The third is that of those that are
+    /// pinched between two bodies: where a clip folds the thigh on the belly, or lays a leg on the floor, there is no place outside of both.
+    fn deepest(&self, world: &World, id: GroupId) -> [f32; 3] {
+        let (group, own) = (world.particles(id), self.character.bodies());
+        let bounds = group.bounds();
+        let held: Vec<u32> = group.attachments().iter().map(|held| held.particle).collect();
+        let met = world.body_ids().filter(|body| group.passes().binary_search(body).is_err());
+        let near: Vec<_> = met
+            .filter(|&body| world.bounds(body).overlaps(&bounds))
+            .flat_map(|body| world.shapes(body).map(move |shape| (own.contains(&body), shape)))
+            .collect();
+        let mut deepest = [0.0; 3];
+        for (particle, (&position, &radius)) in group.positions().iter().zip(group.radii()).enumerate() {
+            if held.contains(&(particle as u32)) {
+                continue;
+            }
+            let (mut depths, mut touched) = ([0.0; 2], 0);
+            for (is_own, (shape, frame)) in &near {
+                let distance = shape.signed_distance(frame, position).0;
+                let depth = &mut depths[usize::from(!is_own)];
+                *depth = max(*depth, -distance);
+                touched += usize::from(distance < 1.1 * radius);
+            }
+            let [of_own, of_others] = depths;
+            if touched > 1 {
+                deepest[2] = max(deepest[2], max(of_own, of_others));
+            } else {
+                deepest = [max(deepest[0], of_own), max(deepest[1], of_others), deepest[2]];
+            }
+        }
+        deepest
+    }
+
+    fn look(&mut self, world: &World) {
+        let mut watch = self.watch;
+        let mut mean = 0.0;
+        for (garment, &id) in self.character.def().garments().source().iter().zip(self.character.garments()) {
+            let group = world.particles(id);
+            let [in_wearer, in_world, pinched] = self.deepest(world, id);
+            watch.deepest_in_wearer = max(watch.deepest_in_wearer, in_wearer);
+            watch.deepest_pinched = max(watch.deepest_pinched, pinched);
+            watch.deepest_in_world = max(watch.deepest_in_world, in_world);
+            for held in group.attachments() {
+                let AttachmentTarget::Body { body, point } = held.target else { continue };
+                let off = world.transform(body).point(point) - group.positions()[held.particle as usize];
+                watch.torn = max(watch.torn, off.length());
+            }
+            watch.fastest = group.velocities().iter().fold(watch.fastest, |most, v| max(most, v.length()));
+            mean = max(mean, stretch(group, garment.closed));
+        }
+        watch.stretch = max(watch.stretch, mean);
+        watch.stretch_sum += mean;
+        self.watch = watch;
+    }
+}
+
+impl Script for Dressed {
+    fn after_step(&mut self, world: &mut World) {
+        self.watch.work_in += world.work().total();
+        self.look(world);
+        self.character.update(world);
+        for event in self.character.events() {
+            self.watch.falls += u32::from(*event == CharacterEvent::WentLimp);
+            if *event == CharacterEvent::Up {
+                self.watch.up = world.time() as f32;
+            }
+        }
+        if !self.was_hit && world.time() >= HIT_AT {
+            self.was_hit = true;
+            let chest = self.character.def().body_named(SHOULDERS).expect("it has a chest");
+            self.character.hit(world, chest, Vec3::new(0.6, 0.0, -0.8) * self.impulse);
+        }
+        self.show();
+    }
+
+    fn save(&self, out: &mut Writer) {
+        self.character.save(out);
+        out.bool(self.was_hit);
+        let watch = self.watch;
+        [
+            watch.deepest_in_wearer,
+            watch.deepest_pinched,
+            watch.deepest_in_world,
+            watch.stretch,
+            watch.stretch_sum,
+        ]
+        .into_iter()
+        .chain([watch.torn, watch.fastest, watch.up, watch.work_in])
+        .for_each(|x| out.f32(x));
+        out.u32(watch.falls);
+    }
+
+    fn load(&mut self, bytes: &mut Reader<'_>) -> Result<(), ReadError> {
+        self.character.load(bytes)?;
+        self.was_hit = bytes.bool()?;
+        let mut number = || bytes.f32();
+        self.watch = Watch {
+            deepest_in_wearer: number()?,
+            deepest_pinched: number()?,
+            deepest_in_world: number()?,
+            stretch: number()?,
+            stretch_sum: number()?,
+            torn: number()?,
+            fastest: number()?,
+            up: number()?,
+            work_in: number()?,
+            falls: bytes.u32()?,
+        };
+        self.show();
+        Ok(())
+    }
+
+    fn work_in(&self, _: &World) -> f32 {
+        self.watch.work_in
+    }
+
+    fn metrics(&self, world: &World) -> Vec<Metric> {
+        let watch = self.watch;
+        let radius = f64::from(self.character.def().garments().source()[0].radius);
+        let mean = (world.step_count() > 0).then_some(watch.stretch_sum / world.step_count() as f32);
+        let up = (watch.up > 0.0).then_some(watch.up);
+        vec![
+            Metric::new("deepest_in_wearer_m", watch.deepest_in_wearer, Expected::AtMost(radius)),
+            Metric::new("deepest_pinched_m", watch.deepest_pinched, Expected::Anything),
+            Metric::new("deepest_in_world_m", watch.deepest_in_world, Expected::AtMost(radius)),
+            Metric::awaited("stretch_mean", mean, Expected::AtMost(0.03)),
+            Metric::new("stretch_mean_worst", watch.stretch, Expected::Anything),
+            Metric::new("held_off_m", watch.torn, Expected::AtMost(1e-3)),
+            Metric::new("fastest_m_s", watch.fastest, Expected::Anything),
+            Metric::new("falls", watch.falls, Expected::Near { value: 1.0, tolerance: 0.0 }),
+            Metric::awaited("up_s", up, Expected::AtMost(10.0)),
+        ]
+    }
+
+    fn camera_hint(&self) -> CameraHint {
+        let bounds = Aabb { min: Vec3::new(-0.6, 0.0, -1.0), max: Vec3::new(0.6, 1.8, 4.0) };
+        CameraHint { direction: Vec3::new(1.0, 0.3, 0.4), bounds: Some(bounds), trails: Trails::None }
+    }
+
+    fn figures(&self) -> Vec<Figure<'_>> {
+        vec![Figure { rig: &self.character.def().rig, world_from_joint: &self.model }]
+    }
+
+    fn bodies_of_figures(&self) -> Vec<BodyId> {
+        self.character.bodies().to_vec()
+    }
+}
