@@ -16,12 +16,12 @@ pub(crate) mod tasks;
 pub(crate) mod touch;
 mod tuning;
 
-use crate::activity::follow;
 use crate::context::StepContext;
 use crate::field::Fields;
 use crate::mover;
 use crate::solver::{Pace, View};
 use crate::stage::{Stage, zone};
+use crate::step::pinched::Around;
 use crate::user_object::lockstep;
 use crate::world::World;
 
@@ -40,11 +40,10 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     });
     stage(Stage::Collide, &mut || collide::collide(bodies, broad, contacts, parts, context));
     meetings.hits.start(contacts.len(), def.hit_speed);
-    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, meetings, events));
     stage(Stage::Touch, &mut || {
-        groups.iter_mut().for_each(|(_, group)| follow(bodies, group));
-        let around = (&*bodies, &broad.proxies, parted.filter(joints));
-        pinches.find(around, groups, contacts, &mut meetings.modifiers, context);
+        touch::touch(bodies, joints, contacts, activity, &fields, meetings, events);
+        let around = Around { bodies, proxies: &broad.proxies, filter: parted.filter(joints) };
+        pinches.find(&around, groups, contacts, &mut meetings.modifiers, context);
     });
     let (proxies, modifiers, pace) =
         (&broad.proxies, &meetings.modifiers, Pace::new(context, objects.grading()));

@@ -5,6 +5,7 @@
 //! from the one surface goes on to the other. So such particles are points of a contact of the two shapes, with that line as its normal and the
 //! gaps of both as its separation. These contacts live in the world's list from after `touch` until `store`; in between, their group keeps them.
 
+use crate::activity::follow;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::body::material::{ContactMaterial, Material};
@@ -61,21 +62,33 @@ struct Facing {
     outward: Vec3,
 }
 
+/// Shapes of the world, and which of them may meet.
+pub(crate) struct Around<'a> {
+    pub bodies: &'a Arena<Body>,
+    pub proxies: &'a Proxies,
+    pub filter: PairFilter<'a>,
+}
+
 impl Pinches {
     /// Adds the contacts through particles of all groups that are awake to those of the world.
     pub fn find(
         &mut self,
-        (bodies, proxies, filter): (&Arena<Body>, &Proxies, PairFilter<'_>),
+        around: &Around<'_>,
         groups: &mut Arena<ParticleGroup>,
         contacts: &mut Vec<Contact>,
         modifiers: &mut Modifiers,
         context: &StepContext<'_>,
     ) {
+        let bodies = around.bodies;
         self.own = contacts.len();
         self.groups.clear();
-        for (index, group) in groups.iter_mut().filter(|(_, group)| group.is_awake()) {
-            self.list_near(group, bodies, proxies, context.dt);
-            self.find_between(group, bodies, filter, context.dt);
+        for (index, group) in groups.iter_mut() {
+            follow(bodies, group);
+            if !group.is_awake() {
+                continue;
+            }
+            self.list_near(group, around, context.dt);
+            self.find_between(group, around, context.dt);
             let first = contacts.len();
             self.join(group, bodies, contacts, context);
             for at in first..contacts.len() {
@@ -96,7 +109,7 @@ impl Pinches {
     }
 
     /// Lists the shapes that a group may come to within the step.
-    fn list_near(&mut self, group: &ParticleGroup, bodies: &Arena<Body>, proxies: &Proxies, dt: f32) {
+    fn list_near(&mut self, group: &ParticleGroup, &Around { bodies, proxies, .. }: &Around<'_>, dt: f32) {
         let bounds = group.bounds().expand(MARGIN + group.fastest() * dt);
         self.near.clear();
         let _ = proxies.overlapping(&bounds, |Owner { body: index, shape }| {
@@ -114,7 +127,7 @@ impl Pinches {
     }
 
     /// Lists the particles of a group that are between two shapes, one of which is active, or come between them within the step.
-    fn find_between(&mut self, group: &ParticleGroup, bodies: &Arena<Body>, filter: PairFilter<'_>, dt: f32) {
+    fn find_between(&mut self, group: &ParticleGroup, &Around { bodies, filter, .. }: &Around<'_>, dt: f32) {
         self.found.clear();
         let fastest =
             self.near.iter().fold(0.0, |most, near| max(most, bodies.at(near.body).fastest_point()));

@@ -9,6 +9,9 @@ const NOT_YET: &[(&str, &[&str])] = &[
     ("arch", &["shift_max_m"]),
     // Heaps are chaotic: from starts that differ by 1 mm the sticks sleep after 212 to 226 steps.
     ("mesh_drop", &["asleep_steps"]),
+    // Limbs that the clip of getting up leads press the skirt onto the floor, with nothing to give way: what that costs them is counted too low, and a few particles are
+    // still on their way out.
+    ("skirt", &["deepest_in_wearer_m", "energy_gain_max"]),
 ];
 
 /// Scenes in which gravity has no part, and one whose bound is about walls alone (`fast_particle`).
