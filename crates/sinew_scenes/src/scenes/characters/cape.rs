@@ -7,11 +7,12 @@ use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
 use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
+use crate::scenes::characters::worn;
 use sinew::anim::local_to_model;
 
 use sinew::math::{Affine, ReadError, Reader, Vec3, Writer, max};
 use sinew::physics::boxes::{Aabb, Overlap};
-use sinew::physics::particles::{AttachmentDef, AttachmentTarget, ClothDef, GroupDef, ParticleGroup};
+use sinew::physics::particles::{AttachmentDef, AttachmentTarget, ClothDef, GroupDef};
 use sinew::physics::{BodyId, GroupId, Material, World};
 use sinew::ragdoll::{Character, CharacterEvent};
 use std::sync::Arc;
@@ -132,17 +133,8 @@ struct Worn {
     watch: Watch,
 }
 
-/// Mean over the threads of how far their lengths are from those at rest, as a share.
-fn stretch(group: &ParticleGroup) -> f32 {
-    let threads = COLUMNS * (ROWS + 1) + ROWS * (COLUMNS + 1);
-    let threads = &group.springs()[..threads as usize];
-    let positions = group.positions();
-    let off = threads.iter().map(|thread| {
-        let length = (positions[thread.b as usize] - positions[thread.a as usize]).length();
-        (length / thread.rest_length - 1.0).abs()
-    });
-    off.sum::<f32>() / threads.len() as f32
-}
+/// Number of threads, along both ways; what braces cells diagonally is none.
+const THREADS: u32 = COLUMNS * (ROWS + 1) + ROWS * (COLUMNS + 1);
 
 impl Worn {
     fn show(&mut self) {
@@ -174,13 +166,7 @@ impl Worn {
         let others = world.body_ids().filter(|body| !own.contains(body));
         let [in_wearer, in_world] = [self.deepest(world, own.iter().copied()), self.deepest(world, others)];
         let group = world.particles(self.cape);
-        let torn = group.attachments().iter().map(|held| match held.target {
-            AttachmentTarget::Body { body, point } => {
-                (world.transform(body).point(point) - group.positions()[held.particle as usize]).length()
-            }
-            AttachmentTarget::World(_) => f32::INFINITY,
-        });
-        let (torn, stretch) = (torn.fold(0.0, max), stretch(group));
+        let (torn, stretch) = (worn::torn(world, group), worn::stretch(group, THREADS as usize));
         let watch = &mut self.watch;
         watch.deepest_in_wearer = max(watch.deepest_in_wearer, in_wearer);
         watch.deepest_in_world = max(watch.deepest_in_world, in_world);

@@ -11,3 +11,4 @@ pub(super) mod skirt;
 pub(super) mod street;
 pub(super) mod transitions;
 pub(super) mod walking;
+mod worn;

@@ -8,10 +8,11 @@ use crate::framework::metric::{Expected, Metric};
 use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::floor;
+use crate::scenes::characters::worn;
 use sinew::anim::local_to_model;
 use sinew::math::{Affine, ReadError, Reader, Transform, Vec3, Writer, max};
 use sinew::physics::boxes::{Aabb, Overlap};
-use sinew::physics::particles::{AttachmentTarget, ParticleGroup};
+use sinew::physics::particles::ParticleGroup;
 use sinew::physics::{BodyId, GroupId, World};
 use sinew::ragdoll::{Character, CharacterEvent};
 use std::sync::Arc;
@@ -83,17 +84,11 @@ struct Dressed {
     watch: Watch,
 }
 
-/// Mean over the threads of how far their lengths are from those at rest, as a share; what braces cells diagonally is no thread.
-fn stretch(group: &ParticleGroup, closed: bool) -> f32 {
+/// Number of threads of a garment, along both ways; what braces cells diagonally is none.
+fn threads(group: &ParticleGroup, closed: bool) -> usize {
     let lines = group.attachments().len();
     let rows = group.positions().len() / lines - 1;
-    let threads = (lines + lines - usize::from(!closed)) * rows;
-    let positions = group.positions();
-    let off = group.springs()[..threads].iter().map(|thread| {
-        let length = (positions[thread.b as usize] - positions[thread.a as usize]).length();
-        (length / thread.rest_length - 1.0).abs()
-    });
-    off.sum::<f32>() / threads as f32
+    (lines + lines - usize::from(!closed)) * rows
 }
 
 impl Dressed {
@@ -144,13 +139,9 @@ impl Dressed {
             watch.deepest_in_wearer = max(watch.deepest_in_wearer, in_wearer);
             watch.deepest_pinched = max(watch.deepest_pinched, pinched);
             watch.deepest_in_world = max(watch.deepest_in_world, in_world);
-            for held in group.attachments() {
-                let AttachmentTarget::Body { body, point } = held.target else { continue };
-                let off = world.transform(body).point(point) - group.positions()[held.particle as usize];
-                watch.torn = max(watch.torn, off.length());
-            }
+            watch.torn = max(watch.torn, worn::torn(world, group));
             watch.fastest = group.velocities().iter().fold(watch.fastest, |most, v| max(most, v.length()));
-            mean = max(mean, stretch(group, garment.closed));
+            mean = max(mean, worn::stretch(group, threads(group, garment.closed)));
         }
         watch.stretch = max(watch.stretch, mean);
         watch.stretch_sum += mean;
