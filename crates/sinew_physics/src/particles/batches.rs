@@ -35,8 +35,9 @@ const LEAST_ALIGNED: usize = 4;
 /// Blocks that a row to be gathered may still go into.
 const OPEN: usize = 32;
 
-/// Constants of eight rows. Few kinds serve most rows of a cloth, so that they stay in the first cache.
+/// Constants of eight rows, none across two lines of the cache. Few kinds serve most rows of a cloth, so that they stay in the first cache.
 #[derive(Clone, Debug, PartialEq)]
+#[repr(align(32))]
 struct Kind {
     rest: [f32; WIDTH],
     /// Compliance: 1 over the stiffness, m/N.
@@ -71,8 +72,9 @@ impl Kind {
 /// Rows of `K` particles each, eight by eight, each with the index of its kind.
 #[derive(Clone, Debug)]
 struct Rows<const K: usize> {
-    /// Blocks of the particles of aligned rows.
-    aligned: Vec<([u32; K], u32)>,
+    aligned: Vec<Run<K>>,
+    /// Kinds of aligned rows, run by run.
+    aligned_kinds: Vec<u32>,
     /// Blocks of the particles of turned rows, and by how many lanes each lies above that of the first particle.
     turned: Vec<([u32; K], [u8; K], u32)>,
     /// Slots of the particles of rows that are gathered, of each lane.
@@ -80,9 +82,38 @@ struct Rows<const K: usize> {
     kinds: Vec<Kind>,
 }
 
+/// Aligned rows, one after the other, that share no block.
+#[derive(Clone, Debug)]
+struct Run<const K: usize> {
+    /// Blocks of the particles of the first.
+    first: [u32; K],
+    count: u32,
+}
+
+impl<const K: usize> Run<K> {
+    /// True if the blocks of each row follow each other, and those of the next these. Else each end has a stretch of blocks for itself.
+    fn is_along(&self) -> bool {
+        (1..K).all(|k| self.first[k] == self.first[0] + k as u32)
+    }
+
+    /// True if a row in these blocks continues it.
+    fn goes_on(&self, blocks: &[u32; K]) -> bool {
+        let step = if self.is_along() { K as u32 } else { 1 };
+        let follows = (0..K).all(|k| blocks[k] == self.first[k] + step * self.count);
+        let meets = |k: usize| (0..k).any(|j| self.first[k].abs_diff(self.first[j]) <= self.count);
+        follows && (self.is_along() || !(1..K).any(meets))
+    }
+}
+
 impl<const K: usize> Default for Rows<K> {
     fn default() -> Self {
-        Self { aligned: Vec::new(), turned: Vec::new(), gathered: Vec::new(), kinds: Vec::new() }
+        Self {
+            aligned: Vec::new(),
+            aligned_kinds: Vec::new(),
+            turned: Vec::new(),
+            gathered: Vec::new(),
+            kinds: Vec::new(),
+        }
     }
 }
 
@@ -265,7 +296,11 @@ fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) 
         }
         let kind = rows.kind(kind);
         if lanes == [0; K] {
-            rows.aligned.push((blocks, kind));
+            match rows.aligned.last_mut().filter(|run| run.goes_on(&blocks)) {
+                Some(run) => run.count += 1,
+                None => rows.aligned.push(Run { first: blocks, count: 1 }),
+            }
+            rows.aligned_kinds.push(kind);
         } else {
             rows.turned.push((blocks, lanes, kind));
         }
@@ -338,10 +373,20 @@ fn project_all<L: Lanes, const K: usize>(
     times: (L, L),
     touching: bool,
 ) {
-    for (places, kind) in &rows.aligned {
-        if let Ok(blocks) = particles.get_disjoint_mut(places.map(|block| block as usize)) {
-            let mut ends = blocks.map(|Block(numbers)| numbers);
-            project::<L, K>(&mut ends, &rows.kinds[*kind as usize], shares, times, touching);
+    let mut kinds = rows.aligned_kinds.iter().map(|kind| &rows.kinds[*kind as usize]);
+    for run in &rows.aligned {
+        let (first, count) = (run.first.map(|block| block as usize), run.count as usize);
+        if run.is_along() {
+            let rows = particles[first[0]..][..K * count].as_chunks_mut::<K>().0;
+            for (ends, kind) in rows.iter_mut().zip(&mut kinds) {
+                let mut ends = ends.each_mut().map(|Block(numbers)| numbers);
+                project::<L, K>(&mut ends, kind, shares, times, touching);
+            }
+        } else if let Ok(mut sides) = particles.get_disjoint_mut(first.map(|block| block..block + count)) {
+            for (row, kind) in (0..count).zip(&mut kinds) {
+                let mut ends = sides.each_mut().map(|side| &mut side[row].0);
+                project::<L, K>(&mut ends, kind, shares, times, touching);
+            }
         }
     }
     for (places, lanes, kind) in &rows.turned {
@@ -457,69 +502,48 @@ fn any_touching<L: Lanes, const K: usize>(ends: &[&mut Numbers; K]) -> bool {
 struct Surface<L> {
     /// Room before it presses, N·s².
     room: L,
-    /// Part of the pull along its normal.
-    along: L,
-    /// Share of an impulse that presses and goes on, as the mobility, 1/kg, that it takes from the row for each part along the normal.
+    /// Room that the end gains for each unit of the pull.
+    gain: L,
+    /// Loss of the row by each N·s² that presses and goes on to the body, in units of its error.
     passed: L,
-    /// Room below which it presses: more than none if the pull is onto it.
-    brink: L,
+    /// Loss by each unit of a pull that presses all the way.
+    lacking: L,
 }
 
 impl<L: Lanes> Surface<L> {
-    /// For a pull of so much for each N·s along a unit direction.
+    /// For a pull of the end against the vector of its row, with its share in that.
     #[inline(always)]
-    fn load(end: &Numbers, direction: Vector3<L>, pull: L) -> Self {
-        let zero = L::splat(0.0);
-        let along = direction.dot(vector(end, NORMAL)) * pull;
-        let passed = L::load(&end[BACKING]) * L::load(&end[WEIGHT]) * along;
-        let brink = L::splat(f32::MIN_POSITIVE).masked(L::lt(along, zero));
-        Self { room: L::load(&end[ROOM]), along, passed, brink }
-    }
-
-    /// Mobility that the row lacks, 1/kg, with that much room.
-    #[inline(always)]
-    fn lacking(&self, room: L) -> L {
-        (self.passed * self.along).masked(L::lt(room, self.brink))
-    }
-
-    /// Room that is left after so much impulse.
-    #[inline(always)]
-    fn after(&self, impulse: L) -> L {
-        self.room + self.along * impulse
-    }
-
-    /// The part along the normal of an impulse that takes the room to `after` that goes on to the body.
-    #[inline(always)]
-    fn pressed(&self, after: L) -> L {
-        let zero = L::splat(0.0);
-        L::min(after, zero) - L::min(self.room, zero)
+    fn load(end: &Numbers, apart: Vector3<L>, share: f32) -> Self {
+        let gain = apart.dot(vector(end, NORMAL)) * L::splat(-share);
+        let passed = L::load(&end[BACKING]) * L::load(&end[WEIGHT]) * gain;
+        Self { room: L::load(&end[ROOM]), gain, passed, lacking: passed * gain }
     }
 }
 
-/// The impulse, N·s², that takes eight rows by `error`, which is not negative, and the mobility there, 1/kg. Mobility, `most` without surfaces, changes where a
-/// particle comes to press and where it ceases to: a second step of Newton's method, exact for one such change.
+/// The error and slope whose quotient is the pull of eight rows. What a pull mends, `slope` for each unit of it without surfaces, changes where a
+/// particle comes to press and where it ceases to. Which do is seen by the slope with which the pull begins: one change is met exactly, as by
+/// two steps of Newton's method.
 #[inline(always)]
-fn impulse_on_surfaces<L: Lanes, const K: usize>(
-    surfaces: &[Surface<L>; K],
-    (most, compliance): (L, L),
-    error: L,
-) -> (L, L) {
-    let mut mobility = most;
-    for surface in surfaces {
-        mobility = mobility - surface.lacking(surface.room);
+fn on_surfaces<L: Lanes, const K: usize>(surfaces: &[Surface<L>; K], error: L, slope: L) -> (L, L) {
+    let zero = L::splat(0.0);
+    let mut first = slope;
+    for s in surfaces {
+        // One that has no room left presses if it is pulled onto the surface.
+        let brink = L::splat(f32::MIN_POSITIVE).masked(L::lt(s.gain * error, zero));
+        first = first - s.lacking.masked(L::lt(s.room, brink));
     }
-    let first = error / (mobility + compliance);
-    let mut left = error - (most + compliance) * first;
-    mobility = most;
-    for surface in surfaces {
-        let after = surface.after(first);
-        left = left + surface.passed * surface.pressed(after);
-        mobility = mobility - surface.lacking(after);
+    let (mut error_left, mut last) = (error, slope);
+    for s in surfaces {
+        let presses = L::lt(s.room * first + s.gain * error, zero);
+        last = last - s.lacking.masked(presses);
+        // The part of the pull in which it was not yet so.
+        error_left = error_left + s.passed * L::max(L::select(presses, s.room, -s.room), zero);
     }
-    (first + left / (mobility + compliance), mobility)
+    (error_left, last)
 }
 
-/// Solves eight rows. What their ends make together, by their shares, is the vector whose length is their error and rest.
+/// Solves eight rows. What their ends make together, by their shares, is the vector whose length is their error and rest. Pulls are counted
+/// in this vector, not in its direction, and errors in squares: one division is left.
 #[inline(always)]
 fn project<L: Lanes, const K: usize>(
     ends: &mut [&mut Numbers; K],
@@ -529,55 +553,49 @@ fn project<L: Lanes, const K: usize>(
     touching: bool,
 ) {
     let zero = L::splat(0.0);
-    let way = combined::<L, K>(ends, shares, WAY);
-    let apart = combined::<L, K>(ends, shares, 0) + way;
-    let length = apart.dot(apart).sqrt();
-    let error = length - L::load(&kind.rest);
-    let active = L::gt(error, L::load(&kind.least)) & L::gt(length, L::splat(1e-9));
+    let apart = combined::<L, K>(ends, shares, 0) + combined::<L, K>(ends, shares, WAY);
+    let square = apart.dot(apart);
+    let length = square.sqrt();
+    let off = length - L::load(&kind.rest);
+    let active = L::gt(off, L::load(&kind.least)) & L::gt(length, L::splat(1e-9));
     let compliance = L::load(&kind.compliance) * per_square;
-    let mut most = zero;
-    for k in 0..K {
+    let mut most = L::load(&ends[0][WEIGHT]) * L::splat(shares[0] * shares[0]);
+    for k in 1..K {
         most = most + L::load(&ends[k][WEIGHT]) * L::splat(shares[k] * shares[k]);
     }
-    let is_free = !(touching && any_touching::<L, K>(ends));
-    // Rows without an error, a direction or anything that moves do nothing.
-    if is_free && !kind.is_damped {
-        let pull = (error / (length * (most + compliance))).masked(active & L::gt(most, zero));
+    let (error, slope) = (off * length, square * (most + compliance));
+    if !(touching && any_touching::<L, K>(ends)) {
+        let mut pull = error / slope;
+        if kind.is_damped {
+            let way = apart.dot(combined::<L, K>(ends, shares, WAY));
+            pull = damped(pull, way, (square * most, square), h * L::load(&kind.damping));
+        }
+        // Rows without an error, a direction or anything that moves do nothing.
+        let pull = pull.masked(active & L::gt(slope, zero));
         for k in 0..K {
             let by = pull * L::splat(-shares[k]) * L::load(&ends[k][WEIGHT]);
             store(vector::<L>(ends[k], WAY) + apart * by, ends[k]);
         }
         return;
     }
-    let direction = apart * (L::splat(1.0) / length);
-    let direction =
-        Vector3::new(direction.x.masked(active), direction.y.masked(active), direction.z.masked(active));
-    let active = active & L::gt(most, zero);
-    if is_free {
-        let impulse = damped((error / (most + compliance), most), kind, direction.dot(way), h).masked(active);
-        for k in 0..K {
-            let by = impulse * L::splat(-shares[k]) * L::load(&ends[k][WEIGHT]);
-            store(vector::<L>(ends[k], WAY) + direction * by, ends[k]);
-        }
-        return;
-    }
-    // Ends are pulled against the error.
-    let sign = L::select(L::lt(error, zero), L::splat(1.0), L::splat(-1.0));
-    let mut surfaces = [Surface::load(ends[0], direction, sign * L::splat(shares[0])); K];
+    let mut surfaces = [Surface::load(ends[0], apart, shares[0]); K];
     for k in 1..K {
-        surfaces[k] = Surface::load(ends[k], direction, sign * L::splat(shares[k]));
+        surfaces[k] = Surface::load(ends[k], apart, shares[k]);
     }
-    let (impulse, mobility) = impulse_on_surfaces(&surfaces, (most, compliance), error.abs());
-    let impulse = damped((impulse, mobility), kind, zero - sign * direction.dot(way), h);
-    let impulse = impulse.masked(active & L::gt(mobility, zero));
+    let (error, slope) = on_surfaces(&surfaces, error, slope);
+    let mut pull = error / slope;
+    if kind.is_damped {
+        let way = apart.dot(combined::<L, K>(ends, shares, WAY));
+        pull = damped(pull, way, (slope - square * compliance, square), h * L::load(&kind.damping));
+    }
+    let pull = pull.masked(active & L::gt(slope, zero));
     for k in 0..K {
-        let surface = &surfaces[k];
-        let after = surface.after(impulse);
+        let Surface { room, gain, .. } = surfaces[k];
+        let after = room + gain * pull;
         let weight = L::load(&ends[k][WEIGHT]);
-        let by = sign * L::splat(shares[k]) * impulse * weight;
-        let kept = L::load(&ends[k][BACKING]) * weight * surface.pressed(after);
-        let way = vector::<L>(ends[k], WAY) + direction * by - vector::<L>(ends[k], NORMAL) * kept;
-        store(way, ends[k]);
+        let kept = L::load(&ends[k][BACKING]) * weight * (L::min(after, zero) - L::min(room, zero));
+        let by = pull * L::splat(-shares[k]) * weight;
+        store(vector::<L>(ends[k], WAY) + apart * by - vector::<L>(ends[k], NORMAL) * kept, ends[k]);
         after.store(&mut ends[k][ROOM]);
     }
 }
@@ -589,13 +607,9 @@ fn store<L: Lanes>(way: Vector3<L>, end: &mut Numbers) {
     way.z.store(&mut end[WAY + 2]);
 }
 
-/// An impulse with that which damps the speed that it leaves, of so much way along the row in the iteration.
+/// A pull with that which damps the speed that it leaves. The way of the row along itself and its mobility are given times its length and its square,
+/// which comes last.
 #[inline(always)]
-fn damped<L: Lanes>((impulse, mobility): (L, L), kind: &Kind, way: L, h: L) -> L {
-    if !kind.is_damped {
-        return impulse;
-    }
-    let left = way - impulse * mobility;
-    let damping = h * L::load(&kind.damping);
-    impulse + left * damping / (L::splat(1.0) + damping * mobility)
+fn damped<L: Lanes>(pull: L, way: L, (mobility, square): (L, L), damping: L) -> L {
+    pull + (way - pull * mobility) * damping / (square + damping * mobility)
 }

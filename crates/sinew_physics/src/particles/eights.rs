@@ -5,8 +5,12 @@
 //! it touches, or slides on it by Coulomb's law. Most particles of a cloth are such: they touch at most one of these, and surely
 //! meet nothing else on their way. They go through the iteration in the lanes of `batches.rs`; the **others** are taken out
 //! of these, solved one by one, and put back (`in_eights.rs`).
+//!
+//! Rows move those in lanes as if nothing were there. What this takes through the plane that a particle touches is taken back when the
+//! iteration ends, with friction by as much: at rest the same place and the same press, since what stands still is moved by neither. To
+//! ask for the plane in each row, as `net.rs` must where a body gives way, took most of the time.
 
-use super::batches::{BACKING, NORMAL, ROOM, WAY, WEIGHT};
+use super::batches::WAY;
 use crate::boxes::Aabb;
 use crate::particles::tuning::{DETOUR, IMPACT_SPEED, NO_SPEED, REACH_SHARE, ROUNDING};
 use sinew_math::Vec3;
@@ -14,15 +18,15 @@ use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
 /// Numbers of a particle beside those of `batches.rs`: velocity, height above the plane that it touches when the iteration begins, distance from all else, its
-/// friction and static friction, radius, mass, acceleration.
-const STRIP: usize = 12;
+/// friction and static friction, radius, acceleration, normal of that plane.
+const STRIP: usize = 14;
 const HEIGHT: usize = 3;
 const CLEARANCE: usize = 4;
 const FRICTION: usize = 5;
 const HOLD: usize = 6;
 const RADIUS: usize = 7;
-const MASS: usize = 8;
-pub(super) const ACCELERATION: usize = 9;
+pub(super) const ACCELERATION: usize = 8;
+const NORMAL: usize = 11;
 
 /// The lanes' own numbers, and who is in them.
 #[derive(Clone, Debug, Default)]
@@ -124,22 +128,19 @@ fn signed<L: Lanes>(number: L, like: L) -> L {
 }
 
 impl Eights {
-    /// For particles, of which some are attached; rows that are projected one by one reach those of `outside`.
-    pub fn new(per_lane: usize, particles: &[(f32, f32)], attached: &[u32], mut outside: Vec<u32>) -> Self {
+    /// For particles with these radii, of which some are attached; rows that are projected one by one reach those of `outside`.
+    pub fn new(per_lane: usize, radii: &[f32], attached: &[u32], mut outside: Vec<u32>) -> Self {
         let mut strips = vec![Block::splat([0.0; STRIP]); per_lane];
-        // In lanes without a particle something is as well, and stays where it is.
-        strips.iter_mut().for_each(|strip| strip.0[MASS] = [1.0; WIDTH]);
         let mut present = vec![0; per_lane];
-        for (i, &(mass, radius)) in particles.iter().enumerate() {
+        for (i, &radius) in radii.iter().enumerate() {
             let (block, lane) = (i % per_lane, i / per_lane);
-            strips[block].0[MASS][lane] = mass;
             strips[block].0[RADIUS][lane] = radius;
             present[block] |= u8::from(attached[i] == u32::MAX) << lane;
         }
         outside.retain(|&i| attached[i as usize] == u32::MAX);
         outside.sort_unstable();
         outside.dedup();
-        let others = Vec::with_capacity(particles.len());
+        let others = Vec::with_capacity(radii.len());
         let (easy, strayed) = (vec![0; per_lane], vec![0; per_lane]);
         Self { strips, present, easy, strayed, others, outside, ..Self::default() }
     }
@@ -198,7 +199,8 @@ impl Kernel for Approach<'_> {
     fn run<L: Lanes>(self) {
         let Self { eights, particles, h, damping } = self;
         let Eights { strips, present, easy, solids, foreign_bounds, .. } = eights;
-        let (zero, h, damping) = (L::splat(0.0), L::splat(h), L::splat(damping));
+        let (zero, per_second) = (L::splat(0.0), L::splat(1.0 / h));
+        let (h, damping) = (L::splat(h), L::splat(damping));
         let (detour, one) = (L::splat(DETOUR), L::splat(1.0));
         for (((Block(strip), Block(particle)), present), easy) in
             strips.iter_mut().zip(particles.iter_mut()).zip(present.iter()).zip(easy.iter_mut())
@@ -220,7 +222,7 @@ impl Kernel for Approach<'_> {
             }
             clearance = L::min(clearance, foreign);
             // Coulomb's law for a particle alone.
-            let rise = -L::max(found.gap, zero) / h;
+            let rise = -L::max(found.gap, zero) * per_second;
             let along = free.dot(found.normal);
             let push = rise - along;
             let pressed = touching & L::gt(push, L::splat(NO_SPEED));
@@ -234,8 +236,6 @@ impl Kernel for Approach<'_> {
                 L::select(pressed, held.y, free.y),
                 L::select(pressed, held.z, free.z),
             );
-            let mass = L::load(&strip[MASS]);
-            let room = (L::max(along - rise, zero) * mass * h).masked(touching & !pressed);
             let way = velocity * h;
             let is_far = L::gt(clearance, zero)
                 & L::gt(clearance * clearance, detour * detour * way.dot(way))
@@ -247,19 +247,16 @@ impl Kernel for Approach<'_> {
             begun.x.store(&mut strip[0]);
             begun.y.store(&mut strip[1]);
             begun.z.store(&mut strip[2]);
-            found.gap.store(&mut strip[HEIGHT]);
+            L::select(touching, found.gap, L::splat(f32::MAX)).store(&mut strip[HEIGHT]);
             clearance.store(&mut strip[CLEARANCE]);
             found.friction.store(&mut strip[FRICTION]);
             found.hold.store(&mut strip[HOLD]);
+            found.normal.x.store(&mut strip[NORMAL]);
+            found.normal.y.store(&mut strip[NORMAL + 1]);
+            found.normal.z.store(&mut strip[NORMAL + 2]);
             way.x.store(&mut particle[WAY]);
             way.y.store(&mut particle[WAY + 1]);
             way.z.store(&mut particle[WAY + 2]);
-            (one / mass).store(&mut particle[WEIGHT]);
-            one.masked(touching).store(&mut particle[BACKING]);
-            found.normal.x.store(&mut particle[NORMAL]);
-            found.normal.y.store(&mut particle[NORMAL + 1]);
-            found.normal.z.store(&mut particle[NORMAL + 2]);
-            room.store(&mut particle[ROOM]);
         }
     }
 }
@@ -291,16 +288,16 @@ impl Kernel for Depart<'_> {
         {
             let from = Vector3::<L>::load(&particle[0], &particle[1], &particle[2]);
             let way = Vector3::<L>::load(&particle[WAY], &particle[WAY + 1], &particle[WAY + 2]);
-            let normal = Vector3::<L>::load(&particle[NORMAL], &particle[NORMAL + 1], &particle[NORMAL + 2]);
-            let touching = L::gt(L::load(&particle[BACKING]), zero);
-            // Friction by what the net presses with.
-            let press = (-L::load(&particle[ROOM]) * L::load(&particle[WEIGHT])).masked(touching);
+            let normal = Vector3::<L>::load(&strip[NORMAL], &strip[NORMAL + 1], &strip[NORMAL + 2]);
+            // The plane holds what the net has pressed through it, with friction.
+            let height = L::load(&strip[HEIGHT]);
             let along = way.dot(normal);
+            let press = L::max(-L::max(height, zero) - along, zero);
             let slip = way - normal * along;
             let length = slip.length();
             let share = L::max(one - L::load(&strip[FRICTION]) * press / length, zero);
             let share = share.masked(L::gt(length, L::load(&strip[HOLD]) * press));
-            let rubbed = normal * along + slip * share;
+            let rubbed = normal * (along + press) + slip * share;
             let pressed = L::gt(press, zero);
             let way = Vector3::new(
                 L::select(pressed, rubbed.x, way.x),
@@ -310,9 +307,8 @@ impl Kernel for Depart<'_> {
             let clearance = L::load(&strip[CLEARANCE]);
             let is_far = L::gt(clearance, zero)
                 & L::gt(clearance * clearance, L::splat(DETOUR * DETOUR) * way.dot(way));
-            let above = L::gt(L::load(&strip[HEIGHT]) + way.dot(normal), L::splat(-ROUNDING));
-            let ends_well = is_far & (above | !touching);
-            let bits = ends_well.bits() & *easy;
+            let above = L::gt(height + way.dot(normal), L::splat(-ROUNDING));
+            let bits = (is_far & above).bits() & *easy;
             *strayed = *easy & !bits;
             let to = from + way;
             let velocity = way * per_second;

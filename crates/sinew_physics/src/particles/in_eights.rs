@@ -1,7 +1,7 @@
 //! The way of a group through the lanes of `eights.rs`: in, out of them for what is solved one by one, and back.
 
 use super::ParticleGroup;
-use super::batches::{BACKING, NORMAL, ROOM, WAY};
+use super::batches::{WAY, WEIGHT};
 use super::contact::{Grip, Obstacle, ObstacleBody};
 use super::eights::{ACCELERATION, Approach, Depart, Form, Solid};
 use crate::body::material::ContactMaterial;
@@ -59,21 +59,23 @@ impl ParticleGroup {
             }
         }
         let per_lane = eights.strips.len();
-        let lanes = self.positions.chunks(per_lane).zip(self.velocities.chunks(per_lane));
-        let lanes = lanes.zip(self.accelerations.chunks(per_lane)).enumerate();
-        for (lane, ((positions, velocities), accelerations)) in lanes {
-            let numbers = positions.iter().zip(velocities).zip(accelerations);
-            let blocks = self.batches.particles.iter_mut().zip(&mut eights.strips);
-            for ((Block(particle), Block(strip)), ((at, velocity), acceleration)) in blocks.zip(numbers) {
-                (particle[0][lane], particle[1][lane], particle[2][lane]) = (at.x, at.y, at.z);
-                (strip[0][lane], strip[1][lane], strip[2][lane]) = (velocity.x, velocity.y, velocity.z);
-                strip[ACCELERATION][lane] = acceleration.x;
-                strip[ACCELERATION + 1][lane] = acceleration.y;
-                strip[ACCELERATION + 2][lane] = acceleration.z;
+        let blocks = self.batches.particles.iter_mut().zip(&mut eights.strips).enumerate();
+        for (block, (Block(particle), Block(strip))) in blocks {
+            for (lane, i) in (block..self.positions.len()).step_by(per_lane).enumerate() {
+                let (at, velocity, acceleration) =
+                    (self.positions[i], self.velocities[i], self.accelerations[i]);
+                self.weights[i] = 1.0 / self.masses[i];
+                particle[WEIGHT][lane] = self.weights[i];
+                for (k, at) in at.to_array().into_iter().enumerate() {
+                    particle[k][lane] = at;
+                }
+                for (k, velocity) in velocity.to_array().into_iter().enumerate() {
+                    strip[k][lane] = velocity;
+                }
+                for (k, acceleration) in acceleration.to_array().into_iter().enumerate() {
+                    strip[ACCELERATION + k][lane] = acceleration;
+                }
             }
-        }
-        for (weight, mass) in self.weights.iter_mut().zip(&self.masses) {
-            *weight = 1.0 / *mass;
         }
         let gripped = self.grips.iter().enumerate().filter(|(_, grip)| **grip != Grip::Off);
         eights.others.extend(gripped.map(|(i, _)| i as u32));
@@ -138,32 +140,31 @@ impl ParticleGroup {
         }
     }
 
-    /// Projects the rows, those in lanes and those beside.
+    /// Projects the rows, those in lanes and those beside. Surfaces of particles in lanes hold these after it, see `Depart`.
     pub(super) fn project_in_eights(&mut self, h: f32) {
         let per_second = 1.0 / h;
         let outside = core::mem::take(&mut self.eights.outside);
         for i in outside.iter().map(|&i| i as usize).filter(|&i| self.eights.is_easy(i)) {
-            let [from, way, normal] = [0, WAY, NORMAL].map(|field| self.batches.vector_of(i, field));
+            let [from, way] = [0, WAY].map(|field| self.batches.vector_of(i, field));
             (self.previous[i], self.positions[i], self.velocities[i]) = (from, from + way, way * per_second);
-            (self.press_normals[i], self.backings[i]) = (normal, self.batches.number_of(i, BACKING));
-            self.rooms[i] = self.batches.number_of(i, ROOM) * per_second;
         }
         self.project_held(h);
         let others = core::mem::take(&mut self.eights.others);
+        let mut touching = false;
         for &i in outside.iter().chain(&others) {
             let i = i as usize;
             self.batches.put_way(i, self.previous[i], self.velocities[i] * h, self.weights[i]);
-            self.batches.put_surface(i, self.press_normals[i], self.backings[i], self.rooms[i] * h);
-            if self.eights.is_easy(i) {
-                (self.backings[i], self.press_normals[i], self.rooms[i]) = (0.0, Vec3::ZERO, 0.0);
+            if self.backings[i] > 0.0 {
+                self.batches.put_surface(i, self.press_normals[i], self.backings[i], self.rooms[i] * h);
+                touching = true;
             }
         }
-        dispatch::run(self.batches.project(h, true));
+        dispatch::run(self.batches.project(h, touching));
         for i in others.iter().map(|&i| i as usize).filter(|&i| self.attachment_of[i] == u32::MAX) {
             let way = self.batches.vector_of(i, WAY);
             (self.velocities[i], self.positions[i]) = (way * per_second, self.previous[i] + way);
             if self.backings[i] > 0.0 {
-                self.rooms[i] = self.batches.number_of(i, ROOM) * per_second;
+                self.rooms[i] = self.batches.take_surface(i) * per_second;
             }
         }
         (self.eights.outside, self.eights.others) = (outside, others);
@@ -210,7 +211,6 @@ impl ParticleGroup {
             for (k, (at, velocity)) in at.to_array().into_iter().zip(velocity.to_array()).enumerate() {
                 (particle[k][lane], strip[k][lane]) = (at, velocity);
             }
-            particle[BACKING][lane] = 0.0;
         }
     }
 }

@@ -7,7 +7,7 @@
 //! in a cloth would else be carried by the cloth's own few grams. A surface only presses: a particle has **room**, the impulse that
 //! brings it from where the solve left it onto the surface, which rows use up before they press, and a later row that pulls it away takes from
 //! the press first. Else rows would pull particles through the surface, or push the body by what no longer presses, and nets would tremble under what
-//! they bear.
+//! they bear. What stands still asks for none of this: see `eights.rs`.
 //!
 //! Rows that hold an attached particle come one by one, since the impulse on it counts; all others eight at a time, see `batches.rs`.
 
@@ -63,10 +63,9 @@ impl ParticleGroup {
         let bends = self.held_bends.iter().flat_map(|&k| self.bends[k as usize].particles);
         let tethers = self.tethers.iter().flat_map(|t| [t.particle, t.to]);
         let outside = springs.flat_map(|s| [s.a, s.b]).chain(bends).chain(tethers).collect();
-        let particles: Vec<_> = self.masses.iter().copied().zip(self.radii.iter().copied()).collect();
         if !self.batches.is_empty() {
             let per_lane = self.batches.particles.len() - 1;
-            self.eights = Eights::new(per_lane, &particles, &self.attachment_of, outside);
+            self.eights = Eights::new(per_lane, &self.radii, &self.attachment_of, outside);
         }
     }
 
@@ -119,7 +118,7 @@ impl ParticleGroup {
         )
     }
 
-    /// The impulse that gives a row a speed by forces on its ends of so much for each N·s, and the mobility there, 1/kg. As `impulse_on_surfaces` of
+    /// The impulse that gives a row a speed by forces on its ends of so much for each N·s, and the mobility there, 1/kg. As `on_surfaces` of
     /// `batches.rs`.
     pub(super) fn row_impulse(
         &self,

@@ -1,7 +1,7 @@
 //! Cloth on solids at rest: Coulomb's law on a slope, whatever makes the slope and however many obstacles are near.
 
 use sinew_math::{Rotation, Transform, Vec3, trig};
-use sinew_physics::particles::{ClothDef, GroupDef, Obstacle, ObstacleBody, ParticleGroup};
+use sinew_physics::particles::{ClothDef, GroupDef, Obstacle, ObstacleBody, ParticleGroup, SpringDef};
 use sinew_physics::{Material, Shape};
 
 const H: f32 = 1.0 / 240.0;
@@ -49,14 +49,17 @@ fn cloth(slope: Rotation) -> GroupDef {
     group
 }
 
+/// An obstacle and so many boxes far away: beside 16, particles are solved one by one.
+fn crowded(solid: Obstacle, beside: usize) -> Vec<Obstacle> {
+    let far = |k| Transform::from_translation(Vec3::new(1e3, 0.0, 10.0 * k as f32));
+    let boxes = (0..beside).map(|k| obstacle(Shape::Box { half_extents: Vec3::ONE }, far(k)));
+    core::iter::once(solid).chain(boxes).collect()
+}
+
 /// Way of the mean of all particles down the slope in `substeps`, metres, beside so many boxes far away.
 fn way_down(angle: f32, solid: usize, beside: usize, substeps: usize) -> f32 {
     let slope = Rotation::from_axis_angle(Vec3::Z, angle);
-    let mut obstacles = vec![slopes(slope)[solid].clone()];
-    for k in 0..beside {
-        let far = Transform::from_translation(Vec3::new(1e3, 0.0, 10.0 * k as f32));
-        obstacles.push(obstacle(Shape::Box { half_extents: Vec3::ONE }, far));
-    }
+    let obstacles = crowded(slopes(slope)[solid].clone(), beside);
     let mut group = ParticleGroup::new(&cloth(slope));
     let mean = |group: &ParticleGroup| {
         group.positions().iter().copied().sum::<Vec3>() / group.positions().len() as f32
@@ -97,4 +100,44 @@ fn cloth_stays_on_a_slope_that_friction_holds() {
             assert!(way.abs() < 2e-3, "solid {solid}, {beside} others: it has come {way} m");
         }
     }
+}
+
+/// Mean stretch of its springs and height of its particles, metres, of a cloth that hangs over a ball, beside so many boxes far away.
+fn over_a_ball(beside: usize) -> [f32; 2] {
+    let obstacles = crowded(obstacle(Shape::Sphere { radius: 0.3 }, Transform::IDENTITY), beside);
+    let def = ClothDef {
+        corner: Vec3::new(-0.5, 0.35, -0.5),
+        across: Vec3::X,
+        down: Vec3::Z,
+        columns: 20,
+        rows: 20,
+        mass: 1.0,
+        stretching: 1e3,
+        shearing: 1e3,
+        bending: 1e-3,
+        damping_ratio: 0.0,
+        radius: RADIUS,
+    };
+    let mut def = def.build().group;
+    (def.material.friction, def.linear_damping) = (FRICTION, 2.0);
+    let mut group = ParticleGroup::new(&def);
+    let mut bodies = [ObstacleBody::default()];
+    for _ in 0..1200 {
+        group.substep(H, Vec3::Y * -GRAVITY, &[], &obstacles, &mut bodies);
+    }
+    let at = group.positions();
+    let length = |s: &SpringDef| (at[s.a as usize] - at[s.b as usize]).length();
+    let stretches = group.springs().iter().map(|s| (length(s) / s.rest_length - 1.0).abs());
+    let deepest = at.iter().fold(f32::INFINITY, |least, p| f32::min(least, p.length()));
+    assert!(deepest > 0.3 + RADIUS - 1e-4, "{beside} others: a particle is {deepest} m from the middle");
+    let heights = at.iter().map(|p| p.y).sum::<f32>() / at.len() as f32;
+    [stretches.sum::<f32>() / group.springs().len() as f32, heights]
+}
+
+/// The plane holds particles in lanes after their springs, others within each spring.
+#[test]
+fn cloth_hangs_over_a_ball_alike_in_lanes_and_one_by_one() {
+    let [lanes, others] = [0, 16].map(over_a_ball);
+    assert!((lanes[0] / others[0] - 1.0).abs() < 0.01, "mean stretch {} and {}", lanes[0], others[0]);
+    assert!((lanes[1] - others[1]).abs() < 1e-3, "mean height {} and {} m", lanes[1], others[1]);
 }

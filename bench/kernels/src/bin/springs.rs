@@ -1,0 +1,70 @@
+//! Springs of a contiguous cloth that one core projects in a second: 100 by 100 particles in flight, threads and diagonals, nothing near.
+//!
+//! Substeps of many iterations and of few tell what an iteration takes; the same cloth with a single spring tells what of it goes
+//! to particles.
+#![forbid(unsafe_code)]
+
+use sinew_math::Vec3;
+use sinew_physics::Sleeping;
+use sinew_physics::particles::{ClothDef, GroupDef};
+use sinew_physics::{World, WorldDef};
+use std::time::Instant;
+
+/// Cells along a side.
+const CELLS: u32 = 99;
+/// Steps of a sample: the least time of one counts.
+const STEPS: usize = 30;
+/// Iterations of a substep, few and many.
+const ITERATIONS: [u32; 2] = [2, 42];
+/// Substeps of a step.
+const SUBSTEPS: f64 = 4.0;
+
+/// Threads and diagonals, no bends.
+fn cloth() -> GroupDef {
+    let side = 0.04 * CELLS as f32;
+    ClothDef {
+        corner: Vec3::ZERO,
+        across: Vec3::X * side,
+        down: Vec3::Z * side,
+        columns: CELLS,
+        rows: CELLS,
+        mass: 0.002 * (CELLS * CELLS) as f32,
+        stretching: 2e3,
+        shearing: 2e3,
+        bending: 0.0,
+        damping_ratio: 0.0,
+        radius: 0.02,
+    }
+    .build()
+    .group
+}
+
+/// Of an iteration.
+fn seconds(group: &GroupDef) -> f64 {
+    let least = ITERATIONS.map(|iterations| {
+        let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
+        world.add_particles(&GroupDef { iterations, ..group.clone() });
+        let step = |_| {
+            let start = Instant::now();
+            world.step();
+            start.elapsed().as_secs_f64()
+        };
+        (0..STEPS).map(step).fold(f64::INFINITY, f64::min)
+    });
+    (least[1] - least[0]) / (SUBSTEPS * f64::from(ITERATIONS[1] - ITERATIONS[0]))
+}
+
+fn main() {
+    let cloth = cloth();
+    let mut bare = cloth.clone();
+    bare.springs.truncate(1);
+    let (whole, particles) = (seconds(&cloth), seconds(&bare));
+    let springs = cloth.springs.len() as f64 / 1e9;
+    println!(
+        "{} springs: {:.2} G/s, with the passes over {} particles {:.2} G/s",
+        cloth.springs.len(),
+        springs / (whole - particles),
+        cloth.particles.len(),
+        springs / whole,
+    );
+}
