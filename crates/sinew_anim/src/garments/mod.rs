@@ -30,12 +30,14 @@ mod columns;
 mod guess;
 pub(crate) mod mesh_sheet;
 mod sheet;
+mod ways;
 
 pub use crate::tuning::MOST_PARTICLES;
 pub use columns::{is_ring, side_by_side};
 pub use guess::guess_garments;
 pub use mesh_sheet::MeshSheet;
 pub use sheet::{MeshPart, SheetError, SheetOptions, lay_sheet};
+pub use ways::Ways;
 
 use crate::rig::{JointIdx, Rig};
 use sinew_math::Vec3;

@@ -11,6 +11,9 @@ use sinew_ragdoll::{Character, CharacterDef, MotionSet};
 use sinew_scenes::skirted::{CELLS, joint, lay_skirt, skirted, skirted_rig};
 use std::sync::Arc;
 
+/// Spacing that the cells of a coarse skirt keep as they are, metres.
+const COARSE: f32 = 0.1;
+
 fn ground(gravity: Vec3) -> World {
     let mut world = World::new(WorldDef { gravity, ..WorldDef::default() });
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -171,7 +174,7 @@ fn a_snapshot_in_the_middle_of_a_swing_goes_on_with_the_same_bits() {
 #[test]
 fn a_coarse_mesh_is_its_own_sheet() {
     let mut rig = skirted_rig([20, 8]);
-    let sheet = lay_skirt(&mut rig, 400).expect("it can be cloth");
+    let sheet = lay_skirt(&mut rig, 400, COARSE).expect("it can be cloth");
     let sheet = &rig.sheets[sheet];
     // The buckle hangs together with nothing.
     assert_eq!((sheet.joints.len(), sheet.vertices), (20 * 9, 20 * 9 + 4));
@@ -212,7 +215,7 @@ fn flared(parent: Option<&str>) -> CharacterDef {
         primitive.joints[vertex] = [slot, 0, 0, 0];
         primitive.weights[vertex] = [1.0, 0.0, 0.0, 0.0];
     }
-    let sheet = lay_skirt(&mut rig, 400).expect("it can be cloth");
+    let sheet = lay_skirt(&mut rig, 400, COARSE).expect("it can be cloth");
     let flare = rig.sheets[sheet].joints.iter().filter(|&&at| rig.joints[at].parent == Some(source)).count();
     assert!(flare >= 20, "{flare} particles hang on it");
     let garment = Garment::of_sheet(&rig.sheets[sheet]);
@@ -305,7 +308,7 @@ fn on_a_spring(is_sprung: bool) -> (CharacterDef, usize) {
     skin.inverse_bind.push(bind_model[hips].inverse());
     let skirt = rig.meshes.last_mut().expect("it has a skirt");
     skirt.primitives[0].joints.iter_mut().flatten().filter(|at| **at == slot as u16).for_each(|at| *at = new);
-    lay_skirt(&mut rig, 400).expect("it can be cloth");
+    lay_skirt(&mut rig, 400, COARSE).expect("it can be cloth");
     let garment = Garment::of_sheet(&rig.sheets[0]);
     let bare = skirted(|_| ());
     let analysis = sinew_anim::analyze(&rig).expect("it has a skin");

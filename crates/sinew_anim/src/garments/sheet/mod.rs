@@ -3,6 +3,7 @@
 mod bind;
 mod graph;
 mod reduce;
+mod split;
 mod weld;
 
 use super::MeshSheet;
@@ -65,11 +66,11 @@ pub struct SheetOptions<'a> {
     pub bind_model: &'a [Affine],
     /// From there to where +Y is up and the unit is a metre.
     pub metres_from_model: Affine,
-    /// Most distance between particles beside each other where the mesh is reduced, metres, positive; more where there would be too many.
+    /// Most distance between particles beside each other, metres, positive; more where there would be too many, and along the diagonals of square cells.
     pub spacing: f32,
     /// Depth below its highest point down to which it is held, metres; `None`: a tenth of its height.
     pub held: Option<f32>,
-    /// Most particles, at least 4: finer meshes are reduced.
+    /// Most particles, at least 4: finer meshes are reduced, and coarser ones no further split.
     pub most_particles: usize,
     /// Number of the first new joint's node in the file ([`Joint::source`]); the others follow.
     pub first_source: usize,
@@ -126,7 +127,7 @@ impl MeshPart {
 }
 
 /// Makes a part of a rig a sheet of cloth: vertices in one place are one; where there are more than a sheet may have particles, such are chosen all over it
-/// that lie no farther apart than the spacing, its edges first. The rig gets a joint for each particle, and the vertices hang on these instead of those that
+/// that lie no farther apart than the spacing, its edges first; where edges are longer than that, there are particles between its vertices. The rig gets a joint for each particle, and the vertices hang on these instead of those that
 /// moved them: each on its own, or on the three of the triangle that it lies on. As long as nothing moves the new joints, the mesh goes along with the old ones.
 ///
 /// Parts of the mesh that do not hang together with what is held (buttons, a buckle) move with the cloth that they lie on.
@@ -191,10 +192,12 @@ impl Rig {
 }
 
 fn lay(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> Result<usize, SheetError> {
-    let welded = weld::weld(rig, part, options);
+    let mut welded = weld::weld(rig, part, options);
+    let (vertices, longest_edge) = (welded.places.len(), welded.longest_edge());
     let (low, high) = welded.heights().ok_or(SheetError::Empty)?;
-    let graph = graph::Graph::new(&welded);
     let above = high - options.held.unwrap_or(crate::tuning::HELD_SHARE * (high - low));
+    welded.split_what_hangs(above, options);
+    let graph = graph::Graph::new(&welded);
     let is_held = |vertex: usize| welded.places[vertex].y >= above;
     let reduced = reduce::reduce(&welded, &graph, is_held, options)?;
     let held: Vec<bool> = reduced.seeds.iter().map(|&seed| is_held(seed)).collect();
@@ -213,7 +216,8 @@ fn lay(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> Result<usi
         faces: reduced.faces,
         links: reduced.links,
         areas: reduced.areas,
-        vertices: welded.places.len(),
+        vertices,
+        longest_edge,
     };
     rig.sheets.push(sheet);
     Ok(rig.sheets.len() - 1)
