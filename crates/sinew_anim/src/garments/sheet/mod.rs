@@ -9,7 +9,7 @@ mod weld;
 use super::MeshSheet;
 use crate::rig::{Joint, JointIdx, LocalTransform, Rig, RigMesh, Skin};
 use bind::Bound;
-use sinew_math::{Affine, Vec3};
+use sinew_math::Affine;
 use weld::Welded;
 
 /// Part of a rig that a sheet is to be made of: all of a mesh, or what of it has one material.
@@ -271,37 +271,4 @@ fn rewrite(rig: &mut Rig, part: &MeshPart, welded: &Welded, bound: &[Bound], par
             primitive.weights[vertex] = *weights;
         }
     }
-}
-
-/// Point of a triangle that is nearest to a place, as shares of its corners (Ericson, "Real-Time Collision Detection", 2005, §5.1.5).
-fn nearest_on_triangle(place: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
-    let (ab, ac) = (b - a, c - a);
-    let (d1, d2) = (ab.dot(place - a), ac.dot(place - a));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return [1.0, 0.0, 0.0];
-    }
-    let (d3, d4) = (ab.dot(place - b), ac.dot(place - b));
-    if d3 >= 0.0 && d4 <= d3 {
-        return [0.0, 1.0, 0.0];
-    }
-    let (d5, d6) = (ab.dot(place - c), ac.dot(place - c));
-    if d6 >= 0.0 && d5 <= d6 {
-        return [0.0, 0.0, 1.0];
-    }
-    let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let along = d1 / (d1 - d3);
-        return [1.0 - along, along, 0.0];
-    }
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let along = d2 / (d2 - d6);
-        return [1.0 - along, 0.0, along];
-    }
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        let along = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return [0.0, 1.0 - along, along];
-    }
-    let whole = 1.0 / (va + vb + vc);
-    let (v, w) = (vb * whole, vc * whole);
-    [1.0 - v - w, v, w]
 }
