@@ -13,7 +13,7 @@ pub struct Ways {
 }
 
 impl Ways {
-    /// Of so many vertices, from nowhere.
+    /// Ways from nowhere, for so many vertices.
     pub fn new(count: usize) -> Self {
         Self { length: vec![f32::INFINITY; count], from: vec![usize::MAX; count] }
     }

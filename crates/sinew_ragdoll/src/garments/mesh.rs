@@ -34,7 +34,7 @@ pub(super) struct Around {
 }
 
 impl Around {
-    /// Of a sheet of a mesh.
+    /// Surroundings in a sheet of a mesh.
     pub fn new(sheet: &Sheet, mesh: &MeshSheet) -> Self {
         let places: Vec<Vec3> = sheet.group.particles.iter().map(|particle| particle.position).collect();
         let (mut faces, mut beside) = (vec![Vec::new(); places.len()], vec![Vec::new(); places.len()]);

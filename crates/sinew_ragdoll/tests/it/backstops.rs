@@ -118,7 +118,10 @@ fn each_free_particle_has_one_on_the_nearest_body() {
     roles.sort_unstable();
     roles.dedup();
     assert!(roles.contains(&"leftUpperLeg") && roles.contains(&"rightUpperLeg"), "{roles:?}");
-    assert!(roles.iter().all(|role| role.ends_with("Leg") || *role == "hips" || *role == "spine"), "{roles:?}");
+    assert!(
+        roles.iter().all(|role| role.ends_with("Leg") || *role == "hips" || *role == "spine"),
+        "{roles:?}"
+    );
     for (stop, depth) in group.backstops().iter().zip(depths(&world, group)) {
         assert_eq!(stop.radius, 0.25);
         assert!((depth + 0.03).abs() < 1e-3, "as deep behind it as was said: {depth}");

@@ -359,3 +359,58 @@ fn it_is_drawn_where_it_is_below_bones_that_swing() {
     }
     assert!(swung > 0.1, "the bone swings: {swung}");
 }
+
+/// A skirt of ten cells around, wider than a leg: it is split for the cloth, so that no leg comes between its particles.
+#[test]
+fn legs_do_not_come_through_a_coarse_mesh() {
+    let deepest_face = |spacing: f32| {
+        let mut rig = skirted_rig([10, 4]);
+        let sheet = lay_skirt(&mut rig, 400, spacing).expect("it can be cloth");
+        let garment = Garment { spacing, ..Garment::of_sheet(&rig.sheets[sheet]) };
+        let bare = skirted(|_| ());
+        let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
+        let mut def = CharacterDef::new(rig, bare.ragdoll.clone(), &analysis.bind_model);
+        def.set_motions(bare.motions().clone()).expect("its clips can be played");
+        def.set_garments(&[garment]);
+        let mut world = ground(WorldDef::default().gravity);
+        let mut character = Character::spawn(&mut world, &Arc::new(def), Transform::IDENTITY);
+        character.set_move(Vec3::Z * 1.3);
+        let mut deepest: f32 = 0.0;
+        for step in 0..240 {
+            go_on(&mut world, &mut character, 1);
+            if step > 30 {
+                deepest = max(deepest, deepest_middle(&world, &character));
+            }
+        }
+        let group = world.particles(character.garments()[0]);
+        assert!(mean_stretch(group) < 0.03, "{}", mean_stretch(group));
+        (group.positions().len(), deepest)
+    };
+    let (few, coarse) = deepest_face(0.5);
+    let (many, split) = deepest_face(Garment::default().spacing);
+    assert!(few == 50 && (200..=400).contains(&many), "{few} and {many} particles");
+    assert!(coarse > 0.025, "or this says nothing: {coarse} m");
+    assert!(split < 0.015, "{split} m, {coarse} m without");
+}
+
+/// Largest depth of the middle of a face, no corner of which is held, in a body that it meets, metres.
+fn deepest_middle(world: &World, character: &Character) -> f32 {
+    let group = world.particles(character.garments()[0]);
+    let held: Vec<u32> = group.attachments().iter().map(|held| held.particle).collect();
+    let hangs = |face: &&[u32; 3]| face.iter().all(|corner| !held.contains(corner));
+    let middles: Vec<Vec3> = group
+        .faces()
+        .iter()
+        .filter(hangs)
+        .map(|face| face.iter().map(|&corner| group.positions()[corner as usize]).sum::<Vec3>() / 3.0)
+        .collect();
+    let mut deepest: f32 = 0.0;
+    for (body, &id) in character.def().ragdoll.bodies.iter().zip(character.bodies()) {
+        if !group.passes().contains(&id) {
+            let frame = world.transform(id);
+            let depth = middles.iter().map(|&at| -body.shape.signed_distance(&frame, at).0);
+            deepest = depth.fold(deepest, max);
+        }
+    }
+    deepest
+}

@@ -46,7 +46,8 @@ impl Welded {
             if long.is_empty() {
                 return;
             }
-            let middles: BTreeMap<Edge, usize> = long.into_iter().map(|edge| (edge, self.halve(edge))).collect();
+            let middles: BTreeMap<Edge, usize> =
+                long.into_iter().map(|edge| (edge, self.halve(edge))).collect();
             let faces = core::mem::take(&mut self.faces);
             for face in faces {
                 self.cut(face, &middles);
@@ -57,7 +58,8 @@ impl Welded {
     /// Edges that are too long, the longest first.
     fn long_edges(&self, spacing: f32, hangs: impl Fn(usize) -> bool) -> Vec<Edge> {
         let mut long: BTreeMap<Edge, f32> = BTreeMap::new();
-        for &[a, b, c] in self.faces.iter().filter(|face| hangs(face[0])) {
+        // What has no area is no cloth.
+        for &[a, b, c] in self.faces.iter().filter(|face| hangs(face[0]) && self.area(face) > 0.0) {
             for [from, to, tip] in [[a, b, c], [b, c, a], [c, a, b]] {
                 let length = self.length(edge(from, to));
                 let [p, q] = [from, to].map(|end| direction(self.places[end] - self.places[tip]));
