@@ -106,7 +106,8 @@ pub fn skirted(adjust: impl Fn(&mut Garment)) -> CharacterDef {
         build(&bare, &analyze(&bare).expect("the mannequin has a skin"), &BuildOptions::default())
             .expect("and bones");
     let mut rig = skirted_rig(CELLS);
-    let sheet = lay_skirt(&mut rig, MOST_PARTICLES, Garment::default().spacing).expect("the skirt can be cloth");
+    let sheet =
+        lay_skirt(&mut rig, MOST_PARTICLES, Garment::default().spacing).expect("the skirt can be cloth");
     let mut garment = Garment { name: "skirt".to_owned(), ..Garment::of_sheet(&rig.sheets[sheet]) };
     adjust(&mut garment);
     let analysis = analyze(&rig).expect("the mannequin has a skin");

@@ -126,7 +126,10 @@ impl BackstopDef {
     fn check(&self, taken: &mut [bool]) -> Result<(), DefError> {
         let taken = taken.get_mut(self.particle as usize);
         let taken = taken.is_none_or(|taken| core::mem::replace(taken, true));
-        must(!taken, "a backstop must be of a particle of its group that nothing holds and that has no other one")?;
+        must(
+            !taken,
+            "a backstop must be of a particle of its group that nothing holds and that has no other one",
+        )?;
         must(
             self.center.is_finite() && positive(self.radius),
             "a backstop's radius must be positive, and its place finite",

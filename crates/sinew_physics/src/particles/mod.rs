@@ -45,8 +45,8 @@ pub use attach::Anchor;
 pub use builders::{Blob, BlobDef, Cloth, ClothDef, Rope, RopeDef, StrandDef};
 pub use contact::{BodyImpulse, Obstacle, ObstacleBody};
 pub use def::{
-    AttachmentDef, AttachmentTarget, BackstopDef, BendDef, GroupDef, ParticleDef, Resists, SpringDef, SpringScheme,
-    TetherDef, VolumeDef,
+    AttachmentDef, AttachmentTarget, BackstopDef, BendDef, GroupDef, ParticleDef, Resists, SpringDef,
+    SpringScheme, TetherDef, VolumeDef,
 };
 
 use crate::arena::Item;

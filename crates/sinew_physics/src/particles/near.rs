@@ -4,8 +4,8 @@
 //! room is tried against all obstacles; once many have, or an obstacle has left its own, all lists are made anew. What a
 //! list leaves out cannot be met: the results are the bits that trying all gives, so that lists are no part of the state.
 
-use super::{BackstopDef, ParticleGroup};
 use super::contact::{Grip, Placed, distance_at_least};
+use super::{BackstopDef, ParticleGroup};
 use crate::boxes::Aabb;
 use crate::particles::tuning::DETOUR;
 use crate::particles::tuning::{LIST_ITERATIONS, LIST_ROOM};

@@ -2,8 +2,8 @@
 
 use super::contact::Grip;
 use super::{
-    AddedMass, AttachmentDef, AttachmentTarget, BackstopDef, BendDef, GroupDef, ParticleDef, ParticleGroup, Resists,
-    SpringDef, SpringScheme, TetherDef, VolumeDef,
+    AddedMass, AttachmentDef, AttachmentTarget, BackstopDef, BendDef, GroupDef, ParticleDef, ParticleGroup,
+    Resists, SpringDef, SpringScheme, TetherDef, VolumeDef,
 };
 use crate::body::snapshot::{load_filter, load_material, save_filter, save_material};
 use crate::id::BodyId;
@@ -141,19 +141,9 @@ impl ParticleGroup {
         }
         let scheme = if has & 1 == 0 { SpringScheme::Implicit } else { SpringScheme::Projected };
         let thickness = if has & 0b10 == 0 { 0.0 } else { input.f32()? };
-        let mut passes = Vec::new();
-        if has & 0b100 != 0 {
-            for _ in 0..input.count(8)? {
-                passes.push(BodyId::from_bits(input.u64()?));
-            }
-        }
+        let passes = if has & 0b100 == 0 { Vec::new() } else { read_bodies(input)? };
         let faces = if has & 0b1000 == 0 { Vec::new() } else { read_triangles(input)? };
-        let mut backstops = Vec::new();
-        if has & 0b1_0000 != 0 {
-            for _ in 0..input.count(BACKSTOP_BYTES)? {
-                backstops.push(read_backstop(input)?);
-            }
-        }
+        let backstops = if has & 0b1_0000 == 0 { Vec::new() } else { read_backstops(input)? };
         let (iterations, span) = (input.u32()?, input.f32()?);
         let mut def = GroupDef {
             material,
@@ -214,13 +204,22 @@ fn save_backstop(backstop: &BackstopDef, out: &mut Writer) {
     out.f32(backstop.radius);
 }
 
-fn read_backstop(input: &mut Reader<'_>) -> Result<BackstopDef, ReadError> {
-    Ok(BackstopDef {
-        particle: input.u32()?,
-        body: BodyId::from_bits(input.u64()?),
-        center: input.vec3()?,
-        radius: input.f32()?,
-    })
+fn read_backstops(input: &mut Reader<'_>) -> Result<Vec<BackstopDef>, ReadError> {
+    let mut backstops = Vec::new();
+    for _ in 0..input.count(BACKSTOP_BYTES)? {
+        backstops.push(BackstopDef {
+            particle: input.u32()?,
+            body: BodyId::from_bits(input.u64()?),
+            center: input.vec3()?,
+            radius: input.f32()?,
+        });
+    }
+    Ok(backstops)
+}
+
+fn read_bodies(input: &mut Reader<'_>) -> Result<Vec<BodyId>, ReadError> {
+    let count = input.count(8)?;
+    (0..count).map(|_| Ok(BodyId::from_bits(input.u64()?))).collect()
 }
 
 fn load_net(input: &mut Reader<'_>, def: &mut GroupDef) -> Result<(), ReadError> {

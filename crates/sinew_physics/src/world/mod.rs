@@ -172,7 +172,10 @@ impl World {
     pub fn remove_body(&mut self, id: BodyId) {
         self.expect(id);
         let worn = self.groups.iter().any(|(_, group)| group.wearers().any(|body| body == id));
-        assert!(!worn, "no particles are attached to a body that is taken out, nor have backstops there ({id:?})");
+        assert!(
+            !worn,
+            "no particles are attached to a body that is taken out, nor have backstops there ({id:?})"
+        );
         self.wake_neighbors(id.index);
         let joints: Vec<JointId> = self.joints_of(id).collect();
         for joint in joints {

@@ -32,7 +32,8 @@ fn far_from_it(kind: BodyKind, frame: Transform) -> BodyDef {
 #[test]
 fn a_particle_rests_where_the_ball_says() {
     let mut world = World::new(WorldDef::default());
-    let frame = Transform::new(Vec3::new(0.4, 1.0, -0.3), Rotation::from_axis_angle(Vec3::ONE.normalize(), 0.7));
+    let frame =
+        Transform::new(Vec3::new(0.4, 1.0, -0.3), Rotation::from_axis_angle(Vec3::ONE.normalize(), 0.7));
     let body = world.add_body(&far_from_it(BodyKind::Static, frame));
     let (center, reach) = (Vec3::new(0.1, 1.2, 0.0), 0.3);
     let (pin, mass, stiffness, rest_length) = (Vec3::new(0.25, 1.7, 0.05), 0.5, 30.0, 0.2);
@@ -45,7 +46,8 @@ fn a_particle_rests_where_the_ball_says() {
         material: Material { friction: 0.8, restitution: 0.5, ..Material::DEFAULT },
         ..GroupDef::default()
     };
-    let backstop = BackstopDef { particle: 1, body, center: frame.inverse_point(center), radius: reach - RADIUS };
+    let backstop =
+        BackstopDef { particle: 1, body, center: frame.inverse_point(center), radius: reach - RADIUS };
     let stopped = world.add_particles(&group(vec![backstop]));
     let free = world.add_particles(&group(Vec::new()));
     let mut deepest = reach;
