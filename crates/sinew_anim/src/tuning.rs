@@ -127,6 +127,17 @@ pub(crate) const HELD_SHARE: f32 = 0.1;
 /// Larger: coarser sheets than need be. Smaller: more tries. Shown by the tests of `sheets`.
 pub(crate) const COARSER: f32 = 1.1;
 
+/// Cosine of the angle, 75°, from which on a corner is that of a cell, so that the side opposite to it is a diagonal, a ratio.
+///
+/// Larger: equal triangles are split as if they were halves of cells, and lie wider apart. Smaller: cells that are not quite square are split across. Shown by
+/// the tests of `sheets`.
+pub(crate) const SQUARE_CORNER: f32 = 0.26;
+
+/// Length of a diagonal over the spacing up to which it is not split, a ratio: that of a square cell, and a little.
+///
+/// Larger: limbs come between particles. Smaller: cells are split across, and threads run aslant. Shown by the tests of `sheets`.
+pub(crate) const DIAGONAL: f32 = 1.45;
+
 /// Share of a sheet's extent below which no distance between particles is tried, a ratio.
 ///
 /// Larger: less fine sheets of what is long and narrow. Smaller: more tries where the spacing is tiny. Shown by the tests of `sheets`.

@@ -29,6 +29,7 @@ pub mod random;
 mod rotations;
 mod symmetric;
 mod transform;
+pub mod triangle;
 pub mod trig;
 #[cfg(feature = "serde")]
 pub mod unlimited;

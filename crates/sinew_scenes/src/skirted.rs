@@ -74,21 +74,21 @@ pub fn skirted_rig(cells: [usize; 2]) -> Rig {
     rig
 }
 
-/// Index of the sheet that the skirt of such a rig was made.
+/// Index of the sheet that the skirt of such a rig was made, with particles no farther apart than `spacing` (m) if there may be as many.
 ///
 /// # Errors
 /// As [`lay_sheet`].
 ///
 /// # Panics
 /// If the rig has no such skirt.
-pub fn lay_skirt(rig: &mut Rig, most_particles: usize) -> Result<usize, SheetError> {
+pub fn lay_skirt(rig: &mut Rig, most_particles: usize, spacing: f32) -> Result<usize, SheetError> {
     let bind_model = analyze(rig).expect("the mannequin has a skin").bind_model;
     let part = MeshPart::named(rig, NAME).expect("it has a skirt");
     let first_source = rig.joints.len();
     let options = SheetOptions {
         bind_model: &bind_model,
         metres_from_model: Affine::IDENTITY,
-        spacing: Garment::default().spacing,
+        spacing,
         held: None,
         most_particles,
         first_source,
@@ -106,7 +106,8 @@ pub fn skirted(adjust: impl Fn(&mut Garment)) -> CharacterDef {
         build(&bare, &analyze(&bare).expect("the mannequin has a skin"), &BuildOptions::default())
             .expect("and bones");
     let mut rig = skirted_rig(CELLS);
-    let sheet = lay_skirt(&mut rig, MOST_PARTICLES).expect("the skirt can be cloth");
+    let sheet =
+        lay_skirt(&mut rig, MOST_PARTICLES, Garment::default().spacing).expect("the skirt can be cloth");
     let mut garment = Garment { name: "skirt".to_owned(), ..Garment::of_sheet(&rig.sheets[sheet]) };
     adjust(&mut garment);
     let analysis = analyze(&rig).expect("the mannequin has a skin");

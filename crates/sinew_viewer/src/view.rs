@@ -154,7 +154,8 @@ pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Sta
     instance.draw(&mut lines);
     stage.scene.lines.append(&mut lines.list);
     stage.scene.lines.append(&mut curves(instance));
-    layers::draw(instance.world(), layers, &mut stage.scene.lines);
+    let with_springs = if layers.contains(&Layer::Springs) { instance.figures() } else { Vec::new() };
+    layers::draw(instance.world(), &with_springs, layers, &mut stage.scene.lines);
     if let Some([from, to]) = session.hands().spring(instance.world()) {
         stage.scene.lines.push(Line { from, to, color: [0.9, 0.1, 0.5], depth: LineDepth::OnTop });
         stage.ball(0.012 * distance, sinew::math::Transform::new(to, Rotation::IDENTITY), [0.9, 0.1, 0.5]);

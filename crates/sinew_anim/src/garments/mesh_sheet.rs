@@ -23,4 +23,6 @@ pub struct MeshSheet {
     pub areas: Vec<f32>,
     /// Places of vertices of the mesh, those that are in one place counted once.
     pub vertices: usize,
+    /// Longest edge of the mesh as it was bound, metres: where it is longer than the spacing, particles lie between its vertices, and what is drawn is flat there.
+    pub longest_edge: f32,
 }

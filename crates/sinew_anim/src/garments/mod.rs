@@ -30,12 +30,14 @@ mod columns;
 mod guess;
 pub(crate) mod mesh_sheet;
 mod sheet;
+mod ways;
 
 pub use crate::tuning::MOST_PARTICLES;
 pub use columns::{is_ring, side_by_side};
 pub use guess::guess_garments;
 pub use mesh_sheet::MeshSheet;
 pub use sheet::{MeshPart, SheetError, SheetOptions, lay_sheet};
+pub use ways::Ways;
 
 use crate::rig::{JointIdx, Rig};
 use sinew_math::Vec3;
@@ -75,6 +77,24 @@ pub struct Garment {
     pub meets_arms: Option<bool>,
     /// Distance that its folds keep from each other, metres, ≥ 0. Default 0: they pass through each other.
     pub thickness: f32,
+    /// Depth up to which it sinks into the body that it lies on, beside the body's shapes. Default `None`: as deep as these let it.
+    pub backstop: Option<Backstop>,
+}
+
+/// Backstop of a garment: each particle of it stays out of a ball behind its place at rest, which is fixed to the part of the body that is nearest to it there.
+/// So cloth does not sink into what is drawn where no shape of a body is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Backstop {
+    /// Depth below its place at rest up to which a particle comes, inward along the garment's normal, metres, ≥ 0. Default 0.
+    pub distance: f32,
+    /// Radius of the ball, metres, positive. Default 0.2: a wall to the trunk, and no wider than a stride for a thigh.
+    pub radius: f32,
+}
+
+impl Default for Backstop {
+    fn default() -> Self {
+        Self { distance: 0.0, radius: 0.2 }
+    }
 }
 
 impl Default for Garment {
@@ -95,6 +115,7 @@ impl Default for Garment {
             friction: 0.3,
             meets_arms: None,
             thickness: 0.0,
+            backstop: None,
         }
     }
 }

@@ -8,6 +8,8 @@ use sinew_anim::{
 use sinew_math::{Affine, Rotation, Vec3};
 
 const SPACING: f32 = 0.05;
+/// Spacing at which ten cells across stay as they are.
+const COARSE: f32 = 0.11;
 
 /// A cloth of a metre by a metre that hangs from y = 1 in the plane of x and y, of so many cells along each side, on two joints: one above the other.
 fn rig(cells: usize) -> Rig {
@@ -60,13 +62,22 @@ fn bind(rig: &Rig) -> Vec<Affine> {
 }
 
 fn lay(rig: &mut Rig, most_particles: usize, held: Option<f32>) -> Result<usize, SheetError> {
+    lay_at(rig, most_particles, held, SPACING)
+}
+
+fn lay_at(
+    rig: &mut Rig,
+    most_particles: usize,
+    held: Option<f32>,
+    spacing: f32,
+) -> Result<usize, SheetError> {
     let bind_model = bind(rig);
     let part = MeshPart::named(rig, "Flag")?;
     let first_source = rig.joints.len();
     let options = SheetOptions {
         bind_model: &bind_model,
         metres_from_model: Affine::IDENTITY,
-        spacing: SPACING,
+        spacing,
         held,
         most_particles,
         first_source,
@@ -129,7 +140,7 @@ fn there_are_never_more_particles_than_were_asked_for() {
 fn a_coarse_mesh_has_a_particle_for_each_vertex_and_is_held_as_deep_as_was_said() {
     for (held, rows) in [(None, 2), (Some(0.35), 4), (Some(0.0), 1)] {
         let mut it = rig(10);
-        let sheet = lay(&mut it, 400, held).expect("it can be cloth");
+        let sheet = lay_at(&mut it, 400, held, COARSE).expect("it can be cloth");
         let sheet = &it.sheets[sheet];
         assert_eq!((sheet.joints.len(), sheet.faces.len(), sheet.links.len()), (121, 200, 320));
         assert_eq!(sheet.held.iter().filter(|held| **held).count(), 11 * rows, "{held:?}");
@@ -138,6 +149,53 @@ fn a_coarse_mesh_has_a_particle_for_each_vertex_and_is_held_as_deep_as_was_said(
         assert_eq!((parents[0], parents[120]), (Some(0), Some(1)));
         assert_eq!(it.joints[sheet.joints[7]].source, 3 + 7);
     }
+}
+
+/// Cells wider than the spacing are halved until they are not, with square cells left square; vertices of the mesh have their own particles, and nothing
+/// is drawn otherwise.
+#[test]
+fn a_mesh_coarser_than_its_spacing_is_split() {
+    let mut it = rig(4);
+    let before = drawn(&it, &rest_pose(&it));
+    let sheet = lay_at(&mut it, 400, None, 0.07).expect("it can be cloth");
+    let sheet = it.sheets[sheet].clone();
+    assert_eq!((sheet.vertices, sheet.joints.len(), sheet.faces.len()), (25, 17 * 17, 2 * 16 * 16));
+    assert!((sheet.longest_edge - 0.25 * 2.0_f32.sqrt()).abs() < 1e-5, "{}", sheet.longest_edge);
+    assert_eq!(sheet.held.iter().filter(|held| **held).count(), 2 * 17);
+    let place = bind(&it);
+    let at = |particle: u32| place[sheet.joints[particle as usize]].translation;
+    let lengths: Vec<f32> = sheet.links.iter().map(|&[a, b]| (at(a) - at(b)).length()).collect();
+    let [cell, across] = [1.0 / 16.0, 2.0_f32.sqrt() / 16.0];
+    assert!(lengths.iter().all(|l| (l - cell).abs() < 1e-5 || (l - across).abs() < 1e-5), "square cells");
+    for face in &sheet.faces {
+        let normal = (at(face[1]) - at(face[0])).cross(at(face[2]) - at(face[0]));
+        assert!(normal.z > 0.0 && (normal.length() - cell * cell).abs() < 1e-5, "wound as it was: {normal}");
+    }
+    let sum: f32 = sheet.areas.iter().sum();
+    assert!((sum - 1.0).abs() < 1e-4, "{sum} m²");
+    assert!(farthest(&before, &drawn(&it, &rest_pose(&it))) < 1e-5);
+    // A vertex moves with its own particle alone, and those between vertices move none.
+    for (particle, moves) in [(12, 1), (25, 0), (100, 0)] {
+        let mut pose = rest_pose(&it);
+        pose[sheet.joints[particle]].translation += Vec3::Z;
+        let moved = drawn(&it, &pose).iter().filter(|place| place.z.abs() > 1e-4).count();
+        assert_eq!(moved, moves, "particle {particle}");
+    }
+    // No further than there may be particles, and nothing of what no cloth holds.
+    let mut it = rig(4);
+    let sheet = lay_at(&mut it, 60, None, 0.07).expect("it can be cloth");
+    assert_eq!(it.sheets[sheet].joints.len(), 60);
+    let mut it = rig(4);
+    let primitive = &mut it.meshes[0].primitives[0];
+    for place in [Vec3::new(0.4, 0.1, 0.1), Vec3::new(0.8, 0.1, 0.1), Vec3::new(0.4, 0.5, 0.1)] {
+        primitive.indices.push(primitive.positions.len() as u32);
+        primitive.positions.push(place);
+        primitive.normals.push(Vec3::Z);
+        primitive.joints.push([1, 0, 0, 0]);
+        primitive.weights.push([1.0, 0.0, 0.0, 0.0]);
+    }
+    let sheet = lay_at(&mut it, 400, None, 0.07).expect("it can be cloth");
+    assert_eq!((it.sheets[sheet].vertices, it.sheets[sheet].joints.len()), (28, 17 * 17));
 }
 
 #[test]
@@ -260,11 +318,11 @@ fn what_lies_above_the_cloth_does_not_take_the_hold_from_it() {
     let untouched = it.clone();
     assert_eq!(lay(&mut it, 400, None), Err(SheetError::MostlyLoose));
     assert_eq!(it, untouched);
-    assert!(lay(&mut it, 400, Some(0.6)).is_ok());
+    assert!(lay_at(&mut it, 400, Some(0.6), COARSE).is_ok());
     // Where it has no area, it is not there.
     let mut it = untouched;
     it.meshes[0].primitives[0].positions[first as usize + 2] = Vec3::new(0.5, 1.3, 0.0);
-    let sheet = lay(&mut it, 400, None).expect("it can be cloth");
+    let sheet = lay_at(&mut it, 400, None, COARSE).expect("it can be cloth");
     assert_eq!(it.sheets[sheet].held.iter().filter(|held| **held).count(), 22 + 3);
 }
 

@@ -70,10 +70,11 @@ impl RagdollDoctor {
         if self.rig.is_none() {
             file.check_settings(&self.settings)?;
         }
-        let RagdollFile { name, mut repair, mut notes, mut character } = file;
+        let RagdollFile { name, mut repair, mut notes, mut character, mut garments } = file;
         if let Some(rig) = &self.rig {
             let (rig, settings) = self.settings.load_character(rig, Textures::Skip)?;
             repair.reference = Some(settings.build(&rig, &BuildOptions::default())?.0);
+            garments = settings.garments(&rig)?;
             character = Some(rig);
         }
         if let Some(character) = &character {
@@ -83,7 +84,10 @@ impl RagdollDoctor {
                 let springs = SpringSource::Names.springs(rig, character.analysis.up_axis);
                 notes.extend(proposal(rig, &springs, &repair.def));
             }
-            notes.extend(garments_report::proposal(rig, &repair.def));
+            notes.extend(garments_report::worn_notes(&garments));
+            if garments.is_empty() {
+                notes.extend(garments_report::proposal(rig, &repair.def));
+            }
         }
         let findings = match &self.output {
             None => doctor(&repair),

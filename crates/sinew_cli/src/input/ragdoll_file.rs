@@ -3,6 +3,7 @@
 use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
 use crate::input::settings_arg::SettingsArg;
+use sinew::anim::Garment;
 use sinew::formats::{Textures, read_bytes, read_mjcf, read_ragdoll};
 use sinew::ragdoll::{BuildOptions, RagdollDef, Repair};
 use std::path::Path;
@@ -17,6 +18,8 @@ pub struct RagdollFile {
     pub notes: Vec<String>,
     /// The rigged file that it was built from, if it is one.
     pub character: Option<CharacterFile>,
+    /// Garments that its settings ask for.
+    pub garments: Vec<Garment>,
 }
 
 impl RagdollFile {
@@ -39,20 +42,22 @@ impl RagdollFile {
                 name,
                 notes: Vec::new(),
                 character: None,
+                garments: Vec::new(),
             }),
             Kind::Mjcf => {
                 let model = read_mjcf(&bytes).and_then(|model| Ok((model.to_ragdoll()?, model.notes)));
                 let (ragdoll, mut notes) = model.map_err(|error| error.with_file(&name))?;
                 notes.extend(ragdoll.notes);
                 let repair = Repair { springs: ragdoll.springs, ..Repair::new(ragdoll.def) };
-                Ok(Self { repair, name, notes, character: None })
+                Ok(Self { repair, name, notes, character: None, garments: Vec::new() })
             }
             Kind::Character => {
                 drop(bytes);
                 let (character, settings) = settings.load_character(path, textures)?;
                 let (def, report) = settings.build(&character, &BuildOptions::default())?;
                 let repair = Repair { reference: Some(def.clone()), ..Repair::new(def) };
-                Ok(Self { repair, name, notes: report.notes, character: Some(character) })
+                let garments = settings.garments(&character)?;
+                Ok(Self { repair, name, notes: report.notes, character: Some(character), garments })
             }
         }
     }

@@ -1,8 +1,10 @@
 //! Garments of a character, and what names of joints tell of them.
 
+use super::number;
 use super::springs_report::listed;
-use super::table::counted;
+use super::table::{counted, shown};
 use serde_json::{Value, json};
+use sinew::anim::garments::{Backstop, MeshSheet};
 use sinew::anim::{Garment, JointIdx, Rig, guess_garments};
 use sinew::ragdoll::{CharacterDef, RagdollDef};
 use std::fmt::Write as _;
@@ -82,6 +84,75 @@ pub fn garments_text(rig: &Rig) -> String {
     }
     text
 }
+
+/// JSON list of garments as settings ask for them.
+pub fn worn_json(garments: &[Garment]) -> Value {
+    let garment = |garment: &Garment| {
+        let sheet = garment.sheet.as_ref();
+        let backstop = garment.backstop.map(|backstop| {
+            json!({ "distance_m": number(backstop.distance), "radius_m": number(backstop.radius) })
+        });
+        json!({
+            "name": garment.name,
+            "mesh": sheet.map(|sheet| &sheet.name),
+            "chains": garment.columns.len(),
+            "vertices": sheet.map(|sheet| sheet.vertices),
+            "particles": sheet.map(|sheet| sheet.joints.len()),
+            "held": sheet.map(held),
+            "longest_edge_m": sheet.map(|sheet| number(sheet.longest_edge)),
+            "spacing_m": number(garment.spacing),
+            "backstop": backstop,
+        })
+    };
+    garments.iter().map(garment).collect()
+}
+
+/// Number of particles of a sheet that bodies hold.
+fn held(sheet: &MeshSheet) -> usize {
+    sheet.held.iter().filter(|held| **held).count()
+}
+
+/// Sentences on garments as settings ask for them, one or two for each.
+pub fn worn_notes(garments: &[Garment]) -> Vec<String> {
+    garments.iter().enumerate().flat_map(|(index, garment)| worn_note(index, garment)).collect()
+}
+
+fn worn_note(index: usize, garment: &Garment) -> Vec<String> {
+    let name = if garment.name.is_empty() { format!("garments[{index}]") } else { shown(&garment.name) };
+    let spacing = number(garment.spacing);
+    let cloth = match &garment.sheet {
+        Some(sheet) => format!(
+            "cloth of the mesh {} with {}: {}, {} held, {spacing} m apart at most if there may be as many",
+            shown(&sheet.name),
+            counted(sheet.vertices, "vertex", "vertices"),
+            counted(sheet.joints.len(), "particle", "particles"),
+            held(sheet)
+        ),
+        None => format!(
+            "cloth on {}, its particles {spacing} m apart at most",
+            counted(garment.columns.len(), "chain", "chains")
+        ),
+    };
+    let backstops = match garment.backstop {
+        None => "no backstops".to_owned(),
+        Some(Backstop { distance, radius }) => {
+            format!("backstops {} m below it at rest, of {} m", number(distance), number(radius))
+        }
+    };
+    let coarse = garment.sheet.iter().filter(|sheet| sheet.longest_edge > DRAWN_COARSER * garment.spacing);
+    let coarse = coarse.map(|sheet| {
+        format!(
+            "{name} is drawn in triangles of up to {} m: cloth that gives way between its vertices is not seen to, so that what presses on it there shows through; a finer mesh \
+             in the file ends that",
+            number(sheet.longest_edge)
+        )
+    });
+    [format!("{name} is {cloth}; {backstops}")].into_iter().chain(coarse).collect()
+}
+
+/// Longest edge of a mesh over the spacing of its particles from which on one sees that it is drawn coarser than it moves: that of a square cell's diagonal, and a
+/// little.
+const DRAWN_COARSER: f32 = 1.5;
 
 /// Garments that a rig could wear by the names of its joints, as advice; nothing where there are none, or bodies of its ragdoll move them.
 pub fn proposal(rig: &Rig, ragdoll: &RagdollDef) -> Option<String> {

@@ -117,6 +117,46 @@ fn a_mesh_becomes_cloth_in_the_bake_that_settings_ask_for() {
     assert_eq!(bare.meshes, before.meshes, "the file as it was");
 }
 
+/// `inspect` and the doctor tell of garments that settings ask for: of a mesh how many particles it takes, and that it is drawn coarser than it moves.
+#[test]
+fn garments_of_settings_are_told() {
+    let folder = Folder::new("worn_garments");
+    let file = folder.file("skirted.glb", glb(&skirted_rig([10, 4]), &[]));
+    assert_eq!(sinew(&["inspect", &file, "--json"]).json()["worn"], json!([]));
+    let settings = |garment: &str| {
+        let text = format!(r#"{{"sinew": "ragdoll-settings", "version": 1, "garments": [{garment}]}}"#);
+        folder.file("skirted.ragdoll.json", text);
+    };
+    settings(r#"{"name": "skirt", "mesh": "Skirt", "backstop": {"distance": 0.01}}"#);
+    let object = sinew(&["inspect", &file, "--json"]).json();
+    check_keys("inspect", &object);
+    let worn = &object["worn"][0];
+    assert_eq!(
+        (&worn["name"], &worn["mesh"], &worn["chains"]),
+        (&json!("skirt"), &json!("Skirt"), &json!(0))
+    );
+    let number = |key: &str| worn[key].as_f64().expect("a number");
+    // Ten around and five down, and a buckle.
+    assert_eq!(number("vertices"), 54.0);
+    assert!((200.0..=400.0).contains(&number("particles")), "{worn}");
+    assert!(number("held") >= 10.0 && number("held") < 0.3 * number("particles"), "{worn}");
+    assert!((0.15..0.3).contains(&number("longest_edge_m")) && number("spacing_m") == 0.05, "{worn}");
+    assert_eq!(worn["backstop"], json!({"distance_m": 0.01, "radius_m": 0.2}));
+    for text in [sinew(&["inspect", &file]).stdout, sinew(&["ragdoll", "doctor", &file]).stdout] {
+        assert!(text.contains("skirt is cloth of the mesh Skirt with 54 vertices"), "{text}");
+        assert!(text.contains("backstops 0.01 m below it at rest, of 0.2 m"), "{text}");
+        assert!(text.contains("skirt is drawn in triangles of up to 0."), "{text}");
+        assert!(!text.contains("could be worn"), "{text}");
+    }
+    folder.file("skirted.glb", glb(&skirted_rig(CELLS), &[]));
+    settings(r#"{"name": "skirt", "mesh": "Skirt"}"#);
+    let text = sinew(&["inspect", &file]).stdout;
+    assert!(text.contains("no backstops") && !text.contains("is drawn in triangles"), "{text}");
+    settings(r#"{"mesh": "Skrit"}"#);
+    let object = sinew(&["inspect", &file, "--json"]).json();
+    assert!(object["worn"] == json!([]) && object["warnings"].to_string().contains("Skirt"), "{object}");
+}
+
 #[test]
 fn settings_of_meshes_that_are_wrong_name_file_and_place() {
     let folder = Folder::new("mesh_garment_errors");

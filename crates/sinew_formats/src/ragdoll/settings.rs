@@ -48,6 +48,7 @@
 use super::{read_range, read_up_axis};
 use crate::container::json::{self, At};
 use crate::error::{Error, Result, quoted};
+use sinew_anim::garments::Backstop;
 use sinew_anim::{Garment, Role, SpringLink};
 use sinew_math::Range;
 use sinew_ragdoll::settings::{
@@ -77,7 +78,7 @@ const ROOT_KEYS: [&str; 16] = [
     "garments",
 ];
 
-const GARMENT_KEYS: [&str; 18] = [
+const GARMENT_KEYS: [&str; 19] = [
     "comment",
     "name",
     "chains",
@@ -96,6 +97,7 @@ const GARMENT_KEYS: [&str; 18] = [
     "friction",
     "meets_arms",
     "thickness",
+    "backstop",
 ];
 
 /// Particles that a sheet may have at most: each is a joint in the file.
@@ -257,6 +259,7 @@ fn read_garment(at: At<'_>) -> Result<GarmentSettings> {
         friction: within("friction", usual.friction, [0.0, 100.0])?,
         meets_arms: at.get("meets_arms")?.map(At::bool).transpose()?,
         thickness: within("thickness", usual.thickness, [0.0, 1.0])?,
+        backstop: at.get("backstop")?.map(read_backstop).transpose()?,
         ..usual
     };
     Ok(GarmentSettings {
@@ -265,6 +268,13 @@ fn read_garment(at: At<'_>) -> Result<GarmentSettings> {
         closed: at.get("closed")?.map(At::bool).transpose()?,
         cloth,
     })
+}
+
+fn read_backstop(at: At<'_>) -> Result<Backstop> {
+    only(at, &["comment", "distance", "radius"])?;
+    let distance = at.need("distance")?.not_negative()?;
+    let radius = at.get("radius")?.map_or(Ok(Backstop::default().radius), At::positive)?;
+    Ok(Backstop { distance, radius })
 }
 
 /// The mesh that a garment is; `None` if it is of chains.

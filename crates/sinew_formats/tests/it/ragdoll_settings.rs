@@ -1,6 +1,7 @@
 //! Settings files: the example of the documentation, complaints.
 
 use crate::world::documented_example;
+use sinew_anim::garments::Backstop;
 use sinew_formats::read_ragdoll_settings;
 use sinew_math::{Random, Range};
 use sinew_ragdoll::settings::{BodyWish, JointWish, ShapeWish, Unit};
@@ -120,6 +121,15 @@ fn garments_are_named_or_listed() {
     let cloth = &listed[0].cloth;
     assert_eq!((cloth.name.as_str(), cloth.area_density, cloth.meets_arms), ("kilt", 0.8, Some(true)));
     assert_eq!((cloth.spacing, cloth.stretching, cloth.thickness), (0.04, 900.0, 0.02));
+    let backstop = |text: &str| {
+        let all = format!(r#"[{{"mesh": "a", "backstop": {text}}}]"#);
+        let GarmentSource::Listed(listed) = read(&all).unwrap().garments else { panic!("a list") };
+        listed[0].cloth.backstop
+    };
+    assert_eq!(listed[0].cloth.backstop, None);
+    assert_eq!(backstop(r#"{"distance": 0.01}"#), Some(Backstop { distance: 0.01, ..Backstop::default() }));
+    let both = Backstop { distance: 0.02, radius: 0.1 };
+    assert_eq!(backstop(r#"{"distance": 0.02, "radius": 0.1}"#), Some(both));
     for (garments, message) in [
         (r#""all""#, "names"),
         (r#"[{}]"#, "chains"),
@@ -138,6 +148,9 @@ fn garments_are_named_or_listed() {
         (r#"[{"mesh": "a", "drag": 101}]"#, "garments[0].drag"),
         (r#"[{"mesh": "a", "friction": 101}]"#, "garments[0].friction"),
         (r#"[{"mesh": "a", "thickness": 1.5}]"#, "garments[0].thickness"),
+        (r#"[{"mesh": "a", "backstop": {"distance": -0.1}}]"#, "garments[0].backstop.distance"),
+        (r#"[{"mesh": "a", "backstop": {"radius": 0}}]"#, "garments[0].backstop.radius"),
+        (r#"[{"mesh": "a", "backstop": {"depth": 0.1}}]"#, "distance"),
     ] {
         let error = read(garments).unwrap_err().to_string();
         assert!(error.contains(message), "{garments}: {error}");

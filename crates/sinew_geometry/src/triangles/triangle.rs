@@ -1,6 +1,7 @@
 //! One triangle of a surface: what is closest on it, where a line comes through it.
 
 use crate::boxes::Aabb;
+use sinew_math::triangle::{Nearest, nearest};
 use sinew_math::{Vec3, max, max3, min3, normalize_or};
 
 /// A triangle that is solid from one side: the one from which its corners run counter-clockwise.
@@ -94,38 +95,16 @@ pub(crate) fn bounds(&[a, b, c]: &[Vec3; 3]) -> Aabb {
     Aabb { min: min3(min3(a, b), c), max: max3(max3(a, b), c) }
 }
 
-/// The point of a triangle closest to `p`, by the region of its plane that p lies over (Ericson 2005, §5.1.5), and of
-/// which part it is.
-pub fn closest_on_triangle(&[a, b, c]: &[Vec3; 3], p: Vec3) -> (Vec3, Part) {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return (a, Part::Corner(0));
+/// The point of a triangle closest to `p`, and of which part it is.
+pub fn closest_on_triangle(corners: &[Vec3; 3], p: Vec3) -> (Vec3, Part) {
+    let [a, b, c] = *corners;
+    match nearest(corners, p) {
+        Nearest::Corner(corner) => (corners[corner], Part::Corner(corner)),
+        Nearest::Edge(0, along) => (a + (b - a) * along, Part::Edge(0)),
+        Nearest::Edge(1, along) => (b + (c - b) * along, Part::Edge(1)),
+        Nearest::Edge(_, along) => (a + (c - a) * along, Part::Edge(2)),
+        Nearest::Face(v, w) => (a + (b - a) * v + (c - a) * w, Part::Face),
     }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return (b, Part::Corner(1));
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return (a + ab * (d1 / (d1 - d3)), Part::Edge(0));
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return (c, Part::Corner(2));
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return (a + ac * (d2 / (d2 - d6)), Part::Edge(2));
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return (b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), Part::Edge(1));
-    }
-    let scale = 1.0 / (va + vb + vc);
-    (a + ab * (vb * scale) + ac * (vc * scale), Part::Face)
 }
 
 /// Share of `direction` (≥ 0, may exceed 1) after which a line from `origin` comes through a triangle from its outside.

@@ -5,7 +5,7 @@ use crate::arena::Arena;
 use crate::body::def::{BodyKind, Sleeping, WorldDef};
 use crate::body::{Body, Rest};
 use crate::contact::proxies::{Owner, Proxies};
-use crate::particles::{AttachmentTarget, ParticleGroup};
+use crate::particles::ParticleGroup;
 use core::ops::ControlFlow;
 use sinew_math::{Vec3, max, normalize_or};
 
@@ -72,10 +72,7 @@ fn comes(body: &Body) -> bool {
 
 fn is_disturbed(group: &ParticleGroup, bodies: &Arena<Body>, proxies: &Proxies, way: f32, dt: f32) -> bool {
     let Some(bed) = group.bed() else { return true };
-    let pulls = group.attachments().iter().any(|attachment| match attachment.target {
-        AttachmentTarget::Body { body, .. } => bodies.get(body).is_none_or(comes),
-        AttachmentTarget::World(_) => false,
-    });
+    let pulls = group.wearers().any(|body| bodies.get(body).is_none_or(comes));
     let near = |Owner { body: index, shape }| {
         let (body, shape) = (bodies.at(index), shape as usize);
         let touches = comes(body)

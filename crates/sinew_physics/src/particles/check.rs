@@ -1,6 +1,6 @@
 //! Checks of the definitions of particles.
 
-use super::{BendDef, GroupDef, ParticleDef, SpringDef, TetherDef, VolumeDef};
+use super::{BackstopDef, BendDef, GroupDef, ParticleDef, SpringDef, TetherDef, VolumeDef};
 use sinew_geometry::DefError;
 
 /// Parts that a substep may be moved in.
@@ -43,6 +43,9 @@ impl GroupDef {
             must(finite, "the point of an attachment must be finite")?;
         }
         self.tethers.iter().try_for_each(|t| t.check(&held))?;
+        // What is held, or has one already, takes none.
+        let mut taken = held;
+        self.backstops.iter().try_for_each(|b| b.check(&mut taken))?;
         self.material.check()?;
         must(
             not_negative(self.linear_damping) && self.gravity_scale.is_finite(),
@@ -115,6 +118,21 @@ impl TetherDef {
         must(
             ends && positive(self.length),
             "a tether must lead from a particle to an attached one, over some length",
+        )
+    }
+}
+
+impl BackstopDef {
+    fn check(&self, taken: &mut [bool]) -> Result<(), DefError> {
+        let taken = taken.get_mut(self.particle as usize);
+        let taken = taken.is_none_or(|taken| core::mem::replace(taken, true));
+        must(
+            !taken,
+            "a backstop must be of a particle of its group that nothing holds and that has no other one",
+        )?;
+        must(
+            self.center.is_finite() && positive(self.radius),
+            "a backstop's radius must be positive, and its place finite",
         )
     }
 }

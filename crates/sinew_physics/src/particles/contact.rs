@@ -379,7 +379,10 @@ impl ParticleGroup {
         let touching = placed.end.point(meeting.at - meeting.normal * max(meeting.gap, 0.0));
         let point = touching - normal * (self.radii[i] + min(meeting.gap, 0.0));
         let body = &bodies[o.body as usize];
-        let mut material = ContactMaterial::of(&self.material, &o.material);
+        // A backstop is no surface of the body: it neither rubs nor bounces.
+        let is_common = obstacle < self.near.common(obstacles.len());
+        let of_pair = is_common.then(|| ContactMaterial::of(&self.material, &o.material));
+        let mut material = of_pair.unwrap_or_default();
         if o.material.runs() {
             let spin = placed.end.rotation * o.material.surface_spin;
             let along = placed.end.rotation * o.material.surface_velocity

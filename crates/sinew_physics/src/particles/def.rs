@@ -149,6 +149,21 @@ pub struct AttachmentDef {
     pub target: AttachmentTarget,
 }
 
+/// A backstop, a ball fixed to a body that one particle touches and nothing else does: cloth sinks no deeper than that into the drawn body, also where no shape
+/// of a body is. It pushes the body back as a shape of it would, rubs nothing, and does not bounce.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct BackstopDef {
+    /// Index of the particle in its group; it keeps its radius from the ball.
+    pub particle: u32,
+    /// The body.
+    pub body: BodyId,
+    /// Centre of the ball in the body's frame, metres.
+    pub center: Vec3,
+    /// Radius of the ball, metres, positive.
+    pub radius: f32,
+}
+
 /// Particles and springs that are made, moved and put to sleep together: rope, strand, cloth, blob.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -169,6 +184,8 @@ pub struct GroupDef {
     pub faces: Vec<[u32; 3]>,
     /// Held particles; each at most once.
     pub attachments: Vec<AttachmentDef>,
+    /// Balls behind single particles; each particle has at most one, and a held one none. They work whatever the filter and `passes` say. Default none.
+    pub backstops: Vec<BackstopDef>,
     /// Scheme by which springs are solved. Default implicit.
     pub scheme: SpringScheme,
     /// Parts that a substep of the world is moved in, 1 to 64: projection is stiffer and loses less energy in shorter ones.
@@ -205,6 +222,7 @@ impl Default for GroupDef {
             volumes: Vec::new(),
             faces: Vec::new(),
             attachments: Vec::new(),
+            backstops: Vec::new(),
             scheme: SpringScheme::Implicit,
             iterations: 1,
             material: Material::default(),

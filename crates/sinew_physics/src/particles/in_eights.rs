@@ -44,6 +44,7 @@ impl ParticleGroup {
             && !self.batches.is_empty()
             && self.volumes.is_empty()
             && self.self_collision.is_none()
+            && self.backstops.is_empty()
             && obstacles.len() <= MOST_SOLIDS;
         if !self.eights.on {
             return;

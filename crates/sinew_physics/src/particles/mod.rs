@@ -46,8 +46,8 @@ pub use attach::Anchor;
 pub use builders::{Blob, BlobDef, Cloth, ClothDef, Rope, RopeDef, StrandDef};
 pub use contact::{BodyImpulse, Obstacle, ObstacleBody};
 pub use def::{
-    AttachmentDef, AttachmentTarget, BendDef, GroupDef, ParticleDef, Resists, SpringDef, SpringScheme,
-    TetherDef, VolumeDef,
+    AttachmentDef, AttachmentTarget, BackstopDef, BendDef, GroupDef, ParticleDef, Resists, SpringDef,
+    SpringScheme, TetherDef, VolumeDef,
 };
 pub(crate) use pinched::{Pinched, is_nipped};
 
@@ -87,6 +87,7 @@ pub struct ParticleGroup {
     volumes: Vec<VolumeDef>,
     faces: Faces,
     attachments: Vec<AttachmentDef>,
+    backstops: Vec<BackstopDef>,
     scheme: SpringScheme,
     iterations: u32,
     material: Material,
@@ -207,6 +208,7 @@ impl ParticleGroup {
             scheme: def.scheme,
             iterations: def.iterations,
             attachments: def.attachments.clone(),
+            backstops: def.backstops.clone(),
             material: def.material,
             linear_damping: def.linear_damping,
             gravity_scale: def.gravity_scale,
@@ -257,7 +259,7 @@ impl ParticleGroup {
         self.unsettled = Vec::with_capacity(count);
         self.clearances = vec![0.0; count];
         self.sights = vec![0.0; count];
-        self.near = Near::new(count);
+        self.near = Near::new(count, &self.backstops);
         self.backings = vec![0.0; count];
         self.press_normals = vec![Vec3::ZERO; count];
         self.rooms = vec![0.0; count];
@@ -354,6 +356,11 @@ impl ParticleGroup {
     /// As they were defined; [`substep`](Self::substep) takes one [`Anchor`] for each.
     pub fn attachments(&self) -> &[AttachmentDef] {
         &self.attachments
+    }
+
+    /// As they were defined; [`substep`](Self::substep) takes one [`Obstacle`] for each.
+    pub fn backstops(&self) -> &[BackstopDef] {
+        &self.backstops
     }
 
     /// Factor on the world's gravity.
@@ -508,12 +515,12 @@ impl ParticleGroup {
     ///
     /// `obstacles` and `bodies` are at the end of the substep; pass those that come near [`bounds`](Self::bounds). Which of
     /// them each particle may come to is kept from one substep to the next for as long as it holds, so pass them in the
-    /// same order. Bodies are pushed back: their velocities change at once,
+    /// same order. The last of them are the balls of [`backstops`](Self::backstops), in their order. Bodies are pushed back: their velocities change at once,
     /// and [`body_impulses`](Self::body_impulses) lists how. Attached particles touch nothing. What lies between two shapes does not keep these
     /// apart: a [`World`](crate::World) has contacts for that.
     ///
     /// # Panics
-    /// If there is not one anchor for each attachment, or the body of an anchor or an obstacle is not in `bodies`.
+    /// If there is not one anchor for each attachment, there are fewer obstacles than backstops, or the body of an anchor or an obstacle is not in `bodies`.
     pub fn substep(
         &mut self,
         h: f32,
@@ -536,6 +543,7 @@ impl ParticleGroup {
         bodies: &[ObstacleBody],
     ) {
         assert_eq!(anchors.len(), self.attachments.len(), "each attachment needs its anchor");
+        assert!(obstacles.len() >= self.backstops.len(), "each backstop needs its ball");
         let gravity = gravity * self.gravity_scale;
         self.accelerations.clear();
         self.accelerations.resize(self.positions.len(), gravity);

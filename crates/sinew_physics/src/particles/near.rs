@@ -4,8 +4,8 @@
 //! room is tried against all obstacles; once many have, or an obstacle has left its own, all lists are made anew. What a
 //! list leaves out cannot be met: the results are the bits that trying all gives, so that lists are no part of the state.
 
-use super::ParticleGroup;
 use super::contact::{Grip, Placed, distance_at_least};
+use super::{BackstopDef, ParticleGroup};
 use crate::boxes::Aabb;
 use crate::particles::tuning::DETOUR;
 use crate::particles::tuning::{LIST_ITERATIONS, LIST_ROOM};
@@ -40,14 +40,23 @@ pub(super) struct Near {
     drift: f32,
     /// The same in this iteration.
     way: f32,
+    /// Backstop of each particle, or `u32::MAX`; none at all for a group without. They are the last of all obstacles, and in no list.
+    backstop_of: Vec<u32>,
+    backstops: usize,
     /// Capacity of `obstacles`; once it is full, or for a list that does not fit, none is made.
     most: usize,
 }
 
 impl Near {
     /// Room for the lists of so many particles, none made.
-    pub fn new(count: usize) -> Self {
+    pub fn new(count: usize, backstops: &[BackstopDef]) -> Self {
+        let mut backstop_of = vec![u32::MAX; if backstops.is_empty() { 0 } else { count }];
+        for (index, backstop) in backstops.iter().enumerate() {
+            backstop_of[backstop.particle as usize] = index as u32;
+        }
         Self {
+            backstop_of,
+            backstops: backstops.len(),
             origins: vec![Vec3::ZERO; count],
             reaches: vec![None; count],
             beyond: vec![0.0; count],
@@ -61,10 +70,17 @@ impl Near {
         }
     }
 
-    /// Obstacles, of `count`, that come within `distance` (m) of a particle's surface, and others; ascending.
+    /// Obstacles, of `count`, that come within `distance` (m) of a particle's surface, and others, its own backstop too; ascending.
     pub fn within(&self, i: usize, distance: f32, count: usize) -> impl Iterator<Item = usize> {
-        let (list, all) = if self.beyond[i] > distance { (self.list(i), 0..0) } else { (&[][..], 0..count) };
-        list.iter().map(|&obstacle| obstacle as usize).chain(all)
+        let common = self.common(count);
+        let (list, all) = if self.beyond[i] > distance { (self.list(i), 0..0) } else { (&[][..], 0..common) };
+        let own = self.backstop_of.get(i).filter(|&&own| own != u32::MAX).map(|&own| common + own as usize);
+        list.iter().map(|&obstacle| obstacle as usize).chain(all).chain(own)
+    }
+
+    /// Number of the obstacles, of `count`, that are no backstops.
+    pub fn common(&self, count: usize) -> usize {
+        count - self.backstops
     }
 
     /// Forgets how far away everything was.
@@ -151,7 +167,8 @@ fn rounding_at(place: Vec3) -> f32 {
 impl ParticleGroup {
     /// Finds which particles may be close to a shape, and sees to it that most of these have a list that holds for this iteration.
     pub(super) fn find_near(&mut self, h: f32) {
-        let holds = self.near.holds(&self.placed);
+        let common = self.near.common(self.placed.len());
+        let holds = self.near.holds(&self.placed[..common]);
         if !holds {
             self.near.forget_distances();
         }
@@ -166,7 +183,7 @@ impl ParticleGroup {
         if holds && lost * LOST_ONE_IN <= self.positions.len() {
             return;
         }
-        self.near.make_fat_bounds(&self.placed);
+        self.near.make_fat_bounds(&self.placed[..common]);
         self.near.obstacles.clear();
         for i in 0..self.positions.len() {
             let time = LIST_ITERATIONS * h;

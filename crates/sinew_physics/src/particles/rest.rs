@@ -4,6 +4,7 @@ use super::{AttachmentTarget, ParticleGroup};
 use crate::body::def::{SleepThresholds, Sleeping};
 use crate::body::shape::Shape;
 use crate::boxes::Aabb;
+use crate::id::BodyId;
 use crate::particles::contact::distance_at_least;
 use crate::particles::tuning::{BEARING, BED_ROOM, RESTING_SPEED, STRIKE_GAP};
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
@@ -89,6 +90,15 @@ impl ParticleGroup {
     /// True if it holds bodies, which then rest no sooner than it does.
     pub(crate) fn holds_bodies(&self) -> bool {
         self.attachments.iter().any(|a| matches!(a.target, AttachmentTarget::Body { .. }))
+    }
+
+    /// Bodies that hold particles of it or that its backstops are fixed to, each as often as they do.
+    pub(crate) fn wearers(&self) -> impl Iterator<Item = BodyId> {
+        let held = self.attachments.iter().filter_map(|a| match a.target {
+            AttachmentTarget::Body { body, .. } => Some(body),
+            AttachmentTarget::World(_) => None,
+        });
+        held.chain(self.backstops.iter().map(|backstop| backstop.body))
     }
 
     /// Puts it to sleep as it is, under a number that no other islands have.

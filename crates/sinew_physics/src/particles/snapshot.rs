@@ -2,8 +2,8 @@
 
 use super::contact::Grip;
 use super::{
-    AddedMass, AttachmentDef, AttachmentTarget, BendDef, GroupDef, ParticleDef, ParticleGroup, Resists,
-    SpringDef, SpringScheme, TetherDef, VolumeDef,
+    AddedMass, AttachmentDef, AttachmentTarget, BackstopDef, BendDef, GroupDef, ParticleDef, ParticleGroup,
+    Resists, SpringDef, SpringScheme, TetherDef, VolumeDef,
 };
 use crate::body::snapshot::{load_filter, load_material, save_filter, save_material};
 use crate::id::BodyId;
@@ -14,6 +14,7 @@ const PARTICLE_BYTES: usize = 4 * (3 + 3 + 1 + 1 + 3 + 3) + 1;
 const SPRING_BYTES: usize = 4 * 5 + 1;
 const BEND_BYTES: usize = 4 * 5;
 const TETHER_BYTES: usize = 4 * 3;
+const BACKSTOP_BYTES: usize = 4 + 8 + 4 * 4;
 /// Bytes of a volume without triangles.
 const VOLUME_BYTES: usize = 4 * 3;
 const TRIANGLE_BYTES: usize = 4 * 3;
@@ -30,7 +31,8 @@ impl ParticleGroup {
         let (projected, thickness) = (self.scheme == SpringScheme::Projected, self.thickness());
         let (passes, faces) = (!self.passes.is_empty(), !self.faces().is_empty());
         let has = u8::from(projected) | u8::from(thickness > 0.0) << 1;
-        out.u8(has | u8::from(passes) << 2 | u8::from(faces) << 3);
+        let backstops = !self.backstops.is_empty();
+        out.u8(has | u8::from(passes) << 2 | u8::from(faces) << 3 | u8::from(backstops) << 4);
         if thickness > 0.0 {
             out.f32(thickness);
         }
@@ -41,6 +43,10 @@ impl ParticleGroup {
         if faces {
             out.count(self.faces().len());
             self.faces().iter().flatten().for_each(|&i| out.u32(i));
+        }
+        if backstops {
+            out.count(self.backstops.len());
+            self.backstops.iter().for_each(|backstop| save_backstop(backstop, out));
         }
         out.u32(self.iterations);
         out.f32(self.span);
@@ -121,7 +127,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Reads what [`save`](Self::save) wrote. Whether attached bodies exist is for the caller to check.
+    /// Reads what [`save`](Self::save) wrote. Whether attached bodies and those of backstops exist is for the caller to check.
     ///
     /// # Errors
     /// If the bytes end too early or [`GroupDef::check`] finds something wrong.
@@ -130,18 +136,14 @@ impl ParticleGroup {
         let (linear_damping, gravity_scale) = (input.f32()?, input.f32()?);
         let filter = load_filter(input)?;
         let has = input.u8()?;
-        if has > 0b1111 {
+        if has > 0b1_1111 {
             return Err(input.error("a group has no such flags"));
         }
         let scheme = if has & 1 == 0 { SpringScheme::Implicit } else { SpringScheme::Projected };
         let thickness = if has & 0b10 == 0 { 0.0 } else { input.f32()? };
-        let mut passes = Vec::new();
-        if has & 0b100 != 0 {
-            for _ in 0..input.count(8)? {
-                passes.push(BodyId::from_bits(input.u64()?));
-            }
-        }
+        let passes = if has & 0b100 == 0 { Vec::new() } else { read_bodies(input)? };
         let faces = if has & 0b1000 == 0 { Vec::new() } else { read_triangles(input)? };
+        let backstops = if has & 0b1_0000 == 0 { Vec::new() } else { read_backstops(input)? };
         let (iterations, span) = (input.u32()?, input.f32()?);
         let mut def = GroupDef {
             material,
@@ -152,6 +154,7 @@ impl ParticleGroup {
             thickness,
             passes,
             faces,
+            backstops,
             iterations,
             ..GroupDef::default()
         };
@@ -192,6 +195,31 @@ impl ParticleGroup {
         group.load_rest(input)?;
         Ok(group)
     }
+}
+
+fn save_backstop(backstop: &BackstopDef, out: &mut Writer) {
+    out.u32(backstop.particle);
+    out.u64(backstop.body.to_bits());
+    out.vec3(backstop.center);
+    out.f32(backstop.radius);
+}
+
+fn read_backstops(input: &mut Reader<'_>) -> Result<Vec<BackstopDef>, ReadError> {
+    let mut backstops = Vec::new();
+    for _ in 0..input.count(BACKSTOP_BYTES)? {
+        backstops.push(BackstopDef {
+            particle: input.u32()?,
+            body: BodyId::from_bits(input.u64()?),
+            center: input.vec3()?,
+            radius: input.f32()?,
+        });
+    }
+    Ok(backstops)
+}
+
+fn read_bodies(input: &mut Reader<'_>) -> Result<Vec<BodyId>, ReadError> {
+    let count = input.count(8)?;
+    (0..count).map(|_| Ok(BodyId::from_bits(input.u64()?))).collect()
 }
 
 fn load_net(input: &mut Reader<'_>, def: &mut GroupDef) -> Result<(), ReadError> {

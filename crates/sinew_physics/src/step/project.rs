@@ -2,6 +2,8 @@
 
 use crate::body::Velocity;
 use crate::body::def::BodyKind;
+use crate::body::material::Material;
+use crate::body::shape::Shape;
 use crate::id::BodyId;
 use crate::island::Island;
 use crate::particles::{AddedMass, Anchor, AttachmentTarget, Obstacle, ObstacleBody, ParticleGroup};
@@ -311,8 +313,8 @@ impl Surroundings {
         }
     }
 
-    /// Obstacles of a group.
-    fn place_obstacles(&mut self, TakenGroup { near, .. }: &TakenGroup, view: &View<'_>) {
+    /// Obstacles of a group: shapes of bodies, then its backstops.
+    fn place_obstacles(&mut self, TakenGroup { group, near, .. }: &TakenGroup, view: &View<'_>) {
         let seen = &self.seen;
         self.obstacles.clear();
         for &(place, shape) in &near.shapes {
@@ -324,6 +326,18 @@ impl Surroundings {
                 world_from_shape: seen[place as usize].pose * s.principal_from_shape,
                 body: place,
                 material: body.surface(shape as usize).material,
+            });
+        }
+        for backstop in group.backstops() {
+            let place = near.bodies.binary_search(&backstop.body.index).unwrap_or(0);
+            let center = view.bodies.at(backstop.body.index).principal_from_body.point(backstop.center);
+            let at = |pose: &Transform| Transform::from_translation(pose.point(center));
+            self.obstacles.push(Obstacle {
+                shape: Shape::Sphere { radius: backstop.radius },
+                previous: at(&seen[place].start),
+                world_from_shape: at(&seen[place].pose),
+                body: place as u32,
+                material: Material::DEFAULT,
             });
         }
     }

@@ -47,7 +47,7 @@ use crate::id::Lineage;
 use crate::id::{BodyId, GroupId, JointId};
 use crate::joint::Joint;
 use crate::mover::Movers;
-use crate::particles::{AttachmentTarget, GroupDef, ParticleGroup};
+use crate::particles::{GroupDef, ParticleGroup};
 use crate::runner::{Serial, TaskRunner};
 use crate::stage::{NoProfiler, Profiler};
 use crate::step::islands::Islands;
@@ -168,16 +168,17 @@ impl World {
     /// Takes a body out, with its joints; what it touched wakes.
     ///
     /// # Panics
-    /// If particles are attached to it.
+    /// If particles are attached to it or have a backstop there.
     #[track_caller]
     #[doc(alias = "despawn")]
     #[doc(alias = "destroy")]
     pub fn remove_body(&mut self, id: BodyId) {
         self.expect(id);
-        let held = |target| matches!(target, AttachmentTarget::Body { body, .. } if body == id);
-        let attached =
-            self.groups.iter().any(|(_, group)| group.attachments().iter().any(|a| held(a.target)));
-        assert!(!attached, "no particles are attached to a body that is taken out ({id:?})");
+        let worn = self.groups.iter().any(|(_, group)| group.wearers().any(|body| body == id));
+        assert!(
+            !worn,
+            "no particles are attached to a body that is taken out, nor have backstops there ({id:?})"
+        );
         self.wake_neighbors(id.index);
         let joints: Vec<JointId> = self.joints_of(id).collect();
         for joint in joints {
@@ -194,20 +195,16 @@ impl World {
         self.broad.proxies.remove(id.index);
     }
 
-    /// Adds particles with their springs; bodies that they hang on wake. Groups sleep with what hangs together with them. A body that sleeps is
+    /// Adds particles with their springs; bodies that they hang on or have backstops at wake. Groups sleep with what hangs together with them. A body that sleeps is
     /// a wall to them, unless one strikes it faster than [`SleepThresholds::speed`](crate::SleepThresholds): then it wakes.
     ///
     /// # Panics
     /// If the definition is not valid or names a body that is not there.
     pub fn add_particles(&mut self, def: &GroupDef) -> GroupId {
-        let held = def.attachments.iter().filter_map(|attachment| match attachment.target {
-            AttachmentTarget::Body { body, .. } => Some(body),
-            AttachmentTarget::World(_) => None,
-        });
-        held.clone().for_each(|body| _ = self.expect(body));
-        let id = self.groups.insert(ParticleGroup::new(def));
-        held.for_each(|body| self.wake_body(body.index));
-        id
+        let group = ParticleGroup::new(def);
+        group.wearers().for_each(|body| _ = self.expect(body));
+        group.wearers().for_each(|body| self.wake_body(body.index));
+        self.groups.insert(group)
     }
 
     /// Takes a particle group out; what slept with it or lay on it wakes.

@@ -13,7 +13,7 @@ use crate::contact::tracking::ContactTracking;
 use crate::field::FieldDef;
 use crate::joint::Joint;
 use crate::mover::Mover;
-use crate::particles::{AttachmentTarget, ParticleGroup};
+use crate::particles::ParticleGroup;
 use crate::world::World;
 use sinew_math::{ReadError, Reader, Writer};
 
@@ -169,13 +169,9 @@ fn load_group(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<ParticleGroup,
     for _ in 0..r.count(8)? {
         group.pinched.contacts.push(load_contact(r, bodies)?);
     }
-    let held = |target| match target {
-        AttachmentTarget::Body { body, .. } => bodies.get(body).is_some(),
-        AttachmentTarget::World(_) => true,
-    };
-    if group.attachments().iter().all(|a| held(a.target)) {
+    if group.wearers().all(|body| bodies.get(body).is_some()) {
         Ok(group)
     } else {
-        Err(r.error("attached to no body"))
+        Err(r.error("attached to no body, or stopped by none"))
     }
 }

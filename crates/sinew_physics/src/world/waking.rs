@@ -4,7 +4,6 @@ use crate::body::def::{Quality, Sleeping};
 use crate::boxes::Overlap;
 use crate::contact::Contact;
 use crate::id::BodyId;
-use crate::particles::AttachmentTarget;
 use crate::world::World;
 use sinew_math::Vec3;
 use std::collections::BTreeSet;
@@ -132,10 +131,8 @@ impl World {
             let Some(bed) = group.bed() else { continue };
             let shapes = 0..body.shapes.len();
             let bounds = |shape: usize| body.shapes[shape].shape.aabb(&body.world_from_shape(shape));
-            let hangs = |target| matches!(target, AttachmentTarget::Body { body, .. } if body == id);
-            let mut attachments = group.attachments().iter();
             if shapes.into_iter().any(|shape| bounds(shape).overlaps(&bed.bounds))
-                || attachments.any(|attachment| hangs(attachment.target))
+                || group.wearers().any(|body| body == id)
             {
                 group.wake();
             }

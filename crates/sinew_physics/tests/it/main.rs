@@ -1,6 +1,7 @@
 //! Integration tests of the world, held against closed forms and brute force.
 
 mod allocations;
+mod backstops;
 mod bobs;
 mod bounce;
 mod boxes;

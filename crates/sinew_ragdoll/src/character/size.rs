@@ -3,6 +3,7 @@
 use super::{CharacterDef, HitBodies, Locomotion, MotionSet, Toughness};
 use crate::def::RagdollDef;
 use crate::doctor::scaled;
+use sinew_anim::garments::Backstop;
 use sinew_anim::{Animator, Garment, LocalTransform, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, max3};
 use sinew_physics::Yields;
@@ -47,6 +48,10 @@ impl CharacterDef {
             radius: garment.radius * factor,
             spacing: garment.spacing * factor,
             thickness: garment.thickness * factor,
+            backstop: garment.backstop.map(|backstop| Backstop {
+                distance: backstop.distance * factor,
+                radius: backstop.radius * factor,
+            }),
             // As far as it stretches and bends under its weight, over its size.
             stretching: garment.stretching * factor,
             shearing: garment.shearing * factor,

@@ -2,12 +2,11 @@
 
 use super::sheet::{Sheet, particles, unsprung};
 use crate::tuning::{SHORTEST_THREAD, SQUARE, STRAIGHT};
-use core::cmp::Reverse;
 use sinew_anim::Garment;
-use sinew_anim::garments::MeshSheet;
+use sinew_anim::garments::{MeshSheet, Ways};
 use sinew_math::{Mat3, Rotation, Vec3, any_orthonormal, direction, max};
 use sinew_physics::particles::{GroupDef, SpringDef, TetherDef};
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 
 /// Particle that is a joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,45 +24,62 @@ pub(super) struct Grain {
     moved_out: Vec3,
 }
 
+/// Surroundings of all particles of a sheet.
+pub(super) struct Around {
+    places: Vec<Vec3>,
+    /// Triangles of each particle, each from that on.
+    faces: Vec<Vec<[u32; 3]>>,
+    /// Particles beside each.
+    beside: Vec<Vec<u32>>,
+}
+
+impl Around {
+    /// Surroundings in a sheet of a mesh.
+    pub fn new(sheet: &Sheet, mesh: &MeshSheet) -> Self {
+        let places: Vec<Vec3> = sheet.group.particles.iter().map(|particle| particle.position).collect();
+        let (mut faces, mut beside) = (vec![Vec::new(); places.len()], vec![Vec::new(); places.len()]);
+        for &[a, b, c] in &mesh.faces {
+            for face in [[a, b, c], [b, c, a], [c, a, b]] {
+                faces[face[0] as usize].push(face);
+            }
+        }
+        for &[a, b] in &mesh.links {
+            beside[a as usize].push(b);
+            beside[b as usize].push(a);
+        }
+        Self { places, faces, beside }
+    }
+}
+
 impl Grain {
     /// A particle of a sheet, whose joint is turned so in the bind pose.
     pub fn new(
         node: usize,
         number: usize,
         sheet: &Sheet,
-        mesh: &MeshSheet,
+        around: &Around,
         particle: usize,
         bone: Rotation,
     ) -> Self {
-        let own = particle as u32;
-        let places: Vec<Vec3> = sheet.group.particles.iter().map(|particle| particle.position).collect();
-        let turned = |&[a, b, c]: &[u32; 3]| match own {
-            own if own == a => Some([a, b, c]),
-            own if own == b => Some([b, c, a]),
-            own if own == c => Some([c, a, b]),
-            _ => None,
-        };
-        let around: Vec<[u32; 3]> = mesh.faces.iter().filter_map(turned).collect();
-        let others = mesh.links.iter().filter(|link| link.contains(&own));
-        let others: Vec<u32> = others.map(|&[a, b]| if a == own { b } else { a }).collect();
+        let places = around.places.as_slice();
         let mut grain = Self {
             node,
             sheet: number,
             particle,
-            around,
+            around: around.faces[particle].clone(),
             beside: Vec::new(),
             frame_from_bone: Rotation::IDENTITY,
             moved_out: sheet.moved_out[particle],
         };
-        let normal = grain.normal(&places).unwrap_or(Vec3::Z);
+        let normal = grain.normal(places).unwrap_or(Vec3::Z);
         let x = any_orthonormal(normal);
-        for other in others {
+        for &other in &around.beside[particle] {
             let way = places[other as usize] - places[particle];
             if way.length_squared() > 0.0 {
                 grain.beside.push((other, way.dot(x) / way.length_squared()));
             }
         }
-        if let Some(frame) = grain.frame(&places) {
+        if let Some(frame) = grain.frame(places) {
             let back = frame.inverse();
             grain.frame_from_bone = back * bone;
             grain.moved_out = back * grain.moved_out;
@@ -226,7 +242,7 @@ impl Weave<'_> {
         group.bends.retain(|bend| bend.stiffness > 0.0 && bend.stiffness.is_finite());
     }
 
-    /// Tethers every particle to the held one that is nearest along the edges (Dijkstra), as long as the way there; gives that of each.
+    /// Tethers every particle to the held one that is nearest along the edges, as long as the way there; gives that of each.
     fn tether(&self, group: &mut GroupDef) -> Vec<usize> {
         let (way, from) = ways_from_held(self.mesh, self.places);
         for particle in (0..way.len()).filter(|&particle| way[particle] > 0.0 && way[particle].is_finite()) {
@@ -237,7 +253,7 @@ impl Weave<'_> {
     }
 }
 
-/// Length of the way along the edges from each particle to the nearest that is held (Dijkstra), metres, and which that is; itself where there is no way.
+/// Length of the way along the edges from each particle to the nearest that is held, metres, and which that is; itself where there is no way.
 pub(super) fn ways_from_held(mesh: &MeshSheet, places: &[Vec3]) -> (Vec<f32>, Vec<usize>) {
     let count = places.len();
     let mut beside: Vec<Vec<(usize, f32)>> = vec![Vec::new(); count];
@@ -247,23 +263,8 @@ pub(super) fn ways_from_held(mesh: &MeshSheet, places: &[Vec3]) -> (Vec<f32>, Ve
         beside[a].push((b, length));
         beside[b].push((a, length));
     }
-    let (mut way, mut from) = (vec![f32::INFINITY; count], (0..count).collect::<Vec<usize>>());
-    let mut open = BinaryHeap::new();
-    for held in (0..count).filter(|&particle| mesh.held[particle]) {
-        way[held] = 0.0;
-        open.push((Reverse(0), Reverse(held)));
-    }
-    while let Some((Reverse(bits), Reverse(at))) = open.pop() {
-        // Lengths are not negative, so their bits are in their order.
-        if f32::from_bits(bits) > way[at] {
-            continue;
-        }
-        for &(next, length) in &beside[at] {
-            if way[at] + length < way[next] {
-                (way[next], from[next]) = (way[at] + length, from[at]);
-                open.push((Reverse(way[next].to_bits()), Reverse(next)));
-            }
-        }
-    }
-    (way, from)
+    let mut ways = Ways::new(count);
+    ways.add(&beside, (0..count).filter(|&particle| mesh.held[particle]));
+    let from = (0..).zip(ways.from).map(|(own, from)| if from == usize::MAX { own } else { from });
+    (ways.length, from.collect())
 }

@@ -34,6 +34,7 @@
 //! assert!(turned.fold(0.0, f32::max) > 0.01, "it swings as he walks");
 //! ```
 
+mod backing;
 mod grid;
 mod mesh;
 mod rig;

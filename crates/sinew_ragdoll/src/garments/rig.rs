@@ -1,6 +1,6 @@
 //! Garments as they are worn: sheets, and the joints that turn with them, parents first.
 
-use super::mesh::Grain;
+use super::mesh::{Around, Grain};
 use super::sheet::Sheet;
 use crate::def::RagdollDef;
 use crate::mapping::Mapping;
@@ -173,9 +173,10 @@ impl GarmentRig {
         let sheet = Sheet::of_mesh(garment, mesh, &drawn, bodies, ragdoll);
         let nodes: Vec<usize> =
             mesh.joints.iter().map(|&joint| node_of[joint].expect("its joints are nodes")).collect();
+        let around = Around::new(&sheet, mesh);
         for (particle, &node) in nodes.iter().enumerate() {
             let bone = bind(mesh.joints[particle]).to_rigid().rotation;
-            self.grains.push(Grain::new(node, self.sheets.len(), &sheet, mesh, particle, bone));
+            self.grains.push(Grain::new(node, self.sheets.len(), &sheet, &around, particle, bone));
         }
         self.hung.push(Hanging::Particles(nodes));
         self.sheets.push(sheet);

@@ -1,5 +1,6 @@
 //! The sheet of a garment: its particles at rest, and what joins them.
 
+use super::backing::{Backing, backings};
 use super::grid::Grid;
 use super::mesh;
 use crate::def::RagdollDef;
@@ -29,6 +30,8 @@ pub(super) struct Sheet {
     pub strand: Vec<usize>,
     /// Bodies of the wearer that pass through it, ascending.
     pub passed: Vec<usize>,
+    /// Backstops of particles, if it has any.
+    pub backings: Vec<Backing>,
 }
 
 impl Sheet {
@@ -46,7 +49,8 @@ impl Sheet {
         let held_by = strand.iter().map(|&line| held_by[grid.nearest_column(line)]).collect();
         let group = Weave { garment, grid: &grid, places: &places }.group();
         let spacing = garment.spacing;
-        Self { grid: Some(grid), group, moved_out, spacing, is_held, held_by, strand, passed }
+        let backings = backings(garment, &group, &is_held, ragdoll, &passed);
+        Self { grid: Some(grid), group, moved_out, spacing, is_held, held_by, strand, passed, backings }
     }
 
     /// A sheet of a mesh, whose particles are drawn at these places in the bind pose, character space, metres; each hangs from a body of the ragdoll.
@@ -63,7 +67,9 @@ impl Sheet {
         let places = places_outside(drawn, &mesh.held, garment.radius, ragdoll, &passed);
         let moved_out = places.iter().zip(drawn).map(|(&place, &drawn)| place - drawn).collect();
         let (group, strand) = mesh::weave(garment, mesh, &places);
+        let backings = backings(garment, &group, &mesh.held, ragdoll, &passed);
         Self {
+            backings,
             grid: None,
             group,
             moved_out,

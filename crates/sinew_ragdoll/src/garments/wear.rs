@@ -6,7 +6,7 @@ use crate::def::RagdollDef;
 use crate::tuning::{CAUGHT, DRAPINGS};
 use sinew_anim::LocalTransform;
 use sinew_math::{Affine, ReadError, Reader, Rotation, Transform, Vec3, Writer, max};
-use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, SpringDef};
+use sinew_physics::particles::{AttachmentDef, AttachmentTarget, BackstopDef, GroupDef, SpringDef};
 use sinew_physics::{BodyId, GroupId, Shape, World};
 
 /// Garments as one character wears them. Default: none are on.
@@ -199,6 +199,12 @@ impl Wearer<'_> {
                 particle.position = places[index] + turn * sheet.moved_out[index];
             }
         }
+        group.backstops.extend(sheet.backings.iter().map(|backing| BackstopDef {
+            particle: backing.particle as u32,
+            body: self.bodies[backing.body],
+            center: backing.center,
+            radius: backing.radius,
+        }));
         group.passes = sheet.passed.iter().map(|&body| self.bodies[body]).collect();
         self.drape(world, sheet, &mut group);
         for (index, particle) in group.particles.iter_mut().enumerate() {

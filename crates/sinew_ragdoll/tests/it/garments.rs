@@ -186,6 +186,32 @@ fn a_sheet_that_begins_within_the_body_does_not_burst() {
     assert!(now < 0.2 && mean_stretch(group) < 0.03, "{now} m/s, {}", mean_stretch(group));
 }
 
+/// A skirt that is put on in mid-stride, with thighs through where its bones have it, is draped: it begins out of the legs, at its lengths.
+#[test]
+fn a_sheet_that_is_put_on_in_mid_stride_is_draped() {
+    let (mut deepest, mut stretch): (f32, f32) = (0.0, 0.0);
+    for steps in [20, 27, 34, 41, 48, 55] {
+        let (mut world, mut character) = walking(&[&SKIRT]);
+        character.set_level_of_detail(&mut world, Detail::Keyed);
+        go_on(&mut world, &mut character, steps);
+        character.set_level_of_detail(&mut world, Detail::Full);
+        assert_eq!(character.garments().len(), 1, "it is on at once");
+        let group = world.particles(character.garments()[0]);
+        stretch = max(stretch, mean_stretch(group));
+        let is_free = |particle: u32| group.attachments().iter().all(|held| held.particle != particle);
+        for (body, &id) in character.def().ragdoll.bodies.iter().zip(character.bodies()) {
+            if !group.passes().contains(&id) {
+                let frame = world.transform(id);
+                let free = (0..).zip(group.positions()).filter(|(particle, _)| is_free(*particle));
+                let depth = free.map(|(_, &at)| -body.shape.signed_distance(&frame, at).0);
+                deepest = depth.fold(deepest, max);
+            }
+        }
+    }
+    assert!(deepest < 0.005, "{deepest} m in a body");
+    assert!(stretch < 0.05, "stretched by {stretch}");
+}
+
 #[test]
 fn a_teleport_takes_garments_along_and_a_reset_starts_them_over() {
     let (mut world, mut character) = walking(&[&CAPE]);

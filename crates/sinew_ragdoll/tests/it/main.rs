@@ -1,6 +1,7 @@
 //! Integration tests of the ragdoll crate.
 
 mod actor;
+mod backstops;
 mod bake;
 mod blows;
 mod borne;

@@ -11,6 +11,9 @@ use sinew_ragdoll::{Character, CharacterDef, MotionSet};
 use sinew_scenes::skirted::{CELLS, joint, lay_skirt, skirted, skirted_rig};
 use std::sync::Arc;
 
+/// Spacing that the cells of a coarse skirt keep as they are, metres.
+const COARSE: f32 = 0.1;
+
 fn ground(gravity: Vec3) -> World {
     let mut world = World::new(WorldDef { gravity, ..WorldDef::default() });
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -171,7 +174,7 @@ fn a_snapshot_in_the_middle_of_a_swing_goes_on_with_the_same_bits() {
 #[test]
 fn a_coarse_mesh_is_its_own_sheet() {
     let mut rig = skirted_rig([20, 8]);
-    let sheet = lay_skirt(&mut rig, 400).expect("it can be cloth");
+    let sheet = lay_skirt(&mut rig, 400, COARSE).expect("it can be cloth");
     let sheet = &rig.sheets[sheet];
     // The buckle hangs together with nothing.
     assert_eq!((sheet.joints.len(), sheet.vertices), (20 * 9, 20 * 9 + 4));
@@ -212,7 +215,7 @@ fn flared(parent: Option<&str>) -> CharacterDef {
         primitive.joints[vertex] = [slot, 0, 0, 0];
         primitive.weights[vertex] = [1.0, 0.0, 0.0, 0.0];
     }
-    let sheet = lay_skirt(&mut rig, 400).expect("it can be cloth");
+    let sheet = lay_skirt(&mut rig, 400, COARSE).expect("it can be cloth");
     let flare = rig.sheets[sheet].joints.iter().filter(|&&at| rig.joints[at].parent == Some(source)).count();
     assert!(flare >= 20, "{flare} particles hang on it");
     let garment = Garment::of_sheet(&rig.sheets[sheet]);
@@ -305,7 +308,7 @@ fn on_a_spring(is_sprung: bool) -> (CharacterDef, usize) {
     skin.inverse_bind.push(bind_model[hips].inverse());
     let skirt = rig.meshes.last_mut().expect("it has a skirt");
     skirt.primitives[0].joints.iter_mut().flatten().filter(|at| **at == slot as u16).for_each(|at| *at = new);
-    lay_skirt(&mut rig, 400).expect("it can be cloth");
+    lay_skirt(&mut rig, 400, COARSE).expect("it can be cloth");
     let garment = Garment::of_sheet(&rig.sheets[0]);
     let bare = skirted(|_| ());
     let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
@@ -355,4 +358,59 @@ fn it_is_drawn_where_it_is_below_bones_that_swing() {
         swung = max(swung, *turn);
     }
     assert!(swung > 0.1, "the bone swings: {swung}");
+}
+
+/// A skirt of ten cells around, wider than a leg: it is split for the cloth, so that no leg comes between its particles.
+#[test]
+fn legs_do_not_come_through_a_coarse_mesh() {
+    let deepest_face = |spacing: f32| {
+        let mut rig = skirted_rig([10, 4]);
+        let sheet = lay_skirt(&mut rig, 400, spacing).expect("it can be cloth");
+        let garment = Garment { spacing, ..Garment::of_sheet(&rig.sheets[sheet]) };
+        let bare = skirted(|_| ());
+        let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
+        let mut def = CharacterDef::new(rig, bare.ragdoll.clone(), &analysis.bind_model);
+        def.set_motions(bare.motions().clone()).expect("its clips can be played");
+        def.set_garments(&[garment]);
+        let mut world = ground(WorldDef::default().gravity);
+        let mut character = Character::spawn(&mut world, &Arc::new(def), Transform::IDENTITY);
+        character.set_move(Vec3::Z * 1.3);
+        let mut deepest: f32 = 0.0;
+        for step in 0..240 {
+            go_on(&mut world, &mut character, 1);
+            if step > 30 {
+                deepest = max(deepest, deepest_middle(&world, &character));
+            }
+        }
+        let group = world.particles(character.garments()[0]);
+        assert!(mean_stretch(group) < 0.03, "{}", mean_stretch(group));
+        (group.positions().len(), deepest)
+    };
+    let (few, coarse) = deepest_face(0.5);
+    let (many, split) = deepest_face(Garment::default().spacing);
+    assert!(few == 50 && (200..=400).contains(&many), "{few} and {many} particles");
+    assert!(coarse > 0.025, "or this says nothing: {coarse} m");
+    assert!(split < 0.015, "{split} m, {coarse} m without");
+}
+
+/// Largest depth of the middle of a face, no corner of which is held, in a body that it meets, metres.
+fn deepest_middle(world: &World, character: &Character) -> f32 {
+    let group = world.particles(character.garments()[0]);
+    let held: Vec<u32> = group.attachments().iter().map(|held| held.particle).collect();
+    let hangs = |face: &&[u32; 3]| face.iter().all(|corner| !held.contains(corner));
+    let middles: Vec<Vec3> = group
+        .faces()
+        .iter()
+        .filter(hangs)
+        .map(|face| face.iter().map(|&corner| group.positions()[corner as usize]).sum::<Vec3>() / 3.0)
+        .collect();
+    let mut deepest: f32 = 0.0;
+    for (body, &id) in character.def().ragdoll.bodies.iter().zip(character.bodies()) {
+        if !group.passes().contains(&id) {
+            let frame = world.transform(id);
+            let depth = middles.iter().map(|&at| -body.shape.signed_distance(&frame, at).0);
+            deepest = depth.fold(deepest, max);
+        }
+    }
+    deepest
 }

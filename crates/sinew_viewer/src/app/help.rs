@@ -23,7 +23,7 @@ const KEYS: [(&str, &str); 22] = [
     ("N, .", "one step"),
     ("R", "start again"),
     ("B", "throw a ball at what the mouse points at"),
-    ("1 to 9, 0", "layers"),
+    ("1 to 9, 0, H", "layers"),
     ("click, [ and ]", "choose a body of a ragdoll; its handles change limits and size"),
     ("- and =", "narrow or widen the limits of its joint by 5°"),
     ("Ctrl+S", "save the ragdoll as .sinew.json"),

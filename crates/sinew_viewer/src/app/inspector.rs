@@ -181,7 +181,8 @@ fn plot(ui: &mut egui::Ui, history: &VecDeque<f64>, metric: &Metric) {
 fn layers(app: &mut App, ui: &mut egui::Ui) {
     for (number, layer) in Layer::ALL.into_iter().enumerate() {
         let mut on = app.layers.contains(&layer);
-        if ui.checkbox(&mut on, format!("{}  {}", (number + 1) % 10, layer.name())).changed() {
+        let key = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "0", "H"][number];
+        if ui.checkbox(&mut on, format!("{key}  {}", layer.name())).changed() {
             app.toggle(layer);
         }
     }

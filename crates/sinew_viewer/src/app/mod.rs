@@ -551,8 +551,8 @@ impl App {
             self.shows_help = false;
             self.shows_hints = false;
         }
-        use Key::{Num0, Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9};
-        let keys = [Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9, Num0];
+        use Key::{H, Num0, Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9};
+        let keys = [Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9, Num0, H];
         for (key, layer) in keys.into_iter().zip(Layer::ALL) {
             if pressed(key) {
                 self.toggle(layer);

@@ -2,6 +2,7 @@
 
 mod islands;
 mod limits;
+mod springs;
 
 pub(crate) use limits::{Cone, add_cone, cone_of};
 
@@ -9,6 +10,7 @@ use sinew::math::{Transform, Vec3, max, min, normalize_or};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::{BodyKind, DebugDraw, DrawKind, World};
 use sinew_picture::{Line, LineDepth, draw};
+use sinew_scenes::scenes::Figure;
 
 /// A layer that can be switched on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,11 +35,13 @@ pub enum Layer {
     Islands,
     /// Forces of fields on bodies.
     Fields,
+    /// Springs of characters with their hit radii and colliders, and backstops of cloth.
+    Springs,
 }
 
 impl Layer {
     /// All layers, in the order in which they are shown.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Shapes,
         Self::Joints,
         Self::Contacts,
@@ -48,6 +52,7 @@ impl Layer {
         Self::Limits,
         Self::Islands,
         Self::Fields,
+        Self::Springs,
     ];
 
     /// Name of the layer.
@@ -63,6 +68,7 @@ impl Layer {
             Self::Limits => "joint limits",
             Self::Islands => "islands",
             Self::Fields => "fields",
+            Self::Springs => "springs and backstops",
         }
     }
 }
@@ -93,7 +99,7 @@ const FORCE_RANGE: [f32; 2] = [0.04, 2.0];
 const WEIGHT: f32 = 9.81;
 
 /// Adds the lines of the layers that are on.
-pub fn draw(world: &World, layers: &[Layer], lines: &mut Vec<Line>) {
+pub fn draw(world: &World, figures: &[Figure<'_>], layers: &[Layer], lines: &mut Vec<Line>) {
     let on = |layer: Layer| layers.contains(&layer);
     if [Layer::Shapes, Layer::Joints].into_iter().any(on) {
         world.draw(&mut Chosen { layers, lines });
@@ -104,6 +110,10 @@ pub fn draw(world: &World, layers: &[Layer], lines: &mut Vec<Line>) {
     if on(Layer::Limits) {
         let joints = world.joint_ids().filter_map(|id| cone_of(world, &world.joint(id)));
         joints.for_each(|cone| add_cone(&cone, None, lines));
+    }
+    if on(Layer::Springs) {
+        springs::add_springs(figures, lines);
+        springs::add_backstops(world, lines);
     }
     if on(Layer::Islands) {
         islands::add(world, lines);

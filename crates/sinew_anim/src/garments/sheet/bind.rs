@@ -1,9 +1,8 @@
 //! Vertices on the particles of their sheet.
 
-use super::nearest_on_triangle;
 use super::reduce::Reduced;
 use super::weld::Welded;
-use sinew_math::Vec3;
+use sinew_math::{Vec3, triangle};
 
 /// Particles that a vertex hangs on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +42,7 @@ fn nearest(welded: &Welded, reduced: &Reduced, vertex: usize, faces: &[u32]) -> 
     for &face in faces {
         let [a, b, c] = reduced.faces[face as usize].map(|corner| corner as usize);
         let corners: [Vec3; 3] = [a, b, c].map(|particle| welded.places[reduced.seeds[particle]]);
-        let [u, v, w] = nearest_on_triangle(place, corners);
+        let [u, v, w] = triangle::nearest(&corners, place).shares();
         let off = (corners[0] * u + corners[1] * v + corners[2] * w - place).length_squared();
         // What is not a number is not nearer than anything.
         if off < best.map_or(f32::INFINITY, |(least, _)| least) {

@@ -1,8 +1,7 @@
-//! Edges of a welded mesh, and ways along them.
+//! Edges of a welded mesh.
 
 use super::weld::Welded;
-use core::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 
 /// Edges of a mesh.
 pub(super) struct Graph {
@@ -52,37 +51,4 @@ fn components(beside: &[Vec<(usize, f32)>]) -> Vec<usize> {
         }
     }
     component
-}
-
-/// Distances along edges to the nearest of some vertices, and which that is.
-pub(super) struct Ways {
-    pub length: Vec<f32>,
-    pub from: Vec<usize>,
-}
-
-impl Ways {
-    /// From nowhere.
-    pub fn new(count: usize) -> Self {
-        Self { length: vec![f32::INFINITY; count], from: vec![usize::MAX; count] }
-    }
-
-    /// Begins at one vertex more (Dijkstra).
-    pub fn add(&mut self, graph: &Graph, start: usize) {
-        // Lengths are not negative, so their bits are in their order.
-        let mut open = BinaryHeap::from([(Reverse(0), Reverse(start))]);
-        (self.length[start], self.from[start]) = (0.0, start);
-        while let Some((Reverse(bits), Reverse(at))) = open.pop() {
-            let length = f32::from_bits(bits);
-            if length > self.length[at] {
-                continue;
-            }
-            for &(next, edge) in &graph.beside[at] {
-                let way = length + edge;
-                if way < self.length[next] {
-                    (self.length[next], self.from[next]) = (way, start);
-                    open.push((Reverse(way.to_bits()), Reverse(next)));
-                }
-            }
-        }
-    }
 }

@@ -3,12 +3,13 @@
 mod bind;
 mod graph;
 mod reduce;
+mod split;
 mod weld;
 
 use super::MeshSheet;
 use crate::rig::{Joint, JointIdx, LocalTransform, Rig, RigMesh, Skin};
 use bind::Bound;
-use sinew_math::{Affine, Vec3};
+use sinew_math::Affine;
 use weld::Welded;
 
 /// Part of a rig that a sheet is to be made of: all of a mesh, or what of it has one material.
@@ -65,11 +66,11 @@ pub struct SheetOptions<'a> {
     pub bind_model: &'a [Affine],
     /// From there to where +Y is up and the unit is a metre.
     pub metres_from_model: Affine,
-    /// Most distance between particles beside each other where the mesh is reduced, metres, positive; more where there would be too many.
+    /// Most distance between particles beside each other, metres, positive; more where there would be too many, and along the diagonals of square cells.
     pub spacing: f32,
     /// Depth below its highest point down to which it is held, metres; `None`: a tenth of its height.
     pub held: Option<f32>,
-    /// Most particles, at least 4: finer meshes are reduced.
+    /// Most particles, at least 4: finer meshes are reduced, and coarser ones no further split.
     pub most_particles: usize,
     /// Number of the first new joint's node in the file ([`Joint::source`]); the others follow.
     pub first_source: usize,
@@ -126,7 +127,7 @@ impl MeshPart {
 }
 
 /// Makes a part of a rig a sheet of cloth: vertices in one place are one; where there are more than a sheet may have particles, such are chosen all over it
-/// that lie no farther apart than the spacing, its edges first. The rig gets a joint for each particle, and the vertices hang on these instead of those that
+/// that lie no farther apart than the spacing, its edges first; where edges are longer than that, there are particles between its vertices. The rig gets a joint for each particle, and the vertices hang on these instead of those that
 /// moved them: each on its own, or on the three of the triangle that it lies on. As long as nothing moves the new joints, the mesh goes along with the old ones.
 ///
 /// Parts of the mesh that do not hang together with what is held (buttons, a buckle) move with the cloth that they lie on.
@@ -191,10 +192,12 @@ impl Rig {
 }
 
 fn lay(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> Result<usize, SheetError> {
-    let welded = weld::weld(rig, part, options);
+    let mut welded = weld::weld(rig, part, options);
+    let (vertices, longest_edge) = (welded.places.len(), welded.longest_edge());
     let (low, high) = welded.heights().ok_or(SheetError::Empty)?;
-    let graph = graph::Graph::new(&welded);
     let above = high - options.held.unwrap_or(crate::tuning::HELD_SHARE * (high - low));
+    welded.split_what_hangs(above, options);
+    let graph = graph::Graph::new(&welded);
     let is_held = |vertex: usize| welded.places[vertex].y >= above;
     let reduced = reduce::reduce(&welded, &graph, is_held, options)?;
     let held: Vec<bool> = reduced.seeds.iter().map(|&seed| is_held(seed)).collect();
@@ -213,7 +216,8 @@ fn lay(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> Result<usi
         faces: reduced.faces,
         links: reduced.links,
         areas: reduced.areas,
-        vertices: welded.places.len(),
+        vertices,
+        longest_edge,
     };
     rig.sheets.push(sheet);
     Ok(rig.sheets.len() - 1)
@@ -267,37 +271,4 @@ fn rewrite(rig: &mut Rig, part: &MeshPart, welded: &Welded, bound: &[Bound], par
             primitive.weights[vertex] = *weights;
         }
     }
-}
-
-/// Point of a triangle that is nearest to a place, as shares of its corners (Ericson, "Real-Time Collision Detection", 2005, §5.1.5).
-fn nearest_on_triangle(place: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
-    let (ab, ac) = (b - a, c - a);
-    let (d1, d2) = (ab.dot(place - a), ac.dot(place - a));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return [1.0, 0.0, 0.0];
-    }
-    let (d3, d4) = (ab.dot(place - b), ac.dot(place - b));
-    if d3 >= 0.0 && d4 <= d3 {
-        return [0.0, 1.0, 0.0];
-    }
-    let (d5, d6) = (ab.dot(place - c), ac.dot(place - c));
-    if d6 >= 0.0 && d5 <= d6 {
-        return [0.0, 0.0, 1.0];
-    }
-    let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let along = d1 / (d1 - d3);
-        return [1.0 - along, along, 0.0];
-    }
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let along = d2 / (d2 - d6);
-        return [1.0 - along, 0.0, along];
-    }
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        let along = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return [0.0, 1.0 - along, along];
-    }
-    let whole = 1.0 / (va + vb + vc);
-    let (v, w) = (vb * whole, vc * whole);
-    [1.0 - v - w, v, w]
 }

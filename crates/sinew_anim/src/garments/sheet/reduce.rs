@@ -1,8 +1,9 @@
 //! Particles of a sheet among the vertices of its mesh.
 
-use super::graph::{Graph, Ways};
+use super::graph::Graph;
 use super::weld::Welded;
 use super::{SheetError, SheetOptions};
+use crate::garments::ways::Ways;
 use crate::tuning::{COARSER, FINEST};
 use sinew_math::{Vec3, max, max3, min3};
 use std::collections::BTreeSet;
@@ -120,7 +121,7 @@ fn spread(
                     break;
                 }
                 seeds.push(farthest);
-                ways.add(graph, farthest);
+                ways.add(&graph.beside, [farthest]);
             }
         }
         if seeds.len() <= options.most_particles {

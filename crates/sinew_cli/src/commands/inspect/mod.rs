@@ -5,18 +5,19 @@ mod clips;
 use crate::failure::{Failure, Result};
 use crate::input::motion::Motion;
 use crate::input::settings_arg::assumed;
-use crate::report::garments_report::{garments_json, garments_text};
+use crate::report::garments_report::{garments_json, garments_text, worn_json, worn_notes};
 use crate::report::ragdoll_report::axis_name;
 use crate::report::springs_report::{colliders_json, links_json, links_text, springs_json, springs_text};
 use crate::report::table::{Table, counted, shown};
 use crate::report::{Report, number};
 use clips::{ClipFacts, clip_table, event_table};
 use serde_json::{Value, json};
-use sinew::anim::SpringLink;
+use sinew::anim::{Garment, SpringLink};
 use sinew::formats::gltf::SpringFormat;
 use sinew::formats::{MotionOptions, read_bytes, read_ragdoll_settings, settings_path};
 use sinew::math::Vec3;
-use sinew::ragdoll::SettingsError;
+use sinew::ragdoll::settings::analyze_with;
+use sinew::ragdoll::{Settings, SettingsError};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -37,29 +38,56 @@ impl Inspect {
     /// Reads the file and describes it.
     pub fn run(&self) -> Result<Report> {
         let motion = Motion::load(&self.file, &MotionOptions::default())?;
-        let (links, trouble) = match self.links(&motion) {
-            Ok(links) => (links, None),
-            Err(failure) => (Vec::new(), Some(failure.to_string())),
-        };
-        let content = Content { clips: ClipFacts::of(&motion), motion: &motion, links, trouble };
+        let (mut links, mut worn, mut trouble) = (Vec::new(), Vec::new(), Vec::new());
+        match self.settings() {
+            Ok(settings) => {
+                let mut tell = |failure: Failure| trouble.push(failure.to_string());
+                self.links(&motion, settings.as_ref()).map_or_else(&mut tell, |found| links = found);
+                self.worn(&motion, settings.as_ref()).map_or_else(&mut tell, |found| worn = found);
+            }
+            Err(failure) => trouble.push(failure.to_string()),
+        }
+        let content = Content { clips: ClipFacts::of(&motion), motion: &motion, links, worn, trouble };
         Ok(Report { json: content.to_json(), text: content.to_text() })
     }
 
-    /// Links across strands that the settings beside the file ask for.
-    fn links(&self, motion: &Motion) -> Result<Vec<SpringLink>> {
+    /// Settings beside the file, if there are any.
+    fn settings(&self) -> Result<Option<Settings>> {
         let path = settings_path(&self.file);
         if !path.is_file() {
-            return Ok(motion.file.rig.springs.links.clone());
+            return Ok(None);
         }
-        let name = path.display().to_string();
         let read = read_bytes(&path).and_then(|bytes| read_ragdoll_settings(&bytes));
-        let settings = read.map_err(|error| error.with_file(&name))?;
-        let up = motion.analysis.as_ref().map_or(Vec3::Y, |analysis| analysis.up_axis);
-        match settings.springs_of(settings.springs.unwrap_or_default(), &motion.file.rig, up) {
-            Ok(springs) => Ok(springs.links),
-            Err(SettingsError::Setting { what, place }) => Err(Failure::at(&name, what, &place)),
-            Err(SettingsError::Build(error)) => Err(Failure::of_file(&name, error)),
+        Ok(Some(read.map_err(|error| error.with_file(path.display().to_string()))?))
+    }
+
+    /// Trouble with these.
+    fn failure(&self, error: SettingsError) -> Failure {
+        let name = settings_path(&self.file).display().to_string();
+        match error {
+            SettingsError::Setting { what, place } => Failure::at(&name, what, &place),
+            SettingsError::Build(error) => Failure::of_file(&name, error),
         }
+    }
+
+    /// Links across strands that the settings ask for.
+    fn links(&self, motion: &Motion, settings: Option<&Settings>) -> Result<Vec<SpringLink>> {
+        let Some(settings) = settings else { return Ok(motion.file.rig.springs.links.clone()) };
+        let up = motion.analysis.as_ref().map_or(Vec3::Y, |analysis| analysis.up_axis);
+        let springs = settings.springs_of(settings.springs.unwrap_or_default(), &motion.file.rig, up);
+        Ok(springs.map_err(|error| self.failure(error))?.links)
+    }
+
+    /// Garments that the settings ask for.
+    fn worn(&self, motion: &Motion, settings: Option<&Settings>) -> Result<Vec<Garment>> {
+        let (Some(settings), Some(analysis)) = (settings, &motion.analysis) else { return Ok(Vec::new()) };
+        let mut rig = motion.file.rig.clone();
+        // Lengths are metres by what the settings say of the unit.
+        let analysis = analyze_with(&rig, analysis, settings).map_err(|error| self.failure(error))?;
+        let nodes = rig.joints.len();
+        let laid = settings.garments.lay_sheets(&mut rig, &analysis, nodes);
+        laid.map_err(|error| self.failure(error))?;
+        settings.garments.garments(&rig).map_err(|error| self.failure(error))
     }
 }
 
@@ -67,9 +95,11 @@ impl Inspect {
 struct Content<'a> {
     motion: &'a Motion,
     clips: Vec<ClipFacts<'a>>,
-    /// Links of its springs, and what is wrong in the settings that ask for them.
+    /// Links of its springs, and what is wrong in the settings that ask for them and for garments.
     links: Vec<SpringLink>,
-    trouble: Option<String>,
+    /// Garments that the settings ask for.
+    worn: Vec<Garment>,
+    trouble: Vec<String>,
 }
 
 impl Content<'_> {
@@ -98,6 +128,7 @@ impl Content<'_> {
             "spring_colliders": colliders_json(&file.rig),
             "spring_links": links_json(&file.rig, &self.links),
             "garments": garments_json(&file.rig),
+            "worn": worn_json(&self.worn),
             "notes": self.notes(),
             "warnings": self.warnings(),
         })
@@ -206,7 +237,9 @@ impl Content<'_> {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.motion.analysis.as_ref().map_or_else(Vec::new, assumed)
+        let mut notes = self.motion.analysis.as_ref().map_or_else(Vec::new, assumed);
+        notes.extend(worn_notes(&self.worn));
+        notes
     }
 
     /// Warnings of what could not be read, and what cannot be played.

@@ -4,7 +4,7 @@ use crate::body::Body;
 use crate::boxes::Overlap;
 use crate::contact::proxies::Owner;
 use crate::field::{Fields, Target};
-use crate::particles::{AttachmentTarget, ParticleGroup};
+use crate::particles::ParticleGroup;
 use crate::solver::view::View;
 use core::ops::ControlFlow;
 
@@ -37,7 +37,7 @@ pub(crate) struct Neighbors {
     pub bodies: Vec<u32>,
     /// Position in `bodies`, shape number.
     pub shapes: Vec<(u32, u32)>,
-    /// Body and shape of what is near, body and nothing for each particle that hangs on it.
+    /// Body and shape of what is near, body and nothing for each particle that hangs on it or has a backstop there.
     found: Vec<(u32, Option<u32>)>,
 }
 
@@ -61,10 +61,7 @@ impl Neighbors {
             self.found.extend(near(owner).then_some((owner.body, Some(owner.shape))));
             ControlFlow::<()>::Continue(())
         });
-        self.found.extend(group.attachments().iter().filter_map(|a| match a.target {
-            AttachmentTarget::Body { body, .. } => Some((body.index, None)),
-            AttachmentTarget::World(_) => None,
-        }));
+        self.found.extend(group.wearers().map(|body| (body.index, None)));
         self.found.sort_unstable();
         self.list();
     }

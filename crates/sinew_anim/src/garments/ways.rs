@@ -1,0 +1,43 @@
+//! Ways along edges.
+
+use core::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Length of the way along edges from each of some vertices to the nearest start, and which that is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ways {
+    /// Infinite where no way leads from any.
+    pub length: Vec<f32>,
+    /// Index of the start; `usize::MAX` where no way leads from any.
+    pub from: Vec<usize>,
+}
+
+impl Ways {
+    /// Ways from nowhere, for so many vertices.
+    pub fn new(count: usize) -> Self {
+        Self { length: vec![f32::INFINITY; count], from: vec![usize::MAX; count] }
+    }
+
+    /// Begins at more vertices (Dijkstra); `beside` has those beside each, with the length of the edge there (≥ 0).
+    pub fn add(&mut self, beside: &[Vec<(usize, f32)>], starts: impl IntoIterator<Item = usize>) {
+        let mut open = BinaryHeap::new();
+        for start in starts {
+            (self.length[start], self.from[start]) = (0.0, start);
+            open.push((Reverse(0), Reverse(start)));
+        }
+        // Lengths are not negative, so their bits are in their order.
+        while let Some((Reverse(bits), Reverse(at))) = open.pop() {
+            let length = f32::from_bits(bits);
+            if length > self.length[at] {
+                continue;
+            }
+            for &(next, edge) in &beside[at] {
+                let way = length + edge;
+                if way < self.length[next] {
+                    (self.length[next], self.from[next]) = (way, self.from[at]);
+                    open.push((Reverse(way.to_bits()), Reverse(next)));
+                }
+            }
+        }
+    }
+}
