@@ -149,7 +149,7 @@ fn garments_are_named_or_listed() {
         (r#"[{"mesh": "a", "friction": 101}]"#, "garments[0].friction"),
         (r#"[{"mesh": "a", "thickness": 1.5}]"#, "garments[0].thickness"),
         (r#"[{"mesh": "a", "backstop": {"distance": -0.1}}]"#, "garments[0].backstop.distance"),
-        (r#"[{"mesh": "a", "backstop": {"radius": 0}}]"#, "garments[0].backstop.radius"),
+        (r#"[{"mesh": "a", "backstop": {"distance": 0, "radius": 0}}]"#, "garments[0].backstop.radius"),
         (r#"[{"mesh": "a", "backstop": {"depth": 0.1}}]"#, "distance"),
     ] {
         let error = read(garments).unwrap_err().to_string();
