@@ -39,7 +39,7 @@ fn cloth() -> GroupDef {
     .group
 }
 
-/// Of an iteration.
+/// Length of an iteration, seconds.
 fn seconds(group: &GroupDef) -> f64 {
     let least = ITERATIONS.map(|iterations| {
         let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });

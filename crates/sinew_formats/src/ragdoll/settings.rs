@@ -237,15 +237,7 @@ fn read_garment(at: At<'_>) -> Result<GarmentSettings> {
     only(at, &GARMENT_KEYS)?;
     let mesh = read_mesh(at)?;
     let usual = Garment::default();
-    let within = |key: &str, usual: f32, [least, most]: [f32; 2]| {
-        let Some(at) = at.get(key)? else { return Ok(usual) };
-        // Below 0 and at it other messages say more.
-        let number = if least > 0.0 { at.positive()? } else { at.not_negative()? };
-        if number < least || number > most {
-            return Err(at.malformed(format!("must lie between {least} and {most}")));
-        }
-        Ok(number)
-    };
+    let within = |key: &str, usual: f32, range: [f32; 2]| within(at, key, usual, range);
     let cloth = Garment {
         name: at.get("name")?.map(At::str).transpose()?.unwrap_or_default().to_owned(),
         area_density: within("area_density", usual.area_density, [1e-3, 1e3])?,
@@ -270,10 +262,22 @@ fn read_garment(at: At<'_>) -> Result<GarmentSettings> {
     })
 }
 
+/// A number within a range, `usual` if it is not there.
+fn within(at: At<'_>, key: &str, usual: f32, [least, most]: [f32; 2]) -> Result<f32> {
+    let Some(at) = at.get(key)? else { return Ok(usual) };
+    // Below 0 and at it other messages say more.
+    let number = if least > 0.0 { at.positive()? } else { at.not_negative()? };
+    if number < least || number > most {
+        return Err(at.malformed(format!("must lie between {least} and {most}")));
+    }
+    Ok(number)
+}
+
 fn read_backstop(at: At<'_>) -> Result<Backstop> {
     only(at, &["comment", "distance", "radius"])?;
-    let distance = at.need("distance")?.not_negative()?;
-    let radius = at.get("radius")?.map_or(Ok(Backstop::default().radius), At::positive)?;
+    at.need("distance")?;
+    let distance = within(at, "distance", 0.0, [0.0, 10.0])?;
+    let radius = within(at, "radius", Backstop::default().radius, [1e-3, 10.0])?;
     Ok(Backstop { distance, radius })
 }
 

@@ -141,6 +141,8 @@ fn garments_are_named_or_listed() {
         (r#"[{"chains": ["a"], "area_density": 3e38}]"#, "between 0.001 and 1000"),
         (r#"[{"chains": ["a"], "area_density": 1e-44}]"#, "between 0.001 and 1000"),
         (r#"[{"mesh": "a", "spacing": 1e-30}]"#, "garments[0].spacing"),
+        (r#"[{"mesh": "a", "backstop": {"distance": 3e38}}]"#, "garments[0].backstop.distance"),
+        (r#"[{"mesh": "a", "backstop": {"distance": 0, "radius": 3e38}}]"#, "garments[0].backstop.radius"),
         (r#"[{"mesh": "a", "radius": 11}]"#, "garments[0].radius"),
         (r#"[{"mesh": "a", "stretching": 1e38}]"#, "garments[0].stretching"),
         (r#"[{"mesh": "a", "bending": 1e38}]"#, "garments[0].bending"),

@@ -30,7 +30,8 @@ pub(crate) struct ContactKey {
     pub b: u32,
     pub shape_a: u32,
     pub shape_b: u32,
-    /// Number of the manifold among those of the two shapes, from 0; a pair of convex shapes has only one.
+    /// Number of the manifold among those of the two shapes, from 0; a pair of convex shapes has only one. From [`THROUGH_PARTICLES`] on: of those through
+    /// particles.
     pub part: u32,
 }
 

@@ -24,32 +24,44 @@ impl Modifiers {
         }
         self.changed.reserve(contacts.len());
         for (place, contact) in contacts.iter_mut().enumerate().filter(|(_, contact)| contact.pushes()) {
-            let sides = [(contact.key.a, contact.key.shape_a), (contact.key.b, contact.key.shape_b)];
-            let rules = sides.map(|(body, shape)| bodies.at(body).surface(shape as usize).rule);
-            let mut material = None;
-            for rule in rules {
-                let ContactRule::Modified { modifier } = rule else { continue };
-                let Some(modifier) = self.registered.find(modifier) else { continue };
-                let before = material.unwrap_or_else(|| contact.material(bodies));
-                let found = FoundContact {
-                    sides: sides.map(|(body, shape)| side(bodies, body, shape)),
-                    normal: contact.manifold.normal,
-                    points: contact.manifold.points(),
-                    step,
-                };
-                match modifier(&found, before) {
-                    Some(after) => material = Some(if after.is_valid() { after } else { before }),
-                    None => {
-                        contact.effect = Effect::Pass;
-                        contact.memory = ContactMemory::default();
-                        break;
-                    }
-                }
-            }
-            if let (Some(material), Effect::Push) = (material, contact.effect) {
+            let own = |contact: &Contact| contact.material(bodies);
+            if let Some(material) = self.ask(bodies, contact, own, step) {
                 self.changed.push((place as u32, material));
             }
         }
+    }
+
+    /// Material that they give a contact, which has its `own` else; `None` if they leave it alone, or keep it from pushing.
+    pub fn ask(
+        &self,
+        bodies: &Arena<Body>,
+        contact: &mut Contact,
+        own: impl Fn(&Contact) -> ContactMaterial,
+        step: u64,
+    ) -> Option<ContactMaterial> {
+        let sides = [(contact.key.a, contact.key.shape_a), (contact.key.b, contact.key.shape_b)];
+        let rules = sides.map(|(body, shape)| bodies.at(body).surface(shape as usize).rule);
+        let mut material = None;
+        for rule in rules {
+            let ContactRule::Modified { modifier } = rule else { continue };
+            let Some(modifier) = self.registered.find(modifier) else { continue };
+            let before = material.unwrap_or_else(|| own(contact));
+            let found = FoundContact {
+                sides: sides.map(|(body, shape)| side(bodies, body, shape)),
+                normal: contact.manifold.normal,
+                points: contact.manifold.points(),
+                step,
+            };
+            match modifier(&found, before) {
+                Some(after) => material = Some(if after.is_valid() { after } else { before }),
+                None => {
+                    contact.effect = Effect::Pass;
+                    contact.memory = ContactMemory::default();
+                    return None;
+                }
+            }
+        }
+        material
     }
 
     /// Gives a contact a material for this step; its place is after those of all that were changed before.

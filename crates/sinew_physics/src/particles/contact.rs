@@ -168,7 +168,7 @@ impl Placed {
 }
 
 /// No more than the distance from a point of what lies in these bounds.
-pub(super) fn distance_at_least(bounds: &Aabb, point: Vec3) -> f32 {
+pub(crate) fn distance_at_least(bounds: &Aabb, point: Vec3) -> f32 {
     let beyond = max3(bounds.min - point, point - bounds.max);
     max(max(beyond.x, beyond.y), beyond.z)
 }

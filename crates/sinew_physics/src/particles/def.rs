@@ -150,13 +150,13 @@ pub struct AttachmentDef {
 }
 
 /// A backstop, a ball fixed to a body that one particle touches and nothing else does: cloth sinks no deeper than that into the drawn body, also where no shape
-/// of a body is. It pushes the body back as a shape of it would, rubs nothing, and does not bounce.
+/// of a body is. It pushes the body back as a shape of it would, but bears nothing between that and the floor, rubs nothing, and does not bounce.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BackstopDef {
     /// Index of the particle in its group; it keeps its radius from the ball.
     pub particle: u32,
-    /// The body.
+    /// Body that the ball is fixed to.
     pub body: BodyId,
     /// Centre of the ball in the body's frame, metres.
     pub center: Vec3,

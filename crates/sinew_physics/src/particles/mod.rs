@@ -44,6 +44,7 @@ mod tuning;
 pub(crate) use added_mass::AddedMass;
 pub use attach::Anchor;
 pub use builders::{Blob, BlobDef, Cloth, ClothDef, Rope, RopeDef, StrandDef};
+pub(crate) use contact::distance_at_least;
 pub use contact::{BodyImpulse, Obstacle, ObstacleBody};
 pub use def::{
     AttachmentDef, AttachmentTarget, BackstopDef, BendDef, GroupDef, ParticleDef, Resists, SpringDef,

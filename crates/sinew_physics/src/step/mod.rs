@@ -42,7 +42,8 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     meetings.hits.start(contacts.len(), def.hit_speed);
     stage(Stage::Touch, &mut || {
         touch::touch(bodies, joints, contacts, activity, &fields, meetings, events);
-        let around = Around { bodies, proxies: &broad.proxies, filter: parted.filter(joints) };
+        let filter = parted.filter(joints);
+        let around = Around { bodies, proxies: &broad.proxies, activity, filter, step: fields.step };
         pinches.find(&around, groups, contacts, &mut meetings.modifiers, context);
     });
     let (proxies, modifiers, pace) =

@@ -5,11 +5,11 @@
 //! from the one surface goes on to the other. So such particles are points of a contact of the two shapes, with that line as its normal and the
 //! gaps of both as its separation. These contacts live in the world's list from after `touch` until `store`; in between, their group keeps them.
 
-use crate::activity::follow;
+use crate::activity::{Activity, follow};
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::body::material::{ContactMaterial, Material};
-use crate::boxes::Aabb;
+use crate::boxes::{Aabb, Overlap};
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use crate::contact::filter::PairFilter;
 use crate::contact::modifiers::Modifiers;
@@ -17,12 +17,12 @@ use crate::contact::proxies::{Owner, Proxies};
 use crate::contact::tuning::{MARGIN, SAME_PART_COSINE};
 use crate::contact::{Contact, ContactKey, ContactMemory};
 use crate::context::StepContext;
-use crate::particles::{AttachmentTarget, ParticleGroup, Pinched, is_nipped};
+use crate::particles::{AttachmentTarget, ParticleGroup, Pinched, distance_at_least, is_nipped};
 use crate::step::collide::{approach_of, is_plain};
 use crate::step::tuning::{BEARING_GAP, KEPT_POINT, MOST_PINCHED, POINT_SLOPE};
 use core::cmp::Ordering;
 use core::ops::ControlFlow;
-use sinew_math::{Transform, Vec3, max, max3, min};
+use sinew_math::{Transform, Vec3, max, min};
 
 /// Contacts through particles that a step has found, and memory to find them.
 #[derive(Clone, Debug, Default)]
@@ -31,6 +31,8 @@ pub(crate) struct Pinches {
     own: usize,
     /// Index of each group that has contacts, and how many.
     groups: Vec<(u32, usize)>,
+    /// Speed of the fastest point of all that moves, m/s.
+    fastest: f32,
     near: Vec<Near>,
     found: Vec<Between>,
 }
@@ -66,7 +68,10 @@ struct Facing {
 pub(crate) struct Around<'a> {
     pub bodies: &'a Arena<Body>,
     pub proxies: &'a Proxies,
+    pub activity: &'a Activity,
     pub filter: PairFilter<'a>,
+    /// Number of the step.
+    pub step: u64,
 }
 
 impl Pinches {
@@ -82,6 +87,11 @@ impl Pinches {
         let bodies = around.bodies;
         self.own = contacts.len();
         self.groups.clear();
+        if groups.is_empty() {
+            return;
+        }
+        let movers = around.activity.movers().map(|index| bodies.at(index).fastest_point());
+        self.fastest = movers.fold(0.0, max);
         for (index, group) in groups.iter_mut() {
             follow(bodies, group);
             if !group.is_awake() {
@@ -91,8 +101,10 @@ impl Pinches {
             self.find_between(group, around, context.dt);
             let first = contacts.len();
             self.join(group, bodies, contacts, context);
-            for at in first..contacts.len() {
-                modifiers.set(at as u32, material(bodies, group.material(), contacts[at].key));
+            for (at, contact) in contacts.iter_mut().enumerate().skip(first) {
+                let own = |contact: &Contact| material(bodies, group.material(), contact);
+                let changed = modifiers.ask(bodies, contact, own, around.step);
+                modifiers.set(at as u32, changed.unwrap_or_else(|| own(contact)));
             }
             self.groups.push((index, contacts.len() - first));
         }
@@ -110,16 +122,19 @@ impl Pinches {
 
     /// Lists the shapes that a group may come to within the step.
     fn list_near(&mut self, group: &ParticleGroup, &Around { bodies, proxies, .. }: &Around<'_>, dt: f32) {
-        let bounds = group.bounds().expand(MARGIN + group.fastest() * dt);
+        let around = group.bounds().expand(MARGIN + (group.fastest() + self.fastest) * dt);
         self.near.clear();
-        let _ = proxies.overlapping(&bounds, |Owner { body: index, shape }| {
+        let _ = proxies.overlapping(&around, |Owner { body: index, shape }| {
             let body = bodies.at(index);
             let surface = body.surface(shape as usize);
             if !body.quarantined && group.meets(bodies.id(index), surface) && is_plain(surface) {
                 let world_from_shape = body.world_from_shape(shape as usize);
                 let bounds = body.shapes[shape as usize].shape.aabb(&world_from_shape);
-                let is_active = body.is_active();
-                self.near.push(Near { body: index, shape, bounds, world_from_shape, is_active });
+                // What the trees know is no part of the state.
+                if bounds.overlaps(&around) {
+                    let is_active = body.is_active();
+                    self.near.push(Near { body: index, shape, bounds, world_from_shape, is_active });
+                }
             }
             ControlFlow::<()>::Continue(())
         });
@@ -129,9 +144,7 @@ impl Pinches {
     /// Lists the particles of a group that are between two shapes, one of which is active, or come between them within the step.
     fn find_between(&mut self, group: &ParticleGroup, &Around { bodies, filter, .. }: &Around<'_>, dt: f32) {
         self.found.clear();
-        let fastest =
-            self.near.iter().fold(0.0, |most, near| max(most, bodies.at(near.body).fastest_point()));
-        let reach = MARGIN + 2.0 * fastest * dt;
+        let reach = MARGIN + 2.0 * self.fastest * dt;
         for (at, near) in self.near.iter().enumerate().filter(|(_, near)| near.is_active) {
             for i in 0..group.positions().len() {
                 let Some(facing) = near.facing(bodies, group, i, reach) else { continue };
@@ -165,6 +178,7 @@ impl Pinches {
         let Pinched { contacts: old, loads } = &mut group.pinched;
         loads.clear();
         loads.resize(count, 0.0);
+        contacts.reserve(MOST_PINCHED as usize * self.near.len());
         for pair in self.found.chunk_by_mut(|one, other| one.key == other.key) {
             let mut rest = pair;
             for number in 0..MOST_PINCHED {
@@ -207,8 +221,7 @@ impl Near {
     /// Its surface as a particle faces it, if it is within `reach` metres of that.
     fn facing(&self, bodies: &Arena<Body>, group: &ParticleGroup, i: usize, reach: f32) -> Option<Facing> {
         let (position, radius) = (group.positions()[i], group.radii()[i]);
-        let beyond = max3(self.bounds.min - position, position - self.bounds.max);
-        if max(max(beyond.x, beyond.y), beyond.z) > radius + reach {
+        if distance_at_least(&self.bounds, position) > radius + reach {
             return None;
         }
         let shape = &bodies.at(self.body).shapes[self.shape as usize].shape;
@@ -308,7 +321,8 @@ fn share_load(part: &[Between], deepest: &Between, memory: &ContactMemory, h: f3
 }
 
 /// Material of two surfaces that rub on particles between them: it holds no better than the slipperier of the two does.
-fn material(bodies: &Arena<Body>, particles: Material, key: ContactKey) -> ContactMaterial {
+fn material(bodies: &Arena<Body>, particles: Material, contact: &Contact) -> ContactMaterial {
+    let key = contact.key;
     let [a, b] = [(key.a, key.shape_a), (key.b, key.shape_b)].map(|(body, shape)| {
         ContactMaterial::of(&particles, &bodies.at(body).surface(shape as usize).material)
     });
@@ -317,6 +331,7 @@ fn material(bodies: &Arena<Body>, particles: Material, key: ContactKey) -> Conta
         static_friction: min(a.static_friction, b.static_friction),
         restitution: min(a.restitution, b.restitution),
         rolling: max(a.rolling, b.rolling),
-        ..ContactMaterial::default()
+        // Of surfaces that run, as if nothing were between them.
+        ..contact.material(bodies)
     }
 }

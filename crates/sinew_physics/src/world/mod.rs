@@ -188,6 +188,7 @@ impl World {
         for contact in self.contacts.extract_if(.., |contact| contact.key.has(id.index)) {
             self.meetings.part(&self.bodies, &contact);
         }
+        self.groups.iter_mut().for_each(|(_, group)| group.pinched.forget(|key| key.has(id.index)));
         self.activity.remove(id.index, |contact| self.meetings.part(&self.bodies, &contact));
         self.parted.forget(id.index);
         self.movers.forget(id);

@@ -170,6 +170,7 @@ impl World {
         for contact in self.contacts.extract_if(.., |contact| goes(&contact.key)) {
             self.meetings.part(&self.bodies, &contact);
         }
+        self.groups.iter_mut().for_each(|(_, group)| group.pinched.forget(goes));
         let meetings = &mut self.meetings;
         let bodies = &self.bodies;
         self.activity.drop_returned(|contact| goes(&contact.key), |contact| meetings.part(bodies, &contact));

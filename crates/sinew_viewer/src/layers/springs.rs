@@ -11,7 +11,7 @@ use sinew_scenes::scenes::Figure;
 const SWINGS: [f32; 3] = [0.85, 0.10, 0.55];
 const COLLIDER: [f32; 3] = [0.05, 0.60, 0.75];
 const BACKSTOP: [f32; 3] = [0.10, 0.65, 0.15];
-/// The same of a particle that lies on its backstop.
+/// Colour of the line to its backstop of a particle that lies on it.
 const STOPPED: [f32; 3] = [0.95, 0.15, 0.05];
 /// Gap below which a particle lies on its backstop, metres.
 const LIES: f32 = 1e-3;

@@ -56,9 +56,9 @@ fn skirt(setup: &Setup<'_>) -> Instance {
 struct Watch {
     /// Depth of a free particle's middle in a body of the wearer, metres; 0: it was in none.
     deepest_in_wearer: f32,
-    /// The same of those between two bodies of the wearer.
+    /// Depth of a free particle that is pinched between two bodies, metres.
     deepest_pinched: f32,
-    /// In anything else.
+    /// Depth of a free particle in a body that is not the wearer's, metres.
     deepest_in_world: f32,
     /// Largest mean over the threads of how much a thread is longer or shorter than at rest, over its length.
     stretch: f32,
