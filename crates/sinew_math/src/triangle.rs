@@ -72,7 +72,7 @@ mod tests {
     fn none_is_nearer() {
         let mut random = Random::new(3);
         let mut found = [0; 3];
-        for _ in 0..300 {
+        for _ in 0..1_000 {
             let corners = [random.in_cube(), random.in_cube(), random.in_cube()];
             let p = random.in_cube() * 2.0;
             let at = |[u, v, w]: [f32; 3]| corners[0] * u + corners[1] * v + corners[2] * w;
