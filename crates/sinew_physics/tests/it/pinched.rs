@@ -175,7 +175,7 @@ fn crate_of(world: &mut World, mass: f32, bottom: f32) -> BodyId {
     world.add_body(&def)
 }
 
-/// What weighs ten thousand times as much as the cloth under it lies on it as it would on the floor: at the thickness of the cloth, still, and asleep.
+/// A crate lies on cloth, which weighs next to nothing, as it would on the floor: at the thickness of the cloth, still, and asleep.
 #[test]
 fn crates_lie_and_sleep_on_cloth() {
     for mass in [1.0, 100.0, 2000.0] {
@@ -315,7 +315,7 @@ fn a_tether_through_the_floor_does_not_tear() {
     assert!((0.01..0.5).contains(&speed), "{speed} m/s");
 }
 
-/// What is pinched forgets bodies and shapes that go: what is saved then can be loaded.
+/// Pinched contacts forget bodies and shapes that go: a world that is saved then can be loaded.
 #[test]
 fn what_goes_is_forgotten() {
     for takes_shape in [false, true] {
