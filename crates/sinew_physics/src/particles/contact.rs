@@ -675,21 +675,14 @@ impl ParticleGroup {
             if let Some(touch) = &self.touches[i] {
                 let (n, body) = (touch.normal, &bodies[touch.body]);
                 let target = touch.surface_velocity(body) + n * touch.speed_min;
-                let movable = body.inverse_mass > 0.0;
                 match self.grips[i] {
                     Grip::Off => {}
                     Grip::Slide | Grip::Slow => {
                         (inertia, momentum) = self.rubbing(i, touch, body);
-                        if movable {
-                            let yielding = body.yielding(touch.point, n) * touch.lightness;
-                            let along = Sym3::outer(n) * (1.0 / yielding);
-                            inertia += along;
-                            momentum += along * target;
-                        } else {
-                            freedom = Freedom::Along { normal: n, speed: target.dot(n) };
-                        }
+                        let yielding = body.yielding(touch.point, n) * touch.lightness;
+                        freedom = Freedom::Along { normal: n, speed: target.dot(n), yielding };
                     }
-                    Grip::Stick if movable => {
+                    Grip::Stick if body.inverse_mass > 0.0 => {
                         inertia = body.inertia_at(touch.point, n) * (1.0 / touch.lightness);
                         momentum = inertia * target;
                     }

@@ -271,10 +271,10 @@ impl System {
         };
         match self.freedom[i] {
             Freedom::Free => free(),
-            Freedom::Along { normal, speed } => {
+            Freedom::Along { normal, speed, yielding } => {
                 let along = self.inverses[i] * normal;
                 let speed = if WHOLE { speed } else { 0.0 };
-                free() + along * ((speed - normal.dot(parent)) / normal.dot(along))
+                free() + along * ((speed - normal.dot(parent)) / (normal.dot(along) + yielding))
             }
             Freedom::Fixed => velocities[i],
         }
@@ -293,10 +293,10 @@ impl System {
         }
         let momentum = self.gathered_momentum[child];
         let pushed = match self.freedom[child] {
-            Freedom::Along { normal, speed } => {
+            Freedom::Along { normal, speed, yielding } => {
                 let along = self.inverses[child] * normal;
                 let speed = if WHOLE { speed } else { 0.0 };
-                normal * ((speed - along.dot(momentum)) / normal.dot(along))
+                normal * ((speed - along.dot(momentum)) / (normal.dot(along) + yielding))
             }
             Freedom::Free | Freedom::Fixed => Vec3::ZERO,
         };
@@ -304,13 +304,17 @@ impl System {
     }
 }
 
-/// The inverse inertia of a particle that may not gain velocity along the normal: `W − W n nᵀ W / (n·W n)`.
+/// The inverse inertia of a particle that gains velocity along the normal only as far as its surface yields, by `c`: `W − W n nᵀ W / (n·W n + c)`
+/// (Sherman and Morrison 1950).
+///
+/// Of the inertia of both, `W⁻¹ + n nᵀ / c`, nothing would be left across the normal: that of a body outweighs a particle by thousands, and
+/// its inverse takes the differences of their cubes.
 fn constrained(inverse: &Sym3, freedom: &Freedom) -> Sym3 {
     match freedom {
         Freedom::Free => *inverse,
-        Freedom::Along { normal, .. } => {
+        Freedom::Along { normal, yielding, .. } => {
             let along = *inverse * *normal;
-            *inverse - Sym3::outer(along) * (1.0 / normal.dot(along))
+            *inverse - Sym3::outer(along) * (1.0 / (normal.dot(along) + yielding))
         }
         Freedom::Fixed => Sym3::ZERO,
     }
@@ -333,10 +337,10 @@ fn felt_by_parent(inertia: &Sym3, inverse: &Sym3, block: &Sym3, freedom: &Freedo
     };
     match freedom {
         Freedom::Free => free(),
-        Freedom::Along { normal, .. } => {
+        Freedom::Along { normal, yielding, .. } => {
             let along = *inverse * *normal;
             let back = if stiff { *normal - *inertia * along } else { *block * along };
-            free() + Sym3::outer(back) * (1.0 / normal.dot(along))
+            free() + Sym3::outer(back) * (1.0 / (normal.dot(along) + yielding))
         }
         Freedom::Fixed => *block,
     }

@@ -25,10 +25,24 @@ pub(super) enum Freedom {
     /// Anything.
     #[default]
     Free,
-    /// Only at right angles to a unit normal; along it, its velocity is given.
-    Along { normal: Vec3, speed: f32 },
+    /// Anything at right angles to a unit normal; along it, the velocity is that of a surface, which gives way by `yielding` for each
+    /// impulse, 1/kg: 0 where it is given.
+    Along { normal: Vec3, speed: f32, yielding: f32 },
     /// Nothing: its velocity is given.
     Fixed,
+}
+
+impl Freedom {
+    /// Energy of what a particle with this velocity has pushed its surface with, J.
+    fn merit(&self, velocity: Vec3) -> f32 {
+        match *self {
+            Self::Along { normal, speed, yielding } if yielding > 0.0 => {
+                let pushed = normal.dot(velocity) - speed;
+                0.5 * pushed * pushed / yielding
+            }
+            _ => 0.0,
+        }
+    }
 }
 
 /// Memory of one step's system, by particle and by spring.
@@ -156,8 +170,9 @@ impl System {
             if self.freedom[i] != Freedom::Fixed {
                 let own = 0.5 * v.dot((self.inertia[i] + self.added_inertia[i]) * v);
                 let given = (self.momentum[i] + self.added_momentum[i]).dot(v);
-                sum += f64::from(own) - f64::from(given);
-                size += f64::from(own) + f64::from(given.abs());
+                let surface = self.freedom[i].merit(v);
+                sum += f64::from(own) - f64::from(given) + f64::from(surface);
+                size += f64::from(own) + f64::from(given.abs()) + f64::from(surface);
             }
         }
         for hub in &self.hubs {

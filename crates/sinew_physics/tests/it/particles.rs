@@ -317,6 +317,45 @@ fn friction_holds_below_its_angle_and_slides_above() {
     }
 }
 
+/// What slides on a body that can move feels friction and gravity along it as on the ground, though it is a thousand or a million times lighter.
+#[test]
+fn grains_slide_on_heavy_bodies_as_on_the_ground() {
+    let (angle, friction) = (0.6f32, 0.4);
+    let tilt = Rotation::from_axis_angle(Vec3::new(0.48, 0.6, 0.64), angle);
+    let up = tilt * Vec3::Y;
+    let down = (GRAVITY - up * GRAVITY.dot(up)).normalize();
+    let rate = GRAVITY.dot(down) + friction * GRAVITY.dot(up);
+    let slope = obstacle(Shape::HalfSpace, Transform::new(Vec3::ZERO, tilt), friction, 0.0);
+    let joined = SpringDef::new([0, 1], 0.1, 1e4);
+    for (mass, inverse_mass, springs) in [
+        (1e-2, 1e-3, vec![]),
+        (1e-4, 1e-2, vec![]),
+        (1e-4, 1e-4, vec![]),
+        (1e-2, 1e-3, vec![joined]),
+        (1e-4, 1e-2, vec![joined]),
+        (1e-4, 1e-4, vec![joined]),
+    ] {
+        let ends = [Vec3::ZERO, tilt * Vec3::new(0.06, 0.0, 0.08)];
+        let def = GroupDef {
+            particles: ends.map(|at| particle(at, mass, 0.0)).to_vec(),
+            material: Material { friction, ..Material::default() },
+            springs,
+            ..GroupDef::default()
+        };
+        let mut group = ParticleGroup::new(&def);
+        for _ in 0..480 {
+            // Held from outside: its velocity is reset each substep.
+            let inverse_inertia = Sym3::IDENTITY * inverse_mass;
+            let mut body = [ObstacleBody { inverse_mass, inverse_inertia, ..STATIC_BODY }];
+            group.substep(1.0 / 480.0, GRAVITY, &[], core::slice::from_ref(&slope), &mut body);
+        }
+        for (&begin, &end) in ends.iter().zip(group.positions()) {
+            let off = (end - begin - down * (0.5 * rate)).length();
+            assert!(off < 0.02 * rate, "{mass} kg on {} kg: {off} m off", 1.0 / inverse_mass);
+        }
+    }
+}
+
 /// A body that carries a particle feels its weight.
 #[test]
 fn a_particle_weighs_on_the_body_below() {

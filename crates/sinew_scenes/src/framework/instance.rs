@@ -104,8 +104,7 @@ pub struct Instance {
 
 impl Instance {
     pub(crate) fn new(world: World, script: impl Script + 'static) -> Self {
-        let health = Health::new(&world);
-        Self { world, script: Box::new(script), health }
+        Self { world, script: Box::new(script), health: Health::default() }
     }
 
     /// Instance of a world that no scene made, such as a file's.
@@ -227,14 +226,14 @@ fn step(
     script.before_step(world);
     let before = world.energy();
     step(world);
-    // What the script pushes is no work of this step.
-    let after = world.energy();
-    done(Part { name: Instance::WORLD, count: health.bodies });
+    // What the script pushes, lets go and leads again is no work of this step.
+    let (after, mass) = (world.energy(), mass_of(world));
+    done(Part { name: Instance::WORLD, count: world.body_ids().count() as u32 });
     script.after_step_in_parts(world, done);
-    health.after_step(world, [before, after], script.work_in(world));
+    health.after_step(world, [before, after], mass, script.work_in(world));
 }
 
-/// Mass of all that moves, kg.
+/// Mass of all that forces move, kg: a character weighs while nothing leads it.
 fn mass_of(world: &World) -> f32 {
     let of_bodies: f32 = world.body_ids().map(|id| world.mass(id).mass).sum();
     let of_particles: f32 = world.group_ids().flat_map(|id| world.particles(id).masses()).sum();
@@ -242,35 +241,24 @@ fn mass_of(world: &World) -> f32 {
 }
 
 /// Faults that no scene may show, however long it runs.
+#[derive(Default)]
 struct Health {
-    mass: f32,
-    /// That the mass is of.
-    bodies: u32,
-    /// That drives have put in, J.
+    /// Energy that drives have put in, J.
     work_in: f32,
     energy_gain_max: f32,
     quarantined: u32,
 }
 
 impl Health {
-    fn new(world: &World) -> Self {
-        let (mass, bodies) = (mass_of(world), world.body_ids().count() as u32);
-        Self { mass, bodies, work_in: 0.0, energy_gain_max: 0.0, quarantined: 0 }
-    }
-
-    fn after_step(&mut self, world: &World, [before, after]: [Energy; 2], work_in: f32) {
+    fn after_step(&mut self, world: &World, [before, after]: [Energy; 2], mass: f32, work_in: f32) {
         // Each kind by itself: their sums are large and lose digits.
         let rise = (after.kinetic - before.kinetic) + (after.potential - before.potential)
             - (work_in - self.work_in);
         self.work_in = work_in;
-        let most = max(before.kinetic, self.mass);
+        let most = max(before.kinetic, mass);
         // Where nothing has a mass, nothing has energy.
         self.energy_gain_max = max(self.energy_gain_max, if most > 0.0 { rise / most } else { 0.0 });
         self.quarantined += world.events().quarantined.len() as u32;
-        let bodies = world.body_ids().count() as u32;
-        if bodies != self.bodies {
-            (self.mass, self.bodies) = (mass_of(world), bodies);
-        }
     }
 
     fn metrics(&self) -> [Metric; Instance::METRICS_OF_EVERY_SCENE] {
