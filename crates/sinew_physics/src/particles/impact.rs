@@ -2,10 +2,10 @@
 //! its end. Each particle answers with its own mass.
 
 use super::ParticleGroup;
-use super::contact::{Firmness, Obstacle, ObstacleBody, Touch};
+use super::contact::{Firmness, Obstacle, ObstacleBody, Placed, Touch};
 use super::pinched::is_nipped;
 use super::sweep::Meeting;
-use crate::particles::tuning::{DETOUR, IMPACT_SPEED, PINCHING, ROUNDING, SQUEEZE_SPEED};
+use crate::particles::tuning::{DETOUR, IMPACT_SPEED, PINCHING, ROUNDING, EXIT_SPEED};
 use core::cmp::Ordering;
 use sinew_math::{Vec3, clamp, max, min, normalize_or};
 
@@ -64,8 +64,10 @@ impl ParticleGroup {
                 }
                 let Some((obstacle, meeting)) = self.entered(i, ends, but, obstacles) else { break };
                 let mut touch = self.touch(i, h, obstacle, &meeting, obstacles, bodies);
-                let end = self.placed[obstacle].end;
-                touch.gap = meeting.height(end.inverse_point(ends.1));
+                let Placed { start, end, .. } = self.placed[obstacle];
+                // What was in it when the iteration began comes out slowly: at once, it would stretch its springs.
+                let goal = min(meeting.height(start.inverse_point(ends.0)) + EXIT_SPEED * h, 0.0);
+                touch.gap = min(meeting.height(end.inverse_point(ends.1)) - goal, 0.0);
                 if let Some(wall) = wall.filter(|wall| wall.pinches(&touch, bodies)) {
                     self.pinch(i, &wall, &touch, h * (1.0 - meeting.fraction), bodies);
                     break;
@@ -119,7 +121,7 @@ impl ParticleGroup {
         }
         let (speed, opposite_speed) = (body.velocity_at(at), opposite_body.velocity_at(at));
         let across = normalize_or(normal - opposite, normal);
-        let most = SQUEEZE_SPEED * h;
+        let most = EXIT_SPEED * h;
         // How far it comes out of the first, and how far its velocity is that of the first.
         let (out, share) = match body.firmness().cmp(&opposite_body.firmness()) {
             Ordering::Greater => (-gap, 1.0),

@@ -120,11 +120,11 @@ pub(super) const PINCHING: f32 = -0.1;
 /// Larger: what is smooth is borne where it would slip out. Smaller: rounding of normals lets go. Shown by the tests of `pinched`.
 pub(super) const LEAST_NIP: f32 = 0.1;
 
-/// Speed with which a particle comes midway between two surfaces that leave it no room, m/s.
+/// Speed with which a particle comes out of what it was in, or midway between two surfaces that leave it no room, m/s.
 ///
-/// What hangs beside a limb and is caught in its joint has some centimetres to go. Larger: it jerks. Smaller: it is seen in one of them for longer. Shown by
-/// `cape`.
-pub(super) const SQUEEZE_SPEED: f32 = 0.5;
+/// What a limb has pressed into the ground, or caught in a joint, has some centimetres to go. Larger: it jerks, and its springs get what nobody paid. Smaller: it
+/// is seen in there for longer. Shown by `skirt` and `cape`.
+pub(super) const EXIT_SPEED: f32 = 0.5;
 
 /// Gap within which a particle is on a surface that nothing moves, metres.
 ///

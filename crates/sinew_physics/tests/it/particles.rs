@@ -317,6 +317,31 @@ fn friction_holds_below_its_angle_and_slides_above() {
     }
 }
 
+/// What begins inside a solid comes out of it at half a metre a second, without a velocity that it would keep, and does not stretch what hangs on it.
+#[test]
+fn what_begins_inside_comes_out_slowly() {
+    let h = 1.0 / 480.0;
+    let slab = obstacle(Shape::Box { half_extents: Vec3::new(1.0, 0.5, 1.0) }, Transform::IDENTITY, 0.3, 0.0);
+    let def = GroupDef {
+        particles: vec![
+            particle(Vec3::new(0.0, 0.46, 0.0), 1e-3, 0.01),
+            particle(Vec3::new(0.1, 0.52, 0.0), 1e-3, 0.01),
+        ],
+        springs: vec![SpringDef::new([0, 1], f32::hypot(0.1, 0.06), 3e3)],
+        ..GroupDef::default()
+    };
+    let mut group = ParticleGroup::new(&def);
+    for step in 1..=100 {
+        group.substep(h, GRAVITY, &[], core::slice::from_ref(&slab), &mut [STATIC_BODY]);
+        let (inside, beside) = (group.positions()[0], group.positions()[1]);
+        let height = f32::min(0.46 + 0.5 * h * step as f32, 0.51);
+        assert!((inside.y - height).abs() < 2e-3, "step {step}: at {inside:?}, not {height} m high");
+        assert!((beside.y - 0.51).abs() < 0.02 && group.velocities()[1].length() < 0.6, "{beside:?}");
+        assert!(group.stretch(0).abs() < 2e-3, "step {step}: stretched by {} m", group.stretch(0));
+    }
+    assert!(group.velocities().iter().all(|v| v.length() < 0.01), "{:?}", group.velocities());
+}
+
 /// What slides on a body that can move feels friction and gravity along it as on the ground, though it is a thousand or a million times lighter.
 #[test]
 fn grains_slide_on_heavy_bodies_as_on_the_ground() {
