@@ -645,13 +645,13 @@ impl ParticleGroup {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
             if let Some(touch) = self.touches[i].filter(|_| self.backings[i] > 0.0) {
-                let pressing = self.backings[i] * min(self.rooms[i], 0.0);
-                // The contact of the two that pinch it has pushed with its load.
-                let impulse = self.press_normals[i] * (pressing + self.backings[i] * self.pinched_by(i));
+                // The contact of the two that pinch it has pushed with its load, and the solve has rubbed it with that.
+                let pressing = self.backings[i] * (min(self.rooms[i], 0.0) + self.pinched_by(i));
+                let impulse = self.press_normals[i] * pressing;
                 (self.backings[i], self.press_normals[i], self.rooms[i]) = (0.0, Vec3::ZERO, 0.0);
                 let (body, weight) = (&mut bodies[touch.body], self.weights[i]);
                 body.push(touch.point, impulse);
-                let friction = touch.rub(-pressing, weight, self.velocities[i], body);
+                let friction = touch.rub(max(-pressing, 0.0), weight, self.velocities[i], body);
                 self.velocities[i] += friction * weight;
                 self.positions[i] += friction * (weight * h);
                 self.report(&touch, friction - impulse, bodies);

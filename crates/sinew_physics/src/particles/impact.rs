@@ -182,8 +182,8 @@ impl ParticleGroup {
         }
         // What the body gives it along the wall's normal the wall gives back.
         let back = -pushed * touch.normal.dot(wall.normal);
-        for (touch, pressing, push) in [(touch, pushed, touch.normal * pushed), (wall, back, Vec3::ZERO)] {
-            let friction = touch.rub(load + pressing, own, self.velocities[i], &mut bodies[touch.body]);
+        for (touch, pressing, push) in [(touch, load + pushed, touch.normal * pushed), (wall, back, Vec3::ZERO)] {
+            let friction = touch.rub(pressing, own, self.velocities[i], &mut bodies[touch.body]);
             self.velocities[i] += friction * own;
             self.report(touch, push + friction, bodies);
         }

@@ -224,6 +224,41 @@ fn cloth_under_a_crate_is_held_by_its_friction() {
     }
 }
 
+/// Cloth pulled out from under a crate, which goes up and down alone, slides by Coulomb's law: floor and crate each rub it by the load, once.
+#[test]
+fn cloth_slides_from_under_a_crate_by_coulombs_law() {
+    let (load, friction, mass) = (4.0 * 9.81, 0.5, 0.4 * 0.4);
+    // The geometric mean with 0.6.
+    let rubs = f32::sqrt(0.6 * friction) * (2.0 * load + mass * 9.81);
+    for share in [0.9, 1.1, 1.3] {
+        let mut world = World::new(WorldDef::default());
+        floor(&mut world);
+        let cloth = world.add_particles(&carpet(Vec3::new(-0.2, 0.0, -0.2), [8, 8], friction));
+        let id = crate_of(&mut world, 4.0, 2.0 * RADIUS);
+        let post = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
+        let axis = Transform::new(Vec3::ZERO, Rotation::from_arc(Vec3::X, Vec3::Y));
+        world.add_joint(&joint(&world, post, id, axis, JointKind::Slider { limit: None }));
+        for _ in 0..60 {
+            world.step();
+        }
+        let middle = |world: &World| {
+            let positions = world.particles(cloth).positions();
+            positions.iter().sum::<Vec3>() / positions.len() as f32
+        };
+        let begin = middle(&world);
+        world.set_gravity(Vec3::new(share * rubs / mass, -9.81, 0.0));
+        // It stays under the crate.
+        for _ in 0..4 {
+            world.step();
+        }
+        let time = 4.0 * world.def().dt();
+        let way = (middle(&world) - begin).x;
+        let found = share * rubs - mass * 2.0 * way / (time * time);
+        let expected = f32::min(share, 1.0) * rubs;
+        assert!((found / expected - 1.0).abs() < 0.05, "pulled by {share}: {found} N, not {expected}, {way} m");
+    }
+}
+
 /// A ball in the wedge between the floor and a slab that leans on it from a hinge bears the slab if half the angle of the wedge is less than that of friction,
 /// 16.7°; else the slab comes down and drives it out along the floor, until it does.
 #[test]
