@@ -9,25 +9,19 @@
 //! A projection moves particles within the iteration: what is kept is how far each has come since it began, which gives the velocity
 //! without cancellation. Rows that hold an attached particle are left to `net.rs`.
 
+use super::project::Project;
 use super::{BendDef, Resists, SpringDef};
-use sinew_math::Vec3;
-use sinew_math::dispatch::Kernel;
-use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
+use sinew_math::lanes::{Block, WIDTH};
+use sinew_math::{Vec3, max};
 
-/// Numbers of a particle: position when the iteration began, way since, weight, backing of the surface that it touches, normal of that, room
-/// before it presses.
-pub(super) const FIELDS: usize = 12;
+/// Numbers of a particle: position when the iteration began, way since, which projections change. Three lines of the cache hold eight.
+pub(super) const FIELDS: usize = 6;
 pub(super) const WAY: usize = 3;
-pub(super) const WEIGHT: usize = 6;
-pub(super) const BACKING: usize = 7;
-pub(super) const NORMAL: usize = 8;
-pub(super) const ROOM: usize = 11;
-/// Fields that projections change.
-const CHANGED: [usize; 4] = [WAY, WAY + 1, WAY + 2, ROOM];
-/// Shares of a spring's ends in the vector whose length it keeps.
-const SPRING: [f32; 2] = [-1.0, 1.0];
-/// Shares of a bend's particles in the vector whose length it keeps.
-const BEND: [f32; 3] = [1.0, -2.0, 1.0];
+/// Numbers of the surface that a particle touches: backing, normal, room before it presses, which projections change.
+pub(super) const SURFACE_FIELDS: usize = 5;
+pub(super) const BACKING: usize = 0;
+pub(super) const NORMAL: usize = 1;
+pub(super) const ROOM: usize = 4;
 /// Kinds among which that of eight rows is looked for.
 const LATEST: usize = 64;
 /// Fewest aligned rows that make a block.
@@ -35,85 +29,100 @@ const LEAST_ALIGNED: usize = 4;
 /// Blocks that a row to be gathered may still go into.
 const OPEN: usize = 32;
 
-/// Constants of eight rows, none across two lines of the cache. Few kinds serve most rows of a cloth, so that they stay in the first cache.
+/// Constants of eight rows, none across two lines of the cache. Few kinds serve most rows of a cloth.
 #[derive(Clone, Debug, PartialEq)]
 #[repr(align(32))]
-struct Kind {
-    rest: [f32; WIDTH],
+pub(super) struct Kind<const K: usize> {
+    pub rest: [f32; WIDTH],
     /// Compliance: 1 over the stiffness, m/N.
-    compliance: [f32; WIDTH],
+    pub compliance: [f32; WIDTH],
     /// N·s/m.
-    damping: [f32; WIDTH],
-    /// Least error that a row resists: minus infinity if all, infinity in lanes without a row.
-    least: [f32; WIDTH],
-    is_damped: bool,
+    pub damping: [f32; WIDTH],
+    /// Error above which a row acts: infinity in lanes without a row.
+    pub least: [f32; WIDTH],
+    /// Inverse masses of the particles, 1/kg.
+    pub weights: [[f32; WIDTH]; K],
+    pub is_damped: bool,
 }
 
-impl Kind {
+impl<const K: usize> Kind<K> {
     fn empty() -> Self {
         Self {
             rest: [0.0; WIDTH],
             compliance: [1.0; WIDTH],
             damping: [0.0; WIDTH],
             least: [f32::INFINITY; WIDTH],
+            weights: [[0.0; WIDTH]; K],
             is_damped: false,
         }
     }
 
-    fn set<const K: usize>(&mut self, lane: usize, row: &Row<K>) {
+    fn set(&mut self, lane: usize, row: &Row<K>) {
         self.rest[lane] = row.rest;
         self.compliance[lane] = 1.0 / row.stiffness;
         self.damping[lane] = row.damping;
-        self.least[lane] = row.least;
+        // A row without a length has no direction.
+        self.least[lane] = max(row.least, 1e-9 - row.rest);
+        for k in 0..K {
+            self.weights[k][lane] = row.weights[k];
+        }
         self.is_damped |= row.damping > 0.0;
     }
 }
 
 /// Rows of `K` particles each, eight by eight, each with the index of its kind.
 #[derive(Clone, Debug)]
-struct Rows<const K: usize> {
-    aligned: Vec<Run<K>>,
-    /// Kinds of aligned rows, run by run.
-    aligned_kinds: Vec<u32>,
-    /// Blocks of the particles of turned rows, and by how many lanes each lies above that of the first particle.
-    turned: Vec<([u32; K], [u8; K], u32)>,
+pub(super) struct Rows<const K: usize> {
+    pub aligned: Vec<Run<K>>,
+    pub turned: Vec<Run<K>>,
     /// Slots of the particles of rows that are gathered, of each lane.
-    gathered: Vec<([[u32; WIDTH]; K], u32)>,
-    kinds: Vec<Kind>,
+    pub gathered: Vec<([[u32; WIDTH]; K], u32)>,
+    pub kinds: Vec<Kind<K>>,
 }
 
-/// Aligned rows, one after the other, that share no block.
+/// Aligned or turned rows of one kind, one after the other, that share no block.
 #[derive(Clone, Debug)]
-struct Run<const K: usize> {
+pub(super) struct Run<const K: usize> {
     /// Blocks of the particles of the first.
-    first: [u32; K],
-    count: u32,
+    pub first: [u32; K],
+    /// By how many lanes each particle lies above the first of its row: by none if aligned.
+    pub lanes: [u8; K],
+    /// Index of the kind of all.
+    pub kind: u32,
+    pub count: u32,
 }
 
 impl<const K: usize> Run<K> {
     /// True if the blocks of each row follow each other, and those of the next these. Else each end has a stretch of blocks for itself.
-    fn is_along(&self) -> bool {
+    #[inline(always)]
+    pub fn is_along(&self) -> bool {
         (1..K).all(|k| self.first[k] == self.first[0] + k as u32)
     }
 
-    /// True if a row in these blocks continues it.
-    fn goes_on(&self, blocks: &[u32; K]) -> bool {
-        let step = if self.is_along() { K as u32 } else { 1 };
-        let follows = (0..K).all(|k| blocks[k] == self.first[k] + step * self.count);
+    /// Blocks of the particles of a row.
+    #[inline(always)]
+    pub fn places(&self, row: u32) -> [usize; K] {
+        self.first.map(|block| (block + self.step() * row) as usize)
+    }
+
+    /// By how many blocks each row follows the one before.
+    #[inline(always)]
+    fn step(&self) -> u32 {
+        if self.is_along() { K as u32 } else { 1 }
+    }
+
+    /// True if another one, of a single row, continues it.
+    fn goes_on(&self, next: &Self) -> bool {
+        let follows = (0..K).all(|k| next.first[k] == self.first[k] + self.step() * self.count);
         let meets = |k: usize| (0..k).any(|j| self.first[k].abs_diff(self.first[j]) <= self.count);
-        follows && (self.is_along() || !(1..K).any(meets))
+        let is_like = (next.lanes, next.kind) == (self.lanes, self.kind);
+        is_like && follows && (self.is_along() || !(1..K).any(meets))
     }
 }
 
 impl<const K: usize> Default for Rows<K> {
     fn default() -> Self {
-        Self {
-            aligned: Vec::new(),
-            aligned_kinds: Vec::new(),
-            turned: Vec::new(),
-            gathered: Vec::new(),
-            kinds: Vec::new(),
-        }
+        Self { aligned: Vec::new(), turned: Vec::new(), gathered: Vec::new(), kinds: Vec::new() }
     }
 }
 
@@ -123,7 +132,7 @@ impl<const K: usize> Rows<K> {
     }
 
     /// Index of a kind, among the latest if it is there.
-    fn kind(&mut self, kind: Kind) -> u32 {
+    fn kind(&mut self, kind: Kind<K>) -> u32 {
         let latest = self.kinds.iter().rev().take(LATEST).position(|other| *other == kind);
         let index = latest.map_or(self.kinds.len(), |back| self.kinds.len() - 1 - back);
         if latest.is_none() {
@@ -137,6 +146,8 @@ impl<const K: usize> Rows<K> {
 #[derive(Clone, Copy, Debug)]
 struct Row<const K: usize> {
     particles: [u32; K],
+    /// 1/kg.
+    weights: [f32; K],
     rest: f32,
     stiffness: f32,
     damping: f32,
@@ -146,25 +157,29 @@ struct Row<const K: usize> {
 /// The rows of a group that are solved eight at a time, and its particles as they need them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Batches {
-    springs: Rows<2>,
-    bends: Rows<3>,
+    pub springs: Rows<2>,
+    pub bends: Rows<3>,
     /// Particles, and a block for lanes without a row.
     pub particles: Vec<Block<FIELDS>>,
+    /// The surfaces that these touch.
+    pub surfaces: Vec<Block<SURFACE_FIELDS>>,
     /// Number of particles, and of those in a lane.
     count: usize,
     per_lane: usize,
 }
 
 impl Batches {
-    /// Batches of rows that hold no attached particle, for a group of so many.
+    /// Batches of rows that hold no attached particle, for particles of these masses, kg.
     pub fn new(
-        count: usize,
+        masses: &[f32],
         springs: impl Iterator<Item = SpringDef>,
         bends: impl Iterator<Item = BendDef>,
     ) -> Self {
-        let per_lane = count.div_ceil(WIDTH);
+        let (count, per_lane) = (masses.len(), masses.len().div_ceil(WIDTH));
+        let weight = |i: u32| 1.0 / masses[i as usize];
         let springs = springs.map(|s| Row {
             particles: [s.a, s.b],
+            weights: [s.a, s.b].map(weight),
             rest: s.rest_length,
             stiffness: s.stiffness,
             damping: s.damping,
@@ -172,6 +187,7 @@ impl Batches {
         });
         let bends = bends.map(|b| Row {
             particles: b.particles,
+            weights: b.particles.map(weight),
             rest: b.rest,
             stiffness: b.stiffness,
             damping: 0.0,
@@ -179,7 +195,9 @@ impl Batches {
         });
         let (springs, bends) = (arrange(springs, per_lane), arrange(bends, per_lane));
         let blocks = if springs.is_empty() && bends.is_empty() { 0 } else { per_lane + 1 };
-        Self { springs, bends, particles: vec![Block::splat([0.0; FIELDS]); blocks], count, per_lane }
+        let particles = vec![Block::splat([0.0; FIELDS]); blocks];
+        let surfaces = vec![Block::splat([0.0; SURFACE_FIELDS]); blocks];
+        Self { springs, bends, particles, surfaces, count, per_lane }
     }
 
     /// True if there are no rows.
@@ -187,27 +205,26 @@ impl Batches {
         self.particles.is_empty()
     }
 
-    /// Takes in all particles: where they were when an iteration of `h` seconds began, their velocities since, and their weights.
-    pub fn put(&mut self, from: &[Vec3], velocities: &[Vec3], weights: &[f32], h: f32) {
+    /// Takes in all particles: where they were when an iteration of `h` seconds began, and their velocities since.
+    pub fn put(&mut self, from: &[Vec3], velocities: &[Vec3], h: f32) {
         let lanes = from.chunks(self.per_lane).zip(velocities.chunks(self.per_lane));
-        for (lane, ((from, velocities), weights)) in lanes.zip(weights.chunks(self.per_lane)).enumerate() {
-            let numbers = from.iter().zip(velocities).zip(weights);
-            for (Block(block), ((from, velocity), weight)) in self.particles.iter_mut().zip(numbers) {
+        for (lane, (from, velocities)) in lanes.enumerate() {
+            let numbers = from.iter().zip(velocities);
+            for (Block(block), (from, velocity)) in self.particles.iter_mut().zip(numbers) {
                 block[0][lane] = from.x;
                 block[1][lane] = from.y;
                 block[2][lane] = from.z;
                 block[WAY][lane] = velocity.x * h;
                 block[WAY + 1][lane] = velocity.y * h;
                 block[WAY + 2][lane] = velocity.z * h;
-                block[WEIGHT][lane] = *weight;
             }
         }
     }
 
-    /// Takes in where a particle was when the iteration began, how far it has come since, and its weight.
-    pub fn put_way(&mut self, i: usize, from: Vec3, way: Vec3, weight: f32) {
+    /// Takes in where a particle was when the iteration began, and how far it has come since.
+    pub fn put_way(&mut self, i: usize, from: Vec3, way: Vec3) {
         let (block, lane) = (&mut self.particles[i % self.per_lane].0, i / self.per_lane);
-        let numbers = [from.x, from.y, from.z, way.x, way.y, way.z, weight];
+        let numbers = [from.x, from.y, from.z, way.x, way.y, way.z];
         for (field, number) in numbers.into_iter().enumerate() {
             block[field][lane] = number;
         }
@@ -225,9 +242,9 @@ impl Batches {
 
     /// Takes in the surface that a particle touches, with the impulse onto it after which it presses, N·s².
     pub fn put_surface(&mut self, i: usize, normal: Vec3, backing: f32, room: f32) {
-        let (block, lane) = (&mut self.particles[i % self.per_lane].0, i / self.per_lane);
+        let (block, lane) = (&mut self.surfaces[i % self.per_lane].0, i / self.per_lane);
         for (field, number) in [backing, normal.x, normal.y, normal.z, room].into_iter().enumerate() {
-            block[BACKING + field][lane] = number;
+            block[field][lane] = number;
         }
     }
 
@@ -244,7 +261,7 @@ impl Batches {
 
     /// Forgets the surface that a particle touches; gives the room that is left, N·s², negative for what presses.
     pub fn take_surface(&mut self, i: usize) -> f32 {
-        let (block, lane) = (&mut self.particles[i % self.per_lane].0, i / self.per_lane);
+        let (block, lane) = (&mut self.surfaces[i % self.per_lane].0, i / self.per_lane);
         block[BACKING][lane] = 0.0;
         block[ROOM][lane]
     }
@@ -295,14 +312,11 @@ fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) 
             }
         }
         let kind = rows.kind(kind);
-        if lanes == [0; K] {
-            match rows.aligned.last_mut().filter(|run| run.goes_on(&blocks)) {
-                Some(run) => run.count += 1,
-                None => rows.aligned.push(Run { first: blocks, count: 1 }),
-            }
-            rows.aligned_kinds.push(kind);
-        } else {
-            rows.turned.push((blocks, lanes, kind));
+        let runs = if lanes == [0; K] { &mut rows.aligned } else { &mut rows.turned };
+        let next = Run { first: blocks, lanes, kind, count: 1 };
+        match runs.last_mut().filter(|run| run.goes_on(&next)) {
+            Some(run) => run.count += 1,
+            None => runs.push(next),
         }
     }
     gather(&others, per_lane, &mut rows);
@@ -341,275 +355,4 @@ fn push_gathered<const K: usize>(block: &[Row<K>], per_lane: usize, out: &mut Ro
     }
     let kind = out.kind(kind);
     out.gathered.push((slots, kind));
-}
-
-/// Projects each row once.
-pub(super) struct Project<'a> {
-    batches: &'a mut Batches,
-    /// The iteration, seconds.
-    h: f32,
-    /// Some particle touches a surface.
-    touching: bool,
-}
-
-impl Kernel for Project<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self { batches: Batches { springs, bends, particles, .. }, h, touching } = self;
-        let times = (L::splat(h), L::splat(1.0 / (h * h)));
-        project_all::<L, 2>(particles, springs, SPRING, times, touching);
-        project_all::<L, 3>(particles, bends, BEND, times, touching);
-    }
-}
-
-/// Projects each row of a kind once.
-#[inline(always)]
-fn project_all<L: Lanes, const K: usize>(
-    particles: &mut [Block<FIELDS>],
-    rows: &Rows<K>,
-    shares: [f32; K],
-    times: (L, L),
-    touching: bool,
-) {
-    let mut kinds = rows.aligned_kinds.iter().map(|kind| &rows.kinds[*kind as usize]);
-    for run in &rows.aligned {
-        let (first, count) = (run.first.map(|block| block as usize), run.count as usize);
-        if run.is_along() {
-            let rows = particles[first[0]..][..K * count].as_chunks_mut::<K>().0;
-            for (ends, kind) in rows.iter_mut().zip(&mut kinds) {
-                let mut ends = ends.each_mut().map(|Block(numbers)| numbers);
-                project::<L, K>(&mut ends, kind, shares, times, touching);
-            }
-        } else if let Ok(mut sides) = particles.get_disjoint_mut(first.map(|block| block..block + count)) {
-            for (row, kind) in (0..count).zip(&mut kinds) {
-                let mut ends = sides.each_mut().map(|side| &mut side[row].0);
-                project::<L, K>(&mut ends, kind, shares, times, touching);
-            }
-        }
-    }
-    for (places, lanes, kind) in &rows.turned {
-        let mut ends = turned::<L, K>(particles, places, lanes);
-        project::<L, K>(&mut ends.each_mut(), &rows.kinds[*kind as usize], shares, times, touching);
-        turn_back::<L, K>(particles, places, lanes, &ends);
-    }
-    for (slots, kind) in &rows.gathered {
-        let mut ends = fetch(particles, slots);
-        project::<L, K>(&mut ends.each_mut(), &rows.kinds[*kind as usize], shares, times, touching);
-        put_back(particles, slots, &ends);
-    }
-}
-
-/// Numbers of eight particles.
-type Numbers = [[f32; WIDTH]; FIELDS];
-
-/// Copies of blocks, each turned so that its lanes meet those of the first.
-#[inline(always)]
-fn turned<L: Lanes, const K: usize>(
-    particles: &[Block<FIELDS>],
-    places: &[u32; K],
-    lanes: &[u8; K],
-) -> [Numbers; K] {
-    let mut ends = [[[0.0; WIDTH]; FIELDS]; K];
-    for k in 0..K {
-        let Block(from) = &particles[places[k] as usize];
-        for field in 0..FIELDS {
-            L::load(&from[field]).turn(usize::from(lanes[k])).store(&mut ends[k][field]);
-        }
-    }
-    ends
-}
-
-/// Writes what has changed of these: nothing in lanes without a row.
-#[inline(always)]
-fn turn_back<L: Lanes, const K: usize>(
-    particles: &mut [Block<FIELDS>],
-    places: &[u32; K],
-    lanes: &[u8; K],
-    ends: &[Numbers; K],
-) {
-    for k in 0..K {
-        let Block(to) = &mut particles[places[k] as usize];
-        for field in CHANGED {
-            L::load(&ends[k][field]).turn((WIDTH - usize::from(lanes[k])) % WIDTH).store(&mut to[field]);
-        }
-    }
-}
-
-/// Copies of particles that each have their block and lane.
-#[inline(always)]
-fn fetch<const K: usize>(particles: &[Block<FIELDS>], slots: &[[u32; WIDTH]; K]) -> [Numbers; K] {
-    let mut ends = [[[0.0; WIDTH]; FIELDS]; K];
-    for k in 0..K {
-        for lane in 0..WIDTH {
-            let slot = slots[k][lane] as usize;
-            let Block(from) = &particles[slot / WIDTH];
-            for field in 0..FIELDS {
-                ends[k][field][lane] = from[field][slot % WIDTH];
-            }
-        }
-    }
-    ends
-}
-
-/// Writes what has changed of these.
-#[inline(always)]
-fn put_back<const K: usize>(particles: &mut [Block<FIELDS>], slots: &[[u32; WIDTH]; K], ends: &[Numbers; K]) {
-    for k in 0..K {
-        for lane in 0..WIDTH {
-            let slot = slots[k][lane] as usize;
-            let Block(to) = &mut particles[slot / WIDTH];
-            for field in CHANGED {
-                to[field][slot % WIDTH] = ends[k][field][lane];
-            }
-        }
-    }
-}
-
-/// A vector of eight particles, from its first field.
-#[inline(always)]
-fn vector<L: Lanes>(numbers: &Numbers, field: usize) -> Vector3<L> {
-    Vector3::load(&numbers[field], &numbers[field + 1], &numbers[field + 2])
-}
-
-/// The vector of eight rows: that of their ends, from its first field, by their shares.
-#[inline(always)]
-fn combined<L: Lanes, const K: usize>(
-    ends: &[&mut Numbers; K],
-    shares: [f32; K],
-    field: usize,
-) -> Vector3<L> {
-    let mut sum = vector::<L>(ends[0], field) * L::splat(shares[0]);
-    for k in 1..K {
-        sum = sum + vector::<L>(ends[k], field) * L::splat(shares[k]);
-    }
-    sum
-}
-
-/// True if a particle of the rows touches a surface.
-#[inline(always)]
-fn any_touching<L: Lanes, const K: usize>(ends: &[&mut Numbers; K]) -> bool {
-    let mut most = L::load(&ends[0][BACKING]);
-    for k in 1..K {
-        most = L::max(most, L::load(&ends[k][BACKING]));
-    }
-    L::gt(most, L::splat(0.0)).any()
-}
-
-/// The surface at one end of eight rows, as a pull on it sees it.
-#[derive(Clone, Copy, Debug)]
-struct Surface<L> {
-    /// Room before it presses, N·s².
-    room: L,
-    /// Room that the end gains for each unit of the pull.
-    gain: L,
-    /// Loss of the row by each N·s² that presses and goes on to the body, in units of its error.
-    passed: L,
-    /// Loss by each unit of a pull that presses all the way.
-    lacking: L,
-}
-
-impl<L: Lanes> Surface<L> {
-    /// For a pull of the end against the vector of its row, with its share in that.
-    #[inline(always)]
-    fn load(end: &Numbers, apart: Vector3<L>, share: f32) -> Self {
-        let gain = apart.dot(vector(end, NORMAL)) * L::splat(-share);
-        let passed = L::load(&end[BACKING]) * L::load(&end[WEIGHT]) * gain;
-        Self { room: L::load(&end[ROOM]), gain, passed, lacking: passed * gain }
-    }
-}
-
-/// The error and slope whose quotient is the pull of eight rows. What a pull mends, `slope` for each unit of it without surfaces, changes where a
-/// particle comes to press and where it ceases to. Which do is seen by the slope with which the pull begins: one change is met exactly, as by
-/// two steps of Newton's method.
-#[inline(always)]
-fn on_surfaces<L: Lanes, const K: usize>(surfaces: &[Surface<L>; K], error: L, slope: L) -> (L, L) {
-    let zero = L::splat(0.0);
-    let mut first = slope;
-    for s in surfaces {
-        // One that has no room left presses if it is pulled onto the surface.
-        let brink = L::splat(f32::MIN_POSITIVE).masked(L::lt(s.gain * error, zero));
-        first = first - s.lacking.masked(L::lt(s.room, brink));
-    }
-    let (mut error_left, mut last) = (error, slope);
-    for s in surfaces {
-        let presses = L::lt(s.room * first + s.gain * error, zero);
-        last = last - s.lacking.masked(presses);
-        // The part of the pull in which it was not yet so.
-        error_left = error_left + s.passed * L::max(L::select(presses, s.room, -s.room), zero);
-    }
-    (error_left, last)
-}
-
-/// Solves eight rows. What their ends make together, by their shares, is the vector whose length is their error and rest. Pulls are counted
-/// in this vector, not in its direction, and errors in squares: one division is left.
-#[inline(always)]
-fn project<L: Lanes, const K: usize>(
-    ends: &mut [&mut Numbers; K],
-    kind: &Kind,
-    shares: [f32; K],
-    (h, per_square): (L, L),
-    touching: bool,
-) {
-    let zero = L::splat(0.0);
-    let apart = combined::<L, K>(ends, shares, 0) + combined::<L, K>(ends, shares, WAY);
-    let square = apart.dot(apart);
-    let length = square.sqrt();
-    let off = length - L::load(&kind.rest);
-    let active = L::gt(off, L::load(&kind.least)) & L::gt(length, L::splat(1e-9));
-    let compliance = L::load(&kind.compliance) * per_square;
-    let mut most = L::load(&ends[0][WEIGHT]) * L::splat(shares[0] * shares[0]);
-    for k in 1..K {
-        most = most + L::load(&ends[k][WEIGHT]) * L::splat(shares[k] * shares[k]);
-    }
-    let (error, slope) = (off * length, square * (most + compliance));
-    if !(touching && any_touching::<L, K>(ends)) {
-        let mut pull = error / slope;
-        if kind.is_damped {
-            let way = apart.dot(combined::<L, K>(ends, shares, WAY));
-            pull = damped(pull, way, (square * most, square), h * L::load(&kind.damping));
-        }
-        // Rows without an error, a direction or anything that moves do nothing.
-        let pull = pull.masked(active & L::gt(slope, zero));
-        for k in 0..K {
-            let by = pull * L::splat(-shares[k]) * L::load(&ends[k][WEIGHT]);
-            store(vector::<L>(ends[k], WAY) + apart * by, ends[k]);
-        }
-        return;
-    }
-    let mut surfaces = [Surface::load(ends[0], apart, shares[0]); K];
-    for k in 1..K {
-        surfaces[k] = Surface::load(ends[k], apart, shares[k]);
-    }
-    let (error, slope) = on_surfaces(&surfaces, error, slope);
-    let mut pull = error / slope;
-    if kind.is_damped {
-        let way = apart.dot(combined::<L, K>(ends, shares, WAY));
-        pull = damped(pull, way, (slope - square * compliance, square), h * L::load(&kind.damping));
-    }
-    let pull = pull.masked(active & L::gt(slope, zero));
-    for k in 0..K {
-        let Surface { room, gain, .. } = surfaces[k];
-        let after = room + gain * pull;
-        let weight = L::load(&ends[k][WEIGHT]);
-        let kept = L::load(&ends[k][BACKING]) * weight * (L::min(after, zero) - L::min(room, zero));
-        let by = pull * L::splat(-shares[k]) * weight;
-        store(vector::<L>(ends[k], WAY) + apart * by - vector::<L>(ends[k], NORMAL) * kept, ends[k]);
-        after.store(&mut ends[k][ROOM]);
-    }
-}
-
-#[inline(always)]
-fn store<L: Lanes>(way: Vector3<L>, end: &mut Numbers) {
-    way.x.store(&mut end[WAY]);
-    way.y.store(&mut end[WAY + 1]);
-    way.z.store(&mut end[WAY + 2]);
-}
-
-/// A pull with that which damps the speed that it leaves. The way of the row along itself and its mobility are given times its length and its square,
-/// which comes last.
-#[inline(always)]
-fn damped<L: Lanes>(pull: L, way: L, (mobility, square): (L, L), damping: L) -> L {
-    pull + (way - pull * mobility) * damping / (square + damping * mobility)
 }

@@ -1,7 +1,7 @@
 //! The way of a group through the lanes of `eights.rs`: in, out of them for what is solved one by one, and back.
 
 use super::ParticleGroup;
-use super::batches::{WAY, WEIGHT};
+use super::batches::WAY;
 use super::contact::{Grip, Obstacle, ObstacleBody};
 use super::eights::{ACCELERATION, Approach, Depart, Form, Solid};
 use crate::body::material::ContactMaterial;
@@ -66,7 +66,6 @@ impl ParticleGroup {
                 let (at, velocity, acceleration) =
                     (self.positions[i], self.velocities[i], self.accelerations[i]);
                 self.weights[i] = 1.0 / self.masses[i];
-                particle[WEIGHT][lane] = self.weights[i];
                 for (k, at) in at.to_array().into_iter().enumerate() {
                     particle[k][lane] = at;
                 }
@@ -154,7 +153,7 @@ impl ParticleGroup {
         let mut touching = false;
         for &i in outside.iter().chain(&others) {
             let i = i as usize;
-            self.batches.put_way(i, self.previous[i], self.velocities[i] * h, self.weights[i]);
+            self.batches.put_way(i, self.previous[i], self.velocities[i] * h);
             if self.backings[i] > 0.0 {
                 self.batches.put_surface(i, self.press_normals[i], self.backings[i], self.rooms[i] * h);
                 touching = true;

@@ -34,6 +34,7 @@ mod load;
 mod near;
 mod net;
 mod pinched;
+mod project;
 mod rest;
 mod self_collision;
 mod snapshot;

@@ -45,7 +45,7 @@ impl ParticleGroup {
 
     /// Sorts rows into those that hold an attached particle, whose impulses are counted, and batches of the others.
     pub(super) fn sort_rows(&mut self) {
-        let Self { springs, bends, forest, attachment_of, .. } = self;
+        let Self { masses, springs, bends, forest, attachment_of, .. } = self;
         let is_free = |i: u32| attachment_of[i as usize] == u32::MAX;
         let free_spring = |&k: &u32| is_free(springs[k as usize].a) && is_free(springs[k as usize].b);
         let free_bend = |&k: &u32| bends[k as usize].particles.into_iter().all(is_free);
@@ -54,7 +54,7 @@ impl ParticleGroup {
         let bent_later = if forest.has_trees() { 0 } else { bends.len() as u32 };
         let (batched_bends, held_bends): (Vec<u32>, _) = (0..bent_later).partition(free_bend);
         self.batches = Batches::new(
-            attachment_of.len(),
+            masses,
             batched.iter().map(|&k| springs[k as usize]),
             batched_bends.iter().map(|&k| bends[k as usize]),
         );
@@ -73,7 +73,7 @@ impl ParticleGroup {
         if self.batches.is_empty() {
             return;
         }
-        self.batches.put(&self.previous, &self.velocities, &self.weights, h);
+        self.batches.put(&self.previous, &self.velocities, h);
         let mut touching = false;
         for &i in &self.solved {
             let i = i as usize;
@@ -119,7 +119,7 @@ impl ParticleGroup {
     }
 
     /// The impulse that gives a row a speed by forces on its ends of so much for each N·s, and the mobility there, 1/kg. As `on_surfaces` of
-    /// `batches.rs`.
+    /// `project.rs`.
     pub(super) fn row_impulse(
         &self,
         ends: &(impl Iterator<Item = (usize, Vec3)> + Clone),
