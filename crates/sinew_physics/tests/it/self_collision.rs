@@ -121,7 +121,7 @@ fn folds_do_not_go_through_each_other() {
     }
     // The count tells them from layers that do not meet.
     let (seen, ..) = fall(0.2, 0.0, 240);
-    assert!(seen > 100, "{seen} crossings without thickness");
+    assert!(seen > 50, "{seen} crossings without thickness");
 }
 
 #[test]
