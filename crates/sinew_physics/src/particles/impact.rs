@@ -5,7 +5,7 @@ use super::ParticleGroup;
 use super::contact::{Firmness, Obstacle, ObstacleBody, Placed, Touch};
 use super::pinched::is_nipped;
 use super::sweep::Meeting;
-use crate::particles::tuning::{DETOUR, IMPACT_SPEED, PINCHING, ROUNDING, EXIT_SPEED};
+use crate::particles::tuning::{DETOUR, EXIT_SPEED, IMPACT_SPEED, PINCHING, ROUNDING};
 use core::cmp::Ordering;
 use sinew_math::{Vec3, clamp, max, min, normalize_or};
 
@@ -182,7 +182,9 @@ impl ParticleGroup {
         }
         // What the body gives it along the wall's normal the wall gives back.
         let back = -pushed * touch.normal.dot(wall.normal);
-        for (touch, pressing, push) in [(touch, load + pushed, touch.normal * pushed), (wall, back, Vec3::ZERO)] {
+        for (touch, pressing, push) in
+            [(touch, load + pushed, touch.normal * pushed), (wall, back, Vec3::ZERO)]
+        {
             let friction = touch.rub(pressing, own, self.velocities[i], &mut bodies[touch.body]);
             self.velocities[i] += friction * own;
             self.report(touch, push + friction, bodies);

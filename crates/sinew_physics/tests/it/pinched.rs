@@ -255,7 +255,10 @@ fn cloth_slides_from_under_a_crate_by_coulombs_law() {
         let way = (middle(&world) - begin).x;
         let found = share * rubs - mass * 2.0 * way / (time * time);
         let expected = f32::min(share, 1.0) * rubs;
-        assert!((found / expected - 1.0).abs() < 0.05, "pulled by {share}: {found} N, not {expected}, {way} m");
+        assert!(
+            (found / expected - 1.0).abs() < 0.05,
+            "pulled by {share}: {found} N, not {expected}, {way} m"
+        );
     }
 }
 
