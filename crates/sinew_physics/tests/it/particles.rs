@@ -327,7 +327,7 @@ fn what_begins_inside_comes_out_slowly() {
             particle(Vec3::new(0.0, 0.46, 0.0), 1e-3, 0.01),
             particle(Vec3::new(0.1, 0.52, 0.0), 1e-3, 0.01),
         ],
-        springs: vec![SpringDef::new([0, 1], f32::hypot(0.1, 0.06), 3e3)],
+        springs: vec![SpringDef::new([0, 1], Vec3::new(0.1, 0.06, 0.0).length(), 3e3)],
         ..GroupDef::default()
     };
     let mut group = ParticleGroup::new(&def);
