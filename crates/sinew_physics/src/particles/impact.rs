@@ -65,9 +65,12 @@ impl ParticleGroup {
                 let Some((obstacle, meeting)) = self.entered(i, ends, but, obstacles) else { break };
                 let mut touch = self.touch(i, h, obstacle, &meeting, obstacles, bodies);
                 let Placed { start, end, .. } = self.placed[obstacle];
-                // What was in it when the iteration began comes out slowly: at once, it would stretch its springs.
-                let goal = min(meeting.height(start.inverse_point(ends.0)) + EXIT_SPEED * h, 0.0);
-                touch.gap = min(meeting.height(end.inverse_point(ends.1)) - goal, 0.0);
+                touch.gap = meeting.height(end.inverse_point(ends.1));
+                if bodies[touch.body].firmness() > Firmness::Yields {
+                    // What was in it when the iteration began comes out slowly: at once, it would stretch its springs.
+                    let goal = min(meeting.height(start.inverse_point(ends.0)) + EXIT_SPEED * h, 0.0);
+                    touch.gap = min(touch.gap - goal, 0.0);
+                }
                 if let Some(wall) = wall.filter(|wall| wall.pinches(&touch, bodies)) {
                     self.pinch(i, &wall, &touch, h * (1.0 - meeting.fraction), bodies);
                     break;

@@ -187,6 +187,8 @@ impl<'a, L: Lanes, const K: usize> Solver<'a, L, K> {
             for row in 0..count {
                 self.solve_free::<DAMPED>(&mut sides.each_mut().map(|side| &mut side[row].0));
             }
+        } else {
+            debug_assert!(false, "rows of a run share blocks: {run:?}");
         }
     }
 
@@ -214,6 +216,8 @@ impl<'a, L: Lanes, const K: usize> Solver<'a, L, K> {
                 let mut ends = sides.each_mut().map(|side| &mut side[row].0);
                 self.solve_touching(&mut ends, &mut beneath.each_mut().map(|side| &mut side[row].0));
             }
+        } else {
+            debug_assert!(false, "rows of a run share blocks: {run:?}");
         }
     }
 

@@ -120,7 +120,7 @@ pub(super) const PINCHING: f32 = -0.1;
 /// Larger: what is smooth is borne where it would slip out. Smaller: rounding of normals lets go. Shown by the tests of `pinched`.
 pub(super) const LEAST_NIP: f32 = 0.1;
 
-/// Speed with which a particle comes out of what it was in, or midway between two surfaces that leave it no room, m/s.
+/// Speed with which a particle comes out of what no force moves, or midway between two surfaces that leave it no room, m/s.
 ///
 /// What a limb has pressed into the ground, or caught in a joint, has some centimetres to go. Larger: it jerks, and its springs get what nobody paid. Smaller: it
 /// is seen in there for longer. Shown by `skirt` and `cape`.
