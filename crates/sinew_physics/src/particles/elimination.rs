@@ -307,8 +307,8 @@ impl System {
 /// The inverse inertia of a particle that gains velocity along the normal only as far as its surface yields, by `c`: `W − W n nᵀ W / (n·W n + c)`
 /// (Sherman and Morrison 1950).
 ///
-/// Of the inertia of both, `W⁻¹ + n nᵀ / c`, nothing would be left across the normal: that of a body outweighs a particle by thousands, and
-/// its inverse takes the differences of their cubes.
+/// The sum of both inertias, `W⁻¹ + n nᵀ / c`, is not inverted instead: where the body outweighs the particle by thousands, rounding of 32 bits leaves
+/// nothing of the particle's part across the normal.
 fn constrained(inverse: &Sym3, freedom: &Freedom) -> Sym3 {
     match freedom {
         Freedom::Free => *inverse,

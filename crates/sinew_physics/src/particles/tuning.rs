@@ -122,8 +122,8 @@ pub(super) const LEAST_NIP: f32 = 0.1;
 
 /// Speed with which a particle comes out of what no force moves, or midway between two surfaces that leave it no room, m/s.
 ///
-/// What a limb has pressed into the ground, or caught in a joint, has some centimetres to go. Larger: it jerks, and its springs get what nobody paid. Smaller: it
-/// is seen in there for longer. Shown by `skirt` and `cape`.
+/// A particle that a limb has pressed into the ground, or caught in a joint, has some centimetres to go. Larger: it jerks, and stretches its springs by energy that no
+/// force gave. Smaller: it is seen in there for longer. Shown by `skirt` and `cape`.
 pub(super) const EXIT_SPEED: f32 = 0.5;
 
 /// Gap within which a particle is on a surface that nothing moves, metres.

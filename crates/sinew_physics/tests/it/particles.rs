@@ -317,7 +317,7 @@ fn friction_holds_below_its_angle_and_slides_above() {
     }
 }
 
-/// What begins inside a solid comes out of it at half a metre a second, without a velocity that it would keep, and does not stretch what hangs on it.
+/// A particle that begins inside a solid comes out at half a metre a second, keeps no velocity from that, and does not stretch its spring.
 #[test]
 fn what_begins_inside_comes_out_slowly() {
     let h = 1.0 / 480.0;
@@ -342,7 +342,7 @@ fn what_begins_inside_comes_out_slowly() {
     assert!(group.velocities().iter().all(|v| v.length() < 0.01), "{:?}", group.velocities());
 }
 
-/// What slides on a body that can move feels friction and gravity along it as on the ground, though it is a thousand or a million times lighter.
+/// Particles slide on a body that can move as on the ground, by gravity less Coulomb's friction, though they are up to a hundred million times lighter.
 #[test]
 fn grains_slide_on_heavy_bodies_as_on_the_ground() {
     let (angle, friction) = (0.6f32, 0.4);
