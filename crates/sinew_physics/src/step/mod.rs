@@ -41,7 +41,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     stage(Stage::Collide, &mut || collide::collide(bodies, broad, contacts, parts, context));
     meetings.hits.start(contacts.len(), def.hit_speed);
     stage(Stage::Touch, &mut || {
-        touch::touch(bodies, joints, contacts, activity, &fields, meetings, events);
+        touch::touch(bodies, joints, groups, contacts, activity, &fields, meetings, events);
         let filter = parted.filter(joints);
         let around = Around { bodies, proxies: &broad.proxies, activity, filter, step: fields.step };
         pinches.find(&around, groups, contacts, &mut meetings.modifiers, context);

@@ -10,15 +10,18 @@ use crate::contact::tracking::{ContactTracking, Told};
 use crate::contact::{Contact, ContactMemory, Effect, pairs_of, slop};
 use crate::field::Fields;
 use crate::joint::Joint;
+use crate::particles::ParticleGroup;
 use crate::step::collide::smallest_extent;
 use crate::step::tuning::LINGER;
 use sinew_math::min;
 
-/// `touch`: what contacts do, events, and waking of what an awake body touches or attracts, or a moving kinematic one holds.
+/// `touch`: what contacts do, events, and waking of what an awake body touches, has pressed through particles or attracts, or a moving kinematic one
+/// holds.
 /// What wakes comes with its contacts.
 pub(crate) fn touch(
     bodies: &mut Arena<Body>,
     joints: &Arena<Joint>,
+    groups: &Arena<ParticleGroup>,
     contacts: &mut Vec<Contact>,
     activity: &mut Activity,
     fields: &Fields<'_>,
@@ -45,6 +48,13 @@ pub(crate) fn touch(
         Told { bodies: &mut events.begin, shapes: &mut events.shapes_begin },
         Told { bodies: &mut events.end, shapes: &mut events.shapes_end },
     );
+    // What presses others through particles touches them as well.
+    let pressed = groups.iter().filter(|(_, group)| group.is_awake());
+    for contact in
+        pressed.flat_map(|(_, group)| &group.pinched.contacts).filter(|contact| contact.has_pushed())
+    {
+        wake_touched(bodies, activity, core::slice::from_ref(contact));
+    }
     wake_held(bodies, joints, activity);
     while let Some(attracted) = fields.next_to_wake(bodies, activity) {
         activity.wake(bodies, attracted);

@@ -194,6 +194,34 @@ fn crates_lie_and_sleep_on_cloth() {
     }
 }
 
+/// A crate that comes to lie on cloth over a crate that sleeps wakes that one, which then bears it; both go to sleep.
+#[test]
+fn crates_wake_through_cloth() {
+    let mut world = World::new(WorldDef::default());
+    floor(&mut world);
+    let below = crate_of(&mut world, 5.0, 0.0);
+    world.put_to_sleep(below);
+    let mut def = carpet(Vec3::new(-0.2, 0.3, -0.2), [8, 8], 0.6);
+    def.sleeping = Sleeping::Off;
+    world.add_particles(&def);
+    for _ in 0..60 {
+        world.step();
+    }
+    assert!(!world.is_awake(below), "cloth alone wakes nobody");
+    // So low that it comes slower than what strikes.
+    let above = crate_of(&mut world, 5.0, 0.3 + 2.0 * RADIUS + 0.001);
+    let mut woke = false;
+    for _ in 0..30 {
+        world.step();
+        woke |= world.is_awake(below);
+    }
+    assert!(woke, "it lies on it");
+    for _ in 0..240 {
+        world.step();
+    }
+    assert!(!world.is_awake(below) && !world.is_awake(above), "they lie still");
+}
+
 /// Cloth under a crate is held by what presses it: pulled with less than the friction of its load it stays, with more it comes out.
 #[test]
 fn cloth_under_a_crate_is_held_by_its_friction() {
