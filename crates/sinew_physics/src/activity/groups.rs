@@ -72,7 +72,7 @@ fn comes(body: &Body) -> bool {
 
 fn is_disturbed(group: &ParticleGroup, bodies: &Arena<Body>, proxies: &Proxies, way: f32, dt: f32) -> bool {
     let Some(bed) = group.bed() else { return true };
-    let pulls = group.wearers().any(|body| bodies.get(body).is_none_or(comes));
+    let pulls = group.carriers().any(|body| bodies.get(body).is_none_or(comes));
     let near = |Owner { body: index, shape }| {
         let (body, shape) = (bodies.at(index), shape as usize);
         let touches = comes(body)

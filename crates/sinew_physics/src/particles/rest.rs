@@ -93,7 +93,7 @@ impl ParticleGroup {
     }
 
     /// Bodies that hold particles of it or that its backstops are fixed to, each as often as they do.
-    pub(crate) fn wearers(&self) -> impl Iterator<Item = BodyId> {
+    pub(crate) fn carriers(&self) -> impl Iterator<Item = BodyId> {
         let held = self.attachments.iter().filter_map(|a| match a.target {
             AttachmentTarget::Body { body, .. } => Some(body),
             AttachmentTarget::World(_) => None,

@@ -174,7 +174,7 @@ impl World {
     #[doc(alias = "destroy")]
     pub fn remove_body(&mut self, id: BodyId) {
         self.expect(id);
-        let worn = self.groups.iter().any(|(_, group)| group.wearers().any(|body| body == id));
+        let worn = self.groups.iter().any(|(_, group)| group.carriers().any(|body| body == id));
         assert!(
             !worn,
             "no particles are attached to a body that is taken out, nor have backstops there ({id:?})"
@@ -203,8 +203,8 @@ impl World {
     /// If the definition is not valid or names a body that is not there.
     pub fn add_particles(&mut self, def: &GroupDef) -> GroupId {
         let group = ParticleGroup::new(def);
-        group.wearers().for_each(|body| _ = self.expect(body));
-        group.wearers().for_each(|body| self.wake_body(body.index));
+        group.carriers().for_each(|body| _ = self.expect(body));
+        group.carriers().for_each(|body| self.wake_body(body.index));
         self.groups.insert(group)
     }
 

@@ -169,7 +169,7 @@ fn load_group(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<ParticleGroup,
     for _ in 0..r.count(8)? {
         group.pinched.contacts.push(load_contact(r, bodies)?);
     }
-    if group.wearers().all(|body| bodies.get(body).is_some()) {
+    if group.carriers().all(|body| bodies.get(body).is_some()) {
         Ok(group)
     } else {
         Err(r.error("attached to no body, or stopped by none"))

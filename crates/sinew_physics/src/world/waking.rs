@@ -132,7 +132,7 @@ impl World {
             let shapes = 0..body.shapes.len();
             let bounds = |shape: usize| body.shapes[shape].shape.aabb(&body.world_from_shape(shape));
             if shapes.into_iter().any(|shape| bounds(shape).overlaps(&bed.bounds))
-                || group.wearers().any(|body| body == id)
+                || group.carriers().any(|body| body == id)
             {
                 group.wake();
             }

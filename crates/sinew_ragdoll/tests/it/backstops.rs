@@ -1,25 +1,13 @@
 //! Backstops of garments: cloth does not sink into what is drawn where no body of the ragdoll is, and is left alone elsewhere.
 
+use crate::garments::{go_on, ground, mean_stretch};
 use sinew_anim::garments::Backstop;
 use sinew_math::{Transform, Vec3, max};
 use sinew_physics::particles::ParticleGroup;
-use sinew_physics::{BodyDef, Shape, World, WorldDef};
+use sinew_physics::{Shape, World, WorldDef};
 use sinew_ragdoll::{Character, CharacterDef, MotionSet};
 use sinew_scenes::dressed::{CAPE, Chains, SKIRT, dressed};
 use std::sync::Arc;
-
-fn ground(gravity: Vec3) -> World {
-    let mut world = World::new(WorldDef { gravity, ..WorldDef::default() });
-    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
-    world
-}
-
-fn go_on(world: &mut World, character: &mut Character, steps: u32) {
-    for _ in 0..steps {
-        world.step();
-        character.update(world);
-    }
-}
 
 fn worn(chains: &Chains, backstop: Option<Backstop>) -> CharacterDef {
     dressed(&[chains], |garment| garment.backstop = backstop)
@@ -158,12 +146,4 @@ fn who_wears_them_walks_as_ever() {
         assert!(depth < 0.005, "{} is {depth} m in them", chains.name);
         assert!(stretch < 0.03, "{} is stretched by {stretch}", chains.name);
     }
-}
-
-fn mean_stretch(group: &ParticleGroup) -> f32 {
-    let at = group.positions();
-    let share = |s: &sinew_physics::particles::SpringDef| {
-        ((at[s.b as usize] - at[s.a as usize]).length() / s.rest_length - 1.0).abs()
-    };
-    group.springs().iter().map(share).sum::<f32>() / group.springs().len() as f32
 }

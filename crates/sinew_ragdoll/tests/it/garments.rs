@@ -8,7 +8,7 @@ use sinew_ragdoll::{BakeHit, BakeInput, Character, CharacterDef, Detail, State, 
 use sinew_scenes::dressed::{CAPE, Chains, SKIRT, dressed, dressed_rig};
 use std::sync::Arc;
 
-fn ground(gravity: Vec3) -> World {
+pub fn ground(gravity: Vec3) -> World {
     let mut world = World::new(WorldDef { gravity, ..WorldDef::default() });
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
     world
@@ -27,7 +27,7 @@ fn walking(garments: &[&Chains]) -> (World, Character) {
     (world, character)
 }
 
-fn go_on(world: &mut World, character: &mut Character, steps: u32) {
+pub fn go_on(world: &mut World, character: &mut Character, steps: u32) {
     for _ in 0..steps {
         world.step();
         character.update(world);
@@ -41,20 +41,21 @@ fn is_joined(group: &ParticleGroup, a: usize, b: usize) -> bool {
     })
 }
 
-fn mean_stretch(group: &ParticleGroup) -> f32 {
+/// Change of each spring's length since rest, over that.
+fn stretches(group: &ParticleGroup) -> impl Iterator<Item = f32> {
     let at = group.positions();
-    let share = |s: &sinew_physics::particles::SpringDef| {
-        ((at[s.b as usize] - at[s.a as usize]).length() / s.rest_length - 1.0).abs()
-    };
-    group.springs().iter().map(share).sum::<f32>() / group.springs().len() as f32
+    group
+        .springs()
+        .iter()
+        .map(|s| ((at[s.b as usize] - at[s.a as usize]).length() / s.rest_length - 1.0).abs())
+}
+
+pub fn mean_stretch(group: &ParticleGroup) -> f32 {
+    stretches(group).sum::<f32>() / group.springs().len() as f32
 }
 
 fn largest_stretch(group: &ParticleGroup) -> f32 {
-    let at = group.positions();
-    let share = |s: &sinew_physics::particles::SpringDef| {
-        ((at[s.b as usize] - at[s.a as usize]).length() / s.rest_length - 1.0).abs()
-    };
-    group.springs().iter().map(share).fold(0.0, max)
+    stretches(group).fold(0.0, max)
 }
 
 #[test]

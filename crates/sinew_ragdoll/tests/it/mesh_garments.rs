@@ -1,31 +1,19 @@
 //! Garments that are meshes of the character: reduced, held at the top, worn, drawn; through walks, falls, snapshots and other sizes.
 
+use crate::garments::{go_on, ground, mean_stretch};
 use sinew_anim::{
     Channel, Clip, Garment, Interpolation, Joint, LocalTransform, Property, SpringBone, SpringChain, Springs,
     local_to_model, skin_vertices,
 };
 use sinew_math::{Affine, Reader, Transform, Vec3, Writer, max};
-use sinew_physics::particles::{GroupDef, ParticleDef, ParticleGroup};
-use sinew_physics::{BodyDef, Shape, World, WorldDef};
+use sinew_physics::particles::{GroupDef, ParticleDef};
+use sinew_physics::{World, WorldDef};
 use sinew_ragdoll::{Character, CharacterDef, MotionSet};
 use sinew_scenes::skirted::{CELLS, joint, lay_skirt, skirted, skirted_rig};
 use std::sync::Arc;
 
 /// Spacing that the cells of a coarse skirt keep as they are, metres.
 const COARSE: f32 = 0.1;
-
-fn ground(gravity: Vec3) -> World {
-    let mut world = World::new(WorldDef { gravity, ..WorldDef::default() });
-    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
-    world
-}
-
-fn go_on(world: &mut World, character: &mut Character, steps: u32) {
-    for _ in 0..steps {
-        world.step();
-        character.update(world);
-    }
-}
 
 /// Vertices of the skirt and their normals as a game draws them, world.
 fn drawn(character: &Character) -> (Vec<Vec3>, Vec<Vec3>) {
@@ -55,14 +43,6 @@ fn deepest(world: &World, character: &Character) -> f32 {
         }
     }
     deepest
-}
-
-fn mean_stretch(group: &ParticleGroup) -> f32 {
-    let at = group.positions();
-    let share = |s: &sinew_physics::particles::SpringDef| {
-        ((at[s.b as usize] - at[s.a as usize]).length() / s.rest_length - 1.0).abs()
-    };
-    group.springs().iter().map(share).sum::<f32>() / group.springs().len() as f32
 }
 
 #[test]

@@ -61,7 +61,7 @@ impl Neighbors {
             self.found.extend(near(owner).then_some((owner.body, Some(owner.shape))));
             ControlFlow::<()>::Continue(())
         });
-        self.found.extend(group.wearers().map(|body| (body.index, None)));
+        self.found.extend(group.carriers().map(|body| (body.index, None)));
         self.found.sort_unstable();
         self.list();
     }

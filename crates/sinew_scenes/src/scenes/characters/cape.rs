@@ -7,14 +7,13 @@ use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
 use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
-use crate::scenes::characters::worn;
+use crate::scenes::characters::worn::{Wear, stretch, torn};
 use sinew::anim::local_to_model;
-
 use sinew::math::{Affine, ReadError, Reader, Vec3, Writer, max};
 use sinew::physics::boxes::{Aabb, Overlap};
 use sinew::physics::particles::{AttachmentDef, AttachmentTarget, ClothDef, GroupDef};
 use sinew::physics::{BodyId, GroupId, Material, World};
-use sinew::ragdoll::{Character, CharacterEvent};
+use sinew::ragdoll::Character;
 use std::sync::Arc;
 
 pub(in crate::scenes) const CAPE: Scene = Scene {
@@ -105,21 +104,12 @@ fn worn(world: &World, body: BodyId, nape: Vec3, mass: f32) -> GroupDef {
     cloth.group
 }
 
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 struct Watch {
     /// Depth of a free particle's middle in a body of the wearer, and in anything else, metres; 0: it was in none.
     deepest_in_wearer: f32,
     deepest_in_world: f32,
-    /// Largest mean over the threads of how much a thread is longer or shorter than at rest, over its length.
-    stretch: f32,
-    /// Sum of that mean over steps.
-    stretch_sum: f32,
-    /// Furthest that a held particle was from its place, metres.
-    torn: f32,
-    falls: u32,
-    /// When it was up again, seconds.
-    up: Option<f32>,
-    work_in: f32,
+    wear: Wear,
 }
 
 struct Worn {
@@ -166,13 +156,11 @@ impl Worn {
         let others = world.body_ids().filter(|body| !own.contains(body));
         let [in_wearer, in_world] = [self.deepest(world, own.iter().copied()), self.deepest(world, others)];
         let group = world.particles(self.cape);
-        let (torn, stretch) = (worn::torn(world, group), worn::stretch(group, THREADS as usize));
         let watch = &mut self.watch;
         watch.deepest_in_wearer = max(watch.deepest_in_wearer, in_wearer);
         watch.deepest_in_world = max(watch.deepest_in_world, in_world);
-        watch.torn = max(watch.torn, torn);
-        watch.stretch = max(watch.stretch, stretch);
-        watch.stretch_sum += stretch;
+        watch.wear.torn = max(watch.wear.torn, torn(world, group));
+        watch.wear.note_stretch(stretch(group, THREADS as usize));
     }
 
     /// From the middle of the first row to that of the last, in the wearer's axes, metres.
@@ -187,15 +175,8 @@ impl Worn {
 
 impl Script for Worn {
     fn after_step(&mut self, world: &mut World) {
-        self.watch.work_in += world.work().total();
         self.look(world);
-        self.character.update(world);
-        for event in self.character.events() {
-            self.watch.falls += u32::from(*event == CharacterEvent::WentLimp);
-            if *event == CharacterEvent::Up {
-                self.watch.up = Some(world.time() as f32);
-            }
-        }
+        self.watch.wear.follow(world, &mut self.character);
         if !self.was_hit && self.character.world_from_character().translation.z > -HIT_BEFORE_EDGE {
             self.was_hit = true;
             self.character.hit(world, self.chest(), Vec3::Z * self.impulse);
@@ -205,50 +186,41 @@ impl Script for Worn {
 
     fn save(&self, out: &mut Writer) {
         self.character.save(out);
-        out.u32(u32::from(self.was_hit));
-        let Watch { deepest_in_wearer, deepest_in_world, stretch, stretch_sum, torn, falls, up, work_in } =
-            self.watch;
-        [deepest_in_wearer, deepest_in_world, stretch, stretch_sum, torn, work_in, up.unwrap_or(0.0)]
-            .into_iter()
-            .for_each(|x| out.f32(x));
-        out.u32(falls);
+        out.bool(self.was_hit);
+        out.f32(self.watch.deepest_in_wearer);
+        out.f32(self.watch.deepest_in_world);
+        self.watch.wear.save(out);
     }
 
     fn load(&mut self, bytes: &mut Reader<'_>) -> Result<(), ReadError> {
         self.character.load(bytes)?;
-        self.was_hit = bytes.u32()? != 0;
+        self.was_hit = bytes.bool()?;
         let (deepest_in_wearer, deepest_in_world) = (bytes.f32()?, bytes.f32()?);
-        let (stretch, stretch_sum, torn) = (bytes.f32()?, bytes.f32()?, bytes.f32()?);
-        let (work_in, up) = (bytes.f32()?, bytes.f32()?);
-        let up = (up > 0.0).then_some(up);
-        let falls = bytes.u32()?;
-        self.watch =
-            Watch { deepest_in_wearer, deepest_in_world, stretch, stretch_sum, torn, falls, up, work_in };
+        self.watch = Watch { deepest_in_wearer, deepest_in_world, wear: Wear::load(bytes)? };
         self.show();
         Ok(())
     }
 
     fn work_in(&self, _: &World) -> f32 {
-        self.watch.work_in
+        self.watch.wear.work_in
     }
 
     fn metrics(&self, world: &World) -> Vec<Metric> {
-        let Watch { deepest_in_wearer, deepest_in_world, stretch, stretch_sum, torn, falls, up, .. } =
-            self.watch;
+        let Watch { deepest_in_wearer, deepest_in_world, wear } = self.watch;
         let radius = f64::from(RADIUS);
         let hem = self.hem(world);
-        let mean = (world.step_count() > 0).then_some(stretch_sum / world.step_count() as f32);
-        vec![
+        let [of_cloth, of_wearer] = wear.metrics(world, 12.0);
+        let mut metrics = vec![
             Metric::new("deepest_in_wearer_m", deepest_in_wearer, Expected::AtMost(radius)),
             Metric::new("deepest_in_world_m", deepest_in_world, Expected::AtMost(radius)),
-            Metric::awaited("stretch_mean", mean, Expected::AtMost(0.03)),
-            Metric::new("stretch_mean_worst", stretch, Expected::Anything),
-            Metric::new("held_off_m", torn, Expected::AtMost(1e-3)),
-            Metric::new("falls", falls, Expected::Near { value: 1.0, tolerance: 0.0 }),
-            Metric::awaited("up_s", up, Expected::AtMost(12.0)),
+        ];
+        metrics.extend(of_cloth);
+        metrics.extend(of_wearer);
+        metrics.extend([
             Metric::new("hem_over_shoulders_m", hem.y, Expected::AtMost(f64::from(-0.7 * LONG))),
             Metric::new("hem_before_shoulders_m", hem.z, Expected::AtMost(0.0)),
-        ]
+        ]);
+        metrics
     }
 
     fn camera_hint(&self) -> CameraHint {

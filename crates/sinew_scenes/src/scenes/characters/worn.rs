@@ -1,8 +1,77 @@
-//! Measures of cloth that a figure wears.
+//! Cloth that a figure wears through a fall: its measures, and the course of its wearer.
 
-use sinew::math::max;
+use crate::framework::metric::{Expected, Metric};
+use sinew::math::{ReadError, Reader, Writer, max};
 use sinew::physics::World;
 use sinew::physics::particles::{AttachmentTarget, ParticleGroup};
+use sinew::ragdoll::{Character, CharacterEvent};
+
+/// Figures of a wearer and its cloth since the start.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Wear {
+    /// Largest mean over the threads of how much a thread is longer or shorter than at rest, over its length.
+    pub stretch: f32,
+    /// Sum of that mean over steps.
+    pub stretch_sum: f32,
+    /// Furthest that a held particle was from its place, metres.
+    pub torn: f32,
+    /// Times that the wearer went limp.
+    pub falls: u32,
+    /// Time at which it was up again, seconds; 0: it was not.
+    pub up: f32,
+    /// Work of drives and led bodies, J.
+    pub work_in: f32,
+}
+
+impl Wear {
+    /// Takes a step of the world and the wearer's own, which it is brought up to.
+    pub fn follow(&mut self, world: &mut World, wearer: &mut Character) {
+        self.work_in += world.work().total();
+        wearer.update(world);
+        for event in wearer.events() {
+            self.falls += u32::from(*event == CharacterEvent::WentLimp);
+            if *event == CharacterEvent::Up {
+                self.up = world.time() as f32;
+            }
+        }
+    }
+
+    /// Takes in the stretch of a step.
+    pub fn note_stretch(&mut self, mean: f32) {
+        self.stretch = max(self.stretch, mean);
+        self.stretch_sum += mean;
+    }
+
+    /// Figures of stretch and hold; then of the wearer, which is to be up within so many seconds.
+    pub fn metrics(&self, world: &World, up_within: f64) -> [Vec<Metric>; 2] {
+        let mean = (world.step_count() > 0).then_some(self.stretch_sum / world.step_count() as f32);
+        let up = (self.up > 0.0).then_some(self.up);
+        [
+            vec![
+                Metric::awaited("stretch_mean", mean, Expected::AtMost(0.03)),
+                Metric::new("stretch_mean_worst", self.stretch, Expected::Anything),
+                Metric::new("held_off_m", self.torn, Expected::AtMost(1e-3)),
+            ],
+            vec![
+                Metric::new("falls", self.falls, Expected::Near { value: 1.0, tolerance: 0.0 }),
+                Metric::awaited("up_s", up, Expected::AtMost(up_within)),
+            ],
+        ]
+    }
+
+    pub fn save(&self, out: &mut Writer) {
+        let Self { stretch, stretch_sum, torn, falls, up, work_in } = *self;
+        [stretch, stretch_sum, torn, up, work_in].into_iter().for_each(|x| out.f32(x));
+        out.u32(falls);
+    }
+
+    pub fn load(bytes: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut number = || bytes.f32();
+        let (stretch, stretch_sum, torn) = (number()?, number()?, number()?);
+        let (up, work_in) = (number()?, number()?);
+        Ok(Self { stretch, stretch_sum, torn, falls: bytes.u32()?, up, work_in })
+    }
+}
 
 /// Mean over the first so many springs, the threads, of how far their lengths are from those at rest, as a share.
 pub(super) fn stretch(group: &ParticleGroup, threads: usize) -> f32 {
