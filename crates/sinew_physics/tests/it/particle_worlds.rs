@@ -161,7 +161,7 @@ fn elastic(world: &World) -> f32 {
 /// Energy that springs, bends and volumes give back, J: the most there is of motion within [`RELEASE_STEPS`] if everything stops and
 /// nothing weighs.
 ///
-/// [`elastic`] counts what each of them gives back where none beside it moves. In a net that is more than all give back together.
+/// [`elastic`] counts what each of them gives back where none beside it moves. In a net that is more than all give back together (ADR 0027).
 fn given_back(world: &World) -> f32 {
     let mut stopped = World::new(WorldDef::default());
     let mut state = Writer::new();

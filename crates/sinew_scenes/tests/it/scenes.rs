@@ -10,8 +10,7 @@ const NOT_YET: &[(&str, &[&str])] = &[
     // Heaps are chaotic: from starts that differ by 1 mm the sticks sleep after 212 to 226 steps.
     ("mesh_drop", &["asleep_steps"]),
     // A foot that the clip of getting up sets on the cape stands on it for a frame with 2 mm to spare, its middle 17 mm inside; and the shin stretches the skirt to three times
-    // its length. So stretched, rows that are solved one after the other, without multipliers, pull by other than what their stretch holds: limbs work 2.3 J in a step in which
-    // the skirt comes to hold 3.3 J more, and get back 0.09 J where it comes to hold 0.07 J less.
+    // its length, which its rows count too high (ADR 0027): limbs work 2.3 J in a step in which the skirt comes to hold 3.3 J more.
     ("skirt", &["deepest_in_wearer_m", "energy_gain_max"]),
 ];
 
