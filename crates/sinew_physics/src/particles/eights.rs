@@ -19,7 +19,7 @@ use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
 /// Numbers of a particle beside those of `batches.rs`: velocity, height above the plane that it touches when the iteration begins, distance from all else, its
 /// friction and static friction, radius, acceleration, normal of that plane.
-const STRIP: usize = 14;
+pub(super) const STRIP: usize = 14;
 const HEIGHT: usize = 3;
 const CLEARANCE: usize = 4;
 const FRICTION: usize = 5;
@@ -38,6 +38,8 @@ pub(super) struct Eights {
     pub easy: Vec<u8>,
     /// Lanes of these that have met something on their way.
     pub strayed: Vec<u8>,
+    /// Acceleration of all particles in the strips, m/s², if they have one there.
+    pub common_pull: Option<Vec3>,
     /// The substep goes through lanes.
     pub on: bool,
     /// Particles that do not, ascending.

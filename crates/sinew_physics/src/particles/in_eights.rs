@@ -1,13 +1,14 @@
 //! The way of a group through the lanes of `eights.rs`: in, out of them for what is solved one by one, and back.
 
 use super::ParticleGroup;
-use super::batches::WAY;
+use super::batches::{FIELDS, WAY};
 use super::contact::{Grip, Obstacle, ObstacleBody};
-use super::eights::{ACCELERATION, Approach, Depart, Form, Solid};
+use super::eights::{ACCELERATION, Approach, Depart, Form, STRIP, Solid};
 use crate::body::material::ContactMaterial;
 use crate::body::shape::Shape;
 use crate::particles::tuning::MOST_SOLIDS;
-use sinew_math::lanes::{Block, WIDTH};
+use sinew_math::dispatch::Kernel;
+use sinew_math::lanes::{Block, Lanes, WIDTH};
 use sinew_math::{Vec3, dispatch};
 
 impl Solid {
@@ -60,22 +61,13 @@ impl ParticleGroup {
             }
         }
         let per_lane = eights.strips.len();
-        let blocks = self.batches.particles.iter_mut().zip(&mut eights.strips).enumerate();
-        for (block, (Block(particle), Block(strip))) in blocks {
-            for (lane, i) in (block..self.positions.len()).step_by(per_lane).enumerate() {
-                let (at, velocity, acceleration) =
-                    (self.positions[i], self.velocities[i], self.accelerations[i]);
-                self.weights[i] = 1.0 / self.masses[i];
-                for (k, at) in at.to_array().into_iter().enumerate() {
-                    particle[k][lane] = at;
-                }
-                for (k, velocity) in velocity.to_array().into_iter().enumerate() {
-                    strip[k][lane] = velocity;
-                }
-                for (k, acceleration) in acceleration.to_array().into_iter().enumerate() {
-                    strip[ACCELERATION + k][lane] = acceleration;
-                }
-            }
+        let Self { positions, velocities, accelerations, batches, .. } = self;
+        dispatch::run(Spread::<FIELDS, 0> { vectors: positions, blocks: &mut batches.particles, per_lane });
+        dispatch::run(Spread::<STRIP, 0> { vectors: velocities, blocks: &mut eights.strips, per_lane });
+        if self.common_pull.is_none() || eights.common_pull != self.common_pull {
+            let blocks = &mut eights.strips;
+            dispatch::run(Spread::<STRIP, ACCELERATION> { vectors: accelerations, blocks, per_lane });
+            eights.common_pull = self.common_pull;
         }
         let gripped = self.grips.iter().enumerate().filter(|(_, grip)| **grip != Grip::Off);
         eights.others.extend(gripped.map(|(i, _)| i as u32));
@@ -84,15 +76,10 @@ impl ParticleGroup {
 
     /// Brings all particles back at the end of the substep.
     pub(super) fn leave_eights(&mut self) {
-        let per_lane = self.eights.strips.len();
-        for (block, &present) in self.eights.present.iter().enumerate() {
-            let (particle, strip) = (&self.batches.particles[block].0, &self.eights.strips[block].0);
-            for lane in (0..WIDTH).filter(|lane| present >> lane & 1 == 1) {
-                let i = lane * per_lane + block;
-                self.positions[i] = Vec3::new(particle[0][lane], particle[1][lane], particle[2][lane]);
-                self.velocities[i] = Vec3::new(strip[0][lane], strip[1][lane], strip[2][lane]);
-            }
-        }
+        let Self { positions, velocities, batches, eights, .. } = self;
+        let per_lane = eights.strips.len();
+        dispatch::run(Collect::<FIELDS> { vectors: positions, blocks: &batches.particles, per_lane });
+        dispatch::run(Collect::<STRIP> { vectors: velocities, blocks: &eights.strips, per_lane });
     }
 
     /// Begins an iteration of `h` seconds: finds what each particle touches, and its velocity; takes out those that are not solved in lanes.
@@ -213,4 +200,88 @@ impl ParticleGroup {
             }
         }
     }
+}
+
+/// Writes vectors, one for each particle, into blocks from field `FIELD` on: eight blocks of eight at a time, as whole registers.
+struct Spread<'a, const F: usize, const FIELD: usize> {
+    vectors: &'a [Vec3],
+    blocks: &'a mut [Block<F>],
+    per_lane: usize,
+}
+
+impl<const F: usize, const FIELD: usize> Kernel for Spread<'_, F, FIELD> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { vectors, blocks, per_lane } = self;
+        let whole = whole_eights(vectors.len(), per_lane);
+        for (at, eight) in blocks.as_chunks_mut::<WIDTH>().0[..whole].iter_mut().enumerate() {
+            let mut numbers = [[[0.0; WIDTH]; 3]; WIDTH];
+            for (lane, numbers) in numbers.iter_mut().enumerate() {
+                let from = &vectors[lane * per_lane + at * WIDTH..][..WIDTH];
+                for (vector, numbers) in from.iter().zip(numbers.as_flattened_mut().as_chunks_mut::<3>().0) {
+                    *numbers = vector.to_array();
+                }
+            }
+            for part in 0..3 {
+                let columns = L::transpose(numbers.each_ref().map(|numbers| L::load(&numbers[part])));
+                for (k, column) in columns.into_iter().enumerate() {
+                    let k = part * WIDTH + k;
+                    column.store(&mut eight[k / 3].0[FIELD + k % 3]);
+                }
+            }
+        }
+        for block in whole * WIDTH..per_lane {
+            for (lane, vector) in vectors[block..].iter().step_by(per_lane).enumerate() {
+                for (k, number) in vector.to_array().into_iter().enumerate() {
+                    blocks[block].0[FIELD + k][lane] = number;
+                }
+            }
+        }
+    }
+}
+
+/// Reads vectors, one for each particle, from the first fields of blocks.
+struct Collect<'a, const F: usize> {
+    vectors: &'a mut [Vec3],
+    blocks: &'a [Block<F>],
+    per_lane: usize,
+}
+
+impl<const F: usize> Kernel for Collect<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { vectors, blocks, per_lane } = self;
+        let whole = whole_eights(vectors.len(), per_lane);
+        for (at, eight) in blocks.as_chunks::<WIDTH>().0[..whole].iter().enumerate() {
+            let mut numbers = [[[0.0; WIDTH]; 3]; WIDTH];
+            for part in 0..3 {
+                let column = |k: usize| L::load(&eight[k / 3].0[k % 3]);
+                let lanes = L::transpose(core::array::from_fn(|k| column(part * WIDTH + k)));
+                for (lane, numbers) in lanes.into_iter().zip(&mut numbers) {
+                    lane.store(&mut numbers[part]);
+                }
+            }
+            for (lane, numbers) in numbers.iter().enumerate() {
+                let to = &mut vectors[lane * per_lane + at * WIDTH..][..WIDTH];
+                for (vector, numbers) in to.iter_mut().zip(numbers.as_flattened().as_chunks::<3>().0) {
+                    *vector = Vec3::from_array(*numbers);
+                }
+            }
+        }
+        for block in whole * WIDTH..per_lane {
+            let Block(fields) = &blocks[block];
+            for (lane, vector) in vectors[block..].iter_mut().step_by(per_lane).enumerate() {
+                *vector = Vec3::new(fields[0][lane], fields[1][lane], fields[2][lane]);
+            }
+        }
+    }
+}
+
+/// Number of eights of blocks that hold a particle in each lane.
+fn whole_eights(count: usize, per_lane: usize) -> usize {
+    count.saturating_sub((WIDTH - 1) * per_lane) / WIDTH
 }

@@ -181,6 +181,8 @@ pub struct ParticleGroup {
     accelerations: Vec<Vec3>,
     /// Their lengths, m/s².
     pulls: Vec<f32>,
+    /// The acceleration of all, m/s², where no outer force makes a difference.
+    common_pull: Option<Vec3>,
 }
 
 impl Item for ParticleGroup {
@@ -250,9 +252,10 @@ impl ParticleGroup {
         self.drawn_from = self.positions.clone();
         self.places = self.positions.clone();
         self.attachment_impulses = vec![Vec3::ZERO; self.attachments.len()];
-        self.weights = vec![0.0; count];
+        self.weights = self.masses.iter().map(|mass| 1.0 / mass).collect();
         self.accelerations = vec![Vec3::ZERO; count];
         self.pulls = vec![0.0; count];
+        self.common_pull = Some(Vec3::ZERO);
         self.begun = vec![Vec3::ZERO; count];
         self.gradients = vec![Vec3::ZERO; count];
         self.touches = vec![None; count];
@@ -547,10 +550,11 @@ impl ParticleGroup {
         assert_eq!(anchors.len(), self.attachments.len(), "each attachment needs its anchor");
         assert!(obstacles.len() >= self.backstops.len(), "each backstop needs its ball");
         let gravity = gravity * self.gravity_scale;
-        self.accelerations.clear();
-        self.accelerations.resize(self.positions.len(), gravity);
-        self.pulls.clear();
-        self.pulls.resize(self.positions.len(), gravity.length());
+        if self.common_pull != Some(gravity) {
+            self.accelerations.fill(gravity);
+            self.pulls.fill(gravity.length());
+        }
+        self.common_pull = self.outer.is_empty().then_some(gravity);
         for (i, force) in self.outer.drain(..).enumerate() {
             self.accelerations[i] += force / self.masses[i];
             self.pulls[i] = self.accelerations[i].length();
