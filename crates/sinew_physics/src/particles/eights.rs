@@ -56,25 +56,25 @@ pub(super) struct Eights {
     pub foreign_bounds: Vec<Aabb>,
 }
 
-/// A solid that neither moves nor can be moved.
+/// A solid that neither moves nor can be moved. Its numbers stand in every lane, as kernels need them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Solid {
     pub form: Form,
     /// Place of its frame, world, metres.
-    pub at: Vec3,
-    pub friction: f32,
-    pub static_friction: f32,
-    pub bounces: bool,
+    pub at: Block<3>,
+    /// Its friction and static friction, and 1 if it bounces.
+    pub surface: Block<3>,
 }
 
+#[expect(clippy::large_enum_variant, reason = "there are few, and each is read for every block")]
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Form {
     /// Half of each side, and axes.
-    Box(Vec3, [Vec3; 3]),
-    /// Half of a segment, world, its direction, and the radius round it.
-    Round(f32, Vec3, f32),
+    Box(Block<3>, [Block<3>; 3]),
+    /// Half of a segment, world, and the radius round it; its direction.
+    Round(Block<2>, Block<3>),
     /// Normal.
-    Half(Vec3),
+    Half(Block<3>),
 }
 
 /// Eight points in the frame of a box, round its centre.
@@ -90,10 +90,10 @@ struct InBox<L> {
 
 impl<L: Lanes> InBox<L> {
     #[inline(always)]
-    fn new(half: Vec3, axes: &[Vector3<L>; 3], from: Vector3<L>) -> Self {
+    fn new(half: Vector3<L>, axes: &[Vector3<L>; 3], from: Vector3<L>) -> Self {
         let zero = L::splat(0.0);
         let p = Vector3::new(from.dot(axes[0]), from.dot(axes[1]), from.dot(axes[2]));
-        let beyond = p.abs() - Vector3::splat(half);
+        let beyond = p.abs() - half;
         let outside = Vector3::new(L::max(beyond.x, zero), L::max(beyond.y, zero), L::max(beyond.z, zero));
         let deepest = L::max(L::max(beyond.x, beyond.y), beyond.z);
         Self { p, beyond, outside, deepest, distance: outside.length() }
@@ -185,28 +185,28 @@ impl<L: Lanes> Surroundings<L> {
         let normal = Vector3::splat(Vec3::Y);
         let mut found = Self { gap: far, normal, beside: far, friction: zero, hold: zero, bounces: zero };
         for solid in solids {
-            let from = p - Vector3::splat(solid.at);
-            match solid.form {
+            let from = p - vector(&solid.at);
+            match &solid.form {
                 Form::Box(half, axes) => {
-                    let axes = axes.map(Vector3::<L>::splat);
-                    let place = InBox::new(half, &axes, from);
+                    let axes = axes.each_ref().map(vector::<L>);
+                    let place = InBox::new(vector(half), &axes, from);
                     let (touched, nearer) = found.meet(place.signed_distance() - radius, reach);
                     if touched {
                         found.touch(solid, place.normal(&axes), nearer);
                     }
                 }
-                Form::Round(half, axis, size) => {
-                    let axis = Vector3::splat(axis);
-                    let along = L::max(L::min(from.dot(axis), L::splat(half)), L::splat(-half));
+                Form::Round(Block([half, size]), axis) => {
+                    let (axis, half) = (vector(axis), L::load(half));
+                    let along = L::max(L::min(from.dot(axis), half), -half);
                     let from = from - axis * along;
                     let length = from.length();
-                    let (touched, nearer) = found.meet(length - L::splat(size) - radius, reach);
+                    let (touched, nearer) = found.meet(length - L::load(size) - radius, reach);
                     if touched {
                         found.touch(solid, round_normal(from, length), nearer);
                     }
                 }
                 Form::Half(normal) => {
-                    let normal = Vector3::splat(normal);
+                    let normal = vector(normal);
                     let (touched, nearer) = found.meet(from.dot(normal) - radius, reach);
                     if touched {
                         found.touch(solid, normal, nearer);
@@ -229,12 +229,11 @@ impl<L: Lanes> Surroundings<L> {
     /// Takes in the surface of the nearest.
     #[inline(always)]
     fn touch(&mut self, solid: &Solid, normal: Vector3<L>, nearer: L::Mask) {
-        self.normal.x = L::select(nearer, normal.x, self.normal.x);
-        self.normal.y = L::select(nearer, normal.y, self.normal.y);
-        self.normal.z = L::select(nearer, normal.z, self.normal.z);
-        self.friction = L::select(nearer, L::splat(solid.friction), self.friction);
-        self.hold = L::select(nearer, L::splat(solid.static_friction), self.hold);
-        self.bounces = L::select(nearer, L::splat(f32::from(u8::from(solid.bounces))), self.bounces);
+        let Block([friction, hold, bounces]) = &solid.surface;
+        self.normal = select(nearer, normal, self.normal);
+        self.friction = L::select(nearer, L::load(friction), self.friction);
+        self.hold = L::select(nearer, L::load(hold), self.hold);
+        self.bounces = L::select(nearer, L::load(bounces), self.bounces);
     }
 
     /// The velocity that what touches leaves of a free one, by Coulomb's law for a particle alone.
@@ -252,6 +251,12 @@ impl<L: Lanes> Surroundings<L> {
         let held = self.normal * rise + slip * share;
         select(pressed, held, free)
     }
+}
+
+/// The vector in every lane.
+#[inline(always)]
+fn vector<L: Lanes>(Block([x, y, z]): &Block<3>) -> Vector3<L> {
+    Vector3::load(x, y, z)
 }
 
 /// The one where the mask is true, else the other.

@@ -1,6 +1,7 @@
 //! The way of a group through the lanes of `eights.rs`: in, out of them for what is solved one by one, and back.
 
 use super::ParticleGroup;
+use super::around::copy_numbers;
 use super::batches::{FIELDS, WAY};
 use super::contact::{Grip, Obstacle, ObstacleBody};
 use super::eights::{ACCELERATION, Approach, Depart, Form, STRIP, Solid};
@@ -18,22 +19,24 @@ impl Solid {
             return None;
         }
         let turn = o.world_from_shape.rotation;
+        let wide = |v: Vec3| Block::splat(v.to_array());
         let form = match o.shape {
             Shape::Box { half_extents } => {
-                Form::Box(half_extents, [Vec3::X, Vec3::Y, Vec3::Z].map(|e| turn * e))
+                Form::Box(wide(half_extents), [Vec3::X, Vec3::Y, Vec3::Z].map(|e| wide(turn * e)))
             }
-            Shape::Sphere { radius } => Form::Round(0.0, Vec3::Y, radius),
-            Shape::Capsule { half_height, radius } => Form::Round(half_height, turn * Vec3::Y, radius),
-            Shape::HalfSpace => Form::Half(turn * Vec3::Y),
+            Shape::Sphere { radius } => Form::Round(Block::splat([0.0, radius]), wide(Vec3::Y)),
+            Shape::Capsule { half_height, radius } => {
+                Form::Round(Block::splat([half_height, radius]), wide(turn * Vec3::Y))
+            }
+            Shape::HalfSpace => Form::Half(wide(turn * Vec3::Y)),
             _ => return None,
         };
         let material = ContactMaterial::of(&group.material, &o.material);
+        let bounces = f32::from(u8::from(material.restitution > 0.0));
         Some(Self {
             form,
-            at: o.world_from_shape.translation,
-            friction: material.friction,
-            static_friction: material.static_friction,
-            bounces: material.restitution > 0.0,
+            at: wide(o.world_from_shape.translation),
+            surface: Block::splat([material.friction, material.static_friction, bounces]),
         })
     }
 }
@@ -219,10 +222,7 @@ impl<const F: usize, const FIELD: usize> Kernel for Spread<'_, F, FIELD> {
         for (at, eight) in blocks.as_chunks_mut::<WIDTH>().0[..whole].iter_mut().enumerate() {
             let mut numbers = [[[0.0; WIDTH]; 3]; WIDTH];
             for (lane, numbers) in numbers.iter_mut().enumerate() {
-                let from = &vectors[lane * per_lane + at * WIDTH..][..WIDTH];
-                for (vector, numbers) in from.iter().zip(numbers.as_flattened_mut().as_chunks_mut::<3>().0) {
-                    *numbers = vector.to_array();
-                }
+                copy_numbers(&vectors[lane * per_lane + at * WIDTH..][..WIDTH], numbers);
             }
             for part in 0..3 {
                 let columns = L::transpose(numbers.each_ref().map(|numbers| L::load(&numbers[part])));
@@ -284,4 +284,34 @@ impl<const F: usize> Kernel for Collect<'_, F> {
 /// Number of eights of blocks that hold a particle in each lane.
 fn whole_eights(count: usize, per_lane: usize) -> usize {
     count.saturating_sub((WIDTH - 1) * per_lane) / WIDTH
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_math::dispatch::Level;
+
+    #[test]
+    fn vectors_lie_in_their_lanes_and_come_back() {
+        for level in Level::available() {
+            for count in [1, 7, 9, 64, 65, 120, 128, 200, 1003] {
+                let vector = |i: usize| Vec3::new(i as f32, i as f32 + 0.25, i as f32 + 0.5);
+                let vectors: Vec<Vec3> = (0..count).map(vector).collect();
+                let per_lane = count.div_ceil(WIDTH);
+                let mut blocks = vec![Block::splat([-1.0; FIELDS]); per_lane];
+                let spread = Spread::<FIELDS, 0> { vectors: &vectors, blocks: &mut blocks, per_lane };
+                dispatch::run_at(level, spread);
+                for (i, vector) in vectors.iter().enumerate() {
+                    assert_eq!(
+                        blocks[i % per_lane].get(i / per_lane)[..3],
+                        vector.to_array(),
+                        "{count} at {level:?}"
+                    );
+                }
+                let mut back = vec![Vec3::ZERO; count];
+                dispatch::run_at(level, Collect { vectors: &mut back, blocks: &blocks, per_lane });
+                assert_eq!(back, vectors, "{count} at {level:?}");
+            }
+        }
+    }
 }
