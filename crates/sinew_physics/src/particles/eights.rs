@@ -80,11 +80,13 @@ pub(super) enum Form {
 /// Eight points in the frame of a box, round its centre.
 struct InBox<L> {
     p: Vector3<L>,
-    /// How far they lie beyond the faces, metres, in all and where they do.
+    /// Ways beyond the faces across each axis, metres, negative inside.
     beyond: Vector3<L>,
+    /// The same where they are outside, else 0.
     outside: Vector3<L>,
+    /// Largest of `beyond`.
     deepest: L,
-    /// Distance from outside.
+    /// Distance of what is outside, else 0.
     distance: L,
 }
 
@@ -178,7 +180,7 @@ struct Surroundings<L: Lanes> {
 }
 
 impl<L: Lanes> Surroundings<L> {
-    /// What touches is within `reach`, metres.
+    /// Looks at all solids; the one that touches is within `reach`, metres.
     #[inline(always)]
     fn look(solids: &[Solid], p: Vector3<L>, radius: L, reach: L) -> Self {
         let (zero, far) = (L::splat(0.0), L::splat(f32::MAX));
