@@ -12,6 +12,9 @@ use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Block, Lanes, WIDTH};
 use sinew_math::{Vec3, dispatch};
 
+/// Grips that are looked at in one go.
+const GRIPS: usize = 64;
+
 impl Solid {
     /// The obstacle, if it is such a solid.
     fn of(group: &ParticleGroup, o: &Obstacle, bodies: &[ObstacleBody]) -> Option<Self> {
@@ -72,8 +75,13 @@ impl ParticleGroup {
             dispatch::run(Spread::<STRIP, ACCELERATION> { vectors: accelerations, blocks, per_lane });
             eights.common_pull = self.common_pull;
         }
-        let gripped = self.grips.iter().enumerate().filter(|(_, grip)| **grip != Grip::Off);
-        eights.others.extend(gripped.map(|(i, _)| i as u32));
+        for (at, grips) in self.grips.chunks(GRIPS).enumerate() {
+            // Nearly all hold nothing, which whole registers see where no look ends the next one.
+            if grips.iter().fold(false, |any, grip| any | (*grip != Grip::Off)) {
+                let gripped = (at * GRIPS..).zip(grips).filter(|(_, grip)| **grip != Grip::Off);
+                eights.others.extend(gripped.map(|(i, _)| i as u32));
+            }
+        }
         self.eights = eights;
     }
 
