@@ -153,9 +153,13 @@ impl Activity {
         def: &WorldDef,
     ) {
         let (speed, dt) = (def.sleep_thresholds.speed, def.dt());
-        for (_, group) in groups.iter().filter(|(_, group)| group.is_awake() && group.fastest() > speed) {
-            let bounds = group.bounds().expand(group.fastest() * dt);
-            self.wake_met(bodies, group, (proxies, &bounds), |shape, at| group.strikes(shape, at, speed, dt));
+        for (_, group) in groups.iter().filter(|(_, group)| group.is_awake()) {
+            let fastest = group.fastest();
+            if fastest > speed {
+                let bounds = group.bounds().expand(fastest * dt);
+                let strikes = |shape: &Shape, at: &Transform| group.strikes(shape, at, speed, dt);
+                self.wake_met(bodies, group, (proxies, &bounds), strikes);
+            }
         }
     }
 

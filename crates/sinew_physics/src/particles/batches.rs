@@ -43,6 +43,8 @@ pub(super) struct Kind<const K: usize> {
     /// Inverse masses of the particles, 1/kg.
     pub weights: [[f32; WIDTH]; K],
     pub is_damped: bool,
+    /// The particles of each row weigh the same.
+    pub is_even: bool,
 }
 
 impl<const K: usize> Kind<K> {
@@ -54,6 +56,7 @@ impl<const K: usize> Kind<K> {
             least: [f32::INFINITY; WIDTH],
             weights: [[0.0; WIDTH]; K],
             is_damped: false,
+            is_even: true,
         }
     }
 
@@ -67,6 +70,7 @@ impl<const K: usize> Kind<K> {
             self.weights[k][lane] = row.weights[k];
         }
         self.is_damped |= row.damping > 0.0;
+        self.is_even &= row.weights.iter().all(|weight| *weight == row.weights[0]);
     }
 }
 

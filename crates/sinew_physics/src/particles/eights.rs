@@ -19,7 +19,7 @@ use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
 /// Numbers of a particle beside those of `batches.rs`: velocity, height above the plane that it touches when the iteration begins, distance from all else, its
 /// friction and static friction, radius, acceleration, normal of that plane.
-const STRIP: usize = 14;
+pub(super) const STRIP: usize = 14;
 const HEIGHT: usize = 3;
 const CLEARANCE: usize = 4;
 const FRICTION: usize = 5;
@@ -36,8 +36,12 @@ pub(super) struct Eights {
     pub present: Vec<u8>,
     /// Lanes that go through this iteration as such.
     pub easy: Vec<u8>,
-    /// Lanes of these that have met something on their way.
+    /// Lanes that touch a solid.
+    pub touched: Vec<u8>,
+    /// Lanes of the easy ones that have met something on their way.
     pub strayed: Vec<u8>,
+    /// Acceleration of all particles in the strips, m/s², if they have one there.
+    pub common_pull: Option<Vec3>,
     /// The substep goes through lanes.
     pub on: bool,
     /// Particles that do not, ascending.
@@ -52,73 +56,87 @@ pub(super) struct Eights {
     pub foreign_bounds: Vec<Aabb>,
 }
 
-/// A solid that neither moves nor can be moved.
+/// A solid that neither moves nor can be moved. Its numbers stand in every lane, as kernels need them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Solid {
     pub form: Form,
     /// Place of its frame, world, metres.
-    pub at: Vec3,
-    pub friction: f32,
-    pub static_friction: f32,
-    pub bounces: bool,
+    pub at: Block<3>,
+    /// Its friction and static friction, and 1 if it bounces.
+    pub surface: Block<3>,
 }
 
+#[expect(clippy::large_enum_variant, reason = "there are few, and each is read for every block")]
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Form {
     /// Half of each side, and axes.
-    Box(Vec3, [Vec3; 3]),
-    /// Half of a segment, world, its direction, and the radius round it.
-    Round(f32, Vec3, f32),
+    Box(Block<3>, [Block<3>; 3]),
+    /// Half of a segment, world, and the radius round it; its direction.
+    Round(Block<2>, Block<3>),
     /// Normal.
-    Half(Vec3),
+    Half(Block<3>),
 }
 
-impl Solid {
-    /// Signed distance, metres, and outward normal.
+/// Eight points in the frame of a box, round its centre.
+struct InBox<L> {
+    p: Vector3<L>,
+    /// Ways beyond the faces across each axis, metres, negative inside.
+    beyond: Vector3<L>,
+    /// The same where they are outside, else 0.
+    outside: Vector3<L>,
+    /// Largest of `beyond`.
+    deepest: L,
+    /// Distance of what is outside, else 0.
+    distance: L,
+}
+
+impl<L: Lanes> InBox<L> {
     #[inline(always)]
-    fn distance<L: Lanes>(&self, p: Vector3<L>) -> (L, Vector3<L>) {
-        let from = p - Vector3::splat(self.at);
-        match self.form {
-            Form::Box(half, axes) => box_distance(half, axes, from),
-            Form::Round(half, axis, radius) => {
-                let axis = Vector3::splat(axis);
-                let along = L::max(L::min(from.dot(axis), L::splat(half)), L::splat(-half));
-                let from = from - axis * along;
-                let length = from.length();
-                let is_out = L::gt(length, L::splat(1e-12));
-                let share = L::splat(1.0) / length;
-                let one = L::splat(1.0);
-                let normal = Vector3::new(
-                    (from.x * share).masked(is_out),
-                    L::select(is_out, from.y * share, one),
-                    (from.z * share).masked(is_out),
-                );
-                (length - L::splat(radius), normal)
-            }
-            Form::Half(normal) => (from.dot(Vector3::splat(normal)), Vector3::splat(normal)),
-        }
+    fn new(half: Vector3<L>, axes: &[Vector3<L>; 3], from: Vector3<L>) -> Self {
+        let zero = L::splat(0.0);
+        let p = Vector3::new(from.dot(axes[0]), from.dot(axes[1]), from.dot(axes[2]));
+        let beyond = p.abs() - half;
+        let outside = Vector3::new(L::max(beyond.x, zero), L::max(beyond.y, zero), L::max(beyond.z, zero));
+        let deepest = L::max(L::max(beyond.x, beyond.y), beyond.z);
+        Self { p, beyond, outside, deepest, distance: outside.length() }
+    }
+
+    #[inline(always)]
+    fn is_out(&self) -> L::Mask {
+        L::gt(self.distance, L::splat(1e-12))
+    }
+
+    /// Signed, metres.
+    #[inline(always)]
+    fn signed_distance(&self) -> L {
+        L::select(self.is_out(), self.distance, self.deepest)
+    }
+
+    /// Outward normal; from inside that of the nearest face.
+    #[inline(always)]
+    fn normal(&self, axes: &[Vector3<L>; 3]) -> Vector3<L> {
+        let Self { p, beyond, outside, deepest, .. } = *self;
+        let (is_out, one) = (self.is_out(), L::splat(1.0));
+        let share = one / self.distance;
+        let (on_x, on_y) = (L::ge(beyond.x, deepest), L::ge(beyond.y, deepest));
+        let x = L::select(is_out, outside.x * share, one.masked(on_x));
+        let y = L::select(is_out, outside.y * share, one.masked(on_y & !on_x));
+        let z = L::select(is_out, outside.z * share, one.masked(!(on_x | on_y)));
+        let (x, y, z) = (signed(x, p.x), signed(y, p.y), signed(z, p.z));
+        axes[0] * x + axes[1] * y + axes[2] * z
     }
 }
 
+/// Outward normal of a ball whose centre is so far away, metres.
 #[inline(always)]
-fn box_distance<L: Lanes>(half: Vec3, axes: [Vec3; 3], from: Vector3<L>) -> (L, Vector3<L>) {
-    let zero = L::splat(0.0);
-    let axes = axes.map(Vector3::<L>::splat);
-    let p = Vector3::new(from.dot(axes[0]), from.dot(axes[1]), from.dot(axes[2]));
-    let beyond = p.abs() - Vector3::splat(half);
-    let outside = Vector3::new(L::max(beyond.x, zero), L::max(beyond.y, zero), L::max(beyond.z, zero));
-    let distance = outside.length();
-    let is_out = L::gt(distance, L::splat(1e-12));
-    let share = L::splat(1.0) / distance;
-    // From inside the nearest face.
-    let deepest = L::max(L::max(beyond.x, beyond.y), beyond.z);
-    let (on_x, on_y) = (L::ge(beyond.x, deepest), L::ge(beyond.y, deepest));
-    let one = L::splat(1.0);
-    let x = L::select(is_out, outside.x * share, one.masked(on_x));
-    let y = L::select(is_out, outside.y * share, one.masked(on_y & !on_x));
-    let z = L::select(is_out, outside.z * share, one.masked(!(on_x | on_y)));
-    let (x, y, z) = (signed(x, p.x), signed(y, p.y), signed(z, p.z));
-    (L::select(is_out, distance, deepest), axes[0] * x + axes[1] * y + axes[2] * z)
+fn round_normal<L: Lanes>(from: Vector3<L>, length: L) -> Vector3<L> {
+    let (is_out, one) = (L::gt(length, L::splat(1e-12)), L::splat(1.0));
+    let share = one / length;
+    Vector3::new(
+        (from.x * share).masked(is_out),
+        L::select(is_out, from.y * share, one),
+        (from.z * share).masked(is_out),
+    )
 }
 
 /// A number with the sign of another, positive for zero.
@@ -141,8 +159,8 @@ impl Eights {
         outside.sort_unstable();
         outside.dedup();
         let others = Vec::with_capacity(radii.len());
-        let (easy, strayed) = (vec![0; per_lane], vec![0; per_lane]);
-        Self { strips, present, easy, strayed, others, outside, ..Self::default() }
+        let [easy, touched, strayed] = [(); 3].map(|()| vec![0; per_lane]);
+        Self { strips, present, easy, touched, strayed, others, outside, ..Self::default() }
     }
 
     /// True if a particle goes through this iteration in a lane.
@@ -151,7 +169,7 @@ impl Eights {
     }
 }
 
-/// The solid that a particle touches at most, and how far away everything else is.
+/// The solid that a particle touches at most, and how far away everything else is. Normal, friction and bounces are those of what is touched.
 struct Surroundings<L: Lanes> {
     gap: L,
     normal: Vector3<L>,
@@ -162,26 +180,91 @@ struct Surroundings<L: Lanes> {
 }
 
 impl<L: Lanes> Surroundings<L> {
+    /// Looks at all solids; the one that touches is within `reach`, metres.
     #[inline(always)]
-    fn look(solids: &[Solid], p: Vector3<L>, radius: L) -> Self {
+    fn look(solids: &[Solid], p: Vector3<L>, radius: L, reach: L) -> Self {
         let (zero, far) = (L::splat(0.0), L::splat(f32::MAX));
         let normal = Vector3::splat(Vec3::Y);
         let mut found = Self { gap: far, normal, beside: far, friction: zero, hold: zero, bounces: zero };
         for solid in solids {
-            let (distance, normal) = solid.distance(p);
-            let gap = distance - radius;
-            let nearer = L::lt(gap, found.gap);
-            found.beside = L::min(L::select(nearer, found.gap, gap), found.beside);
-            found.gap = L::select(nearer, gap, found.gap);
-            found.normal.x = L::select(nearer, normal.x, found.normal.x);
-            found.normal.y = L::select(nearer, normal.y, found.normal.y);
-            found.normal.z = L::select(nearer, normal.z, found.normal.z);
-            found.friction = L::select(nearer, L::splat(solid.friction), found.friction);
-            found.hold = L::select(nearer, L::splat(solid.static_friction), found.hold);
-            found.bounces = L::select(nearer, L::splat(f32::from(u8::from(solid.bounces))), found.bounces);
+            let from = p - vector(&solid.at);
+            match &solid.form {
+                Form::Box(half, axes) => {
+                    let axes = axes.each_ref().map(vector::<L>);
+                    let place = InBox::new(vector(half), &axes, from);
+                    let (touched, nearer) = found.meet(place.signed_distance() - radius, reach);
+                    if touched {
+                        found.touch(solid, place.normal(&axes), nearer);
+                    }
+                }
+                Form::Round(Block([half, size]), axis) => {
+                    let (axis, half) = (vector(axis), L::load(half));
+                    let along = L::max(L::min(from.dot(axis), half), -half);
+                    let from = from - axis * along;
+                    let length = from.length();
+                    let (touched, nearer) = found.meet(length - L::load(size) - radius, reach);
+                    if touched {
+                        found.touch(solid, round_normal(from, length), nearer);
+                    }
+                }
+                Form::Half(normal) => {
+                    let normal = vector(normal);
+                    let (touched, nearer) = found.meet(from.dot(normal) - radius, reach);
+                    if touched {
+                        found.touch(solid, normal, nearer);
+                    }
+                }
+            }
         }
         found
     }
+
+    /// Takes in how far away a solid is: whether any may touch it, and to which it is the nearest so far.
+    #[inline(always)]
+    fn meet(&mut self, gap: L, reach: L) -> (bool, L::Mask) {
+        let nearer = L::lt(gap, self.gap);
+        self.beside = L::min(L::max(self.gap, gap), self.beside);
+        self.gap = L::min(gap, self.gap);
+        (L::le(gap, reach).any(), nearer)
+    }
+
+    /// Takes in the surface of the nearest.
+    #[inline(always)]
+    fn touch(&mut self, solid: &Solid, normal: Vector3<L>, nearer: L::Mask) {
+        let Block([friction, hold, bounces]) = &solid.surface;
+        self.normal = select(nearer, normal, self.normal);
+        self.friction = L::select(nearer, L::load(friction), self.friction);
+        self.hold = L::select(nearer, L::load(hold), self.hold);
+        self.bounces = L::select(nearer, L::load(bounces), self.bounces);
+    }
+
+    /// The velocity that what touches leaves of a free one, by Coulomb's law for a particle alone.
+    #[inline(always)]
+    fn held(&self, free: Vector3<L>, touching: L::Mask, per_second: L) -> Vector3<L> {
+        let zero = L::splat(0.0);
+        let rise = -L::max(self.gap, zero) * per_second;
+        let along = free.dot(self.normal);
+        let push = rise - along;
+        let pressed = touching & L::gt(push, L::splat(NO_SPEED));
+        let slip = free - self.normal * along;
+        let speed = slip.length();
+        let share = L::max(L::splat(1.0) - self.friction * push / speed, zero);
+        let share = share.masked(L::gt(speed, self.hold * push));
+        let held = self.normal * rise + slip * share;
+        select(pressed, held, free)
+    }
+}
+
+/// The vector in every lane.
+#[inline(always)]
+fn vector<L: Lanes>(Block([x, y, z]): &Block<3>) -> Vector3<L> {
+    Vector3::load(x, y, z)
+}
+
+/// The one where the mask is true, else the other.
+#[inline(always)]
+fn select<L: Lanes>(mask: L::Mask, a: Vector3<L>, b: Vector3<L>) -> Vector3<L> {
+    Vector3::new(L::select(mask, a.x, b.x), L::select(mask, a.y, b.y), L::select(mask, a.z, b.z))
 }
 
 /// Begins an iteration.
@@ -198,67 +281,62 @@ impl Kernel for Approach<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { eights, particles, h, damping } = self;
-        let Eights { strips, present, easy, solids, foreign_bounds, .. } = eights;
+        let Eights { strips, present, easy, touched, solids, foreign_bounds, .. } = eights;
         let (zero, per_second) = (L::splat(0.0), L::splat(1.0 / h));
-        let (h, damping) = (L::splat(h), L::splat(damping));
-        let (detour, one) = (L::splat(DETOUR), L::splat(1.0));
-        for (((Block(strip), Block(particle)), present), easy) in
-            strips.iter_mut().zip(particles.iter_mut()).zip(present.iter()).zip(easy.iter_mut())
+        let (h, damping, detour) = (L::splat(h), L::splat(damping), L::splat(DETOUR));
+        let blocks = strips.iter_mut().zip(particles.iter_mut()).zip(present.iter());
+        for (((Block(strip), Block(particle)), present), (easy, touched)) in
+            blocks.zip(easy.iter_mut().zip(touched.iter_mut()))
         {
             let from = Vector3::<L>::load(&particle[0], &particle[1], &particle[2]);
             let radius = L::load(&strip[RADIUS]);
             let begun = Vector3::<L>::load(&strip[0], &strip[1], &strip[2]) * damping;
+            store(begun, strip, 0);
             let pull =
                 Vector3::<L>::load(&strip[ACCELERATION], &strip[ACCELERATION + 1], &strip[ACCELERATION + 2]);
-            let free = begun + pull * h;
-            let found = Surroundings::look(solids, from, radius);
             let reach = L::splat(2.0) * h * h * pull.length() + L::splat(REACH_SHARE) * radius;
+            let mut velocity = begun + pull * h;
+            let found = Surroundings::look(solids, from, radius, reach);
             let touching = L::le(found.gap, reach);
-            let mut clearance = L::select(touching, found.beside, found.gap);
-            let sight = reach + detour * (begun.length() * h);
             let mut foreign = L::splat(f32::MAX);
             for bounds in foreign_bounds.iter() {
                 foreign = L::min(foreign, distance_at_least(bounds, from) - radius);
             }
-            clearance = L::min(clearance, foreign);
-            // Coulomb's law for a particle alone.
-            let rise = -L::max(found.gap, zero) * per_second;
-            let along = free.dot(found.normal);
-            let push = rise - along;
-            let pressed = touching & L::gt(push, L::splat(NO_SPEED));
-            let slip = free - found.normal * along;
-            let speed = slip.length();
-            let share = L::max(one - found.friction * push / speed, zero);
-            let share = share.masked(L::gt(speed, found.hold * push));
-            let held = found.normal * rise + slip * share;
-            let velocity = Vector3::new(
-                L::select(pressed, held.x, free.x),
-                L::select(pressed, held.y, free.y),
-                L::select(pressed, held.z, free.z),
-            );
-            let way = velocity * h;
-            let is_far = L::gt(clearance, zero)
-                & L::gt(clearance * clearance, detour * detour * way.dot(way))
-                & L::gt(foreign, sight);
-            let rebounds = touching
-                & L::gt(found.bounces, zero)
-                & L::lt(begun.dot(found.normal), L::splat(-IMPACT_SPEED));
-            *easy = (is_far & !rebounds).bits() & *present;
-            begun.x.store(&mut strip[0]);
-            begun.y.store(&mut strip[1]);
-            begun.z.store(&mut strip[2]);
-            L::select(touching, found.gap, L::splat(f32::MAX)).store(&mut strip[HEIGHT]);
+            let clearance = L::min(L::select(touching, found.beside, found.gap), foreign);
             clearance.store(&mut strip[CLEARANCE]);
-            found.friction.store(&mut strip[FRICTION]);
-            found.hold.store(&mut strip[HOLD]);
-            found.normal.x.store(&mut strip[NORMAL]);
-            found.normal.y.store(&mut strip[NORMAL + 1]);
-            found.normal.z.store(&mut strip[NORMAL + 2]);
-            way.x.store(&mut particle[WAY]);
-            way.y.store(&mut particle[WAY + 1]);
-            way.z.store(&mut particle[WAY + 2]);
+            *touched = touching.bits();
+            let mut rebounds = 0;
+            if *touched != 0 {
+                velocity = found.held(velocity, touching, per_second);
+                let approaches = L::lt(begun.dot(found.normal), L::splat(-IMPACT_SPEED));
+                rebounds = (touching & L::gt(found.bounces, zero) & approaches).bits();
+                L::select(touching, found.gap, L::splat(f32::MAX)).store(&mut strip[HEIGHT]);
+                found.friction.store(&mut strip[FRICTION]);
+                found.hold.store(&mut strip[HOLD]);
+                store(found.normal, strip, NORMAL);
+            }
+            let way = velocity * h;
+            store(way, particle, WAY);
+            let sight = reach + detour * (begun.length() * h);
+            let is_far = is_beyond(clearance, way) & L::gt(foreign, sight);
+            *easy = is_far.bits() & !rebounds & *present;
         }
     }
+}
+
+/// Writes a vector into fields from this one on.
+#[inline(always)]
+fn store<L: Lanes, const F: usize>(vector: Vector3<L>, fields: &mut [[f32; WIDTH]; F], first: usize) {
+    vector.x.store(&mut fields[first]);
+    vector.y.store(&mut fields[first + 1]);
+    vector.z.store(&mut fields[first + 2]);
+}
+
+/// True where what is so far away, metres, is surely not on the way.
+#[inline(always)]
+fn is_beyond<L: Lanes>(clearance: L, way: Vector3<L>) -> L::Mask {
+    L::gt(clearance, L::splat(0.0))
+        & L::gt(clearance * clearance, L::splat(DETOUR) * L::splat(DETOUR) * way.dot(way))
 }
 
 /// No more than the distance from a point of what lies in these bounds.
@@ -281,48 +359,31 @@ impl Kernel for Depart<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { eights, particles, h } = self;
-        let Eights { strips, easy, strayed, .. } = eights;
-        let (zero, one, per_second) = (L::splat(0.0), L::splat(1.0), L::splat(1.0 / h));
-        for (((Block(strip), Block(particle)), easy), strayed) in
-            strips.iter_mut().zip(particles.iter_mut()).zip(easy.iter()).zip(strayed.iter_mut())
+        let Eights { strips, easy, touched, strayed, .. } = eights;
+        let per_second = L::splat(1.0 / h);
+        let blocks = strips.iter_mut().zip(particles.iter_mut()).zip(easy.iter());
+        for (((Block(strip), Block(particle)), easy), (touched, strayed)) in
+            blocks.zip(touched.iter().zip(strayed.iter_mut()))
         {
             let from = Vector3::<L>::load(&particle[0], &particle[1], &particle[2]);
-            let way = Vector3::<L>::load(&particle[WAY], &particle[WAY + 1], &particle[WAY + 2]);
-            let normal = Vector3::<L>::load(&strip[NORMAL], &strip[NORMAL + 1], &strip[NORMAL + 2]);
-            // The plane holds what the net has pressed through it, with friction.
-            let height = L::load(&strip[HEIGHT]);
-            let along = way.dot(normal);
-            let press = L::max(-L::max(height, zero) - along, zero);
-            let slip = way - normal * along;
-            let length = slip.length();
-            let share = L::max(one - L::load(&strip[FRICTION]) * press / length, zero);
-            let share = share.masked(L::gt(length, L::load(&strip[HOLD]) * press));
-            let rubbed = normal * (along + press) + slip * share;
-            let pressed = L::gt(press, zero);
-            let way = Vector3::new(
-                L::select(pressed, rubbed.x, way.x),
-                L::select(pressed, rubbed.y, way.y),
-                L::select(pressed, rubbed.z, way.z),
-            );
-            let clearance = L::load(&strip[CLEARANCE]);
-            let is_far = L::gt(clearance, zero)
-                & L::gt(clearance * clearance, L::splat(DETOUR * DETOUR) * way.dot(way));
-            let above = L::gt(height + way.dot(normal), L::splat(-ROUNDING));
-            let bits = (is_far & above).bits() & *easy;
-            *strayed = *easy & !bits;
+            let mut way = Vector3::<L>::load(&particle[WAY], &particle[WAY + 1], &particle[WAY + 2]);
+            let mut clear = u8::MAX;
+            if *touched != 0 {
+                let (rubbed, above) = rubbed(way, strip);
+                (way, clear) = (rubbed, above.bits());
+            }
+            clear &= is_beyond(L::load(&strip[CLEARANCE]), way).bits();
+            *strayed = *easy & !clear;
             let to = from + way;
             let velocity = way * per_second;
-            let stored = [to.x, to.y, to.z, velocity.x, velocity.y, velocity.z, way.x, way.y, way.z];
             if *easy == u8::MAX && *strayed == 0 {
-                for k in 0..3 {
-                    stored[k].store(&mut particle[k]);
-                    stored[3 + k].store(&mut strip[k]);
-                }
+                store(to, particle, 0);
+                store(velocity, strip, 0);
                 continue;
             }
             let mut numbers = [[0.0; WIDTH]; 9];
-            for k in 0..9 {
-                stored[k].store(&mut numbers[k]);
+            for (k, vector) in [to, velocity, way].into_iter().enumerate() {
+                store(vector, &mut numbers, 3 * k);
             }
             for lane in 0..WIDTH {
                 let (is_easy, strays) = (*easy >> lane & 1 == 1, *strayed >> lane & 1 == 1);
@@ -338,4 +399,21 @@ impl Kernel for Depart<'_> {
             }
         }
     }
+}
+
+/// The way that the plane that one touches leaves of a way: it holds what the net has pressed through it, with friction. And where that ends above it.
+#[inline(always)]
+fn rubbed<L: Lanes>(way: Vector3<L>, strip: &[[f32; WIDTH]; STRIP]) -> (Vector3<L>, L::Mask) {
+    let zero = L::splat(0.0);
+    let normal = Vector3::<L>::load(&strip[NORMAL], &strip[NORMAL + 1], &strip[NORMAL + 2]);
+    let height = L::load(&strip[HEIGHT]);
+    let along = way.dot(normal);
+    let press = L::max(-L::max(height, zero) - along, zero);
+    let slip = way - normal * along;
+    let length = slip.length();
+    let share = L::max(L::splat(1.0) - L::load(&strip[FRICTION]) * press / length, zero);
+    let share = share.masked(L::gt(length, L::load(&strip[HOLD]) * press));
+    let rubbed = normal * (along + press) + slip * share;
+    let way = select(L::gt(press, zero), rubbed, way);
+    (way, L::gt(height + way.dot(normal), L::splat(-ROUNDING)))
 }

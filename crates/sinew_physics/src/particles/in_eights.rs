@@ -1,14 +1,19 @@
 //! The way of a group through the lanes of `eights.rs`: in, out of them for what is solved one by one, and back.
 
 use super::ParticleGroup;
-use super::batches::WAY;
+use super::around::copy_numbers;
+use super::batches::{FIELDS, WAY};
 use super::contact::{Grip, Obstacle, ObstacleBody};
-use super::eights::{ACCELERATION, Approach, Depart, Form, Solid};
+use super::eights::{ACCELERATION, Approach, Depart, Form, STRIP, Solid};
 use crate::body::material::ContactMaterial;
 use crate::body::shape::Shape;
 use crate::particles::tuning::MOST_SOLIDS;
-use sinew_math::lanes::{Block, WIDTH};
+use sinew_math::dispatch::Kernel;
+use sinew_math::lanes::{Block, Lanes, WIDTH};
 use sinew_math::{Vec3, dispatch};
+
+/// Grips that are looked at in one go.
+const GRIPS: usize = 64;
 
 impl Solid {
     /// The obstacle, if it is such a solid.
@@ -17,22 +22,24 @@ impl Solid {
             return None;
         }
         let turn = o.world_from_shape.rotation;
+        let wide = |v: Vec3| Block::splat(v.to_array());
         let form = match o.shape {
             Shape::Box { half_extents } => {
-                Form::Box(half_extents, [Vec3::X, Vec3::Y, Vec3::Z].map(|e| turn * e))
+                Form::Box(wide(half_extents), [Vec3::X, Vec3::Y, Vec3::Z].map(|e| wide(turn * e)))
             }
-            Shape::Sphere { radius } => Form::Round(0.0, Vec3::Y, radius),
-            Shape::Capsule { half_height, radius } => Form::Round(half_height, turn * Vec3::Y, radius),
-            Shape::HalfSpace => Form::Half(turn * Vec3::Y),
+            Shape::Sphere { radius } => Form::Round(Block::splat([0.0, radius]), wide(Vec3::Y)),
+            Shape::Capsule { half_height, radius } => {
+                Form::Round(Block::splat([half_height, radius]), wide(turn * Vec3::Y))
+            }
+            Shape::HalfSpace => Form::Half(wide(turn * Vec3::Y)),
             _ => return None,
         };
         let material = ContactMaterial::of(&group.material, &o.material);
+        let bounces = f32::from(u8::from(material.restitution > 0.0));
         Some(Self {
             form,
-            at: o.world_from_shape.translation,
-            friction: material.friction,
-            static_friction: material.static_friction,
-            bounces: material.restitution > 0.0,
+            at: wide(o.world_from_shape.translation),
+            surface: Block::splat([material.friction, material.static_friction, bounces]),
         })
     }
 }
@@ -60,39 +67,30 @@ impl ParticleGroup {
             }
         }
         let per_lane = eights.strips.len();
-        let blocks = self.batches.particles.iter_mut().zip(&mut eights.strips).enumerate();
-        for (block, (Block(particle), Block(strip))) in blocks {
-            for (lane, i) in (block..self.positions.len()).step_by(per_lane).enumerate() {
-                let (at, velocity, acceleration) =
-                    (self.positions[i], self.velocities[i], self.accelerations[i]);
-                self.weights[i] = 1.0 / self.masses[i];
-                for (k, at) in at.to_array().into_iter().enumerate() {
-                    particle[k][lane] = at;
-                }
-                for (k, velocity) in velocity.to_array().into_iter().enumerate() {
-                    strip[k][lane] = velocity;
-                }
-                for (k, acceleration) in acceleration.to_array().into_iter().enumerate() {
-                    strip[ACCELERATION + k][lane] = acceleration;
-                }
+        let Self { positions, velocities, accelerations, batches, .. } = self;
+        dispatch::run(Spread::<FIELDS, 0> { vectors: positions, blocks: &mut batches.particles, per_lane });
+        dispatch::run(Spread::<STRIP, 0> { vectors: velocities, blocks: &mut eights.strips, per_lane });
+        if self.common_pull.is_none() || eights.common_pull != self.common_pull {
+            let blocks = &mut eights.strips;
+            dispatch::run(Spread::<STRIP, ACCELERATION> { vectors: accelerations, blocks, per_lane });
+            eights.common_pull = self.common_pull;
+        }
+        for (at, grips) in self.grips.chunks(GRIPS).enumerate() {
+            // Nearly all hold nothing, which whole registers see where no look ends the next one.
+            if grips.iter().fold(false, |any, grip| any | (*grip != Grip::Off)) {
+                let gripped = (at * GRIPS..).zip(grips).filter(|(_, grip)| **grip != Grip::Off);
+                eights.others.extend(gripped.map(|(i, _)| i as u32));
             }
         }
-        let gripped = self.grips.iter().enumerate().filter(|(_, grip)| **grip != Grip::Off);
-        eights.others.extend(gripped.map(|(i, _)| i as u32));
         self.eights = eights;
     }
 
     /// Brings all particles back at the end of the substep.
     pub(super) fn leave_eights(&mut self) {
-        let per_lane = self.eights.strips.len();
-        for (block, &present) in self.eights.present.iter().enumerate() {
-            let (particle, strip) = (&self.batches.particles[block].0, &self.eights.strips[block].0);
-            for lane in (0..WIDTH).filter(|lane| present >> lane & 1 == 1) {
-                let i = lane * per_lane + block;
-                self.positions[i] = Vec3::new(particle[0][lane], particle[1][lane], particle[2][lane]);
-                self.velocities[i] = Vec3::new(strip[0][lane], strip[1][lane], strip[2][lane]);
-            }
-        }
+        let Self { positions, velocities, batches, eights, .. } = self;
+        let per_lane = eights.strips.len();
+        dispatch::run(Collect::<FIELDS> { vectors: positions, blocks: &batches.particles, per_lane });
+        dispatch::run(Collect::<STRIP> { vectors: velocities, blocks: &eights.strips, per_lane });
     }
 
     /// Begins an iteration of `h` seconds: finds what each particle touches, and its velocity; takes out those that are not solved in lanes.
@@ -210,6 +208,117 @@ impl ParticleGroup {
             let (particle, strip) = (&mut self.batches.particles[block].0, &mut self.eights.strips[block].0);
             for (k, (at, velocity)) in at.to_array().into_iter().zip(velocity.to_array()).enumerate() {
                 (particle[k][lane], strip[k][lane]) = (at, velocity);
+            }
+        }
+    }
+}
+
+/// Writes vectors, one for each particle, into blocks from field `FIELD` on: eight blocks of eight at a time, as whole registers.
+struct Spread<'a, const F: usize, const FIELD: usize> {
+    vectors: &'a [Vec3],
+    blocks: &'a mut [Block<F>],
+    per_lane: usize,
+}
+
+impl<const F: usize, const FIELD: usize> Kernel for Spread<'_, F, FIELD> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { vectors, blocks, per_lane } = self;
+        let whole = whole_eights(vectors.len(), per_lane);
+        for (at, eight) in blocks.as_chunks_mut::<WIDTH>().0[..whole].iter_mut().enumerate() {
+            let mut numbers = [[[0.0; WIDTH]; 3]; WIDTH];
+            for (lane, numbers) in numbers.iter_mut().enumerate() {
+                copy_numbers(&vectors[lane * per_lane + at * WIDTH..][..WIDTH], numbers);
+            }
+            for part in 0..3 {
+                let columns = L::transpose(numbers.each_ref().map(|numbers| L::load(&numbers[part])));
+                for (k, column) in columns.into_iter().enumerate() {
+                    let k = part * WIDTH + k;
+                    column.store(&mut eight[k / 3].0[FIELD + k % 3]);
+                }
+            }
+        }
+        for block in whole * WIDTH..per_lane {
+            for (lane, vector) in vectors[block..].iter().step_by(per_lane).enumerate() {
+                for (k, number) in vector.to_array().into_iter().enumerate() {
+                    blocks[block].0[FIELD + k][lane] = number;
+                }
+            }
+        }
+    }
+}
+
+/// Reads vectors, one for each particle, from the first fields of blocks.
+struct Collect<'a, const F: usize> {
+    vectors: &'a mut [Vec3],
+    blocks: &'a [Block<F>],
+    per_lane: usize,
+}
+
+impl<const F: usize> Kernel for Collect<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { vectors, blocks, per_lane } = self;
+        let whole = whole_eights(vectors.len(), per_lane);
+        for (at, eight) in blocks.as_chunks::<WIDTH>().0[..whole].iter().enumerate() {
+            let mut numbers = [[[0.0; WIDTH]; 3]; WIDTH];
+            for part in 0..3 {
+                let column = |k: usize| L::load(&eight[k / 3].0[k % 3]);
+                let lanes = L::transpose(core::array::from_fn(|k| column(part * WIDTH + k)));
+                for (lane, numbers) in lanes.into_iter().zip(&mut numbers) {
+                    lane.store(&mut numbers[part]);
+                }
+            }
+            for (lane, numbers) in numbers.iter().enumerate() {
+                let to = &mut vectors[lane * per_lane + at * WIDTH..][..WIDTH];
+                for (vector, numbers) in to.iter_mut().zip(numbers.as_flattened().as_chunks::<3>().0) {
+                    *vector = Vec3::from_array(*numbers);
+                }
+            }
+        }
+        for block in whole * WIDTH..per_lane {
+            let Block(fields) = &blocks[block];
+            for (lane, vector) in vectors[block..].iter_mut().step_by(per_lane).enumerate() {
+                *vector = Vec3::new(fields[0][lane], fields[1][lane], fields[2][lane]);
+            }
+        }
+    }
+}
+
+/// Number of eights of blocks that hold a particle in each lane.
+fn whole_eights(count: usize, per_lane: usize) -> usize {
+    count.saturating_sub((WIDTH - 1) * per_lane) / WIDTH
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_math::dispatch::Level;
+
+    #[test]
+    fn vectors_lie_in_their_lanes_and_come_back() {
+        for level in Level::available() {
+            for count in [1, 7, 9, 64, 65, 120, 128, 200, 1003] {
+                let vector = |i: usize| Vec3::new(i as f32, i as f32 + 0.25, i as f32 + 0.5);
+                let vectors: Vec<Vec3> = (0..count).map(vector).collect();
+                let per_lane = count.div_ceil(WIDTH);
+                let mut blocks = vec![Block::splat([-1.0; FIELDS]); per_lane];
+                let spread = Spread::<FIELDS, 0> { vectors: &vectors, blocks: &mut blocks, per_lane };
+                dispatch::run_at(level, spread);
+                for (i, vector) in vectors.iter().enumerate() {
+                    assert_eq!(
+                        blocks[i % per_lane].get(i / per_lane)[..3],
+                        vector.to_array(),
+                        "{count} at {level:?}"
+                    );
+                }
+                let mut back = vec![Vec3::ZERO; count];
+                dispatch::run_at(level, Collect { vectors: &mut back, blocks: &blocks, per_lane });
+                assert_eq!(back, vectors, "{count} at {level:?}");
             }
         }
     }

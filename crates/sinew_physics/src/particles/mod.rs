@@ -14,6 +14,7 @@
 //! are dealt with after it (`impact.rs`).
 
 mod added_mass;
+mod around;
 mod attach;
 mod batches;
 mod builders;
@@ -61,6 +62,7 @@ use crate::body::surface::Surface;
 use crate::boxes::Aabb;
 use crate::id::{BodyId, GroupId};
 use crate::particles::tuning::STRIKE_GAP;
+use around::{Around, NOTHING};
 use batches::Batches;
 use contact::{Grip, Placed, Touch};
 use eights::Eights;
@@ -70,7 +72,7 @@ use impact::MAX_TOUCHES;
 use near::Near;
 use rest::{Bed, GroupRest};
 use self_collision::SelfCollision;
-use sinew_math::{Sym3, Transform, Vec3, max};
+use sinew_math::{Sym3, Transform, Vec3, dispatch, max};
 use system::{Freedom, System};
 
 /// Most strides in which the way of a particle is looked along.
@@ -83,6 +85,8 @@ pub struct ParticleGroup {
     velocities: Vec<Vec3>,
     masses: Vec<f32>,
     radii: Vec<f32>,
+    /// Radius of all particles, metres, if they have one.
+    common_radius: Option<f32>,
     springs: Vec<SpringDef>,
     bends: Vec<BendDef>,
     tethers: Vec<TetherDef>,
@@ -181,6 +185,8 @@ pub struct ParticleGroup {
     accelerations: Vec<Vec3>,
     /// Their lengths, m/s².
     pulls: Vec<f32>,
+    /// The acceleration of all, m/s², where no outer force makes a difference.
+    common_pull: Option<Vec3>,
 }
 
 impl Item for ParticleGroup {
@@ -231,6 +237,8 @@ impl ParticleGroup {
     /// Everything that follows from particles, springs and attachments.
     fn derive(&mut self) {
         let count = self.positions.len();
+        self.common_radius =
+            self.radii.first().copied().filter(|first| self.radii.iter().all(|r| r == first));
         self.attachment_of = vec![u32::MAX; count];
         let mut holders = vec![Holder::Nothing; count];
         for (index, a) in self.attachments.iter().enumerate() {
@@ -250,9 +258,10 @@ impl ParticleGroup {
         self.drawn_from = self.positions.clone();
         self.places = self.positions.clone();
         self.attachment_impulses = vec![Vec3::ZERO; self.attachments.len()];
-        self.weights = vec![0.0; count];
+        self.weights = self.masses.iter().map(|mass| 1.0 / mass).collect();
         self.accelerations = vec![Vec3::ZERO; count];
         self.pulls = vec![0.0; count];
+        self.common_pull = Some(Vec3::ZERO);
         self.begun = vec![Vec3::ZERO; count];
         self.gradients = vec![Vec3::ZERO; count];
         self.touches = vec![None; count];
@@ -286,6 +295,11 @@ impl ParticleGroup {
 
     /// Particles whose state became non-finite in the step stop where they were before it. Says whether there were any.
     pub(crate) fn roll_back(&mut self) -> bool {
+        // Without an end in between it is eight at a time.
+        let finite = |vectors: &[Vec3]| vectors.iter().fold(true, |all, v| all & v.is_finite());
+        if finite(&self.positions) & finite(&self.velocities) {
+            return false;
+        }
         let mut any = false;
         for i in 0..self.positions.len() {
             if !(self.positions[i].is_finite() && self.velocities[i].is_finite()) {
@@ -398,11 +412,12 @@ impl ParticleGroup {
 
     /// Around its particles, if they were there.
     fn bounds_of(&self, centers: &[Vec3]) -> Aabb {
-        let mut bounds = Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
-        for (&center, &radius) in centers.iter().zip(&self.radii) {
-            bounds = bounds.merge(&Aabb::reaching(center, Vec3::splat(radius)));
+        if let Some(radius) = self.common_radius {
+            return dispatch::run(Around(centers)).expand(radius);
         }
-        bounds
+        let balls = centers.iter().zip(&self.radii);
+        let around = |(&center, &radius): (&Vec3, &f32)| Aabb::reaching(center, Vec3::splat(radius));
+        balls.fold(NOTHING, |bounds, ball| bounds.merge(&around(ball)))
     }
 
     /// Speed of the fastest particle, m/s.
@@ -547,10 +562,11 @@ impl ParticleGroup {
         assert_eq!(anchors.len(), self.attachments.len(), "each attachment needs its anchor");
         assert!(obstacles.len() >= self.backstops.len(), "each backstop needs its ball");
         let gravity = gravity * self.gravity_scale;
-        self.accelerations.clear();
-        self.accelerations.resize(self.positions.len(), gravity);
-        self.pulls.clear();
-        self.pulls.resize(self.positions.len(), gravity.length());
+        if self.common_pull != Some(gravity) {
+            self.accelerations.fill(gravity);
+            self.pulls.fill(gravity.length());
+        }
+        self.common_pull = self.outer.is_empty().then_some(gravity);
         for (i, force) in self.outer.drain(..).enumerate() {
             self.accelerations[i] += force / self.masses[i];
             self.pulls[i] = self.accelerations[i].length();

@@ -36,53 +36,18 @@ impl Kernel for Project<'_> {
     fn run<L: Lanes>(self) {
         let Self { batches: Batches { springs, bends, particles, surfaces, .. }, h, touching } = self;
         if touching {
-            project_touching::<L, 2>(particles, surfaces, springs, SPRING, h);
-            project_touching::<L, 3>(particles, surfaces, bends, BEND, h);
+            project::<L, 2, true>(particles, surfaces, springs, SPRING, h);
+            project::<L, 3, true>(particles, surfaces, bends, BEND, h);
         } else {
-            project_free::<L, 2>(particles, springs, SPRING, h);
-            project_free::<L, 3>(particles, bends, BEND, h);
+            project::<L, 2, false>(particles, surfaces, springs, SPRING, h);
+            project::<L, 3, false>(particles, surfaces, bends, BEND, h);
         }
     }
 }
 
-/// Projects each row of `K` particles once where no particle touches a surface.
+/// Projects each row of `K` particles once, of which some touch surfaces, or none.
 #[inline(always)]
-fn project_free<L: Lanes, const K: usize>(
-    particles: &mut [Block<FIELDS>],
-    rows: &Rows<K>,
-    shares: [f32; K],
-    h: f32,
-) {
-    for run in &rows.aligned {
-        let kind = &rows.kinds[run.kind as usize];
-        let solver = Solver::<L, K>::new(kind, shares, h);
-        if kind.is_damped {
-            solver.solve_aligned::<true>(particles, run);
-        } else {
-            solver.solve_aligned::<false>(particles, run);
-        }
-    }
-    for run in &rows.turned {
-        let solver = Solver::<L, K>::new(&rows.kinds[run.kind as usize], shares, h);
-        let lanes = run.lanes.map(usize::from);
-        for row in 0..run.count {
-            let places = run.places(row);
-            let mut ends = turned::<L, K, FIELDS>(particles, &places, &lanes);
-            solver.solve(&mut ends.each_mut());
-            turn_back::<L, K, FIELDS, WAY>(particles, &places, &lanes, &ends);
-        }
-    }
-    for (slots, kind) in &rows.gathered {
-        let solver = Solver::<L, K>::new(&rows.kinds[*kind as usize], shares, h);
-        let mut ends = fetch(particles, slots);
-        solver.solve(&mut ends.each_mut());
-        put_back::<K, FIELDS, WAY>(particles, slots, &ends);
-    }
-}
-
-/// Projects each row of `K` particles once where some particles touch surfaces.
-#[inline(always)]
-fn project_touching<L: Lanes, const K: usize>(
+fn project<L: Lanes, const K: usize, const TOUCHING: bool>(
     particles: &mut [Block<FIELDS>],
     surfaces: &mut [Block<SURFACE_FIELDS>],
     rows: &Rows<K>,
@@ -90,8 +55,15 @@ fn project_touching<L: Lanes, const K: usize>(
     h: f32,
 ) {
     for run in &rows.aligned {
-        let solver = Solver::<L, K>::new(&rows.kinds[run.kind as usize], shares, h);
-        solver.solve_aligned_touching(particles, surfaces, run);
+        let kind = &rows.kinds[run.kind as usize];
+        let solver = Solver::<L, K>::new(kind, shares, h);
+        match (kind.is_damped, kind.is_even) {
+            _ if TOUCHING => solver.solve_aligned_touching(particles, surfaces, run),
+            (false, false) => solver.solve_aligned::<false, false>(particles, run),
+            (false, true) => solver.solve_aligned::<false, true>(particles, run),
+            (true, false) => solver.solve_aligned::<true, false>(particles, run),
+            (true, true) => solver.solve_aligned::<true, true>(particles, run),
+        }
     }
     for run in &rows.turned {
         let solver = Solver::<L, K>::new(&rows.kinds[run.kind as usize], shares, h);
@@ -99,17 +71,26 @@ fn project_touching<L: Lanes, const K: usize>(
         for row in 0..run.count {
             let places = run.places(row);
             let mut ends = turned::<L, K, FIELDS>(particles, &places, &lanes);
-            let mut beneath = turned::<L, K, SURFACE_FIELDS>(surfaces, &places, &lanes);
-            solver.solve_touching(&mut ends.each_mut(), &mut beneath.each_mut());
-            turn_back::<L, K, SURFACE_FIELDS, ROOM>(surfaces, &places, &lanes, &beneath);
+            if TOUCHING {
+                let mut beneath = turned::<L, K, SURFACE_FIELDS>(surfaces, &places, &lanes);
+                solver.solve_touching(&mut ends.each_mut(), &mut beneath.each_mut());
+                turn_back::<L, K, SURFACE_FIELDS, ROOM>(surfaces, &places, &lanes, &beneath);
+            } else {
+                solver.solve(&mut ends.each_mut());
+            }
             turn_back::<L, K, FIELDS, WAY>(particles, &places, &lanes, &ends);
         }
     }
     for (slots, kind) in &rows.gathered {
         let solver = Solver::<L, K>::new(&rows.kinds[*kind as usize], shares, h);
-        let (mut ends, mut beneath) = (fetch(particles, slots), fetch(surfaces, slots));
-        solver.solve_touching(&mut ends.each_mut(), &mut beneath.each_mut());
-        put_back::<K, SURFACE_FIELDS, ROOM>(surfaces, slots, &beneath);
+        let mut ends = fetch(particles, slots);
+        if TOUCHING {
+            let mut beneath = fetch(surfaces, slots);
+            solver.solve_touching(&mut ends.each_mut(), &mut beneath.each_mut());
+            put_back::<K, SURFACE_FIELDS, ROOM>(surfaces, slots, &beneath);
+        } else {
+            solver.solve(&mut ends.each_mut());
+        }
         put_back::<K, FIELDS, WAY>(particles, slots, &ends);
     }
 }
@@ -175,17 +156,21 @@ impl<'a, L: Lanes, const K: usize> Solver<'a, L, K> {
 
     /// Solves aligned rows, one after the other.
     #[inline(always)]
-    fn solve_aligned<const DAMPED: bool>(&self, particles: &mut [Block<FIELDS>], run: &Run<K>) {
+    fn solve_aligned<const DAMPED: bool, const EVEN: bool>(
+        &self,
+        particles: &mut [Block<FIELDS>],
+        run: &Run<K>,
+    ) {
         let (first, count) = (run.first.map(|block| block as usize), run.count as usize);
         if run.is_along() {
             for ends in particles[first[0]..][..K * count].as_chunks_mut::<K>().0 {
-                self.solve_free::<DAMPED>(&mut ends.each_mut().map(|Block(numbers)| numbers));
+                self.solve_free::<DAMPED, EVEN>(&mut ends.each_mut().map(|Block(numbers)| numbers));
             }
         } else if let Ok(sides) = particles.get_disjoint_mut(first.map(|block| block..block + count)) {
             // As the compiler sees it, too: no index is checked in the loop.
             let mut sides = sides.map(|side| &mut side[..count]);
             for row in 0..count {
-                self.solve_free::<DAMPED>(&mut sides.each_mut().map(|side| &mut side[row].0));
+                self.solve_free::<DAMPED, EVEN>(&mut sides.each_mut().map(|side| &mut side[row].0));
             }
         } else {
             debug_assert!(false, "rows of a run share blocks: {run:?}");
@@ -225,15 +210,16 @@ impl<'a, L: Lanes, const K: usize> Solver<'a, L, K> {
     #[inline(always)]
     fn solve(&self, ends: &mut [&mut Numbers<FIELDS>; K]) {
         if self.kind.is_damped {
-            self.solve_free::<true>(ends);
+            self.solve_free::<true, false>(ends);
         } else {
-            self.solve_free::<false>(ends);
+            self.solve_free::<false, false>(ends);
         }
     }
 
-    /// Solves eight rows that touch nothing, of a kind that is damped or not.
+    /// Solves eight rows that touch nothing, of a kind that is damped or not. Where particles weigh the same, those of one share go the same way, and
+    /// those of opposite shares the opposite one.
     #[inline(always)]
-    fn solve_free<const DAMPED: bool>(&self, ends: &mut [&mut Numbers<FIELDS>; K]) {
+    fn solve_free<const DAMPED: bool, const EVEN: bool>(&self, ends: &mut [&mut Numbers<FIELDS>; K]) {
         let way = combined::<L, K>(ends, self.shares, WAY);
         let apart = combined::<L, K>(ends, self.shares, 0) + way;
         let square = apart.dot(apart);
@@ -245,8 +231,17 @@ impl<'a, L: Lanes, const K: usize> Solver<'a, L, K> {
             off / length
         };
         let error = error.masked(L::gt(off, self.least));
+        let first = apart * (error * self.gains[0]);
         for k in 0..K {
-            store(vector::<L, FIELDS>(ends[k], WAY) + apart * (error * self.gains[k]), ends[k]);
+            let way = vector::<L, FIELDS>(ends[k], WAY);
+            let way = if k == 0 || EVEN && self.shares[k] == self.shares[0] {
+                way + first
+            } else if EVEN && self.shares[k] == -self.shares[0] {
+                way - first
+            } else {
+                way + apart * (error * self.gains[k])
+            };
+            store(way, ends[k]);
         }
     }
 
