@@ -185,8 +185,8 @@ pub struct ParticleGroup {
     accelerations: Vec<Vec3>,
     /// Their lengths, m/s².
     pulls: Vec<f32>,
-    /// The acceleration of all, m/s², where no outer force makes a difference.
-    common_pull: Option<Vec3>,
+    /// Bits of the acceleration of all, m/s², where no outer force makes a difference.
+    common_pull: Option<[u32; 3]>,
 }
 
 impl Item for ParticleGroup {
@@ -261,7 +261,7 @@ impl ParticleGroup {
         self.weights = self.masses.iter().map(|mass| 1.0 / mass).collect();
         self.accelerations = vec![Vec3::ZERO; count];
         self.pulls = vec![0.0; count];
-        self.common_pull = Some(Vec3::ZERO);
+        self.common_pull = Some([0; 3]);
         self.begun = vec![Vec3::ZERO; count];
         self.gradients = vec![Vec3::ZERO; count];
         self.touches = vec![None; count];
@@ -562,11 +562,13 @@ impl ParticleGroup {
         assert_eq!(anchors.len(), self.attachments.len(), "each attachment needs its anchor");
         assert!(obstacles.len() >= self.backstops.len(), "each backstop needs its ball");
         let gravity = gravity * self.gravity_scale;
-        if self.common_pull != Some(gravity) {
+        // A zero has a sign, which what a snapshot restores would have and this not.
+        let bits = gravity.to_array().map(f32::to_bits);
+        if self.common_pull != Some(bits) {
             self.accelerations.fill(gravity);
             self.pulls.fill(gravity.length());
         }
-        self.common_pull = self.outer.is_empty().then_some(gravity);
+        self.common_pull = self.outer.is_empty().then_some(bits);
         for (i, force) in self.outer.drain(..).enumerate() {
             self.accelerations[i] += force / self.masses[i];
             self.pulls[i] = self.accelerations[i].length();
