@@ -1,5 +1,6 @@
 //! Bounds of the places of particles, as whole registers.
 
+use super::spread::copy_numbers;
 use crate::boxes::Aabb;
 use sinew_math::Vec3;
 use sinew_math::dispatch::Kernel;
@@ -40,14 +41,6 @@ impl Kernel for Around<'_> {
         };
         let corners = corners(&lowest).into_iter().zip(corners(&highest));
         corners.fold(bounds, |bounds, (min, max)| bounds.merge(&Aabb { min, max }))
-    }
-}
-
-/// Copies the numbers of eight vectors, one vector after the other.
-#[inline(always)]
-pub(super) fn copy_numbers(from: &[Vec3], to: &mut [[f32; WIDTH]; 3]) {
-    for (vector, numbers) in from.iter().zip(to.as_flattened_mut().as_chunks_mut::<3>().0) {
-        *numbers = vector.to_array();
     }
 }
 

@@ -41,7 +41,7 @@ pub(super) struct Eights {
     /// Lanes of the easy ones that have met something on their way.
     pub strayed: Vec<u8>,
     /// Bits of the acceleration of all particles in the strips, m/s², if they have one there.
-    pub common_pull: Option<[u32; 3]>,
+    pub common_acceleration: Option<[u32; 3]>,
     /// The substep goes through lanes.
     pub on: bool,
     /// Particles that do not, ascending.

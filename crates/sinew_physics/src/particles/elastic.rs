@@ -5,8 +5,8 @@ use super::net::{enclosed_volume, stretch};
 
 impl ParticleGroup {
     /// Elastic energy of its springs, `½ k s²` each, its bends likewise, and its volumes, `½ K (V − V₀)²/V₀`, J. Tethers hold
-    /// without energy. What is projected counts with the compliance that it has in a net, `1/k + h² Σ w`: it pulls no harder
-    /// than that.
+    /// without energy. A row that is projected counts with the compliance with which it gives back alone, `1/k + h² Σ w`: rows that share
+    /// particles may give back less, or more (ADR 0027).
     pub fn elastic_energy(&self) -> f32 {
         let solved = self.forest.solved_springs().map(|index| {
             let s = &self.springs[index as usize];

@@ -1,15 +1,14 @@
 //! The way of a group through the lanes of `eights.rs`: in, out of them for what is solved one by one, and back.
 
 use super::ParticleGroup;
-use super::around::copy_numbers;
 use super::batches::{FIELDS, WAY};
 use super::contact::{Grip, Obstacle, ObstacleBody};
 use super::eights::{ACCELERATION, Approach, Depart, Form, STRIP, Solid};
+use super::spread::{Collect, Spread};
 use crate::body::material::ContactMaterial;
 use crate::body::shape::Shape;
 use crate::particles::tuning::MOST_SOLIDS;
-use sinew_math::dispatch::Kernel;
-use sinew_math::lanes::{Block, Lanes, WIDTH};
+use sinew_math::lanes::Block;
 use sinew_math::{Vec3, dispatch};
 
 /// Grips that are looked at in one go.
@@ -70,10 +69,10 @@ impl ParticleGroup {
         let Self { positions, velocities, accelerations, batches, .. } = self;
         dispatch::run(Spread::<FIELDS, 0> { vectors: positions, blocks: &mut batches.particles, per_lane });
         dispatch::run(Spread::<STRIP, 0> { vectors: velocities, blocks: &mut eights.strips, per_lane });
-        if self.common_pull.is_none() || eights.common_pull != self.common_pull {
+        if self.common_acceleration.is_none() || eights.common_acceleration != self.common_acceleration {
             let blocks = &mut eights.strips;
             dispatch::run(Spread::<STRIP, ACCELERATION> { vectors: accelerations, blocks, per_lane });
-            eights.common_pull = self.common_pull;
+            eights.common_acceleration = self.common_acceleration;
         }
         for (at, grips) in self.grips.chunks(GRIPS).enumerate() {
             // Nearly all hold nothing, which whole registers see where no look ends the next one.
@@ -208,117 +207,6 @@ impl ParticleGroup {
             let (particle, strip) = (&mut self.batches.particles[block].0, &mut self.eights.strips[block].0);
             for (k, (at, velocity)) in at.to_array().into_iter().zip(velocity.to_array()).enumerate() {
                 (particle[k][lane], strip[k][lane]) = (at, velocity);
-            }
-        }
-    }
-}
-
-/// Writes vectors, one for each particle, into blocks from field `FIELD` on: eight blocks of eight at a time, as whole registers.
-struct Spread<'a, const F: usize, const FIELD: usize> {
-    vectors: &'a [Vec3],
-    blocks: &'a mut [Block<F>],
-    per_lane: usize,
-}
-
-impl<const F: usize, const FIELD: usize> Kernel for Spread<'_, F, FIELD> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self { vectors, blocks, per_lane } = self;
-        let whole = whole_eights(vectors.len(), per_lane);
-        for (at, eight) in blocks.as_chunks_mut::<WIDTH>().0[..whole].iter_mut().enumerate() {
-            let mut numbers = [[[0.0; WIDTH]; 3]; WIDTH];
-            for (lane, numbers) in numbers.iter_mut().enumerate() {
-                copy_numbers(&vectors[lane * per_lane + at * WIDTH..][..WIDTH], numbers);
-            }
-            for part in 0..3 {
-                let columns = L::transpose(numbers.each_ref().map(|numbers| L::load(&numbers[part])));
-                for (k, column) in columns.into_iter().enumerate() {
-                    let k = part * WIDTH + k;
-                    column.store(&mut eight[k / 3].0[FIELD + k % 3]);
-                }
-            }
-        }
-        for block in whole * WIDTH..per_lane {
-            for (lane, vector) in vectors[block..].iter().step_by(per_lane).enumerate() {
-                for (k, number) in vector.to_array().into_iter().enumerate() {
-                    blocks[block].0[FIELD + k][lane] = number;
-                }
-            }
-        }
-    }
-}
-
-/// Reads vectors, one for each particle, from the first fields of blocks.
-struct Collect<'a, const F: usize> {
-    vectors: &'a mut [Vec3],
-    blocks: &'a [Block<F>],
-    per_lane: usize,
-}
-
-impl<const F: usize> Kernel for Collect<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self { vectors, blocks, per_lane } = self;
-        let whole = whole_eights(vectors.len(), per_lane);
-        for (at, eight) in blocks.as_chunks::<WIDTH>().0[..whole].iter().enumerate() {
-            let mut numbers = [[[0.0; WIDTH]; 3]; WIDTH];
-            for part in 0..3 {
-                let column = |k: usize| L::load(&eight[k / 3].0[k % 3]);
-                let lanes = L::transpose(core::array::from_fn(|k| column(part * WIDTH + k)));
-                for (lane, numbers) in lanes.into_iter().zip(&mut numbers) {
-                    lane.store(&mut numbers[part]);
-                }
-            }
-            for (lane, numbers) in numbers.iter().enumerate() {
-                let to = &mut vectors[lane * per_lane + at * WIDTH..][..WIDTH];
-                for (vector, numbers) in to.iter_mut().zip(numbers.as_flattened().as_chunks::<3>().0) {
-                    *vector = Vec3::from_array(*numbers);
-                }
-            }
-        }
-        for block in whole * WIDTH..per_lane {
-            let Block(fields) = &blocks[block];
-            for (lane, vector) in vectors[block..].iter_mut().step_by(per_lane).enumerate() {
-                *vector = Vec3::new(fields[0][lane], fields[1][lane], fields[2][lane]);
-            }
-        }
-    }
-}
-
-/// Number of eights of blocks that hold a particle in each lane.
-fn whole_eights(count: usize, per_lane: usize) -> usize {
-    count.saturating_sub((WIDTH - 1) * per_lane) / WIDTH
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use sinew_math::dispatch::Level;
-
-    #[test]
-    fn vectors_lie_in_their_lanes_and_come_back() {
-        for level in Level::available() {
-            for count in [1, 7, 9, 64, 65, 120, 128, 200, 1003] {
-                let vector = |i: usize| Vec3::new(i as f32, i as f32 + 0.25, i as f32 + 0.5);
-                let vectors: Vec<Vec3> = (0..count).map(vector).collect();
-                let per_lane = count.div_ceil(WIDTH);
-                let mut blocks = vec![Block::splat([-1.0; FIELDS]); per_lane];
-                let spread = Spread::<FIELDS, 0> { vectors: &vectors, blocks: &mut blocks, per_lane };
-                dispatch::run_at(level, spread);
-                for (i, vector) in vectors.iter().enumerate() {
-                    assert_eq!(
-                        blocks[i % per_lane].get(i / per_lane)[..3],
-                        vector.to_array(),
-                        "{count} at {level:?}"
-                    );
-                }
-                let mut back = vec![Vec3::ZERO; count];
-                dispatch::run_at(level, Collect { vectors: &mut back, blocks: &blocks, per_lane });
-                assert_eq!(back, vectors, "{count} at {level:?}");
             }
         }
     }

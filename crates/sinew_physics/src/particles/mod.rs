@@ -39,6 +39,7 @@ mod project;
 mod rest;
 mod self_collision;
 mod snapshot;
+mod spread;
 mod sweep;
 mod system;
 mod tuning;
@@ -186,7 +187,7 @@ pub struct ParticleGroup {
     /// Their lengths, m/s².
     pulls: Vec<f32>,
     /// Bits of the acceleration of all, m/s², where no outer force makes a difference.
-    common_pull: Option<[u32; 3]>,
+    common_acceleration: Option<[u32; 3]>,
 }
 
 impl Item for ParticleGroup {
@@ -261,7 +262,7 @@ impl ParticleGroup {
         self.weights = self.masses.iter().map(|mass| 1.0 / mass).collect();
         self.accelerations = vec![Vec3::ZERO; count];
         self.pulls = vec![0.0; count];
-        self.common_pull = Some([0; 3]);
+        self.common_acceleration = Some([0; 3]);
         self.begun = vec![Vec3::ZERO; count];
         self.gradients = vec![Vec3::ZERO; count];
         self.touches = vec![None; count];
@@ -564,11 +565,11 @@ impl ParticleGroup {
         let gravity = gravity * self.gravity_scale;
         // A zero has a sign, which what a snapshot restores would have and this not.
         let bits = gravity.to_array().map(f32::to_bits);
-        if self.common_pull != Some(bits) {
+        if self.common_acceleration != Some(bits) {
             self.accelerations.fill(gravity);
             self.pulls.fill(gravity.length());
         }
-        self.common_pull = self.outer.is_empty().then_some(bits);
+        self.common_acceleration = self.outer.is_empty().then_some(bits);
         for (i, force) in self.outer.drain(..).enumerate() {
             self.accelerations[i] += force / self.masses[i];
             self.pulls[i] = self.accelerations[i].length();

@@ -15,9 +15,8 @@ use crate::step::collide::smallest_extent;
 use crate::step::tuning::LINGER;
 use sinew_math::min;
 
-/// `touch`: what contacts do, events, and waking of what an awake body touches, has pressed through particles or attracts, or a moving kinematic one
-/// holds.
-/// What wakes comes with its contacts.
+/// `touch`: what contacts do, events, and waking of what an awake body touches, presses through particles or attracts, or a moving
+/// kinematic one holds. What wakes comes with its contacts.
 pub(crate) fn touch(
     bodies: &mut Arena<Body>,
     joints: &Arena<Joint>,
@@ -48,11 +47,10 @@ pub(crate) fn touch(
         Told { bodies: &mut events.begin, shapes: &mut events.shapes_begin },
         Told { bodies: &mut events.end, shapes: &mut events.shapes_end },
     );
-    // What presses others through particles touches them as well.
-    let pressed = groups.iter().filter(|(_, group)| group.is_awake());
-    for contact in
-        pressed.flat_map(|(_, group)| &group.pinched.contacts).filter(|contact| contact.has_pushed())
-    {
+    // Who has pressed another through particles has touched it.
+    let groups = groups.iter().map(|(_, group)| group).filter(|group| group.is_awake());
+    let pinched = groups.flat_map(|group| &group.pinched.contacts);
+    for contact in pinched.filter(|contact| contact.has_pushed()) {
         wake_touched(bodies, activity, core::slice::from_ref(contact));
     }
     wake_held(bodies, joints, activity);

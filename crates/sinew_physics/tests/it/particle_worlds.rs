@@ -23,7 +23,7 @@ const DEPTH: f32 = 1e-4;
 /// Energy that each kilogram may gain, J.
 const GAIN: f32 = 0.01;
 
-/// Steps in which what is stretched gives back what it holds: half a second, in which the slowest of these nets is straight again.
+/// Steps in which what is stretched gives back what it holds: most moves after five of them in the worlds that come to this.
 const RELEASE_STEPS: usize = 30;
 
 /// Cloth with the rope's corner, mass and radius.

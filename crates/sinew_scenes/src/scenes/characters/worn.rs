@@ -10,21 +10,21 @@ use sinew::ragdoll::{Character, CharacterEvent};
 #[derive(Clone, Copy, Default)]
 pub(super) struct Wear {
     /// Largest mean over the threads of how much a thread is longer or shorter than at rest, over its length.
-    pub stretch: f32,
+    stretch: f32,
     /// Sum of that mean over steps.
-    pub stretch_sum: f32,
+    stretch_sum: f32,
     /// Furthest that a held particle was from its place, metres.
     pub torn: f32,
     /// Times that the wearer went limp.
-    pub falls: u32,
+    falls: u32,
     /// Time at which it was up again, seconds; 0: it was not.
-    pub up: f32,
+    up: f32,
     /// Work of drives and led bodies, J.
     pub work_in: f32,
 }
 
 impl Wear {
-    /// Takes a step of the world and the wearer's own, which it is brought up to.
+    /// Counts the work of a step, updates the wearer after it, and notes its falls and getting up.
     pub fn follow(&mut self, world: &mut World, wearer: &mut Character) {
         self.work_in += world.work().total();
         wearer.update(world);
