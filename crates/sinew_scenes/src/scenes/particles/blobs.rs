@@ -85,7 +85,7 @@ impl Script for Dropped {
             Metric::new(
                 "volume_kept",
                 group.volume(0) / self.volume,
-                Expected::Near { value: 1.0, tolerance: 0.02 },
+                Expected::Near { value: 1.0, tolerance: 0.01 },
             ),
             Metric::new("squeezed_to", self.squeezed, Expected::AtMost(0.9)),
             Metric::new("fastest_m_s", fastest, Expected::AtMost(0.05)),
