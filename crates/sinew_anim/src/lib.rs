@@ -17,6 +17,7 @@ pub mod legs;
 mod playback;
 pub mod pose;
 pub mod retarget;
+pub mod riders;
 pub mod rig;
 pub mod roles;
 pub mod set;

@@ -4,7 +4,7 @@
 mod clearing;
 
 use crate::anim::legs::Legs;
-use crate::anim::retarget::{Body, Pace, RetargetError, RetargetOptions, Retargeted, retarget};
+use crate::anim::retarget::{Body, Pace, RetargetError, RetargetOptions, Retargeted, carry_riders, retarget};
 use crate::anim::{Clip, RigAnalysis, analyze};
 use crate::mannequin::{Mannequin, mannequin};
 use crate::math::clamp;
@@ -65,7 +65,10 @@ pub fn builtin_motions(def: &CharacterDef, analysis: &RigAnalysis) -> Result<Bui
     let clearing = Clearing::new(def, analysis);
     let onto = |clip: &Clip| -> Result<Retargeted, RetargetError> {
         let mut fitted = retarget(actor, clip, body, &options(actor, body))?;
-        clearing.iter().for_each(|clearing| clearing.clear(&mut fitted));
+        if let Some(clearing) = &clearing {
+            clearing.clear(&mut fitted);
+            carry_riders(body, &mut fitted.take);
+        }
         Ok(fitted)
     };
     let cycle = |clip: &Clip| Ok(one_round(onto(&repeated(clip, PLAYED))?, clip));

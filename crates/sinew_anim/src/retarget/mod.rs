@@ -19,6 +19,7 @@ use crate::contact::{
 };
 use crate::legs::{Foot, Legs};
 use crate::pose::{local_to_model, rest_pose, smoothstep};
+use crate::riders::Riders;
 use crate::rig::{JointIdx, Rig};
 use crate::roles::{RigAnalysis, Role, Side};
 use crate::tuning::{FLOOR_TIME, FOOT_HOLD};
@@ -185,8 +186,10 @@ pub fn retarget(
     let contacts: Vec<FootContact> = steps.contacts.iter().map(at_pace).collect();
     let ground =
         Ground { height: character.analysis.floor, velocity: steps.ground.velocity * (scale / pace) };
+    let feet = transfer.stand(options.feet, &contacts, &ground, &mut take);
+    carry_riders(character, &mut take);
     Ok(Retargeted {
-        feet: transfer.stand(options.feet, &contacts, &ground, &mut take),
+        feet,
         take,
         contacts,
         pairs: transfer.alignment.pairs.iter().map(|pair| (pair.role, pair.from, pair.to)).collect(),
@@ -196,6 +199,18 @@ pub fn retarget(
         ground,
         actor_slide: steps.slide,
     })
+}
+
+/// Puts joints that ride on a part of the body without hanging on it where that part is, in every frame.
+///
+/// # Panics
+/// If the take is not one of the character's rig.
+pub fn carry_riders(character: Body<'_>, take: &mut Take) {
+    let riders = Riders::of(character.rig, character.analysis);
+    let mut model = Vec::new();
+    for frame in 0..take.frames() {
+        riders.carry(character.rig, take.pose_mut(frame), &mut model);
+    }
 }
 
 fn check(number: f32, what: &'static str) -> Result<(), RetargetError> {

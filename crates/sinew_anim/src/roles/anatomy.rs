@@ -1,7 +1,9 @@
 //! From evidence to roles: stated by the file, else seen in the geometry, else named, else generic.
 
+use super::assembly::{Carriers, bare_limbs, sides_agree};
 use super::axes::{feet_lead, left_by_name, possible_ups, snap};
 use super::bind::Bound;
+use super::characters::main_skeleton;
 use super::correct::{CorrectionError, corrected, needed};
 use super::creature::{generic_roles, up_by_feet};
 use super::gait::{Gait, Pair, Swing};
@@ -13,7 +15,7 @@ use super::symmetry::Symmetry;
 use super::units::Measured;
 use super::{Basis, NoSkin, RoleGuess};
 use crate::rig::{JointIdx, Rig};
-use crate::roles::tuning::{CONTROL_SKIN, ELBOWS_BEHIND, FEET_AGAINST_NAMES, STEP_CORRELATION};
+use crate::roles::tuning::{CONTROL_SKIN, ELBOWS_BEHIND, FEET_AGAINST_NAMES, LEAST_FOOT, STEP_CORRELATION};
 use sinew_math::Vec3;
 
 /// Roles per joint and the directions of the body.
@@ -97,9 +99,12 @@ impl<'a> Scene<'a> {
         let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
         let parents: Vec<Option<JointIdx>> = rig.joints.iter().map(|joint| joint.parent).collect();
         let mut readings = read_names(&names, &parents);
-        let mut graph = Graph::of(rig, bound, |_| true)?;
+        let main = main_skeleton(rig, &bound.area);
+        let moves_skin =
+            |joint: JointIdx| bound.area[joint] > 0.0 && main.as_ref().is_none_or(|main| main[joint]);
+        let mut graph = Graph::of(rig, bound, moves_skin, |_| None)?;
         let mut symmetry = Symmetry::find(&graph, bound.size());
-        let trust = Trust::of(&graph, &symmetry, &readings);
+        let trust = Trust::of(&graph, &symmetry, &readings, bound);
         let is_named = rig.joints.iter().any(|joint| !joint.name.is_empty());
         notes.extend(trust.note().filter(|_| is_named));
         trust.forget(&mut readings);
@@ -117,10 +122,18 @@ impl<'a> Scene<'a> {
                 let carries = |ancestor: JointIdx| bound.area[ancestor] > 0.0;
                 readings[joint].is_control && bound.area[joint] >= fair && !ancestors(rig, joint).any(carries)
             };
-            let body = |joint: JointIdx| readings[joint].part != Some(Part::Appendix) || is_bone(joint);
-            if let Some(smaller) = Graph::of(rig, bound, body) {
-                symmetry = Symmetry::find(&smaller, bound.size());
-                graph = smaller;
+            let mut is_part: Vec<bool> = (0..readings.len())
+                .map(|joint| {
+                    let is_body = readings[joint].part != Some(Part::Appendix) || is_bone(joint);
+                    moves_skin(joint) && is_body
+                })
+                .collect();
+            bare_limbs(rig, bound, &readings).into_iter().for_each(|joint| is_part[joint] = true);
+            let carriers = Carriers::of(&readings, bound, |joint| is_part[joint]);
+            let named = Graph::of(rig, bound, |joint| is_part[joint], |joint| carriers.of_joint(joint));
+            if let Some(named) = named {
+                symmetry = Symmetry::find(&named, bound.size());
+                graph = named;
             }
         }
         Some((Self { rig, bound, gait, graph, symmetry, readings }, notes))
@@ -135,7 +148,9 @@ impl<'a> Scene<'a> {
         let human = |up: Vec3| self.recognise(up).filter(|found| !self.is_beast(found));
         let found = possible_ups(self.symmetry.lateral).find_map(|up| Some((up, human(up)?)));
         if let Some((up, humanoid)) = found {
-            return self.shape_draft(up, &humanoid, notes);
+            let mut draft = self.shape_draft(up, &humanoid, notes);
+            self.correct_limbs(&mut draft);
+            return draft;
         }
         if let Some(named) = self.named_draft() {
             notes.push("the shape is not clear: roles are those of the names".into());
@@ -250,39 +265,60 @@ impl<'a> Scene<'a> {
         is_named(&found.arms) && is_named(&found.legs)
     }
 
-    /// Left by the feet, else by names, else by which way they walk, else by the elbows, else so that the body faces the file's +Z.
+    /// Left by names, unless several signs of the shape together speak against them; else by the feet, else by which way they walk, else by
+    /// the elbows, else so that the body faces the file's +Z.
     fn left(&self, up: Vec3, ankles: &[Vec3], arms: Option<&Limb>, notes: &mut Vec<String>) -> Vec3 {
         let lateral = self.symmetry.lateral;
         let forward = lateral.cross(up);
         let lead = feet_lead(self.bound, &Stance::new(self.bound, up), forward, ankles);
         let named = left_by_name(&self.graph, &self.symmetry, &self.node_readings());
-        let hardly = named == 0.0 && lead.abs() < FEET_AGAINST_NAMES;
-        let steps = if hardly { self.walks_toward(up) } else { 0.0 };
-        if steps.abs() > STEP_CORRELATION {
-            notes.push("the feet hardly tell which way the body faces: the way they walk does".into());
-            return lateral * steps.signum();
-        }
         let elbows =
             arms.map_or(0.0, |arms| self.with_evidence(up, |seen| seen.elbows_behind(arms, forward)));
-        if hardly && elbows.abs() > ELBOWS_BEHIND {
-            notes.push("the feet hardly tell which way the body faces: the elbows do".into());
-            return lateral * elbows.signum();
+        let feet = if lead.abs() > FEET_AGAINST_NAMES { lead.signum() } else { 0.0 };
+        let bent = if elbows.abs() > ELBOWS_BEHIND { elbows.signum() } else { 0.0 };
+        if named != 0.0 && named * feet >= 0.0 {
+            return lateral * named;
         }
-        // Half a per cent of the height and more is a foot, less is noise; against names it takes a foot that nobody doubts.
-        if lead.abs() > if named * lead < 0.0 { FEET_AGAINST_NAMES } else { 0.005 } {
-            if named * lead < 0.0 {
-                notes.push(
-                    "the feet point the other way than left and right are named: the feet count".into(),
-                );
-            }
+        let steps = if named == 0.0 && feet != 0.0 { 0.0 } else { self.walks_toward(up) };
+        let walk = if steps.abs() > STEP_CORRELATION { steps.signum() } else { 0.0 };
+        if named != 0.0 {
+            // The feet point the other way than the names say. A heel, a claw or a boot may do that by itself.
+            let shape = [feet, walk, bent, self.toes_lead(up, forward)];
+            let against: f32 = shape.into_iter().map(|sign| -named * sign).sum();
+            let (left, which) =
+                if against >= 2.0 { (-named, "the shape counts") } else { (named, "the names count") };
+            notes.push(format!(
+                "the feet point the other way than left and right are named: {which}, and which way the body faces is in doubt"
+            ));
+            return lateral * left;
+        }
+        if feet == 0.0 && walk != 0.0 {
+            notes.push("the feet hardly tell which way the body faces: the way they walk does".into());
+            return lateral * walk;
+        }
+        if feet == 0.0 && bent != 0.0 {
+            notes.push("the feet hardly tell which way the body faces: the elbows do".into());
+            return lateral * bent;
+        }
+        // Half a per cent of the height and more is a foot, less is noise.
+        if lead.abs() > LEAST_FOOT {
             return lateral * lead.signum();
         }
         notes.push("the feet do not tell which way the body faces".into());
-        if named.abs() > 0.0 {
-            return lateral * named;
-        }
         let ahead = if up.y.abs() > 0.5 { Vec3::Z } else { -Vec3::Y };
         lateral * if forward.dot(ahead) < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// Sign of the way from the feet to the toes, as they are named, along `forward`; 0 where the names or the places do not tell.
+    fn toes_lead(&self, up: Vec3, forward: Vec3) -> f32 {
+        let height = Stance::new(self.bound, up).height;
+        let place = |part: Part, side: Side| {
+            let is = |reading: &Reading| reading.part == Some(part) && reading.side == Some(side);
+            self.readings.iter().position(is).map(|joint| self.bound.model[joint].translation)
+        };
+        let lead = |side: Side| Some((place(Part::Toes, side)? - place(Part::Foot, side)?).dot(forward));
+        let sum: f32 = [Side::Left, Side::Right].into_iter().filter_map(lead).sum();
+        if sum.abs() > FEET_AGAINST_NAMES * height { sum.signum() } else { 0.0 }
     }
 
     fn shape_draft(&self, up: Vec3, found: &Humanoid, notes: &mut Vec<String>) -> Draft {
@@ -312,6 +348,38 @@ impl<'a> Scene<'a> {
         }
         self.add_named(&mut roles);
         Draft { roles, humanoid: true, up, left }
+    }
+
+    /// Gives limbs the joints that are named for them, where the names tell all long bones of both sides apart: a cuff or a clavicle that
+    /// looks like an upper arm is none.
+    fn correct_limbs(&self, draft: &mut Draft) {
+        let mut named: Vec<(Role, JointIdx)> = Vec::new();
+        for (joint, reading) in self.readings.iter().enumerate() {
+            let Some(role) = reading.part.and_then(|part| role_of(part, reading.side)) else { continue };
+            let is_part = self.graph.nodes.iter().any(|node| node.joint == joint);
+            if role.side().is_some() && is_part && named.iter().all(|(other, _)| *other != role) {
+                named.push((role, joint));
+            }
+        }
+        let tells = |role: Role| named.iter().any(|(other, _)| *other == role);
+        if !needed().filter(|role| role.side().is_some()).all(tells) {
+            return;
+        }
+        let at_side = |&(role, joint): &(Role, JointIdx)| {
+            (self.toward(draft.left, joint) > 0.0) == (role.side() == Some(Side::Left))
+        };
+        if !named.iter().all(at_side) {
+            return;
+        }
+        for &(role, joint) in &named {
+            let holds = |guess: &Option<RoleGuess>| guess.is_some_and(|guess| guess.role == role);
+            match draft.roles.iter().position(holds) {
+                Some(holder) if holder == joint => continue,
+                Some(holder) => draft.roles[holder] = None,
+                None => {}
+            }
+            draft.roles[joint] = Some(RoleGuess::new(role, Basis::Name));
+        }
     }
 
     /// The joints of a chain of the trunk, and among them and right above those without skin that are named as its part.
@@ -428,6 +496,18 @@ impl<'a> Scene<'a> {
         (!walks_on_hands).then_some(draft)
     }
 
+    fn joint_in(&self, draft: &Draft, role: Role) -> Option<JointIdx> {
+        draft.roles.iter().position(|guess| guess.is_some_and(|guess| guess.role == role))
+    }
+
+    /// Middle of the vertices that a joint moves most.
+    fn middle(&self, joint: JointIdx) -> Option<Vec3> {
+        let own = self.bound.vertices.iter().zip(&self.bound.movers).filter(|(_, mover)| **mover == joint);
+        let (sum, count) =
+            own.fold((Vec3::ZERO, 0.0), |(sum, count), (vertex, _)| (sum + *vertex, count + 1.0));
+        (count > 0.0).then(|| sum / count)
+    }
+
     /// True if the legs point away from the head: those of a beast that is named like a human hang across its trunk.
     fn stands(&self, draft: &Draft) -> bool {
         let place = |role: Role| {
@@ -435,21 +515,28 @@ impl<'a> Scene<'a> {
             joint.map(|joint| self.bound.model[joint].translation)
         };
         let along = |side: Side| {
-            let end = place(Role::Foot(side)).or(place(Role::LowerLeg(side)))?;
-            let leg = end - place(Role::UpperLeg(side))?;
+            let thigh = self.joint_in(draft, Role::UpperLeg(side))?;
+            let end =
+                place(Role::Foot(side)).or(place(Role::LowerLeg(side))).or_else(|| self.middle(thigh))?;
+            let leg = end - self.bound.model[thigh].translation;
             Some(leg.dot(draft.up) / sinew_math::max(leg.length(), 1e-12))
         };
         [Side::Left, Side::Right].into_iter().filter_map(along).all(|down| down < -0.5)
     }
 
-    /// A draft from known roles; `None` if hips, head, or one of the upper and lower limbs is missing.
+    /// A draft from known roles; `None` if hips, head, or one of the upper limbs is missing.
     fn draft_of(&self, known: Vec<(Role, JointIdx)>, basis: Basis) -> Option<Draft> {
         let joint_of = |role: Role| known.iter().find(|(r, _)| *r == role).map(|&(_, joint)| joint);
         let place = |role: Role| joint_of(role).map(|joint| self.bound.model[joint].translation);
         let up = snap(place(Role::Head)? - place(Role::Hips)?);
         let mut across = Vec3::ZERO;
-        for limb in [Role::UpperArm, Role::LowerArm, Role::UpperLeg, Role::LowerLeg] {
+        for limb in [Role::UpperArm, Role::UpperLeg] {
             across += place(limb(Side::Left))? - place(limb(Side::Right))?;
+        }
+        for limb in [Role::LowerArm, Role::LowerLeg] {
+            if let (Some(left), Some(right)) = (place(limb(Side::Left)), place(limb(Side::Right))) {
+                across += left - right;
+            }
         }
         let left = snap(across - up * across.dot(up));
         if left.dot(up).abs() > 0.5 {
@@ -496,7 +583,7 @@ enum Trust {
 }
 
 impl Trust {
-    fn of(graph: &Graph, symmetry: &Symmetry, readings: &[Reading]) -> Self {
+    fn of(graph: &Graph, symmetry: &Symmetry, readings: &[Reading], bound: &Bound) -> Self {
         let (mut agreeing, mut alike, mut pairs) = (0, 0, 0);
         for (i, node) in graph.nodes.iter().enumerate() {
             let Some(other) = symmetry.other(i).filter(|&k| k > i) else { continue };
@@ -508,7 +595,8 @@ impl Trust {
             }
         }
         let most = |count: usize| 10 * count >= 6 * pairs;
-        if pairs == 0 && sides_pair_up(readings) || pairs > 0 && most(agreeing) {
+        let agree = pairs == 0 && sides_pair_up(readings) || pairs > 0 && most(agreeing);
+        if agree || sides_agree(readings, bound) {
             Self::All
         } else if pairs > 0 && most(alike) {
             Self::Words

@@ -1,7 +1,7 @@
 //! The bind pose: where joints and skin were when the skin was made.
 
 use super::graph::ancestors;
-use super::names::read_names;
+use super::names::{Part, read_names};
 use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, LocalTransform, Rig, RigMesh};
 use crate::roles::tuning::COINCIDENT;
@@ -45,7 +45,49 @@ impl Bound {
                 bound.add_primitive(rig, m, p);
             }
         }
-        (bound.area.iter().any(|&a| a > 0.0)).then_some(bound)
+        if !bound.area.iter().any(|&a| a > 0.0) {
+            return None;
+        }
+        bound.add_rigid_parts(rig);
+        Some(bound)
+    }
+
+    /// Counts meshes without a skin as the skin of the joint that carries them, if that is named as a part of the body and moves none:
+    /// low-poly characters are put together of such parts.
+    fn add_rigid_parts(&mut self, rig: &Rig) {
+        let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
+        let parents: Vec<Option<JointIdx>> = rig.joints.iter().map(|joint| joint.parent).collect();
+        let readings = read_names(&names, &parents);
+        let mut in_skin = vec![false; rig.joints.len()];
+        rig.skins.iter().flat_map(|skin| &skin.joints).for_each(|&joint| in_skin[joint] = true);
+        let is_bare: Vec<bool> = self.area.iter().map(|&area| area <= 0.0).collect();
+        let is_part = |joint: JointIdx| {
+            let part = readings[joint].part;
+            is_bare[joint] && part.is_some_and(|part| !matches!(part, Part::Appendix | Part::Tail))
+        };
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        for (m, mesh) in rig.meshes.iter().enumerate().filter(|(_, mesh)| mesh.skin.is_none()) {
+            let mut line = core::iter::once(mesh.joint).chain(ancestors(rig, mesh.joint));
+            let Some(carrier) = line.find(|&joint| in_skin[joint]).filter(|&joint| is_part(joint)) else {
+                continue;
+            };
+            for (p, primitive) in mesh.primitives.iter().enumerate() {
+                skin_vertices(rig, m, p, &self.model, &mut positions, &mut normals);
+                let share = vertex_areas(&positions, &primitive.indices);
+                for (&position, share) in positions.iter().zip(share) {
+                    if position.is_finite() && share.is_finite() {
+                        self.add_vertex(position, carrier);
+                        self.area[carrier] += share;
+                    }
+                }
+            }
+        }
+    }
+
+    fn add_vertex(&mut self, position: Vec3, mover: JointIdx) {
+        self.vertices.push(position);
+        self.movers.push(mover);
+        (self.lo, self.hi) = (min3(self.lo, position), max3(self.hi, position));
     }
 
     /// The same of a skeleton without skin: bones weigh by their length, and joints stand in for vertices. `None` when
@@ -125,10 +167,7 @@ impl Bound {
             if !position.is_finite() || !share[i].is_finite() {
                 continue;
             }
-            self.vertices.push(position);
-            self.lo = min3(self.lo, position);
-            self.hi = max3(self.hi, position);
-            self.movers.push(mover(i));
+            self.add_vertex(position, mover(i));
             for (slot, weight) in primitive.joints[i].into_iter().zip(primitive.weights[i]) {
                 if weight > 0.0 {
                     self.area[skin.joints[usize::from(slot)]] += weight * share[i];
@@ -176,7 +215,7 @@ fn vertex_areas(positions: &[Vec3], indices: &[u32]) -> Vec<f32> {
 
 /// Model-space transform of every joint in the bind pose. Joints that no skin names hang off their parents as in the
 /// rest pose.
-fn bind_pose(rig: &Rig) -> Vec<Affine> {
+pub(super) fn bind_pose(rig: &Rig) -> Vec<Affine> {
     let mut rest = Vec::new();
     local_to_model(rig, &rest_pose(rig), &Affine::IDENTITY, &mut rest);
     let mut bound: Vec<Option<Affine>> = vec![None; rig.joints.len()];

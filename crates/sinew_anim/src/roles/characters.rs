@@ -1,15 +1,94 @@
 //! Several characters in one file.
 
+use super::bind::bind_pose;
 use crate::rig::{JointIdx, Rig};
+use crate::roles::tuning::{LIES_WITHIN, SMALL_BESIDE};
+use crate::skinning::skin_vertices;
+use sinew_math::{Affine, Vec3, max, max3, min, min3};
 
-/// The characters of a rig, each by its meshes (indices into [`Rig::meshes`]), in the order of their first mesh: skins whose joints
-/// are of one skeleton, with the meshes without a skin that hang on it. Skeletons are of one character where a joint of one hangs
-/// on a joint of the other, or both on a node that is no root of the scene. Meshes without a skin that hang on none are in no
-/// character. Empty without skins.
+/// The characters of a rig, each by its meshes (indices into [`Rig::meshes`]), in the order of their first mesh.
+///
+/// A character is a [skeleton](skeletons) that stands beside the others. One that lies within another, or is small beside it, belongs to
+/// that: eyes, a hat, clothes with bones of their own. Empty without skins.
 ///
 /// # Panics
 /// If the rig's indices are out of range.
 pub fn characters(rig: &Rig) -> Vec<Vec<usize>> {
+    let skeletons = skeletons(rig);
+    if skeletons.len() < 2 {
+        return skeletons;
+    }
+    let bind = bind_pose(rig);
+    let extents: Vec<Option<Extent>> = skeletons.iter().map(|meshes| extent(rig, &bind, meshes)).collect();
+    let mut by_size: Vec<usize> = (0..skeletons.len()).collect();
+    let size = |of: usize| extents[of].map_or(0.0, |extent| extent.longest());
+    by_size.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
+    let mut own: Vec<(usize, Vec<usize>)> = Vec::new();
+    for skeleton in by_size {
+        let belongs = |&(main, _): &(usize, Vec<usize>)| match (extents[main], extents[skeleton]) {
+            (Some(main), Some(extent)) => extent.belongs_to(&main),
+            _ => true,
+        };
+        match own.iter().position(belongs) {
+            Some(main) => own[main].1.extend(&skeletons[skeleton]),
+            None => own.push((skeleton, skeletons[skeleton].clone())),
+        }
+    }
+    let mut characters: Vec<Vec<usize>> = own.into_iter().map(|(_, meshes)| meshes).collect();
+    characters.iter_mut().for_each(|meshes| meshes.sort_unstable());
+    characters.sort();
+    characters
+}
+
+/// Axis-aligned box of a skin in its bind pose, model space, file units.
+#[derive(Clone, Copy)]
+struct Extent {
+    lo: Vec3,
+    hi: Vec3,
+}
+
+impl Extent {
+    fn longest(&self) -> f32 {
+        let sides = self.hi - self.lo;
+        max(sides.x, max(sides.y, sides.z))
+    }
+
+    /// True if it lies within the other for the most part, or is much smaller and touches it.
+    fn belongs_to(&self, main: &Self) -> bool {
+        let common = min3(self.hi, main.hi) - max3(self.lo, main.lo);
+        let share = |k: usize| {
+            let own = self.hi[k] - self.lo[k];
+            if own > 0.0 { common[k] / own } else { f32::from(u8::from(common[k] >= 0.0)) }
+        };
+        let least = min(share(0), min(share(1), share(2)));
+        let is_small = self.longest() < SMALL_BESIDE * main.longest();
+        least > LIES_WITHIN || is_small && least > -1.0
+    }
+}
+
+fn extent(rig: &Rig, bind: &[Affine], meshes: &[usize]) -> Option<Extent> {
+    let mut extent: Option<Extent> = None;
+    let (mut positions, mut normals) = (Vec::new(), Vec::new());
+    for &m in meshes.iter().filter(|&&m| rig.meshes[m].skin.is_some()) {
+        for p in 0..rig.meshes[m].primitives.len() {
+            skin_vertices(rig, m, p, bind, &mut positions, &mut normals);
+            for &at in positions.iter().filter(|at| at.is_finite()) {
+                let Extent { lo, hi } = extent.unwrap_or(Extent { lo: at, hi: at });
+                extent = Some(Extent { lo: min3(lo, at), hi: max3(hi, at) });
+            }
+        }
+    }
+    extent
+}
+
+/// The skeletons of a rig, each by its meshes (indices into [`Rig::meshes`]), in the order of their first mesh: skins whose joints
+/// are of one skeleton, with the meshes without a skin that hang on it. Skeletons are one where a joint of one hangs
+/// on a joint of the other, or both on a node that is no root of the scene. Meshes without a skin that hang on none are in no
+/// skeleton. Empty without skins.
+///
+/// # Panics
+/// If the rig's indices are out of range.
+fn skeletons(rig: &Rig) -> Vec<Vec<usize>> {
     let mut is_bone = vec![false; rig.joints.len()];
     rig.skins.iter().flat_map(|skin| &skin.joints).for_each(|&joint| is_bone[joint] = true);
     // What a joint is known by: its root of the scene if that is a bone, else the ancestor right below that.
@@ -57,8 +136,33 @@ pub fn characters(rig: &Rig) -> Vec<Vec<usize>> {
             meshes.push(m);
         }
     }
-    let mut characters: Vec<Vec<usize>> = groups.into_iter().map(|(_, meshes)| meshes).collect();
-    characters.iter_mut().for_each(|meshes| meshes.sort_unstable());
-    characters.sort();
-    characters
+    let mut skeletons: Vec<Vec<usize>> = groups.into_iter().map(|(_, meshes)| meshes).collect();
+    skeletons.iter_mut().for_each(|meshes| meshes.sort_unstable());
+    skeletons.sort();
+    skeletons
+}
+
+/// Joints that move skin of the largest skeleton, of a rig whose skeletons are taken for one character: those of the others are carried by
+/// its bodies. `None` where there is only one.
+pub(super) fn main_skeleton(rig: &Rig, area: &[f32]) -> Option<Vec<bool>> {
+    let skeletons = skeletons(rig);
+    if skeletons.len() < 2 {
+        return None;
+    }
+    let joints = |meshes: &Vec<usize>| {
+        let mut joints: Vec<JointIdx> = meshes
+            .iter()
+            .filter_map(|&m| rig.meshes[m].skin)
+            .flat_map(|skin| rig.skins[skin].joints.iter().copied())
+            .collect();
+        joints.sort_unstable();
+        joints.dedup();
+        joints
+    };
+    let skin = |joints: &Vec<JointIdx>| joints.iter().map(|&joint| area[joint]).sum::<f32>();
+    let all = skeletons.iter().map(joints);
+    let main = all.reduce(|a, b| if skin(&b) > skin(&a) { b } else { a })?;
+    let mut is_main = vec![false; rig.joints.len()];
+    main.into_iter().for_each(|joint| is_main[joint] = true);
+    Some(is_main)
 }

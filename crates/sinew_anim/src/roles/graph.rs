@@ -34,12 +34,18 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// The tree over the joints that move skin and pass `wanted`; `None` if there is none.
-    pub fn of(rig: &Rig, bound: &Bound, wanted: impl Fn(JointIdx) -> bool) -> Option<Self> {
+    /// The tree over the joints that `is_part` names; `None` if there is none. `carrier` names the joint that carries a joint by its
+    /// name, for joints that the rig hangs on nothing of the tree.
+    pub fn of(
+        rig: &Rig,
+        bound: &Bound,
+        is_part: impl Fn(JointIdx) -> bool,
+        carrier: impl Fn(JointIdx) -> Option<JointIdx>,
+    ) -> Option<Self> {
         let mut node_of: Vec<Option<usize>> = vec![None; rig.joints.len()];
         let mut nodes: Vec<Node> = Vec::new();
         for joint in 0..rig.joints.len() {
-            if !(bound.area[joint] > 0.0 && wanted(joint)) {
+            if !is_part(joint) {
                 continue;
             }
             let parent = ancestors(rig, joint).find_map(|ancestor| node_of[ancestor]);
@@ -61,8 +67,23 @@ impl Graph {
             });
         }
         let mut graph = Self { nodes, root: 0, order: Vec::new(), adopted: Vec::new() };
+        graph.hang_named(|node| node_of[carrier(node)?]);
         graph.join(rig, bound, &node_of)?;
         Some(graph)
+    }
+
+    /// Hangs trees on the node that carries them by their names.
+    fn hang_named(&mut self, carrier: impl Fn(JointIdx) -> Option<usize>) {
+        let roots: Vec<usize> = (0..self.nodes.len()).filter(|&i| self.nodes[i].parent.is_none()).collect();
+        for root in roots {
+            let Some(parent) = carrier(self.nodes[root].joint) else { continue };
+            if self.up_from(parent).any(|node| node == root) {
+                continue;
+            }
+            self.nodes[root].parent = Some(parent);
+            self.nodes[parent].children.push(root);
+            self.adopted.push(root);
+        }
     }
 
     /// Makes one tree of several: the one with the most skin stays, the others are adopted, large ones first.

@@ -6,6 +6,7 @@ use super::role::Role;
 use super::{KeptBone, RoleGuess};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::tuning::{LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN};
+use sinew_math::Vec3;
 
 /// Input of the selection.
 pub(super) struct Selection<'a> {
@@ -203,9 +204,65 @@ impl Selection<'_> {
                     area[bone] += self.bound.area[joint];
                 }
             }
-            let Some(bare) = (1..joints.len()).find(|&i| area[i] <= 0.0) else { return };
+            // A limb's bone without skin still is the joint that its lower part turns about.
+            let is_limb = |joint: JointIdx| self.graph.nodes.iter().any(|node| node.joint == joint);
+            let is_bare = |&i: &usize| area[i] <= 0.0 && !is_limb(joints[i]);
+            let Some(bare) = (1..joints.len()).find(is_bare) else { return };
             joints.remove(bare);
         }
+    }
+
+    /// Per joint the kept one, by place, that it goes with: what carries it, else what its skin runs into, else the nearest. Joints without
+    /// skin and without a carrier keep their own motion.
+    fn owners(&self, joints: &[JointIdx], place: &[Option<usize>]) -> Vec<Option<usize>> {
+        let mut owner = place.to_vec();
+        let mut waiting: Vec<JointIdx> = Vec::new();
+        for joint in (0..self.rig.joints.len()).filter(|&joint| place[joint].is_none()) {
+            match self.carried_by(joint, |i| place[i].is_some()) {
+                Some(carrier) => owner[joint] = place[carrier],
+                None if self.bound.area[joint] > 0.0 => waiting.push(joint),
+                None => {}
+            }
+        }
+        // The firmest bond first: a finger goes with the hand through the finger before it. Of bonds as firm the shorter one.
+        loop {
+            let mut best: Option<(u32, f32, usize, usize)> = None;
+            for (at, &joint) in waiting.iter().enumerate() {
+                let mut links = vec![0; joints.len()];
+                for (&(a, b), &count) in &self.bound.links {
+                    let other = if a == joint { b } else { a };
+                    if let Some(owner) = owner[other].filter(|_| a == joint || b == joint) {
+                        links[owner] += count;
+                    }
+                }
+                for body in (0..links.len()).filter(|&body| links[body] > 0) {
+                    let way =
+                        self.bound.model[joint].translation - self.bound.model[joints[body]].translation;
+                    let (count, away) = (links[body], way.length());
+                    if best.is_none_or(|(most, least, ..)| count > most || count == most && away < least) {
+                        best = Some((count, away, at, body));
+                    }
+                }
+            }
+            let Some((_, _, at, body)) = best else { break };
+            owner[waiting.remove(at)] = Some(body);
+        }
+        for joint in waiting {
+            owner[joint] = Some(self.nearest(joint, joints, &owner));
+        }
+        owner
+    }
+
+    /// The kept joint, by place, whose skin is nearest to that of a joint; the first if one of them has none.
+    fn nearest(&self, joint: JointIdx, joints: &[JointIdx], owner: &[Option<usize>]) -> usize {
+        let own = self.bound.vertices.iter().zip(&self.bound.movers).filter(|(_, mover)| **mover == joint);
+        let (sum, count) =
+            own.fold((Vec3::ZERO, 0.0), |(sum, count), (vertex, _)| (sum + *vertex, count + 1.0));
+        let middle = if count > 0.0 { sum / count } else { self.bound.model[joint].translation };
+        let others = self.bound.vertices.iter().zip(&self.bound.movers);
+        let away = others.filter_map(|(vertex, mover)| Some(((*vertex - middle).length(), owner[*mover]?)));
+        let nearest = away.reduce(|a, b| if b.0 < a.0 { b } else { a });
+        nearest.map_or(0, |(_, body)| usize::min(body, joints.len() - 1))
     }
 
     fn bones(&self, joints: &[JointIdx], parent: impl Fn(JointIdx) -> Option<usize>) -> Kept {
@@ -224,17 +281,15 @@ impl Selection<'_> {
             });
         }
         let place = self.places(joints);
+        let owners = self.owners(joints, &place);
         let mut merge_into = vec![None; self.rig.joints.len()];
         for joint in 0..self.rig.joints.len() {
             if place[joint].is_some() {
                 continue;
             }
-            let carrier = self.carried_by(joint, |i| place[i].is_some());
-            // Skin must go somewhere; a joint without skin and without a carrier keeps its own motion.
-            let target = carrier.or((self.bound.area[joint] > 0.0).then(|| joints[0]));
-            if let Some(bone) = target.and_then(|target| place[target]) {
+            if let Some(bone) = owners[joint] {
                 bones[bone].merged.push(joint);
-                merge_into[joint] = target;
+                merge_into[joint] = Some(joints[bone]);
             }
         }
         Kept { bones, merge_into }

@@ -8,6 +8,7 @@
 //! else hangs down: legs swing in turns.
 
 mod anatomy;
+mod assembly;
 mod axes;
 mod bind;
 mod characters;

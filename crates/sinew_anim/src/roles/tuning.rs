@@ -17,6 +17,11 @@ pub(crate) const CONTROL_SKIN: f32 = 5e-4;
 /// `hints`.
 pub(crate) const FEET_AGAINST_NAMES: f32 = 0.04;
 
+/// Least lead of both feet together, in heights of the body, that tells forward where nothing else does.
+///
+/// Larger: small feet have no front. Smaller: noise has one. Shown by the tests of `hints`.
+pub(crate) const LEAST_FOOT: f32 = 0.005;
+
 /// Least distance of both elbows together behind the arms, in heights of the body, to tell more than feet that hardly do.
 ///
 /// Larger: T-poses without feet have no front. Smaller: straight arms decide by noise. Shown by the tests of `hints`.
@@ -27,12 +32,36 @@ pub(crate) const ELBOWS_BEHIND: f32 = 0.03;
 /// Larger: shuffling walks tell nothing. Smaller: dances do. Shown by the tests of `hints`.
 pub(crate) const STEP_CORRELATION: f32 = 0.25;
 
+// roles/assembly.rs
+
+/// Least number of pairs of limb bones whose names tell left from right in one direction, to believe them without a mirror.
+///
+/// Larger: low-poly figures with few bones are not believed. Smaller: two names by chance are. Shown by the tests of `assembly`.
+pub(crate) const LEAST_NAMED_PAIRS: usize = 3;
+
+/// Least cosine of the angle between a pair's way from right to left and the mean of all pairs'.
+///
+/// Larger: legs in a stride are not believed. Smaller: names that are shuffled are. Shown by the tests of `assembly`.
+pub(crate) const NAMED_ALIKE: f32 = 0.3;
+
 // roles/bind.rs
 
 /// Distance of two joints in one place, as a share of the body's size.
 ///
 /// Larger: fingertips coincide. Smaller: helpers of an exporter count as bones. Shown by the tests of `rigs`.
 pub(crate) const COINCIDENT: f32 = 1e-3;
+
+// roles/characters.rs
+
+/// Least share of a skeleton's box, along each axis, that lies within another's, to belong to it.
+///
+/// Larger: clothes that stick out are characters. Smaller: who stands close together is one. Shown by the tests of `characters`.
+pub(crate) const LIES_WITHIN: f32 = 0.5;
+
+/// Largest side of a skeleton that belongs to one beside it, as a share of that one's.
+///
+/// Larger: a dog is part of its master. Smaller: a hat is a character. Shown by the tests of `characters`.
+pub(crate) const SMALL_BESIDE: f32 = 0.25;
 
 // roles/gait.rs
 

@@ -2,6 +2,7 @@
 
 mod allocations;
 mod animators;
+mod assembly;
 mod blending;
 mod built;
 mod cleanup;

@@ -72,19 +72,20 @@ impl CharacterFile {
 }
 
 impl CharacterFile {
-    /// Leaves out the meshes of other characters than the `wanted` one, from 1. Where there are several and none is wanted, that
-    /// is a note of the analysis.
+    /// Leaves out the meshes of other characters than the `wanted` one, from 1. Where there are several and none is wanted, the one with
+    /// the most vertices is taken, with a note of the analysis.
     pub fn choose(&mut self, wanted: Option<usize>) -> Result<()> {
         let rig = &mut self.document.rig;
         let all = characters(rig);
-        let Some(number) = wanted else {
-            if all.len() > 1 {
-                self.analysis.notes.push(format!(
-                    "{} skeletons without a joint in common are taken for one character: --character 1 to {0} picks one",
-                    all.len()
-                ));
-            }
-            return Ok(());
+        let vertices = |own: &[usize]| {
+            let primitives = own.iter().flat_map(|&mesh| &rig.meshes[mesh].primitives);
+            primitives.map(|primitive| primitive.positions.len()).sum::<usize>()
+        };
+        let largest = (0..all.len()).reduce(|a, b| if vertices(&all[b]) > vertices(&all[a]) { b } else { a });
+        let number = match (wanted, largest) {
+            (Some(number), _) => number,
+            (None, Some(largest)) if all.len() > 1 => largest + 1,
+            _ => return Ok(()),
         };
         let Some(own) = number.checked_sub(1).and_then(|index| all.get(index)) else {
             let there = if all.len() == 1 { "one character" } else { &format!("{} characters", all.len()) };
@@ -103,6 +104,12 @@ impl CharacterFile {
         let hints = &self.analysis.hints;
         self.analysis =
             analyze_hinted(rig, hints).map_err(|no_skin| Failure::of_file(&self.name, no_skin))?;
+        if wanted.is_none() {
+            self.analysis.notes.push(format!(
+                "there are {} characters in the file, and this is number {number}: --character 1 to {0} picks one",
+                all.len()
+            ));
+        }
         Ok(())
     }
 }

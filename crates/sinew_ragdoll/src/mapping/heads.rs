@@ -34,9 +34,12 @@ fn chain(rig: &Rig, joint: JointIdx, local: impl Fn(JointIdx) -> LocalTransform)
     model
 }
 
-/// The pelvis, and every other child of a node above the pelvis that has skin or a body somewhere below it.
+/// The pelvis, or the highest joint above it that moves skin with a body, and every other child of a node above that which has skin or a
+/// body somewhere below it. Skin above the pelvis would stay behind if its joint were at rest.
 pub(super) fn find(rig: &Rig, def: &RagdollDef) -> Vec<Head> {
-    let pelvis = def.bodies[0].joint;
+    let merged = |joint: JointIdx| def.bodies.iter().any(|body| body.merged.contains(&joint));
+    let above = core::iter::successors(rig.joints[def.bodies[0].joint].parent, |&at| rig.joints[at].parent);
+    let pelvis = above.filter(|&joint| merged(joint)).last().unwrap_or(def.bodies[0].joint);
     let mut above_pelvis = vec![false; rig.joints.len()];
     let mut at = rig.joints[pelvis].parent;
     while let Some(joint) = at {

@@ -1,0 +1,96 @@
+//! Joints with skin that hang elsewhere in the rig than on the part of the body that they belong to.
+
+use crate::pose::local_to_model;
+use crate::rig::{JointIdx, LocalTransform, Rig};
+use crate::roles::RigAnalysis;
+use sinew_math::Affine;
+
+/// A joint, the joint with a body that it goes with, and its place in the axes of that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Rider {
+    joint: JointIdx,
+    carrier: JointIdx,
+    carrier_from_joint: Affine,
+}
+
+/// The joints of a rig that move skin of a part of the body without hanging on it: a second bone of the trunk above the hips, halves of a
+/// pelvis, the root of a coat, eyes of a skeleton of their own.
+///
+/// A clip of the file moves them as its author wanted. A motion that comes from another body knows nothing of them:
+/// [`carry`](Self::carry) has them go with their part, as they do where bodies of a ragdoll move it.
+///
+/// ```
+/// # let rig = sinew::mannequin::mannequin().rig;
+/// use sinew_anim::{analyze, riders::Riders};
+///
+/// // All joints of the mannequin hang on their own part.
+/// assert!(Riders::of(&rig, &analyze(&rig)?).is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Riders {
+    /// By joint, ascending.
+    list: Vec<Rider>,
+    /// Per joint of the rig: it has a body.
+    has_body: Vec<bool>,
+}
+
+impl Riders {
+    /// The riders of a rig.
+    ///
+    /// # Panics
+    /// If the analysis is not one of the rig's.
+    pub fn of(rig: &Rig, analysis: &RigAnalysis) -> Self {
+        assert_eq!(analysis.bind_model.len(), rig.joints.len(), "an analysis of this rig");
+        let mut has_body = vec![false; rig.joints.len()];
+        analysis.kept.iter().for_each(|bone| has_body[bone.joint] = true);
+        let body_above = |joint: JointIdx| {
+            let mut line = core::iter::successors(rig.joints[joint].parent, |&at| rig.joints[at].parent);
+            line.find(|&at| has_body[at])
+        };
+        let rider = |(joint, carrier): (JointIdx, &Option<JointIdx>)| {
+            let carrier = (*carrier)?;
+            let carrier_from_joint = analysis.bind_model[carrier].inverse() * analysis.bind_model[joint];
+            // Feet beside the body have a role: whatever makes the motion places them.
+            let rides = body_above(joint) != Some(carrier) && analysis.roles[joint].is_none();
+            (rides && carrier_from_joint.is_finite()).then_some(Rider { joint, carrier, carrier_from_joint })
+        };
+        let list = analysis.merge_into.iter().enumerate().filter_map(rider).collect();
+        Self { list, has_body }
+    }
+
+    /// True if every joint hangs on its own part.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Puts the riders where their parts of the body are, as in the bind pose; joints with bodies stay where they are in model space. Lengths
+    /// and scales of bones stay as they are. `model` is memory.
+    ///
+    /// # Panics
+    /// If the pose is not one of the rig.
+    pub fn carry(&self, rig: &Rig, local: &mut [LocalTransform], model: &mut Vec<Affine>) {
+        if self.is_empty() {
+            return;
+        }
+        local_to_model(rig, local, &Affine::IDENTITY, model);
+        let mut list = self.list.iter().peekable();
+        let mut carried: Vec<Affine> = Vec::with_capacity(rig.joints.len());
+        for (joint, node) in rig.joints.iter().enumerate() {
+            let parent = node.parent.map_or(Affine::IDENTITY, |parent| carried[parent]);
+            let rider = list.next_if(|rider| rider.joint == joint);
+            let wanted = rider.map(|rider| model[rider.carrier] * rider.carrier_from_joint);
+            let has_moved = node.parent.is_some_and(|parent| carried[parent] != model[parent]);
+            if let Some(wanted) = wanted.or((self.has_body[joint] && has_moved).then(|| model[joint])) {
+                let rotation = parent.to_rigid().rotation.inverse() * wanted.to_rigid().rotation;
+                let translation = parent.inverse().point(wanted.translation);
+                if translation.is_finite() {
+                    local[joint].translation = translation;
+                    local[joint].rotation = rotation.normalize().toward(local[joint].rotation);
+                }
+            }
+            carried.push(parent * local[joint].to_affine());
+        }
+        *model = carried;
+    }
+}

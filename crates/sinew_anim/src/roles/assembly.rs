@@ -1,0 +1,145 @@
+//! Bodies put together by names, where the hierarchy or the skin of a rig leaves a part out.
+//!
+//! Exports of deform bones only make thighs, shoulders and upper arms roots of their own, low-poly characters have limb bones that
+//! move no skin, and a pose without a mirror hides what the names say plainly.
+
+use super::bind::Bound;
+use super::graph::ancestors;
+use super::names::{Part, Reading};
+use super::role::Side;
+use crate::rig::{JointIdx, Rig};
+use crate::roles::tuning::{LEAST_NAMED_PAIRS, NAMED_ALIKE};
+use sinew_math::{Vec3, direction};
+
+const LONG: [Part; 4] = [Part::UpperArm, Part::LowerArm, Part::UpperLeg, Part::LowerLeg];
+
+/// Long bones of limbs that move no skin and carry a part of the same limb that does: of each part of a side the one nearest to it.
+///
+/// The name and the hierarchy say that such a bone is the joint, wherever its skin went.
+pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<JointIdx> {
+    let moves = |joint: JointIdx| bound.area[joint] > 0.0;
+    let has_skin = |part: Part, side: Option<Side>| {
+        let named = |(joint, reading): (usize, &Reading)| {
+            moves(joint) && reading.part == Some(part) && reading.side == side
+        };
+        readings.iter().enumerate().any(named)
+    };
+    let mut found: Vec<(Part, Option<Side>, JointIdx)> = Vec::new();
+    for (joint, reading) in readings.iter().enumerate().filter(|&(joint, _)| moves(joint)) {
+        let Some(part) = reading.part.filter(|&part| below(part).is_some()) else { continue };
+        if reading.side.is_none() {
+            continue;
+        }
+        for above in ancestors(rig, joint) {
+            let other = &readings[above];
+            let Some(bare) = other.part.filter(|other| LONG.contains(other)) else { continue };
+            let is_further_in = other.side == reading.side && is_of_one_limb(bare, part) && bare != part;
+            let is_new = found.iter().all(|&(part, side, _)| (part, side) != (bare, other.side));
+            if is_further_in && is_new && !moves(above) && !has_skin(bare, other.side) {
+                found.push((bare, other.side, above));
+            }
+        }
+    }
+    found.into_iter().map(|(_, _, joint)| joint).collect()
+}
+
+/// Place of a part in its limb, from the trunk outward; `None` of what is no part of a limb.
+fn below(part: Part) -> Option<(usize, usize)> {
+    use Part::{Clavicle, Foot, Hand, LowerArm, LowerLeg, Toes, UpperArm, UpperLeg};
+    let limbs = [[Clavicle, UpperArm, LowerArm, Hand], [UpperLeg, LowerLeg, Foot, Toes]];
+    limbs.iter().enumerate().find_map(|(limb, parts)| Some((limb, parts.iter().position(|p| *p == part)?)))
+}
+
+/// True if the first part lies nearer to the trunk in the same limb.
+fn is_of_one_limb(inner: Part, outer: Part) -> bool {
+    match (below(inner), below(outer)) {
+        (Some((a, i)), Some((b, k))) => a == b && i < k,
+        _ => false,
+    }
+}
+
+/// Joints by the part of the body that they are named for, to find what carries what. Only names of a human tell.
+pub(super) struct Carriers<'a> {
+    readings: &'a [Reading],
+    is_human: bool,
+    /// Parts of the spine from the hips upward.
+    spine: Vec<JointIdx>,
+    is_part: Vec<bool>,
+}
+
+impl<'a> Carriers<'a> {
+    /// Of the joints that are parts of the body.
+    pub fn of(readings: &'a [Reading], bound: &Bound, is_part: impl Fn(JointIdx) -> bool) -> Self {
+        let is_part: Vec<bool> = (0..readings.len()).map(is_part).collect();
+        let named = |part: Part| {
+            let is = move |&joint: &JointIdx| readings[joint].part == Some(part);
+            (0..readings.len()).filter(is).filter(|&joint| is_part[joint])
+        };
+        let place = |joint: JointIdx| bound.model[joint].translation;
+        let hips = named(Part::Hips).next();
+        let mut spine: Vec<JointIdx> = named(Part::Spine).collect();
+        if let Some(hips) = hips {
+            let away = |joint: JointIdx| (place(joint) - place(hips)).length();
+            spine.sort_by(|&a, &b| away(a).total_cmp(&away(b)));
+        }
+        Self { readings, is_human: sides_agree(readings, bound), spine, is_part }
+    }
+
+    /// The joint that carries a joint by their names; `None` where the names do not tell.
+    pub fn of_joint(&self, joint: JointIdx) -> Option<JointIdx> {
+        use Part::{
+            Clavicle, Foot, Hand, Head, Hips, LowerArm, LowerLeg, Neck, Spine, Toes, UpperArm, UpperLeg,
+        };
+        let side = self.readings[joint].side;
+        let part = self.readings[joint].part.filter(|_| self.is_human)?;
+        let parts: &[Part] = match part {
+            Spine => {
+                let at = self.spine.iter().position(|&part| part == joint)?;
+                return at.checked_sub(1).map(|below| self.spine[below]).or_else(|| self.find(Hips, None));
+            }
+            Neck => &[],
+            Head => &[Neck],
+            Clavicle => &[],
+            UpperArm => &[Clavicle],
+            LowerArm => &[UpperArm],
+            Hand => &[LowerArm, UpperArm],
+            UpperLeg => return self.find(Hips, None).or(self.spine.first().copied()),
+            LowerLeg => &[UpperLeg],
+            Foot => &[LowerLeg, UpperLeg],
+            Toes => &[Foot],
+            Part::Hips | Part::Tail | Part::Beast | Part::Appendix => return None,
+        };
+        let carrier = parts.iter().find_map(|&part| self.find(part, side.filter(|_| part != Neck)));
+        let hangs_on_trunk = matches!(part, Neck | Head | Clavicle | UpperArm);
+        carrier.or_else(|| self.spine.last().copied().or(self.find(Hips, None)).filter(|_| hangs_on_trunk))
+    }
+
+    fn find(&self, part: Part, side: Option<Side>) -> Option<JointIdx> {
+        let is = |reading: &Reading| reading.part == Some(part) && reading.side == side;
+        (0..self.readings.len()).find(|&joint| self.is_part[joint] && is(&self.readings[joint]))
+    }
+}
+
+/// True if names tell left from right in one direction: nearly all of several pairs, arms and legs among them.
+///
+/// This asks for no mirror: a pose may bend one side otherwise than the other.
+pub(super) fn sides_agree(readings: &[Reading], bound: &Bound) -> bool {
+    let mut ways: Vec<(Part, Vec3)> = Vec::new();
+    for part in [Part::UpperArm, Part::LowerArm, Part::Hand, Part::UpperLeg, Part::LowerLeg, Part::Foot] {
+        let only = |side: Side| {
+            let is = |&i: &usize| readings[i].part == Some(part) && readings[i].side == Some(side);
+            let mut all = (0..readings.len()).filter(is).filter(|&i| bound.area[i] > 0.0);
+            all.next().filter(|_| all.next().is_none())
+        };
+        let (Some(left), Some(right)) = (only(Side::Left), only(Side::Right)) else { continue };
+        let way = direction(bound.model[left].translation - bound.model[right].translation);
+        ways.extend(way.map(|way| (part, way)));
+    }
+    let sum = ways.iter().fold(Vec3::ZERO, |sum, (_, way)| sum + *way);
+    let has = |parts: [Part; 2]| ways.iter().any(|(part, _)| parts.contains(part));
+    let Some(mean) = direction(sum) else { return false };
+    ways.len() >= LEAST_NAMED_PAIRS
+        && has([Part::UpperArm, Part::LowerArm])
+        && has([Part::UpperLeg, Part::LowerLeg])
+        && ways.iter().all(|(_, way)| way.dot(mean) > NAMED_ALIKE)
+}
