@@ -58,7 +58,7 @@ impl Anatomy {
     }
 
     /// Sizes of the body that tell the unit of its file.
-    pub fn measured(&self, bound: &Bound) -> Measured {
+    pub fn measured(&self, bound: &Bound, species: Option<(&'static str, f32)>) -> Measured {
         let stance = Stance::new(bound, self.up);
         let is_head = |guess: &Option<RoleGuess>| guess.is_some_and(|guess| guess.role == Role::Head);
         let head = self.roles.iter().position(is_head);
@@ -68,6 +68,7 @@ impl Anatomy {
             size: bound.size(),
             head: head.map(|joint| 1.0 - stance.level(bound.model[joint].translation)),
             stride: self.stride,
+            species,
         }
     }
 }
@@ -285,6 +286,9 @@ impl<'a> Scene<'a> {
             // The feet point the other way than the names say. A heel, a claw or a boot may do that by itself.
             let shape = [feet, walk, bent, self.toes_lead(up, forward)];
             let against: f32 = shape.into_iter().map(|sign| -named * sign).sum();
+            if against <= 0.0 {
+                return lateral * named;
+            }
             let (left, which) =
                 if against >= 2.0 { (-named, "the shape counts") } else { (named, "the names count") };
             notes.push(format!(

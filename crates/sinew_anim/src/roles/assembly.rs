@@ -64,6 +64,8 @@ pub(super) struct Carriers<'a> {
     is_human: bool,
     /// Parts of the spine from the hips upward.
     spine: Vec<JointIdx>,
+    /// The part of the spine that carries the arms.
+    chest: Option<JointIdx>,
     is_part: Vec<bool>,
 }
 
@@ -76,13 +78,25 @@ impl<'a> Carriers<'a> {
             (0..readings.len()).filter(is).filter(|&joint| is_part[joint])
         };
         let place = |joint: JointIdx| bound.model[joint].translation;
-        let hips = named(Part::Hips).next();
+        let mean = |part: Part| {
+            let places: Vec<Vec3> = named(part).map(place).collect();
+            let sum = places.iter().fold(Vec3::ZERO, |sum, at| sum + *at);
+            (!places.is_empty()).then(|| sum / places.len() as f32)
+        };
         let mut spine: Vec<JointIdx> = named(Part::Spine).collect();
-        if let Some(hips) = hips {
-            let away = |joint: JointIdx| (place(joint) - place(hips)).length();
-            spine.sort_by(|&a, &b| away(a).total_cmp(&away(b)));
+        let mut chest = None;
+        // From the hips upward, as far as the arms.
+        if let Some(low) = named(Part::Hips).next().map(place).or_else(|| mean(Part::UpperLeg)) {
+            spine.sort_by(|&a, &b| (place(a) - low).length().total_cmp(&(place(b) - low).length()));
+            if let Some(arms) = mean(Part::UpperArm) {
+                let below = |&&joint: &&JointIdx| {
+                    (place(joint) - low).dot(arms - low) <= (arms - low).length_squared()
+                };
+                chest = spine.iter().rfind(below).copied();
+            }
         }
-        Self { readings, is_human: sides_agree(readings, bound), spine, is_part }
+        let chest = chest.or(spine.last().copied());
+        Self { readings, is_human: sides_agree(readings, bound), spine, chest, is_part }
     }
 
     /// The joint that carries a joint by their names; `None` where the names do not tell.
@@ -110,8 +124,12 @@ impl<'a> Carriers<'a> {
             Part::Hips | Part::Tail | Part::Beast | Part::Appendix => return None,
         };
         let carrier = parts.iter().find_map(|&part| self.find(part, side.filter(|_| part != Neck)));
-        let hangs_on_trunk = matches!(part, Neck | Head | Clavicle | UpperArm);
-        carrier.or_else(|| self.spine.last().copied().or(self.find(Hips, None)).filter(|_| hangs_on_trunk))
+        let trunk = match part {
+            Neck | Head => self.spine.last().copied(),
+            Clavicle | UpperArm => self.chest,
+            _ => return carrier,
+        };
+        carrier.or(trunk).or_else(|| self.find(Hips, None))
     }
 
     fn find(&self, part: Part, side: Option<Side>) -> Option<JointIdx> {

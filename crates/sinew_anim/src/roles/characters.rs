@@ -53,7 +53,8 @@ impl Extent {
         max(sides.x, max(sides.y, sides.z))
     }
 
-    /// True if it lies within the other for the most part, or is much smaller and touches it.
+    /// True if it lies within the other for the most part, or is small beside it and no farther away than it is large: who is as large and
+    /// stands beside or on the other is a character.
     fn belongs_to(&self, main: &Self) -> bool {
         let common = min3(self.hi, main.hi) - max3(self.lo, main.lo);
         let share = |k: usize| {
@@ -82,31 +83,26 @@ fn extent(rig: &Rig, bind: &[Affine], meshes: &[usize]) -> Option<Extent> {
 }
 
 /// The skeletons of a rig, each by its meshes (indices into [`Rig::meshes`]), in the order of their first mesh: skins whose joints
-/// are of one skeleton, with the meshes without a skin that hang on it. Skeletons are one where a joint of one hangs
-/// on a joint of the other, or both on a node that is no root of the scene. Meshes without a skin that hang on none are in no
-/// skeleton. Empty without skins.
+/// are of one tree of bones, or whose trees begin on one node that is no root of the scene, with the meshes without a skin that hang on
+/// it. Meshes without a skin that hang on none are in no skeleton. Empty without skins.
 ///
 /// # Panics
 /// If the rig's indices are out of range.
 fn skeletons(rig: &Rig) -> Vec<Vec<usize>> {
     let mut is_bone = vec![false; rig.joints.len()];
     rig.skins.iter().flat_map(|skin| &skin.joints).for_each(|&joint| is_bone[joint] = true);
-    // What a joint is known by: its root of the scene if that is a bone, else the ancestor right below that.
+    // What a joint is known by: the node that carries the highest bone above it, or that bone if the node is a root of the scene.
     let stem = |joint: JointIdx| {
-        let mut stem = joint;
-        while let Some(parent) = rig.joints[stem].parent {
-            if rig.joints[parent].parent.is_none() && !is_bone[parent] {
-                break;
-            }
-            stem = parent;
-        }
-        stem
+        let line = core::iter::successors(Some(joint), |&at| rig.joints[at].parent);
+        let top = line.filter(|&at| is_bone[at]).last()?;
+        let carrier = rig.joints[top].parent.filter(|&node| rig.joints[node].parent.is_some());
+        Some(carrier.unwrap_or(top))
     };
     let stems: Vec<Vec<JointIdx>> = rig
         .skins
         .iter()
         .map(|skin| {
-            let mut stems: Vec<JointIdx> = skin.joints.iter().map(|&joint| stem(joint)).collect();
+            let mut stems: Vec<JointIdx> = skin.joints.iter().filter_map(|&joint| stem(joint)).collect();
             stems.sort_unstable();
             stems.dedup();
             stems
@@ -131,7 +127,7 @@ fn skeletons(rig: &Rig) -> Vec<Vec<usize>> {
         groups = apart;
     }
     for (m, mesh) in rig.meshes.iter().enumerate().filter(|(_, mesh)| mesh.skin.is_none()) {
-        let stem = stem(mesh.joint);
+        let Some(stem) = stem(mesh.joint) else { continue };
         if let Some((_, meshes)) = groups.iter_mut().find(|(stems, _)| stems.contains(&stem)) {
             meshes.push(m);
         }

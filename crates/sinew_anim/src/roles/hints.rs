@@ -10,6 +10,8 @@ use crate::rig::Rig;
 pub struct Hints {
     /// Motion in its clips.
     pub gait: Gait,
+    /// Name of the file without its folder and ending; empty if it has none.
+    pub name: String,
     /// The program that wrote the file, as the file names it; empty if it does not.
     pub exporter: String,
     /// Units of files that lie beside it, metres, as far as they leave no doubt.

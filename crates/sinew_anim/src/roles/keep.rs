@@ -6,7 +6,8 @@ use super::role::Role;
 use super::{KeptBone, RoleGuess};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::tuning::{LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN};
-use sinew_math::Vec3;
+use crate::skinning::skin_vertices;
+use sinew_math::{Vec3, max3, min3};
 
 /// Input of the selection.
 pub(super) struct Selection<'a> {
@@ -220,7 +221,7 @@ impl Selection<'_> {
         for joint in (0..self.rig.joints.len()).filter(|&joint| place[joint].is_none()) {
             match self.carried_by(joint, |i| place[i].is_some()) {
                 Some(carrier) => owner[joint] = place[carrier],
-                None if self.bound.area[joint] > 0.0 => waiting.push(joint),
+                None if self.bound.area[joint] > 0.0 || self.lies_within(joint) => waiting.push(joint),
                 None => {}
             }
         }
@@ -251,6 +252,24 @@ impl Selection<'_> {
             owner[joint] = Some(self.nearest(joint, joints, &owner));
         }
         owner
+    }
+
+    /// True if a node that hangs on no bone carries a mesh that lies within the skin: a hat that nobody parented.
+    fn lies_within(&self, joint: JointIdx) -> bool {
+        let own =
+            self.rig.meshes.iter().enumerate().filter(|(_, mesh)| mesh.skin.is_none() && mesh.joint == joint);
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        let (mut all, mut within) = (0, 0);
+        for (m, mesh) in own {
+            for p in 0..mesh.primitives.len() {
+                skin_vertices(self.rig, m, p, &self.bound.model, &mut positions, &mut normals);
+                let (lo, hi) = (self.bound.lo, self.bound.hi);
+                let is_within = |at: &&Vec3| min3(max3(**at, lo), hi) == **at;
+                all += positions.len();
+                within += positions.iter().filter(is_within).count();
+            }
+        }
+        2 * within > all
     }
 
     /// The kept joint, by place, whose skin is nearest to that of a joint; the first if one of them has none.

@@ -22,6 +22,7 @@ mod keep;
 mod names;
 mod props;
 mod role;
+mod species;
 mod symmetry;
 mod tuning;
 mod units;
@@ -164,6 +165,8 @@ pub struct UnitGuess {
     pub is_sure: bool,
     /// True if there is only one unit in which the body is of a size that bodies have.
     pub is_only: bool,
+    /// True if no unit of files makes the body of a size that bodies have: it was scaled to a likely one.
+    pub is_scaled: bool,
 }
 
 impl RigAnalysis {
@@ -286,7 +289,7 @@ fn analyze_bound(
     hints: &Hints,
 ) -> Result<RigAnalysis, CorrectionError> {
     let anatomy = Anatomy::of(rig, &bound, known, &hints.gait)?;
-    let body = anatomy.measured(&bound);
+    let body = anatomy.measured(&bound, species::named(rig, &hints.name));
     let Anatomy { graph, roles, humanoid, up, left, mut notes, .. } = anatomy;
     let stance = Stance::new(&bound, up);
     let (unit_scale, unit_guess) = units::unit_scale(&body, hints);

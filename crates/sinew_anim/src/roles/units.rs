@@ -16,6 +16,8 @@ pub(super) struct Measured {
     pub head: Option<f32>,
     /// Time of a stride, seconds, and from where the legs begin that take it down to the floor, file units.
     pub stride: Option<(f32, f32)>,
+    /// Animal that the names in the file speak of, and the longest side of a grown one, metres.
+    pub species: Option<(&'static str, f32)>,
 }
 
 /// A unit that files may be in.
@@ -68,6 +70,7 @@ const BY_HEAD: [f32; 2] = [0.7, 1.8];
 const GRAVITY: f32 = 9.81;
 
 /// Sizes of a kind of body, metres.
+#[derive(Clone)]
 struct Sizes {
     /// The body, and what is measured of it, for a sentence.
     words: [&'static str; 2],
@@ -84,7 +87,7 @@ struct Sizes {
 
 const HUMAN: Sizes = Sizes {
     words: ["a human", "tall"],
-    fits: 0.5..3.0,
+    fits: 0.9..3.0,
     surely: 0.9..3.0,
     usual: 1.7,
     focus: 2.0,
@@ -99,6 +102,47 @@ const CREATURE: Sizes = Sizes {
     assumed: 1.0,
 };
 
+/// Least height of a human whose legs step as short ones do, metres.
+const SHORTEST: f32 = 0.5;
+/// Largest ratio of the length of legs to that which their stride tells, either way, for the stride to bear a height out.
+const STEPS_ALIKE: f32 = 1.5;
+
+impl Sizes {
+    /// Sizes of the kind of body that was measured.
+    fn of(body: &Measured) -> Self {
+        match body.species {
+            Some((_, length)) if !body.humanoid => Self {
+                fits: GROWN.start * length..GROWN.end * length,
+                surely: GROWN.start * length..GROWN.end * length,
+                usual: length,
+                assumed: length,
+                ..CREATURE
+            },
+            _ if body.humanoid => HUMAN,
+            _ => CREATURE,
+        }
+    }
+
+    /// Lets small humans be in a unit in which files beside theirs are, under low doors, and with legs that step as fast as short ones.
+    ///
+    /// A large head or the habit of an exporter is not enough: figures with large heads are drawn in the size of grown ones, and rigs that
+    /// were scaled by some factor are common.
+    fn with_small(mut self, witnesses: &Witnesses, metres: f32) -> Self {
+        let steps = |(leg, by_stride): (f32, f32)| {
+            let leg = leg * metres;
+            leg < STEPS_ALIKE * by_stride && by_stride < STEPS_ALIKE * leg
+        };
+        let is_kin = witnesses.kin.is_some_and(|kin| (metres / kin - 1.0).abs() < 0.05);
+        if witnesses.has_low_door || is_kin || witnesses.legs.is_some_and(steps) {
+            self.fits.start = SHORTEST;
+        }
+        self
+    }
+}
+
+/// Sizes of an animal as shares of that of a grown one.
+const GROWN: core::ops::Range<f32> = 0.6..1.5;
+
 /// Evidence of a unit beside the size of the body, and the words for it.
 struct Witnesses {
     /// Length of legs in file units, and in metres by the time of their stride.
@@ -108,6 +152,8 @@ struct Witnesses {
     kin: Option<f32>,
     /// Usual size of such a body, metres.
     usual: f32,
+    /// True if doors of its world are for small humans.
+    has_low_door: bool,
     words: String,
 }
 
@@ -129,15 +175,16 @@ impl Witnesses {
         if let Some(unit) = kin.and_then(unit_of) {
             let _ = write!(words, ", files beside it are in {}", unit.name);
         }
-        let mut usual = sizes.usual;
+        let (mut usual, mut has_low_door) = (sizes.usual, false);
         if let Some(door) = hints.door.filter(|_| body.humanoid) {
             usual = UNDER_DOOR * door;
+            has_low_door = usual < sizes.fits.start;
             let _ = write!(words, ", doors of its world are {door:.2} m high");
         } else if let Some(head) = body.head.filter(|head| body.humanoid && *head > 0.0) {
             usual = clamp(HEAD / head, BY_HEAD[0], BY_HEAD[1]);
             let _ = write!(words, ", its head is {:.0} % of it", 100.0 * head);
         }
-        Self { legs, exporter, kin, usual, words }
+        Self { legs, exporter, kin, usual, has_low_door, words }
     }
 
     /// Evidence against a unit, in the measure of [`Unit::rarity`].
@@ -162,18 +209,29 @@ fn common(kin: &[f32]) -> Option<f32> {
 
 /// Metres per file unit, why, and what else it may be.
 ///
-/// A humanoid between 0.5 m and 3 m is taken at its word, as is a creature whose longest side is 0.1 m to 10 m; in centimetres from
-/// 0.9 m and 0.3 m on. Else, of centimetres, inches, decimetres, millimetres and units that were converted twice, the likeliest that
+/// A humanoid between 0.9 m and 3 m is taken at its word (from 0.5 m on if its legs step as short ones do), as is a creature whose longest
+/// side is 0.1 m to 10 m, and an animal that the file names at 0.6 to 1.5 times the size of a grown one; in centimetres from 0.9 m and
+/// 0.3 m on. Else, of centimetres, inches, decimetres, millimetres and units that were converted twice, the likeliest that
 /// makes it so is taken: near the usual size, which the head and the doors of the world tell, not rare, with legs that step as those
 /// of their length do, and what its exporter writes and the files beside it have. Much of such evidence weighs against its word,
 /// too. If no unit fits, a humanoid is assumed to be 1.75 m, a creature as long as its stride makes it, else 1 m.
 pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
-    let (measure, sizes) = if body.humanoid { (body.height, HUMAN) } else { (body.size, CREATURE) };
-    let [kind, across] = sizes.words;
+    let (measure, sizes) = (if body.humanoid { body.height } else { body.size }, Sizes::of(body));
+    let across = sizes.words[1];
+    let kind = match body.species {
+        Some((name, _)) if !body.humanoid => format!("a grown {name}"),
+        _ => sizes.words[0].to_owned(),
+    };
     let witnesses = Witnesses::of(body, hints, &sizes);
-    let usual = format!("{kind} is {} to {} m", sizes.fits.start, sizes.fits.end);
-    let mut fitting: Vec<&Unit> =
-        UNITS.iter().filter(|unit| sizes.fits.contains(&(measure * unit.metres))).collect();
+    let hundredths = |metres: f32| (100.0 * metres).round() / 100.0;
+    let [least, most] = [sizes.fits.start, sizes.fits.end].map(hundredths);
+    let usual = format!("{kind} is {least} to {most} m");
+    let fits = |unit: &&Unit| {
+        let sizes =
+            if body.humanoid { sizes.clone().with_small(&witnesses, unit.metres) } else { sizes.clone() };
+        sizes.fits.contains(&(measure * unit.metres))
+    };
+    let mut fitting: Vec<&Unit> = UNITS.iter().filter(fits).collect();
     if fitting.is_empty() {
         let (assumed, by) = assumed(body, &sizes, &witnesses);
         let scale = assumed / max(measure, 1e-12);
@@ -181,7 +239,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
             "{measure:.3} units {across} fits no unit, since {usual}: scaled to {assumed} m{by}, a unit of {scale} m; as \
              metres it would be {measure:.2} m"
         );
-        return (scale, UnitGuess { note, is_sure: false, is_only: false });
+        return (scale, UnitGuess { note, is_sure: false, is_only: false, is_scaled: true });
     }
     // Stable: of units as likely the one that stands first.
     let by_size = |unit: &Unit| match unit.metres {
@@ -206,13 +264,13 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
     let note = format!(
         "{measure:.2} units {across}, taken as {name}: {metres:.2} m, since {usual}{words}; {others}"
     );
-    (unit.metres, UnitGuess { note, is_sure, is_only })
+    (unit.metres, UnitGuess { note, is_sure, is_only, is_scaled: false })
 }
 
 /// Size of a body that fits no unit, metres, and what it goes by.
 fn assumed(body: &Measured, sizes: &Sizes, witnesses: &Witnesses) -> (f32, &'static str) {
     match witnesses.legs {
-        Some((leg, metres)) if !body.humanoid => {
+        Some((leg, metres)) if !body.humanoid && body.species.is_none() => {
             (clamp(body.size * metres / leg, sizes.fits.start, sizes.fits.end), ", as its stride tells")
         }
         _ => (sizes.assumed, ""),

@@ -196,8 +196,41 @@ fn a_hat_with_a_skeleton_of_its_own_goes_with_the_head() {
 #[test]
 fn who_stands_beside_is_another_character() {
     let mut rig = toy::body(mixamo);
-    add_skeleton(&mut rig, "Bone", Vec3::new(2.0, 0.0, 0.0), 1.2);
+    let other = add_skeleton(&mut rig, "Bone", Vec3::new(2.0, 0.0, 0.0), 1.2);
     assert_eq!(characters(&rig), vec![vec![0], vec![1]]);
+    // As some exporters do, each within nodes of its own below one root.
+    for joint in &mut rig.joints {
+        joint.parent = Some(joint.parent.map_or(1, |parent| parent + 3));
+    }
+    rig.joints[other].parent = Some(2);
+    for name in ["second", "first", "RootNode"] {
+        let parent = (name != "RootNode").then_some(0);
+        rig.joints.insert(0, Joint { name: name.into(), parent, rest: LocalTransform::default(), source: 0 });
+    }
+    rig.skins.iter_mut().flat_map(|skin| &mut skin.joints).for_each(|joint| *joint += 3);
+    rig.meshes.iter_mut().for_each(|mesh| mesh.joint += 3);
+    assert_eq!(characters(&rig), vec![vec![0], vec![1]]);
+}
+
+#[test]
+fn a_mesh_within_the_body_that_hangs_on_no_bone_goes_with_the_nearest() {
+    let mut rig = toy::body(mixamo);
+    let place = Vec3::from_array(toy::BODY[part("head")].2) + Vec3::Y * 0.14;
+    let hat = add_skeleton(&mut rig, "hat", place, 0.02);
+    let floor = add_skeleton(&mut rig, "floor", Vec3::new(-2.0, -0.1, -2.0), 4.0);
+    rig.skins.truncate(1);
+    for mesh in &mut rig.meshes[1..] {
+        mesh.skin = None;
+        for primitive in &mut mesh.primitives {
+            primitive.joints.clear();
+            primitive.weights.clear();
+            let by = if mesh.joint == hat { place } else { Vec3::new(-2.0, -0.1, -2.0) };
+            primitive.positions.iter_mut().for_each(|at| *at -= by);
+        }
+    }
+    let found = is_whole(&rig, &[]);
+    assert_eq!(found.merge_into[hat], Some(part("head")));
+    assert_eq!(found.merge_into[floor], None);
 }
 
 #[test]

@@ -145,21 +145,18 @@ fn unit(rig: &Rig, hints: &Hints) -> (f32, String) {
 fn a_unit_in_doubt_is_told_by_what_is_around() {
     let rig = tall(66.0, 1.0);
     let (scale, note) = unit(&rig, &Hints::default());
-    assert!(scale == 0.0254 && note.contains("may also be centimetres"), "{note}");
+    assert!(scale == 0.0254 && note.contains("no other unit makes it so"), "{note}");
     for (hints, reason) in [
-        (
-            Hints { exporter: "Character Creator 4.2".into(), ..Hints::default() },
-            "Character Creator 4.2 writes centimetres",
-        ),
         (Hints { kin: vec![0.01, 1.0, 0.01], ..Hints::default() }, "files beside it are in centimetres"),
         (Hints { door: Some(0.8), ..Hints::default() }, "doors of its world are 0.80 m high"),
     ] {
         let (scale, note) = unit(&rig, &hints);
         assert!(scale == 0.01 && note.contains(reason) && note.contains("may also be inches"), "{note}");
     }
-    // Whom nobody knows, one other file, and files that differ tell nothing; doors of men are for men.
+    // Whom nobody knows, the habit of an exporter for a dwarf, one other file, and files that differ tell nothing; doors of men are for men.
     for hints in [
         Hints { exporter: "nobody".into(), ..Hints::default() },
+        Hints { exporter: "Character Creator 4.2".into(), ..Hints::default() },
         Hints { kin: vec![0.01], ..Hints::default() },
         Hints { kin: vec![0.01, 1.0], ..Hints::default() },
         Hints { door: Some(2.05), ..Hints::default() },
@@ -173,14 +170,69 @@ fn a_unit_in_doubt_is_told_by_what_is_around() {
 
 #[test]
 fn a_unit_in_doubt_is_told_by_the_head_and_by_the_stride() {
-    // Heads are about as large in all: of whom it is two fifths is no man.
-    let (scale, note) = unit(&tall(66.0, 7.0), &Hints::default());
-    assert!(scale == 0.01 && note.contains("its head is 4"), "{note}");
+    // Heads are about as large in all: of whom it is two fifths is a dwarf.
+    let [(plain, _), (dwarf, note)] = [1.0, 7.0].map(|head| unit(&tall(115.0, head), &Hints::default()));
+    assert!(plain == 0.01 && dwarf == 0.01 && note.contains("its head is 4"), "{note}");
     let rig = tall(75.0, 1.0);
     assert_eq!(unit(&rig, &Hints::default()).0, 0.0254);
     // Legs of 0.38 m take a step in less time than those of 0.97.
     let (scale, note) = unit(&rig, &Hints::of_clips(&rig, &[walk(0.6, 1.0)]));
     assert!(scale == 0.01 && note.contains("a stride of 0.60 s is that of legs of 0.39 m"), "{note}");
     let (scale, note) = unit(&rig, &Hints::of_clips(&rig, &[walk(1.1, 1.0)]));
-    assert!(scale == 0.0254 && note.contains("a stride of 1.10 s"), "{note}");
+    assert!(scale == 0.0254 && note.contains("no other unit makes it so"), "{note}");
+}
+
+#[test]
+fn a_human_of_no_size_that_humans_have_is_scaled_and_can_be_brought_back() {
+    for (units, scaled) in [(0.57, true), (5.75, true), (1.2, false), (2.3, false)] {
+        let rig = tall(units, 1.0);
+        let found = analyze_hinted(&rig, &Hints::default()).expect("a skin");
+        let guess = found.unit_guess.expect("it was not given");
+        assert_eq!(guess.is_scaled, scaled, "{units}: {}", guess.note);
+        let height = if scaled { 1.75 } else { units };
+        assert!((found.height - height).abs() < 0.01, "{units}: {} m", found.height);
+    }
+    // Who walks with short steps is short.
+    let rig = tall(0.57, 1.0);
+    assert_eq!(unit(&rig, &Hints::of_clips(&rig, &[walk(0.5, 1.0)])).0, 1.0);
+}
+
+/// A creature of a chain of joints, that long.
+fn worm(length: f32, name: &str) -> Rig {
+    let mut rig = toy::body(|_| String::new());
+    for (joint, (_, parent, place)) in toy::BODY.iter().enumerate() {
+        // All in one line: no human.
+        let at = Vec3::new(0.0, 0.0, length * (joint as f32 - 8.0) / 18.0);
+        let by = at - Vec3::from_array(*place);
+        rig.skins[0].inverse_bind[joint].translation = -at;
+        let on = toy::BODY
+            .iter()
+            .position(|(name, ..)| name == parent)
+            .map_or(Vec3::ZERO, |on| Vec3::new(0.0, 0.0, length * (on as f32 - 8.0) / 18.0));
+        rig.joints[joint].rest.translation = at - on;
+        rig.meshes[0].primitives[0].positions[4 * joint..4 * joint + 4].iter_mut().for_each(|p| *p += by);
+    }
+    rig.meshes[0].name = name.into();
+    rig
+}
+
+#[test]
+fn an_animal_that_the_file_names_is_of_the_size_of_such_animals() {
+    let length = |name: &str, units: f32| {
+        let found = analyze_hinted(&worm(units, name), &Hints::default()).expect("a skin");
+        assert!(!found.humanoid, "{:?}", found.notes);
+        (found.unit_scale, found.unit_guess.expect("it was not given"))
+    };
+    for (name, units, unit) in [
+        ("", 2.7, 1.0),
+        ("Wolf", 2.7, 0.0),
+        ("Wolf", 170.0, 0.01),
+        ("Horse_Body", 2.4, 1.0),
+        ("wolf_bot", 2.7, 1.0),
+    ] {
+        let (found, guess) = length(name, units);
+        assert_eq!(guess.is_scaled, unit == 0.0, "{name}: {}", guess.note);
+        assert!(unit == 0.0 || found == unit, "{name}: {}", guess.note);
+        assert!(unit > 0.0 || guess.note.contains("since a grown wolf is 1.02 to 2.55 m"), "{}", guess.note);
+    }
 }

@@ -36,7 +36,9 @@ impl CharacterFile {
         } else {
             load_gltf(path, options)?
         };
+        let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let hints = Hints {
+            name: stem.unwrap_or_default(),
             exporter: document.generator().to_owned(),
             ..Hints::of_clips(&document.rig, &document.clips)
         };

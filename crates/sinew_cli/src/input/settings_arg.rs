@@ -214,7 +214,12 @@ impl SettingsArg {
 
 /// A guess of the unit with the options that set it.
 pub fn unit_note(guess: &UnitGuess) -> String {
-    format!("{}; --unit or --height sets it", guess.note)
+    let flags = if guess.is_scaled {
+        "--unit m keeps the file's size, --height sets another"
+    } else {
+        "--unit or --height sets it"
+    };
+    format!("{}; {flags}", guess.note)
 }
 
 /// Assumptions of the analysis, the unit among them, a sentence each.

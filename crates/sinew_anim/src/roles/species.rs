@@ -1,0 +1,52 @@
+//! Sizes of animals, by the words with which files are named.
+
+use super::names::words;
+use crate::rig::Rig;
+
+/// Longest side of a grown animal, metres: of most from nose to tail, of birds and insects that fly across the wings.
+///
+/// Round figures of field guides; insects are of the size that games draw them, a cat's at most.
+const LENGTHS: &[(&str, f32)] = &[
+    ("ant beetle bug fly mosquito ladybug", 0.3),
+    ("bee wasp hornet butterfly dragonfly moth", 0.35),
+    ("spider scorpion tarantula", 0.4),
+    ("mouse hamster chick sparrow", 0.2),
+    ("frog toad hedgehog squirrel quokka snail", 0.35),
+    ("rat parrot crow raven pigeon dove bat crab lobster hen chicken rooster duck", 0.5),
+    ("rabbit bunny hare cat kitten owl turtle tortoise gull seagull hawk falcon", 0.6),
+    ("penguin raccoon badger beaver monkey goose", 0.9),
+    ("fox corgi pug shiba otter", 1.1),
+    ("dog husky puppy labrador retriever goat sheep lamb", 1.4),
+    ("wolf coyote hyena pig boar cheetah kangaroo ostrich", 1.7),
+    ("deer doe stag alpaca llama donkey leopard jaguar panther chimpanzee gorilla vulture", 2.1),
+    ("eagle bear panda pony dolphin lion lioness tiger seal iguana", 2.3),
+    ("horse cow bull zebra unicorn buffalo bison yak moose camel snake python cobra", 2.7),
+    ("velociraptor raptor", 2.2),
+    ("hippo hippopotamus rhino rhinoceros shark crocodile alligator", 3.7),
+    ("giraffe elephant mammoth", 5.5),
+    ("dragon orca", 7.0),
+    ("stegosaurus triceratops parasaurolophus pteranodon", 8.0),
+    ("trex tyrannosaurus apatosaurus brontosaurus diplodocus whale", 13.0),
+];
+
+/// Machines are of any size, whatever animal they look like.
+const MACHINES: &str = "bot robot mech mecha drone toy plush statue";
+
+/// The animal that names of a file speak of, and the length of a grown one, metres.
+pub(super) fn named<'a>(rig: &'a Rig, file: &'a str) -> Option<(&'static str, f32)> {
+    let is_root = |joint: &&crate::rig::Joint| joint.parent.is_none();
+    let names = core::iter::once(file)
+        .chain(rig.meshes.iter().map(|mesh| mesh.name.as_str()))
+        .chain(rig.skins.iter().map(|skin| skin.name.as_str()))
+        .chain(rig.joints.iter().filter(is_root).map(|joint| joint.name.as_str()));
+    let said: Vec<String> = names.flat_map(words).collect();
+    let is_in = |list: &str, word: &str| list.split(' ').any(|known| known == word);
+    if said.iter().any(|word| is_in(MACHINES, word)) {
+        return None;
+    }
+    said.iter().find_map(|word| {
+        let (list, length) = LENGTHS.iter().find(|(list, _)| is_in(list, word))?;
+        let known = list.split(' ').find(|known| known == word)?;
+        Some((known, *length))
+    })
+}
