@@ -20,12 +20,12 @@ struct Rider {
 /// [`carry`](Self::carry) has them go with their part, as they do where bodies of a ragdoll move it.
 ///
 /// ```
-/// # let rig = sinew::mannequin::mannequin().rig;
-/// use sinew_anim::{analyze, riders::Riders};
+/// use sinew_anim::{LocalTransform, Rig, RigAnalysis, riders::Riders};
 ///
-/// // All joints of the mannequin hang on their own part.
-/// assert!(Riders::of(&rig, &analyze(&rig)?).is_empty());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// fn carry_all(rig: &Rig, analysis: &RigAnalysis, poses: &mut [Vec<LocalTransform>]) {
+///     let (riders, mut model) = (Riders::of(rig, analysis), Vec::new());
+///     poses.iter_mut().for_each(|pose| riders.carry(rig, pose, &mut model));
+/// }
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Riders {

@@ -6,14 +6,14 @@ use super::bind::Bound;
 use super::characters::main_skeleton;
 use super::correct::{CorrectionError, corrected, needed};
 use super::creature::{generic_roles, up_by_feet};
-use super::gait::{Gait, Pair, Swing};
+use super::gait::{Pair, Swing};
 use super::graph::{Graph, ancestors};
 use super::humanoid::{Evidence, Humanoid, Limb, Split, Stance};
 use super::names::{Part, Reading, read_names, settle_duplicates, settle_trunk};
 use super::role::{Role, Side};
 use super::symmetry::Symmetry;
 use super::units::Measured;
-use super::{Basis, NoSkin, RoleGuess};
+use super::{Basis, Hints, NoSkin, RoleGuess};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::tuning::{CONTROL_SKIN, ELBOWS_BEHIND, FEET_AGAINST_NAMES, LEAST_FOOT, STEP_CORRELATION};
 use sinew_math::Vec3;
@@ -36,7 +36,7 @@ pub(super) struct Anatomy {
 pub(super) struct Scene<'a> {
     rig: &'a Rig,
     bound: &'a Bound,
-    gait: &'a Gait,
+    hints: &'a Hints,
     graph: Graph,
     symmetry: Symmetry,
     /// Per joint; empty readings where names are not trusted.
@@ -49,9 +49,9 @@ impl Anatomy {
         rig: &Rig,
         bound: &Bound,
         known: &[(Role, JointIdx)],
-        gait: &Gait,
+        hints: &Hints,
     ) -> Result<Self, CorrectionError> {
-        let (scene, mut notes) = Scene::of(rig, bound, known, gait).ok_or(NoSkin)?;
+        let (scene, mut notes) = Scene::of(rig, bound, known, hints).ok_or(NoSkin)?;
         let draft = scene.draft(&mut notes);
         let draft = corrected(&scene, draft, known, &mut notes)?;
         Ok(draft.finish(scene, notes))
@@ -94,7 +94,7 @@ impl<'a> Scene<'a> {
         rig: &'a Rig,
         bound: &'a Bound,
         known: &[(Role, JointIdx)],
-        gait: &'a Gait,
+        hints: &'a Hints,
     ) -> Option<(Self, Vec<String>)> {
         let mut notes = Vec::new();
         let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
@@ -137,7 +137,7 @@ impl<'a> Scene<'a> {
                 graph = named;
             }
         }
-        Some((Self { rig, bound, gait, graph, symmetry, readings }, notes))
+        Some((Self { rig, bound, hints, graph, symmetry, readings }, notes))
     }
 
     /// By what the file states, else by shape, else by names, else generic.
@@ -147,7 +147,9 @@ impl<'a> Scene<'a> {
             return stated;
         }
         let human = |up: Vec3| self.recognise(up).filter(|found| !self.is_beast(found));
-        let found = possible_ups(self.symmetry.lateral).find_map(|up| Some((up, human(up)?)));
+        // The file's own up first: a body may look like a human lying, too.
+        let ups = self.hints.up.into_iter().filter(|up| up.dot(self.symmetry.lateral).abs() < 0.5);
+        let found = ups.chain(possible_ups(self.symmetry.lateral)).find_map(|up| Some((up, human(up)?)));
         if let Some((up, humanoid)) = found {
             let mut draft = self.shape_draft(up, &humanoid, notes);
             self.correct_limbs(&mut draft);
@@ -221,7 +223,7 @@ impl<'a> Scene<'a> {
             up,
             height: Stance::new(self.bound, up).height,
         };
-        Some((self.gait.swing(&pair), begin))
+        Some((self.hints.gait.swing(&pair), begin))
     }
 
     /// Ends of limbs that come near the floor, one of each pair.
@@ -236,7 +238,7 @@ impl<'a> Scene<'a> {
 
     /// Longest stride of what swings in turns near the floor, seconds, with the height above the floor at which it begins, file units.
     fn stride(&self, up: Vec3) -> Option<(f32, f32)> {
-        if self.gait.is_empty() {
+        if self.hints.gait.is_empty() {
             return None;
         }
         let stance = Stance::new(self.bound, up);
@@ -257,8 +259,12 @@ impl<'a> Scene<'a> {
         if weight > 0.0 { sum / weight } else { 0.0 }
     }
 
-    /// True if what looks like arms and what looks like legs are both named as limbs of a body on four legs.
+    /// True if what looks like arms is named as wings, or is named, as what looks like legs, as a limb of a body on four legs.
     fn is_beast(&self, found: &Humanoid) -> bool {
+        let arms = found.arms.chain.iter().flatten().map(|&node| self.graph.nodes[node].joint);
+        if arms.into_iter().any(|joint| self.readings[joint].is_wing) {
+            return true;
+        }
         let is_named = |limb: &Limb| {
             let mut joints = limb.chain.iter().flatten().map(|&node| self.graph.nodes[node].joint);
             joints.any(|joint| self.readings[joint].part == Some(Part::Beast))
@@ -554,7 +560,7 @@ impl<'a> Scene<'a> {
     }
 
     fn generic_draft(&self, notes: &mut Vec<String>) -> Draft {
-        let up = up_by_feet(&self.graph, self.bound, &self.symmetry);
+        let up = self.hints.up.unwrap_or_else(|| up_by_feet(&self.graph, self.bound, &self.symmetry));
         let lateral = self.symmetry.lateral;
         let stance = Stance::new(self.bound, up);
         let foot = |&i: &usize| {
@@ -623,7 +629,7 @@ impl Trust {
             Self::Words => {
                 matches!(reading.part, Some(Appendix | Beast | Head | Neck | Spine | Tail))
             }
-            Self::Nothing { .. } => false,
+            Self::Nothing { .. } => reading.part == Some(Beast),
         };
         readings
             .iter_mut()

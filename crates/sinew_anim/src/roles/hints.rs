@@ -3,6 +3,7 @@
 use super::Gait;
 use crate::clip::Clip;
 use crate::rig::Rig;
+use sinew_math::Vec3;
 
 /// Evidence from around a rig: its clips, the program that wrote its file, other files, the world that it is put in. The default
 /// knows nothing.
@@ -16,6 +17,8 @@ pub struct Hints {
     pub exporter: String,
     /// Units of files that lie beside it, metres, as far as they leave no doubt.
     pub kin: Vec<f32>,
+    /// Up axis of the file, a unit vector along one of its axes: what its format or its user says; `None`: read off the body.
+    pub up: Option<Vec3>,
     /// Free height under the doors of the world that it is put in, metres.
     pub door: Option<f32>,
 }

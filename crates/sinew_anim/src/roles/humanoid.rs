@@ -150,9 +150,11 @@ impl Evidence<'_> {
 
     /// All mirrored chains that grow out of the midline.
     fn limbs(&self) -> Vec<[Vec<usize>; 2]> {
+        // A clavicle may begin on the midline: its side is that of all that hangs on it.
+        let middles = self.graph.middles();
         let starts = |&i: &usize| {
             let parent_on_midline = self.graph.nodes[i].parent.is_some_and(|p| self.symmetry.on_midline(p));
-            parent_on_midline && self.symmetry.other(i).is_some() && self.symmetry.side(self.graph, i) > 0.0
+            parent_on_midline && self.symmetry.other(i).is_some() && self.symmetry.side_of(middles[i]) > 0.0
         };
         (0..self.graph.nodes.len()).filter(starts).map(|root| self.limb_from(root)).collect()
     }
@@ -232,9 +234,10 @@ impl Evidence<'_> {
                 self.graph.nodes[at].children.iter().any(|&child| self.symmetry.on_midline(child))
             })
         };
+        let is_arm = |chain: &[usize]| chain.iter().all(|&i| self.part(i) != Some(Part::Beast));
         let best = (0..limbs.len())
             .filter(|&i| candidate(&limbs[i][0]))
-            .map(|i| ((goes_on(&limbs[i][0]), width(&limbs[i][0])), i))
+            .map(|i| ((is_arm(&limbs[i][0]), goes_on(&limbs[i][0]), width(&limbs[i][0])), i))
             .reduce(|a, b| if b.0 > a.0 { b } else { a })?;
         Some(limbs[best.1].clone())
     }

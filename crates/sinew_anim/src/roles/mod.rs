@@ -288,7 +288,7 @@ fn analyze_bound(
     known: &[(Role, JointIdx)],
     hints: &Hints,
 ) -> Result<RigAnalysis, CorrectionError> {
-    let anatomy = Anatomy::of(rig, &bound, known, &hints.gait)?;
+    let anatomy = Anatomy::of(rig, &bound, known, hints)?;
     let body = anatomy.measured(&bound, species::named(rig, &hints.name));
     let Anatomy { graph, roles, humanoid, up, left, mut notes, .. } = anatomy;
     let stance = Stance::new(&bound, up);

@@ -20,7 +20,7 @@ const LENGTHS: &[(&str, f32)] = &[
     ("wolf coyote hyena pig boar cheetah kangaroo ostrich", 1.7),
     ("deer doe stag alpaca llama donkey leopard jaguar panther chimpanzee gorilla vulture", 2.1),
     ("eagle bear panda pony dolphin lion lioness tiger seal iguana", 2.3),
-    ("horse cow bull zebra unicorn buffalo bison yak moose camel snake python cobra", 2.7),
+    ("horse cow bull zebra unicorn buffalo bison yak moose camel snake python cobra", 2.5),
     ("velociraptor raptor", 2.2),
     ("hippo hippopotamus rhino rhinoceros shark crocodile alligator", 3.7),
     ("giraffe elephant mammoth", 5.5),

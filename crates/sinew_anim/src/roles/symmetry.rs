@@ -77,7 +77,12 @@ impl Symmetry {
 
     /// Signed distance of a node from the plane.
     pub fn side(&self, graph: &Graph, node: usize) -> f32 {
-        graph.nodes[node].position.dot(self.lateral) - self.centre
+        self.side_of(graph.nodes[node].position)
+    }
+
+    /// Signed distance of a place from the plane.
+    pub fn side_of(&self, place: Vec3) -> f32 {
+        place.dot(self.lateral) - self.centre
     }
 
     /// True for a node that is its own mirror image.

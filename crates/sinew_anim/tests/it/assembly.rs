@@ -1,6 +1,7 @@
 //! Humans whose names are plain and whose hierarchy or skin leaves something out.
 
 use crate::toy;
+use sinew_anim::skinning::lost_weights;
 use sinew_anim::{
     Joint, LocalTransform, Primitive, Rig, RigAnalysis, RigMesh, Role, Side, Skin, analyze, characters,
 };
@@ -252,4 +253,64 @@ fn skinned_joints_outside_the_chain_go_with_what_their_skin_runs_into() {
     primitive.indices.extend([first, first + 1, first + 2, first, first + 1, chest]);
     let found = is_whole(&rig, &[]);
     assert_eq!(found.merge_into[coat], Some(part("chest")));
+}
+
+#[test]
+fn clavicles_that_begin_on_the_midline_are_arms_all_the_same() {
+    let mut number = 0;
+    let mut rig = toy::body(|_| String::new());
+    for joint in &mut rig.joints {
+        number += 1;
+        joint.name = format!("Bone.{number:03}");
+    }
+    let place = Vec3::new(0.0, 1.45, 0.0);
+    for (before, arm) in ["leftUpperArm", "rightUpperArm"].map(part).into_iter().enumerate() {
+        let arm = arm + before;
+        // In place of the neck's own joint, so that parents come first.
+        let clavicle = part("chest");
+        let twin =
+            Joint { name: format!("Bone.1{arm:02}"), parent: Some(clavicle), ..rig.joints[arm].clone() };
+        let at = arm;
+        for joint in &mut rig.joints {
+            joint.parent = joint.parent.map(|parent| if parent >= at { parent + 1 } else { parent });
+        }
+        rig.joints.insert(at, Joint { rest: LocalTransform::default(), ..twin });
+        rig.joints[at + 1].parent = Some(at);
+        rig.skins[0].joints = (0..rig.joints.len()).collect();
+        rig.skins[0].inverse_bind.insert(at, Affine { translation: -place, ..Affine::IDENTITY });
+        let primitive = &mut rig.meshes[0].primitives[0];
+        for slots in &mut primitive.joints {
+            slots[0] += u16::from(usize::from(slots[0]) >= at);
+        }
+        let first = u32::try_from(primitive.positions.len()).expect("few");
+        primitive.positions.extend([place, place + Vec3::Y * 0.05, place + Vec3::Z * 0.05]);
+        primitive.joints.extend([[u16::try_from(at).expect("few"), 0, 0, 0]; 3]);
+        primitive.weights.extend([[1.0, 0.0, 0.0, 0.0]; 3]);
+        primitive.indices.extend([first, first + 1, first + 2]);
+    }
+    let found = analyze(&rig).expect("a skin");
+    assert!(found.humanoid, "{:?}", found.notes);
+    assert!(found.joint_with(Role::Hand(Side::Left)).is_some());
+}
+
+#[test]
+fn who_has_wings_for_arms_is_no_human() {
+    let rig = toy::body(|role| match role {
+        Role::UpperArm(_) => "WING_BASE".into(),
+        Role::LowerArm(_) => "WING_END".into(),
+        Role::Hand(_) => "WING_TIP".into(),
+        _ => "part".into(),
+    });
+    assert!(!analyze(&rig).expect("a skin").humanoid);
+    assert!(analyze(&toy::body(|_| "part".into())).expect("a skin").humanoid);
+}
+
+#[test]
+fn a_skin_whose_weights_were_lost_is_known() {
+    let mut rig = toy::body(mixamo);
+    assert_eq!(lost_weights(&rig), None);
+    for slots in &mut rig.meshes[0].primitives[0].joints {
+        slots[0] = 5;
+    }
+    assert_eq!(lost_weights(&rig), Some(5));
 }

@@ -2,12 +2,16 @@
 
 use crate::failure::{Failure, Result};
 use crate::input::kin::units_beside;
+use crate::report::table::shown;
 use sinew::anim::roles::Correction;
+use sinew::anim::skinning::lost_weights;
 use sinew::anim::{Hints, JointIdx, Rig, RigAnalysis, analyze_hinted, characters};
 use sinew::formats::{
     Document, MotionFormat, MotionOptions, ReadOptions, Textures, load_gltf, load_motion, no_files,
     read_bytes, read_gltf, write_all_atomic, write_motion,
 };
+use sinew::math::Vec3;
+use sinew::ragdoll::build::joint_name;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
@@ -36,9 +40,18 @@ impl CharacterFile {
         } else {
             load_gltf(path, options)?
         };
+        if let Some(joint) = lost_weights(&document.rig) {
+            let bone = shown(&joint_name(&document.rig, joint));
+            let what = format!(
+                "all vertices hang on one bone, {bone}: the weights of the skin were lost, and it cannot bend"
+            );
+            return Err(Failure::of_file(&name, what));
+        }
         let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let hints = Hints {
             name: stem.unwrap_or_default(),
+            // Readers turn every format so that +Y is up.
+            up: Some(Vec3::Y),
             exporter: document.generator().to_owned(),
             ..Hints::of_clips(&document.rig, &document.clips)
         };

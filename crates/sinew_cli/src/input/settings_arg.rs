@@ -4,6 +4,7 @@ use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
 use sinew::anim::{Garment, Hints, RigAnalysis, Role, Springs, UnitGuess, analyze_hinted};
 use sinew::formats::{Textures, read_bytes, read_ragdoll_settings, settings_path};
+use sinew::math::Vec3;
 use sinew::ragdoll::build::{BuildReport, takes};
 use sinew::ragdoll::quality::Doubt;
 use sinew::ragdoll::settings::{BodyWish, BoneSettings, SpringSource, Unit, analyze_with, role_named};
@@ -21,8 +22,7 @@ pub struct SettingsArg {
     /// below go before it
     #[arg(help_heading = HEADING, long, value_name = "FILE")]
     settings: Option<PathBuf>,
-    /// Number of the character in the file, from 1, where there are several skeletons that have no joint in common; by default all are
-    /// taken for one
+    /// Number of the character in the file, from 1, where there are several; by default the one with the most vertices
     #[arg(help_heading = HEADING, long = "character", id = "character_number", value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     character: Option<u16>,
     /// Height that the character has, metres: sets the length of the file's unit
@@ -31,6 +31,9 @@ pub struct SettingsArg {
     /// Length of one unit of the file: m, dm, cm, mm, in, ft, or metres as a number
     #[arg(help_heading = HEADING, long, value_name = "UNIT", value_parser = unit, allow_negative_numbers = true)]
     unit: Option<f32>,
+    /// Axis of the file that points up; by default y, as glTF has it
+    #[arg(help_heading = HEADING, long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
+    up: Option<Vec3>,
     /// Mass of the whole character, kg; by default from its height or volume
     #[arg(help_heading = HEADING, long, value_name = "KG", allow_negative_numbers = true)]
     mass: Option<f32>,
@@ -88,6 +91,21 @@ fn unit(text: &str) -> Result<f32, String> {
     }
 }
 
+/// Axes by their names.
+const AXES: [(&str, Vec3); 6] = [
+    ("x", Vec3::X),
+    ("y", Vec3::Y),
+    ("z", Vec3::Z),
+    ("-x", Vec3::NEG_X),
+    ("-y", Vec3::NEG_Y),
+    ("-z", Vec3::NEG_Z),
+];
+
+fn axis(text: &str) -> Result<Vec3, String> {
+    let known = AXES.iter().find(|(name, _)| name.eq_ignore_ascii_case(text.trim_start_matches('+')));
+    known.map(|&(_, axis)| axis).ok_or_else(|| "must be x, y, z, -x, -y or -z".to_owned())
+}
+
 /// Settings and where they are from.
 #[derive(Debug, Default)]
 pub struct LoadedSettings {
@@ -107,6 +125,7 @@ impl SettingsArg {
             ("--character", self.character.is_some()),
             ("--height", self.height.is_some()),
             ("--unit", self.unit.is_some()),
+            ("--up", self.up.is_some()),
             ("--mass", self.mass.is_some()),
             ("--role", !self.roles.is_empty()),
             ("--ignore", !self.ignore.is_empty()),
@@ -149,6 +168,10 @@ impl SettingsArg {
         wears_garments: bool,
     ) -> Result<(CharacterFile, LoadedSettings)> {
         let mut character = CharacterFile::load(path, textures)?;
+        if self.up.is_some() {
+            let hints = Hints { up: self.up, ..character.analysis.hints.clone() };
+            character.hint(&hints)?;
+        }
         character.choose(self.character.map(usize::from))?;
         if character.is_in_doubt()
             && let Some(door) = door()

@@ -40,6 +40,8 @@ pub(super) struct Reading {
     pub side: Option<Side>,
     /// Part of the body, where the name is one of those in use.
     pub part: Option<Part>,
+    /// True if the name speaks of a wing.
+    pub is_wing: bool,
     /// True if it is an appendix only because the name speaks of a control, such as "IK".
     pub is_control: bool,
 }
@@ -217,6 +219,7 @@ fn read(tokens: &[Token]) -> (Reading, Option<Sense>) {
         }
     }
     reading.key.push_str(&key(&words));
+    reading.is_wing = words.contains(&Word::Wing);
     let is_appendix = words.contains(&Word::Appendix);
     reading.is_control = !is_appendix && words.contains(&Word::Control);
     let sense =
@@ -256,7 +259,12 @@ fn sense(words: &[Word]) -> Option<Sense> {
         let limb = words.iter().position(of_limb);
         words.iter().position(|&w| w == word).is_some_and(|at| limb.is_some_and(|limb| at < limb))
     };
-    if has(Paw) || before_limb(Front) || before_limb(Back) || has(Fore) && rest.contains(&Leg) {
+    if has(Paw)
+        || has(Word::Wing)
+        || before_limb(Front)
+        || before_limb(Back)
+        || has(Fore) && rest.contains(&Leg)
+    {
         return Some(Sense::Part(Part::Beast));
     }
     if has(Front) {
@@ -365,10 +373,33 @@ mod tests {
             ["Таз", "Шея", "Бедро_Л", "Голень_П", "Стопа_Л"],
             ["골반", "목", "왼쪽허벅지", "오른쪽종아리", "왼쪽발"],
             ["kuabu", "bozi", "datui_zuo", "xiaotui_you", "jiao_zuo"],
+            ["Bassin", "Cou", "Cuisse_G", "Mollet.D", "PiedGauche"],
+            ["Miednica", "Szyja", "Udo_lewe", "Lydka_prawa", "Stopa_lewa"],
+            ["kalca", "boyun", "uyluk_sol", "baldir_sag", "ayak_sol"],
+            ["bekken", "nek", "bovenbeen_l", "scheenbeen_r", "voet_l"],
+            ["panev", "krk", "stehno_levy", "lytko_pravy", "chodidlo_levy"],
             ["hIPs", "NecK", "uPPerLEG.l", "LOWERleg.R", "fOOt.L"],
         ];
         for names in languages {
             check(&names, &wanted);
+        }
+    }
+
+    #[test]
+    fn arms_in_other_languages() {
+        use Part::*;
+        let l = Some(Side::Left);
+        let languages = [
+            ["Epaule_G", "Bras_G", "Avant-Bras_G", "Main_G", "Bras_D"],
+            ["Hombro_izq", "Brazo_izq", "Antebrazo_izq", "Mano_izq", "Brazo_der"],
+            ["Schulter.L", "Oberarm.L", "Unterarm.L", "Hand.L", "Oberarm.R"],
+            ["Spalla_sx", "Braccio_sx", "Avambraccio_sx", "Mano_sx", "Braccio_dx"],
+            ["ombro_esq", "braco_esq", "antebraco_esq", "mao_esq", "braco_dir"],
+        ];
+        for names in languages {
+            let parts = [Some(Clavicle), Some(UpperArm), Some(LowerArm), Some(Hand)];
+            let got: Vec<_> = read_names(&names, &[]).into_iter().map(|r| (r.part, r.side)).collect();
+            assert_eq!(got[..4], parts.map(|part| (part, l)), "{names:?}");
         }
     }
 

@@ -1,6 +1,6 @@
 //! Names of a rig taken apart into words, less what most of its names have in common.
 
-use super::lexicon::{Word, meaning, meanings};
+use super::lexicon::{LANGUAGES, Word, meaning, meanings};
 use std::collections::BTreeMap;
 
 /// A word of a name, in lower case, and what it says; `None` for a word that no lexicon knows.
@@ -22,6 +22,7 @@ pub(super) fn tokens(names: &[&str]) -> Vec<Vec<Token>> {
     if has("rt") && !has("rf") {
         split.iter_mut().flatten().filter(|word| *word == "lf").for_each(|word| *word = "left".into());
     }
+    translate(&mut split);
     cut_glued_prefix(&mut split);
     let own = own_words(&split);
     let token = |text: String| Token { words: meanings(&text), text };
@@ -34,6 +35,27 @@ pub(super) fn tokens(names: &[&str]) -> Vec<Vec<Token>> {
         kept.map(|(_, token)| token.clone()).collect()
     };
     split.into_iter().map(telling).collect()
+}
+
+/// Puts words that only a language's own names give a meaning into words that the lexicon has.
+fn translate(split: &mut [Vec<String>]) {
+    // French writes "avant-bras" as two words.
+    for words in split.iter_mut() {
+        if let Some(at) = words.windows(2).position(|pair| pair[0] == "avant" && pair[1] == "bras") {
+            words.splice(at..at + 2, ["forearm".to_owned()]);
+        }
+    }
+    for (tells, meant) in LANGUAGES {
+        let is_told = |word: &String| tells.split(' ').any(|known| known == word);
+        if !split.iter().flatten().any(is_told) {
+            continue;
+        }
+        for word in split.iter_mut().flatten() {
+            if let Some((_, other)) = meant.iter().find(|(known, _)| known == word) {
+                *word = (*other).to_owned();
+            }
+        }
+    }
 }
 
 /// Xsens calls the spine by its vertebrae, L5 to T8; where there is an R1, an L1 is a left one.
