@@ -2,14 +2,15 @@
 
 use super::bind::bind_pose;
 use crate::rig::{JointIdx, Rig};
-use crate::roles::tuning::{LIES_WITHIN, SMALL_BESIDE};
+use crate::roles::tuning::{BONES_OF_A_CHARACTER, LARGE_WITHIN, LIES_WITHIN, SAME_BONE, SMALL_BESIDE};
 use crate::skinning::skin_vertices;
 use sinew_math::{Affine, Vec3, max, max3, min, min3};
 
 /// The characters of a rig, each by its meshes (indices into [`Rig::meshes`]), in the order of their first mesh.
 ///
 /// A character is a [skeleton](skeletons) that stands beside the others. One that lies within another, or is small beside it, belongs to
-/// that: eyes, a hat, clothes with bones of their own. Empty without skins.
+/// that: eyes, a hat, clothes whose bones are where those of the body are. Who is as large and has bones elsewhere is a character, wherever
+/// it stands. Empty without skins.
 ///
 /// # Panics
 /// If the rig's indices are out of range.
@@ -25,8 +26,12 @@ pub fn characters(rig: &Rig) -> Vec<Vec<usize>> {
     by_size.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
     let mut own: Vec<(usize, Vec<usize>)> = Vec::new();
     for skeleton in by_size {
-        let belongs = |&(main, _): &(usize, Vec<usize>)| match (extents[main], extents[skeleton]) {
-            (Some(main), Some(extent)) => extent.belongs_to(&main),
+        let belongs = |(main, meshes): &(usize, Vec<usize>)| match (extents[*main], extents[skeleton]) {
+            (Some(main), Some(extent)) => {
+                let is_other = extent.longest() > LARGE_WITHIN * main.longest()
+                    && !shares_bones(rig, &bind, meshes, &skeletons[skeleton], main.longest());
+                extent.belongs_to(&main) && !is_other
+            }
             _ => true,
         };
         match own.iter().position(belongs) {
@@ -38,6 +43,17 @@ pub fn characters(rig: &Rig) -> Vec<Vec<usize>> {
     characters.iter_mut().for_each(|meshes| meshes.sort_unstable());
     characters.sort();
     characters
+}
+
+/// True if most bones of a skeleton of more than a few are where some of another's are, which is of that size.
+fn shares_bones(rig: &Rig, bind: &[Affine], main: &[usize], other: &[usize], size: f32) -> bool {
+    let places = |meshes: &[usize]| -> Vec<Vec3> {
+        let skins = meshes.iter().filter_map(|&m| rig.meshes[m].skin);
+        skins.flat_map(|skin| &rig.skins[skin].joints).map(|&joint| bind[joint].translation).collect()
+    };
+    let (main, other) = (places(main), places(other));
+    let near = |at: &&Vec3| main.iter().any(|place| (*place - **at).length() < SAME_BONE * size);
+    other.len() < BONES_OF_A_CHARACTER || 2 * other.iter().filter(near).count() > other.len()
 }
 
 /// Axis-aligned box of a skin in its bind pose, model space, file units.

@@ -55,13 +55,28 @@ pub(crate) const COINCIDENT: f32 = 1e-3;
 
 /// Least share of a skeleton's box, along each axis, that lies within another's, to belong to it.
 ///
-/// Larger: clothes that stick out are characters. Smaller: who stands close together is one. Shown by the tests of `characters`.
+/// Larger: clothes that stick out are characters. Smaller: who stands close together is one. Shown by the tests of `assembly`.
 pub(crate) const LIES_WITHIN: f32 = 0.5;
 
 /// Largest side of a skeleton that belongs to one beside it, as a share of that one's.
 ///
-/// Larger: a dog is part of its master. Smaller: a hat is a character. Shown by the tests of `characters`.
+/// Larger: a dog is part of its master. Smaller: a hat is a character. Shown by the tests of `assembly`.
 pub(crate) const SMALL_BESIDE: f32 = 0.25;
+
+/// Least size of a skeleton within another's box that may be a character of its own, as a share of that one's.
+///
+/// Larger: whom another surrounds is part of it. Smaller: a wig is a character. Shown by the tests of `assembly`.
+pub(crate) const LARGE_WITHIN: f32 = 0.4;
+
+/// Fewest bones of a character that stands within another's box.
+///
+/// Larger: a bird on a shoulder is part of it. Smaller: a coat with bones of its own is a character. Shown by the tests of `assembly`.
+pub(crate) const BONES_OF_A_CHARACTER: usize = 8;
+
+/// Farthest that bones of clothes are from those of the body, as a share of its size.
+///
+/// Larger: who stands in another is its clothes. Smaller: clothes that were fitted are characters. Shown by the tests of `assembly`.
+pub(crate) const SAME_BONE: f32 = 0.02;
 
 // roles/gait.rs
 

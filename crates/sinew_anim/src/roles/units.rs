@@ -63,6 +63,8 @@ const EXPORTERS: [(&str, f32); 16] = [
 
 /// From where a human's head turns to its crown, metres, whatever the human's height.
 const HEAD: f32 = 0.23;
+/// Height that the head of a grown human tells at least, metres.
+const GROWN_BY_HEAD: f32 = 1.3;
 /// Heights that a head may tell, metres.
 const BY_HEAD: [f32; 2] = [0.7, 1.8];
 
@@ -126,14 +128,14 @@ impl Sizes {
     /// Lets small humans be in a unit in which files beside theirs are, under low doors, and with legs that step as fast as short ones.
     ///
     /// A large head or the habit of an exporter is not enough: figures with large heads are drawn in the size of grown ones, and rigs that
-    /// were scaled by some factor are common.
+    /// were scaled by some factor are common. Nor is a stride by itself, for who has the head of a grown one only is in a hurry.
     fn with_small(mut self, witnesses: &Witnesses, metres: f32) -> Self {
         let steps = |(leg, by_stride): (f32, f32)| {
             let leg = leg * metres;
             leg < STEPS_ALIKE * by_stride && by_stride < STEPS_ALIKE * leg
         };
         let is_kin = witnesses.kin.is_some_and(|kin| (metres / kin - 1.0).abs() < 0.05);
-        if witnesses.has_low_door || is_kin || witnesses.legs.is_some_and(steps) {
+        if witnesses.has_low_door || is_kin || witnesses.has_large_head && witnesses.legs.is_some_and(steps) {
             self.fits.start = SHORTEST;
         }
         self
@@ -154,6 +156,8 @@ struct Witnesses {
     usual: f32,
     /// True if doors of its world are for small humans.
     has_low_door: bool,
+    /// True if the head tells a small human.
+    has_large_head: bool,
     words: String,
 }
 
@@ -184,7 +188,8 @@ impl Witnesses {
             usual = clamp(HEAD / head, BY_HEAD[0], BY_HEAD[1]);
             let _ = write!(words, ", its head is {:.0} % of it", 100.0 * head);
         }
-        Self { legs, exporter, kin, usual, has_low_door, words }
+        let has_large_head = body.head.is_some_and(|head| HEAD < GROWN_BY_HEAD * head);
+        Self { legs, exporter, kin, usual, has_low_door, has_large_head, words }
     }
 
     /// Evidence against a unit, in the measure of [`Unit::rarity`].

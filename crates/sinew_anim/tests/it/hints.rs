@@ -173,11 +173,11 @@ fn a_unit_in_doubt_is_told_by_the_head_and_by_the_stride() {
     // Heads are about as large in all: of whom it is two fifths is a dwarf.
     let [(plain, _), (dwarf, note)] = [1.0, 7.0].map(|head| unit(&tall(115.0, head), &Hints::default()));
     assert!(plain == 0.01 && dwarf == 0.01 && note.contains("its head is 4"), "{note}");
-    let rig = tall(75.0, 1.0);
+    let rig = tall(75.0, 5.0);
     assert_eq!(unit(&rig, &Hints::default()).0, 0.0254);
     // Legs of 0.38 m take a step in less time than those of 0.97.
-    let (scale, note) = unit(&rig, &Hints::of_clips(&rig, &[walk(0.6, 1.0)]));
-    assert!(scale == 0.01 && note.contains("a stride of 0.60 s is that of legs of 0.39 m"), "{note}");
+    let (scale, note) = unit(&rig, &Hints::of_clips(&rig, &[walk(0.5, 1.0)]));
+    assert!(scale == 0.01 && note.contains("a stride of 0.50 s is that of legs of"), "{note}");
     let (scale, note) = unit(&rig, &Hints::of_clips(&rig, &[walk(1.1, 1.0)]));
     assert!(scale == 0.0254 && note.contains("no other unit makes it so"), "{note}");
 }
@@ -192,9 +192,12 @@ fn a_human_of_no_size_that_humans_have_is_scaled_and_can_be_brought_back() {
         let height = if scaled { 1.75 } else { units };
         assert!((found.height - height).abs() < 0.01, "{units}: {} m", found.height);
     }
-    // Who walks with short steps is short.
-    let rig = tall(0.57, 1.0);
-    assert_eq!(unit(&rig, &Hints::of_clips(&rig, &[walk(0.5, 1.0)])).0, 1.0);
+    // Who walks with short steps and has a large head is short; with a small one it is in a hurry.
+    for (head, is_short) in [(5.0, true), (1.0, false)] {
+        let rig = tall(0.57, head);
+        let scale = unit(&rig, &Hints::of_clips(&rig, &[walk(0.5, 1.0)])).0;
+        assert_eq!(scale == 1.0, is_short, "{scale}");
+    }
 }
 
 /// A creature of a chain of joints, that long.
