@@ -3,14 +3,15 @@
 use crate::pose::local_to_model;
 use crate::rig::{JointIdx, LocalTransform, Rig};
 use crate::roles::RigAnalysis;
-use sinew_math::Affine;
+use sinew_math::{Affine, Transform};
 
 /// A joint, the joint with a body that it goes with, and its place in the axes of that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Rider {
     joint: JointIdx,
     carrier: JointIdx,
-    carrier_from_joint: Affine,
+    /// Rigid, in file units: a pose may have another scale than the bind pose.
+    carrier_from_joint: Transform,
 }
 
 /// The joints of a rig that move skin of a part of the body without hanging on it: a second bone of the trunk above the hips, halves of a
@@ -50,7 +51,8 @@ impl Riders {
         };
         let rider = |(joint, carrier): (JointIdx, &Option<JointIdx>)| {
             let carrier = (*carrier)?;
-            let carrier_from_joint = analysis.bind_model[carrier].inverse() * analysis.bind_model[joint];
+            let [from, to] = [carrier, joint].map(|at| analysis.bind_model[at].to_rigid());
+            let carrier_from_joint = from.inverse() * to;
             // Feet beside the body have a role: whatever makes the motion places them.
             let rides = body_above(joint) != Some(carrier) && analysis.roles[joint].is_none();
             (rides && carrier_from_joint.is_finite()).then_some(Rider { joint, carrier, carrier_from_joint })
@@ -79,10 +81,12 @@ impl Riders {
         for (joint, node) in rig.joints.iter().enumerate() {
             let parent = node.parent.map_or(Affine::IDENTITY, |parent| carried[parent]);
             let rider = list.next_if(|rider| rider.joint == joint);
-            let wanted = rider.map(|rider| model[rider.carrier] * rider.carrier_from_joint);
+            let wanted = rider.map(|rider| model[rider.carrier].to_rigid() * rider.carrier_from_joint);
             let has_moved = node.parent.is_some_and(|parent| carried[parent] != model[parent]);
-            if let Some(wanted) = wanted.or((self.has_body[joint] && has_moved).then(|| model[joint])) {
-                let rotation = parent.to_rigid().rotation.inverse() * wanted.to_rigid().rotation;
+            if let Some(wanted) =
+                wanted.or((self.has_body[joint] && has_moved).then(|| model[joint].to_rigid()))
+            {
+                let rotation = parent.to_rigid().rotation.inverse() * wanted.rotation;
                 let translation = parent.inverse().point(wanted.translation);
                 if translation.is_finite() {
                     local[joint].translation = translation;

@@ -47,7 +47,7 @@ struct Arm {
 struct Prop {
     joint: JointIdx,
     carrier: JointIdx,
-    at: Affine,
+    at: Transform,
 }
 
 impl<'a> Clearing<'a> {
@@ -159,10 +159,12 @@ impl<'a> Clearing<'a> {
         for prop in &self.props {
             local_to_model(&self.def.rig, pose, &Affine::IDENTITY, model);
             let parent = self.def.rig.joints[prop.joint].parent.map_or(Affine::IDENTITY, |p| model[p]);
-            let place = parent.inverse() * model[prop.carrier] * prop.at;
-            if place.is_finite() {
-                pose[prop.joint].translation = place.translation;
-                pose[prop.joint].rotation = place.to_rigid().rotation;
+            // Rigid: a pose may have another scale than the bind pose.
+            let place = model[prop.carrier].to_rigid() * prop.at;
+            let translation = parent.inverse().point(place.translation);
+            if translation.is_finite() {
+                pose[prop.joint].translation = translation;
+                pose[prop.joint].rotation = parent.to_rigid().rotation.inverse() * place.rotation;
             }
         }
     }
@@ -201,7 +203,7 @@ fn props(def: &CharacterDef, analysis: &RigAnalysis) -> Vec<Prop> {
     let prop = |(joint, carrier): (JointIdx, JointIdx)| Prop {
         joint,
         carrier,
-        at: analysis.bind_model[carrier].inverse() * analysis.bind_model[joint],
+        at: analysis.bind_model[carrier].to_rigid().inverse() * analysis.bind_model[joint].to_rigid(),
     };
     strays.map(|joint| prop((bodies[joint.child].joint, bodies[joint.parent].joint))).collect()
 }

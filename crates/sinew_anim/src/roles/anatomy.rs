@@ -259,10 +259,14 @@ impl<'a> Scene<'a> {
         if weight > 0.0 { sum / weight } else { 0.0 }
     }
 
-    /// True if what looks like arms is named as wings, or is named, as what looks like legs, as a limb of a body on four legs.
+    /// True if what looks like arms is named as wings, or a head as a tail, or if arms are named, as what looks like legs, as a limb of a body on four legs.
     fn is_beast(&self, found: &Humanoid) -> bool {
         let arms = found.arms.chain.iter().flatten().map(|&node| self.graph.nodes[node].joint);
         if arms.into_iter().any(|joint| self.readings[joint].is_wing) {
+            return true;
+        }
+        let top = found.neck.iter().chain([&found.head]).map(|&node| self.graph.nodes[node].joint);
+        if top.into_iter().any(|joint| self.readings[joint].part == Some(Part::Tail)) {
             return true;
         }
         let is_named = |limb: &Limb| {

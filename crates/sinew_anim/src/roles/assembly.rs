@@ -13,7 +13,7 @@ use sinew_math::{Vec3, direction};
 
 const LONG: [Part; 4] = [Part::UpperArm, Part::LowerArm, Part::UpperLeg, Part::LowerLeg];
 
-/// Long bones of limbs that move no skin and carry a part of the same limb that does: of each part of a side the one nearest to it.
+/// Long bones of limbs that move no skin and carry a part of the same limb that does, or whose twin moves some: of each part of a side the one nearest to it.
 ///
 /// The name and the hierarchy say that such a bone is the joint, wherever its skin went.
 pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<JointIdx> {
@@ -38,6 +38,15 @@ pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<
             if is_further_in && is_new && !moves(above) && !has_skin(bare, other.side) {
                 found.push((bare, other.side, above));
             }
+        }
+    }
+    // And whose twin moves skin: a mirrored figure has both.
+    for (joint, reading) in readings.iter().enumerate().filter(|&(joint, _)| !moves(joint)) {
+        let Some(part) = reading.part.filter(|part| LONG.contains(part)) else { continue };
+        let Some(side) = reading.side else { continue };
+        let is_new = found.iter().all(|&(other, of, _)| (other, of) != (part, Some(side)));
+        if is_new && has_skin(part, Some(side.mirror())) && !has_skin(part, Some(side)) {
+            found.push((part, Some(side), joint));
         }
     }
     found.into_iter().map(|(_, _, joint)| joint).collect()

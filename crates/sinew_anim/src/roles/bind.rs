@@ -4,7 +4,7 @@ use super::graph::ancestors;
 use super::names::{Part, read_names};
 use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, LocalTransform, Rig, RigMesh};
-use crate::roles::tuning::COINCIDENT;
+use crate::roles::tuning::{BOUND_ALIKE, COINCIDENT};
 use crate::skinning::skin_vertices;
 use sinew_math::{Affine, Vec3, max3, min3};
 use std::collections::BTreeMap;
@@ -245,7 +245,7 @@ pub(super) fn bind_pose(rig: &Rig) -> Vec<Affine> {
 ///
 /// In a rest pose equal to the bind pose, every joint says the same (joint × inverse bind). Where the rest pose is
 /// some other pose the joints disagree; then the mesh's own node counts if any joint confirms it, else the joint that carries
-/// most of those that move skin: the root of the skeleton, which hardly any pose moves. Joints that move no skin have no
+/// most of those that move skin and is bound in their scale: the root of the skeleton, which hardly any pose moves. Joints that move no skin have no
 /// vote: a control may be bound anywhere.
 fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     let skin = &rig.skins[mesh.skin.expect("only skinned meshes are asked for")];
@@ -283,8 +283,14 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
         let joint = skin.joints[slot];
         (carried[joint], core::cmp::Reverse(ancestors(rig, joint).count()))
     };
+    // A handle above the body may be bound in another scale than what it carries: it says nothing of where the skin was.
+    let size = |place: &Affine| place.linear.x_axis.length();
+    let mut sizes: Vec<f32> = said.iter().map(size).collect();
+    sizes.sort_by(f32::total_cmp);
+    let usual = sizes[sizes.len() / 2];
+    let is_alike = |place: &Affine| (size(place) - usual).abs() <= BOUND_ALIKE * usual;
     let root = slots
-        .filter(|&slot| place(slot).is_finite())
+        .filter(|&slot| place(slot).is_finite() && is_alike(&place(slot)))
         .reduce(|a, b| if carries(b) > carries(a) { b } else { a });
     root.map_or(*majority, place)
 }

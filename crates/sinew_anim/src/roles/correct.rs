@@ -74,7 +74,7 @@ impl Correction {
         self.roles.is_empty() && self.ignored.is_empty()
     }
 
-    /// The rig without the skin and the meshes of joints that are ignored; joints stay as they are.
+    /// The rig without the skin, the meshes and the names of joints that are ignored; joints stay where they are.
     ///
     /// # Panics
     /// If a joint, or an index of the rig, is out of range.
@@ -88,6 +88,9 @@ impl Correction {
             is_ignored[joint] |= rig.joints[joint].parent.is_some_and(|parent| is_ignored[parent]);
         }
         let mut seen = rig.clone();
+        // What is no part of the body has no name of one.
+        let ignored = seen.joints.iter_mut().zip(&is_ignored).filter(|(_, is_ignored)| **is_ignored);
+        ignored.for_each(|(joint, _)| joint.name.clear());
         for mesh in &mut seen.meshes {
             match mesh.skin {
                 None if is_ignored[mesh.joint] => mesh.primitives.clear(),

@@ -5,9 +5,9 @@ use super::graph::{Graph, ancestors};
 use super::role::Role;
 use super::{KeptBone, RoleGuess};
 use crate::rig::{JointIdx, Rig};
-use crate::roles::tuning::{LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN};
+use crate::roles::tuning::{LARGEST_WORN, LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN, WORN_WITHIN};
 use crate::skinning::skin_vertices;
-use sinew_math::{Vec3, max3, min3};
+use sinew_math::{Vec3, max, max3, min3};
 
 /// Input of the selection.
 pub(super) struct Selection<'a> {
@@ -221,7 +221,7 @@ impl Selection<'_> {
         for joint in (0..self.rig.joints.len()).filter(|&joint| place[joint].is_none()) {
             match self.carried_by(joint, |i| place[i].is_some()) {
                 Some(carrier) => owner[joint] = place[carrier],
-                None if self.bound.area[joint] > 0.0 || self.lies_within(joint) => waiting.push(joint),
+                None if self.bound.area[joint] > 0.0 || self.is_worn(joint) => waiting.push(joint),
                 None => {}
             }
         }
@@ -254,22 +254,26 @@ impl Selection<'_> {
         owner
     }
 
-    /// True if a node that hangs on no bone carries a mesh that lies within the skin: a hat that nobody parented.
-    fn lies_within(&self, joint: JointIdx) -> bool {
-        let own =
-            self.rig.meshes.iter().enumerate().filter(|(_, mesh)| mesh.skin.is_none() && mesh.joint == joint);
+    /// True if a node that hangs on no bone carries a mesh that is smaller than the body and lies within it or close to it: a hat, eyes or a
+    /// pack that nobody parented.
+    fn is_worn(&self, joint: JointIdx) -> bool {
         let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        let margin = Vec3::splat(WORN_WITHIN * self.bound.size());
+        let (lo, hi) = (self.bound.lo - margin, self.bound.hi + margin);
         let (mut all, mut within) = (0, 0);
-        for (m, mesh) in own {
-            for p in 0..mesh.primitives.len() {
-                skin_vertices(self.rig, m, p, &self.bound.model, &mut positions, &mut normals);
-                let (lo, hi) = (self.bound.lo, self.bound.hi);
-                let is_within = |at: &&Vec3| min3(max3(**at, lo), hi) == **at;
-                all += positions.len();
-                within += positions.iter().filter(is_within).count();
+        let mut extent: Option<(Vec3, Vec3)> = None;
+        for (m, p) in self.rigid_parts(joint) {
+            skin_vertices(self.rig, m, p, &self.bound.model, &mut positions, &mut normals);
+            all += positions.len();
+            within += positions.iter().filter(|at| min3(max3(**at, lo), hi) == **at).count();
+            for &at in &positions {
+                let (low, high) = extent.unwrap_or((at, at));
+                extent = Some((min3(low, at), max3(high, at)));
             }
         }
-        2 * within > all
+        let sides = extent.map_or(Vec3::ZERO, |(low, high)| high - low);
+        let longest = max(sides.x, max(sides.y, sides.z));
+        within > 0 && 2 * within > all && longest < LARGEST_WORN * self.bound.size()
     }
 
     /// The kept joint, by place, whose skin is nearest to that of a joint; the first if one of them has none.
@@ -277,11 +281,32 @@ impl Selection<'_> {
         let own = self.bound.vertices.iter().zip(&self.bound.movers).filter(|(_, mover)| **mover == joint);
         let (sum, count) =
             own.fold((Vec3::ZERO, 0.0), |(sum, count), (vertex, _)| (sum + *vertex, count + 1.0));
-        let middle = if count > 0.0 { sum / count } else { self.bound.model[joint].translation };
+        let middle = if count > 0.0 { sum / count } else { self.middle_of_meshes(joint) };
         let others = self.bound.vertices.iter().zip(&self.bound.movers);
         let away = others.filter_map(|(vertex, mover)| Some(((*vertex - middle).length(), owner[*mover]?)));
         let nearest = away.reduce(|a, b| if b.0 < a.0 { b } else { a });
         nearest.map_or(0, |(_, body)| usize::min(body, joints.len() - 1))
+    }
+
+    /// Mesh and primitive of what moves with a node as a whole: meshes without a skin, and parts of others that have no weights.
+    fn rigid_parts(&self, joint: JointIdx) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let own = self.rig.meshes.iter().enumerate().filter(move |(_, mesh)| mesh.joint == joint);
+        own.flat_map(|(m, mesh)| {
+            let is_rigid = |p: &usize| mesh.skin.is_none() || mesh.primitives[*p].joints.is_empty();
+            (0..mesh.primitives.len()).filter(is_rigid).map(move |p| (m, p))
+        })
+    }
+
+    /// Middle of the meshes without a skin on a joint; the joint's place where it has none.
+    fn middle_of_meshes(&self, joint: JointIdx) -> Vec3 {
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        let (mut sum, mut count) = (Vec3::ZERO, 0.0);
+        for (m, p) in self.rigid_parts(joint) {
+            skin_vertices(self.rig, m, p, &self.bound.model, &mut positions, &mut normals);
+            sum = positions.iter().fold(sum, |sum, at| sum + *at);
+            count += positions.len() as f32;
+        }
+        if count > 0.0 { sum / count } else { self.bound.model[joint].translation }
     }
 
     fn bones(&self, joints: &[JointIdx], parent: impl Fn(JointIdx) -> Option<usize>) -> Kept {

@@ -51,6 +51,12 @@ pub(crate) const NAMED_ALIKE: f32 = 0.3;
 /// Larger: fingertips coincide. Smaller: helpers of an exporter count as bones. Shown by the tests of `rigs`.
 pub(crate) const COINCIDENT: f32 = 1e-3;
 
+/// Largest difference of the scale in which a joint is bound from that of most joints, as a share.
+///
+/// Larger: handles of exporters say in which scale the skin was bound. Smaller: bones that a pose stretches say nothing. Shown by the
+/// tests of `assembly`.
+pub(crate) const BOUND_ALIKE: f32 = 0.1;
+
 // roles/characters.rs
 
 /// Least share of a skeleton's box, along each axis, that lies within another's, to belong to it.
@@ -171,6 +177,16 @@ pub(crate) const LEAST_SPINE_SKIN: f32 = 0.02;
 ///
 /// Larger: shoulders do not give. Smaller: bodies that nothing collides with. Shown by the tests of `roles`.
 pub(crate) const LEAST_CLAVICLE: f32 = 0.05;
+
+/// Distance around the box of the skin within which a mesh that hangs on no bone is worn, as a share of the skin's size.
+///
+/// Larger: a table beside a figure goes along. Smaller: a pack on its back stays behind. Shown by the tests of `assembly`.
+pub(crate) const WORN_WITHIN: f32 = 0.08;
+
+/// Longest side of such a mesh, as a share of the skin's size.
+///
+/// Larger: the ground on which a figure stands goes along. Smaller: a rifle stays behind. Shown by the tests of `assembly`.
+pub(crate) const LARGEST_WORN: f32 = 0.9;
 
 // roles/props.rs
 

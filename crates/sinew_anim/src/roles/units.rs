@@ -134,7 +134,8 @@ impl Sizes {
             let leg = leg * metres;
             leg < STEPS_ALIKE * by_stride && by_stride < STEPS_ALIKE * leg
         };
-        let is_kin = witnesses.kin.is_some_and(|kin| (metres / kin - 1.0).abs() < 0.05);
+        // Files in metres are beside everything, and say nothing of one that was scaled.
+        let is_kin = metres != 1.0 && witnesses.kin.is_some_and(|kin| (metres / kin - 1.0).abs() < 0.05);
         if witnesses.has_low_door || is_kin || witnesses.has_large_head && witnesses.legs.is_some_and(steps) {
             self.fits.start = SHORTEST;
         }
