@@ -97,7 +97,9 @@ impl<'a> Carriers<'a> {
         // From the hips upward, as far as the arms.
         if let Some(low) = named(Part::Hips).next().map(place).or_else(|| mean(Part::UpperLeg)) {
             spine.sort_by(|&a, &b| (place(a) - low).length().total_cmp(&(place(b) - low).length()));
-            if let Some(arms) = mean(Part::UpperArm) {
+            // Where nothing is called neck or head, the spine goes on to the crown.
+            let has_top = [Part::Neck, Part::Head].into_iter().any(|part| named(part).next().is_some());
+            if let Some(arms) = mean(Part::UpperArm).filter(|_| !has_top) {
                 let below = |&&joint: &&JointIdx| {
                     (place(joint) - low).dot(arms - low) <= (arms - low).length_squared()
                 };

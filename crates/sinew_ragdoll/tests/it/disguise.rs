@@ -1,6 +1,6 @@
 //! Changes that a file may make to a rig without making another character of it.
 
-use sinew_anim::{Joint, JointIdx, LocalTransform, Primitive, Rig, RigAnalysis, RigMesh, Role, Side};
+use sinew_anim::{Joint, JointIdx, LocalTransform, Primitive, Rig, RigAnalysis, RigMesh, Role, Side, Skin};
 use sinew_math::{Affine, Random, Rotation, Transform, Vec3};
 
 /// The rig in other units and axes: every root and every bind matrix is told of it.
@@ -85,7 +85,7 @@ pub struct Convention {
     limbs: [&'static str; 8],
 }
 
-pub const CONVENTIONS: [Convention; 10] = [
+pub const CONVENTIONS: [Convention; 15] = [
     // Mixamo.
     Convention {
         trunk: [
@@ -268,6 +268,76 @@ pub const CONVENTIONS: [Convention; 10] = [
             "[左|右]つま先",
         ],
     },
+    // French.
+    Convention {
+        trunk: ["Bassin", "Colonne", "Colonne1", "Colonne2", "Cou", "Tete"],
+        limbs: [
+            "Epaule_[G|D]",
+            "Bras_[G|D]",
+            "AvantBras_[G|D]",
+            "Main_[G|D]",
+            "Cuisse_[G|D]",
+            "Mollet_[G|D]",
+            "Pied_[G|D]",
+            "Orteils_[G|D]",
+        ],
+    },
+    // German.
+    Convention {
+        trunk: ["Becken", "Wirbel1", "Wirbel2", "Brust", "Hals", "Kopf"],
+        limbs: [
+            "Schulter_[links|rechts]",
+            "Oberarm_[links|rechts]",
+            "Unterarm_[links|rechts]",
+            "Hand_[links|rechts]",
+            "Oberschenkel_[links|rechts]",
+            "Unterschenkel_[links|rechts]",
+            "Fuss_[links|rechts]",
+            "Zehen_[links|rechts]",
+        ],
+    },
+    // Spanish.
+    Convention {
+        trunk: ["Pelvis", "Columna", "Columna1", "Pecho", "Cuello", "Cabeza"],
+        limbs: [
+            "Hombro_[izq|der]",
+            "Brazo_[izq|der]",
+            "Antebrazo_[izq|der]",
+            "Mano_[izq|der]",
+            "Muslo_[izq|der]",
+            "Pantorrilla_[izq|der]",
+            "Pie_[izq|der]",
+            "Dedos_[izq|der]",
+        ],
+    },
+    // Italian.
+    Convention {
+        trunk: ["Bacino", "Schiena", "Torso", "Petto", "Collo", "Testa"],
+        limbs: [
+            "Spalla.[sx|dx]",
+            "Braccio.[sx|dx]",
+            "Avambraccio.[sx|dx]",
+            "Mano.[sx|dx]",
+            "Coscia.[sx|dx]",
+            "Polpaccio.[sx|dx]",
+            "Piede.[sx|dx]",
+            "Dita.[sx|dx]",
+        ],
+    },
+    // Japanese, in Latin letters.
+    Convention {
+        trunk: ["koshibone", "koshi", "hara", "mune", "kubi", "atama"],
+        limbs: [
+            "kata.[L|R]",
+            "ude.[L|R]",
+            "hiji.[L|R]",
+            "tekubi.[L|R]",
+            "momo.[L|R]",
+            "hiza.[L|R]",
+            "ashikubi.[L|R]",
+            "tsumasaki.[L|R]",
+        ],
+    },
 ];
 
 impl Convention {
@@ -417,6 +487,41 @@ pub fn hung_on_root(rig: &Rig, joints: &[JointIdx]) -> Rig {
         rig.joints[joint].parent = root;
         rig.joints[joint].rest = parts(&(parent.inverse() * model[joint]));
     }
+    rig
+}
+
+/// Joints that become roots of their own, at their places, as in exports of deform bones alone.
+pub fn cut_loose(rig: &Rig, joints: &[JointIdx]) -> Rig {
+    let model = rest_models(rig);
+    let mut rig = rig.clone();
+    for &joint in joints {
+        rig.joints[joint].parent = None;
+        rig.joints[joint].rest = parts(&model[joint]);
+    }
+    rig
+}
+
+/// A hat with a skeleton of its own: one bone, on no other, that moves a small mesh at the crown.
+pub fn with_hat(rig: &Rig, analysis: &RigAnalysis, head: JointIdx) -> Rig {
+    let mut rig = rig.clone();
+    let size = analysis.height / analysis.unit_scale;
+    let place = analysis.bind_model[head].translation + analysis.up_axis * (0.06 * size);
+    let bone = add_joint(&mut rig, "Bone", None, place);
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| place + corner * (0.01 * size));
+    rig.skins.push(Skin {
+        name: "hat".into(),
+        joints: vec![bone],
+        inverse_bind: vec![Affine { translation: -place, ..Affine::IDENTITY }],
+    });
+    let primitive = Primitive {
+        positions: corners.to_vec(),
+        joints: vec![[0; 4]; 4],
+        weights: vec![[1.0, 0.0, 0.0, 0.0]; 4],
+        indices: vec![0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2],
+        ..Primitive::default()
+    };
+    let skin = Some(rig.skins.len() - 1);
+    rig.meshes.push(RigMesh { name: "hat".into(), joint: bone, skin, primitives: vec![primitive] });
     rig
 }
 

@@ -3,16 +3,20 @@
 use crate::build::{built, check_sound};
 use crate::data::rig;
 use crate::disguise::{
-    CONVENTIONS, affixed, bound_in, hung_on_root, renamed, shuffled, transformed, with_controls, with_hair,
-    with_twists, with_two_skins, z_up,
+    CONVENTIONS, affixed, bound_in, cut_loose, hung_on_root, renamed, shuffled, transformed, with_controls,
+    with_hair, with_hat, with_twists, with_two_skins, z_up,
 };
 use crate::rig_variants::Falls;
 use sinew_anim::{JointIdx, Rig, RigAnalysis, Role, Side, analyze};
 use sinew_math::{Random, Rotation};
 use sinew_ragdoll::{BuildOptions, RagdollDef};
 
-/// Two people, two stylised ones, four legs, eight legs.
-const RIGS: [&str; 6] = [
+/// People, stylised ones, animals, eight legs.
+const RIGS: [&str; 10] = [
+    "CesiumMan.glb",
+    "RiggedFigure.glb",
+    "../rigs_wild/modular_men_Adventurer.glb",
+    "../rigs_wild/modular_women_Witch.glb",
     "mannequiny.glb",
     "mesh2motion_human_rigify.glb",
     "kaykit_Knight.glb",
@@ -22,7 +26,7 @@ const RIGS: [&str; 6] = [
 ];
 
 /// Variants of each rig when all is asked for; else a few.
-const ALL: u64 = 50;
+const ALL: u64 = 60;
 const FEW: u64 = 1;
 
 const PREFIXES: [&str; 6] = ["", "Armature|", "hero_", "rig:", "GLB_", "Char01."];
@@ -44,6 +48,15 @@ fn feet(rig: &Rig, analysis: &RigAnalysis) -> Vec<JointIdx> {
         is_foot && is_end(*bone) && kept.merged.iter().all(|&joint| holds(kept.joint, joint))
     });
     limbs.map(|(_, kept)| kept.joint).collect()
+}
+
+/// Thighs and upper arms, or the clavicles that carry these.
+fn limbs(analysis: &RigAnalysis) -> Vec<JointIdx> {
+    let of = |side: Side| {
+        let arm = [Role::Shoulder(side), Role::UpperArm(side)].map(|role| analysis.joint_with(role));
+        [analysis.joint_with(Role::UpperLeg(side)), arm[0].or(arm[1])]
+    };
+    [Side::Left, Side::Right].into_iter().flat_map(of).flatten().collect()
 }
 
 /// A variant, where each joint went, and what was done in words.
@@ -70,6 +83,14 @@ fn variant(rig: &Rig, analysis: &RigAnalysis, seed: u64) -> (Rig, Vec<usize>, St
     if chance(&mut random, "feet on the root") {
         rig = hung_on_root(&rig, &feet(&rig, analysis));
     }
+    let convention = usize::try_from(seed).expect("few") % CONVENTIONS.len();
+    if analysis.humanoid && chance(&mut random, "limbs that are roots") {
+        // Names put them together again.
+        rig = cut_loose(&renamed(&rig, analysis, &CONVENTIONS[convention]), &limbs(analysis));
+    }
+    if let Some(head) = head.filter(|_| chance(&mut random, "a hat")) {
+        rig = with_hat(&rig, analysis, head);
+    }
     if chance(&mut random, "binds of another unit") {
         rig = bound_in(&rig, [100.0, 0.01, -1.0][random.index(3)]);
     }
@@ -80,7 +101,6 @@ fn variant(rig: &Rig, analysis: &RigAnalysis, seed: u64) -> (Rig, Vec<usize>, St
         let turn = [Rotation::IDENTITY, z_up()][random.index(2)];
         rig = transformed(&rig, [0.01, 1.0, 100.0][random.index(3)], turn);
     }
-    let convention = usize::try_from(seed).expect("few") % CONVENTIONS.len();
     rig = renamed(&rig, analysis, &CONVENTIONS[convention]);
     let (prefix, suffix) = (PREFIXES[random.index(PREFIXES.len())], SUFFIXES[random.index(SUFFIXES.len())]);
     rig = affixed(&rig, prefix, suffix);
