@@ -6,7 +6,7 @@ use crate::report::quality_report::{quality_json, quality_text};
 use crate::report::story;
 use serde_json::{Map, Value, json};
 use sinew::ragdoll::quality::{Doubt, FallQuality, judge_bake};
-use sinew::ragdoll::{BakeInput, Baked, Flaw, SkinQuality, Verdict, bake};
+use sinew::ragdoll::{BakeInput, Baked, Verdict, bake};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -35,12 +35,6 @@ impl<'a> Fall<'a> {
         let figures = [baked.quality];
         let (verdict, reasons) = doubt.map_or_else(|| judge(&figures), |doubt| doubt.judge(figures, judge));
         Self { input, baked, realtime_factor, verdict, reasons }
-    }
-
-    /// Adds what is wrong with the skin to the verdict.
-    pub fn judge_skin(&mut self, flaws: &[Flaw]) {
-        self.verdict = SkinQuality::verdict(flaws, self.verdict);
-        self.reasons.extend(flaws.iter().map(|flaw| format!("skin: {flaw}")));
     }
 
     /// The figures of the contract.

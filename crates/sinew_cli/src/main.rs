@@ -6,6 +6,7 @@ mod cpu_clock;
 mod failure;
 mod fall;
 mod input;
+mod judge;
 mod render;
 mod report;
 

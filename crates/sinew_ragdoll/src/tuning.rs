@@ -372,12 +372,56 @@ pub(crate) const FLESH: f32 = 1000.0;
 /// Larger or smaller: machines weigh more or less. Shown by the tests of `volume`.
 pub(crate) const MACHINE: f32 = 500.0;
 
+// quality/faults.rs
+
+/// How far below everything that stands in a world a body has fallen out of it, metres, at least; else the character's height.
+///
+/// Larger: a fall out of the world is seen later. Smaller: a thin floor that lets an arm through counts. Shown by the tests of
+/// `faults`.
+pub(crate) const FALLEN_OUT: f32 = 2.0;
+
+/// Time limp without lying still once after which it is said that it never does, seconds.
+///
+/// The contract has a drop asleep within 6 s. Larger: jitter is passed over. Smaller: long falls are blamed. Shown by the tests of
+/// `faults`.
+pub(crate) const NEVER_STILL: f32 = 6.0;
+
+/// Least distance of two limbs' roots from the middle, as a share of the height, that tells on which side they are.
+///
+/// Larger: narrow bodies are not looked at. Smaller: noise is a side. Shown by the tests of `faults`.
+pub(crate) const ON_A_SIDE: f32 = 0.01;
+
+// quality/plausible.rs
+
+/// Least share of the height from the joint of the head up that is not an adult's: a two-year-old has 0.2, an adult 0.12.
+///
+/// Larger: toys and children are doubted. Smaller: adults in another unit are believed. Shown by the tests of `faults`.
+pub(crate) const BIG_HEAD: f32 = 0.17;
+
 // ragdoll.rs
 
 /// Largest half-angle to which a swing is widened for the pose in which a ragdoll is spawned, radians (175°).
 ///
 /// Larger: limits that are none. Smaller: a character begins beyond its limit. Shown by the tests of `hand_over`.
 pub(crate) const WIDEST_SPAWNED: f32 = 3.054;
+
+// skin/judge.rs
+
+/// Largest distance of the lowest drawn point from the floor while standing and once up again, as a share of the size.
+///
+/// Larger: floating and sunk characters pass. Smaller: toes that dip in by a few centimetres are blamed. Shown by the tests of `skin`.
+pub(crate) const STANDS_OFF: f32 = 0.04;
+
+/// Largest depth of the lowest drawn point in the floor while getting up, as a share of the size.
+///
+/// Larger: hands and knees go far through the floor. Smaller: fingertips that dip in for a moment are blamed. Shown by the tests of
+/// `skin`.
+pub(crate) const SUNK_RISING: f32 = 0.1;
+
+/// How many times over a figure of the skin misses its bar that leaves nothing to use.
+///
+/// Larger: torsos torn by half a height are usable. Smaller: a coat that drags is bad. Shown by the tests of `skin`.
+pub(crate) const GROSS: f32 = 3.0;
 
 // skin/mod.rs
 

@@ -1,6 +1,6 @@
 //! The commands: one struct and one file each.
 
-mod bake;
+pub(crate) mod bake;
 mod boxes;
 mod clip_choice;
 mod convert;

@@ -4,15 +4,15 @@ use crate::cpu_clock::timed;
 use crate::failure::Result;
 use crate::input::files::{CharacterFile, Outputs, must_end_in, never_over};
 use crate::input::settings_arg::{LoadedSettings, SettingsArg};
+use crate::judge::{Judgement, judge_life, with_default_life};
 use crate::report::Report;
 use crate::report::progress::Progress;
 use crate::report::ragdoll_report::RagdollReport;
-use crate::report::skin_report::SkinReport;
 use clap::ValueEnum;
 use sinew::formats::{Textures, write_ragdoll};
 use sinew::physics::Threads;
 use sinew::ragdoll::build::BuildReport;
-use sinew::ragdoll::quality::{GateReport, gate_on, judge};
+use sinew::ragdoll::quality::{GateReport, gate_on};
 use sinew::ragdoll::{BuildOptions, LimitSource, RagdollDef, Settings, Sex, ShapeChoice, drop_test};
 use std::path::PathBuf;
 
@@ -88,12 +88,15 @@ impl RagdollBuild {
         let (built, seconds) = timed(|| self.build());
         let (character, settings, def, build) = built?;
         let mut tested = drop_test(&def);
-        if let Some(doubt) = settings.doubt(&def) {
-            let figures = [tested.drop, tested.wall];
-            (tested.verdict, tested.reasons) = doubt.judge(figures, |[drop, wall]| judge(drop, wall));
-        }
-        let skin = SkinReport::of(&character, &def, &tested);
-        skin.judge(&mut tested);
+        let doubt = settings.doubt(&def);
+        let Judgement { verdict, reasons, skin } =
+            with_default_life(&character, &def, doubt.as_ref(), |life| {
+                judge_life(&character, &tested, life, doubt.as_ref())
+            })?;
+        // What was not measured stands last.
+        let not_measured = tested.reasons.pop();
+        (tested.verdict, tested.reasons) = (verdict, reasons);
+        tested.reasons.extend(not_measured);
         let gated = self.gate.map(|spawns| self.gated(&def, spawns));
         let report = RagdollReport {
             file: &character.name,

@@ -4,6 +4,7 @@ use crate::failure::Result;
 use crate::input::files::{CharacterFile, Outputs, must_end_in, never_over};
 use crate::input::ragdoll_file::RagdollFile;
 use crate::input::settings_arg::SettingsArg;
+use crate::judge::with_default_life;
 use crate::report::Report;
 use crate::report::garments_report;
 use crate::report::skin_report::SkinReport;
@@ -54,7 +55,13 @@ fn skin_flaws(repair: &Repair, character: &CharacterFile) -> Vec<Flaw> {
         return Vec::new();
     }
     match repair.def.clone().for_rig(&character.document.rig) {
-        Ok(def) => SkinReport::of(character, &def, &drop_test(&def)).flaws,
+        Ok(def) => {
+            let tested = drop_test(&def);
+            let flaws = with_default_life(character, &def, None, |life| {
+                SkinReport::of(character, &def, &tested, Some(life)).flaws
+            });
+            flaws.unwrap_or_else(|_| SkinReport::of(character, &def, &tested, None).flaws)
+        }
         Err(_) => Vec::new(),
     }
 }

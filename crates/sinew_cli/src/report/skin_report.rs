@@ -4,11 +4,13 @@ use crate::fall::Fall;
 use crate::input::files::CharacterFile;
 use crate::report::number;
 use serde_json::{Value, json};
+use sinew::math::{Affine, Vec3};
 use sinew::ragdoll::bake::Frame;
 use sinew::ragdoll::build::takes;
-use sinew::ragdoll::{DropReport, Flaw, RagdollDef, SkinMeter, SkinQuality, State, measure_skin};
+use sinew::ragdoll::skin::{Phase, Stage};
+use sinew::ragdoll::{DropReport, Flaw, RagdollDef, SkinMeter, SkinQuality, State};
 
-/// Most frames of a bake that are looked at, evenly spread.
+/// Most frames of a bake that are looked at of each state, evenly spread: of a bake of minutes a sample, for memory goes with them.
 const MOST_FRAMES: usize = 256;
 
 /// Figures of the skin, and what is wrong with it.
@@ -17,46 +19,81 @@ pub struct SkinReport {
     pub flaws: Vec<Flaw>,
 }
 
-impl SkinReport {
-    /// Draws a character as its ragdoll fell.
-    pub fn of(character: &CharacterFile, def: &RagdollDef, tested: &DropReport) -> Self {
-        let CharacterFile { document, analysis, .. } = character;
-        let moves = takes(&document.rig, &document.clips);
-        let figures = measure_skin(&character.body(), def, &analysis.bind_model, &moves, &tested.falls);
-        let flaws = figures.flaws(def);
-        Self { figures, flaws }
-    }
+/// A character's life as it is shown: a bake, and the height of its floor, metres, where that is the same everywhere.
+#[derive(Clone, Copy)]
+pub struct Life<'a> {
+    pub fall: &'a Fall<'a>,
+    pub floor: Option<f32>,
+}
 
-    /// Looks at the skin over the frames of a bake in which the character is limp; at where it lay only on a plain floor.
-    pub fn of_bake(character: &CharacterFile, fall: &Fall<'_>, is_on_floor: bool) -> Self {
+impl SkinReport {
+    /// Draws a character as its ragdoll fell in the drops, and over its whole life.
+    pub fn of(
+        character: &CharacterFile,
+        def: &RagdollDef,
+        tested: &DropReport,
+        life: Option<Life<'_>>,
+    ) -> Self {
         let CharacterFile { document, analysis, .. } = character;
         let moves = takes(&document.rig, &document.clips);
-        let (def, baked) = (&fall.input.character.ragdoll, &fall.baked);
         let body = character.body();
         let mut meter = SkinMeter::new(&body, def, &analysis.bind_model, &moves);
-        let limp: Vec<&Frame> = baked.frames.iter().filter(|frame| frame.state == State::Limp).collect();
-        // Of a bake of minutes a sample: memory goes with the frames.
-        for frame in limp.iter().step_by(limp.len().div_ceil(MOST_FRAMES).max(1)) {
-            meter.fell(&frame.pose);
-        }
-        let settled = baked.quality.settled_s.filter(|_| is_on_floor);
-        // Later it may be hit again.
-        let lying = limp.iter().find(|frame| settled.is_some_and(|settled| settled <= frame.time));
-        if let Some(frame) = lying {
-            meter.lay(&frame.pose, &baked.world_from_model);
+        meter.follow_drops(&tested.falls);
+        if let Some(life) = life {
+            life.show(&mut meter);
         }
         let figures = meter.figures();
         let flaws = figures.flaws(def);
         Self { figures, flaws }
     }
+}
 
-    /// Adds what is wrong with the skin to a verdict on the bodies.
-    pub fn judge(&self, tested: &mut DropReport) {
-        tested.verdict = SkinQuality::verdict(&self.flaws, tested.verdict);
-        // Before what was not measured, which stands last.
-        let at = tested.reasons.len().saturating_sub(1);
-        let said = self.flaws.iter().map(|flaw| format!("skin: {flaw}"));
-        tested.reasons.splice(at..at, said);
+impl Life<'_> {
+    /// Shows all of it: fall and preparation, what clips do before and after, and where it stands and lies.
+    fn show(&self, meter: &mut SkinMeter<'_>) {
+        let frames = &self.fall.baked.frames;
+        let is_body = |frame: &&Frame| matches!(frame.state, State::Limp | State::Preparing);
+        let (bodies, clips): (Vec<&Frame>, Vec<&Frame>) = frames.iter().partition(is_body);
+        for (phase, frames) in [(Phase::Fall, bodies), (Phase::Clip, clips)] {
+            for frame in frames.iter().step_by(frames.len().div_ceil(MOST_FRAMES).max(1)) {
+                meter.show(phase, &frame.pose);
+            }
+        }
+        self.stand(meter);
+        self.lay(meter);
+    }
+
+    /// Holds the lowest point against the floor where clips lead: on a level floor all the way, in a world where it starts.
+    fn stand(&self, meter: &mut SkinMeter<'_>) {
+        let Fall { input, baked, .. } = self.fall;
+        let fell = baked.frames.iter().position(|frame| frame.state != State::Animated);
+        let stands = baked.frames.iter().take(fell.unwrap_or(baked.frames.len()));
+        let count = if self.floor.is_some() { MOST_FRAMES } else { 1 };
+        let start = self.floor.unwrap_or(input.world_from_character.translation.y);
+        for frame in stands.take(count) {
+            meter.stand(Stage::Standing, &frame.pose, &baked.world_from_model, start);
+        }
+        let (Some(fell), Some(floor)) = (fell, self.floor) else { return };
+        for frame in baked.frames.iter().skip(fell) {
+            let stage = match frame.state {
+                State::GettingUp => Stage::Rising,
+                State::Animated => Stage::Up,
+                _ => continue,
+            };
+            meter.stand(stage, &frame.pose, &baked.world_from_model, floor);
+        }
+    }
+
+    /// Where it lay, only on a level floor.
+    fn lay(&self, meter: &mut SkinMeter<'_>) {
+        let (Some(floor), baked) = (self.floor, &self.fall.baked) else { return };
+        let Some(settled) = baked.quality.settled_s else { return };
+        // Later it may be hit again.
+        let mut limp = baked.frames.iter().filter(|frame| frame.state == State::Limp);
+        if let Some(frame) = limp.find(|frame| settled <= frame.time) {
+            let down = Affine { translation: Vec3::Y * -floor, ..Affine::IDENTITY };
+            meter.lay(&frame.pose, &(down * baked.world_from_model));
+        }
     }
 }
 
@@ -73,6 +110,9 @@ pub fn skin_json(skin: &SkinQuality) -> Value {
         "bind_height_m": number(skin.bind_height_m),
         "drawn_height_m": number(skin.drawn_height_m),
         "rest_height_m": known(skin.rest_height_m),
+        "standing_height_m": known(skin.standing_height_m),
+        "rising_height_m": known(skin.rising_height_m),
+        "up_height_m": known(skin.up_height_m),
         "contiguous": skin.contiguous,
         "airborne_s": known(skin.airborne_s),
         "size_m": number(skin.size),
@@ -87,10 +127,12 @@ pub fn skin_text(skin: &SkinQuality) -> String {
         (Some(p999), Some(max)) => format!("; the clips by {:.1} and {:.1} cm", stretch(p999), stretch(max)),
         _ => String::new(),
     };
+    let height = |height: Option<f32>| height.map_or("unknown".to_owned(), |m| format!("{:+.1} cm", cm(m)));
     format!(
         "The drawn skin\n  {:.1} % of it within {:.0} cm of its body; left and right differ by {:.1} cm; {}\n\
-         \x20 falls stretch it by {:.1} cm (1 ‰) and {:.1} cm at most{clips}\n\
-         \x20 {:.2} m high, {:.2} m as drawn; lowest point at rest {}{}\n",
+         \x20 it is stretched by {:.1} cm (1 ‰) and {:.1} cm at most{clips}\n\
+         \x20 {:.2} m high, {:.2} m as drawn; lowest point at rest {}{}\n\
+         \x20 lowest point standing {}, getting up {}, up again {}\n",
         percent(skin.covered_share),
         cm(skin.tolerance()),
         cm(skin.symmetry_error_m),
@@ -103,7 +145,10 @@ pub fn skin_text(skin: &SkinQuality) -> String {
         stretch(skin.edge_stretch_max),
         skin.bind_height_m,
         skin.drawn_height_m,
-        skin.rest_height_m.map_or("unknown".to_owned(), |height| format!("{:+.1} cm", cm(height))),
+        height(skin.rest_height_m),
         skin.airborne_s.map_or(String::new(), |seconds| format!("; {seconds:.2} s in the air when calm")),
+        height(skin.standing_height_m),
+        height(skin.rising_height_m),
+        height(skin.up_height_m),
     )
 }

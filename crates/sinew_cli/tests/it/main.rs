@@ -18,6 +18,7 @@ mod sinew;
 mod springs;
 mod units;
 mod usage;
+mod verdicts;
 mod view;
 mod window;
 

@@ -16,7 +16,7 @@
 
 mod keys;
 
-use crate::character::{Character, CharacterDef, CharacterEvent, InWorld, State, Toughness};
+use crate::character::{Character, CharacterDef, CharacterEvent, InWorld, State, Toughness, moved};
 use crate::quality::{FallQuality, QualityMeter};
 use sinew_anim::{Clip, KeyBound, KeyError, LocalTransform, Reduced, reduce_keys};
 use sinew_math::hash::hash_bytes;
@@ -136,6 +136,15 @@ pub struct Baked {
     /// Hash of the snapshots of world and character at the end: of the world alone it would tell nothing of the fall,
     /// once the character is up and its bodies are gone.
     pub hash: u64,
+}
+
+impl Baked {
+    /// The clip for the file of the character: as high as the clip that was played stands in the file, where its floor is not that of
+    /// the rest pose ([`CharacterDef::raised`]).
+    pub fn clip_for_file(&self, character: &CharacterDef) -> Clip {
+        let down = character.mapping().character_from_model().inverse().vector(Vec3::Y * -character.raised());
+        moved(&character.rig, &self.clip, down)
+    }
 }
 
 /// Runs a character through a world. The same bits on every target and for every frame rate.

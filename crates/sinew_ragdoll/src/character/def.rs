@@ -252,6 +252,12 @@ impl CharacterDef {
         Some(animator.play(self.set(), &TrackDef { start: phase, ..TrackDef::new(clip) }))
     }
 
+    /// Height by which its looped clip is raised so that its lowest drawn point stands on the floor of the rest pose, metres: 0 where it
+    /// does so by itself, as a rule.
+    pub fn raised(&self) -> f32 {
+        self.moves.raised.looped
+    }
+
     pub(super) fn feet(&self) -> Option<&Feet> {
         self.feet.as_ref()
     }

@@ -32,6 +32,7 @@ mod detail;
 mod distances;
 mod event;
 mod feet;
+mod floor;
 mod get_up;
 mod ground;
 mod hit_bodies;
@@ -54,6 +55,7 @@ mod tuning;
 mod walk;
 mod wear;
 
+pub(crate) use floor::moved;
 pub(crate) use limp::{is_still, is_sunk, touches_world};
 pub(crate) use tuning::STILL_TIME;
 

@@ -1,5 +1,6 @@
 //! A character's clips, ready to be played: made once for all characters of a kind.
 
+use super::floor::{Raised, moved};
 use super::mirror::Mirror;
 use super::pose_similarity::{Landmarks, Stance};
 use super::{CharacterDef, Locomotion, MotionSet, travel};
@@ -34,6 +35,8 @@ pub(super) struct Moves {
     pub landmarks: Landmarks,
     /// Stance at the start of the looped clip, or in the rest pose, character space.
     pub upright: Stance,
+    /// How clips are raised to the floor of the rest pose.
+    pub raised: Raised,
 }
 
 /// A way to get up.
@@ -62,12 +65,22 @@ impl Moves {
     pub fn none(rig: &Rig, ragdoll: &RagdollDef, mapping: &Mapping) -> Self {
         let (landmarks, set) = (Landmarks::new(ragdoll), AnimationSet::new(Skeleton::new(rig)));
         let upright = stance(rig, mapping, &landmarks, &rest_pose(rig));
-        Self { set, clips: Vec::new(), get_ups: Vec::new(), landmarks, upright }
+        let raised = Raised::default();
+        Self { set, clips: Vec::new(), get_ups: Vec::new(), landmarks, upright, raised }
     }
 
     pub fn new(def: &CharacterDef, motions: &MotionSet) -> Result<Self, MotionError> {
         let mut set = AnimationSet::new(Skeleton::new(&def.rig));
         let mut clips = Vec::new();
+        let raised = Raised::of(def, motions);
+        let own = motions.clips.iter().enumerate();
+        let up = def.mapping().character_from_model().inverse();
+        let motions = &MotionSet {
+            clips: own
+                .map(|(index, clip)| moved(&def.rig, clip, up.vector(Vec3::Y * raised.of_clip(index))))
+                .collect(),
+            ..motions.clone()
+        };
         for (index, clip) in motions.clips.iter().enumerate() {
             let is_looped = motions.looped == Some(index);
             let mut played = match (is_looped && motions.locomotion == Locomotion::ByClip)
@@ -101,7 +114,7 @@ impl Moves {
             get_ups.push(GetUp { clip, id, starts });
         }
         let upright = stance(&def.rig, def.mapping(), &landmarks, &first_pose(def, motions));
-        Ok(Self { set, clips, get_ups, landmarks, upright })
+        Ok(Self { set, clips, get_ups, landmarks, upright, raised })
     }
 }
 

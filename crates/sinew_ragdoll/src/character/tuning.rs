@@ -521,3 +521,11 @@ pub(crate) const PICKS_UP: f32 = 5.0;
 ///
 /// Larger: legs whirl. Smaller: feet slide. Shown by the tests of `in_world`.
 pub(crate) const FASTEST_PACE: f32 = 2.0;
+
+// floor.rs
+
+/// Distance of the lowest drawn point of a clip from the floor of the rest pose from which on the clip has a floor of its own, as a
+/// share of the character's height.
+///
+/// Larger: characters float or sink by so much. Smaller: a toe that dips in lifts the whole. Shown by the tests of `floors`.
+pub(crate) const OWN_FLOOR: f32 = 0.03;

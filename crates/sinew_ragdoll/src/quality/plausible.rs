@@ -2,13 +2,18 @@
 
 use super::{FallQuality, Verdict};
 use crate::def::RagdollDef;
+use crate::tuning::BIG_HEAD;
 use sinew_math::{min, trig};
 
 /// Mass that a human may have, kg.
-const HUMAN: core::ops::RangeInclusive<f32> = 3.0..=500.0;
-/// Mass that a creature may have, kg: from a small bird's to that of the heaviest rhinoceros. Above it are elephants, whales and what
-/// the clips' author drew in another unit, which is far more common.
-const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=3000.0;
+const HUMAN: core::ops::RangeInclusive<f32> = 3.0..=300.0;
+/// Mass of a human over its height squared, kg/m²: from a starved adult's to that of the heaviest known.
+const HUMAN_BUILD: core::ops::RangeInclusive<f32> = 10.0..=80.0;
+/// Height that a human may have who is built as an adult, metres.
+const ADULT: core::ops::RangeInclusive<f32> = 0.9..=2.6;
+/// Mass that a creature may have, kg: from a small bird's to that of a bull or a bear of the largest kind. Above it are elephants, whales
+/// and what the file's author drew in another unit, which is far more common: a wolf of 2.5 t, a wasp of 1.6 t.
+const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=1000.0;
 
 /// Doubt about a mass that was guessed: hardly any body weighs that. Where the size of a file's unit is guessed, that is what is wrong
 /// as a rule, and a verdict on the ragdoll says little.
@@ -21,11 +26,11 @@ pub struct Doubt {
 }
 
 impl Doubt {
-    /// Doubt about a ragdoll's mass; `None` if there are such bodies.
+    /// Doubt about a ragdoll's mass or size; `None` if there are such bodies.
     pub fn of(def: &RagdollDef) -> Option<Self> {
         let (kind, range) = kin(def);
         if range.contains(&def.total_mass) {
-            return None;
+            return if kind == "human" { Self::of_human(def) } else { None };
         }
         let (mass, height) = (in_words(def.total_mass), def.height);
         let (least, most) = (in_words(*range.start()), in_words(*range.end()));
@@ -35,6 +40,30 @@ impl Doubt {
             ),
             size: min(1.0, trig::pow(range.end() / def.total_mass, 1.0 / 3.0)),
         })
+    }
+
+    /// Doubt about a human of a mass that humans have: for its height, or its height for its build.
+    fn of_human(def: &RagdollDef) -> Option<Self> {
+        let (mass, height) = (def.total_mass, def.height);
+        let doubt = |why: String| {
+            let reason = format!("mass of {} at a height of {height:.3} m: {why}", in_words(mass));
+            Some(Self { reason, size: 1.0 })
+        };
+        if !HUMAN_BUILD.contains(&(mass / (height * height))) {
+            return doubt("hardly any human of that height weighs as much".to_owned());
+        }
+        let head = def.bodies.iter().position(|body| body.role == "head");
+        let head = head.and_then(|head| def.joints.iter().find(|joint| joint.child == head));
+        let share = head.map_or(0.0, |joint| {
+            let neck = def.bodies[joint.child].character_from_body * joint.frame_child;
+            1.0 - neck.translation.y / height
+        });
+        let is_adult = share < BIG_HEAD;
+        let (least, most) = (ADULT.start(), ADULT.end());
+        if height > *most || (height < *least && is_adult) {
+            return doubt(format!("a human with this head is between {least} m and {most} m tall"));
+        }
+        None
     }
 
     /// Verdict and reasons on the falls of a ragdoll in doubt, drops and bakes alike: `judge` is who judges these figures where there is
@@ -112,7 +141,7 @@ mod tests {
                 assert_eq!(reasons[0], doubt.reason, "{mass} kg");
             }
         }
-        assert_eq!(Doubt::of(&of(2500.0)), None);
+        assert_eq!(Doubt::of(&of(900.0)), None);
     }
 
     #[test]
@@ -130,8 +159,8 @@ mod tests {
         };
         assert_eq!(judge(&deep(0.042), &calm).0, Verdict::Bad);
         assert_eq!(verdict(24_000.0, deep(0.042)), Verdict::Usable);
-        // A little above 3 t the size is what it is; 50 cm are deep at any.
-        assert_eq!(verdict(3100.0, deep(0.042)), Verdict::Bad);
+        // A little above 1 t the size is what it is; 50 cm are deep at any.
+        assert_eq!(verdict(1050.0, deep(0.042)), Verdict::Bad);
         assert_eq!(verdict(24_000.0, deep(0.5)), Verdict::Bad);
         assert_eq!(verdict(24_000.0, deep(f32::NAN)), Verdict::Bad);
         assert_eq!(verdict(24_000.0, FallQuality { nan: 1, ..calm }), Verdict::Bad);

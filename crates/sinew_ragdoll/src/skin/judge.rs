@@ -3,9 +3,10 @@
 //! The bars were tuned on 43 open rigs (`docs/ragdoll.md` has their figures): each lies in the gap between rigs that look right
 //! when they lie and rigs that do not.
 
-use super::SkinQuality;
+use super::{Phase, SkinQuality, Stage};
 use crate::def::RagdollDef;
 use crate::quality::Verdict;
+use crate::tuning::{GROSS, STANDS_OFF, SUNK_RISING};
 use sinew_math::max;
 
 /// Least share of vertices that are near their body.
@@ -61,6 +62,8 @@ pub struct Flaw {
     pub bodies: Vec<usize>,
     /// Their bones.
     pub bones: Vec<String>,
+    /// The best verdict on a ragdoll that has it.
+    pub at_most: Verdict,
 }
 
 impl core::fmt::Display for Flaw {
@@ -83,6 +86,9 @@ impl SkinQuality {
             self.apart(&who),
             self.resized(&who),
             self.off_floor(&who),
+            self.stands_off(&who, Stage::Standing),
+            self.stands_off(&who, Stage::Rising),
+            self.stands_off(&who, Stage::Up),
             self.airborne(&who),
         ]
         .into_iter()
@@ -90,9 +96,9 @@ impl SkinQuality {
         .collect()
     }
 
-    /// A verdict on bodies and skin together, of one on bodies: at most `Usable` where the skin has flaws.
+    /// A verdict on bodies and skin together, of one on bodies: at most what the worst flaw leaves.
     pub fn verdict(flaws: &[Flaw], of_bodies: Verdict) -> Verdict {
-        if flaws.is_empty() { of_bodies } else { Verdict::min(of_bodies, Verdict::Usable) }
+        flaws.iter().map(|flaw| flaw.at_most).fold(of_bodies, Verdict::min)
     }
 
     fn uncovered(&self, who: &Who<'_>) -> Option<Flaw> {
@@ -122,8 +128,14 @@ impl SkinQuality {
             return None;
         }
         let cm = |share: f32| 100.0 * share * self.size;
+        let is_gross = self.edge_stretch_p999 > GROSS * bar(0) || self.edge_stretch_max > GROSS * bar(1);
+        let at_most = if is_gross { Verdict::Bad } else { Verdict::Usable };
+        let what = match self.worst.torn_in {
+            Phase::Drop | Phase::Fall => "falling",
+            Phase::Clip => "getting up",
+        };
         let mut said = format!(
-            "falling stretches one side of its triangles in a thousand by more than {:.1} cm, {:.1} cm at worst; up to {:.1} and {:.1} cm are let pass",
+            "{what} stretches one side of its triangles in a thousand by more than {:.1} cm, {:.1} cm at worst; up to {:.1} and {:.1} cm are let pass",
             cm(self.edge_stretch_p999),
             cm(self.edge_stretch_max),
             cm(bar(0)),
@@ -132,7 +144,7 @@ impl SkinQuality {
         let remedy =
             "--body BONE gives what stays behind a body, --role ROLE=BONE says what it is".to_owned();
         let Some((a, b)) = self.worst.torn else {
-            return Some(who.flaw(FlawKind::Torn, said, remedy, &[]));
+            return Some(Flaw { at_most, ..who.flaw(FlawKind::Torn, said, remedy, &[]) });
         };
         let (a_name, b_name) = (who.name(a), who.name(b));
         said += &if a == b {
@@ -141,7 +153,8 @@ impl SkinQuality {
             format!("; worst between {a_name} and {b_name}")
         };
         let bodies = [a, b];
-        Some(who.flaw(FlawKind::Torn, said, remedy, if a == b { &bodies[..1] } else { &bodies }))
+        let flaw = who.flaw(FlawKind::Torn, said, remedy, if a == b { &bodies[..1] } else { &bodies });
+        Some(Flaw { at_most, ..flaw })
     }
 
     fn lopsided(&self, who: &Who<'_>) -> Option<Flaw> {
@@ -214,6 +227,40 @@ impl SkinQuality {
         Some(who.flaw(FlawKind::OffFloor, said, remedy, self.worst.lowest.as_slice()))
     }
 
+    /// The lowest point of the skin is far from the floor while the character is led by clips: in it, or, standing, above it.
+    fn stands_off(&self, who: &Who<'_>, stage: Stage) -> Option<Flaw> {
+        let (height, what) = match stage {
+            Stage::Standing => (self.standing_height_m, "standing before the fall"),
+            Stage::Rising => (self.rising_height_m, "getting up"),
+            Stage::Up => (self.up_height_m, "standing up again"),
+        };
+        let height = height?;
+        let is_rising = stage == Stage::Rising;
+        let bar = max(if is_rising { SUNK_RISING } else { STANDS_OFF } * self.size, LEAST_OFF);
+        // What flies, swims or creeps may well be above the floor.
+        let may_be_above = is_rising || who.0.bodies[0].role != "hips";
+        if height >= -bar && (height <= bar || may_be_above) {
+            return None;
+        }
+        let lowest = self.worst.lowest_in[stage as usize];
+        let point = lowest.map_or(String::new(), |body| format!(", on {},", who.name(body)));
+        let side = if height > 0.0 { "above" } else { "in" };
+        let said = format!(
+            "{what} the lowest point of its skin{point} is {:.1} cm {side} the floor, more than {:.1} cm",
+            100.0 * height.abs(),
+            100.0 * bar
+        );
+        let remedy = match stage {
+            Stage::Standing => "--clip NAME plays a clip that stands on its floor, --at X,Y,Z moves it there",
+            _ => {
+                "--clips FILE brings a clip to get up by that is made for this body, --no-builtin-motions leaves it lying"
+            }
+        };
+        let flaw = who.flaw(FlawKind::OffFloor, said, remedy.to_owned(), lowest.as_slice());
+        let is_gross = !(height.abs() <= GROSS * bar);
+        Some(Flaw { at_most: if is_gross { Verdict::Bad } else { Verdict::Usable }, ..flaw })
+    }
+
     fn airborne(&self, who: &Who<'_>) -> Option<Flaw> {
         let seconds = self.airborne_s?;
         if seconds <= AIRBORNE {
@@ -253,6 +300,6 @@ impl Who<'_> {
 
     fn flaw(&self, kind: FlawKind, evidence: String, remedy: String, bodies: &[usize]) -> Flaw {
         let bones = bodies.iter().map(|&body| self.0.bodies[body].bone.clone()).collect();
-        Flaw { kind, evidence, remedy, bodies: bodies.to_vec(), bones }
+        Flaw { kind, evidence, remedy, bodies: bodies.to_vec(), bones, at_most: Verdict::Usable }
     }
 }

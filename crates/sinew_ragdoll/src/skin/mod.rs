@@ -19,7 +19,7 @@
 mod judge;
 mod sides;
 mod stretch;
-mod surface;
+pub(crate) mod surface;
 
 use crate::def::RagdollDef;
 use crate::doctor::bones_of;
@@ -27,6 +27,7 @@ use crate::mapping::{Mapping, Physical};
 use crate::quality::Fallen;
 use crate::tuning::OWN_WEIGHT;
 pub use judge::{Flaw, FlawKind};
+use sinew_anim::roles::{HUMANOID_ROLES, Role};
 use sinew_anim::{JointIdx, LocalTransform, Rig, Take, local_to_model, rest_pose};
 use sinew_math::{Affine, Transform, Vec3, max, max3, min3};
 use stretch::{Stretch, Stretched};
@@ -61,6 +62,13 @@ pub struct SkinQuality {
     pub rest_height_m: Option<f32>,
     /// True if every body is near the one that it hangs on, and every part of a limb hangs on that limb.
     pub contiguous: bool,
+    /// Height of the drawn skin's lowest point above the floor while the character stands before its fall, lowest over the frames;
+    /// negative in the floor; `None` where that was not looked at.
+    pub standing_height_m: Option<f32>,
+    /// The same while it gets up, lowest over the frames.
+    pub rising_height_m: Option<f32>,
+    /// The same once it is up again, lowest over the frames.
+    pub up_height_m: Option<f32>,
     /// Longest time of a drop that no body was near the floor after the ragdoll had been calm, seconds;
     /// `None` where that was not looked at.
     pub airborne_s: Option<f32>,
@@ -81,6 +89,10 @@ pub struct Worst {
     pub adrift: u32,
     /// Moves an end of the side that is stretched most; the other end's stands second.
     pub torn: Option<(usize, usize)>,
+    /// What the character does while that side is stretched most.
+    pub torn_in: Phase,
+    /// Moves the lowest point while standing, while getting up and once up.
+    pub lowest_in: [Option<usize>; 3],
     /// Differs most from its mirror image.
     pub unlike: Option<usize>,
     /// Is apart from its parent.
@@ -89,6 +101,29 @@ pub struct Worst {
     pub lowest: Option<usize>,
     /// Name of the joint that moves it, where that has no body of its own.
     pub lowest_joint: Option<String>,
+}
+
+/// What a character does while its skin is looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Phase {
+    /// It falls in one of the drops of a [`drop_test`](crate::drop_test).
+    #[default]
+    Drop,
+    /// It falls, lies, or is rolled to where a clip begins.
+    Fall,
+    /// It gets up, or moves as its clips do.
+    Clip,
+}
+
+/// When the lowest point of a character's skin is held against the floor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// It stands before its fall.
+    Standing,
+    /// It gets up.
+    Rising,
+    /// It is up again.
+    Up,
 }
 
 impl SkinQuality {
@@ -114,18 +149,7 @@ pub fn measure_skin(
     falls: &[Fallen],
 ) -> SkinQuality {
     let mut meter = SkinMeter::new(rig, def, bind_model, takes);
-    let to_world = meter.to_character;
-    let mut drawn = Drawn::new(rig, &meter.mapping);
-    for fall in falls {
-        meter.skin.airborne_s = Some(max(meter.skin.airborne_s.unwrap_or(0.0), fall.airborne_s));
-        for poses in &fall.poses {
-            drawn.pose_by(rig, &meter.mapping, poses);
-            meter.fell(&drawn.pose);
-        }
-        if !fall.poses.is_empty() {
-            meter.lay(&drawn.pose, &to_world);
-        }
-    }
+    meter.follow_drops(falls);
     meter.figures()
 }
 
@@ -135,10 +159,13 @@ pub struct SkinMeter<'a> {
     surface: Surface,
     mapping: Mapping,
     to_character: Affine,
-    stretch: Stretch,
+    /// Of each [`Phase`]: long clips must not dilute the percentile of a short fall.
+    stretch: [Stretch; 3],
     skin: SkinQuality,
     /// Joints that have a body of their own.
     own: Vec<JointIdx>,
+    /// Per body.
+    may_stand: Vec<bool>,
     model: Vec<Affine>,
     palette: Vec<Affine>,
 }
@@ -156,7 +183,7 @@ impl<'a> SkinMeter<'a> {
         let to_character = mapping.character_from_model();
         let mut palette = Vec::new();
         surface.palette(bind_model, &mut palette);
-        let stretch = Stretch::new(&surface, &palette, def.unit_scale);
+        let stretch = [(); 3].map(|()| Stretch::new(&surface, &palette, def.unit_scale));
         let (low, high) = bounds(&surface, &palette, &to_character);
         let size = size(def, low, high);
         let mut skin = SkinQuality { size, bind_height_m: high.y - low.y, ..SkinQuality::default() };
@@ -168,7 +195,18 @@ impl<'a> SkinMeter<'a> {
         skin.contiguous = skin.worst.apart.is_none();
         let model = Vec::new();
         let own = def.bodies.iter().map(|body| body.joint).collect();
-        let mut meter = Self { rig, surface, mapping, to_character, stretch, skin, own, model, palette };
+        let mut meter = Self {
+            rig,
+            surface,
+            mapping,
+            to_character,
+            stretch,
+            skin,
+            own,
+            may_stand: may_stand(def),
+            model,
+            palette,
+        };
         meter.draw_bound(def);
         meter.look_at_clips(takes);
         meter
@@ -191,35 +229,81 @@ impl<'a> SkinMeter<'a> {
         }
         let all = takes.iter().flat_map(|take| (0..take.frames()).map(move |frame| take.pose(frame)));
         for pose in all.step_by(frames.div_ceil(MOST_CLIP_POSES)) {
-            self.fell(pose);
+            self.show(Phase::Clip, pose);
         }
-        let Stretched { p999, max, .. } = self.stretch.take(&self.surface);
+        let Stretched { p999, max, .. } = self.stretch[Phase::Clip as usize].take(&self.surface);
         let size = self.skin.size;
         (self.skin.clips_stretch_p999, self.skin.clips_stretch_max) = (Some(p999 / size), Some(max / size));
     }
 
-    /// A pose of the fall, local transforms: how far it stretches the skin. Keeps up to 16 KiB a pose, for the percentile.
+    /// The poses of drops onto a floor at y = 0, and where each ends.
+    ///
+    /// # Panics
+    /// If the falls are of another ragdoll.
+    pub fn follow_drops(&mut self, falls: &[Fallen]) {
+        let to_world = self.to_character;
+        let mut drawn = Drawn::new(self.rig, &self.mapping);
+        for fall in falls {
+            self.skin.airborne_s = Some(max(self.skin.airborne_s.unwrap_or(0.0), fall.airborne_s));
+            for poses in &fall.poses {
+                drawn.pose_by(self.rig, &self.mapping, poses);
+                self.show(Phase::Drop, &drawn.pose);
+            }
+            if !fall.poses.is_empty() {
+                self.lay(&drawn.pose, &to_world);
+            }
+        }
+    }
+
+    /// A pose that is shown, local transforms: how far it stretches the skin. Keeps up to 16 KiB a pose, for the percentile.
     ///
     /// # Panics
     /// If the pose is not as long as the rig has joints.
-    pub fn fell(&mut self, pose: &[LocalTransform]) {
+    pub fn show(&mut self, phase: Phase, pose: &[LocalTransform]) {
         self.draw(pose);
-        self.stretch.add(&self.surface, &self.palette);
+        self.stretch[phase as usize].add(&self.surface, &self.palette);
     }
 
-    /// The pose at rest over a floor at y = 0; `to_world` is from the model space of the file.
+    /// A pose above a floor at the height `floor` (metres) of the world, at a stage of the character's life: keeps the lowest point.
     ///
     /// # Panics
-    /// As [`fell`](Self::fell).
-    pub fn lay(&mut self, pose: &[LocalTransform], to_world: &Affine) {
+    /// As [`show`](Self::show).
+    pub fn stand(&mut self, stage: Stage, pose: &[LocalTransform], to_world: &Affine, floor: f32) {
         self.draw(pose);
+        let counts =
+            |owner: Option<usize>| stage == Stage::Rising || owner.is_some_and(|body| self.may_stand[body]);
+        let (height, vertex) = self.lowest(to_world, counts);
+        let skin = &mut self.skin;
+        let known = match stage {
+            Stage::Standing => &mut skin.standing_height_m,
+            Stage::Rising => &mut skin.rising_height_m,
+            Stage::Up => &mut skin.up_height_m,
+        };
+        if height.is_finite() && known.is_none_or(|known| height - floor < known) {
+            *known = Some(height - floor);
+            skin.worst.lowest_in[stage as usize] = self.surface.owner(vertex);
+        }
+    }
+
+    /// Height of the lowest point of the skin as it is drawn, and its vertex, of those whose body counts.
+    fn lowest(&self, to_world: &Affine, counts: impl Fn(Option<usize>) -> bool) -> (f32, usize) {
         let mut lowest = (f32::INFINITY, 0);
-        for &vertex in &self.surface.sample {
+        for &vertex in self.surface.sample.iter().filter(|&&vertex| counts(self.surface.owner(vertex))) {
             let height = to_world.point(self.surface.place(&self.palette, vertex)).y;
             if height < lowest.0 {
                 lowest = (height, vertex);
             }
         }
+        lowest
+    }
+
+    /// The pose at rest over a floor at y = 0; `to_world` is from the model space of the file.
+    ///
+    /// # Panics
+    /// As [`show`](Self::show).
+    pub fn lay(&mut self, pose: &[LocalTransform], to_world: &Affine) {
+        self.draw(pose);
+        let lowest = self.lowest(to_world, |_| true);
         let skin = &mut self.skin;
         if lowest.0.is_finite() && skin.rest_height_m.is_none_or(|known| lowest.0.abs() > known.abs()) {
             (skin.rest_height_m, skin.worst.lowest) = (Some(lowest.0), self.surface.owner(lowest.1));
@@ -233,18 +317,35 @@ impl<'a> SkinMeter<'a> {
         self.surface.palette(&self.model, &mut self.palette);
     }
 
-    /// The figures so far.
+    /// The figures so far: of the stretches, the worst of all phases.
     pub fn figures(mut self) -> SkinQuality {
-        let Stretched { p999, max, side } = self.stretch.take(&self.surface);
         let mut skin = self.skin;
-        (skin.edge_stretch_p999, skin.edge_stretch_max) = (p999 / skin.size, max / skin.size);
-        skin.worst.torn = side.and_then(|side| {
-            let Side(a, b) = self.surface.sides[side];
-            let (a, b) = (self.surface.owner(a), self.surface.owner(b));
-            Some((a.or(b)?, b.or(a)?))
-        });
+        for (phase, stretch) in [Phase::Drop, Phase::Fall, Phase::Clip].into_iter().zip(&mut self.stretch) {
+            let Stretched { p999, max, side } = stretch.take(&self.surface);
+            skin.edge_stretch_p999 = sinew_math::max(skin.edge_stretch_p999, p999 / skin.size);
+            if max / skin.size <= skin.edge_stretch_max {
+                continue;
+            }
+            skin.edge_stretch_max = max / skin.size;
+            skin.worst.torn_in = phase;
+            skin.worst.torn = side.and_then(|side| {
+                let Side(a, b) = self.surface.sides[side];
+                let (a, b) = (self.surface.owner(a), self.surface.owner(b));
+                Some((a.or(b)?, b.or(a)?))
+            });
+        }
         skin
     }
+}
+
+/// Per body whether a character may stand on its skin: not on a human's hands and forearms, nor on what they hold.
+pub(crate) fn may_stand(def: &RagdollDef) -> Vec<bool> {
+    let is_human = def.bodies[0].role == "hips";
+    let may = |role: &str| {
+        let role = Role::from_name(role).filter(|role| HUMANOID_ROLES.contains(role));
+        !is_human || role.is_some_and(|role| !matches!(role, Role::Hand(_) | Role::LowerArm(_)))
+    };
+    def.bodies.iter().map(|body| may(&body.role)).collect()
 }
 
 /// Poses of a rig from poses of its bodies, over its rest pose.

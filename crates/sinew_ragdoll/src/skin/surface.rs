@@ -29,10 +29,10 @@ struct Vertex {
 
 /// A side of a triangle, whose ends different joints move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Side(pub usize, pub usize);
+pub(crate) struct Side(pub usize, pub usize);
 
 /// The drawn skin: meshes with a skin, and those without one that hang on a body's bone. Deterministic samples of large ones.
-pub(super) struct Surface {
+pub(crate) struct Surface {
     slots: Vec<Slot>,
     vertices: Vec<Vertex>,
     /// Body that carries each slot; `None` for what hangs on no body.

@@ -13,6 +13,7 @@ mod disguise;
 mod doctor;
 mod drive;
 mod falls;
+mod faults;
 mod filter;
 mod garments;
 mod hand_over;

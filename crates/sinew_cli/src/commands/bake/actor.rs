@@ -33,7 +33,7 @@ pub fn actor(
     let mut def = CharacterDef::new(document.rig.clone(), ragdoll, &analysis.bind_model);
     let mut get_ups = def.get_ups_among(&motions.clips);
     get_ups.retain(|&clip| Some(clip) != motions.looped);
-    let Motions { clips, looped } = motions;
+    let Motions { clips, looped, .. } = motions;
     let own = MotionSet { clips, looped, get_ups, locomotion: Locomotion::ByClip, ..MotionSet::default() };
     if !own.get_ups.is_empty() {
         def.set_motions(own).map_err(failed)?;

@@ -35,8 +35,13 @@ impl ClipFile {
     /// Its bytes, and what they cannot hold, a sentence each.
     pub fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<(Vec<u8>, Vec<String>)> {
         let written = match self.format {
-            ClipFormat::Copy => append_clip(&file.document, &fall.baked.clip, fall.input.name, None)
-                .map(|bytes| (bytes, Vec::new())),
+            ClipFormat::Copy => append_clip(
+                &file.document,
+                &fall.baked.clip_for_file(&fall.input.character),
+                fall.input.name,
+                None,
+            )
+            .map(|bytes| (bytes, Vec::new())),
             ClipFormat::Bvh => skeleton(file, fall),
         };
         Ok(written.map_err(|error| error.with_file(&file.name))?)
@@ -46,7 +51,7 @@ impl ClipFile {
 /// Bones in metres, with the rest pose as the offsets, and a row for each frame.
 fn skeleton(file: &CharacterFile, fall: &Fall<'_>) -> sinew::formats::Result<(Vec<u8>, Vec<String>)> {
     let rig = &file.document.rig;
-    let (mut bones, mut clip, dropped) = bones_only(rig, &fall.baked.clip);
+    let (mut bones, mut clip, dropped) = bones_only(rig, &fall.baked.clip_for_file(&fall.input.character));
     let mut notes = Vec::new();
     lost_meshes(rig, &dropped, &mut notes);
     transform(&mut bones, &mut clip, Rotation::IDENTITY, file.analysis.unit_scale);

@@ -5,6 +5,7 @@ mod aim;
 mod clip_file;
 mod clips;
 mod door;
+mod grounds;
 mod hit;
 mod notes;
 mod place;
@@ -15,16 +16,18 @@ use crate::input::files::{CharacterFile, Outputs, never_over};
 use crate::input::picture_file::{PictureFile, length, seconds};
 use crate::input::ragdoll_file::read_definition;
 use crate::input::settings_arg::{SettingsArg, unit_note};
+use crate::judge::{Judgement, LIMP_AT, judge_life};
 use crate::render::film::{FILM_SIZE, FLOOR_HALF_SIZE, Film, View, body_models};
 use crate::report::Report;
 use crate::report::garments_report::GarmentsReport;
-use crate::report::skin_report::{SkinReport, skin_json};
+use crate::report::skin_report::{Life, skin_json};
 use crate::report::springs_report::SpringsReport;
 use crate::report::table::shown;
-use actor::actor;
+pub use actor::actor;
 use aim::aim;
 use clip_file::{ClipFile, ClipFormat};
-use clips::{CLIP_NAME, Motions};
+use clips::CLIP_NAME;
+pub use clips::Motions;
 use door::door;
 use hit::HitArg;
 use place::{Place, degrees, metres, place, point};
@@ -35,13 +38,11 @@ use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::bake::KEY_BOUND;
 use sinew::ragdoll::quality::Doubt;
 use sinew::ragdoll::settings::SpringSource;
-use sinew::ragdoll::{BakeInput, BuildOptions, HitEffect, RagdollDef};
+use sinew::ragdoll::{BakeInput, BuildOptions, HitEffect, RagdollDef, drop_test};
 use sinew_picture::Sun;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// When a character goes limp that nothing hits, seconds.
-const LIMP_AT: f32 = 0.5;
 const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
 const OBSTACLES: [[f32; 3]; 3] = [[0.45, 0.33, 0.22], [0.40, 0.36, 0.30], [0.33, 0.27, 0.22]];
 
@@ -71,8 +72,8 @@ pub struct Bake {
     /// A world file (JSON) or a mesh (GLB, OBJ) to fall in; without it a floor at y = 0
     #[arg(long, value_name = "FILE")]
     world: Option<PathBuf>,
-    /// Place where the character stands, metres; by default the flat place of the world nearest its middle with half as much room
-    /// again over it as the character is tall, without --world the origin
+    /// Place where the character stands, metres; by default a flat place with half as much room again over it as the character
+    /// is tall, on the largest ground of the world that can be walked on, without --world the origin
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     at: Option<Vec3>,
     /// Direction in which it faces, degrees from +Z toward +X
@@ -164,6 +165,7 @@ impl Bake {
         let Cast { file, ragdoll, garments, doubt, mut notes } = self.character(textures, &bodies)?;
         let name = self.clip_name(&file)?;
         let motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
+        notes.extend(motions.notes.iter().cloned());
         let place = self.place(&bodies, ragdoll.height)?;
         let (mut character, gets_up_by) = actor(&file, ragdoll, motions, !self.no_builtin_motions)?;
         character.set_garments(&garments);
@@ -192,8 +194,11 @@ impl Bake {
         notes.extend(world.as_deref().and_then(|world| notes::stands_at(&place, world)));
         notes.extend(notes::of_bake(&input, &fall.baked.events, &gets_up_by, world.as_deref()));
         let is_level = self.world.is_none() && place.stands.translation.y == self.floor.unwrap_or(0.0);
-        let skin = SkinReport::of_bake(&file, &fall, is_level);
-        fall.judge_skin(&skin.flaws);
+        let floor = is_level.then_some(place.stands.translation.y);
+        let tested = drop_test(&input.character.ragdoll);
+        let Judgement { verdict, reasons, skin } =
+            judge_life(&file, &tested, Life { fall: &fall, floor }, doubt.as_ref());
+        (fall.verdict, fall.reasons) = (verdict, reasons);
         notes.extend(skin.flaws.iter().map(|flaw| format!("skin: {flaw}")));
         notes.extend(self.write(&file, &fall)?);
         let mut report = self.report(&file, &fall, &once(notes));

@@ -1,5 +1,6 @@
 //! Place of the character in the world: where the user says, else on a flat place with room over it.
 
+use super::grounds::grounds;
 use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
@@ -7,8 +8,8 @@ use sinew::physics::{
     BodyDef, BodyHit, BodyKind, BodyKinds, OverlapWith, Probe, QueryFilter, Shape, World, WorldDef,
 };
 
-/// Places to each side of the middle that are looked at.
-const PLACES: i32 = 12;
+/// Cosine of the steepest ground that is walked on: 40°.
+const WALKABLE: f32 = 0.766;
 /// Room over a place, in heights of the character.
 const FREE_HEIGHT: f32 = 1.5;
 /// Room to each side, in heights of the character: to fall in, and where there is none to stand in.
@@ -96,29 +97,29 @@ impl Ground {
         !self.below(at + Vec3::Y * (0.5 * height), DEPTH).is_empty()
     }
 
-    /// The flat place nearest the middle that has room over it; the lowest of those above each other. Places with room to fall
-    /// go before those with room to stand.
+    /// A flat place with room over it on the largest ground that can be walked on, near its middle; where it has none, on the next.
+    /// Places with room to fall go before those with room to stand.
     fn flat_place(&self, height: f32) -> Option<Vec3> {
         let bounds = self.bounds.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::splat(0.5 * height)));
-        let (middle, half) = (bounds.center(), (bounds.max - bounds.min) * 0.5);
-        let step = Vec3::new(half.x, 0.0, half.z) / PLACES as f32;
-        let mut offsets: Vec<Vec3> = (-PLACES..=PLACES)
-            .flat_map(|i| {
-                (-PLACES..=PLACES).map(move |j| Vec3::new(step.x * i as f32, 0.0, step.z * j as f32))
-            })
-            .collect();
-        // Stable, so that of two as near the same one is taken on every machine.
-        offsets.sort_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
-        // A half-space that stands lower than everything else is found as well.
-        let depth = 2.0 * half.y + 2.0 * height + 1000.0;
-        let top = bounds.max.y + height;
-        ROOMS.iter().find_map(|room| {
-            offsets.iter().find_map(|&offset| {
-                let from = Vec3::new(middle.x + offset.x, top, middle.z + offset.z);
-                let hits = self.below(from, depth);
-                hits.iter().rev().find(|hit| self.is_good(hit, height, *room)).map(|hit| hit.point)
-            })
-        })
+        let grounds = grounds(&bounds, height, |from, depth| self.floors(from, depth, height));
+        let places = |room: f32| {
+            let good = move |at: &&Vec3| {
+                let hits = self.below(**at + Vec3::Y * (OVER * height), 2.0 * OVER * height);
+                hits.first().is_some_and(|hit| self.is_good(hit, height, room))
+            };
+            grounds.iter().find_map(|ground| ground.iter().find(good).copied())
+        };
+        ROOMS.iter().find_map(|&room| places(room))
+    }
+
+    /// Heights under a place on which one can stand: level enough, with head room.
+    fn floors(&self, from: Vec3, depth: f32, height: f32) -> Vec<f32> {
+        let hits = self.below(from, depth);
+        let has_room = |hit: &&BodyHit| {
+            let up = Ray { origin: hit.point + Vec3::Y * (OVER * height), direction: Vec3::Y * height };
+            hit.start.is_none() && hit.normal.y > WALKABLE && !self.world.query().any(&up)
+        };
+        hits.iter().filter(has_room).map(|hit| hit.point.y).collect()
     }
 
     fn is_good(&self, hit: &BodyHit, height: f32, room: f32) -> bool {

@@ -1,0 +1,81 @@
+//! One judge for `ragdoll build` and `bake`: the drops, the life that is shown, the skin over both.
+
+use crate::commands::bake::{Motions, actor};
+use crate::failure::Result;
+use crate::fall::Fall;
+use crate::input::files::CharacterFile;
+use crate::report::skin_report::{Life, SkinReport};
+use sinew::anim::KeyBound;
+use sinew::physics::{BodyDef, Shape};
+use sinew::ragdoll::quality::{Doubt, Fault, faults_of_bake, faults_of_ragdoll, judge};
+use sinew::ragdoll::{BakeInput, DropReport, RagdollDef, SkinQuality, Verdict};
+use std::sync::Arc;
+
+/// When a character goes limp that nothing hits, seconds.
+pub const LIMP_AT: f32 = 0.5;
+/// Length of a bake, seconds, where the user does not say it.
+pub const SECONDS: f32 = 8.0;
+
+/// What the judge found.
+pub struct Judgement {
+    pub verdict: Verdict,
+    /// What is outside its bar, a sentence each.
+    pub reasons: Vec<String>,
+    pub skin: SkinReport,
+}
+
+/// Judges drops and life of a character, in the light of what is in doubt about its mass.
+pub fn judge_life(
+    character: &CharacterFile,
+    tested: &DropReport,
+    life: Life<'_>,
+    doubt: Option<&Doubt>,
+) -> Judgement {
+    let def = &life.fall.input.character.ragdoll;
+    let of_drops = |[drop, wall]: &[_; 2]| {
+        let (verdict, mut reasons) = judge(drop, wall);
+        // What was not measured.
+        reasons.pop();
+        (verdict, reasons)
+    };
+    let figures = [tested.drop, tested.wall];
+    let (mut verdict, mut reasons) =
+        doubt.map_or_else(|| of_drops(&figures), |doubt| doubt.judge(figures, of_drops));
+    verdict = Verdict::min(verdict, life.fall.verdict);
+    for reason in &life.fall.reasons {
+        if !reasons.contains(reason) {
+            reasons.push(format!("baked: {reason}"));
+        }
+    }
+    let mut faults = faults_of_ragdoll(&character.document.rig, def);
+    faults.extend(faults_of_bake(life.fall.input, &life.fall.baked));
+    Fault::weigh(&faults, &mut verdict, &mut reasons);
+    let skin = SkinReport::of(character, def, tested, Some(life));
+    verdict = SkinQuality::verdict(&skin.flaws, verdict);
+    reasons.extend(skin.flaws.iter().map(|flaw| format!("skin: {flaw}")));
+    Judgement { verdict, reasons, skin }
+}
+
+/// Bakes a character as `bake` does where nothing else is asked for, and hands it over: on a floor, by its own clips or the built-in ones.
+///
+/// # Errors
+/// A clip that cannot be played.
+pub fn with_default_life<T>(
+    character: &CharacterFile,
+    def: &RagdollDef,
+    doubt: Option<&Doubt>,
+    see: impl FnOnce(Life<'_>) -> T,
+) -> Result<T> {
+    let motions = Motions::gather(character, &[], None)?;
+    let (falls, _) = actor(character, def.clone(), motions, true)?;
+    let ground = [BodyDef::fixed(Shape::HalfSpace)];
+    let input = BakeInput {
+        bodies: &ground,
+        limp_at: Some(LIMP_AT),
+        seconds: SECONDS,
+        key_bound: KeyBound::ALL_KEYS,
+        ..BakeInput::new(Arc::new(falls))
+    };
+    let fall = Fall::simulate(&input, doubt);
+    Ok(see(Life { fall: &fall, floor: Some(0.0) }))
+}

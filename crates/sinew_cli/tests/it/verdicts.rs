@@ -1,0 +1,168 @@
+//! The verdict of `ragdoll build` and `bake`: each fault planted into the mannequin, and both must see it.
+
+use crate::sinew::{Folder, glb, sinew};
+use serde_json::Value;
+use sinew::anim::{Channel, Clip, Interpolation, Property, Rig};
+use sinew::math::Vec3;
+use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
+use sinew_scenes::mannequin::mannequin;
+
+/// Verdict and reasons of `ragdoll build` and of `bake`, with these options.
+fn both(folder: &Folder, file: &str, extra: &[&str]) -> [(String, String); 2] {
+    let out = folder.path("out.glb");
+    let built = sinew(&[&["ragdoll", "build", file, "--json"], extra].concat()).json();
+    let baked = sinew(&[&["bake", file, "-o", &out, "--json"], extra].concat()).json();
+    let said = |object: &Value| {
+        (object["verdict"].as_str().expect("a verdict").to_owned(), object["reasons"].to_string())
+    };
+    [said(&built["quality"]), said(&baked)]
+}
+
+fn joint(rig: &Rig, name: &str) -> usize {
+    rig.joints.iter().position(|joint| joint.name == name).unwrap_or_else(|| panic!("no joint {name}"))
+}
+
+#[test]
+fn the_mannequin_is_good_in_both() {
+    let folder = Folder::new("verdict-good");
+    for (verdict, reasons) in both(&folder, &folder.mannequin(), &[]) {
+        assert_eq!(verdict, "good", "{reasons}");
+    }
+}
+
+/// A walk that stands at 0 while the rest pose stands 1 m lower: the character stands on its floor, before the fall and after it, and the
+/// baked clip stands where the walk does.
+#[test]
+fn the_floor_is_where_the_clip_stands() {
+    let folder = Folder::new("verdict-floor");
+    let mannequin = mannequin();
+    let mut rig = mannequin.rig.clone();
+    let mut walk = Clip { name: "Walk".into(), ..mannequin.clips[mannequin.motions.walk].clone() };
+    let down = Vec3::Y * -1.0;
+    for (index, joint) in rig.joints.iter_mut().enumerate().filter(|(_, joint)| joint.parent.is_none()) {
+        let is_moved =
+            |channel: &Channel| channel.joint == index && channel.property == Property::Translation;
+        if !walk.channels.iter().any(is_moved) {
+            walk.channels.push(Channel {
+                joint: index,
+                property: Property::Translation,
+                interpolation: Interpolation::Linear,
+                times: vec![0.0],
+                values: joint.rest.translation.to_array().to_vec(),
+            });
+        }
+        joint.rest.translation += down;
+    }
+    for skin in &mut rig.skins {
+        for bind in &mut skin.inverse_bind {
+            bind.translation -= bind.linear * down;
+        }
+    }
+    for primitive in rig.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives) {
+        primitive.positions.iter_mut().for_each(|place| *place += down);
+    }
+    let file = folder.file("shifted.glb", glb(&rig, &[walk]));
+    let out = folder.path("out.glb");
+    let object = sinew(&["bake", &file, "-o", &out, "--json"]).json();
+    for key in ["standing_height_m", "rest_height_m", "up_height_m"] {
+        let height = object["skin"][key].as_f64().unwrap_or_else(|| panic!("no {key}: {object:#}"));
+        assert!(height.abs() < 0.08, "{key}: {height} m");
+    }
+    assert_eq!(object["verdict"], "good", "{object:#}");
+}
+
+/// Skin of the chest that stays behind tears in both, and by so much that it is bad.
+#[test]
+fn torn_skin_is_bad_in_both() {
+    let folder = Folder::new("verdict-torn");
+    let mut rig = mannequin().rig;
+    let (chest, foot) = (joint(&rig, "chest"), joint(&rig, "leftFoot"));
+    for skin in &mut rig.skins {
+        let slots = [chest, foot].map(|joint| skin.joints.iter().position(|&own| own == joint));
+        let [Some(chest), Some(foot)] = slots else { continue };
+        // Half of the chest goes with a foot.
+        for primitive in rig.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives) {
+            for (index, slots) in primitive.joints.iter_mut().enumerate() {
+                if primitive.positions[index].x > 0.0 {
+                    slots
+                        .iter_mut()
+                        .filter(|slot| usize::from(**slot) == chest)
+                        .for_each(|slot| *slot = foot as u16);
+                }
+            }
+        }
+    }
+    let file = folder.file("torn.glb", glb(&rig, &[]));
+    for (verdict, reasons) in both(&folder, &file, &[]) {
+        assert_eq!(verdict, "bad", "{reasons}");
+        assert!(reasons.contains("stretches one side"), "{reasons}");
+    }
+}
+
+/// An adult of 57 cm and 8 kg.
+#[test]
+fn an_adult_of_half_a_metre_is_no_good() {
+    let folder = Folder::new("verdict-small");
+    let mut rig = mannequin().rig;
+    let share = 0.57 / 1.8;
+    for root in rig.joints.iter_mut() {
+        root.rest.translation *= share;
+    }
+    for skin in &mut rig.skins {
+        skin.inverse_bind.iter_mut().for_each(|bind| bind.translation *= share);
+    }
+    for primitive in rig.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives) {
+        primitive.positions.iter_mut().for_each(|place| *place *= share);
+    }
+    let file = folder.file("small.glb", glb(&rig, &[]));
+    for (verdict, reasons) in both(&folder, &file, &[]) {
+        let is_taken_larger = verdict == "good" && !reasons.contains("0.57");
+        assert!(verdict != "good" || is_taken_larger, "{verdict}: {reasons}");
+    }
+}
+
+/// A floor that ends before the character does not: it falls out of the world.
+#[test]
+fn a_fall_out_of_the_world_is_bad() {
+    let folder = Folder::new("verdict-out");
+    let slab = BodyDef {
+        kind: BodyKind::Static,
+        position: Vec3::Y * -0.1,
+        shapes: vec![ShapeDef::new(Shape::Box { half_extents: Vec3::new(0.4, 0.1, 0.4) })],
+        ..BodyDef::default()
+    };
+    let world = folder.file("slab.json", sinew::formats::write_world(&[slab]));
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let arguments = ["bake", &file, "--world", &world, "--at", "0,0,0", "--hit", "chest=0,0,200@0.2"];
+    let object = sinew(&[&arguments[..], &["--seconds", "4", "-o", &out, "--json"]].concat()).json();
+    assert_eq!(object["verdict"], "bad", "{object:#}");
+    assert!(object["reasons"].to_string().contains("falls out of the world"), "{object:#}");
+}
+
+/// A pose that is held is no walk, whatever its name.
+#[test]
+fn a_walk_moves() {
+    let folder = Folder::new("verdict-walk");
+    let mannequin = mannequin();
+    let walk = Clip { name: "Go walking".into(), ..mannequin.clips[mannequin.motions.walk].clone() };
+    let mut held = Clip { name: "Walk".into(), ..walk.clone() };
+    for channel in &mut held.channels {
+        channel.values.truncate(channel.property.width());
+        channel.times.truncate(1);
+    }
+    let file = folder.file("held.glb", glb(&mannequin.rig, &[held, walk]));
+    let run = sinew(&["bake", &file, "--seconds", "1", "-o", &folder.path("out.glb")]);
+    assert!(run.stdout.contains("Go walking"), "{run:?}");
+}
+
+/// A capture that was cut is played as far as it goes, with a note.
+#[test]
+fn a_bvh_with_fewer_frames_than_it_says_is_played() {
+    let folder = Folder::new("verdict-cut");
+    let (file, bvh, out) = (folder.mannequin(), folder.path("walk.bvh"), folder.path("out.glb"));
+    sinew(&["bake", &file, "--seconds", "2", "--limp-at", "9", "-o", &bvh, "--json"]).json();
+    let text = std::fs::read_to_string(&bvh).expect("it is written");
+    std::fs::write(&bvh, text.replace("Frames: 61", "Frames: 500")).expect("it is written");
+    let object = sinew(&["bake", &file, "--clips", &bvh, "--seconds", "1", "-o", &out, "--json"]).json();
+    assert!(object["notes"].to_string().contains("declares 500 frames, has 61"), "{object:#}");
+}

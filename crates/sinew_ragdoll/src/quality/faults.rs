@@ -1,0 +1,153 @@
+//! What is wrong with a ragdoll, or with what became of it, that no single figure tells.
+
+use super::Verdict;
+use crate::bake::{BakeInput, Baked};
+use crate::character::{CharacterEvent, State};
+use crate::def::RagdollDef;
+use crate::tuning::{FALLEN_OUT, NEVER_STILL, ON_A_SIDE};
+use sinew_anim::{Rig, local_to_model};
+use sinew_math::{Affine, Transform, max, min};
+use sinew_physics::{BodyKind, World, WorldDef};
+
+/// Joints with skin from which on one body is no ragdoll: few figures of one part have as many.
+const MANY_JOINTS: usize = 8;
+/// Joints with skin up to which one body is what there is to have.
+const FEW_JOINTS: usize = 2;
+
+/// Something that is wrong, and the best verdict that it leaves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// The best verdict on a ragdoll that has it.
+    pub at_most: Verdict,
+    /// What is wrong and what helps, a sentence.
+    pub reason: String,
+}
+
+impl Fault {
+    fn new(at_most: Verdict, reason: String) -> Self {
+        Self { at_most, reason }
+    }
+
+    /// Lowers a verdict to what these faults leave, and adds their reasons.
+    pub fn weigh(faults: &[Self], verdict: &mut Verdict, reasons: &mut Vec<String>) {
+        *verdict = faults.iter().map(|fault| fault.at_most).fold(*verdict, Verdict::min);
+        reasons.extend(faults.iter().map(|fault| fault.reason.clone()));
+    }
+}
+
+/// Faults of a ragdoll, however it falls: a rig of many joints in one body, left and right on one side.
+///
+/// # Panics
+/// If the definition has no body.
+pub fn faults_of_ragdoll(rig: &Rig, def: &RagdollDef) -> Vec<Fault> {
+    one_body(rig, def).into_iter().chain(sides(def)).collect()
+}
+
+fn one_body(rig: &Rig, def: &RagdollDef) -> Option<Fault> {
+    let mut skinned: Vec<usize> = rig.skins.iter().flat_map(|skin| skin.joints.iter().copied()).collect();
+    skinned.sort_unstable();
+    skinned.dedup();
+    let [body] = &def.bodies[..] else { return None };
+    let joints = skinned.len();
+    if joints <= FEW_JOINTS {
+        return None;
+    }
+    let at_most = if joints < MANY_JOINTS { Verdict::Usable } else { Verdict::Bad };
+    let reason = format!(
+        "one body, on {}, for a rig of {joints} joints with skin: it falls as a statue; --body BONE gives bones bodies, \
+         --role ROLE=BONE says what they are",
+        body.bone
+    );
+    Some(Fault::new(at_most, reason))
+}
+
+/// Roots of limbs of a human that lie on each other's side, or both on one.
+fn sides(def: &RagdollDef) -> Option<Fault> {
+    let place = |role: &str| {
+        let body = def.bodies.iter().position(|body| body.role == role)?;
+        let joint = def.joints.iter().find(|joint| joint.child == body)?;
+        let x = (def.bodies[body].character_from_body * joint.frame_child).translation.x;
+        Some((x - def.bodies[0].character_from_body.translation.x, def.bodies[body].bone.as_str()))
+    };
+    let least = ON_A_SIDE * def.height;
+    let pairs = ["UpperArm", "UpperLeg"].map(|part| {
+        let ((left, left_bone), (right, right_bone)) =
+            (place(&format!("left{part}"))?, place(&format!("right{part}"))?);
+        Some((left, right, left_bone, right_bone))
+    });
+    let one_side = |left: f32, right: f32| min(left.abs(), right.abs()) > least && left * right > 0.0;
+    let crossed = |left: f32, right: f32| left < -least && right > least;
+    let pairs = pairs.into_iter().flatten();
+    let mut found: Vec<Fault> = pairs
+        .filter_map(|(left, right, left_bone, right_bone)| {
+            let help = "--role ROLE=BONE says which is which";
+            if one_side(left, right) {
+                let reason = format!("{left_bone} and {right_bone} are taken for left and right, but lie on the same side; {help}");
+                return Some(Fault::new(Verdict::Bad, reason));
+            }
+            crossed(left, right).then(|| {
+                let reason = format!("{left_bone} is taken for left and {right_bone} for right, but they lie on each other's side; {help}");
+                Fault::new(Verdict::Usable, reason)
+            })
+        })
+        .collect();
+    found.sort_by_key(|fault| fault.at_most);
+    found.into_iter().next()
+}
+
+/// Faults of what became of a character: out of the world, never still.
+///
+/// # Panics
+/// If the bake is not one of the input's.
+pub fn faults_of_bake(input: &BakeInput<'_>, baked: &Baked) -> Vec<Fault> {
+    fell_out(input, baked).or_else(|| never_still(input, baked)).into_iter().collect()
+}
+
+/// A body far below everything that stands.
+fn fell_out(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+    let floor = lowest_of(input)?;
+    let (rig, def) = (&input.character.rig, &input.character.ragdoll);
+    let least = floor - max(FALLEN_OUT, def.height);
+    let (mut model, mut bodies) = (Vec::new(), Vec::new());
+    for frame in baked.frames.iter().filter(|frame| frame.state != State::Animated) {
+        local_to_model(rig, &frame.pose, &Affine::IDENTITY, &mut model);
+        let mapping = input.character.mapping();
+        mapping.bodies_from_model(&model, input.world_from_character, &mut bodies);
+        let is_out = |place: &Transform| !(place.translation.y >= least);
+        if let Some(body) = bodies.iter().position(is_out) {
+            let reason = format!(
+                "it falls out of the world: {} is below everything that stands at {:.1} s; --at X,Y,Z moves it to firm ground, \
+                 --floor Y adds a floor",
+                def.bodies[body].bone, frame.time
+            );
+            return Some(Fault::new(Verdict::Bad, reason));
+        }
+    }
+    None
+}
+
+/// Height of the lowest point of all that stands, metres; `None` where nothing does.
+fn lowest_of(input: &BakeInput<'_>) -> Option<f32> {
+    let mut world = World::new(WorldDef::default());
+    let standing =
+        input.bodies.iter().filter(|body| body.kind == BodyKind::Static && !body.shapes.is_empty());
+    let heights = standing.map(|body| {
+        let is_plane = body.shapes.iter().any(|shape| shape.shape == sinew_physics::Shape::HalfSpace);
+        let id = world.add_body(body);
+        if is_plane { body.position.y } else { world.bounds(id).min.y }
+    });
+    heights.reduce(min)
+}
+
+fn never_still(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+    let limp = baked.frames.iter().filter(|frame| frame.state == State::Limp).count() as f32 / input.fps;
+    let settles = |(_, event): &(f32, CharacterEvent)| matches!(event, CharacterEvent::Settled { .. });
+    let is_still = baked.quality.settled_s.is_some() || baked.events.iter().any(settles);
+    (limp >= NEVER_STILL && !is_still).then(|| {
+        let root = &input.character.ragdoll.bodies[0].bone;
+        let reason = format!(
+            "it never lies still in {limp:.1} s, seen at {root}; `ragdoll doctor` says which bodies and limits are at odds"
+        );
+        Fault::new(Verdict::Usable, reason)
+    })
+}

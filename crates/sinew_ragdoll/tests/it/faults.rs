@@ -1,0 +1,75 @@
+//! Faults that no single figure tells: each planted into the mannequin.
+
+use sinew_anim::analyze;
+use sinew_ragdoll::quality::{Doubt, faults_of_ragdoll};
+use sinew_ragdoll::{BuildOptions, RagdollDef, Verdict, build};
+use sinew_scenes::mannequin::mannequin;
+
+fn built() -> RagdollDef {
+    let rig = mannequin().rig;
+    let analysis = analyze(&rig).expect("a skin");
+    build(&rig, &analysis, &BuildOptions::default()).expect("bones").0
+}
+
+fn verdict(def: &RagdollDef) -> Option<(Verdict, String)> {
+    let found = faults_of_ragdoll(&mannequin().rig, def);
+    found.into_iter().next().map(|fault| (fault.at_most, fault.reason))
+}
+
+#[test]
+fn the_mannequin_has_none() {
+    assert_eq!(verdict(&built()), None);
+    assert_eq!(Doubt::of(&built()), None);
+}
+
+#[test]
+fn limbs_on_the_wrong_side_are_told_by_their_bones() {
+    let mut def = built();
+    let at = |def: &RagdollDef, role: &str| {
+        def.bodies.iter().position(|body| body.role == role).expect("it is there")
+    };
+    let (left, right) = (at(&def, "leftUpperArm"), at(&def, "rightUpperArm"));
+    let bones = [left, right].map(|body| def.bodies[body].bone.clone());
+    (def.bodies[left].role, def.bodies[right].role) = ("rightUpperArm".into(), "leftUpperArm".into());
+    let (at_most, reason) = verdict(&def).expect("a fault");
+    assert_eq!(at_most, Verdict::Usable, "{reason}");
+    assert!(bones.iter().all(|bone| reason.contains(bone)), "{reason}");
+    // Both arms on the left.
+    let mut def = built();
+    def.bodies[right].character_from_body = def.bodies[left].character_from_body;
+    def.joints[right - 1].frame_child = def.joints[left - 1].frame_child;
+    let (at_most, reason) = verdict(&def).expect("a fault");
+    assert_eq!(at_most, Verdict::Bad, "{reason}");
+    assert!(reason.contains("on the same side"), "{reason}");
+}
+
+#[test]
+fn one_body_for_a_rig_of_many_joints_is_bad() {
+    let mut def = built();
+    def.bodies.truncate(1);
+    def.joints.clear();
+    let (at_most, reason) = verdict(&def).expect("a fault");
+    assert_eq!(at_most, Verdict::Bad, "{reason}");
+    assert!(reason.contains("statue") && reason.contains("--body"), "{reason}");
+}
+
+/// A human of 57 cm and 8 kg with an adult's head, a wolf of 2.5 t, a wasp of 1.6 t.
+#[test]
+fn masses_and_sizes_that_no_body_has_are_doubted() {
+    let mut small = built();
+    let share = 0.57 / small.height;
+    small.height = 0.57;
+    small.total_mass = 8.0;
+    small.bodies.iter_mut().for_each(|body| body.character_from_body.translation *= share);
+    small.joints.iter_mut().for_each(|joint| joint.frame_child.translation *= share);
+    let doubt = Doubt::of(&small).expect("a doubt");
+    assert!(doubt.reason.contains("8 kg at a height of 0.570 m"), "{}", doubt.reason);
+    let mut heavy = built();
+    heavy.total_mass *= 4.0;
+    assert!(Doubt::of(&heavy).is_some());
+    for (mass, height) in [(2500.0, 2.7), (1600.0, 3.8)] {
+        assert!(Doubt::of(&RagdollDef { total_mass: mass, height, ..RagdollDef::default() }).is_some());
+    }
+    let bear = RagdollDef { total_mass: 600.0, height: 1.5, ..RagdollDef::default() };
+    assert_eq!(Doubt::of(&bear), None);
+}
