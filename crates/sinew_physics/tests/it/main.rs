@@ -44,6 +44,7 @@ mod sleep;
 mod solids;
 mod stacks;
 mod strands;
+mod strangers;
 mod surfaces;
 mod threads;
 mod touches;
