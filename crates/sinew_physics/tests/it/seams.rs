@@ -68,7 +68,7 @@ struct Goer {
 }
 
 fn goer(kind: usize, way: Vec3, random: &mut Random) -> Goer {
-    let yaw = Rotation::from_axis_angle(Vec3::Y, random.range(0.0, 6.28));
+    let yaw = Rotation::from_axis_angle(Vec3::Y, random.range(0.0, core::f32::consts::TAU));
     let half = Vec3::new(0.2, 0.15, 0.25);
     let lying = Rotation::from_arc(Vec3::Y, Vec3::Y.cross(way).normalize());
     let rolls = |shape: Shape, radius: f32, turn: Rotation| Goer {
@@ -101,7 +101,7 @@ struct Way {
 
 fn went(tiles: Tiles, kind: usize, speed: f32, seed: u64) -> Way {
     let mut random = Random::new(seed);
-    let heading = random.range(0.0, 6.28);
+    let heading = random.range(0.0, core::f32::consts::TAU);
     let way = Vec3::new(trig::cos(heading), 0.0, trig::sin(heading));
     let goer = goer(kind, way, &mut random);
     let start = Vec3::new(random.range(-1.0, 1.0), goer.height, random.range(-1.0, 1.0));
@@ -175,7 +175,7 @@ fn a_mover_walks_over_seams() {
         let mut world = World::new(WorldDef::default());
         lay(&mut world, tiles, Material::DEFAULT, &mut random);
         let id = world.add_mover(&MoverDef::at(Vec3::new(random.unit(), 0.005, random.unit())));
-        let heading = random.range(0.0, 6.28);
+        let heading = random.range(0.0, core::f32::consts::TAU);
         let walk = Vec3::new(trig::cos(heading), 0.0, trig::sin(heading)) * random.range(0.5, 4.0);
         world.set_mover_walk(id, walk);
         for step in 0..120 {
