@@ -136,8 +136,11 @@ impl Faces {
     }
 
     /// The normal nearest to this one that the faces which are not hidden have between them, and the height of the point over the plane through
-    /// them that it stands on, metres. `None` if all are hidden, or none looks that way.
+    /// them that it stands on, metres. `None` if all are hidden, or none looks that way. Where none is hidden the normal is as good as it was.
     pub fn shown(&self, normal: Vec3) -> Option<(Vec3, f32)> {
+        if self.hidden == 0 {
+            return Some((normal, 0.0));
+        }
         let shown = |face: &usize| self.hidden >> face & 1 == 0;
         let mut best: Option<(f32, Vec3, f32)> = None;
         let mut consider = |sum: Vec3, height: f32| {
