@@ -26,6 +26,7 @@ const OTHERS: &[(&str, &str)] = &[
     ("sinew_physics/src/contact/proxies/motion.rs", "BLUR"),
     ("sinew_physics/src/contact/proxies/motion.rs", "SLACK"),
     ("sinew_physics/src/contact/recycled.rs", "ON_FACE"),
+    ("sinew_physics/src/contact/seams.rs", "AS_FOUND"),
     ("sinew_physics/src/field/mutual.rs", "ASTRONOMICAL"),
     ("sinew_physics/src/mover/planes.rs", "FORGIVEN"),
     ("sinew_physics/src/mover/planes.rs", "FORGIVEN_LENGTH"),

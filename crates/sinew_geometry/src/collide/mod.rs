@@ -24,6 +24,7 @@ pub(crate) mod placed;
 pub(crate) mod polytope;
 mod reduce;
 mod round_sphere;
+mod seam;
 mod triangles;
 
 use crate::convex::support::{Core, Posed};
@@ -31,8 +32,12 @@ use crate::shape::Shape;
 pub use feature::edge_directions;
 pub use manifold::{MAX_POINTS, Manifold, ManifoldPoint, SeparationCache};
 use placed::{PlacedBox, PlacedCapsule, PlacedSphere, Plane};
+pub use seam::Faces;
 use sinew_math::{Transform, Vec3};
-pub use triangles::{Half, MAX_PARTS, Motion, Patch, Scratch, collide_surface, is_on_face, name_as_face};
+pub use triangles::{
+    Half, MAX_PARTS, Motion, Patch, Scratch, collide_surface, is_hidden, is_on_face, name_as_face,
+    name_as_hidden,
+};
 
 /// Fills `out` with the contact of two placed shapes: the normal points from `a` to `b`, every point has a
 /// separation of at most `margin` (metres, ≥ 0). No points if the shapes are further apart than that, if both are

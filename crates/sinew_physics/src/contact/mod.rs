@@ -9,6 +9,7 @@ pub(crate) mod near;
 pub(crate) mod parts;
 pub(crate) mod proxies;
 pub(crate) mod recycled;
+pub(crate) mod seams;
 pub(crate) mod snapshot;
 pub(crate) mod tracking;
 pub(crate) mod tuning;

@@ -10,6 +10,18 @@
 /// what is pushed within a step arrives without a contact. Shown by the tests of `touches`.
 pub(crate) const MARGIN: f32 = 0.02;
 
+/// Slops within which shapes of the ground count as abutting, a number.
+///
+/// Below 1: a step of 5 mm is one. Larger: steps and gaps that are meant do not stop what is small. Smaller: levels put together by hand have
+/// edges between their boxes. Shown by the tests of `seams`.
+pub(crate) const SEAM_SLOPS: f32 = 0.9;
+
+/// Slops by which what comes to the next shape of the ground may be in its plane before it is over it, a number.
+///
+/// Larger: what comes up to the crest of a hill is lifted before. Smaller: what rests lower than its surface falls in before it is over the
+/// next. Shown by the tests of `seams`.
+pub(crate) const SEAM_REACH: f32 = 1.0;
+
 /// Room that the fat bounds of what moves have beyond what they need, metres.
 ///
 /// What trembles or settles keeps its place in the tree. Larger: more candidate pairs. Smaller: more leaves move. Changes no result but the

@@ -176,14 +176,26 @@ impl Surroundings<'_> {
 
     /// Planes that forbid ways from where the capsule is.
     pub fn planes(&self, center: Vec3, manner: &Manner) -> Planes {
+        // What a sweep stopped at is left for the skin again: the next of two walls that abut would be met there.
+        let away = |touch: &Touch| min(manner.skin - touch.distance, SLIDE_AWAY * manner.skin);
+        self.planes_of(center, manner, |touch, wall| if wall.is_some() { 0.0 } else { away(touch) })
+    }
+
+    /// Planes of what the capsule touches, with the least that each allows along its normal; what is too steep is a wall besides, whose normal is
+    /// asked for then.
+    pub fn planes_of(
+        &self,
+        center: Vec3,
+        manner: &Manner,
+        least: impl Fn(&Touch, Option<Vec3>) -> f32,
+    ) -> Planes {
         let mut planes = Planes::new();
         for touch in self.touches(center, manner.skin).as_slice() {
-            // What a sweep stopped at is left for the skin again: the next of two walls that abut would be met there.
-            let least = min(manner.skin - touch.distance, SLIDE_AWAY * manner.skin);
+            planes.push(touch.normal, least(touch, None));
             let rise = touch.normal.dot(self.up);
-            planes.push(touch.normal, least);
             if rise > 0.0 && rise < manner.flattest {
-                planes.push(level(touch.normal, self.up), 0.0);
+                let wall = level(touch.normal, self.up);
+                planes.push(wall, least(touch, Some(wall)));
             }
         }
         planes

@@ -2,6 +2,7 @@
 
 use super::crowd::Crowd;
 use super::obstacle::{Obstacle, Owner, Surroundings, gather};
+use super::planes::Planes;
 use super::press::{Press, meet, weigh};
 use super::sweep::{Course, Manner, Touch};
 use super::{Bearer, Footing, Mover, Movers, surface_velocity};
@@ -11,7 +12,7 @@ use crate::body::def::BodyKind;
 use crate::mover::tuning::{BEHIND_EDGE, GRIP, LOOK_AHEAD, OVER_EDGE, STOPPED_SHARE, WEDGED_SHARE};
 use crate::ray::Ray;
 use crate::world::World;
-use sinew_math::{Vec3, max, trig};
+use sinew_math::{Vec3, clamp, max, min, normalize_or, trig};
 
 /// Surroundings of a move, besides the mover itself.
 struct Move<'a> {
@@ -148,7 +149,9 @@ impl<'a> Move<'a> {
             center = self.sight.slide(center, carried, &self.manner);
             self.sight.without = None;
         }
+        let met = center;
         center = self.sight.recover(center, &self.manner);
+        let pushed = center - met;
         let up = mover.def.up;
         let change = meet(&self.sight, mover, center, self.dt, presses);
         if change != Vec3::ZERO {
@@ -157,7 +160,8 @@ impl<'a> Move<'a> {
         }
         center = match mover.ground {
             Some(_) => self.walk(mover, center),
-            None => self.fly(mover, center, gravity),
+            // Of a step in which it jumps the ground's part of the way is behind it.
+            None => self.fly(mover, center, (gravity, carried, pushed)),
         };
         mover.put(center);
         let is_new = mover.ground.map(|footing| footing.on) != stood;
@@ -252,20 +256,20 @@ impl<'a> Move<'a> {
         stands(below).or_else(|| stands(beside())).unwrap_or((center, None))
     }
 
-    /// Through the air, by gravity.
-    fn fly(&self, mover: &mut Mover, start: Vec3, gravity: Vec3) -> Vec3 {
+    /// Through the air, by gravity. Parts of the way it was carried, or pushed by what came faster than it went.
+    fn fly(&self, mover: &mut Mover, start: Vec3, (gravity, carried, pushed): (Vec3, Vec3, Vec3)) -> Vec3 {
         let (dt, up) = (self.dt, mover.def.up);
-        let wanted = mover.velocity * dt + gravity * (0.5 * dt * dt);
+        let mut wanted = mover.velocity * dt + gravity * (0.5 * dt * dt) - carried;
+        let (length, out) = (pushed.length(), normalize_or(pushed, Vec3::ZERO));
+        wanted -= out * clamp(wanted.dot(out), 0.0, length);
         mover.velocity += gravity * dt;
         let speed = mover.velocity.length();
         if speed > self.world.def.max_speed {
             mover.velocity *= self.world.def.max_speed / speed;
         }
         let center = self.sight.slide(start, wanted, &self.manner);
-        let mut blocked = self.sight.planes(center, &self.manner);
-        blocked.stop();
         let free = mover.velocity;
-        mover.velocity = blocked.closest(free).unwrap_or(Vec3::ZERO);
+        mover.velocity = self.stops(center).closest(free).unwrap_or(Vec3::ZERO);
         let fell = -wanted.dot(up);
         let wedged = fell > 0.0 && (center - start).length() < WEDGED_SHARE * fell;
         let edges = if wedged { Edges::Wedge } else { Edges::Fall };
@@ -278,6 +282,13 @@ impl<'a> Move<'a> {
             }
         }
         center
+    }
+
+    /// Velocities that what it touches at a place allows: none toward it, unless it recedes by itself.
+    fn stops(&self, center: Vec3) -> Planes {
+        self.sight.planes_of(center, &self.manner, |touch, wall| {
+            min(self.footing(touch).velocity.dot(wall.unwrap_or(touch.normal)), 0.0)
+        })
     }
 
     /// Footing of a mover at a place: of what it touches the flattest.

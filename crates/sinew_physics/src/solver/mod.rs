@@ -373,8 +373,12 @@ impl IslandSolver {
         self.end_limits();
         self.end_loops();
         self.add_motor_work();
-        self.release_motors();
+        let released = self.release_motors();
         self.add_relax_reactions();
+        if released {
+            // Their rows are to hold from the next substep on.
+            self.renew_rows();
+        }
     }
 
     /// Bounce of what was hit in this substep, the last of it: the work of bodies that move by themselves is counted.

@@ -6,12 +6,14 @@ use crate::body::contact_rule::{ContactRule, Yields};
 use crate::body::def::BodyKind;
 use crate::body::shape::Sensing;
 use crate::body::surface::Surface;
-use crate::collide::{Manifold, Motion, SeparationCache, collide_again};
+use crate::collide::{Manifold, Motion, SeparationCache, collide_again, is_hidden};
+use crate::contact::filter::PairFilter;
 use crate::contact::parts::Parts;
 use crate::contact::proxies::Ahead;
 use crate::contact::recycled::Recycled;
+use crate::contact::seams::{Seams, Search};
 use crate::contact::tuning::SPECULATIVE_SLOPS;
-use crate::contact::{Contact, ContactKey, Effect, slop};
+use crate::contact::{Contact, ContactKey, ContactMemory, Effect, slop};
 use crate::context::StepContext;
 use crate::slices::for_each_mut;
 use crate::step::pairs::{Asked, BroadPhase};
@@ -20,13 +22,14 @@ use sinew_math::{Vec3, max, min};
 
 /// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
 pub(crate) fn collide(
-    bodies: &Arena<Body>,
+    (bodies, filter): (&Arena<Body>, PairFilter<'_>),
     broad: &mut BroadPhase,
     contacts: &mut Vec<Contact>,
     parts: &mut Parts,
     context: &StepContext<'_>,
 ) {
     let BroadPhase { proxies, asked, .. } = broad;
+    let seams = Seams { bodies, proxies, filter };
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
         contact.approach = 0.0;
@@ -37,12 +40,12 @@ pub(crate) fn collide(
         if contact.has_surface {
             return;
         }
-        renew(contact, a, b, proxies.ahead(contact.key), context.dt);
+        renew(contact, (a, b, &seams), proxies.ahead(contact.key), context.dt);
         weigh(contact, a, b, context.dt);
     });
     for_each_mut(context.runner, asked, |asked| {
         let (a, b) = (bodies.at(asked.key.a), bodies.at(asked.key.b));
-        ask(a, b, asked, proxies.ahead(asked.key), context.dt);
+        ask((a, b, &seams), asked, proxies.ahead(asked.key), context.dt);
     });
     broad.answer(contacts, |contact| {
         weigh(contact, bodies.at(contact.key.a), bodies.at(contact.key.b), context.dt);
@@ -51,12 +54,15 @@ pub(crate) fn collide(
         return;
     }
     let proxies = &broad.proxies;
+    let seams = Seams { bodies, proxies, filter };
     parts.update(bodies, contacts, context, |contact| {
         surface_motion(bodies, contact, proxies.ahead(contact.key), context.dt)
     });
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
         if contact.has_surface && (a.can_touch() || b.can_touch()) {
+            let (margin, slop) = margin(a, b, contact.key, beyond(proxies.ahead(contact.key)), context.dt);
+            seams.mend(contact.key, Search { margin, slop, dt: context.dt }, &mut contact.manifold);
             weigh(contact, a, b, context.dt);
         }
     });
@@ -64,7 +70,7 @@ pub(crate) fn collide(
 
 /// Brings the manifold of two convex shapes to where they are. Points are looked for within `ahead`
 /// at most because of how fast they are.
-fn renew(contact: &mut Contact, a: &Body, b: &Body, ahead: Ahead, dt: f32) {
+fn renew(contact: &mut Contact, (a, b, seams): (&Body, &Body, &Seams<'_>), ahead: Ahead, dt: f32) {
     let is_slow = ahead.most < contact.kept.least_margin();
     if is_slow && contact.kept.renew([a, b], contact.kept.least_margin(), &mut contact.manifold) {
         return;
@@ -75,6 +81,7 @@ fn renew(contact: &mut Contact, a: &Body, b: &Body, ahead: Ahead, dt: f32) {
     }
     let (mut manifold, mut parting) = (Manifold::default(), contact.parting());
     meet(a, b, contact.key, margin, &mut parting, &mut manifold);
+    seams.mend(contact.key, Search { margin, slop, dt }, &mut manifold);
     contact.memory = contact.memory.matched(&contact.manifold, &manifold);
     contact.manifold = manifold;
     contact.kept = Recycled::new([a, b], contact.key, (margin, slop), &manifold);
@@ -97,9 +104,10 @@ fn meet(
 }
 
 /// A contact of a pair that had none, if it has points now; `ahead` as in [`margin`].
-pub(crate) fn ask(a: &Body, b: &Body, asked: &mut Asked, ahead: Ahead, dt: f32) {
+pub(crate) fn ask((a, b, seams): (&Body, &Body, &Seams<'_>), asked: &mut Asked, ahead: Ahead, dt: f32) {
     let (margin, slop) = margin(a, b, asked.key, ahead, dt);
     meet(a, b, asked.key, margin, &mut asked.parting, &mut asked.manifold);
+    seams.mend(asked.key, Search { margin, slop, dt }, &mut asked.manifold);
     asked.kept = Recycled::new([a, b], asked.key, (margin, slop), &asked.manifold);
 }
 
@@ -110,6 +118,10 @@ fn weigh(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
         (contact.effect, contact.one_way) = (Effect::Push, false);
     } else {
         rule(contact, a, b, dt);
+    }
+    if is_hidden(&contact.manifold) {
+        contact.effect = Effect::Pass;
+        contact.memory = ContactMemory::default();
     }
 }
 
@@ -135,6 +147,11 @@ pub(crate) fn smallest_extent(a: &Body, b: &Body, key: ContactKey) -> f32 {
     min(shape_a.smallest_extent(), shape_b.smallest_extent())
 }
 
+/// As far as bodies come by themselves: of surfaces there is no bound.
+fn beyond(ahead: Ahead) -> Ahead {
+    Ahead { most: f32::INFINITY, ..ahead }
+}
+
 /// Motion of a pair of which one is a surface, the other toward the surface; `None` of other pairs, and of those at rest.
 fn surface_motion(bodies: &Arena<Body>, contact: &Contact, ahead: Ahead, dt: f32) -> Option<Motion> {
     let key = contact.key;
@@ -156,7 +173,7 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, ahead: Ahead, dt: f32
     Some(Motion {
         velocity: speed(mover) - speed(ground),
         dt,
-        margin: margin(a, b, key, Ahead { most: f32::INFINITY, ..ahead }, dt).0,
+        margin: margin(a, b, key, beyond(ahead), dt).0,
     })
 }
 

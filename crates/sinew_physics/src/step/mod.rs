@@ -38,7 +38,9 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         broad.blows.find(bodies, joints, activity);
         broad.update(bodies, parted.filter(joints), meetings, contacts, activity, context.dt);
     });
-    stage(Stage::Collide, &mut || collide::collide(bodies, broad, contacts, parts, context));
+    stage(Stage::Collide, &mut || {
+        collide::collide((bodies, parted.filter(joints)), broad, contacts, parts, context);
+    });
     meetings.hits.start(contacts.len(), def.hit_speed);
     stage(Stage::Touch, &mut || {
         touch::touch(bodies, joints, groups, contacts, activity, &fields, meetings, events);

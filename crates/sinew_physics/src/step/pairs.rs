@@ -222,6 +222,7 @@ mod tests {
     use crate::body::shape::{Filter, Sensing, Shape, ShapeDef};
     use crate::boxes::{Aabb, Overlap};
     use crate::contact::proxies::Owner;
+    use crate::contact::seams::Seams;
     use crate::contact::tuning::MARGIN;
     use crate::id::{BodyId, ShapeId};
     use crate::{MassUpdate, Velocity, World};
@@ -428,7 +429,11 @@ mod tests {
                 change(&mut world, random, 2.0);
             }
             check(&mut world, 0);
+            let PairFilter { parted, version, .. } = world.parted.filter(&world.joints);
+            let parted = parted.to_vec();
+            let filter = PairFilter { parted: &parted, function: None, version };
             let World { bodies, broad, contacts, def, .. } = &world;
+            let seams = Seams { bodies, proxies: &broad.proxies, filter };
             for (place, pair) in broad.near.list.iter().enumerate() {
                 let asked = broad.asked.binary_search_by_key(&place, |asked| asked.pair).is_ok();
                 let known = contacts.iter().any(|contact| contact.key.is_of_pair(pair.key));
@@ -436,7 +441,7 @@ mod tests {
                     let (a, b) = (bodies.at(pair.key.a), bodies.at(pair.key.b));
                     let mut asked = Asked::new(place, pair);
                     let ahead = crate::contact::proxies::Ahead { most: f32::INFINITY, blow: 0.0 };
-                    crate::step::collide::ask(a, b, &mut asked, ahead, def.dt());
+                    crate::step::collide::ask((a, b, &seams), &mut asked, ahead, def.dt());
                     let found = asked.manifold;
                     assert_eq!(found.count, 0, "{:?} with {} left: {found:?}", pair.key, pair.left);
                     count += 1;

@@ -1,7 +1,7 @@
 //! Ids of what was removed and of other worlds are refused, with what is wrong, at the caller.
 
 use crate::build::sphere_body;
-use sinew_math::{Reader, Transform, Vec3, Writer};
+use sinew_math::{Random, Reader, Transform, Vec3, Writer};
 use sinew_physics::*;
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -158,4 +158,27 @@ fn a_snapshot_goes_with_any_world() {
     assert_eq!(one.transform(theirs), other.transform(theirs));
     one.remove_body(theirs);
     assert_eq!(panic_of(|| one.transform(mine)).0, "BodyId 0v0 was removed");
+}
+
+/// A body goes in the same moment in which a shape leaves its bounds: the pairs of both are looked for at once, and those of the one that went
+/// must not be among them.
+#[test]
+fn a_body_that_goes_takes_its_pairs_along() {
+    let sensor = |radius: f32| ShapeDef { sensing: Sensing::Sensor, ..ShapeDef::new(Shape::sphere(radius)) };
+    let moving = |def: BodyDef, at: Vec3, linear_velocity: Vec3| BodyDef { linear_velocity, ..def }.at(at);
+    for seed in 0..200 {
+        let mut random = Random::new(seed);
+        let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+        let mut place = || (random.in_cube() * 0.7, random.in_cube());
+        let ((at, way), (its, its_way), (ball_at, ball_way)) = (place(), place(), place());
+        let goes = world.add_body(&moving(BodyDef::kinematic(sensor(0.4)), at, way));
+        let stays = world.add_body(&moving(BodyDef::dynamic(sensor(0.35)), its, its_way));
+        (0..4).for_each(|_| world.step());
+        world.add_body(&moving(BodyDef::dynamic(Shape::sphere(0.7)), ball_at, ball_way));
+        (0..10).for_each(|_| world.step());
+        world.set_velocity(stays, Velocity { linear: random.in_cube() * 4.0, angular: Vec3::ZERO });
+        world.remove_body(goes);
+        (0..10).for_each(|_| world.step());
+        assert!(world.body_ids().all(|id| id != goes));
+    }
 }

@@ -1,7 +1,7 @@
 //! Every kind of joint, its springs, motors, limits and strength, against closed forms.
 
 use crate::build::{ball, joint};
-use sinew_math::{Range, Rotation, SwingTwistLimit, Sym3, Transform, Vec3, trig};
+use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Sym3, Transform, Vec3, trig};
 use sinew_physics::particles::{AttachmentDef, AttachmentTarget, RopeDef};
 use sinew_physics::*;
 
@@ -128,6 +128,68 @@ fn a_weak_motor_pushes_with_its_cap_and_no_more() {
     near(world.velocity(b).angular.z, 2.0 - 0.3 * 3.0 / ARM_MOMENT, 0.03, "braking at full torque");
     run(&mut world, 1.5);
     near(world.velocity(b).angular.z, -2.0, 0.005, "the other way");
+}
+
+/// Work of the stop's impulse is none of the motor's: whatever its cap, it brings its load to the new speed and no faster.
+#[test]
+fn a_motor_reversed_at_its_stop_leaves_it_at_its_speed() {
+    let mut random = Random::new(57);
+    for case in 0..60 {
+        let (cap, speed) = (10.0_f32 * decades(&mut random, 5.0), 0.05 * decades(&mut random, 2.0));
+        let turned = if case % 2 == 0 { Change::Speed } else { [Change::Cap, Change::None][case / 2 % 2] };
+        let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+        let base = world.add_body(&BodyDef::fixed(Shape::sphere(0.05)));
+        let beam = Shape::cuboid(Vec3::new(0.5, 0.05, 0.05));
+        let arm = world.add_body(&BodyDef::dynamic(beam).at(Vec3::X * 0.5));
+        let slides = random.unit() < 0.5;
+        let def = if slides {
+            world.slider(base, arm, Vec3::ZERO, Vec3::X)
+        } else {
+            world.hinge(base, arm, Vec3::ZERO, Vec3::Z)
+        };
+        let motor =
+            |speed: f32, cap: f32| if slides { Motor::push(speed, cap) } else { Motor::spin(speed, cap) };
+        let mut def = def.limited(Range::new(-0.5, 0.5));
+        def.motor = Some(motor(2.0, cap));
+        let joint = world.add_joint(&def);
+        (0..120).for_each(|_| world.step());
+        let at = |world: &World| {
+            let pose = world.joint_transform(joint);
+            if slides { pose.translation.x } else { pose.rotation.twist_angle(Vec3::X) }
+        };
+        let stop = at(&world);
+        let (motor, speed) = match turned {
+            Change::Speed => (Some(motor(-speed, cap)), -speed),
+            Change::Cap => (Some(motor(2.0, 1e-3 * cap)), 0.0),
+            Change::None => (None, 0.0),
+        };
+        world.set_motor(joint, motor);
+        let way = speed * world.def().dt();
+        for step in 1..=20 {
+            world.step();
+            // A weak one needs a while; none is faster than it should be.
+            let expected = sinew_math::max(stop + way * step as f32, -0.5);
+            let gone = at(&world);
+            let bar = 2e-4 + 0.01 * way.abs();
+            assert!(gone > expected - bar, "case {case}, cap {cap}, {speed} m/s: {gone} for {expected}");
+            if cap > 2e3 {
+                assert!(gone < expected + bar, "case {case}, cap {cap}, {speed} m/s: {gone} for {expected}");
+            }
+        }
+    }
+}
+
+/// A power of ten between 1 and 10 to this one.
+fn decades(random: &mut Random, most: f32) -> f32 {
+    trig::exp(random.range(0.0, most) * core::f32::consts::LN_10)
+}
+
+/// What a user changes of a motor at its stop.
+#[derive(Clone, Copy)]
+enum Change {
+    Speed,
+    Cap,
+    None,
 }
 
 #[test]

@@ -36,6 +36,7 @@ mod random_worlds;
 mod rims;
 mod rope;
 mod round_rest;
+mod seams;
 mod self_collision;
 #[cfg(feature = "serde")]
 mod serde;
@@ -44,6 +45,7 @@ mod sleep;
 mod solids;
 mod stacks;
 mod strands;
+mod strangers;
 mod surfaces;
 mod threads;
 mod touches;

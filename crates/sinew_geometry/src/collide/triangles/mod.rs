@@ -241,6 +241,21 @@ pub fn name_as_face(manifold: &mut super::Manifold, of_surface: Half) {
     }
 }
 
+/// Names the points of a manifold as those of a side that other shapes hide: it says that two shapes touch, not where they push.
+/// `of_surface` says in which half of a feature that side is.
+pub fn name_as_hidden(manifold: &mut super::Manifold, of_surface: Half) {
+    for point in &mut manifold.points[..manifold.count] {
+        point.feature &= !(0xffff << of_surface.shift());
+        point.feature |= u32::from(name::HIDDEN) << of_surface.shift();
+    }
+}
+
+/// True if a manifold was [named](name_as_hidden) as that of a hidden side.
+pub fn is_hidden(manifold: &super::Manifold) -> bool {
+    let hidden = u32::from(name::HIDDEN);
+    manifold.points().iter().any(|point| point.feature & 0xffff == hidden || point.feature >> 16 == hidden)
+}
+
 /// True if all points of a manifold lie on faces of the surface.
 pub fn is_on_face(manifold: &super::Manifold, of_surface: Half) -> bool {
     manifold.points().iter().all(|point| name::is_face((point.feature >> of_surface.shift()) as u16))

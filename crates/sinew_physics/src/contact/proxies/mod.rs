@@ -9,7 +9,7 @@ mod search;
 pub(crate) use layer::Leaf;
 use layer::{Home, Layer};
 pub(crate) use motion::{Ahead, Closing};
-use motion::{Stride, Trace};
+use motion::{Stride, Trace, UNKNOWN};
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -42,7 +42,7 @@ pub(crate) struct Proxies {
     homes: Vec<Option<Home>>,
     /// Static bodies of a single shape, by index: rays meet many, and a body is spread over several lines of the cache.
     lone: Vec<Option<Placed>>,
-    /// Bounds of each leaf of `moving` within the coming step, world, metres; [`UNKNOWN`](motion::UNKNOWN) where nobody needed them.
+    /// Bounds of each leaf of `moving` within the coming step, world, metres; [`UNKNOWN`] where nobody needed them.
     reach: Vec<Aabb>,
     /// By the first leaf of each body that may move.
     traces: Vec<Trace>,
@@ -62,6 +62,8 @@ pub(crate) struct Proxies {
     all_pending: bool,
     /// Leaves that are marked as pending.
     pending: Vec<Leaf>,
+    /// Some of them are of bodies that have gone.
+    has_gone: bool,
     scratch: Vec<Item>,
 }
 
@@ -125,6 +127,7 @@ impl Proxies {
         }
         layer.gaps.entry(home.count).or_default().push(home.first);
         self.unbounded.retain(|owner| owner.body != index);
+        self.has_gone |= home.count > 0;
         for shape in 0..home.count {
             self.enqueue(home.leaf(shape));
         }
@@ -165,6 +168,7 @@ impl Proxies {
             if count > FEW && count * 2 > self.layer(moves).tree.len() {
                 for &(index, body) in &new {
                     self.move_in(index, body);
+                    self.mark_dirty(index);
                 }
                 self.build(moves, &new);
             } else {
@@ -210,9 +214,11 @@ impl Proxies {
         self.lone[index as usize] = lone(body);
         if moves {
             let count = self.moving.owners.len();
-            self.reach.resize(count, Aabb::default());
+            self.reach.resize(count, UNKNOWN);
             self.traces.resize(count, Trace::NONE);
-            self.traces[first as usize..(first + home.count) as usize].fill(Trace::NONE);
+            let own = first as usize..(first + home.count) as usize;
+            self.reach[own.clone()].fill(UNKNOWN);
+            self.traces[own].fill(Trace::NONE);
             self.moving.tree.reserve(count);
             self.scratch.reserve(count);
             // All may leave their room at once.

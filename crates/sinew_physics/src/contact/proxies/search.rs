@@ -19,7 +19,7 @@ impl Proxies {
 
     /// True if that is no more than shapes that left their bounds.
     pub fn only_enlarged(&self) -> bool {
-        !self.all_pending && self.dirty.is_empty() && self.pending.len() == self.enlarged.len()
+        !self.all_pending && self.dirty.is_empty() && !self.has_gone
     }
 
     /// True if the pairs of a shape are being looked for anew.
@@ -29,7 +29,7 @@ impl Proxies {
 
     /// Everything has been looked for.
     pub fn clear_pending(&mut self) {
-        self.all_pending = false;
+        (self.all_pending, self.has_gone) = (false, false);
         for index in self.dirty.drain(..) {
             if let Some(home) = &mut self.homes[index as usize] {
                 home.dirty = false;

@@ -404,11 +404,16 @@ impl IslandSolver {
             for joint in &mut self.joints {
                 joint.impulse = ZERO6;
             }
-            self.refresh_rows();
-            self.factor_joints();
-            self.refresh_response();
+            self.renew_rows();
             self.project_joints(Pass::Solve);
         }
+    }
+
+    /// Rows, factor and response at the same pose, since other motors push with all they have than before.
+    pub(in crate::solver) fn renew_rows(&mut self) {
+        self.refresh_rows();
+        self.factor_joints();
+        self.refresh_response();
     }
 
     /// Impulse that a motor would give for the velocities in `scratch.started`; 0 where there is none.
@@ -426,8 +431,10 @@ impl IslandSolver {
         joint.motor_row(direction, self.h).impulse(joint.start_rate[direction], rate)
     }
 
-    /// Saturated motors that no longer ask for all they have are released, for the next substep.
-    pub(in crate::solver) fn release_motors(&mut self) {
+    /// Saturated motors that no longer ask for all they have are released, for the next substep: gives whether there are any. They have no rows
+    /// until these are refreshed.
+    pub(in crate::solver) fn release_motors(&mut self) -> bool {
+        let mut released = false;
         for joint in self.joints.iter_mut().filter(|joint| joint.drive.motor.is_some()) {
             for i in 0..DIRECTIONS {
                 if joint.saturated[i] != 0 {
@@ -435,9 +442,11 @@ impl IslandSolver {
                     let asked = joint.motor_row(i, self.h).impulse(rate, rate);
                     if asked * f32::from(joint.saturated[i]) < joint.motor_cap(i, self.h) {
                         joint.saturated[i] = 0;
+                        released = true;
                     }
                 }
             }
         }
+        released
     }
 }

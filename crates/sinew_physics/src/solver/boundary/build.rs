@@ -40,6 +40,8 @@ impl IslandSolver {
         self.look_for_fields(view);
         self.copy_joints(island, view);
         self.find_joint_masses();
+        // What the user has changed since may ask for less.
+        self.release_motors();
         self.refresh_rows();
         self.choose_coupling(island.contacts.len());
         self.form_batches();

@@ -79,9 +79,9 @@ pub(in crate::solver) fn margin(shapes: &[Placed<'_>; 2], turns: [f32; 2], appro
     max(4.0 * slop + approach + turning, FAR_CORNER * min(a, b))
 }
 
-/// The contact of two shapes at these poses, if there is one. Of a surface the plane stands that the manifold known so far lies on,
-/// through `on_surfaces` of A or B: the surface itself would answer for all its manifolds at once. What lies on its edges stays as it
-/// was found.
+/// The contact of two shapes at these poses, if there is one. For a surface, and for a solid of the ground that goes on beside it, stands the
+/// plane that the manifold known so far lies on, through `on_surfaces` of A or B: a surface itself would answer for all its manifolds at once.
+/// What lies on its edges stays as it was found.
 pub(in crate::solver) fn found_anew(
     [a, b]: [Placed<'_>; 2],
     poses: [Transform; 2],
@@ -93,17 +93,14 @@ pub(in crate::solver) fn found_anew(
     let frames = [poses[0] * *a.principal_from_shape, poses[1] * *b.principal_from_shape];
     let plane = |origin: Vec3, normal: Vec3| Transform::new(origin, Rotation::from_arc(Vec3::Y, normal));
     let mut manifold = Manifold::default();
-    let surface = match (a.shape.surface(), b.shape.surface()) {
-        (None, None) => {
-            collide(a.shape, &frames[0], b.shape, &frames[1], margin, &mut manifold);
-            return (manifold.count > 0).then_some(manifold);
+    let has_surface = a.shape.surface().is_some() || b.shape.surface().is_some();
+    let Some(surface) = [Half::OfA, Half::OfB].into_iter().find(|half| is_on_face(known, *half)) else {
+        if has_surface {
+            return None;
         }
-        (Some(_), _) => Half::OfA,
-        _ => Half::OfB,
+        collide(a.shape, &frames[0], b.shape, &frames[1], margin, &mut manifold);
+        return (manifold.count > 0).then_some(manifold);
     };
-    if !is_on_face(known, surface) {
-        return None;
-    }
     match surface {
         Half::OfA => {
             let ground = plane(on_surfaces[0], known.normal);

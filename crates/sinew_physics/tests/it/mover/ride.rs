@@ -1,7 +1,7 @@
 //! Platforms, belts, one-way floors, other movers.
 
 use super::{block, depth, level, settle};
-use sinew_math::Vec3;
+use sinew_math::{Random, Vec3};
 use sinew_physics::*;
 
 fn platform(world: &mut World, half_extents: Vec3, at: Vec3, linear: Vec3, angular: Vec3) -> BodyId {
@@ -29,6 +29,49 @@ fn a_lift_carries_it() {
         assert!((over(&world) - start).length() < 1e-3, "in step {step}: {} from {start}", over(&world));
         assert_eq!(depth(&world, id), 0.0);
         assert!((world.mover(id).velocity().y - speed).abs() < 1e-4);
+    }
+}
+
+/// It leaves a lift with the lift's velocity and the jump's, whichever way the lift goes and however fast: over the lift it rises by the jump's
+/// own speed.
+#[test]
+fn a_jump_from_a_lift_rises_over_it_by_its_own_speed() {
+    let mut random = Random::new(3);
+    for case in 0..40 {
+        let (speed, jump) = (random.range(-12.0, 12.0), random.range(0.3, 5.0));
+        let side = if case % 3 == 0 { random.range(-3.0, 3.0) } else { 0.0 };
+        let mut world = World::new(WorldDef::default());
+        let half = Vec3::new(3.0, 0.2, 3.0);
+        let lift = platform(&mut world, half, Vec3::Y * -0.2, Vec3::ZERO, Vec3::ZERO);
+        let id = world.add_mover(&MoverDef::at(Vec3::Y * 0.005));
+        let (mut apex, mut left) = (0.0, Vec3::ZERO);
+        for step in 0..420 {
+            // It gathers speed for 3 s, so that the mover rides all the time.
+            let share = sinew_math::min(step as f32 / 180.0, 1.0);
+            let linear = Vec3::new(side, speed, 0.0) * share;
+            world.set_velocity(lift, Velocity { linear, angular: Vec3::ZERO });
+            if step == 240 {
+                assert!(world.mover(id).is_grounded(), "case {case}: it rides at {speed} m/s");
+                world.mover_jump(id, jump);
+            }
+            world.step();
+            let over = world.mover(id).position().y - world.transform(lift).translation.y - 0.2;
+            if step == 240 {
+                left = world.mover(id).velocity();
+            }
+            if step >= 240 {
+                apex = sinew_math::max(apex, over - 0.005);
+            }
+        }
+        let (g, dt) = (9.81, world.def().dt());
+        let expected = Vec3::new(side, speed + jump - g * dt, 0.0);
+        assert!((left - expected).length() < 1e-3, "case {case}: {left} for {expected}");
+        // Between two steps the apex may be missed by half a step.
+        let rise = jump * jump / (2.0 * g);
+        assert!(
+            (apex - rise).abs() < 2e-3 + 0.01 * rise,
+            "case {case}: {jump} m/s at {speed}: {apex} for {rise}"
+        );
     }
 }
 

@@ -1,0 +1,235 @@
+//! Seams: what solids that abut show of their faces where they meet. A floor of boxes has no edges, although each of its boxes has: of two
+//! that meet in a plane neither shows the other the side on which they meet.
+
+use crate::boxes::Aabb;
+use crate::shape::Shape;
+use crate::triangles::{Surface, Triangle, closest_on_triangle};
+use sinew_math::{Transform, Vec3, max, normalize_or};
+
+/// Most faces of a solid that are looked at around a point. Where more meet, nothing is known.
+const MOST: usize = 8;
+/// Faces whose normals have this cosine are parts of one.
+const SAME: f32 = 0.999;
+/// Sine up to which a direction that leads out of a solid counts as leading along it.
+const ALONG: f32 = 0.03;
+/// Rounding of a direction that lies in a face.
+const FLAT: f32 = 1e-3;
+/// Cosine to the asked normal below which a face has nothing to do with it.
+const AVERSE: f32 = -0.3;
+
+/// The faces of a solid, or of a surface, around a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Faces {
+    /// World, outward, unit.
+    normals: [Vec3; MOST],
+    /// Height of the point over each, metres.
+    heights: [f32; MOST],
+    count: usize,
+    /// Faces that others hide, bit by bit.
+    hidden: u8,
+}
+
+impl Faces {
+    /// Faces within `reach` (metres) of a point in the world; none if the point is deeper inside than that. `None` if the point is farther
+    /// outside, or the shape has no flat faces.
+    pub fn around(shape: &Shape, world_from_shape: &Transform, point: Vec3, reach: f32) -> Option<Self> {
+        let mut faces = Self { normals: [Vec3::ZERO; MOST], heights: [0.0; MOST], count: 0, hidden: 0 };
+        let p = world_from_shape.inverse_point(point);
+        let inside = match shape {
+            Shape::HalfSpace => faces.take(Vec3::Y, p.y, reach),
+            Shape::Box { half_extents } => Vec3::AXES.into_iter().all(|axis| {
+                let (x, half) = (p.dot(axis), half_extents.dot(axis));
+                faces.take(axis, x - half, reach) && faces.take(-axis, -x - half, reach)
+            }),
+            Shape::Hull(hull) => hull
+                .faces()
+                .all(|face| faces.take(face.normal(), face.normal().dot(p) - face.offset(), reach)),
+            _ => shape.surface().is_some_and(|surface| faces.take_surface(&surface, p, reach)),
+        };
+        faces.normals[..faces.count]
+            .iter_mut()
+            .for_each(|normal| *normal = world_from_shape.rotation * *normal);
+        inside.then_some(faces)
+    }
+
+    /// Number of faces.
+    #[inline]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Takes a face, if it is near; false if the point is farther outside, or there is no room.
+    fn take(&mut self, normal: Vec3, height: f32, reach: f32) -> bool {
+        if height > reach {
+            return false;
+        }
+        if height >= -reach {
+            if self.count == MOST {
+                return false;
+            }
+            (self.normals[self.count], self.heights[self.count]) = (normal, height);
+            self.count += 1;
+        }
+        true
+    }
+
+    /// Takes the triangles around a point, and the sides on which the surface ends or falls away there. True if there are any.
+    fn take_surface(&mut self, surface: &Surface<'_>, p: Vec3, reach: f32) -> bool {
+        let mut fits = true;
+        surface.overlapping(&Aabb::around(p, Vec3::splat(reach)), |triangle| {
+            let (nearest, _) = closest_on_triangle(&triangle.corners, p);
+            if (nearest - p).length() <= reach {
+                fits &= self.take_triangle(&triangle, p, reach);
+            }
+        });
+        fits && self.count > 0
+    }
+
+    fn take_triangle(&mut self, triangle: &Triangle, p: Vec3, reach: f32) -> bool {
+        let mut fits = self.take_new(triangle.normal, triangle.height(p), reach);
+        for edge in (0..3).filter(|&edge| triangle.is_active(edge)) {
+            let (from, to) = (triangle.corners[edge], triangle.corners[(edge + 1) % 3]);
+            let out = normalize_or((to - from).cross(triangle.normal), Vec3::ZERO);
+            fits &= self.take_new(out, out.dot(p - from), reach);
+        }
+        fits
+    }
+
+    /// Takes a face unless it is part of one that is there.
+    fn take_new(&mut self, normal: Vec3, height: f32, reach: f32) -> bool {
+        let is_known = self.normals[..self.count].iter().any(|known| known.dot(normal) > SAME);
+        is_known || self.take(normal, height, reach)
+    }
+
+    /// Hides the faces that lie behind another solid around the point: from where they are every way along them leads into it.
+    pub fn hide_behind(&mut self, other: &Self) {
+        for face in 0..self.count {
+            if self.is_behind(face, other) {
+                self.hidden |= 1 << face;
+            }
+        }
+    }
+
+    fn is_behind(&self, face: usize, other: &Self) -> bool {
+        let normal = self.normals[face];
+        let others = &other.normals[..other.count];
+        // What both have in common both show.
+        if others.iter().any(|out| out.dot(normal) > SAME) {
+            return false;
+        }
+        let edges = || self.normals[..self.count].iter().filter(|edge| edge.dot(normal).abs() < SAME);
+        let leads_out = |way: Vec3| {
+            let lies_in = edges().all(|edge| edge.dot(way) <= FLAT);
+            lies_in && others.iter().any(|out| out.dot(way) > ALONG)
+        };
+        if edges().next().is_none() {
+            let one =
+                normalize_or(normal.cross(if normal.x.abs() < 0.6 { Vec3::X } else { Vec3::Y }), Vec3::ZERO);
+            let two = normal.cross(one);
+            return ![one, -one, two, -two].into_iter().any(leads_out);
+        }
+        !edges().any(|edge| {
+            let along = normalize_or(normal.cross(*edge), Vec3::ZERO);
+            let inward = normalize_or(normal * normal.dot(*edge) - *edge, Vec3::ZERO);
+            [along, -along, inward].into_iter().any(leads_out)
+        })
+    }
+
+    /// The normal nearest to this one that the faces which are not hidden have between them, and the height of the point over the plane through
+    /// them that it stands on, metres. `None` if all are hidden, or none looks that way. Where none is hidden the normal is as good as it was.
+    pub fn shown(&self, normal: Vec3) -> Option<(Vec3, f32)> {
+        if self.hidden == 0 {
+            return Some((normal, 0.0));
+        }
+        let shown = |face: &usize| self.hidden >> face & 1 == 0;
+        let mut best: Option<(f32, Vec3, f32)> = None;
+        let mut consider = |sum: Vec3, height: f32| {
+            let length = sum.length();
+            let cosine = sum.dot(normal) / max(length, f32::MIN_POSITIVE);
+            if length > FLAT && best.is_none_or(|(most, ..)| cosine > most) {
+                best = Some((cosine, sum / length, height / length));
+            }
+        };
+        for i in (0..self.count).filter(shown) {
+            let (p, of_p) = (self.normals[i], self.normals[i].dot(normal));
+            consider(p, self.heights[i]);
+            for j in (0..i).filter(shown) {
+                let (q, of_q) = (self.normals[j], self.normals[j].dot(normal));
+                let c = p.dot(q);
+                let (a, b) = (of_p - c * of_q, of_q - c * of_p);
+                if a > 0.0 && b > 0.0 {
+                    consider(p * a + q * b, self.heights[i] * a + self.heights[j] * b);
+                }
+                for k in (0..j).filter(shown) {
+                    let r = self.normals[k];
+                    let span = p.dot(q.cross(r));
+                    let shares = [normal.dot(q.cross(r)), normal.dot(r.cross(p)), normal.dot(p.cross(q))]
+                        .map(|x| x * span);
+                    if shares.iter().all(|share| *share > 0.0) {
+                        let [a, b, c] = shares;
+                        let height = self.heights[i] * a + self.heights[j] * b + self.heights[k] * c;
+                        consider(p * a + q * b + r * c, height);
+                    }
+                }
+            }
+        }
+        best.filter(|(cosine, ..)| *cosine > AVERSE).map(|(_, shown, height)| (shown, height))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_math::{Random, Rotation};
+
+    fn cube() -> Shape {
+        Shape::cuboid(Vec3::splat(0.5))
+    }
+
+    /// Two boxes side by side, turned and placed anyhow: their common side is hidden, and what stands out of the other is not.
+    #[test]
+    fn what_abuts_hides_its_common_side_alone() {
+        let mut random = Random::new(5);
+        for case in 0..200 {
+            let frame = Transform::new(random.in_cube() * 5.0, random.rotation());
+            let beside = |by: Vec3| frame * Transform::from_translation(by);
+            let raised = random.range(0.0, 0.003);
+            let around = |by: Vec3, p: Vec3| Faces::around(&cube(), &beside(by), frame.point(p), 0.0045);
+            let seam = Vec3::new(0.5, 0.5, random.range(-0.3, 0.3));
+            let (up, side) = (frame.rotation * Vec3::Y, frame.rotation * Vec3::X);
+            let mut left = around(Vec3::ZERO, seam).expect("it is there");
+            assert_eq!(left.count(), 2);
+            left.hide_behind(&around(Vec3::new(1.0, raised, 0.0), seam).expect("it is there"));
+            let tilted = (up + side * random.range(0.01, 3.0)).normalize();
+            let (normal, height) = left.shown(tilted).expect("its top");
+            assert!((normal - up).length() < 1e-5 && height.abs() < 1e-5, "case {case}: {normal} {height}");
+            // A wall that stands on the floor, and goes down beside it.
+            for below in [0.5, 0.0] {
+                let foot = Vec3::new(0.5, 0.5, seam.z);
+                let at = Vec3::new(1.0, 1.0 - below, 0.0);
+                let mut wall = around(at, foot).expect("it is there");
+                wall.hide_behind(&around(Vec3::ZERO, foot).expect("it is there"));
+                let (normal, _) = wall.shown(-side).expect("its side");
+                assert!((normal + side).length() < 1e-5, "case {case}, {below} below: {normal}");
+            }
+            // Alone it shows all.
+            let alone = around(Vec3::ZERO, seam).expect("it is there");
+            let (normal, _) = alone.shown(tilted).expect("its edge");
+            assert!((normal - tilted).length() < 1e-5, "case {case}: {normal} {tilted}");
+        }
+    }
+
+    #[test]
+    fn what_is_deep_inside_shows_nothing_and_twins_show_all() {
+        let at = Transform::new(Vec3::ZERO, Rotation::from_axis_angle(Vec3::Z, 0.3));
+        let edge = at.point(Vec3::new(0.5, 0.5, 0.0));
+        let faces = || Faces::around(&cube(), &at, edge, 0.004).expect("it is there");
+        let mut twin = faces();
+        twin.hide_behind(&faces());
+        assert!(twin.shown(at.rotation * Vec3::X).is_some());
+        let large = Shape::cuboid(Vec3::splat(0.6));
+        let mut buried = faces();
+        buried.hide_behind(&Faces::around(&large, &at, edge, 0.004).expect("it is there"));
+        assert!(buried.shown(at.rotation * Vec3::X).is_none());
+    }
+}

@@ -1,0 +1,191 @@
+//! In `collide`: contacts on edges that are none, since another shape that does not move against theirs goes on where they end.
+
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::body::contact_rule::ContactRule;
+use crate::body::def::BodyKind;
+use crate::body::shape::{Sensing, Shape};
+use crate::boxes::Aabb;
+use crate::collide::{
+    Faces, Half, MAX_POINTS, Manifold, ManifoldPoint, collide, is_on_face, name_as_face, name_as_hidden,
+};
+use crate::contact::ContactKey;
+use crate::contact::filter::PairFilter;
+use crate::contact::proxies::{Owner, Proxies};
+use crate::contact::tuning::{SEAM_REACH, SEAM_SLOPS};
+use core::ops::ControlFlow;
+use sinew_math::{Rotation, Transform, Vec3, max3, min3};
+
+/// Surroundings of contacts.
+#[derive(Clone, Copy)]
+pub(crate) struct Seams<'a> {
+    pub bodies: &'a Arena<Body>,
+    pub proxies: &'a Proxies,
+    pub filter: PairFilter<'a>,
+}
+
+/// Bounds within which a manifold was looked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Search {
+    /// Metres.
+    pub margin: f32,
+    pub slop: f32,
+    /// Length of the step, seconds.
+    pub dt: f32,
+}
+
+/// The two sides of a contact of which one belongs to the ground.
+struct Sides {
+    ground: Owner,
+    mover: Owner,
+    of_ground: Half,
+    /// Unit, from the ground.
+    out: Vec3,
+}
+
+impl Seams<'_> {
+    /// Turns a contact that was just found with an edge or a side of the ground on which it goes on to what the ground is there: a face of the
+    /// shape, or a side that does not push, where the face is another's.
+    pub fn mend(&self, key: ContactKey, search: Search, manifold: &mut Manifold) {
+        let Some(sides) = self.sides(key, manifold) else { return };
+        let reach = SEAM_SLOPS * search.slop;
+        let mut faces: [Option<Faces>; MAX_POINTS] = [None; MAX_POINTS];
+        let mut bounds = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+        for (around, point) in faces.iter_mut().zip(manifold.points()) {
+            let on_ground = point.position - sides.out * (0.5 * point.separation);
+            let Some(found) = self.faces(sides.ground, on_ground, reach) else { return };
+            // Away from the edges it is what it was found to be.
+            if found.count() < 2 {
+                return;
+            }
+            bounds = Aabb { min: min3(bounds.min, on_ground), max: max3(bounds.max, on_ground) };
+            *around = Some(found);
+        }
+        self.hide(&sides, manifold, (bounds.expand(reach), reach), &mut faces);
+        let shown = faces.map(|around| around.and_then(|faces| faces.shown(sides.out)));
+        let is_as_found = |&(normal, _): &(Vec3, f32)| normal.dot(sides.out) > AS_FOUND;
+        if shown[..manifold.count].iter().flatten().any(is_as_found) {
+            return;
+        }
+        let mut deepest = 0;
+        for (i, point) in manifold.points().iter().enumerate() {
+            deepest = if point.separation < manifold.points[deepest].separation { i } else { deepest };
+        }
+        let ManifoldPoint { position, separation, .. } = manifold.points[deepest];
+        let on_ground = position - sides.out * (0.5 * separation);
+        let plane = shown[deepest].map(|(normal, height)| (normal, on_ground - normal * height));
+        let found = plane.map(|plane| self.put_on(&sides, plane, (search, reach)));
+        match found.filter(|found| found.count > 0) {
+            Some(found) => *manifold = found,
+            None => name_as_hidden(manifold, sides.of_ground),
+        }
+    }
+
+    /// `None` unless one of the two is dynamic and the other, with flat faces, is not, and both push.
+    fn sides(&self, key: ContactKey, manifold: &Manifold) -> Option<Sides> {
+        if manifold.count == 0 {
+            return None;
+        }
+        let a = Owner { body: key.a, shape: key.shape_a };
+        let b = Owner { body: key.b, shape: key.shape_b };
+        let is_ground = |owner: Owner| self.bodies.at(owner.body).kind != BodyKind::Dynamic;
+        let sides = match (is_ground(a), is_ground(b)) {
+            (true, false) => Sides { ground: a, mover: b, of_ground: Half::OfA, out: manifold.normal },
+            (false, true) => Sides { ground: b, mover: a, of_ground: Half::OfB, out: -manifold.normal },
+            _ => return None,
+        };
+        let shape = self.shape(sides.ground);
+        // A surface knows of its own edges, but not of those at which it ends.
+        let is_edged = matches!(shape, Shape::Box { .. } | Shape::Hull(_))
+            || shape.surface().is_some() && !is_on_face(manifold, sides.of_ground);
+        (is_edged && self.pushes(a) && self.pushes(b)).then_some(sides)
+    }
+
+    fn shape(&self, owner: Owner) -> &Shape {
+        &self.bodies.at(owner.body).shapes[owner.shape as usize].shape
+    }
+
+    fn faces(&self, owner: Owner, point: Vec3, reach: f32) -> Option<Faces> {
+        let frame = self.bodies.at(owner.body).world_from_shape(owner.shape as usize);
+        Faces::around(self.shape(owner), &frame, point, reach)
+    }
+
+    /// Hides, around each point, what lies behind other shapes of the ground.
+    fn hide(
+        &self,
+        sides: &Sides,
+        manifold: &Manifold,
+        (bounds, reach): (Aabb, f32),
+        faces: &mut [Option<Faces>; MAX_POINTS],
+    ) {
+        let Sides { ground, mover, out, .. } = *sides;
+        let _ = self.proxies.overlapping(&bounds, |other| {
+            if self.goes_on(ground, other) && self.stops(mover, other) {
+                for (around, point) in faces.iter_mut().zip(manifold.points()) {
+                    let on_ground = point.position - out * (0.5 * point.separation);
+                    if let (Some(around), Some(its)) = (around, self.faces(other, on_ground, reach)) {
+                        around.hide_behind(&its);
+                    }
+                }
+            }
+            ControlFlow::<()>::Continue(())
+        });
+    }
+
+    /// True if another shape never moves against one of the ground.
+    fn goes_on(&self, ground: Owner, other: Owner) -> bool {
+        let is_static = |owner: Owner| self.bodies.at(owner.body).kind == BodyKind::Static;
+        other != ground && (other.body == ground.body || is_static(ground) && is_static(other))
+    }
+
+    /// True if a shape always pushes another that comes to it.
+    fn stops(&self, mover: Owner, other: Owner) -> bool {
+        let key = ContactKey::new((mover.body, mover.shape), (other.body, other.shape));
+        self.pushes(other) && self.filter.lets_meet(self.bodies, key)
+    }
+
+    fn pushes(&self, owner: Owner) -> bool {
+        let surface = self.bodies.at(owner.body).surface(owner.shape as usize);
+        surface.sensing == Sensing::Solid && surface.rule == ContactRule::Push
+    }
+
+    /// The contact with a plane of the ground, as far as what comes to it is over the shape, or will be within the step.
+    fn put_on(
+        &self,
+        sides: &Sides,
+        (normal, origin): (Vec3, Vec3),
+        (search, reach): (Search, f32),
+    ) -> Manifold {
+        static PLANE: Shape = Shape::HalfSpace;
+        let Sides { ground, mover, of_ground, .. } = *sides;
+        let plane = Transform::new(origin, Rotation::from_arc(Vec3::Y, normal));
+        let body = self.bodies.at(mover.body);
+        let frame = body.world_from_shape(mover.shape as usize);
+        let mut manifold = Manifold::default();
+        let (ground_side, mover_side) = ((&PLANE, &plane), (self.shape(mover), &frame));
+        let (a, b) = match of_ground {
+            Half::OfA => (ground_side, mover_side),
+            Half::OfB => (mover_side, ground_side),
+        };
+        collide(a.0, a.1, b.0, b.1, search.margin, &mut manifold);
+        let way = (body.velocity.linear - self.bodies.at(ground.body).velocity.linear) * search.dt;
+        let way = way - normal * way.dot(normal);
+        let found = core::mem::take(&mut manifold.count);
+        for i in 0..found {
+            let point = manifold.points[i];
+            let foot = point.position - normal * (0.5 * point.separation);
+            let comes = point.separation > -SEAM_REACH * search.slop;
+            let is_over = self.faces(ground, foot, reach).is_some()
+                || comes && self.faces(ground, foot + way, reach).is_some();
+            if is_over {
+                manifold.points[manifold.count] = point;
+                manifold.count += 1;
+            }
+        }
+        name_as_face(&mut manifold, of_ground);
+        manifold
+    }
+}
+
+/// Cosine from which on a normal counts as the one that was found.
+const AS_FOUND: f32 = 0.999_999_9;

@@ -1,0 +1,194 @@
+//! Seams of the ground: what slides and rolls over shapes that abut goes as over one, and real edges stop it.
+
+use crate::solids::box_hull;
+use sinew_math::{Random, Rotation, Transform, Vec3, max, trig};
+use sinew_physics::*;
+
+/// What the ground is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Tiles {
+    One,
+    Boxes,
+    Hulls,
+    /// Shapes of a single body.
+    Shapes,
+    /// Raised, lowered and parted by less than a slop.
+    Rough,
+    /// Meshes and boxes by turns.
+    Mixed,
+}
+
+const SIDE: i32 = 9;
+
+/// Ground whose top is at height 0.
+fn lay(world: &mut World, tiles: Tiles, material: Material, random: &mut Random) {
+    let tile = |shape: Shape| ShapeDef { material, ..ShapeDef::new(shape) };
+    let half = Vec3::splat(0.5);
+    if tiles == Tiles::One {
+        let far = SIDE as f32;
+        world.add_body(&BodyDef::fixed(tile(Shape::cuboid(Vec3::new(far, 0.5, far)))).at(Vec3::Y * -0.5));
+        return;
+    }
+    let mut all = Vec::new();
+    for (i, j) in (-SIDE..SIDE).flat_map(|i| (-SIDE..SIDE).map(move |j| (i, j))) {
+        let at = Vec3::new(i as f32 + 0.5, -0.5, j as f32 + 0.5);
+        match tiles {
+            Tiles::Boxes => _ = world.add_body(&BodyDef::fixed(tile(Shape::cuboid(half))).at(at)),
+            Tiles::Hulls => _ = world.add_body(&BodyDef::fixed(tile(box_hull(half))).at(at)),
+            Tiles::Rough => {
+                let by =
+                    Vec3::new(random.range(-3e-4, 3e-4), random.range(-2e-4, 0.0), random.range(-3e-4, 3e-4));
+                world.add_body(&BodyDef::fixed(tile(Shape::cuboid(half))).at(at + by));
+            }
+            Tiles::Mixed if (i + j) % 2 == 0 => {
+                let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
+                let points = corners.map(|(x, z)| Vec3::new(x, 0.5, z));
+                let mesh = Shape::mesh(&points, &[[0, 2, 1], [0, 3, 2]]).expect("two triangles");
+                world.add_body(&BodyDef::fixed(tile(mesh)).at(at));
+            }
+            Tiles::Mixed => _ = world.add_body(&BodyDef::fixed(tile(Shape::cuboid(half))).at(at)),
+            _ => all.push(ShapeDef {
+                body_from_shape: Transform::from_translation(at),
+                ..tile(Shape::cuboid(half))
+            }),
+        }
+    }
+    if !all.is_empty() {
+        world.add_body(&BodyDef { kind: BodyKind::Static, shapes: all, ..BodyDef::default() });
+    }
+}
+
+/// A body on the ground, how it lies, and whether it rolls.
+struct Goer {
+    shape: Shape,
+    height: f32,
+    turn: Rotation,
+    spin: f32,
+    friction: f32,
+}
+
+fn goer(kind: usize, way: Vec3, random: &mut Random) -> Goer {
+    let yaw = Rotation::from_axis_angle(Vec3::Y, random.range(0.0, core::f32::consts::TAU));
+    let half = Vec3::new(0.2, 0.15, 0.25);
+    let lying = Rotation::from_arc(Vec3::Y, Vec3::Y.cross(way).normalize());
+    let rolls = |shape: Shape, radius: f32, turn: Rotation| Goer {
+        shape,
+        height: radius,
+        turn,
+        spin: 1.0 / radius,
+        friction: 0.6,
+    };
+    let slides =
+        |shape: Shape, height: f32, friction: f32| Goer { shape, height, turn: yaw, spin: 0.0, friction };
+    match kind {
+        0 => rolls(Shape::sphere(0.3), 0.3, Rotation::IDENTITY),
+        1 => rolls(Shape::sphere(0.05), 0.05, Rotation::IDENTITY),
+        2 => slides(Shape::cuboid(half), half.y, 0.0),
+        3 => slides(Shape::cuboid(half), half.y, 0.1),
+        4 => slides(box_hull(half), half.y, 0.0),
+        5 => rolls(Shape::capsule(0.3, 0.1), 0.1, lying),
+        _ => slides(Shape::cylinder(0.1, 0.2), 0.1, 0.0),
+    }
+}
+
+/// How a body went: level speed at the end, height at the end and at the most, each over where it began.
+#[derive(Debug)]
+struct Way {
+    speed: f32,
+    height: f32,
+    apex: f32,
+}
+
+fn went(tiles: Tiles, kind: usize, speed: f32, seed: u64) -> Way {
+    let mut random = Random::new(seed);
+    let heading = random.range(0.0, core::f32::consts::TAU);
+    let way = Vec3::new(trig::cos(heading), 0.0, trig::sin(heading));
+    let goer = goer(kind, way, &mut random);
+    let start = Vec3::new(random.range(-1.0, 1.0), goer.height, random.range(-1.0, 1.0));
+    let mut world = World::new(WorldDef::default());
+    let material = Material { friction: goer.friction, ..Material::DEFAULT };
+    lay(&mut world, tiles, material, &mut random);
+    let shape = ShapeDef { material, ..ShapeDef::new(goer.shape) };
+    let body = world.add_body(&BodyDef {
+        linear_velocity: way * speed,
+        angular_velocity: Vec3::Y.cross(way) * (speed * goer.spin),
+        ..BodyDef::dynamic(shape).at(start).turned(goer.turn)
+    });
+    let mut apex = 0.0;
+    let height = |world: &World| world.center_of_mass(body).y - goer.height;
+    for _ in 0..sinew_math::min(6.0 / speed * 60.0, 240.0) as usize {
+        world.step();
+        apex = max(apex, height(&world));
+    }
+    Way { speed: world.velocity(body).linear.dot(way), height: height(&world), apex }
+}
+
+#[test]
+fn what_goes_over_seams_goes_as_over_one_box() {
+    let mut seed = 0;
+    for kind in 0..7 {
+        for speed in [0.5, 1.0, 3.0, 6.0, 10.0] {
+            for tiles in [Tiles::Boxes, Tiles::Hulls, Tiles::Shapes, Tiles::Rough, Tiles::Mixed] {
+                seed += 1;
+                let (one, way) = (went(Tiles::One, kind, speed, seed), went(tiles, kind, speed, seed));
+                let case = format!("{tiles:?}, kind {kind} at {speed} m/s, seed {seed}: {way:?} for {one:?}");
+                assert!((way.speed - one.speed).abs() < 0.01 * speed, "{case}");
+                assert!((way.height - one.height).abs() < 1e-3 && way.apex - one.apex < 1e-3, "{case}");
+            }
+        }
+    }
+}
+
+/// A step of 5 mm and a gap that is wider than a slop are met; walls on the ground and beside it stop what comes.
+#[test]
+fn real_edges_stop_what_comes() {
+    for (name, at, half) in [
+        ("a wall beside the floor", Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.5, 1.0, 0.5)),
+        ("a wall on the floor", Vec3::new(0.4, 0.5, 0.0), Vec3::new(0.1, 0.5, 0.5)),
+        ("a step", Vec3::new(1.0, -0.495, 0.0), Vec3::splat(0.5)),
+    ] {
+        for seed in 0..20 {
+            let mut random = Random::new(seed);
+            let mut world = World::new(WorldDef::default());
+            let smooth = Material { friction: 0.0, ..Material::DEFAULT };
+            let def = |half: Vec3| ShapeDef { material: smooth, ..ShapeDef::new(Shape::cuboid(half)) };
+            world.add_body(&BodyDef::fixed(def(Vec3::splat(0.5))).at(Vec3::Y * -0.5));
+            world.add_body(&BodyDef::fixed(def(half)).at(at));
+            let start = Vec3::new(-0.2, 0.15, random.range(-0.2, 0.2));
+            let crate_of = BodyDef::dynamic(def(Vec3::splat(0.15))).at(start);
+            let speed = random.range(0.3, 2.0);
+            let body = world.add_body(&BodyDef { linear_velocity: Vec3::X * speed, ..crate_of });
+            (0..120).for_each(|_| world.step());
+            let x = world.center_of_mass(body).x;
+            assert!(x < 0.4, "{name}, {speed} m/s: the crate is at {x}");
+        }
+    }
+}
+
+/// Movers walk over seams as over one box.
+#[test]
+fn a_mover_walks_over_seams() {
+    for seed in 0..20 {
+        let mut random = Random::new(seed);
+        let tiles =
+            [Tiles::Boxes, Tiles::Hulls, Tiles::Shapes, Tiles::Rough, Tiles::Mixed][seed as usize % 5];
+        let mut world = World::new(WorldDef::default());
+        lay(&mut world, tiles, Material::DEFAULT, &mut random);
+        let id = world.add_mover(&MoverDef::at(Vec3::new(random.unit(), 0.005, random.unit())));
+        let heading = random.range(0.0, core::f32::consts::TAU);
+        let walk = Vec3::new(trig::cos(heading), 0.0, trig::sin(heading)) * random.range(0.5, 4.0);
+        world.set_mover_walk(id, walk);
+        for step in 0..120 {
+            world.step();
+            let mover = world.mover(id);
+            let height = mover.position().y;
+            assert!(mover.is_grounded() && (-1e-3..7e-3).contains(&height), "{tiles:?}, {seed}: {height}");
+            let off = (mover.velocity() - walk).length();
+            assert!(
+                step < 10 || off < 0.01 * walk.length(),
+                "{tiles:?}, {seed}: {} for {walk}",
+                mover.velocity()
+            );
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Worlds of strangers: a snapshot that is loaded into a world that never knew the one it was taken of has the same future, on another number of
+//! threads too, whatever the world holds and whatever is done to it.
+//!
+//! Worlds of 10 to 300 bodies of all kinds lie, sleep, are pushed, joined, sensed and changed; each is saved at random moments and goes on
+//! beside the worlds that loaded it, which do to themselves what it does. Snapshots and events are equal after each step.
+//!
+//! A few worlds, or 300 when `SINEW_FULL` is set. `SINEW_WORLDS=17..18 cargo test --release -p sinew_physics --test it -- --nocapture strangers`
+//! runs the seeds of the range and tells how far it is.
+
+mod deeds;
+mod populate;
+
+use crate::random_worlds::asked_seeds;
+use sinew_math::{Random, Reader, Writer};
+use sinew_physics::stage::NoProfiler;
+use sinew_physics::{Events, Serial, Threads, World, WorldDef};
+
+/// Steps of each world.
+const STEPS: usize = 300;
+/// Moments at which each is saved.
+const MOMENTS: usize = 5;
+
+/// A world that goes on from a snapshot of another.
+struct Stranger {
+    world: World,
+    born: usize,
+    threads: Threads,
+}
+
+impl Stranger {
+    /// One that has loaded a snapshot into a world that has never been another.
+    fn of(original: &World, born: usize, threads: usize) -> Self {
+        let mut world = World::new(WorldDef::default());
+        deeds::register(&mut world);
+        let (mut shapes, mut state) = (Writer::new(), Writer::new());
+        original.save_shapes(&mut shapes);
+        original.save(&mut state);
+        world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("a library that was saved is valid");
+        world.load(&mut Reader::new(state.as_bytes())).expect("a saved world is valid");
+        Self { world, born, threads: Threads::new(threads) }
+    }
+}
+
+/// Random numbers for what is done before a step.
+fn deeds_of(seed: u64, step: usize) -> Random {
+    Random::new(seed.wrapping_mul(1_000_003).wrapping_add(step as u64))
+}
+
+fn moved_on(world: &mut World, seed: u64, step: usize, threads: Option<&Threads>) -> Events {
+    deeds::act(world, &mut deeds_of(seed, step));
+    match threads {
+        Some(threads) => world.step_with(threads, &NoProfiler),
+        None => world.step_with(&Serial, &NoProfiler),
+    }
+    world.events().clone()
+}
+
+/// Runs the world of a seed beside those that load it.
+fn meet_strangers(seed: u64) {
+    let mut random = Random::new(seed);
+    let mut world = populate::world(&mut random);
+    let moments: Vec<usize> = (0..MOMENTS).map(|_| random.index(STEPS - 20)).collect();
+    let mut strangers: Vec<Stranger> = Vec::new();
+    for step in 0..STEPS {
+        for _ in moments.iter().filter(|&&moment| moment == step) {
+            strangers.push(Stranger::of(&world, step, 1 + strangers.len() % 2));
+        }
+        let events = moved_on(&mut world, seed, step, None);
+        let hash = world.hash();
+        for Stranger { world: other, born, threads } in &mut strangers {
+            let others = moved_on(other, seed, step, Some(threads));
+            let who = format!("world {seed}, saved before step {born}, {} threads", threads.count());
+            assert_eq!(others, events, "{who}: other events of step {step}");
+            assert_eq!(other.hash(), hash, "{who}: another state after step {step}");
+        }
+    }
+}
+
+fn seeds() -> core::ops::Range<u64> {
+    let count = if std::env::var_os("SINEW_FULL").is_some() { 300 } else { 6 };
+    asked_seeds().unwrap_or(0..count)
+}
+
+#[test]
+fn strangers_have_the_same_future() {
+    let told = asked_seeds().is_some();
+    for seed in seeds() {
+        meet_strangers(seed);
+        if told && (seed + 1).is_multiple_of(20) {
+            eprintln!("strangers: {} hold", seed + 1);
+        }
+    }
+}
