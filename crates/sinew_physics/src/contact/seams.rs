@@ -7,7 +7,7 @@ use crate::body::def::BodyKind;
 use crate::body::shape::{Sensing, Shape};
 use crate::boxes::Aabb;
 use crate::collide::{
-    Faces, Half, MAX_POINTS, Manifold, ManifoldPoint, collide, is_on_face, name_as_face, name_as_hidden,
+    Faces, Half, MAX_POINTS, Manifold, ManifoldPoint, collide, name_as_face, name_as_hidden,
 };
 use crate::contact::ContactKey;
 use crate::contact::filter::PairFilter;
@@ -94,10 +94,7 @@ impl Seams<'_> {
             (false, true) => Sides { ground: b, mover: a, of_ground: Half::OfB, out: -manifold.normal },
             _ => return None,
         };
-        let shape = self.shape(sides.ground);
-        // A surface knows of its own edges, but not of those at which it ends.
-        let is_edged = matches!(shape, Shape::Box { .. } | Shape::Hull(_))
-            || shape.surface().is_some() && !is_on_face(manifold, sides.of_ground);
+        let is_edged = matches!(self.shape(sides.ground), Shape::Box { .. } | Shape::Hull(_));
         (is_edged && self.pushes(a) && self.pushes(b)).then_some(sides)
     }
 

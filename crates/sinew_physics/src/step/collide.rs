@@ -54,15 +54,12 @@ pub(crate) fn collide(
         return;
     }
     let proxies = &broad.proxies;
-    let seams = Seams { bodies, proxies, filter };
     parts.update(bodies, contacts, context, |contact| {
         surface_motion(bodies, contact, proxies.ahead(contact.key), context.dt)
     });
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
         if contact.has_surface && (a.can_touch() || b.can_touch()) {
-            let (margin, slop) = margin(a, b, contact.key, beyond(proxies.ahead(contact.key)), context.dt);
-            seams.mend(contact.key, Search { margin, slop, dt: context.dt }, &mut contact.manifold);
             weigh(contact, a, b, context.dt);
         }
     });
@@ -147,11 +144,6 @@ pub(crate) fn smallest_extent(a: &Body, b: &Body, key: ContactKey) -> f32 {
     min(shape_a.smallest_extent(), shape_b.smallest_extent())
 }
 
-/// As far as bodies come by themselves: of surfaces there is no bound.
-fn beyond(ahead: Ahead) -> Ahead {
-    Ahead { most: f32::INFINITY, ..ahead }
-}
-
 /// Motion of a pair of which one is a surface, the other toward the surface; `None` of other pairs, and of those at rest.
 fn surface_motion(bodies: &Arena<Body>, contact: &Contact, ahead: Ahead, dt: f32) -> Option<Motion> {
     let key = contact.key;
@@ -173,7 +165,7 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, ahead: Ahead, dt: f32
     Some(Motion {
         velocity: speed(mover) - speed(ground),
         dt,
-        margin: margin(a, b, key, beyond(ahead), dt).0,
+        margin: margin(a, b, key, Ahead { most: f32::INFINITY, ..ahead }, dt).0,
     })
 }
 
