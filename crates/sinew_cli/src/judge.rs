@@ -16,10 +16,10 @@ pub const LIMP_AT: f32 = 0.5;
 /// Length of a bake, seconds, where the user does not say it.
 pub const SECONDS: f32 = 8.0;
 
-/// What the judge found.
+/// Findings of the judge.
 pub struct Judgement {
     pub verdict: Verdict,
-    /// What is outside its bar, a sentence each.
+    /// Figures outside their bars, a sentence each.
     pub reasons: Vec<String>,
     pub skin: SkinReport,
 }

@@ -374,7 +374,7 @@ pub(crate) const MACHINE: f32 = 500.0;
 
 // quality/faults.rs
 
-/// How far below everything that stands in a world a body has fallen out of it, metres, at least; else the character's height.
+/// Least distance below everything that stands in a world at which a body has fallen out of it, metres; else the character's height.
 ///
 /// Larger: a fall out of the world is seen later. Smaller: a thin floor that lets an arm through counts. Shown by the tests of
 /// `faults`.
@@ -418,7 +418,7 @@ pub(crate) const STANDS_OFF: f32 = 0.04;
 /// `skin`.
 pub(crate) const SUNK_RISING: f32 = 0.1;
 
-/// How many times over a figure of the skin misses its bar that leaves nothing to use.
+/// Ratio of a figure of the skin to its bar above which nothing is left to use.
 ///
 /// Larger: torsos torn by half a height are usable. Smaller: a coat that drags is bad. Shown by the tests of `skin`.
 pub(crate) const GROSS: f32 = 3.0;

@@ -79,7 +79,7 @@ pub(super) struct Carriers<'a> {
 }
 
 impl<'a> Carriers<'a> {
-    /// Of the joints that are parts of the body.
+    /// Carriers among the joints that are parts of the body.
     pub fn of(readings: &'a [Reading], bound: &Bound, is_part: impl Fn(JointIdx) -> bool) -> Self {
         let is_part: Vec<bool> = (0..readings.len()).map(is_part).collect();
         let named = |part: Part| {

@@ -240,3 +240,18 @@ pub(crate) const UNDER_DOOR: f32 = 0.85;
 ///
 /// Larger or smaller: figures without other hints shrink or grow by its square. Shown by the tests of `hints`.
 pub(crate) const STRIDE_SPEED: f32 = 3.0;
+
+/// Height that the head of a grown human tells at least, metres.
+///
+/// Larger: short adults are children. Smaller: dolls are adults. Shown by the tests of `hints`.
+pub(crate) const GROWN_BY_HEAD: f32 = 1.3;
+
+/// Least height of a human whom files beside it, low doors or its steps tell to be small, metres.
+///
+/// Larger: dolls are scaled to men. Smaller: files in a unit that nobody uses are believed. Shown by the tests of `hints`.
+pub(crate) const SHORTEST: f32 = 0.5;
+
+/// Largest ratio of the length of legs to that which their stride tells, either way, for the stride to bear a height out.
+///
+/// Larger: any walk bears out any height. Smaller: hurried walks bear out none. Shown by the tests of `hints`.
+pub(crate) const STEPS_ALIKE: f32 = 1.5;

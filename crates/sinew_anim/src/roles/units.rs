@@ -1,7 +1,9 @@
 //! The length of a file's unit, read off the body and what is known around it.
 
 use super::{Hints, UnitGuess};
-use crate::roles::tuning::{STRIDE_SPEED, UNDER_DOOR, UNIT_BY_EXPORTER, UNIT_BY_KIN};
+use crate::roles::tuning::{
+    GROWN_BY_HEAD, SHORTEST, STEPS_ALIKE, STRIDE_SPEED, UNDER_DOOR, UNIT_BY_EXPORTER, UNIT_BY_KIN,
+};
 use core::fmt::Write as _;
 use sinew_math::{clamp, max, trig};
 
@@ -63,8 +65,6 @@ const EXPORTERS: [(&str, f32); 16] = [
 
 /// From where a human's head turns to its crown, metres, whatever the human's height.
 const HEAD: f32 = 0.23;
-/// Height that the head of a grown human tells at least, metres.
-const GROWN_BY_HEAD: f32 = 1.3;
 /// Heights that a head may tell, metres.
 const BY_HEAD: [f32; 2] = [0.7, 1.8];
 
@@ -103,11 +103,6 @@ const CREATURE: Sizes = Sizes {
     focus: 1.0,
     assumed: 1.0,
 };
-
-/// Least height of a human whose legs step as short ones do, metres.
-const SHORTEST: f32 = 0.5;
-/// Largest ratio of the length of legs to that which their stride tells, either way, for the stride to bear a height out.
-const STEPS_ALIKE: f32 = 1.5;
 
 impl Sizes {
     /// Sizes of the kind of body that was measured.

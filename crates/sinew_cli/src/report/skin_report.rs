@@ -84,7 +84,7 @@ impl Life<'_> {
         }
     }
 
-    /// Where it lay, only on a level floor.
+    /// Pose at rest; only on a level floor.
     fn lay(&self, meter: &mut SkinMeter<'_>) {
         let (Some(floor), baked) = (self.floor, &self.fall.baked) else { return };
         let Some(settled) = baked.quality.settled_s else { return };

@@ -105,7 +105,7 @@ fn an_adult_of_half_a_metre_is_no_good() {
     let folder = Folder::new("verdict-small");
     let mut rig = mannequin().rig;
     let share = 0.57 / 1.8;
-    for root in rig.joints.iter_mut() {
+    for root in &mut rig.joints {
         root.rest.translation *= share;
     }
     for skin in &mut rig.skins {

@@ -2,8 +2,7 @@
 
 use super::{CharacterDef, MotionSet};
 use crate::character::tuning::OWN_FLOOR;
-use crate::skin::may_stand;
-use crate::skin::surface::Surface;
+use crate::skin::surface::{Surface, may_stand};
 use sinew_anim::take::Take;
 use sinew_anim::{Channel, Clip, Interpolation, LocalTransform, Property, Rig, local_to_model};
 use sinew_math::{Affine, Vec3, min};

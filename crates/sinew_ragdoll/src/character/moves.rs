@@ -35,7 +35,7 @@ pub(super) struct Moves {
     pub landmarks: Landmarks,
     /// Stance at the start of the looped clip, or in the rest pose, character space.
     pub upright: Stance,
-    /// How clips are raised to the floor of the rest pose.
+    /// Heights by which clips are raised to the floor of the rest pose.
     pub raised: Raised,
 }
 

@@ -1,4 +1,4 @@
-//! What is wrong with a ragdoll, or with what became of it, that no single figure tells.
+//! Faults of a ragdoll, or of its bake, that no single figure shows.
 
 use super::Verdict;
 use crate::bake::{BakeInput, Baked};
@@ -19,7 +19,7 @@ const FEW_JOINTS: usize = 2;
 pub struct Fault {
     /// The best verdict on a ragdoll that has it.
     pub at_most: Verdict,
-    /// What is wrong and what helps, a sentence.
+    /// Reason and remedy, a sentence.
     pub reason: String,
 }
 
@@ -113,7 +113,9 @@ fn fell_out(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
         local_to_model(rig, &frame.pose, &Affine::IDENTITY, &mut model);
         let mapping = input.character.mapping();
         mapping.bodies_from_model(&model, input.world_from_character, &mut bodies);
-        let is_out = |place: &Transform| !(place.translation.y >= least);
+        // What is no number is out, too.
+        let is_in = |y: f32| y >= least;
+        let is_out = |place: &Transform| !is_in(place.translation.y);
         if let Some(body) = bodies.iter().position(is_out) {
             let reason = format!(
                 "it falls out of the world: {} is below everything that stands at {:.1} s; --at X,Y,Z moves it to firm ground, \

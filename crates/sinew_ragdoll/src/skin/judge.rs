@@ -257,7 +257,7 @@ impl SkinQuality {
             }
         };
         let flaw = who.flaw(FlawKind::OffFloor, said, remedy.to_owned(), lowest.as_slice());
-        let is_gross = !(height.abs() <= GROSS * bar);
+        let is_gross = height.is_nan() || height.abs() > GROSS * bar;
         Some(Flaw { at_most: if is_gross { Verdict::Bad } else { Verdict::Usable }, ..flaw })
     }
 

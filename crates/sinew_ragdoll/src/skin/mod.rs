@@ -27,11 +27,10 @@ use crate::mapping::{Mapping, Physical};
 use crate::quality::Fallen;
 use crate::tuning::OWN_WEIGHT;
 pub use judge::{Flaw, FlawKind};
-use sinew_anim::roles::{HUMANOID_ROLES, Role};
 use sinew_anim::{JointIdx, LocalTransform, Rig, Take, local_to_model, rest_pose};
 use sinew_math::{Affine, Transform, Vec3, max, max3, min3};
 use stretch::{Stretch, Stretched};
-use surface::{Side, Surface};
+use surface::{Side, Surface, may_stand};
 
 /// Most poses of clips that are looked at, evenly spread over all of them.
 const MOST_CLIP_POSES: usize = 64;
@@ -89,7 +88,7 @@ pub struct Worst {
     pub adrift: u32,
     /// Moves an end of the side that is stretched most; the other end's stands second.
     pub torn: Option<(usize, usize)>,
-    /// What the character does while that side is stretched most.
+    /// Stage in which that side is stretched most.
     pub torn_in: Phase,
     /// Moves the lowest point while standing, while getting up and once up.
     pub lowest_in: [Option<usize>; 3],
@@ -103,7 +102,7 @@ pub struct Worst {
     pub lowest_joint: Option<String>,
 }
 
-/// What a character does while its skin is looked at.
+/// Part of a life in which the skin is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phase {
     /// It falls in one of the drops of a [`drop_test`](crate::drop_test).
@@ -159,7 +158,7 @@ pub struct SkinMeter<'a> {
     surface: Surface,
     mapping: Mapping,
     to_character: Affine,
-    /// Of each [`Phase`]: long clips must not dilute the percentile of a short fall.
+    /// Stretch by [`Phase`]: long clips must not dilute the percentile of a short fall.
     stretch: [Stretch; 3],
     skin: SkinQuality,
     /// Joints that have a body of their own.
@@ -336,16 +335,6 @@ impl<'a> SkinMeter<'a> {
         }
         skin
     }
-}
-
-/// Per body whether a character may stand on its skin: not on a human's hands and forearms, nor on what they hold.
-pub(crate) fn may_stand(def: &RagdollDef) -> Vec<bool> {
-    let is_human = def.bodies[0].role == "hips";
-    let may = |role: &str| {
-        let role = Role::from_name(role).filter(|role| HUMANOID_ROLES.contains(role));
-        !is_human || role.is_some_and(|role| !matches!(role, Role::Hand(_) | Role::LowerArm(_)))
-    };
-    def.bodies.iter().map(|body| may(&body.role)).collect()
 }
 
 /// Poses of a rig from poses of its bodies, over its rest pose.

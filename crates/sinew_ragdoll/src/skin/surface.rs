@@ -3,6 +3,7 @@
 use crate::def::RagdollDef;
 use crate::fit::surface::carried;
 use crate::tuning::SAME_WEIGHTS;
+use sinew_anim::roles::{HUMANOID_ROLES, Role};
 use sinew_anim::{JointIdx, Primitive, Rig, RigMesh};
 use sinew_math::{Affine, Mat3, Vec3};
 
@@ -194,6 +195,16 @@ fn strided(count: usize, most: usize) -> Vec<usize> {
     let used = usize::min(count, most);
     // Of a count that fits in memory the product does not overflow on 64 bits; on 32 it is taken wide.
     (0..used).map(|k| (k as u64 * count as u64 / used as u64) as usize).collect()
+}
+
+/// Per body whether a character may stand on its skin: not on a human's hands and forearms, nor on what they hold.
+pub(crate) fn may_stand(def: &RagdollDef) -> Vec<bool> {
+    let is_human = def.bodies[0].role == "hips";
+    let may = |role: &str| {
+        let role = Role::from_name(role).filter(|role| HUMANOID_ROLES.contains(role));
+        !is_human || role.is_some_and(|role| !matches!(role, Role::Hand(_) | Role::LowerArm(_)))
+    };
+    def.bodies.iter().map(|body| may(&body.role)).collect()
 }
 
 #[cfg(test)]

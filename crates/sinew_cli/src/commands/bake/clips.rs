@@ -19,7 +19,7 @@ pub struct Motions {
     pub clips: Vec<Clip>,
     /// The clip that plays until the fall.
     pub looped: Option<usize>,
-    /// What reading the other files put right, a sentence each.
+    /// Repairs made while the other files were read, a sentence each.
     pub notes: Vec<String>,
 }
 

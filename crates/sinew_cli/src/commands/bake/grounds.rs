@@ -11,7 +11,7 @@ const COLUMNS: [usize; 2] = [24, 128];
 const STEP: f32 = 0.25;
 /// And what a slope adds to it, in widths of a column.
 const SLOPE: f32 = 0.5;
-/// Of two grounds that are this much alike in size the lower comes first: of floor and roof of a house the floor.
+/// Ratio of sizes up to which the lower of two grounds comes first, as the floor of a house before its roof.
 const ALIKE: f32 = 0.5;
 /// Most places of a ground that are looked at, evenly spread.
 const MOST_PLACES: usize = 1024;
