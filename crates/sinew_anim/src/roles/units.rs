@@ -253,6 +253,17 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
     let unit = fitting.remove(0);
     let others: Vec<String> =
         fitting.iter().map(|unit| format!("{} ({:.2} m)", unit.name, measure * unit.metres)).collect();
+    // Small humans that something around them would bear out leave a doubt.
+    let small = SHORTEST..sizes.fits.start;
+    let may_be_small = |unit: &&Unit| body.humanoid && small.contains(&(measure * unit.metres));
+    let small =
+        UNITS.iter().filter(may_be_small).filter(|other| other.metres != unit.metres && other.metres != 1.0);
+    let known: Vec<f32> = fitting.iter().map(|unit| unit.metres).collect();
+    let small = small.filter(|other| !known.contains(&other.metres));
+    let others: Vec<String> = others
+        .into_iter()
+        .chain(small.map(|unit| format!("{} ({:.2} m)", unit.name, measure * unit.metres)))
+        .collect();
     let is_only = others.is_empty();
     let is_sure = is_only && body.humanoid && unit.metres == 1.0;
     // Where there is no choice there are no witnesses.

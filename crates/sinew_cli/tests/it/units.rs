@@ -79,7 +79,7 @@ fn the_unit_its_reason_and_its_alternatives_are_a_note() {
     );
     let object = build(&scaled(rig.clone(), 100.0), &[]);
     let note = of_unit(&object).expect("a note");
-    assert!(note.contains("taken as centimetres: 1.") && note.contains("a human is 0.5 to 3 m"), "{note}");
+    assert!(note.contains("taken as centimetres: 1.") && note.contains("a human is 0.9 to 3 m"), "{note}");
     assert!(note.ends_with("; --unit or --height sets it"), "{note}");
     // 20 units: two metres in decimetres, half a metre in inches.
     let object = build(&scaled(rig.clone(), 20.0 / 1.75), &[]);

@@ -25,12 +25,12 @@ pub struct Faces {
     /// Height of the point over each, metres.
     heights: [f32; MOST],
     count: usize,
-    /// Faces that others hide, bit by bit.
+    /// Those that others hide, bit by bit.
     hidden: u8,
 }
 
 impl Faces {
-    /// Faces within `reach` (metres) of a point in the world; none if the point is deeper inside than that. `None` if the point is farther
+    /// Those within `reach` (metres) of a point in the world; none if the point is deeper inside than that. `None` if the point is farther
     /// outside, or the shape has no flat faces.
     pub fn around(shape: &Shape, world_from_shape: &Transform, point: Vec3, reach: f32) -> Option<Self> {
         let mut faces = Self { normals: [Vec3::ZERO; MOST], heights: [0.0; MOST], count: 0, hidden: 0 };
@@ -136,11 +136,8 @@ impl Faces {
     }
 
     /// The normal nearest to this one that the faces which are not hidden have between them, and the height of the point over the plane through
-    /// them that it stands on, metres. `None` if all are hidden, or none looks that way. Where none is hidden the normal is as good as it was.
+    /// them that it stands on, metres. `None` if all are hidden, or none looks that way.
     pub fn shown(&self, normal: Vec3) -> Option<(Vec3, f32)> {
-        if self.hidden == 0 {
-            return Some((normal, 0.0));
-        }
         let shown = |face: &usize| self.hidden >> face & 1 == 0;
         let mut best: Option<(f32, Vec3, f32)> = None;
         let mut consider = |sum: Vec3, height: f32| {

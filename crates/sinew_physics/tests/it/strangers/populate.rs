@@ -187,7 +187,9 @@ fn particles(world: &mut World, random: &mut Random) {
 
 fn field(random: &mut Random) -> FieldDef {
     let kind = match random.index(3) {
-        0 => FieldKind::Uniform(UniformGravity { acceleration: random.in_cube() }),
+        0 => {
+            FieldKind::Uniform(UniformGravity { acceleration: random.in_cube(), ..UniformGravity::default() })
+        }
         1 => FieldKind::Buoyancy(Buoyancy::default()),
         _ => FieldKind::Wind(Wind { velocity: random.in_cube() * 3.0, ..Wind::default() }),
     };
