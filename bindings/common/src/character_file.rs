@@ -6,6 +6,7 @@ use sinew::formats::{
     Document, MotionFormat, MotionOptions, ReadOptions, load_gltf, load_motion, no_files, read_bytes,
     read_gltf, read_mjcf, read_ragdoll, read_ragdoll_settings, settings_path, write_gltf, write_motion,
 };
+use sinew::math::Vec3;
 use sinew::motions::{BuiltinError, set_motions_with_builtin};
 use sinew::ragdoll::build::takes;
 use sinew::ragdoll::settings::{Unit, analyze_with};
@@ -67,7 +68,11 @@ impl CharacterFile {
     }
 
     fn new(name: String, document: Document, settings: Settings) -> Result<Self, Failure> {
+        let stem = Path::new(&name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let hints = Hints {
+            name: stem.unwrap_or_default(),
+            // Readers turn every format so that +Y is up.
+            up: Some(Vec3::Y),
             exporter: document.generator().to_owned(),
             ..Hints::of_clips(&document.rig, &document.clips)
         };
