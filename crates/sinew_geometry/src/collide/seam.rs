@@ -25,12 +25,12 @@ pub struct Faces {
     /// Height of the point over each, metres.
     heights: [f32; MOST],
     count: usize,
-    /// Those that others hide, bit by bit.
+    /// Faces that others hide, bit by bit.
     hidden: u8,
 }
 
 impl Faces {
-    /// Those within `reach` (metres) of a point in the world; none if the point is deeper inside than that. `None` if the point is farther
+    /// Faces within `reach` (metres) of a point in the world; none if the point is deeper inside than that. `None` if the point is farther
     /// outside, or the shape has no flat faces.
     pub fn around(shape: &Shape, world_from_shape: &Transform, point: Vec3, reach: f32) -> Option<Self> {
         let mut faces = Self { normals: [Vec3::ZERO; MOST], heights: [0.0; MOST], count: 0, hidden: 0 };

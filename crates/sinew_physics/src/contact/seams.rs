@@ -14,7 +14,7 @@ use crate::contact::tuning::{SEAM_REACH, SEAM_SLOPS};
 use core::ops::ControlFlow;
 use sinew_math::{Rotation, Transform, Vec3, max3, min3};
 
-/// What there is around a contact.
+/// Surroundings of contacts.
 #[derive(Clone, Copy)]
 pub(crate) struct Seams<'a> {
     pub bodies: &'a Arena<Body>,
@@ -22,7 +22,7 @@ pub(crate) struct Seams<'a> {
     pub filter: PairFilter<'a>,
 }
 
-/// How a manifold was looked for.
+/// Bounds within which a manifold was looked for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Search {
     /// Metres.
