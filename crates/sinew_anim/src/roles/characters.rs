@@ -8,7 +8,7 @@ use sinew_math::{Affine, Vec3, max, max3, min, min3};
 
 /// The characters of a rig, each by its meshes (indices into [`Rig::meshes`]), in the order of their first mesh.
 ///
-/// A character is a [skeleton](skeletons) that stands beside the others. One that lies within another, or is small beside it, belongs to
+/// A character is a skeleton that stands beside the others. One that lies within another, or is small beside it, belongs to
 /// that: eyes, a hat, clothes whose bones are where those of the body are. Who is as large and has bones elsewhere is a character, wherever
 /// it stands. Empty without skins.
 ///

@@ -6,7 +6,9 @@ use crate::body::contact_rule::ContactRule;
 use crate::body::def::BodyKind;
 use crate::body::shape::{Sensing, Shape};
 use crate::boxes::Aabb;
-use crate::collide::{Faces, Half, MAX_POINTS, Manifold, collide, name_as_face, name_as_hidden};
+use crate::collide::{
+    Faces, Half, MAX_POINTS, Manifold, ManifoldPoint, collide, name_as_face, name_as_hidden,
+};
 use crate::contact::ContactKey;
 use crate::contact::filter::PairFilter;
 use crate::contact::proxies::{Owner, Proxies};
@@ -60,19 +62,18 @@ impl Seams<'_> {
             *around = Some(found);
         }
         self.hide(&sides, manifold, (bounds.expand(reach), reach), &mut faces);
-        let mut deepest: Option<(f32, Option<(Vec3, f32)>, Vec3)> = None;
-        for (around, point) in faces.iter().zip(manifold.points()) {
-            let shown = around.and_then(|faces| faces.shown(sides.out));
-            if shown.is_some_and(|(normal, _)| normal.dot(sides.out) > AS_FOUND) {
-                return;
-            }
-            if deepest.is_none_or(|(least, ..)| point.separation < least) {
-                let on_ground = point.position - sides.out * (0.5 * point.separation);
-                deepest = Some((point.separation, shown, on_ground));
-            }
+        let shown = faces.map(|around| around.and_then(|faces| faces.shown(sides.out)));
+        let is_as_found = |&(normal, _): &(Vec3, f32)| normal.dot(sides.out) > AS_FOUND;
+        if shown[..manifold.count].iter().flatten().any(is_as_found) {
+            return;
         }
-        let Some((_, shown, at)) = deepest else { return };
-        let plane = shown.map(|(normal, height)| (normal, at - normal * height));
+        let mut deepest = 0;
+        for (i, point) in manifold.points().iter().enumerate() {
+            deepest = if point.separation < manifold.points[deepest].separation { i } else { deepest };
+        }
+        let ManifoldPoint { position, separation, .. } = manifold.points[deepest];
+        let on_ground = position - sides.out * (0.5 * separation);
+        let plane = shown[deepest].map(|(normal, height)| (normal, on_ground - normal * height));
         let found = plane.map(|plane| self.put_on(&sides, plane, (search, reach)));
         match found.filter(|found| found.count > 0) {
             Some(found) => *manifold = found,

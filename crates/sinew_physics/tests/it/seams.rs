@@ -59,7 +59,7 @@ struct Goer {
 }
 
 fn goer(kind: usize, way: Vec3, random: &mut Random) -> Goer {
-    let yaw = Rotation::from_axis_angle(Vec3::Y, random.range(0.0, 6.28));
+    let yaw = Rotation::from_axis_angle(Vec3::Y, random.range(0.0, core::f32::consts::TAU));
     let half = Vec3::new(0.2, 0.15, 0.25);
     let lying = Rotation::from_arc(Vec3::Y, Vec3::Y.cross(way).normalize());
     let rolls = |shape: Shape, radius: f32, turn: Rotation| Goer {
@@ -92,7 +92,7 @@ struct Way {
 
 fn went(tiles: Tiles, kind: usize, speed: f32, seed: u64) -> Way {
     let mut random = Random::new(seed);
-    let heading = random.range(0.0, 6.28);
+    let heading = random.range(0.0, core::f32::consts::TAU);
     let way = Vec3::new(trig::cos(heading), 0.0, trig::sin(heading));
     let goer = goer(kind, way, &mut random);
     let start = Vec3::new(random.range(-1.0, 1.0), goer.height, random.range(-1.0, 1.0));

@@ -187,9 +187,7 @@ fn particles(world: &mut World, random: &mut Random) {
 
 fn field(random: &mut Random) -> FieldDef {
     let kind = match random.index(3) {
-        0 => {
-            FieldKind::Uniform(UniformGravity { acceleration: random.in_cube(), ..UniformGravity::default() })
-        }
+        0 => FieldKind::Uniform(UniformGravity { acceleration: random.in_cube() }),
         1 => FieldKind::Buoyancy(Buoyancy::default()),
         _ => FieldKind::Wind(Wind { velocity: random.in_cube() * 3.0, ..Wind::default() }),
     };
