@@ -184,7 +184,7 @@ fn decades(random: &mut Random, most: f32) -> f32 {
     trig::exp(random.range(0.0, most) * core::f32::consts::LN_10)
 }
 
-/// What a user changes of a motor at its stop.
+/// Changes that a user makes to a motor at its stop.
 #[derive(Clone, Copy)]
 enum Change {
     Speed,

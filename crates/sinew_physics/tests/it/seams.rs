@@ -4,7 +4,7 @@ use crate::solids::box_hull;
 use sinew_math::{Random, Rotation, Transform, Vec3, max, trig};
 use sinew_physics::*;
 
-/// What the ground is made of.
+/// Shapes of which the ground is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Tiles {
     One,
@@ -82,7 +82,7 @@ fn goer(kind: usize, way: Vec3, random: &mut Random) -> Goer {
     }
 }
 
-/// How a body went: level speed at the end, height at the end and at the most, each over where it began.
+/// Result of a run: level speed at the end, height at the end and at the most, each over where it began.
 #[derive(Debug)]
 struct Way {
     speed: f32,

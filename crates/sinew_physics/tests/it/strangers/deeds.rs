@@ -1,4 +1,4 @@
-//! What a game does to a world between two steps, drawn from the world itself, so that worlds that are the same do the same.
+//! Calls that a game makes between two steps, drawn from the world itself, so that worlds that are the same do the same.
 
 use super::populate;
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3};
