@@ -24,6 +24,7 @@ pub mod set;
 pub mod skinning;
 pub mod springs;
 mod tuning;
+pub mod weights;
 
 pub use animator::{Animator, Easing, EndAction, Track, TrackDef, TrackId, Transition};
 pub use built::{BuiltClip, ClipBuildError, ClipBuildOptions, ClipError, Cursor, Fill};

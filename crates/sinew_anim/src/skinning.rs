@@ -1,6 +1,6 @@
 //! Vertices of a posed mesh, for pictures.
 
-use crate::rig::{JointIdx, Primitive, Rig, RigMesh, Skin};
+use crate::rig::{JointIdx, Primitive, Rig, Skin};
 use sinew_math::{Affine, Mat3, Vec3, normalize_or};
 
 /// Matrix per skin slot from mesh space (bind pose, file units) to the space of `model`: joint × inverse bind. `model` has one
@@ -90,39 +90,3 @@ fn normal_matrix(m: &Mat3) -> Mat3 {
     let sign = if x.dot(y.cross(z)) < 0.0 { -1.0 } else { 1.0 };
     Mat3::from_cols(y.cross(z) * sign, z.cross(x) * sign, x.cross(y) * sign)
 }
-
-/// The only joint that moves skin, of a rig whose skins name several: its vertex weights were lost, and it would move as one piece. `None` where
-/// more than one moves skin, or where meshes without a skin hang on bones, as on a machine.
-///
-/// # Panics
-/// If the rig's indices are out of range.
-pub fn lost_weights(rig: &Rig) -> Option<JointIdx> {
-    let mut joints: Vec<JointIdx> = rig.skins.iter().flat_map(|skin| skin.joints.clone()).collect();
-    joints.sort_unstable();
-    joints.dedup();
-    let is_rigid = |mesh: &RigMesh| {
-        let mut line = core::iter::successors(Some(mesh.joint), |&at| rig.joints[at].parent);
-        mesh.skin.is_none() && line.any(|at| joints.binary_search(&at).is_ok())
-    };
-    if joints.len() < FEWEST_OF_A_SKELETON || rig.meshes.iter().any(is_rigid) {
-        return None;
-    }
-    let mut mover = None;
-    for mesh in &rig.meshes {
-        let Some(skin) = mesh.skin.map(|skin| &rig.skins[skin]) else { continue };
-        for primitive in &mesh.primitives {
-            for (slots, weights) in primitive.joints.iter().zip(&primitive.weights) {
-                for (&slot, _) in slots.iter().zip(weights).filter(|(_, weight)| **weight > 0.0) {
-                    let joint = skin.joints[usize::from(slot)];
-                    if *mover.get_or_insert(joint) != joint {
-                        return None;
-                    }
-                }
-            }
-        }
-    }
-    mover
-}
-
-/// Fewest joints of a skeleton: a lid on a hinge has less.
-const FEWEST_OF_A_SKELETON: usize = 4;

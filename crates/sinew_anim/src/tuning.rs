@@ -189,3 +189,20 @@ pub(crate) const SPRING_RADIUS: f32 = 0.15;
 ///
 /// Larger: a skirt is one stiff sheet. Smaller: its strands part where a leg pulls. Shown by `links_hold_strands_together`.
 pub(crate) const SPRING_LINK_SHARE: f32 = 0.5;
+
+// weights.rs
+
+/// Fewest joints of a skeleton whose weights can have been lost: a lid on a hinge has less.
+///
+/// Larger: a small skeleton that moves as one piece counts as rigid. Smaller: a hinge is refused. Shown by the tests of `weights`.
+pub(crate) const FEWEST_OF_A_SKELETON: usize = 4;
+
+/// Comparisons of loose vertices with others, at most, for a part of a mesh.
+///
+/// Larger: reading takes longer. Smaller: of large meshes fewer vertices are compared, and the nearest is found less exactly. Shown by nothing but the time that huge meshes take.
+pub(crate) const MOST_COMPARED: usize = 50_000_000;
+
+/// Least weight of a neighbouring bone, as a share of the nearest bone's, by which a vertex hangs on it too.
+///
+/// Larger: joints bend as sharp folds. Smaller: far vertices hang on it by a hair. Shown by the tests of `weights`.
+pub(crate) const NEAREST_FALLOFF: f32 = 0.01;

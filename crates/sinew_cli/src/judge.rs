@@ -1,11 +1,12 @@
 //! One judge for `ragdoll build` and `bake`: the drops, the life that is shown, the skin over both.
 
-use crate::commands::bake::{Motions, actor};
+use crate::commands::bake::{Motions, actor, as_in_file};
 use crate::failure::Result;
 use crate::fall::Fall;
 use crate::input::files::CharacterFile;
 use crate::report::skin_report::{Life, SkinReport};
 use sinew::anim::KeyBound;
+use sinew::math::{Transform, Vec3};
 use sinew::physics::{BodyDef, Shape};
 use sinew::ragdoll::quality::{Doubt, Fault, faults_of_bake, faults_of_ragdoll, judge};
 use sinew::ragdoll::{BakeInput, DropReport, RagdollDef, SkinQuality, Verdict};
@@ -69,7 +70,9 @@ pub fn with_default_life<T>(
     let motions = Motions::gather(character, &[], None)?;
     let (falls, _) = actor(character, def.clone(), motions, true)?;
     let ground = [BodyDef::fixed(Shape::HalfSpace)];
+    let up = character.analysis.hints.up.unwrap_or(Vec3::Y);
     let input = BakeInput {
+        world_from_character: as_in_file(Transform::IDENTITY, &falls, up),
         bodies: &ground,
         limp_at: Some(LIMP_AT),
         seconds: SECONDS,

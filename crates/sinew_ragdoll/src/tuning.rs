@@ -386,6 +386,11 @@ pub(crate) const FALLEN_OUT: f32 = 2.0;
 /// `faults`.
 pub(crate) const NEVER_STILL: f32 = 6.0;
 
+/// Height of the highest part over the floor at rest, as a share of where it was when the body was let go, from which a tall body stays upright.
+///
+/// Larger: who kneels or leans is said to have fallen. Smaller: who sits is said to stand. Shown by the tests of `faults`.
+pub(crate) const STILL_UPRIGHT: f32 = 0.8;
+
 /// Least distance of two limbs' roots from the middle, as a share of the height, that tells on which side they are.
 ///
 /// Larger: narrow bodies are not looked at. Smaller: noise is a side. Shown by the tests of `faults`.

@@ -11,11 +11,14 @@ use super::graph::{Graph, ancestors};
 use super::humanoid::{Evidence, Humanoid, Limb, Split, Stance};
 use super::names::{Part, Reading, read_names, settle_duplicates, settle_trunk};
 use super::role::{Role, Side};
+use super::species::Species;
 use super::symmetry::Symmetry;
 use super::units::Measured;
 use super::{Basis, Hints, NoSkin, RoleGuess};
 use crate::rig::{JointIdx, Rig};
-use crate::roles::tuning::{CONTROL_SKIN, ELBOWS_BEHIND, FEET_AGAINST_NAMES, LEAST_FOOT, STEP_CORRELATION};
+use crate::roles::tuning::{
+    CONTROL_SKIN, ELBOWS_BEHIND, FEET_AGAINST_NAMES, HANGING, LEAST_FOOT, STEP_CORRELATION,
+};
 use sinew_math::Vec3;
 
 /// Roles per joint and the directions of the body.
@@ -58,7 +61,7 @@ impl Anatomy {
     }
 
     /// Sizes of the body that tell the unit of its file.
-    pub fn measured(&self, bound: &Bound, species: Option<(&'static str, f32)>) -> Measured {
+    pub fn measured(&self, bound: &Bound, species: Option<Species>) -> Measured {
         let stance = Stance::new(bound, self.up);
         let is_head = |guess: &Option<RoleGuess>| guess.is_some_and(|guess| guess.role == Role::Head);
         let head = self.roles.iter().position(is_head);
@@ -504,7 +507,7 @@ impl<'a> Scene<'a> {
             level(Role::Hand(side)).is_some_and(|hand| hand < foot + 0.35 * leg)
         };
         let walks_on_hands = [Side::Left, Side::Right].into_iter().any(low);
-        if !self.stands(&draft) {
+        if !self.stands(&draft) || self.is_on_all_fours(&draft) {
             return None;
         }
         (!walks_on_hands).then_some(draft)
@@ -536,6 +539,25 @@ impl<'a> Scene<'a> {
             Some(leg.dot(draft.up) / sinew_math::max(leg.length(), 1e-12))
         };
         [Side::Left, Side::Right].into_iter().filter_map(along).all(|down| down < -0.5)
+    }
+
+    /// True if the trunk lies and arms and legs hang down from it, by the file's own up: a beast whose limbs are named as a human's.
+    fn is_on_all_fours(&self, draft: &Draft) -> bool {
+        let Some(up) = self.hints.up else { return false };
+        let rise = |from: Role, to: Role| {
+            let bone = self.bound.model[self.joint_in(draft, to)?].translation
+                - self.bound.model[self.joint_in(draft, from)?].translation;
+            Some(bone.dot(up) / sinew_math::max(bone.length(), 1e-12))
+        };
+        let hangs = |upper: fn(Side) -> Role, ends: [fn(Side) -> Role; 2]| {
+            [Side::Left, Side::Right].into_iter().all(|side| {
+                let end = ends.into_iter().find_map(|end| rise(upper(side), end(side)));
+                end.is_some_and(|rise| rise < -HANGING)
+            })
+        };
+        rise(Role::Hips, Role::Head).is_some_and(|rise| rise.abs() < HANGING)
+            && hangs(Role::UpperArm, [Role::Hand, Role::LowerArm])
+            && hangs(Role::UpperLeg, [Role::Foot, Role::LowerLeg])
     }
 
     /// A draft from known roles; `None` if hips, head, or one of the upper limbs is missing.

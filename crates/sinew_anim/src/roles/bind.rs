@@ -215,7 +215,7 @@ fn vertex_areas(positions: &[Vec3], indices: &[u32]) -> Vec<f32> {
 
 /// Model-space transform of every joint in the bind pose. Joints that no skin names hang off their parents as in the
 /// rest pose.
-pub(super) fn bind_pose(rig: &Rig) -> Vec<Affine> {
+pub(crate) fn bind_pose(rig: &Rig) -> Vec<Affine> {
     let mut rest = Vec::new();
     local_to_model(rig, &rest_pose(rig), &Affine::IDENTITY, &mut rest);
     let mut bound: Vec<Option<Affine>> = vec![None; rig.joints.len()];

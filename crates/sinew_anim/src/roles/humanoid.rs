@@ -5,7 +5,7 @@ use super::bind::Bound;
 use super::graph::Graph;
 use super::names::{Part, Reading};
 use super::symmetry::Symmetry;
-use crate::roles::tuning::{AS_HIGH, AT_WRIST, FORKED, LONGEST_PALM, LOWEST_HIP};
+use crate::roles::tuning::{AS_HIGH, AT_WRIST, FORKED, INNER_END, LONGEST_PALM, LOWEST_HIP};
 use sinew_math::{Vec3, clamp, max, min, trig};
 
 /// Directions and measures of the bind pose under the assumption that `up` is up.
@@ -200,7 +200,7 @@ impl Evidence<'_> {
         let reaches_floor = |chain: &[usize]| {
             let lowest = chain.iter().map(|&i| self.level(i)).fold(f32::INFINITY, min);
             // Without a foot joint the chain ends at the knee.
-            let limit = if chain.len() > 2 { 0.2 } else { 0.35 };
+            let limit = if chain.len() > 2 + usize::from(self.begins_inside(chain)) { 0.2 } else { 0.35 };
             chain.len() > 1 && lowest < limit && (LOWEST_HIP..0.75).contains(&self.level(chain[0]))
         };
         let low: Vec<usize> = (0..limbs.len()).filter(|&i| reaches_floor(&limbs[i][0])).collect();
@@ -306,6 +306,12 @@ impl Evidence<'_> {
         Some((chain, head))
     }
 
+    /// True for a limb whose first joint lies on the midline and its second does not: the inner end of a clavicle, or of a hip.
+    fn begins_inside(&self, chain: &[usize]) -> bool {
+        let side = |place: usize| self.symmetry.side(self.graph, chain[place]).abs();
+        chain.len() > 2 && side(0) < INNER_END * side(1)
+    }
+
     /// Indices in a chain at which the upper part, the lower part and the hand or foot begin: by name, else by length.
     fn split(&self, chain: &[usize], parts: [Part; 3]) -> Option<Split> {
         let place = |part: Part| chain.iter().position(|&i| self.part(i) == Some(part));
@@ -316,6 +322,9 @@ impl Evidence<'_> {
             }
         }
         let leg = parts[2] == Part::Foot;
+        if chain.len() == 3 && self.begins_inside(chain) {
+            return Some((1, 2, None));
+        }
         match chain.len() {
             0 | 1 => None,
             2 => Some((0, 1, None)),

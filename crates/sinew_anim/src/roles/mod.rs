@@ -27,6 +27,7 @@ mod symmetry;
 mod tuning;
 mod units;
 
+pub(crate) use bind::bind_pose;
 pub use characters::characters;
 pub use correct::{Correction, CorrectionError};
 pub use gait::Gait;
@@ -293,8 +294,14 @@ fn analyze_bound(
     let Anatomy { graph, roles, humanoid, up, left, mut notes, .. } = anatomy;
     let stance = Stance::new(&bound, up);
     let (unit_scale, unit_guess) = units::unit_scale(&body, hints);
-    if up.dot(Vec3::Y) < 0.9 {
-        notes.push(format!("the body stands along {up} of the file, not along +Y"));
+    match hints.up {
+        Some(of_file) if up.dot(of_file) < 0.9 => notes.push(format!(
+            "it lies in its file: from hips to head it goes along {up}, and up is {of_file}; --up says otherwise"
+        )),
+        None if up.dot(Vec3::Y) < 0.9 => {
+            notes.push(format!("the body stands along {up} of the file, not along +Y"));
+        }
+        _ => {}
     }
     let carrier = keep::carriers(rig, &bound, &graph, &roles);
     let selection =

@@ -29,11 +29,24 @@ const LENGTHS: &[(&str, f32)] = &[
     ("trex tyrannosaurus apatosaurus brontosaurus diplodocus whale", 13.0),
 ];
 
+/// Words of humans, by which a body is measured like one whose joints show no human.
+const HUMANS: &str = "archer bandit boy chef cowboy doctor farmer girl guard hero heroine human knight mage man ninja npc \
+    officer paladin people person pirate player policeman ranger samurai soldier villager warrior witch wizard woman zombie";
+
 /// Machines are of any size, whatever animal they look like.
 const MACHINES: &str = "bot robot mech mecha drone toy plush statue";
 
-/// The animal that names of a file speak of, and the length of a grown one, metres.
-pub(super) fn named<'a>(rig: &'a Rig, file: &'a str) -> Option<(&'static str, f32)> {
+/// Kind of body that names of a file speak of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Species {
+    /// A human.
+    Human,
+    /// An animal, and the length of a grown one, metres.
+    Animal(&'static str, f32),
+}
+
+/// The kind of body that names of a file speak of: an animal before a human, for there are men of snow and wolves.
+pub(super) fn named<'a>(rig: &'a Rig, file: &'a str) -> Option<Species> {
     let is_root = |joint: &&crate::rig::Joint| joint.parent.is_none();
     let names = core::iter::once(file)
         .chain(rig.meshes.iter().map(|mesh| mesh.name.as_str()))
@@ -44,9 +57,11 @@ pub(super) fn named<'a>(rig: &'a Rig, file: &'a str) -> Option<(&'static str, f3
     if said.iter().any(|word| is_in(MACHINES, word)) {
         return None;
     }
-    said.iter().find_map(|word| {
+    let animal = said.iter().find_map(|word| {
         let (list, length) = LENGTHS.iter().find(|(list, _)| is_in(list, word))?;
         let known = list.split(' ').find(|known| known == word)?;
-        Some((known, *length))
-    })
+        Some(Species::Animal(known, *length))
+    });
+    let human = || said.iter().any(|word| is_in(HUMANS, word)).then_some(Species::Human);
+    animal.or_else(human)
 }

@@ -45,12 +45,23 @@ impl Symmetry {
         let mirrored = |p: Vec3| p - self.lateral * (2.0 * (p.dot(self.lateral) - self.centre));
         // Down a limb that is posed a little otherwise than its twin differences add up: each bone by itself counts, too. Not so on
         // the midline, where a bone up and one down would be twins in a plane that is none.
+        let lengths = |nodes: [usize; 2], parents: [usize; 2]| {
+            (graph.distance(parents[0], nodes[0]) - graph.distance(parents[1], nodes[1])).abs()
+        };
         let off = |nodes: [usize; 2], parents: [usize; 2]| {
             let [i, k, on_i, on_k] =
                 [nodes[0], nodes[1], parents[0], parents[1]].map(|node| graph.nodes[node].position);
             let away = (k - mirrored(i)).length();
             let of_bone = (k - on_k - mirrored(i) + mirrored(on_i)).length();
-            if parents[0] == parents[1] { away } else { min(away, of_bone) }
+            let is_chain = parents.iter().all(|&parent| graph.nodes[parent].children.len() == 1);
+            if parents[0] == parents[1] {
+                away
+            } else if is_chain {
+                // A chain without branches goes on as its twin does, however it is bent.
+                min(min(away, of_bone), lengths(nodes, parents))
+            } else {
+                min(away, of_bone)
+            }
         };
         let mut partner: Vec<Option<usize>> = vec![None; graph.nodes.len()];
         partner[graph.root] = Some(graph.root);

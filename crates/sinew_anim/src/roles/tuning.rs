@@ -22,6 +22,11 @@ pub(crate) const FEET_AGAINST_NAMES: f32 = 0.04;
 /// Larger: small feet have no front. Smaller: noise has one. Shown by the tests of `hints`.
 pub(crate) const LEAST_FOOT: f32 = 0.005;
 
+/// Fall of a limb from its first joint to its last, as a share of the distance, from which it hangs; a trunk that rises by less lies.
+///
+/// Larger: beasts whose limbs are named as a human's stand up like one. Smaller: a human that bends over is none. Shown by the tests of `assembly`.
+pub(crate) const HANGING: f32 = 0.6;
+
 /// Least distance of both elbows together behind the arms, in heights of the body, to tell more than feet that hardly do.
 ///
 /// Larger: T-poses without feet have no front. Smaller: straight arms decide by noise. Shown by the tests of `hints`.
@@ -160,6 +165,12 @@ pub(crate) const AS_HIGH: f32 = 0.02;
 ///
 /// Larger: dolls have no legs. Smaller: feet are legs. Shown by the tests of `roles`.
 pub(crate) const LOWEST_HIP: f32 = 0.1;
+
+/// Farthest that the inner end of a limb lies from the midline, as a share of where its next joint lies.
+///
+/// Larger: thighs and upper arms close to the midline count as hips and clavicles. Smaller: inner ends that lie a little aside count as
+/// thighs. Shown by the tests of `assembly`.
+pub(crate) const INNER_END: f32 = 0.1;
 
 // roles/keep.rs
 

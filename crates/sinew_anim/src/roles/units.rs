@@ -1,5 +1,6 @@
 //! The length of a file's unit, read off the body and what is known around it.
 
+use super::species::Species;
 use super::{Hints, UnitGuess};
 use crate::roles::tuning::{
     GROWN_BY_HEAD, SHORTEST, STEPS_ALIKE, STRIDE_SPEED, UNDER_DOOR, UNIT_BY_EXPORTER, UNIT_BY_KIN,
@@ -18,8 +19,15 @@ pub(super) struct Measured {
     pub head: Option<f32>,
     /// Time of a stride, seconds, and from where the legs begin that take it down to the floor, file units.
     pub stride: Option<(f32, f32)>,
-    /// Animal that the names in the file speak of, and the longest side of a grown one, metres.
-    pub species: Option<(&'static str, f32)>,
+    /// Kind of body that the names in the file speak of.
+    pub species: Option<Species>,
+}
+
+impl Measured {
+    /// True if its size is that of a human: it is one, or is called one.
+    fn is_human(&self) -> bool {
+        self.humanoid || self.species == Some(Species::Human)
+    }
 }
 
 /// A unit that files may be in.
@@ -108,14 +116,14 @@ impl Sizes {
     /// Sizes of the kind of body that was measured.
     fn of(body: &Measured) -> Self {
         match body.species {
-            Some((_, length)) if !body.humanoid => Self {
+            Some(Species::Animal(_, length)) if !body.humanoid => Self {
                 fits: GROWN.start * length..GROWN.end * length,
                 surely: GROWN.start * length..GROWN.end * length,
                 usual: length,
                 assumed: length,
                 ..CREATURE
             },
-            _ if body.humanoid => HUMAN,
+            _ if body.is_human() => HUMAN,
             _ => CREATURE,
         }
     }
@@ -217,10 +225,10 @@ fn common(kin: &[f32]) -> Option<f32> {
 /// of their length do, and what its exporter writes and the files beside it have. Much of such evidence weighs against its word,
 /// too. If no unit fits, a humanoid is assumed to be 1.75 m, a creature as long as its stride makes it, else 1 m.
 pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
-    let (measure, sizes) = (if body.humanoid { body.height } else { body.size }, Sizes::of(body));
+    let (measure, sizes) = (if body.is_human() { body.height } else { body.size }, Sizes::of(body));
     let across = sizes.words[1];
     let kind = match body.species {
-        Some((name, _)) if !body.humanoid => format!("a grown {name}"),
+        Some(Species::Animal(name, _)) if !body.humanoid => format!("a grown {name}"),
         _ => sizes.words[0].to_owned(),
     };
     let witnesses = Witnesses::of(body, hints, &sizes);

@@ -1,11 +1,12 @@
 //! Humans whose names are plain and whose hierarchy or skin leaves something out.
 
 use crate::toy;
-use sinew_anim::skinning::lost_weights;
+use sinew_anim::weights::lost_weights;
 use sinew_anim::{
-    Joint, LocalTransform, Primitive, Rig, RigAnalysis, RigMesh, Role, Side, Skin, analyze, characters,
+    Hints, Joint, LocalTransform, Primitive, Rig, RigAnalysis, RigMesh, Role, Side, Skin, analyze,
+    analyze_hinted, characters,
 };
-use sinew_math::{Affine, Vec3};
+use sinew_math::{Affine, Rotation, Transform, Vec3};
 
 /// Names of Mixamo for the parts of the toy.
 fn mixamo(role: Role) -> String {
@@ -313,4 +314,154 @@ fn a_skin_whose_weights_were_lost_is_known() {
         slots[0] = 5;
     }
     assert_eq!(lost_weights(&rig), Some(5));
+}
+
+/// Turns a limb, all skin and joints from one on, about that joint.
+fn bend(rig: &mut Rig, from: usize, turn: Rotation) {
+    let is_below =
+        |joint: usize| core::iter::successors(Some(joint), |&at| rig.joints[at].parent).any(|at| at == from);
+    let below: Vec<bool> = (0..rig.joints.len()).map(is_below).collect();
+    let pivot = rig.skins[0].inverse_bind[from].inverse().translation;
+    let about = Affine::from(Transform::new(pivot - turn * pivot, turn));
+    rig.joints[from].rest.rotation = turn;
+    for (inverse, _) in rig.skins[0].inverse_bind.iter_mut().zip(&below).filter(|(_, is_below)| **is_below) {
+        *inverse = *inverse * about.inverse();
+    }
+    let primitive = &mut rig.meshes[0].primitives[0];
+    for (position, slots) in primitive.positions.iter_mut().zip(&primitive.joints) {
+        if below[usize::from(slots[0])] {
+            *position = about.point(*position);
+        }
+    }
+}
+
+#[test]
+fn a_human_without_names_is_one_with_its_arms_bent_unlike() {
+    let mut rig = toy::body(|_| String::new());
+    for (number, joint) in rig.joints.iter_mut().enumerate() {
+        joint.name = format!("Bone.{number:03}");
+    }
+    assert!(analyze(&rig).expect("a skin").humanoid);
+    for (role, turn) in [
+        ("leftUpperArm", Rotation::from_axis_angle(Vec3::Y, -0.3)),
+        ("leftLowerArm", Rotation::from_axis_angle(Vec3::Y, -0.7)),
+        ("rightLowerArm", Rotation::from_axis_angle(Vec3::Z, 0.4)),
+    ] {
+        bend(&mut rig, part(role), turn);
+    }
+    let found = analyze(&rig).expect("a skin");
+    assert!(found.humanoid, "{:?}", found.notes);
+    for role in [Role::LowerArm(Side::Left), Role::Hand(Side::Left), Role::Hand(Side::Right)] {
+        let joint = found.joint_with(role).unwrap_or_else(|| panic!("no {role:?}"));
+        assert_eq!(toy::BODY[joint].0, role.name());
+    }
+}
+
+/// A joint of skin of its own between the trunk and a limb, on the midline.
+fn insert_inner_end(rig: &mut Rig, limb: usize) {
+    let parent = rig.joints[limb].parent.expect("a limb hangs on something");
+    let at = -rig.skins[0].inverse_bind[parent].translation;
+    let joint = rig.joints.len();
+    rig.joints.push(Joint {
+        name: format!("inner {joint}"),
+        parent: Some(parent),
+        rest: LocalTransform::default(),
+        source: joint,
+    });
+    rig.joints[limb].parent = Some(joint);
+    rig.skins[0].joints.push(joint);
+    rig.skins[0].inverse_bind.push(Affine { translation: -at, ..Affine::IDENTITY });
+    let primitive = &mut rig.meshes[0].primitives[0];
+    let first = u32::try_from(primitive.positions.len()).expect("few");
+    let out = -rig.skins[0].inverse_bind[limb].translation;
+    primitive.positions.extend([at, at.lerp(out, 0.5), at.lerp(out, 0.5) + Vec3::Z * 0.02]);
+    primitive.joints.extend([[u16::try_from(joint).expect("few"), 0, 0, 0]; 3]);
+    primitive.weights.extend([[1.0, 0.0, 0.0, 0.0]; 3]);
+    primitive.indices.extend([first, first + 1, first + 2]);
+}
+
+#[test]
+fn limbs_with_inner_ends_and_without_hands_and_feet_are_a_humans() {
+    let mut rig = toy::body(|_| "part".into());
+    for side in ["left", "right"] {
+        for (end, onto) in [("Foot", "LowerLeg"), ("Hand", "LowerArm")] {
+            let (end, onto) = (part(&format!("{side}{end}")), part(&format!("{side}{onto}")));
+            give_skin(&mut rig, end, onto);
+        }
+        insert_inner_end(&mut rig, part(&format!("{side}UpperLeg")));
+        insert_inner_end(&mut rig, part(&format!("{side}UpperArm")));
+    }
+    // Parents come before children: the new joints go to the front of what hangs on them.
+    let rig = in_order(&rig);
+    let found = analyze(&rig).expect("a skin");
+    assert!(found.humanoid, "{:?}", found.notes);
+    for (role, place) in [
+        (Role::UpperLeg(Side::Left), [0.1, 0.9, 0.0]),
+        (Role::LowerLeg(Side::Left), [0.1, 0.5, 0.0]),
+        (Role::UpperArm(Side::Right), [-0.18, 1.45, 0.0]),
+        (Role::LowerArm(Side::Right), [-0.46, 1.45, 0.0]),
+    ] {
+        let joint = found.joint_with(role).unwrap_or_else(|| panic!("no {role:?}"));
+        let at = found.bind_model[joint].translation;
+        assert!((at - Vec3::from_array(place)).length() < 1e-4, "{role:?} at {at}");
+    }
+}
+
+/// The rig with parents before children.
+fn in_order(rig: &Rig) -> Rig {
+    let depth = |joint: usize| core::iter::successors(Some(joint), |&at| rig.joints[at].parent).count();
+    let mut order: Vec<usize> = (0..rig.joints.len()).collect();
+    order.sort_by_key(|&joint| depth(joint));
+    let new = |joint: usize| order.iter().position(|&old| old == joint).expect("all are there");
+    let mut sorted = rig.clone();
+    sorted.joints = order.iter().map(|&old| rig.joints[old].clone()).collect();
+    for joint in &mut sorted.joints {
+        joint.parent = joint.parent.map(new);
+    }
+    for skin in &mut sorted.skins {
+        skin.joints.iter_mut().for_each(|joint| *joint = new(*joint));
+    }
+    sorted
+}
+
+#[test]
+fn a_beast_whose_limbs_are_named_as_a_humans_stays_on_all_fours() {
+    // A trunk along z at the height of the hips, arms and legs straight down from it.
+    let place = |role: &str, at: [f32; 3]| match role {
+        "hips" => [0.0, 1.0, -0.6],
+        "spine" => [0.0, 1.0, -0.3],
+        "chest" => [0.0, 1.0, 0.1],
+        "neck" => [0.0, 1.1, 0.3],
+        "head" => [0.0, 1.15, 0.5],
+        _ => {
+            let side = at[0].signum();
+            let (z, down) =
+                if role.contains("Arm") || role.contains("Hand") { (0.15, 0.0) } else { (-0.6, 0.0) };
+            let level = if role.contains("Upper") {
+                0.9
+            } else if role.contains("Lower") {
+                0.5
+            } else {
+                0.1
+            };
+            [0.15 * side, level + down, z]
+        }
+    };
+    let mut rig = toy::body(mixamo);
+    let places: Vec<Vec3> =
+        toy::BODY.iter().map(|(role, _, at)| Vec3::from_array(place(role, *at))).collect();
+    let primitive = &mut rig.meshes[0].primitives[0];
+    for (position, slots) in primitive.positions.iter_mut().zip(&primitive.joints) {
+        let joint = usize::from(slots[0]);
+        *position += places[joint] - Vec3::from_array(toy::BODY[joint].2);
+    }
+    for (joint, &place) in places.iter().enumerate() {
+        rig.skins[0].inverse_bind[joint].translation = -place;
+        let parent = rig.joints[joint].parent.map_or(Vec3::ZERO, |parent| places[parent]);
+        rig.joints[joint].rest.translation = place - parent;
+    }
+    let hints = Hints { up: Some(Vec3::Y), ..Hints::default() };
+    let found = analyze_hinted(&rig, &hints).expect("a skin");
+    assert!(!found.humanoid, "{:?}", found.notes);
+    assert!((found.up_axis - Vec3::Y).length() < 1e-6);
 }

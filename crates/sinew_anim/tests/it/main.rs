@@ -30,6 +30,7 @@ mod stage;
 mod take;
 mod toy;
 mod transitions;
+mod weights;
 mod wild;
 
 /// Number of `all` random cases to try: a hundredth, but all with `SINEW_FULL` set.

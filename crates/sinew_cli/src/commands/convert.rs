@@ -2,7 +2,7 @@
 
 use crate::commands::clip_choice::{choose_clips, few};
 use crate::failure::{Failure, Result};
-use crate::input::files::{CharacterFile, Outputs, must_end_in, never_over};
+use crate::input::files::{CharacterFile, Outputs, WeightSource, must_end_in, never_over};
 use crate::input::motion::Motion;
 use crate::input::onto::{Carried, carry};
 use crate::input::picture_file::{PictureFile, longest};
@@ -214,7 +214,8 @@ impl Convert {
 
     /// The clips on another character: into a copy of its file, or its skeleton as a BVH.
     fn onto(&self, motion: &Motion, character: &Path, target: Target, outputs: &mut Outputs) -> Result<Told> {
-        let CharacterFile { name, document, analysis, .. } = CharacterFile::load(character, Textures::Skip)?;
+        let CharacterFile { name, document, analysis, .. } =
+            CharacterFile::load(character, Textures::Skip, WeightSource::File)?;
         let rate = self.fps.map_or_else(
             || motion.file.frame_time.map_or(60.0, |frame_time| (1.0 / frame_time).min(60.0)),
             f64::from,

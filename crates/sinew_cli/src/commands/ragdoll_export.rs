@@ -1,7 +1,7 @@
 //! `sinew ragdoll export`: the definition for other engines.
 
 use crate::failure::{Failure, Result};
-use crate::input::files::{CharacterFile, Outputs, must_end_in, never_over};
+use crate::input::files::{CharacterFile, Outputs, WeightSource, must_end_in, never_over};
 use crate::input::ragdoll_file::{RagdollFile, is_character, read_definition};
 use crate::input::settings_arg::SettingsArg;
 use crate::report::Report;
@@ -121,7 +121,7 @@ impl RagdollExport {
     fn character(&self) -> Result<(CharacterFile, RagdollDef, Vec<String>)> {
         match &self.ragdoll {
             Some(path) => {
-                let character = CharacterFile::load(&self.file, Textures::Skip)?;
+                let character = CharacterFile::load(&self.file, Textures::Skip, WeightSource::File)?;
                 let def = read_definition(path, &character)?;
                 Ok((character, def, Vec::new()))
             }

@@ -4,7 +4,7 @@ use crate::failure::{Failure, Result};
 use crate::input::kin::units_beside;
 use crate::report::table::shown;
 use sinew::anim::roles::Correction;
-use sinew::anim::skinning::lost_weights;
+use sinew::anim::weights::lost_weights;
 use sinew::anim::{Hints, JointIdx, Rig, RigAnalysis, analyze_hinted, characters};
 use sinew::formats::{
     Document, MotionFormat, MotionOptions, ReadOptions, Textures, load_gltf, load_motion, no_files,
@@ -14,6 +14,16 @@ use sinew::math::Vec3;
 use sinew::ragdoll::build::joint_name;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
+
+/// Source of the weights of a skin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum WeightSource {
+    /// As the file states them
+    #[default]
+    File,
+    /// New ones by the nearness of vertices to bones, for a file whose own were lost
+    Nearest,
+}
 
 /// A character file: what it holds, and what its joints are.
 pub struct CharacterFile {
@@ -29,10 +39,10 @@ pub struct CharacterFile {
 
 impl CharacterFile {
     /// Reads a file that has to hold a skinned character. An FBX becomes a glTF first, to which clips can be added.
-    pub fn load(path: &Path, textures: Textures) -> Result<Self> {
+    pub fn load(path: &Path, textures: Textures, weights: WeightSource) -> Result<Self> {
         let name = path.display().to_string();
         let options = ReadOptions { textures };
-        let document = if is_fbx(path)? {
+        let mut document = if is_fbx(path)? {
             let file = load_motion(path, &MotionOptions::default())?;
             let bytes = write_motion(&file.rig, &file.clips, &file.events);
             let read = |bytes: Vec<u8>| read_gltf(&bytes, options, &mut no_files);
@@ -40,10 +50,14 @@ impl CharacterFile {
         } else {
             load_gltf(path, options)?
         };
+        if weights == WeightSource::Nearest {
+            document.weigh_by_nearness();
+        }
         if let Some(joint) = lost_weights(&document.rig) {
             let bone = shown(&joint_name(&document.rig, joint));
             let what = format!(
-                "all vertices hang on one bone, {bone}: the weights of the skin were lost, and it cannot bend"
+                "all vertices hang on one bone, {bone}: the weights of the skin were lost, and it cannot bend; \
+                 --weights nearest makes new ones by the nearness of vertices to bones"
             );
             return Err(Failure::of_file(&name, what));
         }

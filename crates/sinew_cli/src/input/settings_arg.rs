@@ -1,7 +1,7 @@
 //! Settings of a ragdoll: those beside the character's file or in one that was named, and over them what was asked for.
 
 use crate::failure::{Failure, Result};
-use crate::input::files::CharacterFile;
+use crate::input::files::{CharacterFile, WeightSource};
 use sinew::anim::{Garment, Hints, RigAnalysis, Role, Springs, UnitGuess, analyze_hinted};
 use sinew::formats::{Textures, read_bytes, read_ragdoll_settings, settings_path};
 use sinew::math::Vec3;
@@ -34,6 +34,9 @@ pub struct SettingsArg {
     /// Axis of the file that points up; by default y, as glTF has it
     #[arg(help_heading = HEADING, long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
     up: Option<Vec3>,
+    /// Weights of the skin: the file's own, or new ones by the nearness of vertices to bones, where its own were lost
+    #[arg(help_heading = HEADING, long, value_name = "SOURCE", value_enum, default_value_t)]
+    weights: WeightSource,
     /// Mass of the whole character, kg; by default from its height or volume
     #[arg(help_heading = HEADING, long, value_name = "KG", allow_negative_numbers = true)]
     mass: Option<f32>,
@@ -126,6 +129,7 @@ impl SettingsArg {
             ("--height", self.height.is_some()),
             ("--unit", self.unit.is_some()),
             ("--up", self.up.is_some()),
+            ("--weights", self.weights != WeightSource::default()),
             ("--mass", self.mass.is_some()),
             ("--role", !self.roles.is_empty()),
             ("--ignore", !self.ignore.is_empty()),
@@ -167,7 +171,7 @@ impl SettingsArg {
         door: impl FnOnce() -> Option<f32>,
         wears_garments: bool,
     ) -> Result<(CharacterFile, LoadedSettings)> {
-        let mut character = CharacterFile::load(path, textures)?;
+        let mut character = CharacterFile::load(path, textures, self.weights)?;
         if self.up.is_some() {
             let hints = Hints { up: self.up, ..character.analysis.hints.clone() };
             character.hint(&hints)?;
@@ -187,6 +191,9 @@ impl SettingsArg {
             loaded.settings.garments.leave_meshes();
         }
         loaded.analyze(&mut character)?;
+        if let Some(up) = loaded.settings.up_axis {
+            character.analysis.hints.up = Some(up);
+        }
         if loaded.settings.garments.has_meshes() {
             loaded.lay_sheets(&mut character)?;
         }

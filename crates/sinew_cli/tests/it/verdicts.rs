@@ -2,8 +2,11 @@
 
 use crate::sinew::{Folder, glb, sinew};
 use serde_json::Value;
-use sinew::anim::{Channel, Clip, Interpolation, Property, Rig};
-use sinew::math::Vec3;
+use sinew::anim::sample::sample;
+use sinew::anim::weights::lost_weights;
+use sinew::anim::{Channel, Clip, Interpolation, Property, Rig, Wrap, local_to_model, rest_pose};
+use sinew::formats::{ReadOptions, load_gltf};
+use sinew::math::{Affine, Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew_scenes::mannequin::mannequin;
 
@@ -165,4 +168,79 @@ fn a_bvh_with_fewer_frames_than_it_says_is_played() {
     std::fs::write(&bvh, text.replace("Frames: 61", "Frames: 500")).expect("it is written");
     let object = sinew(&["bake", &file, "--clips", &bvh, "--seconds", "1", "-o", &out, "--json"]).json();
     assert!(object["notes"].to_string().contains("declares 500 frames, has 61"), "{object:#}");
+}
+
+/// A skin whose weights were lost is refused with the way out, and built by that.
+#[test]
+fn lost_weights_are_made_anew_where_that_is_asked_for() {
+    let folder = Folder::new("verdict-weights");
+    let mut rig = mannequin().rig;
+    for mesh in rig.meshes.iter_mut().filter(|mesh| mesh.skin.is_some()) {
+        for primitive in &mut mesh.primitives {
+            primitive.joints.fill([0; 4]);
+            primitive.weights.fill([1.0, 0.0, 0.0, 0.0]);
+        }
+    }
+    let file = folder.file("lost.glb", glb(&rig, &[]));
+    let refused = sinew(&["ragdoll", "build", &file]);
+    assert_eq!(refused.code, Some(1));
+    assert!(refused.stderr.contains("--weights nearest"), "{}", refused.stderr);
+    let built = sinew(&["ragdoll", "build", &file, "--weights", "nearest", "--json"]).json();
+    let roles: Vec<&Value> =
+        built["bodies"].as_array().expect("bodies").iter().map(|body| &body["role"]).collect();
+    for role in ["hips", "head", "leftHand", "rightLowerArm", "leftFoot", "rightUpperLeg"] {
+        assert!(roles.iter().any(|known| *known == role), "no body for {role}: {roles:?}");
+    }
+    assert_ne!(built["quality"]["verdict"], "bad", "{}", built["quality"]["reasons"]);
+    let out = folder.path("out.glb");
+    let baked = sinew(&["bake", &file, "--weights", "nearest", "-o", &out, "--json"]).json();
+    assert_ne!(baked["verdict"], "bad", "{}", baked["reasons"]);
+    let written = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+    assert_eq!(lost_weights(&written.rig), None, "the baked file has the new weights");
+}
+
+/// A human that lies in its file begins its fall as it lies: nothing but `--up` stands it up.
+#[test]
+fn who_lies_in_the_file_begins_lying() {
+    let folder = Folder::new("verdict-lying");
+    let mut rig = mannequin().rig;
+    let back = Rotation::from_axis_angle(Vec3::X, -core::f32::consts::FRAC_PI_2);
+    for joint in rig.joints.iter_mut().filter(|joint| joint.parent.is_none()) {
+        joint.rest.translation = back * joint.rest.translation;
+        joint.rest.rotation = back * joint.rest.rotation;
+    }
+    let turn = Affine::from(Transform::new(Vec3::ZERO, back));
+    for bind in rig.skins.iter_mut().flat_map(|skin| &mut skin.inverse_bind) {
+        *bind = *bind * turn.inverse();
+    }
+    for primitive in
+        rig.meshes.iter_mut().filter(|mesh| mesh.skin.is_some()).flat_map(|mesh| &mut mesh.primitives)
+    {
+        primitive.positions.iter_mut().for_each(|at| *at = turn.point(*at));
+        primitive.normals.iter_mut().for_each(|normal| *normal = back * *normal);
+    }
+    let file = folder.file("lying.glb", glb(&rig, &[]));
+    // From hips to head at the start and after two seconds, in the file's own axes.
+    let trunks = |extra: &[&str]| {
+        let out = folder.path("out.glb");
+        let arguments = [&["bake", file.as_str(), "-o", &out, "--seconds", "2", "--json"], extra].concat();
+        let object = sinew(&arguments).json();
+        let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+        let (rig, clip) = (&document.rig, document.clips.last().expect("a clip"));
+        let trunk = |time: f32| {
+            let (mut pose, mut model) = (rest_pose(rig), Vec::new());
+            sample(clip, rig, time, Wrap::Clamp, &mut pose);
+            local_to_model(rig, &pose, &Affine::IDENTITY, &mut model);
+            model[joint(rig, "head")].translation - model[joint(rig, "hips")].translation
+        };
+        ([trunk(0.0), trunk(2.0)], object["notes"].to_string())
+    };
+    let ([start, end], notes) = trunks(&[]);
+    assert!(start.y.abs() < 0.05 && start.z < -0.4, "it lies on its back: {start}");
+    assert!(end.y.abs() < 0.15 && end.z < -0.4, "and stays so: {end}");
+    assert!(notes.contains("--up"), "{notes}");
+    // By another axis it stands, and falls.
+    let ([start, end], _) = trunks(&["--up", "-z"]);
+    assert!(start.z < -0.4, "{start}");
+    assert!(end.z > -0.3, "it has fallen: {end}");
 }

@@ -4,13 +4,19 @@ use super::material::{self, Materials};
 use super::{affine, index, vector};
 use crate::error::{Error, Result};
 use crate::gltf::strongest_four;
+use sinew_anim::weights::SkinPart;
 use sinew_anim::{Primitive, Rig, RigMesh, Skin};
 use sinew_math::{Vec2, Vec3, normalize_or};
 use std::collections::BTreeMap;
 use ufbx::{MeshPart, Scene, SkinDeformer};
 
-/// Every mesh as often as a node places it.
-pub(super) fn read_all(scene: &Scene, rig: &mut Rig, materials: &mut Materials<'_, '_>) -> Result<()> {
+/// Every mesh as often as a node places it. Returns the vertices of skinned ones whose weights are missing.
+pub(super) fn read_all(
+    scene: &Scene,
+    rig: &mut Rig,
+    materials: &mut Materials<'_, '_>,
+) -> Result<Vec<SkinPart>> {
+    let mut without = Vec::new();
     for node in &scene.nodes {
         let (Some(mesh), Some(joint)) = (node.mesh.as_ref(), index(node)) else { continue };
         if !mesh.vertex_position.exists {
@@ -24,7 +30,8 @@ pub(super) fn read_all(scene: &Scene, rig: &mut Rig, materials: &mut Materials<'
         };
         let mut primitives = Vec::new();
         for part in mesh.material_parts.iter().filter(|part| part.num_triangles > 0) {
-            let mut primitive = Corners::new(mesh, skin.as_ref(), &name).read(part)?;
+            let (mut primitive, vertices) = Corners::new(mesh, skin.as_ref(), &name).read(part)?;
+            without.push(SkinPart { mesh: rig.meshes.len(), primitive: primitives.len(), vertices });
             (primitive.base_color, primitive.texture) = materials.look(node, mesh, part);
             primitive.material = material::name(node, mesh, part);
             primitives.push(primitive);
@@ -33,7 +40,7 @@ pub(super) fn read_all(scene: &Scene, rig: &mut Rig, materials: &mut Materials<'
             rig.meshes.push(RigMesh { name, joint, skin: skin.map(|skin| skin.skin), primitives });
         }
     }
-    Ok(())
+    Ok(without)
 }
 
 /// A skin of the rig, and which of its slots each cluster of the file has.
@@ -66,8 +73,8 @@ impl<'a> Slots<'a> {
         Ok(Some(Self { deformer, skin: rig.skins.len() - 1, of_cluster }))
     }
 
-    /// Slots and weights of a vertex of the file.
-    fn of_vertex(&self, vertex: usize) -> ([u16; 4], [f32; 4]) {
+    /// Slots and weights of a vertex of the file; `None` if it has no weight.
+    fn of_vertex(&self, vertex: usize) -> Option<([u16; 4], [f32; 4])> {
         let range = self.deformer.vertices.get(vertex).map_or(0..0, |vertex| {
             let begin = vertex.weight_begin as usize;
             begin..begin + vertex.num_weights as usize
@@ -75,9 +82,10 @@ impl<'a> Slots<'a> {
         let weights = self.deformer.weights.get(range).unwrap_or_default();
         let influence = |weight: &ufbx::SkinWeight| {
             let slot = self.of_cluster.get(weight.cluster_index as usize).copied().flatten()?;
-            weight.weight.is_finite().then_some((slot, weight.weight as f32))
+            (weight.weight.is_finite() && weight.weight > 0.0).then_some((slot, weight.weight as f32))
         };
-        strongest_four(weights.iter().filter_map(influence).collect())
+        let influences: Vec<(u16, f32)> = weights.iter().filter_map(influence).collect();
+        (!influences.is_empty()).then(|| strongest_four(influences))
     }
 }
 
@@ -88,14 +96,17 @@ struct Corners<'a> {
     name: &'a str,
     known: BTreeMap<[u32; 3], u32>,
     out: Primitive,
+    /// Vertices without a weight.
+    without: Vec<usize>,
 }
 
 impl<'a> Corners<'a> {
     fn new(mesh: &'a ufbx::Mesh, skin: Option<&'a Slots<'a>>, name: &'a str) -> Self {
-        Self { mesh, skin, name, known: BTreeMap::new(), out: Primitive::default() }
+        Self { mesh, skin, name, known: BTreeMap::new(), out: Primitive::default(), without: Vec::new() }
     }
 
-    fn read(mut self, part: &MeshPart) -> Result<Primitive> {
+    /// The primitive, and its vertices whose weights are missing.
+    fn read(mut self, part: &MeshPart) -> Result<(Primitive, Vec<usize>)> {
         let mut corners = vec![0_u32; self.mesh.max_face_triangles * 3];
         for &face in &part.face_indices {
             let Some(&face) = self.mesh.faces.get(face as usize) else { continue };
@@ -105,7 +116,7 @@ impl<'a> Corners<'a> {
                 self.out.indices.push(vertex);
             }
         }
-        Ok(self.out)
+        Ok((self.out, self.without))
     }
 
     /// The vertex that a corner becomes.
@@ -135,7 +146,10 @@ impl<'a> Corners<'a> {
         self.out.positions.push(position);
         if let Some(skin) = self.skin {
             let vertex = mesh.vertex_indices.get(corner).copied().unwrap_or(0) as usize;
-            let (slots, weights) = skin.of_vertex(vertex);
+            let (slots, weights) = skin.of_vertex(vertex).unwrap_or_else(|| {
+                self.without.push(new as usize);
+                ([0; 4], [1.0, 0.0, 0.0, 0.0])
+            });
             self.out.joints.push(slots);
             self.out.weights.push(weights);
         }

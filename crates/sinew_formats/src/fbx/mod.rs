@@ -16,9 +16,10 @@ mod material;
 mod mesh;
 
 use crate::error::{Error, Result};
-use crate::gltf::{ReadOptions, Resolver, Textures, no_files};
+use crate::gltf::{ReadOptions, Resolver, Textures, no_files, note_of_loose};
 use crate::motion::{MotionFile, MotionFormat};
 use material::Materials;
+use sinew_anim::weights::weigh_loose_vertices;
 use sinew_anim::{Joint, JointIdx, LocalTransform, Rig};
 use sinew_math::{Affine, Mat3, Rotation, Vec3};
 use ufbx::{
@@ -51,11 +52,13 @@ pub fn read_fbx_with(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<
         scene.nodes.iter().filter(|node| !node.is_root).map(|node| joint(node)).collect::<Result<_>>()?;
     let mut rig = Rig { joints, ..Rig::default() };
     let mut materials = Materials::new(options.textures, resolve);
-    mesh::read_all(&scene, &mut rig, &mut materials)?;
+    let without_weights = mesh::read_all(&scene, &mut rig, &mut materials)?;
+    let reweighed = weigh_loose_vertices(&mut rig, &without_weights);
     rig.textures = materials.textures;
     let pictures = materials.notes;
     let (clips, mut notes) = clips::read_all(&scene, bytes.len())?;
     notes.extend(pictures);
+    notes.extend(note_of_loose(&reweighed));
     notes.extend(left_out(&scene, options.textures));
     notes.extend(scene.metadata.warnings.iter().map(|warning| warning.description.to_string()));
     let rate = scene.settings.frames_per_second;

@@ -2,20 +2,39 @@
 
 use super::source::Source;
 use crate::container::json::At;
-use crate::error::Result;
+use crate::error::{Result, quoted};
 use crate::events;
 use sinew_anim::{Channel, Clip, ClipEvent, Interpolation, JointIdx, Property};
 
 type Clips = (Vec<Clip>, Vec<Vec<ClipEvent>>);
 
 /// All animations, and what happens in each.
-pub(super) fn read_all(source: &Source<'_>, joint_of_node: &[Option<JointIdx>]) -> Result<Clips> {
-    let read = |at| {
-        let clip = read_clip(source, at, joint_of_node)?;
+pub(super) fn read_all(
+    source: &Source<'_>,
+    joint_of_node: &[Option<JointIdx>],
+    warnings: &mut Vec<String>,
+) -> Result<Clips> {
+    let read = |at: At<'_>| {
+        let mut clip = read_clip(source, at, joint_of_node)?;
+        if let Some(shift) = begin_at_zero(&mut clip) {
+            let name = quoted(&clip.name);
+            warnings.push(format!("clip {name} has keys from -{shift} s on: it was moved to begin at 0 s"));
+        }
         let events = events::read_extras(at, clip.duration)?;
         Ok((clip, events))
     };
     source.root.list("animations")?.into_iter().map(read).collect()
+}
+
+/// Moves a clip whose first key is before 0 s to begin there, as exports of negative frames have it. Returns the shift, seconds.
+fn begin_at_zero(clip: &mut Clip) -> Option<f32> {
+    let first = clip.channels.iter().map(|channel| channel.times[0]).fold(0.0, sinew_math::min);
+    if first >= 0.0 {
+        return None;
+    }
+    clip.channels.iter_mut().flat_map(|channel| &mut channel.times).for_each(|time| *time -= first);
+    clip.duration -= first;
+    Some(-first)
 }
 
 fn read_clip<'a>(source: &Source<'a>, animation: At<'a>, joint_of_node: &[Option<JointIdx>]) -> Result<Clip> {

@@ -42,6 +42,7 @@ pub fn append_clip(document: &Document, clip: &Clip, name: &str, extras: Option<
 ///
 /// What has to change in old entries, and nothing else does:
 /// - `buffers[0].byteLength` grows.
+/// - Primitives whose vertices got other weights when the file was read, since no bone moved them, name the accessors of these.
 /// - A `.gltf` becomes one file that can be moved: `buffers[0]` loses its `uri` and becomes the binary chunk, pictures
 ///   in files of their own move into it, further external buffers become data URIs. A picture that was missing when
 ///   the file was read keeps its `uri`.
@@ -59,6 +60,7 @@ pub fn append_clip(document: &Document, clip: &Clip, name: &str, extras: Option<
 pub fn append_clips(document: &Document, clips: &[NewClip<'_>]) -> Result<Vec<u8>> {
     let mut editor = Editor::open(document)?;
     editor.embed_external(document)?;
+    editor.write_reweighed(document)?;
     editor.write_sheets(document)?;
     for clip in clips {
         editor.append(document, clip)?;

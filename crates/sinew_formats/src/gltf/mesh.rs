@@ -6,18 +6,19 @@ use super::scene::Scene;
 use super::source::Source;
 use crate::container::json::At;
 use crate::error::Result;
+use sinew_anim::weights::SkinPart;
 use sinew_anim::{Primitive, RigMesh};
 use sinew_math::{Vec2, Vec3, clamp, normalize_or};
 
-/// Every mesh of the scene as often as a node places it.
+/// Every mesh of the scene as often as a node places it, and the vertices of skinned ones whose weights are missing.
 pub(super) fn read_all<'a>(
     source: &Source<'a>,
     scene: &Scene,
     materials: &mut Materials<'_, 'a>,
     warnings: &mut Vec<String>,
-) -> Result<Vec<RigMesh>> {
+) -> Result<(Vec<RigMesh>, Vec<SkinPart>)> {
     let meshes = source.root.list("meshes")?;
-    let mut out = Vec::new();
+    let (mut out, mut without) = (Vec::new(), Vec::new());
     for (joint, at_joint) in scene.rig.joints[..scene.shown].iter().enumerate() {
         let node = source.nodes[at_joint.source];
         let Some(mesh_at) = node.get("mesh")? else { continue };
@@ -27,15 +28,19 @@ pub(super) fn read_all<'a>(
             None => None,
         };
         let slots = skin.map(|skin| scene.rig.skins[skin].joints.len());
-        let (mut primitives, mut unweighted) = (Vec::new(), Vec::new());
+        let mut primitives = Vec::new();
+        let mut skinned = 0;
         for primitive in mesh.need("primitives")?.items()? {
             let mut mending = Mending { warnings, unweighted: Vec::new() };
             if let Some(read) = read_primitive(source, primitive, slots, materials, &mut mending)? {
-                unweighted.push(mending.unweighted);
+                if !read.joints.is_empty() {
+                    let vertices = mending.unweighted;
+                    without.push(SkinPart { mesh: out.len(), primitive: skinned, vertices });
+                    skinned += 1;
+                }
                 primitives.push(read);
             }
         }
-        weigh_like_neighbours(&mut primitives, &unweighted);
         // Parts without weights in a skinned mesh move with the node, like any rigid mesh.
         let (skinned, rigid): (Vec<_>, Vec<_>) = primitives.into_iter().partition(|p| !p.joints.is_empty());
         for (primitives, skin) in [(skinned, skin), (rigid, None)] {
@@ -44,13 +49,13 @@ pub(super) fn read_all<'a>(
             }
         }
     }
-    Ok(out)
+    Ok((out, without))
 }
 
 /// Record of what is not finite in a primitive and was mended.
 struct Mending<'w> {
     warnings: &'w mut Vec<String>,
-    /// Vertices whose weights are not finite.
+    /// Vertices without a weight above 0.
     unweighted: Vec<usize>,
 }
 
@@ -185,8 +190,7 @@ fn read_weights(
         let (weights, holes) = attributes.floats::<4>(&names[1], weights_at)?;
         check_count(joints_at, joints.len(), count)?;
         check_count(weights_at, weights.len(), count)?;
-        mending.note(weights_at, &holes, count, "they follow the nearest skin");
-        mending.unweighted.extend(holes);
+        mending.note(weights_at, &holes, count, "taken as 0");
         influences.resize_with(count, Vec::new);
         for (vertex, (joints, weights)) in joints.iter().zip(&weights).enumerate() {
             for (&slot, &weight) in joints.iter().zip(weights) {
@@ -199,39 +203,9 @@ fn read_weights(
             }
         }
     }
-    // A weight that is left speaks for its vertex.
-    mending.unweighted.retain(|&vertex| influences[vertex].iter().all(|&(_, weight)| weight <= 0.0));
+    let is_bare = |vertex: &usize| influences[*vertex].iter().all(|&(_, weight)| weight <= 0.0);
+    mending.unweighted.extend((0..influences.len()).filter(is_bare));
     Ok(influences.into_iter().map(strongest_four).unzip())
-}
-
-/// Comparisons of a vertex without weights with one that has some, at most, for a whole mesh.
-const MOST_COMPARED: usize = 50_000_000;
-
-/// Gives vertices whose weights were not finite those of the nearest vertex of the mesh that has some.
-fn weigh_like_neighbours(primitives: &mut [Primitive], unweighted: &[Vec<usize>]) {
-    let lost: usize = unweighted.iter().map(Vec::len).sum();
-    if lost == 0 {
-        return;
-    }
-    let mut known: Vec<(Vec3, [u16; 4], [f32; 4])> = Vec::new();
-    for (primitive, lost) in primitives.iter().zip(unweighted) {
-        let lost: std::collections::BTreeSet<usize> = lost.iter().copied().collect();
-        let has = |vertex: &usize| *vertex < primitive.weights.len() && !lost.contains(vertex);
-        let of = |i: usize| (primitive.positions[i], primitive.joints[i], primitive.weights[i]);
-        known.extend((0..primitive.positions.len()).filter(has).map(of));
-    }
-    // Of a very large mesh every so many are as good.
-    let stride = 1 + known.len().saturating_mul(lost) / MOST_COMPARED;
-    for (primitive, lost) in primitives.iter_mut().zip(unweighted) {
-        for &vertex in lost {
-            let at = primitive.positions[vertex];
-            let away = |known: &&(Vec3, [u16; 4], [f32; 4])| (known.0 - at).length_squared();
-            let nearest = known.iter().step_by(stride).min_by(|a, b| away(a).total_cmp(&away(b)));
-            if let Some(&(_, joints, weights)) = nearest {
-                (primitive.joints[vertex], primitive.weights[vertex]) = (joints, weights);
-            }
-        }
-    }
 }
 
 /// Keeps the four largest weights, in order of size beyond four only, and brings their sum to 1. A vertex without any

@@ -48,7 +48,8 @@ use crate::container::json::{self, At};
 use crate::error::{Error, Result, quoted};
 use crate::{container::glb, container::uri};
 use serde_json::Value;
-use sinew_anim::{Clip, ClipEvent, Rig};
+use sinew_anim::weights::{SkinPart, weigh_by_nearness, weigh_loose_vertices};
+use sinew_anim::{Clip, ClipEvent, JointIdx, Rig};
 use source::{Buffer, Source};
 use std::collections::BTreeMap;
 
@@ -101,6 +102,8 @@ pub struct Document {
     external_images: BTreeMap<usize, Vec<u8>>,
     /// Further chunks of a GLB.
     other_chunks: Vec<u8>,
+    /// Parts of the skin whose weights are not the file's any more: the mesh's joint, and the primitive among those with weights.
+    reweighed: Vec<(JointIdx, usize)>,
 }
 
 impl Document {
@@ -120,9 +123,38 @@ impl Document {
         used.into_iter().flatten().filter_map(Value::as_str).collect()
     }
 
+    /// Gives all skins new weights by the nearness of their vertices to the bones, for a file whose own weights were
+    /// [lost](sinew_anim::weights::lost_weights). [`append_clips`] writes them.
+    pub fn weigh_by_nearness(&mut self) {
+        let changed = weigh_by_nearness(&mut self.rig);
+        self.note_reweighed(&changed);
+    }
+
+    fn weigh_loose_vertices(&mut self, without: &[SkinPart]) {
+        let changed = weigh_loose_vertices(&mut self.rig, without);
+        self.warnings.extend(note_of_loose(&changed));
+        self.note_reweighed(&changed);
+    }
+
+    fn note_reweighed(&mut self, changed: &[SkinPart]) {
+        let of_mesh = |part: &SkinPart| (self.rig.meshes[part.mesh].joint, part.primitive);
+        let changed: Vec<(JointIdx, usize)> = changed.iter().map(of_mesh).collect();
+        self.reweighed.extend(changed);
+    }
+
     /// Format that the springs of the rig are stated in; `None` where the file states none.
     pub fn spring_format(&self) -> Option<SpringFormat> {
         SpringFormat::of(&self.json)
+    }
+}
+
+/// Note of vertices that follow the skin nearest to them; `None` where there are none.
+pub(crate) fn note_of_loose(changed: &[SkinPart]) -> Option<String> {
+    let vertices: usize = changed.iter().map(|part| part.vertices.len()).sum();
+    match vertices {
+        0 => None,
+        1 => Some("1 vertex hangs on no bone: it follows the nearest skin".into()),
+        _ => Some(format!("{vertices} vertices hang on no bone: they follow the nearest skin")),
     }
 }
 
@@ -161,13 +193,14 @@ pub fn read_gltf(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<'_>)
     let source = Source::new(root, &buffers, bin, &decompressed, budget)?;
     let mut materials = material::Materials::new(&source, &external_images, options.textures)?;
     let mut scene = scene::read(&source)?;
-    scene.rig.meshes = mesh::read_all(&source, &scene, &mut materials, &mut warnings)?;
+    let (meshes, without_weights) = mesh::read_all(&source, &scene, &mut materials, &mut warnings)?;
+    scene.rig.meshes = meshes;
     scene.rig.textures = materials.textures;
     warnings.append(&mut materials.warnings);
     scene.rig.stated_roles = vrm::stated_roles(root, &scene.joint_of_node);
     scene.rig.springs = springs::read(&source, &scene, &mut warnings)?;
-    let (clips, events) = animation::read_all(&source, &scene.joint_of_node)?;
-    Ok(Document {
+    let (clips, events) = animation::read_all(&source, &scene.joint_of_node, &mut warnings)?;
+    let mut document = Document {
         rig: scene.rig,
         clips,
         events,
@@ -178,7 +211,10 @@ pub fn read_gltf(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<'_>)
         external_images,
         other_chunks: other_chunks.to_vec(),
         json,
-    })
+        reweighed: Vec::new(),
+    };
+    document.weigh_loose_vertices(&without_weights);
+    Ok(document)
 }
 
 type Unwrapped<'a> = (Container, &'a [u8], Option<&'a [u8]>, &'a [u8]);

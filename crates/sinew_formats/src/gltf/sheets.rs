@@ -1,12 +1,13 @@
-//! Meshes that became sheets of cloth, into the user's own file: a node for each particle, a longer skin, and other joints and weights.
+//! Skins that changed, into the user's own file: meshes that became sheets of cloth (a node for each particle, a longer skin, and other joints and weights), and vertices with other weights than the file's.
 
 use super::Document;
 use super::append::Editor;
 use crate::error::{Error, Result};
 use serde_json::{Map, Value, json};
 use sinew_anim::garments::MeshSheet;
-use sinew_anim::{Primitive, Rig};
+use sinew_anim::{JointIdx, Primitive, Rig, RigMesh};
 use sinew_math::Affine;
+use std::collections::BTreeMap;
 
 /// Component types of accessors.
 const U16: u32 = 5123;
@@ -21,7 +22,7 @@ impl Editor {
         let mut skins: Vec<usize> = Vec::new();
         for sheet in &rig.sheets {
             self.write_nodes(rig, sheet)?;
-            self.write_primitives(rig, sheet)?;
+            self.write_primitives(rig, &rig.meshes[sheet.mesh], &sheet.primitives)?;
             skins.extend(rig.meshes[sheet.mesh].skin);
         }
         skins.sort_unstable();
@@ -72,16 +73,31 @@ impl Editor {
         Ok(())
     }
 
-    fn write_primitives(&mut self, rig: &Rig, sheet: &MeshSheet) -> Result<()> {
-        let mesh = &rig.meshes[sheet.mesh];
+    /// Writes the weights of skins that are not the file's any more.
+    pub(super) fn write_reweighed(&mut self, document: &Document) -> Result<()> {
+        let mut of_joint: BTreeMap<JointIdx, Vec<usize>> = BTreeMap::new();
+        for &(joint, primitive) in &document.reweighed {
+            of_joint.entry(joint).or_default().push(primitive);
+        }
+        for (joint, primitives) in of_joint {
+            let mut meshes = document.rig.meshes.iter();
+            // The mesh of another character was left out.
+            let Some(mesh) = meshes.find(|mesh| mesh.joint == joint && mesh.skin.is_some()) else { continue };
+            self.write_primitives(&document.rig, mesh, &primitives)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the weights of some of a mesh's primitives, and its skin.
+    fn write_primitives(&mut self, rig: &Rig, mesh: &RigMesh, primitives: &[usize]) -> Result<()> {
         let node = rig.joints[mesh.joint].source;
         let of_file = self.own_mesh(node)?;
         let had_skin = self.entry("nodes", node)?.contains_key("skin");
-        let primitives = self.entry("meshes", of_file)?.get("primitives").and_then(Value::as_array);
-        let read = primitives.into_iter().flatten().enumerate().filter(|(_, it)| is_read(it, had_skin));
+        let of_mesh = self.entry("meshes", of_file)?.get("primitives").and_then(Value::as_array);
+        let read = of_mesh.into_iter().flatten().enumerate().filter(|(_, it)| is_read(it, had_skin));
         let read: Vec<usize> = read.map(|(at, _)| at).collect();
         // In a mesh that had no skin all parts need weights.
-        let written = if had_skin { sheet.primitives.clone() } else { (0..mesh.primitives.len()).collect() };
+        let written = if had_skin { primitives.to_vec() } else { (0..mesh.primitives.len()).collect() };
         for at in written {
             let lost =
                 || Error::malformed("the primitives are not those of the rig", format!("meshes[{of_file}]"));

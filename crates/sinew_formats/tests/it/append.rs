@@ -170,3 +170,69 @@ fn morph_targets_are_kept() {
     assert_eq!(offsets(&new), offsets(&old));
     assert_eq!(new.clips.len(), old.clips.len() + 1);
 }
+
+/// A mannequin whose last vertices hang on `neutral_bone`.
+fn with_loose_vertices(count: usize) -> sinew_anim::Rig {
+    let mut rig = sinew::mannequin::mannequin().rig;
+    let mesh = rig.meshes.iter_mut().find(|mesh| mesh.skin.is_some()).expect("a skin");
+    let skin = &mut rig.skins[mesh.skin.expect("a skin")];
+    let slot = u16::try_from(skin.joints.len()).expect("few");
+    skin.joints.push(rig.joints.len());
+    skin.inverse_bind.push(sinew_math::Affine::IDENTITY);
+    let primitive =
+        mesh.primitives.iter_mut().find(|primitive| primitive.joints.len() > count).expect("skin");
+    let first = primitive.joints.len() - count;
+    primitive.joints[first..].fill([slot, 0, 0, 0]);
+    primitive.weights[first..].fill([1.0, 0.0, 0.0, 0.0]);
+    let source = rig.joints.len();
+    rig.joints.push(sinew_anim::Joint {
+        name: "neutral_bone".into(),
+        parent: None,
+        rest: sinew_anim::LocalTransform::default(),
+        source,
+    });
+    rig
+}
+
+#[test]
+fn weights_that_loose_vertices_got_are_written() {
+    let file = sinew_formats::write_gltf(&with_loose_vertices(5), &[]).unwrap();
+    let read = |bytes: &[u8]| read_gltf(bytes, ReadOptions::default(), &mut no_files).unwrap();
+    let document = read(&file);
+    assert_eq!(document.warnings, ["5 vertices hang on no bone: they follow the nearest skin"]);
+    let neutral = document.rig.joints.iter().position(|joint| joint.name == "neutral_bone");
+    let moves = |document: &Document| {
+        let of_mesh = |mesh: &sinew_anim::RigMesh| {
+            let joints = &document.rig.skins[mesh.skin?].joints;
+            let mut slots = mesh.primitives.iter().flat_map(|part| part.joints.iter().map(|slots| slots[0]));
+            slots.any(|slot| Some(joints[usize::from(slot)]) == neutral).then_some(())
+        };
+        document.rig.meshes.iter().find_map(of_mesh).is_some()
+    };
+    assert!(!moves(&document), "the neutral bone moves skin");
+    let again = read(&append_clip(&document, &motion(&document), "moved", None).unwrap());
+    assert_eq!(again.warnings, Vec::<String>::new(), "the file has no loose vertex any more");
+    assert!(again.rig.skins == document.rig.skins, "the skins are other ones");
+    let parts = |document: &Document| document.rig.meshes[0].primitives.clone();
+    for (new, old) in parts(&again).iter().zip(parts(&document)) {
+        assert!(new.positions == old.positions && new.joints == old.joints && new.indices == old.indices);
+        let off = |(a, b): (&f32, &f32)| (a - b).abs();
+        let weights = new.weights.as_flattened().iter().zip(old.weights.as_flattened());
+        assert!(weights.map(off).fold(0.0, f32::max) < 1e-6, "other weights");
+    }
+}
+
+#[test]
+fn a_clip_with_keys_before_zero_begins_at_zero() {
+    let mannequin = sinew::mannequin::mannequin();
+    let mut clip = mannequin.clips[0].clone();
+    let (duration, first) = (clip.duration, clip.channels[0].times[0]);
+    clip.channels.iter_mut().flat_map(|channel| &mut channel.times).for_each(|time| *time -= 0.125);
+    clip.duration -= 0.125;
+    let file = sinew_formats::write_gltf(&mannequin.rig, &[clip]).unwrap();
+    let document = read_gltf(&file, ReadOptions::default(), &mut no_files).unwrap();
+    let read = &document.clips[0];
+    assert!((read.channels[0].times[0] - first).abs() < 1e-6, "{} s", read.channels[0].times[0]);
+    assert!((read.duration - duration).abs() < 1e-6, "{} s", read.duration);
+    assert!(document.warnings[0].contains("keys from -0.125 s on"), "{:?}", document.warnings);
+}

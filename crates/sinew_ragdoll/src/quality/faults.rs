@@ -4,9 +4,9 @@ use super::Verdict;
 use crate::bake::{BakeInput, Baked};
 use crate::character::{CharacterEvent, State};
 use crate::def::RagdollDef;
-use crate::tuning::{FALLEN_OUT, NEVER_STILL, ON_A_SIDE};
-use sinew_anim::{Rig, local_to_model};
-use sinew_math::{Affine, Transform, max, min};
+use crate::tuning::{FALLEN_OUT, NEVER_STILL, ON_A_SIDE, STILL_UPRIGHT};
+use sinew_anim::{LocalTransform, Rig, local_to_model};
+use sinew_math::{Affine, Transform, Vec3, max, min};
 use sinew_physics::{BodyKind, World, WorldDef};
 
 /// Joints with skin from which on one body is no ragdoll: few figures of one part have as many.
@@ -95,12 +95,13 @@ fn sides(def: &RagdollDef) -> Option<Fault> {
     found.into_iter().next()
 }
 
-/// Faults of what became of a character: out of the world, never still.
+/// Faults of what became of a character: out of the world, never still, still upright.
 ///
 /// # Panics
 /// If the bake is not one of the input's.
 pub fn faults_of_bake(input: &BakeInput<'_>, baked: &Baked) -> Vec<Fault> {
-    fell_out(input, baked).or_else(|| never_still(input, baked)).into_iter().collect()
+    let fault = fell_out(input, baked).or_else(|| never_still(input, baked));
+    fault.or_else(|| stays_upright(input, baked)).into_iter().collect()
 }
 
 /// A body far below everything that stands.
@@ -149,6 +150,34 @@ fn never_still(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
         let root = &input.character.ragdoll.bodies[0].bone;
         let reason = format!(
             "it never lies still in {limp:.1} s, seen at {root}; `ragdoll doctor` says which bodies and limits are at odds"
+        );
+        Fault::new(Verdict::Usable, reason)
+    })
+}
+
+/// A body taller than wide whose highest part is, when it lies still, about as high as when it was let go.
+fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+    let def = &input.character.ragdoll;
+    let floor = input.world_from_character.translation.y;
+    let (mut model, mut bodies) = (Vec::new(), Vec::new());
+    let mut places = |pose: &[LocalTransform]| {
+        local_to_model(&input.character.rig, pose, &Affine::IDENTITY, &mut model);
+        input.character.mapping().bodies_from_model(&model, input.world_from_character, &mut bodies);
+        bodies.iter().map(|body| body.translation).collect::<Vec<_>>()
+    };
+    let first = baked.frames.iter().position(|frame| frame.state == State::Limp)?;
+    let last =
+        first + baked.frames[first..].iter().take_while(|frame| frame.state == State::Limp).count() - 1;
+    let [start, end] = [first, last].map(|frame| places(&baked.frames[frame].pose));
+    let top = (0..start.len()).reduce(|a, b| if start[b].y > start[a].y { b } else { a })?;
+    let [begins, ends] = [&start, &end].map(|places| places[top].y - floor);
+    let flat = |a: Vec3, b: Vec3| Vec3::new(a.x - b.x, 0.0, a.z - b.z).length();
+    let wide = start.iter().flat_map(|&a| start.iter().map(move |&b| flat(a, b))).fold(0.0, max);
+    let is_still = baked.quality.settled_s.is_some();
+    (is_still && begins > wide && ends > STILL_UPRIGHT * begins).then(|| {
+        let bone = &def.bodies[top].bone;
+        let reason = format!(
+            "limp, it stays upright: {bone} is {ends:.2} m over the floor, {begins:.2} m when it was let go; --hit pushes it over"
         );
         Fault::new(Verdict::Usable, reason)
     })

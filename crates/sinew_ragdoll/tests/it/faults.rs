@@ -1,9 +1,11 @@
 //! Faults that no single figure tells: each planted into the mannequin.
 
 use sinew_anim::analyze;
-use sinew_ragdoll::quality::{Doubt, faults_of_ragdoll};
-use sinew_ragdoll::{BuildOptions, RagdollDef, Verdict, build};
+use sinew_physics::{BodyDef, Shape};
+use sinew_ragdoll::quality::{Doubt, faults_of_bake, faults_of_ragdoll};
+use sinew_ragdoll::{AfterSettling, BakeInput, BuildOptions, CharacterDef, RagdollDef, Verdict, bake, build};
 use sinew_scenes::mannequin::mannequin;
+use std::sync::Arc;
 
 fn built() -> RagdollDef {
     let rig = mannequin().rig;
@@ -72,4 +74,29 @@ fn masses_and_sizes_that_no_body_has_are_doubted() {
     }
     let bear = RagdollDef { total_mass: 600.0, height: 1.5, ..RagdollDef::default() };
     assert_eq!(Doubt::of(&bear), None);
+}
+
+/// A mannequin whose joints are rusted stands there like a statue when it goes limp.
+#[test]
+fn a_tall_body_that_stays_upright_is_told() {
+    let faults = |rust: f32| {
+        let rig = mannequin().rig;
+        let analysis = analyze(&rig).expect("a skin");
+        let mut ragdoll = built();
+        ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque += rust);
+        let mut character = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+        character.after_settling = AfterSettling::StayDown;
+        let ground = [BodyDef::fixed(Shape::HalfSpace)];
+        let input = BakeInput {
+            bodies: &ground,
+            limp_at: Some(0.0),
+            seconds: 6.0,
+            ..BakeInput::new(Arc::new(character))
+        };
+        faults_of_bake(&input, &bake(&input))
+    };
+    assert_eq!(faults(0.0), []);
+    let found = faults(1e4);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].reason.contains("stays upright") && found[0].at_most == Verdict::Usable, "{found:?}");
 }

@@ -7,12 +7,13 @@ mod clips;
 mod door;
 mod grounds;
 mod hit;
+mod lies;
 mod notes;
 mod place;
 
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
-use crate::input::files::{CharacterFile, Outputs, never_over};
+use crate::input::files::{CharacterFile, Outputs, WeightSource, never_over};
 use crate::input::picture_file::{PictureFile, length, seconds};
 use crate::input::ragdoll_file::read_definition;
 use crate::input::settings_arg::{SettingsArg, unit_note};
@@ -30,6 +31,7 @@ use clips::CLIP_NAME;
 pub use clips::Motions;
 use door::door;
 use hit::HitArg;
+pub use lies::as_in_file;
 use place::{Place, degrees, metres, place, point};
 use sinew::anim::{Garment, KeyBound};
 use sinew::formats::{Textures, load_world};
@@ -173,12 +175,14 @@ impl Bake {
         notes.extend(springs.notes());
         let garments = GarmentsReport::of(&character);
         notes.extend(garments.notes());
+        let up = file.analysis.hints.up.unwrap_or(Vec3::Y);
+        let starts = as_in_file(place.stands, &character, up);
         let character = Arc::new(character);
         let aimed = self.hits.iter().map(|hit| aim(hit, &character, &file, &mut notes));
         let hits = aimed.collect::<Result<Vec<_>>>()?;
         let limp_at = self.limp_at.or(if hits.is_empty() { Some(LIMP_AT) } else { None });
         let input = BakeInput {
-            world_from_character: place.stands,
+            world_from_character: starts,
             bodies: &bodies,
             hits: &hits,
             hit_effect: if self.flinch { HitEffect::FlinchesOrFalls } else { HitEffect::Falls },
@@ -254,12 +258,16 @@ impl Bake {
             let (ragdoll, _) = settings.build(&file, &BuildOptions::default())?;
             let guess = file.analysis.unit_guess.as_ref().filter(|guess| !guess.is_sure);
             let mut notes: Vec<String> = guess.map(unit_note).into_iter().collect();
-            notes.extend(file.analysis.notes.iter().filter(|note| note.contains("--character")).cloned());
+            let is_for_bake =
+                |note: &&String| ["--character", "--up"].iter().any(|option| note.contains(option));
+            notes.extend(file.analysis.notes.iter().filter(is_for_bake).cloned());
+            let loose = file.document.warnings.iter().filter(|note| note.ends_with("the nearest skin"));
+            notes.extend(loose.cloned());
             let doubt = settings.doubt(&ragdoll);
             notes.extend(doubt.iter().map(|doubt| doubt.reason.clone()));
             return Ok(Cast { file, ragdoll, garments, doubt, notes });
         };
-        let mut file = CharacterFile::load(&self.character, textures)?;
+        let mut file = CharacterFile::load(&self.character, textures, WeightSource::File)?;
         let rig = &mut file.document.rig;
         rig.springs = self.spring_source(None).springs(rig, file.analysis.up_axis);
         let ragdoll = read_definition(path, &file)?;
