@@ -19,11 +19,18 @@ pub enum Reference {
     Clip(f32),
 }
 
+/// Loss of uprightness of a pose that stands along another axis than the clip's: more than the whole range.
+const OTHER_UP: f32 = 3.0;
+
+/// Uprightness from which a frame of a clip stands: legs and trunk within 60° of upright.
+const STANDS_IN_CLIP: f32 = 0.5;
+
 /// Frames of a clip that are looked at.
 const LOOKS: usize = 24;
 
 /// Analyses a skeleton without skin in the pose in which it stands best: the one stated (if any), else the rig's rest pose,
-/// else the most upright frame of the clip. Many capture files have a rest pose that is no pose at all.
+/// else the most upright frame of the clip. Many capture files have a rest pose that is no pose at all, or one that stands along another
+/// axis than the body does in the clip: then a frame of the clip is taken.
 ///
 /// # Errors
 /// [`NoSkin`] if no bone has a length.
@@ -35,20 +42,24 @@ pub fn stand(
     clip: &Clip,
     stated: Option<&[LocalTransform]>,
 ) -> Result<(RigAnalysis, Reference), NoSkin> {
-    let mut best: Option<(f32, RigAnalysis, Reference)> = None;
-    let times = (0..LOOKS).map(|k| clip.duration * k as f32 / LOOKS as f32);
-    let poses = stated
+    let at_rest = stated
         .map(|pose| (pose.to_vec(), Reference::Stated))
         .into_iter()
-        .chain(core::iter::once((rest_pose(rig), Reference::Rest)))
-        .chain(times.map(|time| {
-            let mut pose = rest_pose(rig);
-            sample(clip, rig, time, Wrap::Clamp, &mut pose);
-            (pose, Reference::Clip(time))
-        }));
-    for (pose, reference) in poses {
+        .chain([(rest_pose(rig), Reference::Rest)]);
+    let in_clip = (0..LOOKS).map(|k| {
+        let time = clip.duration * k as f32 / LOOKS as f32;
+        let mut pose = rest_pose(rig);
+        sample(clip, rig, time, Wrap::Clamp, &mut pose);
+        (pose, Reference::Clip(time))
+    });
+    let moves_along = up_in_clip(rig, in_clip.clone().map(|(pose, _)| pose));
+    let mut best: Option<(f32, RigAnalysis, Reference)> = None;
+    for (pose, reference) in at_rest.chain(in_clip) {
         let analysis = analyze_skeleton(rig, &pose)?;
-        let upright = uprightness(&analysis);
+        let mut upright = uprightness(&analysis);
+        if moves_along.is_some_and(|up| up.dot(analysis.up_axis) < 0.5) {
+            upright -= OTHER_UP;
+        }
         if best.as_ref().is_none_or(|(most, ..)| upright > *most) {
             best = Some((upright, analysis, reference));
         }
@@ -57,6 +68,19 @@ pub fn stand(
         }
     }
     best.map(|(_, analysis, reference)| (analysis, reference)).ok_or(NoSkin)
+}
+
+/// Axis along which the body stands in most of some poses; `None` where there is none.
+fn up_in_clip(rig: &Rig, poses: impl Iterator<Item = Vec<LocalTransform>>) -> Option<Vec3> {
+    let mut standing: Vec<Vec3> = Vec::new();
+    for pose in poses {
+        let analysis = analyze_skeleton(rig, &pose).ok()?;
+        if uprightness(&analysis) > STANDS_IN_CLIP {
+            standing.push(analysis.up_axis);
+        }
+    }
+    let alike = |up: &&Vec3| standing.iter().filter(|other| up.dot(**other) > 0.9).count();
+    standing.iter().max_by_key(alike).filter(|up| 2 * alike(up) > LOOKS).copied()
 }
 
 /// Uprightness of a body: the least cosine of trunk, thighs and shanks with the vertical; −1 for what is no humanoid.

@@ -4,7 +4,7 @@ use super::graph::ancestors;
 use super::names::{Part, read_names};
 use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, LocalTransform, Rig, RigMesh};
-use crate::roles::tuning::{BOUND_ALIKE, COINCIDENT};
+use crate::roles::tuning::{BOUND_ALIKE, COINCIDENT, LARGEST_BESIDE};
 use crate::skinning::skin_vertices;
 use sinew_math::{Affine, Vec3, max3, min3};
 use std::collections::BTreeMap;
@@ -97,7 +97,9 @@ impl Bound {
         local_to_model(rig, pose, &Affine::IDENTITY, &mut model);
         let mut is_end = vec![true; rig.joints.len()];
         rig.joints.iter().filter_map(|joint| joint.parent).for_each(|parent| is_end[parent] = false);
-        let movers: Vec<JointIdx> = (0..model.len()).filter(|&i| model[i].translation.is_finite()).collect();
+        let is_beside = beside_the_skeleton(rig);
+        let is_place = |&i: &usize| model[i].translation.is_finite() && !is_beside[i];
+        let movers: Vec<JointIdx> = (0..model.len()).filter(is_place).collect();
         let mut bound = Self {
             area: vec![0.0; rig.joints.len()],
             vertices: movers.iter().map(|&joint| model[joint].translation).collect(),
@@ -116,7 +118,9 @@ impl Bound {
         let twins = twins(rig, &bound.model, near);
         let mut place: Vec<usize> = (0..rig.joints.len()).collect();
         for (i, joint) in rig.joints.iter().enumerate() {
-            let Some(parent) = joint.parent.map(|parent| place[parent]) else { continue };
+            let Some(parent) = joint.parent.map(|parent| place[parent]).filter(|_| !is_beside[i]) else {
+                continue;
+            };
             let bone = (bound.model[i].translation - bound.model[parent].translation).length();
             if bone < near || twins[i] {
                 place[i] = parent;
@@ -126,9 +130,8 @@ impl Bound {
             }
         }
         let has_bones = bound.area.iter().any(|&a| a > 0.0);
-        for i in
-            (0..rig.joints.len()).filter(|&i| is_end[i] && place[i] == i && !rig.joints[i].name.is_empty())
-        {
+        let is_named_end = |&i: &usize| is_end[i] && place[i] == i && !rig.joints[i].name.is_empty();
+        for i in (0..rig.joints.len()).filter(is_named_end).filter(|&i| !is_beside[i]) {
             // A hand or a head of which the file does not say how long it is.
             bound.area[i] = 0.06 * bound.size();
         }
@@ -175,6 +178,18 @@ impl Bound {
             }
         }
     }
+}
+
+/// True for each joint of a tree that is no skeleton where another is: cameras with their targets and lamps, which may stand anywhere.
+fn beside_the_skeleton(rig: &Rig) -> Vec<bool> {
+    let mut root: Vec<usize> = (0..rig.joints.len()).collect();
+    let mut size = vec![0; rig.joints.len()];
+    for (i, joint) in rig.joints.iter().enumerate() {
+        root[i] = joint.parent.map_or(i, |parent| root[parent]);
+        size[root[i]] += 1;
+    }
+    let largest = size.iter().copied().max().unwrap_or(0);
+    root.into_iter().map(|root| LARGEST_BESIDE * size[root] < largest).collect()
 }
 
 /// True for each joint that has a sibling in its place, of the other side by name, or both without a name.

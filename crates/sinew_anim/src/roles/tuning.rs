@@ -56,6 +56,11 @@ pub(crate) const NAMED_ALIKE: f32 = 0.3;
 /// Larger: fingertips coincide. Smaller: helpers of an exporter count as bones. Shown by the tests of `rigs`.
 pub(crate) const COINCIDENT: f32 = 1e-3;
 
+/// Number of times that the largest tree of a capture has more joints than another, from which the other is no part of the skeleton.
+///
+/// Larger: cameras with targets count as parts of the body. Smaller: limbs that are roots of their own are left out. Shown by the tests of `roles`.
+pub(crate) const LARGEST_BESIDE: usize = 8;
+
 /// Largest difference of the scale in which a joint is bound from that of most joints, as a share.
 ///
 /// Larger: handles of exporters say in which scale the skin was bound. Smaller: bones that a pose stretches say nothing. Shown by the

@@ -5,7 +5,7 @@ use core::f32::consts::TAU;
 use sinew_anim::legs::Legs;
 use sinew_anim::retarget::{Body, Feet, Reference, RetargetOptions, retarget, stand};
 use sinew_anim::{
-    Channel, Clip, Interpolation, LocalTransform, Property, Rig, Role, Side, Take, analyze_skeleton,
+    Channel, Clip, Interpolation, Joint, LocalTransform, Property, Rig, Role, Side, Take, analyze_skeleton,
     local_to_model, rest_pose,
 };
 use sinew_math::{Affine, Random, Rotation, Vec3, trig};
@@ -148,4 +148,56 @@ fn a_stray_foot_goes_along() {
     let bone = model[foot].translation - model[shank].translation;
     let hanging = Vec3::new(0.0, -0.4 * trig::cos(1.0), -0.4 * trig::sin(1.0));
     assert!((bone - hanging).length() < 1e-5, "{bone}");
+}
+
+/// Cameras with targets stand far away from a captured skeleton, and are no part of it.
+#[test]
+fn cameras_of_a_capture_are_no_part_of_the_body() {
+    let plain = skeleton(Role::name);
+    let expected = analyze_skeleton(&plain, &rest_pose(&plain)).unwrap();
+    let mut rig = plain.clone();
+    for (number, far) in [Vec3::new(0.0, 0.0, 400.0), Vec3::new(300.0, 120.0, 0.0)].into_iter().enumerate() {
+        let source = rig.joints.len();
+        let rest = LocalTransform { translation: far, ..LocalTransform::default() };
+        rig.joints.push(Joint { name: format!("Camera{number}"), parent: None, rest, source });
+    }
+    let found = analyze_skeleton(&rig, &rest_pose(&rig)).unwrap();
+    assert!(found.humanoid, "{:?}", found.notes);
+    assert!((found.height - expected.height).abs() < 1e-4, "{} m", found.height);
+    for role in [Role::Hips, Role::Head, Role::Hand(Side::Left), Role::Foot(Side::Right)] {
+        assert_eq!(found.joint_with(role), expected.joint_with(role), "{role:?}");
+    }
+}
+
+/// A skeleton that stands along Y and a capture in which it walks along Z: what moves is put upright.
+#[test]
+fn a_capture_along_another_axis_is_put_upright() {
+    let actor = skeleton(Role::name);
+    let mut clip = stepping(&actor);
+    let tilt = Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_2);
+    let hips = actor.joints.iter().position(|joint| joint.name == "hips").unwrap();
+    assert!(actor.joints[hips].parent.is_none());
+    let turned = tilt * actor.joints[hips].rest.rotation;
+    let place = tilt * actor.joints[hips].rest.translation;
+    for (property, values) in [
+        (Property::Rotation, vec![turned.x, turned.y, turned.z, turned.w]),
+        (Property::Translation, place.to_array().to_vec()),
+    ] {
+        let interpolation = Interpolation::Linear;
+        clip.channels.push(Channel { joint: hips, property, interpolation, times: vec![0.0], values });
+    }
+    let (analysis, reference) = stand(&actor, &clip, None).unwrap();
+    assert!(matches!(reference, Reference::Clip(_)), "{reference:?}");
+    assert!((analysis.up_axis - Vec3::Z).length() < 1e-6, "up along {}", analysis.up_axis);
+    let body = skeleton(Role::name);
+    let found = analyze_skeleton(&body, &rest_pose(&body)).unwrap().with_unit_scale(1.0);
+    let (from, to) = (Body { rig: &actor, analysis: &analysis }, Body { rig: &body, analysis: &found });
+    let moved = retarget(from, &clip, to, &RetargetOptions::default()).unwrap();
+    let mut model = Vec::new();
+    let head = body.joints.iter().position(|joint| joint.name == "head").unwrap();
+    for frame in 0..moved.take.frames() {
+        local_to_model(&body, moved.take.pose(frame), &Affine::IDENTITY, &mut model);
+        let trunk = model[head].translation - model[hips].translation;
+        assert!(trunk.y > 0.9 * trunk.length(), "frame {frame}: from hips to head {trunk}");
+    }
 }

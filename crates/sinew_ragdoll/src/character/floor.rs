@@ -2,6 +2,8 @@
 
 use super::{CharacterDef, MotionSet};
 use crate::character::tuning::OWN_FLOOR;
+use crate::def::RagdollDef;
+use crate::mapping::carries_character;
 use crate::skin::surface::{Surface, may_stand};
 use sinew_anim::take::Take;
 use sinew_anim::{Channel, Clip, Interpolation, LocalTransform, Property, Rig, local_to_model};
@@ -76,13 +78,16 @@ fn lowest(def: &CharacterDef, surface: &Surface, pose: &[LocalTransform]) -> f32
     heights.fold(f32::INFINITY, min)
 }
 
-/// A clip with all roots of the rig moved by so much, model space.
-pub(crate) fn moved(rig: &Rig, clip: &Clip, by: Vec3) -> Clip {
+/// A clip with all roots of the rig that carry the character moved by so much, model space.
+pub(crate) fn moved(rig: &Rig, ragdoll: &RagdollDef, clip: &Clip, by: Vec3) -> Clip {
     let mut moved = clip.clone();
     if by == Vec3::ZERO {
         return moved;
     }
-    for (joint, root) in rig.joints.iter().enumerate().filter(|(_, joint)| joint.parent.is_none()) {
+    let carries = carries_character(rig, ragdoll);
+    let roots =
+        rig.joints.iter().enumerate().filter(|(joint, root)| root.parent.is_none() && carries[*joint]);
+    for (joint, root) in roots {
         let own = moved
             .channels
             .iter_mut()

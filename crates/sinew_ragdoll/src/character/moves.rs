@@ -77,7 +77,9 @@ impl Moves {
         let up = def.mapping().character_from_model().inverse();
         let motions = &MotionSet {
             clips: own
-                .map(|(index, clip)| moved(&def.rig, clip, up.vector(Vec3::Y * raised.of_clip(index))))
+                .map(|(index, clip)| {
+                    moved(&def.rig, &def.ragdoll, clip, up.vector(Vec3::Y * raised.of_clip(index)))
+                })
                 .collect(),
             ..motions.clone()
         };

@@ -34,6 +34,25 @@ fn chain(rig: &Rig, joint: JointIdx, local: impl Fn(JointIdx) -> LocalTransform)
     model
 }
 
+/// True for each joint that moves skin, is among `others`, or has one of these somewhere below it.
+fn with_what_is_below(rig: &Rig, others: impl Iterator<Item = JointIdx>) -> Vec<bool> {
+    let mut counts = vec![false; rig.joints.len()];
+    let skinned = rig.skins.iter().flat_map(|skin| skin.joints.iter().copied());
+    skinned.chain(others).for_each(|joint| counts[joint] = true);
+    for joint in (0..rig.joints.len()).rev() {
+        if let Some(parent) = rig.joints[joint].parent.filter(|_| counts[joint]) {
+            counts[parent] = true;
+        }
+    }
+    counts
+}
+
+/// True for each joint that carries skin or something that goes with a body: not for a floor, a lamp or a camera of the file.
+pub(crate) fn carries_character(rig: &Rig, def: &RagdollDef) -> Vec<bool> {
+    let merged = def.bodies.iter().flat_map(|body| body.merged.iter().copied().chain([body.joint]));
+    with_what_is_below(rig, merged)
+}
+
 /// The pelvis, or the highest joint above it that moves skin with a body, and every other child of a node above that which has skin or a
 /// body somewhere below it. Skin above the pelvis would stay behind if its joint were at rest.
 pub(super) fn find(rig: &Rig, def: &RagdollDef) -> Vec<Head> {
@@ -46,14 +65,7 @@ pub(super) fn find(rig: &Rig, def: &RagdollDef) -> Vec<Head> {
         above_pelvis[joint] = true;
         at = rig.joints[joint].parent;
     }
-    let mut counts = vec![false; rig.joints.len()];
-    let skinned = rig.skins.iter().flat_map(|skin| skin.joints.iter().copied());
-    skinned.chain(def.bodies.iter().map(|body| body.joint)).for_each(|joint| counts[joint] = true);
-    for joint in (0..rig.joints.len()).rev() {
-        if let Some(parent) = rig.joints[joint].parent.filter(|_| counts[joint]) {
-            counts[parent] = true;
-        }
-    }
+    let counts = with_what_is_below(rig, def.bodies.iter().map(|body| body.joint));
     let is_head = |&joint: &JointIdx| {
         let hangs = rig.joints[joint].parent.is_none_or(|parent| above_pelvis[parent]);
         joint != pelvis && counts[joint] && !above_pelvis[joint] && hangs

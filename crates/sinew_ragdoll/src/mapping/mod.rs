@@ -31,6 +31,7 @@ pub use physical::Physical;
 
 use crate::def::RagdollDef;
 use heads::Head;
+pub(crate) use heads::carries_character;
 use sinew_anim::{JointIdx, LocalTransform, Rig};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
