@@ -1,7 +1,7 @@
 //! Place of the character in the world: where the user says, else on a flat place with room over it.
 
 use super::grounds::grounds;
-use sinew::math::{Rotation, Transform, Vec3};
+use sinew::math::{Rotation, Transform, Vec3, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
 use sinew::physics::{
@@ -10,15 +10,28 @@ use sinew::physics::{
 
 /// Cosine of the steepest ground that is walked on: 40°.
 const WALKABLE: f32 = 0.766;
-/// Room over a place, in heights of the character.
-const FREE_HEIGHT: f32 = 1.5;
-/// Room to each side, in heights of the character: to fall in, and where there is none to stand in.
-const ROOMS: [f32; 2] = [1.0, 0.35];
-/// Cosine of the steepest ground that counts as flat: 5°.
-const FLAT: f32 = 0.996;
-/// The ground of a flat place is this even, in heights of the character.
-const EVEN: f32 = 0.02;
-/// And this far around, in shares of the room.
+/// Demands on a place, in heights of the character.
+struct Demand {
+    /// Free way to each side: to fall in, or to stand in.
+    room: f32,
+    /// Free height.
+    over: f32,
+    /// Least cosine of the ground's slope.
+    level: f32,
+    /// Unevenness of the ground around, at most.
+    even: f32,
+}
+
+/// Demands from the best place down: flat ground (5°) with room to fall, with room to stand, under a low ceiling, and on a slope (20°).
+const DEMANDS: [Demand; 4] = [
+    Demand { room: 1.0, over: 1.5, level: 0.996, even: 0.02 },
+    Demand { room: 0.35, over: 1.5, level: 0.996, even: 0.02 },
+    Demand { room: 0.35, over: LEAST_OVER, level: 0.996, even: 0.02 },
+    Demand { room: 0.35, over: LEAST_OVER, level: 0.94, even: 0.12 },
+];
+/// Least free height over a place, in heights of the character.
+const LEAST_OVER: f32 = 1.15;
+/// The ground of a place is even this far around, in shares of the room.
 const AROUND: [f32; 2] = [0.5, 0.95];
 /// Height over the ground at which the room begins, in heights of the character: no pebble is in the way.
 const OVER: f32 = 0.06;
@@ -49,8 +62,8 @@ pub fn place(bodies: &[BodyDef], height: f32, at: Option<Vec3>, facing: f32) -> 
             Some(at) => Ok(Place { stands: Transform::new(at, turn), found: true }),
             None if ground.is_empty() => Err(format!("no ground to stand on; {help}")),
             None => Err(format!(
-                "no flat place with {:.2} m of room over it, which the character needs; {help}",
-                FREE_HEIGHT * height
+                "no place level enough to stand on with {:.2} m of room over it, which the character needs; {help}",
+                LEAST_OVER * height
             )),
         },
     }
@@ -98,18 +111,18 @@ impl Ground {
     }
 
     /// A flat place with room over it on the largest ground that can be walked on, near its middle; where it has none, on the next.
-    /// Places with room to fall go before those with room to stand.
+    /// Places that meet more [demands](DEMANDS) go first.
     fn flat_place(&self, height: f32) -> Option<Vec3> {
         let bounds = self.bounds.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::splat(0.5 * height)));
         let grounds = grounds(&bounds, height, |from, depth| self.floors(from, depth, height));
-        let places = |room: f32| {
+        let places = |demand: &Demand| {
             let good = move |at: &&Vec3| {
                 let hits = self.below(**at + Vec3::Y * (OVER * height), 2.0 * OVER * height);
-                hits.first().is_some_and(|hit| self.is_good(hit, height, room))
+                hits.first().is_some_and(|hit| self.is_good(hit, height, demand))
             };
             grounds.iter().find_map(|ground| ground.iter().find(good).copied())
         };
-        ROOMS.iter().find_map(|&room| places(room))
+        DEMANDS.iter().find_map(places)
     }
 
     /// Heights under a place on which one can stand: level enough, with head room.
@@ -122,36 +135,39 @@ impl Ground {
         hits.iter().filter(has_room).map(|hit| hit.point.y).collect()
     }
 
-    fn is_good(&self, hit: &BodyHit, height: f32, room: f32) -> bool {
+    fn is_good(&self, hit: &BodyHit, height: f32, demand: &Demand) -> bool {
         hit.start.is_none()
-            && hit.normal.y > FLAT
-            && self.is_even(hit.point, height, room)
-            && self.is_free(hit.point, height, room)
+            && hit.normal.y > demand.level
+            && self.is_even(hit.point, height, demand)
+            && self.is_free(hit.point, height, demand)
     }
 
-    fn is_even(&self, at: Vec3, height: f32, room: f32) -> bool {
+    fn is_even(&self, at: Vec3, height: f32, demand: &Demand) -> bool {
         let diagonal = core::f32::consts::FRAC_1_SQRT_2;
         let ways = [[1.0, 0.0], [diagonal, diagonal], [0.0, 1.0], [-diagonal, diagonal]];
         let around = ways.into_iter().flat_map(|[x, z]| [Vec3::new(x, 0.0, z), Vec3::new(-x, 0.0, -z)]);
-        let mut points = around.flat_map(|way| AROUND.map(|share| at + way * (share * room * height)));
+        let mut points = around.flat_map(|way| AROUND.map(|share| at + way * (share * demand.room * height)));
         points.all(|point| {
-            let hits = self.below(point + Vec3::Y * (OVER * height), 2.0 * OVER * height);
-            hits.first().is_some_and(|hit| (hit.point.y - at.y).abs() < EVEN * height)
+            let reach = max(OVER, demand.even) * height;
+            let hits = self.below(point + Vec3::Y * reach, 2.0 * reach);
+            hits.first().is_some_and(|hit| (hit.point.y - at.y).abs() < demand.even * height)
         })
     }
 
-    fn is_free(&self, at: Vec3, height: f32, room: f32) -> bool {
+    fn is_free(&self, at: Vec3, height: f32, demand: &Demand) -> bool {
+        // Ground that rises around the place is in nobody's way.
+        let (room, begins) = (demand.room, max(OVER, demand.even));
         // Lines find most of what is in the way, and cost far less than a box that overlaps a mesh.
         let heart = at + Vec3::Y * (0.5 * height);
         let sides = [Vec3::X, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Z].map(|way| (heart, way * (room * height)));
-        let up = (at + Vec3::Y * (OVER * height), Vec3::Y * ((FREE_HEIGHT - OVER) * height));
+        let up = (at + Vec3::Y * (begins * height), Vec3::Y * ((demand.over - begins) * height));
         let ways = sides.into_iter().chain([up]);
         if ways.into_iter().any(|(origin, direction)| self.world.query().any(&Ray { origin, direction })) {
             return false;
         }
-        let half_height = 0.5 * (FREE_HEIGHT - OVER) * height;
+        let half_height = 0.5 * (demand.over - begins) * height;
         let half_extents = Vec3::new(room * height, half_height, room * height);
-        let center = at + Vec3::Y * (OVER * height + half_height);
+        let center = at + Vec3::Y * (begins * height + half_height);
         !self.world.query().any(&OverlapWith(Probe::at(Shape::Box { half_extents }, center)))
     }
 }
@@ -177,4 +193,41 @@ pub fn metres(text: &str) -> Result<f32, String> {
 pub fn degrees(text: &str) -> Result<f32, String> {
     let number: f32 = text.trim().parse().map_err(|_| format!("'{text}' is not a number"))?;
     if number.abs() <= 360.0 { Ok(number) } else { Err("must lie between -360 and 360".to_owned()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew::physics::ShapeDef;
+
+    fn slab(half_extents: Vec3, position: Vec3, rotation: Rotation) -> BodyDef {
+        let shapes = vec![ShapeDef::new(Shape::Box { half_extents })];
+        BodyDef { kind: BodyKind::Static, position, rotation, shapes, ..BodyDef::default() }
+    }
+
+    /// A room whose ceiling is 1.3 heights over its floor, and nothing to stand on above.
+    #[test]
+    fn a_low_ceiling_is_room_enough() {
+        let over = 1.3 * 2.0;
+        let comb = (0..40).map(|tooth| {
+            let half_height = if tooth % 2 == 0 { 0.5 } else { 1.5 };
+            let at = Vec3::new(-3.9 + 0.2 * tooth as f32, over + half_height, 0.0);
+            slab(Vec3::new(0.1, half_height, 4.0), at, Rotation::IDENTITY)
+        });
+        let floor = slab(Vec3::new(4.0, 0.1, 4.0), Vec3::Y * -0.1, Rotation::IDENTITY);
+        let bodies: Vec<BodyDef> = comb.chain([floor]).collect();
+        let found = place(&bodies, 2.0, None, 0.0).expect("a place");
+        assert!(found.stands.translation.y.abs() < 0.01, "on the floor: {}", found.stands.translation);
+        assert!(place(&bodies, 2.6, None, 0.0).is_err(), "too tall for the room");
+    }
+
+    #[test]
+    fn a_slope_is_stood_on_where_there_is_nothing_flatter() {
+        let field = |degrees: f32| {
+            let turn = Rotation::from_axis_angle(Vec3::X, degrees.to_radians());
+            vec![slab(Vec3::new(10.0, 0.5, 10.0), Vec3::ZERO, turn)]
+        };
+        assert!(place(&field(15.0), 1.8, None, 0.0).is_ok());
+        assert!(place(&field(35.0), 1.8, None, 0.0).is_err());
+    }
 }
