@@ -1,51 +1,82 @@
 //! Pages of the book beside the viewer's: the chapters of `docs/guide/src/book.md`, with each of their scenes to be run in place.
 //!
-//! The text is the guide's own, in the few forms of Markdown that it has; pictures become what runs at a click.
+//! The text is the guide's own; pictures of scenes become what runs at a click, and pages that a chapter links to lie beside it.
 
-use anyhow::{Context, Result, ensure};
-use std::fmt::Write as _;
+use anyhow::{Context, Result, bail, ensure};
+use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd};
 use std::fs;
 use std::path::Path;
 
 /// Text of the book.
 const BOOK: &str = "docs/guide/src/book.md";
+/// Folder of the book, of the pages that it links to, and of its pictures.
+const GUIDE: &str = "docs/guide/src";
 
-/// A chapter: its title, and its text as Markdown.
-struct Chapter {
-    title: String,
-    text: String,
+/// A chapter: its title, and its text.
+struct Chapter<'a> {
+    title: Vec<Event<'a>>,
+    text: Vec<Event<'a>>,
 }
 
-/// Writes a page for each chapter and one with their titles into the folder of the viewer's page; their number, and that of scenes.
+/// Contents of pages as they are made: what they show and lead to.
+#[derive(Default)]
+struct Site {
+    /// Scenes whose pictures are shown.
+    scenes: Vec<String>,
+    /// Pages of the guide that are linked to, by file name without its ending.
+    pages: Vec<String>,
+}
+
+/// Writes a page for each chapter and one with their titles into the folder of the viewer's page; returns the number of chapters, and that of scenes.
 ///
 /// # Errors
-/// If the book is not there, or has no chapters.
+/// If the book is not there or has no chapters, or if one of its pictures, links or chapters would be lost.
 pub fn write(root: &Path, folder: &Path) -> Result<(usize, usize)> {
     let book = fs::read_to_string(root.join(BOOK)).context(BOOK)?;
     let chapters = chapters(&book);
     ensure!(!chapters.is_empty(), "{BOOK} has no chapters");
+    let titles: Vec<String> = chapters.iter().map(|chapter| html(chapter.title.clone())).collect();
+    let mut site = Site::default();
+    for (number, chapter) in chapters.into_iter().enumerate() {
+        let links = links(&titles, Some(number));
+        let text = site.html(chapter.text).with_context(|| format!("{BOOK}, chapter {}", number + 1))?;
+        let body = format!("<nav>{links}</nav>\n<h1>{}</h1>\n{text}", titles[number]);
+        fs::write(folder.join(file(number)), page(&plain(&titles[number]), &body))?;
+    }
+    let shown = book.matches("](book/").count();
+    ensure!(site.scenes.len() == shown, "{BOOK} has {shown} pictures, its pages {}", site.scenes.len());
     let pictures = folder.join("book");
     fs::create_dir_all(&pictures)?;
-    let mut scenes = 0;
-    for (number, chapter) in chapters.iter().enumerate() {
-        for name in scenes_of(&chapter.text) {
-            let picture = format!("{name}.png");
-            let from = root.join("docs/guide/src/book").join(&picture);
-            fs::copy(&from, pictures.join(&picture)).with_context(|| from.display().to_string())?;
-            scenes += 1;
-        }
-        let links = links(&chapters, Some(number));
+    for name in &site.scenes {
+        let picture = format!("{name}.png");
+        let from = root.join(GUIDE).join("book").join(&picture);
+        fs::copy(&from, pictures.join(&picture)).with_context(|| from.display().to_string())?;
+    }
+    for name in &site.pages {
+        let text = guide_page(root, name)?;
         let body =
-            format!("<nav>{links}</nav>\n<h1>{}</h1>\n{}", inline(&chapter.title), html(&chapter.text));
-        fs::write(folder.join(file(number)), page(&chapter.title, &body))?;
+            format!("<nav><a href=\"book.html\">The book</a></nav>\n{}", html(without_links(events(&text))));
+        fs::write(folder.join(format!("{name}.html")), page(name, &body))?;
     }
     let body = format!(
         "<h1>The book's experiments</h1>\n<p>Each chapter with its scenes beside the formulas: a click on a picture runs it. \
          <a href=\"index.html\">All scenes</a> are in the viewer.</p>\n<ul>{}</ul>",
-        links(&chapters, None)
+        links(&titles, None)
     );
     fs::write(folder.join("book.html"), page("The book's experiments", &body))?;
-    Ok((chapters.len(), scenes))
+    Ok((titles.len(), site.scenes.len()))
+}
+
+/// Text of a page of the guide, with what it includes.
+fn guide_page(root: &Path, name: &str) -> Result<String> {
+    let path = root.join(GUIDE).join(format!("{name}.md"));
+    let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+    let Some((before, rest)) = text.split_once("{{#include ") else { return Ok(text) };
+    let (included, after) =
+        rest.split_once("}}").with_context(|| format!("{name}.md: an include without end"))?;
+    let path = root.join(GUIDE).join(included);
+    let included = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+    Ok([before, &included, after].concat())
 }
 
 fn file(number: usize) -> String {
@@ -53,16 +84,15 @@ fn file(number: usize) -> String {
 }
 
 /// Links to all chapters, but for the one that is shown.
-fn links(chapters: &[Chapter], shown: Option<usize>) -> String {
-    let link = |(number, chapter): (usize, &Chapter)| {
-        let title = inline(&chapter.title);
+fn links(titles: &[String], shown: Option<usize>) -> String {
+    let link = |(number, title): (usize, &String)| {
         if shown == Some(number) {
             format!("<li><b>{title}</b></li>")
         } else {
             format!("<li><a href=\"{}\">{title}</a></li>", file(number))
         }
     };
-    let list: Vec<String> = chapters.iter().enumerate().map(link).collect();
+    let list: Vec<String> = titles.iter().enumerate().map(link).collect();
     if shown.is_some() {
         format!("<a href=\"index.html\">Viewer</a><ol>{}</ol>", list.concat())
     } else {
@@ -70,122 +100,120 @@ fn links(chapters: &[Chapter], shown: Option<usize>) -> String {
     }
 }
 
-/// Parts of the book below its headings of the second level; such as have no scene are no chapters.
-fn chapters(book: &str) -> Vec<Chapter> {
-    let parts = book.split("\n## ").skip(1).filter_map(|part| {
-        let (title, text) = part.split_once('\n')?;
-        Some(Chapter { title: title.trim().to_owned(), text: text.to_owned() })
-    });
-    parts.filter(|chapter| !scenes_of(&chapter.text).is_empty()).collect()
+fn events(text: &str) -> Vec<Event<'_>> {
+    Parser::new_ext(text, Options::ENABLE_TABLES).collect()
 }
 
-/// Scenes whose pictures a text has.
-fn scenes_of(text: &str) -> Vec<&str> {
-    text.lines().filter_map(picture).collect()
-}
-
-/// Name of the scene whose picture stands on a line alone.
-fn picture(line: &str) -> Option<&str> {
-    let (name, path) = line.trim().strip_prefix("![")?.split_once("](book/")?;
-    let name = if path == format!("{name}.png)") { name } else { path.strip_suffix(".png)")? };
-    Some(name)
-}
-
-/// Text as HTML.
-fn html(text: &str) -> String {
-    let mut out = String::new();
-    for block in text.split("\n\n").map(str::trim).filter(|block| !block.is_empty()) {
-        let first = block.lines().next().unwrap_or_default();
-        if let Some(name) = picture(first) {
-            let _ = writeln!(
-                out,
-                "<figure><button data-scene=\"{name}\" title=\"run it here\"><img src=\"book/{name}.png\" alt=\"{name}\" \
-                 loading=\"lazy\"><span>Run {name} here</span></button></figure>"
-            );
-        } else if first.starts_with('#') {
-            let level = first.chars().take_while(|&it| it == '#').count().min(6);
-            let _ = writeln!(out, "<h{level}>{}</h{level}>", inline(first.trim_start_matches('#').trim()));
-            let rest = block.lines().skip(1).collect::<Vec<_>>().join("\n");
-            out += &html(&rest);
-        } else if first.starts_with('|') {
-            out += &table(block);
-        } else if first.starts_with("```") {
-            let code: Vec<&str> = block.lines().filter(|line| !line.starts_with("```")).collect();
-            let _ = writeln!(out, "<pre>{}</pre>", escaped(&code.join("\n")));
-        } else if first.starts_with("- ") {
-            let items = block.split("\n- ").map(|item| item.trim_start_matches("- "));
-            let items: Vec<String> = items.map(|item| format!("<li>{}</li>", inline(item))).collect();
-            let _ = writeln!(out, "<ul>{}</ul>", items.concat());
-        } else {
-            let _ = writeln!(out, "<p>{}</p>", inline(block));
+/// Parts of the book below its headings of the second level.
+fn chapters(book: &str) -> Vec<Chapter<'_>> {
+    let mut chapters: Vec<Chapter<'_>> = Vec::new();
+    let mut in_title = false;
+    for event in events(book) {
+        match event {
+            Event::Start(Tag::Heading { level: HeadingLevel::H2, .. }) => {
+                chapters.push(Chapter { title: Vec::new(), text: Vec::new() });
+                in_title = true;
+            }
+            Event::End(TagEnd::Heading(HeadingLevel::H2)) => in_title = false,
+            event => {
+                if let Some(chapter) = chapters.last_mut() {
+                    if in_title { chapter.title.push(event) } else { chapter.text.push(event) }
+                }
+            }
         }
     }
+    chapters
+}
+
+fn html(events: Vec<Event<'_>>) -> String {
+    let mut out = String::new();
+    pulldown_cmark::html::push_html(&mut out, events.into_iter());
     out
 }
 
-fn table(block: &str) -> String {
-    let cells = |line: &str, tag: &str| {
-        let line = line.trim().trim_start_matches('|').trim_end_matches('|');
-        let cells: Vec<String> =
-            line.split('|').map(|cell| format!("<{tag}>{}</{tag}>", inline(cell.trim()))).collect();
-        format!("<tr>{}</tr>", cells.concat())
-    };
-    let mut lines = block.lines();
-    let head = lines.next().map(|line| cells(line, "th")).unwrap_or_default();
-    let rows: Vec<String> = lines.skip(1).map(|line| cells(line, "td")).collect();
-    format!("<table>{head}{}</table>\n", rows.concat())
+/// Text of HTML without its tags.
+fn plain(html: &str) -> String {
+    html.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text)).collect()
 }
 
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
-/// Code, strong and stressed words and links of a text. Links lead nowhere here: what they lead to is not in the folder.
-fn inline(text: &str) -> String {
-    let mut out = String::new();
-    for (place, part) in text.split('`').enumerate() {
-        if place % 2 == 1 {
-            let _ = write!(out, "<code>{}</code>", escaped(part));
-            continue;
+/// Text whose links are words: of a page that a chapter leads to, whose own links lead into the repository.
+fn without_links(events: Vec<Event<'_>>) -> Vec<Event<'_>> {
+    let is_link = |event: &Event<'_>| matches!(event, Event::Start(Tag::Link { dest_url, .. }) if !dest_url.starts_with("https://"));
+    let mut depth = Vec::new();
+    let mut kept = Vec::with_capacity(events.len());
+    for event in events {
+        match &event {
+            Event::Start(Tag::Link { .. }) => depth.push(is_link(&event)),
+            Event::End(TagEnd::Link) => {
+                if depth.pop() == Some(true) {
+                    continue;
+                }
+            }
+            _ => {}
         }
-        let part = marked(&unlinked(&escaped(part)), "**", "b");
-        out += &marked(&part, "*", "i");
-    }
-    // Code between stars: the stars are in two parts.
-    marked(&out, "**", "b")
-}
-
-/// Text between two marks in a tag.
-fn marked(text: &str, mark: &str, tag: &str) -> String {
-    let parts: Vec<&str> = text.split(mark).collect();
-    if parts.len() < 3 || parts.len().is_multiple_of(2) {
-        return text.to_owned();
-    }
-    let tagged = |(place, part): (usize, &&str)| {
-        if place % 2 == 1 { format!("<{tag}>{part}</{tag}>") } else { (*part).to_owned() }
-    };
-    parts.iter().enumerate().map(tagged).collect()
-}
-
-/// Text of links without where they lead.
-fn unlinked(text: &str) -> String {
-    let mut out = String::new();
-    let mut rest = text;
-    while let Some((before, after)) = rest.split_once('[') {
-        out += before;
-        let link = after.split_once("](").and_then(|(words, tail)| Some((words, tail.split_once(')')?.1)));
-        match link {
-            Some((words, tail)) if !words.contains('[') => {
-                out += words;
-                rest = tail;
-            }
-            _ => {
-                out.push('[');
-                rest = after;
-            }
+        if !is_link(&event) {
+            kept.push(event);
         }
     }
-    out + rest
+    kept
+}
+
+impl Site {
+    /// Text as HTML: pictures of scenes as buttons, links to pages of the guide as links to files beside this one.
+    ///
+    /// # Errors
+    /// On a picture that is no scene's, and a link that leads nowhere here.
+    fn html(&mut self, events: Vec<Event<'_>>) -> Result<String> {
+        let mut out: Vec<Event<'_>> = Vec::with_capacity(events.len());
+        let mut in_picture = false;
+        for event in events {
+            match event {
+                Event::Start(Tag::Image { dest_url, .. }) => {
+                    let scene = dest_url.strip_prefix("book/").and_then(|file| file.strip_suffix(".png"));
+                    let scene = scene.with_context(|| format!("the picture {dest_url} is no scene's"))?;
+                    // A picture is a figure of its own, in no paragraph.
+                    let begins = matches!(out.last(), Some(Event::Start(Tag::Paragraph)));
+                    ensure!(begins, "the picture {dest_url} stands within a paragraph");
+                    out.pop();
+                    out.push(Event::Html(figure(scene).into()));
+                    self.scenes.push(scene.to_owned());
+                    in_picture = true;
+                }
+                Event::End(TagEnd::Image) => {}
+                Event::End(TagEnd::Paragraph) if in_picture => in_picture = false,
+                _ if in_picture => {}
+                Event::Start(Tag::Link { link_type, dest_url, title, id }) => {
+                    let to = self.link(&dest_url)?;
+                    out.push(Event::Start(Tag::Link { link_type, dest_url: CowStr::from(to), title, id }));
+                }
+                event => out.push(event),
+            }
+        }
+        Ok(html(out))
+    }
+
+    /// Address of what a link of the guide leads to.
+    fn link(&mut self, address: &str) -> Result<String> {
+        if address.starts_with("https://") {
+            return Ok(address.to_owned());
+        }
+        let (file, anchor) = address.split_once('#').unwrap_or((address, ""));
+        let Some(name) = file.strip_suffix(".md").filter(|name| !name.contains('/')) else {
+            bail!("the link to {address} leads nowhere in the pages of the book");
+        };
+        if !self.pages.iter().any(|known| known == name) {
+            self.pages.push(name.to_owned());
+        }
+        Ok(if anchor.is_empty() { format!("{name}.html") } else { format!("{name}.html#{anchor}") })
+    }
+}
+
+/// Picture of a scene that runs at a click.
+fn figure(scene: &str) -> String {
+    format!(
+        "<figure><button data-scene=\"{scene}\" title=\"run it here\"><img src=\"book/{scene}.png\" alt=\"Picture of the scene {scene}\" \
+         loading=\"lazy\"><span>Run {scene} here</span></button></figure>\n"
+    )
 }
 
 fn page(title: &str, body: &str) -> String {
@@ -218,24 +246,47 @@ fn page(title: &str, body: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{chapters, html, picture};
+    use super::{Site, chapters, events, html};
+    use crate::command;
 
-    const TEXT: &str = "# Book\n\n## 1. Forces\n\nA **force** is `a < b`, see [there](there.md).\n\n![two_men](book/two_men.png)\n\n\
+    const TEXT: &str = "# Book\n\n## 1. Forces\n\nA **force** is `a < b`, see [there](there.md).\n\n![two_men](book/two_men.png \"at 3 s\")\n\n\
                         | a | b |\n|---|---|\n| 1 | 2 |\n\n## 2. Words\n\nNo scene.\n";
 
     #[test]
     fn a_chapter_is_a_page() {
         let chapters = chapters(TEXT);
-        assert_eq!(chapters.len(), 1);
-        assert_eq!(chapters[0].title, "1. Forces");
-        let page = html(&chapters[0].text);
-        assert!(page.contains("<p>A <b>force</b> is <code>a &lt; b</code>, see there.</p>"), "{page}");
+        assert_eq!(chapters.len(), 2);
+        assert_eq!(html(chapters[0].title.clone()), "1. Forces");
+        let mut site = Site::default();
+        let page = site.html(chapters[0].text.clone()).expect("a page");
+        assert!(
+            page.contains("<p>A <strong>force</strong> is <code>a &lt; b</code>, see <a href=\"there.html\">there</a>.</p>"),
+            "{page}"
+        );
         assert!(
             page.contains("data-scene=\"two_men\"") && page.contains("src=\"book/two_men.png\""),
             "{page}"
         );
-        assert!(page.contains("<tr><th>a</th><th>b</th></tr><tr><td>1</td><td>2</td></tr>"), "{page}");
-        assert_eq!(picture("![kepler](book/kepler.png)"), Some("kepler"));
-        assert_eq!(picture("text ![kepler](book/kepler.png)"), None);
+        assert!(page.contains("<td>1</td><td>2</td>"), "{page}");
+        assert!(!page.contains("<p><figure>"), "{page}");
+        assert_eq!((site.scenes, site.pages), (vec!["two_men".to_owned()], vec!["there".to_owned()]));
+    }
+
+    #[test]
+    fn what_would_be_lost_is_refused() {
+        for text in ["![x](other/x.png)\n", "See [here](../code.rs).\n", "A ![x](book/x.png) in a line.\n"] {
+            assert!(Site::default().html(events(text)).is_err(), "{text}");
+        }
+    }
+
+    /// Nothing of the book itself is lost: every heading is a chapter, every picture a button.
+    #[test]
+    fn the_whole_book_is_written() {
+        let folder = command::target().join("tmp/chapters");
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let (written, scenes) = super::write(&command::root(), &folder).expect("the book");
+        let book = std::fs::read_to_string(command::root().join(super::BOOK)).expect("the book");
+        assert_eq!(written, book.lines().filter(|line| line.starts_with("## ")).count());
+        assert_eq!(scenes, book.lines().filter(|line| line.starts_with("![")).count());
     }
 }

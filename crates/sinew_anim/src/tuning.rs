@@ -176,6 +176,11 @@ pub(crate) const FLOOR_TIME: f32 = 0.12;
 /// A larger angle: a crouch is the reference. A smaller one: no frame of a capture is. Shown by the tests of `mocap`.
 pub(crate) const CLEARLY_STANDING: f32 = 0.85;
 
+/// Least cosine of trunk, thighs and shanks with the vertical from which a body stands in a frame of a clip.
+///
+/// Larger: the bent knees of a walk count as lying. Smaller: who crawls stands. Shown by the tests of `take`.
+pub(crate) const STANDS_IN_CLIP: f32 = 0.5;
+
 // springs/guess.rs
 
 /// Radius of a spring's tip over the mean length of its chain's bones, a ratio.

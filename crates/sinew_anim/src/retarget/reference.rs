@@ -5,7 +5,7 @@ use crate::clip::sample::{Wrap, sample};
 use crate::pose::rest_pose;
 use crate::rig::{LocalTransform, Rig};
 use crate::roles::{NoSkin, RigAnalysis, Role, Side, analyze_skeleton};
-use crate::tuning::CLEARLY_STANDING;
+use crate::tuning::{CLEARLY_STANDING, STANDS_IN_CLIP};
 use sinew_math::{Vec3, direction};
 
 /// Source of a reference pose.
@@ -18,12 +18,6 @@ pub enum Reference {
     /// The clip, at that time (seconds): the rig's rest pose is none that a body can stand in.
     Clip(f32),
 }
-
-/// Loss of uprightness of a pose that stands along another axis than the clip's: more than the whole range.
-const OTHER_UP: f32 = 3.0;
-
-/// Uprightness from which a frame of a clip stands: legs and trunk within 60° of upright.
-const STANDS_IN_CLIP: f32 = 0.5;
 
 /// Frames of a clip that are looked at.
 const LOOKS: usize = 24;
@@ -56,10 +50,9 @@ pub fn stand(
     let mut best: Option<(f32, RigAnalysis, Reference)> = None;
     for (pose, reference) in at_rest.chain(in_clip) {
         let analysis = analyze_skeleton(rig, &pose)?;
-        let mut upright = uprightness(&analysis);
-        if moves_along.is_some_and(|up| up.dot(analysis.up_axis) < 0.5) {
-            upright -= OTHER_UP;
-        }
+        // A pose along another axis than the clip's comes behind all others.
+        let is_other = moves_along.is_some_and(|up| up.dot(analysis.up_axis) < 0.5);
+        let upright = if is_other { f32::NEG_INFINITY } else { uprightness(&analysis) };
         if best.as_ref().is_none_or(|(most, ..)| upright > *most) {
             best = Some((upright, analysis, reference));
         }
