@@ -44,7 +44,7 @@ enum Task {
     Book(book::Book),
     /// The quality of the ragdolls of many rigs, into docs/ragdoll-quality.md
     Ragdolls(ragdolls::Ragdolls),
-    /// What is seen in characters from anywhere, how they fall, and pictures of them, into docs/wild.md
+    /// What is seen in characters from anywhere, how they fall, and pictures of them, into out/wild
     Wild(wild::Wild),
     /// Time and quality beside other engines, into docs/benchmarks.md; or instructions of the kernels
     Bench(bench::Bench),

@@ -17,13 +17,13 @@ use std::time::Instant;
 const DATA: &str = "../shared/data";
 /// Folders of files with meshes, which fall.
 const FOLDERS: [&str; 2] = ["rigs", "rigs_wild"];
-const PAGE: &str = "docs/wild.md";
+const PAGE: &str = "out/wild/tables.md";
 /// For reports and pictures; git does not see it.
 const OUT: &str = "out/wild";
 /// Length of a bake, seconds: who falls at 0.5 s lies by then.
 const SECONDS: &str = "6";
 
-/// `cargo xtask wild`: builds, drops and bakes every rig beside the repository, recognises every skeleton, and writes docs/wild.md and
+/// `cargo xtask wild`: builds, drops and bakes every rig beside the repository, recognises every skeleton, and writes their figures and
 /// sheets of pictures of all of them fallen.
 #[derive(clap::Args)]
 #[command(after_help = "\

@@ -1,9 +1,10 @@
 //! Legs that a body stands on, with pelvis and soles, and the joints that a rig hangs elsewhere.
 
 use crate::ik::{TwoBone, set_rotation, shift};
-use crate::rig::{JointIdx, LocalTransform, Rig};
-use crate::roles::{HUMANOID_ROLES, RigAnalysis, Role, Side};
-use crate::tuning::BALL_AHEAD;
+use crate::rig::{Joint, JointIdx, LocalTransform, Rig};
+use crate::roles::{Basis, HUMANOID_ROLES, RigAnalysis, Role, RoleGuess, Side};
+use crate::skinning::skin_vertices;
+use crate::tuning::{ANKLE_HEIGHT, BALL_AHEAD, MADE_UP};
 use sinew_math::{Affine, Rotation, Vec3};
 
 /// A leg and the two points of the sole that it stands on.
@@ -131,4 +132,67 @@ fn strays(rig: &Rig, analysis: &RigAnalysis) -> Vec<Stray> {
     };
     // Parents come first, so that what a stray carries follows it.
     HUMANOID_ROLES.into_iter().filter_map(stray).collect()
+}
+
+/// Gives a humanoid whose legs end with the shank joints for its ankles, so that motions with feet fit it: low-poly figures have none.
+///
+/// Each is a new joint at the end of the rig, without skin, below the shank, in the middle of the lowest skin that the shank moves. Its
+/// [`Joint::source`] lies beyond the nodes of any file. The analysis knows it as a foot. Returns the number of joints added: 0 where thigh or shank is missing, too.
+///
+/// # Panics
+/// If the analysis is not one of the rig's.
+pub fn add_ankles(rig: &mut Rig, analysis: &mut RigAnalysis) -> usize {
+    assert_eq!(analysis.bind_model.len(), rig.joints.len(), "an analysis of this rig");
+    let before = rig.joints.len();
+    for side in [Side::Left, Side::Right] {
+        let [thigh, shank, foot] = [Role::UpperLeg(side), Role::LowerLeg(side), Role::Foot(side)]
+            .map(|role| analysis.joint_with(role));
+        let (true, Some(_), Some(shank), None) = (analysis.humanoid, thigh, shank, foot) else { continue };
+        let Some(at) = end_of_shank(rig, analysis, shank) else { continue };
+        let translation = analysis.bind_model[shank].inverse().point(at);
+        let local = LocalTransform { translation, ..LocalTransform::default() };
+        let bind = analysis.bind_model[shank] * local.to_affine();
+        if !bind.is_finite() {
+            continue;
+        }
+        let role = Role::Foot(side);
+        rig.joints.push(Joint { name: role.name(), parent: Some(shank), rest: local, source: usize::MAX });
+        analysis.bind_model.push(bind);
+        analysis.roles.push(Some(RoleGuess { role, confidence: MADE_UP, basis: Basis::Shape }));
+        analysis.merge_into.push(Some(shank));
+    }
+    rig.joints.len() - before
+}
+
+/// Middle of the lowest skin that a shank moves most, raised to where an ankle is; model space, file units.
+fn end_of_shank(rig: &Rig, analysis: &RigAnalysis, shank: JointIdx) -> Option<Vec3> {
+    let character = analysis.character_from_file();
+    let mut own: Vec<Vec3> = Vec::new();
+    let (mut positions, mut normals) = (Vec::new(), Vec::new());
+    for (m, mesh) in rig.meshes.iter().enumerate() {
+        let Some(skin) = mesh.skin.map(|skin| &rig.skins[skin]) else { continue };
+        for (p, primitive) in mesh.primitives.iter().enumerate().filter(|(_, part)| !part.joints.is_empty()) {
+            skin_vertices(rig, m, p, &analysis.bind_model, &mut positions, &mut normals);
+            for (at, (slots, weights)) in
+                positions.iter().zip(primitive.joints.iter().zip(&primitive.weights))
+            {
+                let most = slots.iter().zip(weights).max_by(|a, b| a.1.total_cmp(b.1));
+                if most.is_some_and(|(&slot, _)| skin.joints[usize::from(slot)] == shank) {
+                    own.push(character.point(*at));
+                }
+            }
+        }
+    }
+    own.retain(|at| at.is_finite());
+    let lowest = own.iter().map(|at| at.y).reduce(sinew_math::min)?;
+    let sole = lowest + ANKLE_HEIGHT * analysis.height;
+    let (sum, count) = own
+        .iter()
+        .filter(|at| at.y <= sole)
+        .fold((Vec3::ZERO, 0.0_f32), |(sum, count), &at| (sum + at, count + 1.0));
+    let knee = character.point(analysis.bind_model[shank].translation);
+    // A foot reaches forward from its ankle, which is under the knee.
+    let middle = sum / count;
+    let ankle = Vec3::new(middle.x, sole, sinew_math::min(middle.z, knee.z));
+    (knee.y > sole).then(|| character.inverse().point(ankle))
 }

@@ -90,6 +90,16 @@ pub(crate) const HINGE_PLAY: f32 = 0.1;
 /// `retarget`.
 pub(crate) const BALL_AHEAD: f32 = 0.14;
 
+/// Height of an ankle that a rig does not have over the lowest skin of the shank, heights of the body.
+///
+/// Larger: shanks are short, and soles hang in the air. Smaller: knees bend where a foot would roll. Shown by the tests of `retarget`.
+pub(crate) const ANKLE_HEIGHT: f32 = 0.04;
+
+/// Confidence of a role of a joint that a rig does not have.
+///
+/// It says how sure the place of an ankle is; nothing is decided by it. Shown by the tests of `retarget`.
+pub(crate) const MADE_UP: f32 = 0.5;
+
 // playback/inertial.rs
 
 /// Least share of its time that an offset may die away in, 0 to 1.

@@ -1,4 +1,4 @@
-//! docs/wild.md.
+//! Figures of all files as tables.
 
 use super::Row;
 use crate::bench::table::Table;
@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 const HEAD: &str = "# Characters from the wild
 
-Made by `cargo xtask wild`; do not edit. No file has settings or code of its own. Files are those beside the repository, in
+Made by `cargo xtask wild`. No file has settings or code of its own. Files are those beside the repository, in
 `../shared/data`.
 
 Roles are right where they stand in `crates/sinew_anim/tests/data/truth.txt`, which was written by reading the files' names and looking;

@@ -2,11 +2,11 @@
 
 use crate::toy;
 use core::f32::consts::TAU;
-use sinew_anim::legs::Legs;
+use sinew_anim::legs::{Legs, add_ankles};
 use sinew_anim::retarget::{Body, Feet, Reference, RetargetOptions, retarget, stand};
 use sinew_anim::{
-    Channel, Clip, Interpolation, Joint, LocalTransform, Property, Rig, Role, Side, Take, analyze_skeleton,
-    local_to_model, rest_pose,
+    Channel, Clip, Interpolation, Joint, LocalTransform, Property, Rig, Role, Side, Take, analyze,
+    analyze_skeleton, local_to_model, rest_pose,
 };
 use sinew_math::{Affine, Random, Rotation, Vec3, trig};
 
@@ -200,4 +200,45 @@ fn a_capture_along_another_axis_is_put_upright() {
         let trunk = model[head].translation - model[hips].translation;
         assert!(trunk.y > 0.9 * trunk.length(), "frame {frame}: from hips to head {trunk}");
     }
+}
+
+/// A low-poly figure whose legs end with the shank gets ankles, and walks as one with feet does.
+#[test]
+fn legs_without_feet_get_ankles() {
+    let whole = toy::body(|_| String::new());
+    let mut rig = whole.clone();
+    for side in ["left", "right"] {
+        let joint = |part: &str| {
+            let name = format!("{side}{part}");
+            toy::BODY.iter().position(|(role, ..)| *role == name).unwrap()
+        };
+        let [foot, shank] = [joint("Foot"), joint("LowerLeg")].map(|joint| u16::try_from(joint).unwrap());
+        let slots = rig.meshes[0].primitives[0].joints.iter_mut();
+        slots.filter(|slots| slots[0] == foot).for_each(|slots| slots[0] = shank);
+    }
+    let mut found = analyze(&rig).unwrap();
+    assert!(found.humanoid && found.joint_with(Role::Foot(Side::Left)).is_none(), "{:?}", found.notes);
+    assert!(Legs::of(&rig, &found).is_none());
+    assert_eq!(add_ankles(&mut rig, &mut found), 2);
+    assert_eq!(add_ankles(&mut rig, &mut found), 0, "they are there");
+    let foot = found.joint_with(Role::Foot(Side::Left)).unwrap();
+    let expected = analyze(&whole).unwrap();
+    let [made, real] = [&found, &expected].map(|found| {
+        let foot = found.joint_with(Role::Foot(Side::Left)).unwrap();
+        found.character_from_file().point(found.bind_model[foot].translation)
+    });
+    assert!((made - real).length() < 0.06, "at {made}, {real} in the whole body");
+    let actor = skeleton(Role::name);
+    let clip = stepping(&actor);
+    let (analysis, _) = stand(&actor, &clip, None).unwrap();
+    let (from, to) = (Body { rig: &actor, analysis: &analysis }, Body { rig: &rig, analysis: &found });
+    let moved = retarget(from, &clip, to, &RetargetOptions::default()).unwrap();
+    let (mut model, mut lifted) = (Vec::new(), 0.0_f32);
+    for frame in 0..moved.take.frames() {
+        local_to_model(&rig, moved.take.pose(frame), &found.character_from_file(), &mut model);
+        let ankle = model[foot].translation;
+        assert!(ankle.y > found.floor - 0.02, "frame {frame}: the ankle at {ankle}");
+        lifted = sinew_math::max(lifted, ankle.y - found.floor);
+    }
+    assert!(lifted > 0.1, "feet are lifted by {lifted} m");
 }

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, Result};
 use crate::input::files::{CharacterFile, WeightSource};
+use sinew::anim::legs::add_ankles;
 use sinew::anim::{Garment, Hints, RigAnalysis, Role, Springs, UnitGuess, analyze_hinted};
 use sinew::formats::{Textures, read_bytes, read_ragdoll_settings, settings_path};
 use sinew::math::Vec3;
@@ -197,6 +198,7 @@ impl SettingsArg {
         if loaded.settings.garments.has_meshes() {
             loaded.lay_sheets(&mut character)?;
         }
+        add_ankles(&mut character.document.rig, &mut character.analysis);
         Ok((character, loaded))
     }
 

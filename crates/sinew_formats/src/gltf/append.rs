@@ -73,8 +73,8 @@ fn better_left_alone(node: &Value) -> bool {
 }
 
 /// Nodes of joints that some channel takes away from their rest pose, with that pose.
-fn moved_nodes(clip: &Clip, joints: &[Joint]) -> BTreeMap<usize, LocalTransform> {
-    let moving = clip.channels.iter().filter(|c| !repeats_rest(c, &joints[c.joint].rest));
+fn moved_nodes(channels: &[&Channel], joints: &[Joint]) -> BTreeMap<usize, LocalTransform> {
+    let moving = channels.iter().filter(|c| !repeats_rest(c, &joints[c.joint].rest));
     moving.map(|c| (joints[c.joint].source, joints[c.joint].rest)).collect()
 }
 
@@ -120,9 +120,13 @@ impl Editor {
 
     fn append(&mut self, document: &Document, NewClip { clip, name, extras }: &NewClip<'_>) -> Result<()> {
         let joints = &document.rig.joints;
-        let moved = moved_nodes(clip, joints);
+        // Joints that were added to the rig for its motions alone are no nodes.
+        let (nodes, is_of_sheet) = (document.node_count(), document.rig.is_of_sheet());
+        let is_node = |channel: &&Channel| joints[channel.joint].source < nodes || is_of_sheet[channel.joint];
+        let own: Vec<&Channel> = clip.channels.iter().filter(is_node).collect();
+        let moved = moved_nodes(&own, joints);
         self.free_matrices(&moved)?;
-        let channels = clip.channels.iter().filter(|c| {
+        let channels = own.into_iter().filter(|c| {
             let node = joints[c.joint].source;
             moved.contains_key(&node) || !better_left_alone(&document.json["nodes"][node])
         });
