@@ -28,9 +28,10 @@ impl Character {
     /// is held it passes through the character's own bodies and through movers.
     ///
     /// # Panics
-    /// If no body is called so, the character has none in the world, or it holds that one already.
+    /// If no body is called so or it was [cut off](Self::detach), the character has none in the world, or it holds that one already.
     pub fn hold(&mut self, world: &mut World, bone: &str, held: BodyId, grip: &Grip) -> JointId {
         let body = self.def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
+        assert!(self.has_body(body), "it has lost '{bone}'");
         assert!(!self.bodies().is_empty(), "a character without bodies holds nothing");
         assert!(self.held().all(|other| other != held), "it holds that body already");
         let holder = self.bodies()[body];
@@ -102,7 +103,7 @@ impl Character {
         for shape in shapes {
             world.set_contact_rule(shape, rule);
         }
-        for &own in self.bodies() {
+        for &own in self.own() {
             if passes {
                 world.disable_pair(own, other);
             } else {

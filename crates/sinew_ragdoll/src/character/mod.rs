@@ -28,6 +28,7 @@
 mod animate;
 mod blows;
 mod def;
+mod detach;
 mod detail;
 mod distances;
 mod event;
@@ -38,6 +39,7 @@ mod ground;
 mod hit_bodies;
 mod hold;
 mod in_world;
+mod limb;
 mod limp;
 mod memory;
 mod mirror;
@@ -64,6 +66,7 @@ pub use distances::{Detail, Distances};
 pub use event::{CharacterEvent, State};
 pub use hold::Grip;
 pub use in_world::{Blow, HitBodies, InWorld, Toughness};
+pub use limb::Limb;
 pub use moves::MotionError;
 pub use powered::{Part, Preset};
 
@@ -76,7 +79,7 @@ use in_world::Presence;
 use memory::{Planting, Preparation, Rising, Shown, Stillness};
 use sinew_anim::{Animator, Inertia, LocalTransform, Pose};
 use sinew_math::{Affine, Transform, Vec3};
-use sinew_physics::{Velocity, World};
+use sinew_physics::{BodyId, Velocity, World};
 use std::sync::Arc;
 
 /// A character in a world.
@@ -110,6 +113,12 @@ pub struct Character {
     flinching: f32,
     ragdoll: Option<Ragdoll>,
     drives: Drives,
+    /// Bodies that were cut off, by index, with their ids.
+    lost: Vec<(usize, BodyId)>,
+    /// Bodies that are its own, where some were cut off.
+    kept: Vec<BodyId>,
+    /// Bodies of its own and others that were cut off, which overlap and pass through each other until they do not.
+    parting: Vec<(BodyId, BodyId)>,
     stillness: Stillness,
     preparation: Preparation,
     events: Vec<CharacterEvent>,
@@ -175,6 +184,9 @@ impl Character {
             flinching: 0.0,
             ragdoll: None,
             drives: Drives::new(&def.ragdoll),
+            lost: Vec::new(),
+            kept: Vec::new(),
+            parting: Vec::new(),
             stillness: Stillness::default(),
             preparation: Preparation::default(),
             events: Vec::new(),
@@ -253,6 +265,7 @@ impl Character {
         self.keep_shown();
         self.note_contacts(world);
         self.mind_holds(world);
+        self.mind_parting(world);
         if !self.is_frozen() {
             self.follow(world);
             self.settle_detail(world);

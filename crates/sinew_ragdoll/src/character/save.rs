@@ -21,6 +21,8 @@ const IN_WORLD: u8 = 0x80;
 const WEARS: u8 = 0x40;
 /// Bit of a state: its garments follow at the end.
 const DRESSED: u8 = 0x20;
+/// Bit of a state: what was cut off follows after it.
+const LOST: u8 = 0x10;
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
 
@@ -39,7 +41,11 @@ impl Character {
         let in_world = if self.presence.is_some() { IN_WORLD } else { 0 };
         let wears = if self.def.springs().is_empty() { 0 } else { WEARS };
         let dressed = if self.def.garments().is_empty() { 0 } else { DRESSED };
-        w.u8(state | in_world | wears | dressed);
+        let lost = if self.lost.is_empty() { 0 } else { LOST };
+        w.u8(state | in_world | wears | dressed | lost);
+        if lost != 0 {
+            self.save_lost(w);
+        }
         w.transform(self.world_from_character);
         w.f32(self.climbing);
         w.vec3(self.lean);
@@ -94,7 +100,7 @@ impl Character {
             return Err(ReadError { at: 0, what: "is not a character of this version" });
         }
         let tag = r.u8()?;
-        let state = match tag & !(IN_WORLD | WEARS | DRESSED) {
+        let state = match tag & !(IN_WORLD | WEARS | DRESSED | LOST) {
             0 => State::Animated,
             1 => State::Limp,
             2 => State::GettingUp,
@@ -103,6 +109,7 @@ impl Character {
             5 => State::Powered,
             _ => return Err(r.error("unknown state of a character")),
         };
+        let (lost, parting) = if tag & LOST != 0 { self.load_lost(r)? } else { Default::default() };
         let (world_from_character, climbing, lean) = (r.transform()?, r.f32()?, r.vec3()?);
         let mut pair = || Ok([r.f32()?, r.f32()?]);
         let planting = Planting { heights: pair()?, rates: pair()?, slopes: pair()?, slope_rates: pair()? };
@@ -143,6 +150,8 @@ impl Character {
             (world_from_character, climbing, planting);
         (self.pose, self.earlier, self.ragdoll) = (pose, earlier, ragdoll);
         (self.presence, self.flinching, self.speed) = (presence, flinching, speed);
+        (self.lost, self.parting) = (lost, parting);
+        self.keep_own();
         if !base.is_empty() {
             self.physical.rebase(self.def.mapping(), &self.def.rig, &base);
         }
@@ -166,6 +175,36 @@ impl Character {
             self.show_springs();
             self.show_garments();
         }
+    }
+
+    fn save_lost(&self, w: &mut Writer) {
+        w.count(self.lost.len());
+        for &(body, id) in &self.lost {
+            w.u32(body as u32);
+            w.u64(id.to_bits());
+        }
+        w.count(self.parting.len());
+        self.parting.iter().flat_map(|&(a, b)| [a, b]).for_each(|body| w.u64(body.to_bits()));
+    }
+
+    /// Bodies that were cut off, and pairs that are to come apart.
+    fn load_lost(
+        &self,
+        r: &mut Reader<'_>,
+    ) -> Result<(Vec<(usize, BodyId)>, Vec<(BodyId, BodyId)>), ReadError> {
+        let (mut lost, mut parting): (Vec<(usize, BodyId)>, _) = (Vec::new(), Vec::new());
+        for _ in 0..r.count(12)? {
+            lost.push((r.u32()? as usize, BodyId::from_bits(r.u64()?)));
+        }
+        let bodies = self.def.ragdoll.bodies.len();
+        let fits = lost.iter().all(|&(body, _)| (1..bodies).contains(&body));
+        if lost.is_empty() || !fits || !lost.is_sorted_by(|a, b| a.0 < b.0) {
+            return Err(r.error("has lost what it never had"));
+        }
+        for _ in 0..r.count(16)? {
+            parting.push((BodyId::from_bits(r.u64()?), BodyId::from_bits(r.u64()?)));
+        }
+        Ok((lost, parting))
     }
 
     fn load_preparation(&self, r: &mut Reader<'_>) -> Result<Preparation, ReadError> {

@@ -243,7 +243,7 @@ fn parent(def: &RagdollDef, body: usize) -> Option<usize> {
 }
 
 /// True if a body is `ancestor` or below it.
-fn hangs_on(def: &RagdollDef, body: usize, ancestor: usize) -> bool {
+pub(crate) fn hangs_on(def: &RagdollDef, body: usize, ancestor: usize) -> bool {
     core::iter::successors(Some(body), |&at| parent(def, at)).any(|at| at == ancestor)
 }
 

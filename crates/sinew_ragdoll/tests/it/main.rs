@@ -9,6 +9,7 @@ mod build;
 mod build_limits;
 mod character;
 mod data;
+mod detach;
 mod disguise;
 mod doctor;
 mod drive;
