@@ -3,7 +3,7 @@
 use super::{Blow, Character, CharacterEvent, State, Toughness};
 use crate::character::tuning::{FLINCH_HALF_LIFE, FLINCH_TIME, LEGS_WEAKEN, RETURNED_AFTER, TRUNK_WEAKENS};
 use crate::drive::{DriveMode, Muscle};
-use sinew_math::Vec3;
+use sinew_math::{Vec3, max};
 use sinew_physics::{BodyHit, BodyKind, World};
 
 /// Muscles that hold a limb that was struck until it comes back.
@@ -136,6 +136,11 @@ impl Character {
             root = above;
         }
         vec![root]
+    }
+
+    /// Has a limb that gave way go on doing so: something holds it.
+    pub(super) fn flinch_on(&mut self) {
+        self.flinching = max(self.flinching, FLINCH_TIME + RETURNED_AFTER * FLINCH_HALF_LIFE);
     }
 
     /// Lets a limb that gave way come back; true once it has.

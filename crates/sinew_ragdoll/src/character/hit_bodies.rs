@@ -55,6 +55,7 @@ impl Character {
             return;
         };
         let before = core::mem::replace(&mut presence.bearer, bearer).filter(|&body| world.contains(body));
+        let before = before.filter(|&body| !self.passes_through(world, body));
         for &own in self.own() {
             if let Some(before) = before {
                 world.enable_pair(own, before);

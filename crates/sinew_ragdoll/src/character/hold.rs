@@ -3,6 +3,7 @@
 
 use super::memory::Hold;
 use super::{Character, CharacterEvent};
+use crate::owner::together;
 use sinew_math::{Transform, Vec3};
 use sinew_physics::{BodyId, ContactRule, JointDef, JointId, JointKind, Strength, Velocity, World, Yields};
 
@@ -46,7 +47,7 @@ impl Character {
             ..JointDef::between(holder, held, grip.bone_from_held, Transform::IDENTITY, JointKind::Fixed)
         });
         let presence = self.presence.as_mut().expect("a character with bodies is in the world");
-        presence.holds.push(Hold { held, joint, body: body as u32, drops: grip.drops });
+        presence.holds.push(Hold { held, joint, body: body as u32, drops: grip.drops, grasp: None });
         joint
     }
 
@@ -75,6 +76,9 @@ impl Character {
         while let Some(lost) = self.lost(world) {
             self.release(world, lost);
         }
+        while let Some(lost) = self.pull_grips(world) {
+            self.release(world, lost);
+        }
     }
 
     fn lost(&self, world: &World) -> Option<BodyId> {
@@ -96,18 +100,27 @@ impl Character {
         }
     }
 
-    /// Lets a body pass through those of the character and through movers, or takes that back.
-    fn set_passes(&self, world: &mut World, other: BodyId, passes: bool) {
+    /// Lets a body pass through those of the character and through movers, or takes that back. One that a character keeps has rules of its own, and takes all of that
+    /// along; the two collide again once they are apart.
+    pub(super) fn set_passes(&mut self, world: &mut World, other: BodyId, passes: bool) {
         let rule = if passes { ContactRule::Yields(Yields::default()) } else { ContactRule::Push };
-        let shapes: Vec<_> = world.shape_ids(other).collect();
+        let is_owned = world.body_owner(other).is_some();
+        let shapes: Vec<_> = world.shape_ids(other).filter(|_| !is_owned).collect();
         for shape in shapes {
             world.set_contact_rule(shape, rule);
         }
+        let whole = if is_owned { together(world, other) } else { vec![other] };
+        if is_owned && !passes {
+            self.freed.push(other);
+            return;
+        }
         for &own in self.own() {
-            if passes {
-                world.disable_pair(own, other);
-            } else {
-                world.enable_pair(own, other);
+            for &other in &whole {
+                if passes {
+                    world.disable_pair(own, other);
+                } else {
+                    world.enable_pair(own, other);
+                }
             }
         }
     }

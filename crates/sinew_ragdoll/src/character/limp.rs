@@ -12,7 +12,7 @@ use crate::hand_over::body_velocity;
 use crate::ragdoll::BodyState;
 use sinew_anim::{Animator, Motion, Pose};
 use sinew_math::{Transform, Vec3, min};
-use sinew_physics::{BodyId, BodyKind, ContactRule, Velocity, World};
+use sinew_physics::{BodyId, BodyKind, ContactRule, ShapeId, Velocity, World};
 
 impl Character {
     /// Lets the bodies take over, at the pose and the speed that the animation has now. Nothing happens if they did
@@ -226,6 +226,25 @@ impl Character {
         self.drives.apply(world, &self.def.ragdoll, ragdoll, targets, velocities);
     }
 
+    /// True while something holds it: then movers pass through it, so that it is in nobody's way who drags it.
+    fn mind_grips(&mut self, world: &mut World) -> bool {
+        let is_gripped = self.is_gripped(world);
+        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
+        let now = world.contact_rule(ShapeId { body: ragdoll.bodies[0], shape: 0 });
+        if is_gripped && now == ContactRule::Push {
+            ragdoll.set_rule(world, self.def.in_world.rule());
+        } else if !is_gripped && now != ContactRule::Push && !self.is_entered(world) {
+            ragdoll.set_rule(world, ContactRule::Push);
+        }
+        if is_gripped {
+            // It lies anew once it is free.
+            let slack = (SLACKENS / world.def().dt()) as u32 + 1;
+            self.stillness.steps = self.stillness.steps.min(slack);
+            self.stillness.settled &= self.stillness.calm_steps > 0;
+        }
+        is_gripped
+    }
+
     /// Waits until the bodies lie still.
     pub(super) fn lie(&mut self, world: &mut World) {
         self.follow_bodies(world);
@@ -258,6 +277,10 @@ impl Character {
             still.settled = true;
             self.events.push(CharacterEvent::Settled { since: world.time() as f32 - calm });
         }
+        if self.mind_grips(world) {
+            return;
+        }
+        let still = &mut self.stillness;
         let impatient = !still.settled && still.steps as f32 * dt >= self.def.patience;
         if gets_up && (still.settled || impatient) {
             if impatient {

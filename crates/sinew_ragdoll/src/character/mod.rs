@@ -35,6 +35,8 @@ mod event;
 mod feet;
 mod floor;
 mod get_up;
+mod grab;
+mod grab_point;
 mod ground;
 mod hit_bodies;
 mod hold;
@@ -64,6 +66,8 @@ pub(crate) use tuning::STILL_TIME;
 pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet, Opening};
 pub use distances::{Detail, Distances};
 pub use event::{CharacterEvent, State};
+pub use grab::Grab;
+pub use grab_point::GrabPoint;
 pub use hold::Grip;
 pub use in_world::{Blow, HitBodies, InWorld, Toughness};
 pub use limb::Limb;
@@ -119,6 +123,8 @@ pub struct Character {
     kept: Vec<BodyId>,
     /// Bodies of its own and others that were cut off, which overlap and pass through each other until they do not.
     parting: Vec<(BodyId, BodyId)>,
+    /// Limbs that it has let go of, through whose bodies its own pass until they are apart.
+    freed: Vec<BodyId>,
     stillness: Stillness,
     preparation: Preparation,
     events: Vec<CharacterEvent>,
@@ -187,6 +193,7 @@ impl Character {
             lost: Vec::new(),
             kept: Vec::new(),
             parting: Vec::new(),
+            freed: Vec::new(),
             stillness: Stillness::default(),
             preparation: Preparation::default(),
             events: Vec::new(),
@@ -266,6 +273,7 @@ impl Character {
         self.note_contacts(world);
         self.mind_holds(world);
         self.mind_parting(world);
+        self.mind_freed(world);
         if !self.is_frozen() {
             self.follow(world);
             self.settle_detail(world);

@@ -205,6 +205,9 @@ impl Character {
         if self.falls() || in_vain || self.state == State::Powered && self.is_toppled(world) {
             return self.go_limp(world);
         }
+        if self.state == State::Flinching && self.is_gripped(world) {
+            self.flinch_on();
+        }
         if self.state == State::Flinching && self.come_back(dt) {
             self.leave_bodies(world);
             self.state = State::Animated;

@@ -1,6 +1,7 @@
 //! A character's own state, beside the world's snapshot.
 
 use super::distances::Detail;
+use super::grab::Grasp;
 use super::in_world::Presence;
 use super::memory::{Hold, Planting, Preparation, Rising, Stillness};
 use super::stumble::Stumble;
@@ -23,6 +24,8 @@ const WEARS: u8 = 0x40;
 const DRESSED: u8 = 0x20;
 /// Bit of a state: what was cut off follows after it.
 const LOST: u8 = 0x10;
+/// Bit of what is held: a grip that pulls follows.
+const GRASPS: u8 = 2;
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
 
@@ -41,7 +44,8 @@ impl Character {
         let in_world = if self.presence.is_some() { IN_WORLD } else { 0 };
         let wears = if self.def.springs().is_empty() { 0 } else { WEARS };
         let dressed = if self.def.garments().is_empty() { 0 } else { DRESSED };
-        let lost = if self.lost.is_empty() { 0 } else { LOST };
+        let is_whole = self.lost.is_empty() && self.parting.is_empty() && self.freed.is_empty();
+        let lost = if is_whole { 0 } else { LOST };
         w.u8(state | in_world | wears | dressed | lost);
         if lost != 0 {
             self.save_lost(w);
@@ -109,7 +113,8 @@ impl Character {
             5 => State::Powered,
             _ => return Err(r.error("unknown state of a character")),
         };
-        let (lost, parting) = if tag & LOST != 0 { self.load_lost(r)? } else { Default::default() };
+        let Apart { lost, parting, freed } =
+            if tag & LOST != 0 { self.load_lost(r)? } else { Default::default() };
         let (world_from_character, climbing, lean) = (r.transform()?, r.f32()?, r.vec3()?);
         let mut pair = || Ok([r.f32()?, r.f32()?]);
         let planting = Planting { heights: pair()?, rates: pair()?, slopes: pair()?, slope_rates: pair()? };
@@ -150,7 +155,7 @@ impl Character {
             (world_from_character, climbing, planting);
         (self.pose, self.earlier, self.ragdoll) = (pose, earlier, ragdoll);
         (self.presence, self.flinching, self.speed) = (presence, flinching, speed);
-        (self.lost, self.parting) = (lost, parting);
+        (self.lost, self.parting, self.freed) = (lost, parting, freed);
         self.keep_own();
         if !base.is_empty() {
             self.physical.rebase(self.def.mapping(), &self.def.rig, &base);
@@ -185,26 +190,29 @@ impl Character {
         }
         w.count(self.parting.len());
         self.parting.iter().flat_map(|&(a, b)| [a, b]).for_each(|body| w.u64(body.to_bits()));
+        w.count(self.freed.len());
+        self.freed.iter().for_each(|body| w.u64(body.to_bits()));
     }
 
-    /// Bodies that were cut off, and pairs that are to come apart.
-    fn load_lost(
-        &self,
-        r: &mut Reader<'_>,
-    ) -> Result<(Vec<(usize, BodyId)>, Vec<(BodyId, BodyId)>), ReadError> {
+    /// What was cut off or let go.
+    fn load_lost(&self, r: &mut Reader<'_>) -> Result<Apart, ReadError> {
         let (mut lost, mut parting): (Vec<(usize, BodyId)>, _) = (Vec::new(), Vec::new());
         for _ in 0..r.count(12)? {
             lost.push((r.u32()? as usize, BodyId::from_bits(r.u64()?)));
         }
         let bodies = self.def.ragdoll.bodies.len();
         let fits = lost.iter().all(|&(body, _)| (1..bodies).contains(&body));
-        if lost.is_empty() || !fits || !lost.is_sorted_by(|a, b| a.0 < b.0) {
+        if !fits || !lost.is_sorted_by(|a, b| a.0 < b.0) {
             return Err(r.error("has lost what it never had"));
         }
         for _ in 0..r.count(16)? {
             parting.push((BodyId::from_bits(r.u64()?), BodyId::from_bits(r.u64()?)));
         }
-        Ok((lost, parting))
+        let mut freed = Vec::new();
+        for _ in 0..r.count(8)? {
+            freed.push(BodyId::from_bits(r.u64()?));
+        }
+        Ok(Apart { lost, parting, freed })
     }
 
     fn load_preparation(&self, r: &mut Reader<'_>) -> Result<Preparation, ReadError> {
@@ -233,6 +241,14 @@ impl Character {
     }
 }
 
+/// What was cut off or let go.
+#[derive(Default)]
+struct Apart {
+    lost: Vec<(usize, BodyId)>,
+    parting: Vec<(BodyId, BodyId)>,
+    freed: Vec<BodyId>,
+}
+
 impl Presence {
     fn save(&self, w: &mut Writer) {
         w.u64(self.mover.map_or(u64::MAX, MoverId::to_bits));
@@ -250,11 +266,12 @@ impl Presence {
         w.bool(self.falls);
         w.u8(self.detail as u8);
         w.count(self.holds.len());
-        for &Hold { held, joint, body, drops } in &self.holds {
+        for Hold { held, joint, body, drops, grasp } in &self.holds {
             w.u64(held.to_bits());
             w.u64(joint.to_bits());
-            w.u32(body);
-            w.bool(drops);
+            w.u32(*body);
+            w.u8(u8::from(*drops) | if grasp.is_some() { GRASPS } else { 0 });
+            grasp.iter().for_each(|grasp| grasp.save(w));
         }
         w.bool(self.stumble.is_some());
         if let Some(stumble) = &self.stumble {
@@ -291,11 +308,13 @@ impl Presence {
         };
         for _ in 0..r.count(21)? {
             let (held, joint) = (BodyId::from_bits(r.u64()?), JointId::from_bits(r.u64()?));
-            let (body, drops) = (r.u32()?, r.bool()?);
-            if body as usize >= most {
+            let (body, tag) = (r.u32()?, r.u8()?);
+            let grasp = if tag & GRASPS != 0 { Some(Grasp::load(r)?) } else { None };
+            let drops = tag & 1 != 0;
+            if body as usize >= most || tag > (GRASPS | 1) {
                 return Err(r.error("is of another character"));
             }
-            presence.holds.push(Hold { held, joint, body, drops });
+            presence.holds.push(Hold { held, joint, body, drops, grasp });
         }
         presence.stumble = if r.bool()? { Some(Stumble::load(r)?) } else { None };
         Ok(presence)

@@ -37,6 +37,23 @@ pub(crate) const TRUNK_WEAKENS: f32 = 0.5;
 /// Larger: it counts as flinching for longer. Smaller: it jumps at the end. Shown by the tests of `blows`.
 pub(crate) const RETURNED_AFTER: f32 = 6.0;
 
+// character/grab.rs
+
+/// Stretch of a grip at its full force, metres.
+///
+/// Larger: what is held hangs away from the hand. Smaller: it jerks. Shown by the tests of `grab`.
+pub(crate) const GRIP_STRETCH: f32 = 0.01;
+
+/// Share of a grip's force that its motor uses, 0 to 1: contacts and stops of joints add to it within a substep.
+///
+/// Larger: a grip is seen to pull harder than it may. Smaller: it lets go too early. Shown by the tests of `grab`.
+pub(crate) const GRIP_SHARE: f32 = 0.9;
+
+/// Distance between the bounds of two characters from which on they collide again after one has let go of the other, metres, twice.
+///
+/// Larger: they pass through each other for longer. Smaller: feet kick who is let go. Shown by the tests of `grab`.
+pub(crate) const PARTED: f32 = 0.05;
+
 // character/feet.rs
 
 /// Natural frequency with which feet follow the ground, critically damped, rad/s: a step of a stair asks for as much of a leg as a

@@ -214,6 +214,11 @@ impl Drives {
         }
     }
 
+    /// True of a joint that is one of its pins.
+    pub(crate) fn is_pin(&self, joint: JointId) -> bool {
+        self.drives.iter().any(|drive| drive.pin == Some(joint))
+    }
+
     /// Leaves a body no weaker than that, share of its strength.
     pub(crate) fn steady(&mut self, body: usize, weakness: f32) {
         let drive = &mut self.drives[body];
