@@ -130,10 +130,11 @@ impl SolverJoint {
         self.drive.motor.map_or(0.0, |motor| motor.cap(direction) * h)
     }
 
-    /// Notes in which directions the motor of a pin, which resists contacts and stops as inertia does, has come to push with more than its cap.
+    /// Notes in which directions the motor of a pin that only pulls (a hand, a grip) has come to push with more than its cap: it resists contacts and stops as inertia
+    /// does. Pins that turn bodies as well are drives, which hold them as firmly as that.
     pub(in crate::solver) fn note_exceeded(&mut self, h: f32) {
         self.exceeded = [0; DIRECTIONS];
-        if self.drive.motor.is_none() {
+        if self.drive.motor.is_none_or(|motor| motor.max_torque > 0.0) {
             return;
         }
         for row in self.rows.locked..self.rows.count {
