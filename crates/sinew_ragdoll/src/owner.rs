@@ -1,4 +1,4 @@
-//! What a world says of bodies and joints that a character, a ragdoll or a limb keeps.
+//! Names by which a world tells of bodies and joints that a character, a ragdoll or a limb keeps.
 
 use crate::def::RagdollDef;
 use sinew_physics::{BodyId, BodyKind, Owner, World};

@@ -2,6 +2,7 @@
 
 use super::limb::{Limb, cut_joint, shrunk};
 use super::memory::Stillness;
+use super::tuning::FAR_BELOW;
 use super::{Character, CharacterEvent, State};
 use crate::drive::hangs_on;
 use crate::owner::{OwnerKind, owner};
@@ -279,6 +280,3 @@ impl Character {
         }
     }
 }
-
-/// Height at which nothing is, metres.
-const FAR_BELOW: f32 = -1e6;

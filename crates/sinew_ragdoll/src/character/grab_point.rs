@@ -1,6 +1,6 @@
 //! A point that grabs: a mouse's, a crane's.
 
-use super::grab::{Grab, Grasp};
+use super::grasp::{Grab, Grasp};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::{BodyDef, BodyId, BodyKind, JointId, World};
 
@@ -39,7 +39,7 @@ pub struct GrabPoint {
     ground: BodyId,
     joint: JointId,
     held: BodyId,
-    /// Where it took hold, world.
+    /// Point at which it took hold, world.
     origin: Vec3,
     grasp: Grasp,
 }

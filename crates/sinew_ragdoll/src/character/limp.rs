@@ -239,7 +239,7 @@ impl Character {
         if is_gripped {
             // It lies anew once it is free.
             let slack = (SLACKENS / world.def().dt()) as u32 + 1;
-            self.stillness.steps = self.stillness.steps.min(slack);
+            self.stillness.steps = u32::min(self.stillness.steps, slack);
             self.stillness.settled &= self.stillness.calm_steps > 0;
         }
         is_gripped

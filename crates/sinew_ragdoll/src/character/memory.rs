@@ -1,6 +1,6 @@
 //! Data that a character keeps from step to step, one for each thing that it does.
 
-use super::grab::Grasp;
+use super::grasp::Grasp;
 use sinew_anim::{LocalTransform, TrackId};
 use sinew_math::Transform;
 use sinew_physics::{BodyId, JointId};

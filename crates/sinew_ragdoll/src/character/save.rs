@@ -1,7 +1,7 @@
 //! A character's own state, beside the world's snapshot.
 
 use super::distances::Detail;
-use super::grab::Grasp;
+use super::grasp::Grasp;
 use super::in_world::Presence;
 use super::memory::{Hold, Planting, Preparation, Rising, Stillness};
 use super::stumble::Stumble;
@@ -157,14 +157,8 @@ impl Character {
         (self.presence, self.flinching, self.speed) = (presence, flinching, speed);
         (self.lost, self.parting, self.freed) = (lost, parting, freed);
         self.keep_own();
-        if !base.is_empty() {
-            self.physical.rebase(self.def.mapping(), &self.def.rig, &base);
-        }
-        if !planting.is_over() {
-            self.show_planted();
-        }
         (self.swing, self.worn) = (swing, worn);
-        self.show_loaded();
+        self.show_loaded(&base);
         self.keep_shown();
         self.events.clear();
         self.told = 0;
@@ -173,7 +167,13 @@ impl Character {
     }
 
     /// The pose with what it wears, as it was shown when it was saved.
-    fn show_loaded(&mut self) {
+    fn show_loaded(&mut self, base: &[LocalTransform]) {
+        if !base.is_empty() {
+            self.physical.rebase(self.def.mapping(), &self.def.rig, base);
+        }
+        if !self.planting.is_over() {
+            self.show_planted();
+        }
         self.swung.clear();
         if !(self.swing.turns().is_empty() && self.worn.turns.is_empty()) {
             self.swung = self.pose_without_springs().to_vec();
@@ -194,7 +194,7 @@ impl Character {
         self.freed.iter().for_each(|body| w.u64(body.to_bits()));
     }
 
-    /// What was cut off or let go.
+    /// Limbs that were cut off or let go.
     fn load_lost(&self, r: &mut Reader<'_>) -> Result<Apart, ReadError> {
         let (mut lost, mut parting): (Vec<(usize, BodyId)>, _) = (Vec::new(), Vec::new());
         for _ in 0..r.count(12)? {
@@ -241,7 +241,7 @@ impl Character {
     }
 }
 
-/// What was cut off or let go.
+/// Limbs that were cut off or let go.
 #[derive(Default)]
 struct Apart {
     lost: Vec<(usize, BodyId)>,

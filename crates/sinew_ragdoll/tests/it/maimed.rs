@@ -63,7 +63,7 @@ impl Life {
 
     /// One deed, by chance.
     fn act(&mut self, random: &mut Random) {
-        let deed = random.index(16);
+        let deed = random.index(17);
         if self.cast.is_empty() || deed == 0 && self.cast.len() < 3 {
             let turn = Rotation::from_axis_angle(Vec3::Y, random.range(-3.0, 3.0));
             let place = Vec3::new(random.range(-1.0, 1.0), 0.0, random.range(-1.0, 1.0));
@@ -121,6 +121,11 @@ impl Life {
                 character.set_level_of_detail(world, detail[random.index(4)]);
             }
             14 if random.index(4) == 0 => self.cast.swap_remove(who).despawn(&mut self.world),
+            15 => {
+                let body = self.any_body(random);
+                let kinds = [BodyKind::Dynamic, BodyKind::Kinematic, BodyKind::Static];
+                self.world.set_kind(body, kinds[random.index(3)]);
+            }
             _ => character.set_move(random.in_cube()),
         }
     }
