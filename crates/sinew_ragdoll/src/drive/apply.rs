@@ -120,7 +120,9 @@ impl Drives {
     ) {
         let drive = &self.drives[body];
         let vigour = 1.0 - drive.weakness;
-        let softness = drive.level.pin.softness(vigour).filter(|_| !drive.keyed);
+        // The user may have made it kinematic or static.
+        let moves = !drive.keyed && world.kind(id) == BodyKind::Dynamic;
+        let softness = drive.level.pin.softness(vigour).filter(|_| moves);
         let old = drive.pin.filter(|&pin| world.contains_joint(pin));
         let Some(softness) = softness.filter(|_| drive.level.force + drive.level.torque > NO_STRENGTH) else {
             if let Some(pin) = old {

@@ -244,6 +244,8 @@ impl Wearer<'_> {
                 particle.position = places[index] + turn * sheet.moved_out[index];
             }
         }
+        let is_left = |particle: u32| self.has(sheet.held_by[particle as usize]);
+        group.tethers.retain(|tether| is_left(tether.to));
         let backings = sheet.backings.iter().filter(|backing| self.has(backing.body));
         group.backstops.extend(backings.map(|backing| BackstopDef {
             particle: backing.particle as u32,

@@ -3,8 +3,10 @@
 use crate::actor::{shared, walker};
 use crate::in_world::{level, run};
 use sinew_math::{Reader, Transform, Vec3, Writer, max};
+use sinew_physics::particles::AttachmentTarget;
 use sinew_physics::{BodyKind, JointId, Velocity, World};
 use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, Limb, Preset, State};
+use sinew_scenes::dressed::{CAPE, SKIRT, dressed};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
@@ -235,5 +237,52 @@ fn a_character_without_limbs_is_the_same_in_a_fresh_world() {
         for (mut world, limbs) in [(world, limbs), (other_world, loaded)] {
             limbs.into_iter().for_each(|limb| limb.despawn(&mut world));
         }
+    }
+}
+
+#[test]
+fn garments_hang_on_what_is_left() {
+    let def = Arc::new(dressed(&[&CAPE, &SKIRT], |_| ()));
+    for (bone, limp) in [("leftUpperLeg", false), ("leftUpperArm", false), ("head", true), ("spine", true)] {
+        let mut world = level();
+        let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+        if limp {
+            character.go_limp(&mut world);
+        }
+        run(&mut world, &mut character, 30);
+        let particles = |world: &World, character: &Character| {
+            let groups = character.garments().iter().map(|&id| world.particles(id).positions().to_vec());
+            groups.collect::<Vec<_>>()
+        };
+        let before = particles(&world, &character);
+        let limb = character.detach(&mut world, bone).expect("it has that");
+        assert_eq!(particles(&world, &character), before, "{bone}: cloth lies where it lay");
+        let attached = world.group_ids().flat_map(|id| world.particles(id).attachments().to_vec());
+        let holds = |target: &AttachmentTarget| match target {
+            AttachmentTarget::Body { body, .. } => limb.bodies().contains(body),
+            _ => false,
+        };
+        assert!(!attached.into_iter().any(|at| holds(&at.target)), "{bone}: none hangs on the limb");
+        run(&mut world, &mut character, 5);
+        limb.despawn(&mut world);
+        let mut w = Writer::new();
+        world.save(&mut w);
+        character.save(&mut w);
+        let mut r = Reader::new(w.as_bytes());
+        let mut other_world = World::new(world.def().clone());
+        other_world.load(&mut r).expect("it is a snapshot");
+        let mut other = Character::new(def.clone(), Transform::IDENTITY, 0.0);
+        other.load(&mut r).expect("it is a character");
+        for step in 0..200 {
+            for (world, character) in [(&mut world, &mut character), (&mut other_world, &mut other)] {
+                world.step();
+                character.update(world);
+            }
+            assert_eq!(world.hash(), other_world.hash(), "{bone}, step {step}");
+        }
+        assert!(particles(&world, &character).iter().flatten().all(|at| at.is_finite()), "{bone}");
+        assert_eq!(character.garments().len(), 2, "{bone}: it wears both");
+        character.despawn(&mut world);
+        assert_eq!((world.body_ids().count(), world.group_ids().count()), (1, 0), "{bone}");
     }
 }

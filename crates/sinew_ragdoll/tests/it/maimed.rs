@@ -55,10 +55,10 @@ impl Life {
     }
 
     /// A body of whoever.
-    fn any_body(&self, random: &mut Random) -> BodyId {
+    fn any_body(&self, random: &mut Random) -> Option<BodyId> {
         let all: Vec<BodyId> =
             self.world.body_ids().filter(|&body| self.world.kind(body) != BodyKind::Static).collect();
-        all[random.index(all.len())]
+        if all.is_empty() { None } else { Some(all[random.index(all.len())]) }
     }
 
     /// One deed, by chance.
@@ -85,7 +85,7 @@ impl Life {
                 character.set_preset(world, preset);
             }
             6..=8 => {
-                let held = self.any_body(random);
+                let Some(held) = self.any_body(random) else { return };
                 let grab = Grab { reach: 0.8, drops: random.index(2) == 0, ..Grab::HAND };
                 let hand = if character_has(&self.cast[who], &bone) { bone } else { "hips".into() };
                 self.cast[who].grab(&mut self.world, &hand, held, &grab);
@@ -95,7 +95,7 @@ impl Life {
                 held.into_iter().for_each(|held| _ = character.release(world, held));
             }
             10 => {
-                let held = self.any_body(random);
+                let Some(held) = self.any_body(random) else { return };
                 let at = self.world.center_of_mass(held);
                 self.points.extend(GrabPoint::take(&mut self.world, held, at, &Grab::POINT));
             }
@@ -122,7 +122,7 @@ impl Life {
             }
             14 if random.index(4) == 0 => self.cast.swap_remove(who).despawn(&mut self.world),
             15 => {
-                let body = self.any_body(random);
+                let Some(body) = self.any_body(random) else { return };
                 let kinds = [BodyKind::Dynamic, BodyKind::Kinematic, BodyKind::Static];
                 self.world.set_kind(body, kinds[random.index(3)]);
             }
