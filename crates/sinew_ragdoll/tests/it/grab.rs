@@ -2,7 +2,7 @@
 
 use crate::actor::{shared, walker};
 use crate::in_world::level;
-use sinew_math::{Rotation, Transform, Vec3, max};
+use sinew_math::{Rotation, Transform, Vec3, max, trig};
 use sinew_physics::{BodyDef, BodyKind, JointDef, JointId, JointKind, Shape, ShapeDef, World};
 use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, Grab, GrabPoint, Preset, State};
 use std::sync::Arc;
@@ -113,7 +113,7 @@ fn dragging(
     let held = victim.bodies()[body(def, limb)];
     let (at, hips) = (world.center_of_mass(held), world.center_of_mass(victim.bodies()[0]));
     let away = (at - hips) * Vec3::new(1.0, 0.0, 1.0);
-    let turn = Rotation::from_axis_angle(Vec3::Y, away.x.atan2(away.z) + 0.1 * phase as f32);
+    let turn = Rotation::from_axis_angle(Vec3::Y, trig::atan2(away.x, away.z) + 0.1 * phase as f32);
     let place = at + turn * Vec3::new(-0.25, 0.0, 0.2);
     let place = Transform::new(Vec3::new(place.x, 0.0, place.z), turn);
     let mut hero = Character::spawn(&mut world, def, place);

@@ -170,7 +170,7 @@ fn random_lives_are_the_same_in_a_fresh_world() {
                     && velocity.angular.is_finite()
             };
             assert!(world.body_ids().all(is_finite), "seed {seed}, step {step}");
-            let poses = life.cast.iter().flat_map(|character| character.pose());
+            let poses = life.cast.iter().flat_map(Character::pose);
             assert!(poses.into_iter().all(|local| local.rotation.is_finite()), "seed {seed}, step {step}");
             if step % 100 == 57 {
                 copy = Some((life.copy(), random.clone()));
