@@ -48,6 +48,7 @@ impl Character {
     ///
     /// # Panics
     /// If no body is called so, or it is the first of the definition, the pelvis.
+    #[track_caller]
     pub fn detach(&mut self, world: &mut World, bone: &str) -> Option<Limb> {
         let def = self.def.clone();
         let first = def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));

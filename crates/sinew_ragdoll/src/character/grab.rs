@@ -45,6 +45,7 @@ impl Character {
     ///
     /// # Panics
     /// If no body is called so, or a number of the grip makes no sense.
+    #[track_caller]
     pub fn grab(&mut self, world: &mut World, bone: &str, held: BodyId, grab: &Grab) -> Option<JointId> {
         grab.check();
         let body = self.def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));

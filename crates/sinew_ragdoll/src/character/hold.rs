@@ -3,7 +3,7 @@
 
 use super::memory::Hold;
 use super::{Character, CharacterEvent};
-use crate::owner::together;
+use crate::owner::{is_limb, together};
 use sinew_math::{Transform, Vec3};
 use sinew_physics::{BodyId, ContactRule, JointDef, JointId, JointKind, Strength, Velocity, World, Yields};
 
@@ -26,15 +26,19 @@ impl Default for Grip {
 
 impl Character {
     /// Has one of its bodies (by role or bone) hold a dynamic body of the world, which is put there, on a fixed joint. As long as it
-    /// is held it passes through the character's own bodies and through movers.
+    /// is held it passes through the character's own bodies and through movers. For limbs of others there is [`grab`](Self::grab).
     ///
     /// # Panics
-    /// If no body is called so or it was [cut off](Self::detach), the character has none in the world, or it holds that one already.
+    /// If no body is called so or it was [cut off](Self::detach), the character has none in the world, it holds that one already, or that is a part of a character or ragdoll.
+    #[track_caller]
     pub fn hold(&mut self, world: &mut World, bone: &str, held: BodyId, grip: &Grip) -> JointId {
         let body = self.def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
         assert!(self.has_body(body), "it has lost '{bone}'");
         assert!(!self.bodies().is_empty(), "a character without bodies holds nothing");
         assert!(self.held().all(|other| other != held), "it holds that body already");
+        if let Some((owner, part)) = world.body_owner(held).filter(|_| !is_limb(world, held)) {
+            panic!("{held:?} is the {}'s {part}: `Character::grab` takes hold of it", owner.name);
+        }
         let holder = self.bodies()[body];
         let Velocity { linear, angular } = world.velocity(holder);
         let place = world.transform(holder) * grip.bone_from_held;

@@ -4,7 +4,7 @@ use crate::actor::{shared, walker};
 use crate::in_world::level;
 use sinew_math::{Rotation, Transform, Vec3, max, trig};
 use sinew_physics::{BodyDef, BodyKind, JointDef, JointId, JointKind, Shape, ShapeDef, World};
-use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, Grab, GrabPoint, Preset, State};
+use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, Grab, GrabPoint, Grip, Preset, State};
 use std::sync::Arc;
 
 /// Fastest that a limb may be, m/s.
@@ -161,6 +161,16 @@ fn a_walker_drags_who_is_limp() {
         }
         assert!(tried >= 3 && dragged + 1 >= tried, "{limb}: it dragged {dragged} of {tried}");
     }
+}
+
+#[test]
+#[should_panic(expected = "`Character::grab` takes hold of it")]
+fn nobody_holds_a_limb_as_a_sword() {
+    let def = shared(walker());
+    let mut world = level();
+    let other = lying(&mut world, &def, Transform::IDENTITY);
+    let mut hero = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::X * 3.0));
+    hero.hold(&mut world, "rightHand", other.bodies()[0], &Grip::default());
 }
 
 #[test]
