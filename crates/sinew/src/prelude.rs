@@ -20,6 +20,6 @@ pub use sinew_physics::{
 };
 #[cfg(feature = "ragdoll")]
 pub use sinew_ragdoll::{
-    BodySettings, BodyState, BuildOptions, Character, CharacterDef, CharacterEvent, Grip, MotionSet, Part,
-    Preset, Ragdoll, RagdollDef, State, build,
+    BodySettings, BodyState, BuildOptions, Character, CharacterDef, CharacterEvent, Grab, GrabPoint, Grip,
+    Limb, MotionSet, Part, Preset, Ragdoll, RagdollDef, State, build,
 };

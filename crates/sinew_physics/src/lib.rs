@@ -41,6 +41,7 @@ pub use body::external_work::Work;
 pub use body::force::{ForceDef, ForceFrame, ForceId, Wrench};
 pub use body::library::LoadError;
 pub use body::material::{Combine, CombineRules, ContactMaterial, Material};
+pub use body::owner::Owner;
 pub use body::shape::{Filter, Sensing, ShapeDef};
 pub use body::{Velocity, def, shape};
 pub use contact::Effect;

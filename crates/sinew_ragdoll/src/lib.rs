@@ -16,6 +16,7 @@ pub mod hand_over;
 pub mod limits;
 pub mod mapping;
 pub mod masses;
+mod owner;
 pub mod quality;
 pub mod ragdoll;
 pub mod rig_match;
@@ -27,8 +28,9 @@ mod tuning;
 pub use bake::{BakeHit, BakeInput, Baked, HitEffect, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
 pub use character::{
-    AfterSettling, Blow, Character, CharacterDef, CharacterEvent, Detail, Distances, GettingReady, Grip,
-    HitBodies, InWorld, Locomotion, MotionError, MotionSet, Opening, Part, Preset, State, Toughness,
+    AfterSettling, Blow, Character, CharacterDef, CharacterEvent, Detail, Distances, GettingReady, Grab,
+    GrabPoint, Grip, HitBodies, InWorld, Limb, Locomotion, MotionError, MotionSet, Opening, Part, Preset,
+    State, Toughness,
 };
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 pub use doctor::{Repair, cure, doctor};

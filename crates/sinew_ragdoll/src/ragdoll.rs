@@ -25,6 +25,7 @@
 //! ```
 
 use crate::def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
+use crate::owner::{OwnerKind, owner};
 use crate::tuning::TOLERATED;
 use crate::tuning::WIDEST_SPAWNED;
 use sinew_math::limits::hinge_angle;
@@ -77,6 +78,8 @@ pub struct Ragdoll {
     pub joints: Vec<JointId>,
     /// Pairs of bodies that collide with each other: no joint, definition or starting pose keeps them from it.
     pub colliding: Vec<(BodyId, BodyId)>,
+    /// Bodies that were cut off, by index, ascending. They, and the joints above them, keep their places in the lists and are not its any more.
+    pub lost: Vec<usize>,
 }
 
 impl Ragdoll {
@@ -106,7 +109,9 @@ impl Ragdoll {
         for &(a, b) in &def.disabled_pairs {
             world.disable_pair(bodies[a], bodies[b]);
         }
-        Self::jointed(world, def, bodies, states)
+        let ragdoll = Self::jointed(world, def, bodies, states, Vec::new());
+        ragdoll.own(world, def, OwnerKind::Ragdoll);
+        ragdoll
     }
 
     /// Puts the bodies alone into the world, kinematic and without joints, as what can be hit of a character that its clips
@@ -121,9 +126,26 @@ impl Ragdoll {
         body_settings: &BodySettings,
         rule: ContactRule,
     ) -> Vec<BodyId> {
+        Self::spawn_kinematic_without(world, def, states, body_settings, rule, &[])
+    }
+
+    /// [`spawn_kinematic`](Self::spawn_kinematic) of all bodies but some; `gone` has the ids that stand for these.
+    pub(crate) fn spawn_kinematic_without(
+        world: &mut World,
+        def: &RagdollDef,
+        states: &[BodyState],
+        body_settings: &BodySettings,
+        rule: ContactRule,
+        gone: &[(usize, BodyId)],
+    ) -> Vec<BodyId> {
         assert_eq!(states.len(), def.bodies.len(), "every body has a state");
         let mut bodies = Vec::with_capacity(states.len());
+        let is_gone = |index: usize| gone.iter().find(|&&(lost, _)| lost == index);
         for (index, (body, state)) in def.bodies.iter().zip(states).enumerate() {
+            if let Some(&(_, id)) = is_gone(index) {
+                bodies.push(id);
+                continue;
+            }
             let mut body = body_def(body, state, body_settings, index);
             body.shapes.iter_mut().for_each(|shape| shape.rule = rule);
             let id = world.add_body(&body);
@@ -131,7 +153,9 @@ impl Ragdoll {
             bodies.push(id);
         }
         for &(a, b) in &def.disabled_pairs {
-            world.disable_pair(bodies[a], bodies[b]);
+            if is_gone(a).is_none() && is_gone(b).is_none() {
+                world.disable_pair(bodies[a], bodies[b]);
+            }
         }
         bodies
     }
@@ -149,17 +173,78 @@ impl Ragdoll {
         rule: ContactRule,
     ) -> Self {
         assert_eq!([states.len(), bodies.len()], [def.bodies.len(); 2], "every body has a state");
-        for (&body, state) in bodies.iter().zip(states) {
-            world.set_kind(body, BodyKind::Dynamic);
-            world.set_transform(body, state.world_from_body);
-            world.set_velocity(body, state.velocity);
-        }
-        for (a, b) in colliding_pairs(def) {
-            world.enable_pair(bodies[a], bodies[b]);
-        }
-        let ragdoll = Self::jointed(world, def, bodies.to_vec(), states);
+        let ragdoll = Self::wake_without(world, def, bodies, states, &[]);
+        ragdoll.own(world, def, OwnerKind::Ragdoll);
         ragdoll.set_rule(world, rule);
         ragdoll
+    }
+
+    /// [`wake`](Self::wake) of all bodies but some, without rule or owner.
+    pub(crate) fn wake_without(
+        world: &mut World,
+        def: &RagdollDef,
+        bodies: &[BodyId],
+        states: &[BodyState],
+        lost: &[usize],
+    ) -> Self {
+        for (index, (&body, state)) in bodies.iter().zip(states).enumerate() {
+            if !lost.contains(&index) {
+                world.set_kind(body, BodyKind::Dynamic);
+                world.set_transform(body, state.world_from_body);
+                world.set_velocity(body, state.velocity);
+            }
+        }
+        for (a, b) in colliding_pairs(def) {
+            if !lost.contains(&a) && !lost.contains(&b) {
+                world.enable_pair(bodies[a], bodies[b]);
+            }
+        }
+        Self::jointed(world, def, bodies.to_vec(), states, lost.to_vec())
+    }
+
+    /// Puts all bodies but some into the world, with their joints; `gone` has the ids that stand for the others.
+    pub(crate) fn spawn_without(
+        world: &mut World,
+        def: &RagdollDef,
+        states: &[BodyState],
+        body_settings: &BodySettings,
+        gone: &[(usize, BodyId)],
+    ) -> Self {
+        let mut bodies = Vec::with_capacity(states.len());
+        for (index, (body, state)) in def.bodies.iter().zip(states).enumerate() {
+            let lost = gone.iter().find(|(lost, _)| *lost == index);
+            bodies.push(match lost {
+                Some(&(_, id)) => id,
+                None => world.add_body(&body_def(body, state, body_settings, index)),
+            });
+        }
+        let lost: Vec<usize> = gone.iter().map(|&(index, _)| index).collect();
+        for &(a, b) in &def.disabled_pairs {
+            if !lost.contains(&a) && !lost.contains(&b) {
+                world.disable_pair(bodies[a], bodies[b]);
+            }
+        }
+        Self::jointed(world, def, bodies, states, lost)
+    }
+
+    /// Makes bodies and joints those of a ragdoll or of what has one, so that no other call takes them out.
+    pub(crate) fn own(&self, world: &mut World, def: &RagdollDef, kind: OwnerKind) {
+        let owner = owner(def, kind);
+        let (parts, bodies): (Vec<usize>, Vec<BodyId>) = self.own_bodies().unzip();
+        world.own_bodies(&owner, &bodies, &parts);
+        let (parts, joints): (Vec<usize>, Vec<JointId>) = self.own_joints().unzip();
+        world.own_joints(&owner, &joints, &parts);
+    }
+
+    /// Bodies that were not cut off, with their indices.
+    pub fn own_bodies(&self) -> impl Iterator<Item = (usize, BodyId)> {
+        self.bodies.iter().copied().enumerate().filter(|(index, _)| !self.lost.contains(index))
+    }
+
+    /// Joints of bodies that were not cut off, with the indices of these.
+    pub fn own_joints(&self) -> impl Iterator<Item = (usize, JointId)> {
+        let children = self.joints.iter().enumerate().map(|(index, &joint)| (index + 1, joint));
+        children.filter(|(child, _)| !self.lost.contains(child))
     }
 
     /// Takes the joints out and leaves the bodies in the world, kinematic: the reverse of [`wake`](Self::wake).
@@ -167,10 +252,11 @@ impl Ragdoll {
     /// # Panics
     /// If a body is no longer there.
     pub fn lull(self, world: &mut World, rule: ContactRule) {
-        for &joint in &self.joints {
+        for (_, joint) in self.own_joints() {
+            world.disown_joint(joint);
             world.remove_joint(joint);
         }
-        for &body in &self.bodies {
+        for (_, body) in self.own_bodies() {
             world.set_kind(body, BodyKind::Kinematic);
         }
         self.set_rule(world, rule);
@@ -178,24 +264,33 @@ impl Ragdoll {
 
     /// Sets what becomes of the bodies' contacts.
     pub(crate) fn set_rule(&self, world: &mut World, rule: ContactRule) {
-        for &body in &self.bodies {
+        for (_, body) in self.own_bodies() {
             world.set_contact_rule(ShapeId { body, shape: 0 }, rule);
         }
     }
 
     /// Joints between bodies that are there; what overlaps passes through each other.
-    fn jointed(world: &mut World, def: &RagdollDef, bodies: Vec<BodyId>, states: &[BodyState]) -> Self {
-        let joints: Vec<JointId> = def
-            .joints
-            .iter()
-            .map(|joint| {
-                let pose = |body: usize| states[body].world_from_body;
-                let fitted = fitted(joint, pose(joint.parent), pose(joint.child));
-                world.add_joint(&joint_def(&fitted, &bodies))
-            })
-            .collect();
+    fn jointed(
+        world: &mut World,
+        def: &RagdollDef,
+        bodies: Vec<BodyId>,
+        states: &[BodyState],
+        lost: Vec<usize>,
+    ) -> Self {
+        let pose = |body: usize| states[body].world_from_body;
+        let joint = |joint: &RagdollJointDef| {
+            if lost.contains(&joint.child) || lost.contains(&joint.parent) {
+                return JointId::from_bits(u64::MAX);
+            }
+            let fitted = fitted(joint, pose(joint.parent), pose(joint.child));
+            world.add_joint(&joint_def(&fitted, &bodies))
+        };
+        let joints: Vec<JointId> = def.joints.iter().map(joint).collect();
         let mut colliding = Vec::new();
         for (a, b) in colliding_pairs(def) {
+            if lost.contains(&a) || lost.contains(&b) {
+                continue;
+            }
             let (a, b) = (bodies[a], bodies[b]);
             if world.overlap(a, b) > TOLERATED {
                 world.disable_pair(a, b);
@@ -203,7 +298,7 @@ impl Ragdoll {
                 colliding.push((a, b));
             }
         }
-        Self { bodies, joints, colliding }
+        Self { bodies, joints, colliding, lost }
     }
 
     /// Sets the quality of the step for all bodies of the ragdoll, from the next step on: less for what is far away, more for what is filmed;
@@ -212,7 +307,7 @@ impl Ragdoll {
     /// # Panics
     /// If a body is no longer there.
     pub fn set_quality(&self, world: &mut World, quality: Option<Quality>) {
-        self.bodies.iter().for_each(|&body| world.set_quality(body, quality));
+        self.own_bodies().for_each(|(_, body)| world.set_quality(body, quality));
     }
 
     /// Takes the ragdoll out of the world.
@@ -220,15 +315,22 @@ impl Ragdoll {
     /// # Panics
     /// If a body is no longer there.
     pub fn despawn(self, world: &mut World) {
-        for body in self.bodies {
+        for (_, body) in self.own_bodies() {
+            world.disown_body(body);
             world.remove_body(body);
         }
     }
 
-    /// Poses of the bodies: `poses` is cleared and filled.
+    /// Poses of the bodies: `poses` is cleared and filled. A body that was cut off has that of the first, the pelvis.
     pub fn poses(&self, world: &World, poses: &mut Vec<Transform>) {
         poses.clear();
-        poses.extend(self.bodies.iter().map(|&body| world.transform(body)));
+        let is_own = |index: usize| !self.lost.contains(&index);
+        let own = self
+            .bodies
+            .iter()
+            .enumerate()
+            .map(|(index, &body)| if is_own(index) { body } else { self.bodies[0] });
+        poses.extend(own.map(|body| world.transform(body)));
     }
 }
 
@@ -247,7 +349,12 @@ pub fn colliding_pairs(def: &RagdollDef) -> Vec<(usize, usize)> {
     pairs
 }
 
-fn body_def(body: &RagdollBodyDef, state: &BodyState, body_settings: &BodySettings, index: usize) -> BodyDef {
+pub(crate) fn body_def(
+    body: &RagdollBodyDef,
+    state: &BodyState,
+    body_settings: &BodySettings,
+    index: usize,
+) -> BodyDef {
     let shape = ShapeDef {
         material: body_settings.material,
         filter: body_settings.filter,
@@ -267,7 +374,7 @@ fn body_def(body: &RagdollBodyDef, state: &BodyState, body_settings: &BodySettin
     }
 }
 
-fn joint_def(joint: &RagdollJointDef, bodies: &[BodyId]) -> JointDef {
+pub(crate) fn joint_def(joint: &RagdollJointDef, bodies: &[BodyId]) -> JointDef {
     let (parent, child) = (bodies[joint.parent], bodies[joint.child]);
     JointDef {
         friction_torque: joint.friction_torque,

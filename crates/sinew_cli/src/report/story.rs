@@ -38,6 +38,7 @@ pub fn phases(def: &CharacterDef, events: &[(f32, CharacterEvent)]) -> Vec<Phase
             | CharacterEvent::Powered
             | CharacterEvent::Clip(_)
             | CharacterEvent::Contact { .. }
+            | CharacterEvent::Detached { .. }
             | CharacterEvent::LetGo { .. } => {}
         }
     }
@@ -82,6 +83,9 @@ pub fn told(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(f32
             }
             CharacterEvent::Flinched { body } => {
                 format!("flinches at {}", input.character.ragdoll.bodies[body].role)
+            }
+            CharacterEvent::Detached { body } => {
+                format!("loses its {}", input.character.ragdoll.bodies[body].role)
             }
             CharacterEvent::Stumbled => "stumbles".to_owned(),
             CharacterEvent::Caught { steps } => format!("has caught itself after {steps} steps"),

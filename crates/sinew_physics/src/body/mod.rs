@@ -6,6 +6,7 @@ pub(crate) mod external_work;
 pub(crate) mod force;
 pub(crate) mod library;
 pub(crate) mod material;
+pub(crate) mod owner;
 pub mod shape;
 pub(crate) mod snapshot;
 pub(crate) mod surface;
@@ -13,6 +14,7 @@ pub(crate) mod surface;
 use crate::arena::Item;
 use crate::body::def::{BodyDef, BodyKind, Quality, Sleeping};
 use crate::body::force::BodyForces;
+use crate::body::owner::OwnerMark;
 use crate::body::shape::{MassProperties, Shape, ShapeDef};
 use crate::body::surface::{Surface, Surfaces};
 use crate::id::BodyId;
@@ -96,6 +98,8 @@ pub(crate) struct Body {
     /// The user changed it since the last step.
     pub changed: bool,
     pub user_data: u64,
+    /// Who keeps it; `None`: the user.
+    pub owner: Option<OwnerMark>,
 }
 
 /// Principal moments below this share of the largest make long thin bodies spin wildly at a touch
@@ -198,6 +202,7 @@ impl Body {
             quarantined: false,
             changed: false,
             user_data: def.user_data,
+            owner: None,
         }
     }
 

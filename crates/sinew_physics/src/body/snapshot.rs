@@ -6,6 +6,7 @@ use crate::body::def::{BodyKind, Quality, SleepThresholds, Sleeping, WorldDef};
 use crate::body::force::BodyForces;
 use crate::body::library::{LoadError, ShapeLibrary, save_name};
 use crate::body::material::{Combine, CombineRules, Material};
+use crate::body::owner::OwnerMark;
 use crate::body::shape::{Filter, Sensing, Shape};
 use crate::body::surface::{Surface, Surfaces};
 use crate::body::{Body, BodyShape, Rest, Velocity};
@@ -76,14 +77,19 @@ fn load_sleeping(r: &mut Reader<'_>) -> Result<Sleeping, ReadError> {
     Ok(if r.bool()? { Sleeping::On } else { Sleeping::Off })
 }
 
+/// Bit of a body's kind: it has an owner, which is written after it.
+const OWNED: u8 = 8;
+
+/// Writes a body without its owner.
 pub(crate) fn save_body(w: &mut Writer, body: &Body) {
-    w.u8(match (body.kind, body.laid_by) {
+    let kind = match (body.kind, body.laid_by) {
         (BodyKind::Static, None) => 0,
         (BodyKind::Kinematic, None) => 1,
         (BodyKind::Dynamic, _) => 2,
         (BodyKind::Kinematic, Some(_)) => 3,
         (BodyKind::Static, Some(_)) => 4,
-    });
+    };
+    w.u8(if body.owner.is_some() { kind | OWNED } else { kind });
     if let Some((mass, inertia)) = body.laid_by {
         w.f32(mass);
         w.vec3(inertia);
@@ -132,8 +138,10 @@ fn solid(mass: f32, inertia: Vec3) -> bool {
     [mass, inertia.x, inertia.y, inertia.z].into_iter().all(positive)
 }
 
+/// Reads a body; its owner, if it has one, is to be read.
 pub(crate) fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadError> {
-    let number = r.u8()?;
+    let tag = r.u8()?;
+    let (number, owner) = (tag & !OWNED, (tag & OWNED != 0).then(OwnerMark::default));
     let kind = match number {
         0 | 4 => BodyKind::Static,
         1 | 3 => BodyKind::Kinematic,
@@ -195,6 +203,7 @@ pub(crate) fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Bo
         quarantined,
         changed: false,
         user_data,
+        owner,
     })
 }
 

@@ -6,6 +6,7 @@ mod rows;
 mod snapshot;
 
 use crate::arena::Item;
+use crate::body::owner::OwnerMark;
 use crate::id::JointId;
 use crate::spatial::{Vec6, ZERO6};
 use def::{
@@ -113,6 +114,8 @@ pub(crate) struct Joint {
     pub mass: Vec6,
     /// Mean over the last step on body B, N and N·m about its anchor, world axes.
     pub reaction: Vec6,
+    /// Who keeps it; `None`: the user.
+    pub owner: Option<OwnerMark>,
 }
 
 impl Item for Joint {
@@ -144,12 +147,14 @@ impl Joint {
             force: Vec3::ZERO,
             mass: ZERO6,
             reaction: ZERO6,
+            owner: None,
         }
     }
 
     /// Takes on another definition; what is remembered goes on where it still means the same.
     pub fn redefine(&mut self, def: &JointDef, principal_from_a: Transform, principal_from_b: Transform) {
         let new = Self::new(def, self.a, self.b, principal_from_a, principal_from_b);
+        let new = Self { owner: self.owner, ..new };
         let same = core::mem::discriminant(&self.kind) == core::mem::discriminant(&new.kind);
         *self = if same {
             Self {

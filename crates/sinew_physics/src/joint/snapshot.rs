@@ -6,11 +6,15 @@ use super::def::{
 };
 use super::{DIRECTIONS, Joint, JointDrive, LimitImpulse, MAX_LIMITS};
 use crate::body::Velocity;
+use crate::body::owner::OwnerMark;
 use crate::spatial::{Vec6, ZERO6};
 use sinew_math::{Range, ReadError, Reader, SwingTwistLimit, Writer};
 
+/// Bit of a joint's state: it has an owner, which is written after it.
+const OWNED: u8 = 2;
+
 impl Joint {
-    /// Bodies first.
+    /// Bodies first; without its owner.
     pub fn save(&self, w: &mut Writer) {
         w.u32(self.a);
         w.u32(self.b);
@@ -21,7 +25,8 @@ impl Joint {
         w.f32(self.strength.force);
         w.f32(self.strength.torque);
         w.bool(self.collision == JointCollision::Enabled);
-        w.bool(self.is_enabled());
+        let owned = if self.owner.is_some() { OWNED } else { 0 };
+        w.u8(u8::from(self.is_enabled()) | owned);
         for limit in &self.limits {
             w.vec3(limit.now);
             w.vec3(limit.before);
@@ -35,14 +40,20 @@ impl Joint {
         save_vec6(w, &self.reaction);
     }
 
-    /// Reads what [`save`](Self::save) wrote after the bodies.
+    /// Reads what [`save`](Self::save) wrote after the bodies; its owner, if it has one, is to be read.
     pub fn load(r: &mut Reader<'_>, a: u32, b: u32) -> Result<Self, ReadError> {
         let (frame_a, frame_b) = (r.transform()?, r.transform()?);
         let kind = load_kind(r)?;
         let drive = load_drive(r)?;
         let strength = Strength { force: r.f32()?, torque: r.f32()? };
         let collision = if r.bool()? { JointCollision::Enabled } else { JointCollision::Disabled };
-        let state = if r.bool()? { JointState::Enabled } else { JointState::Disabled };
+        let tag = r.u8()?;
+        let state = match tag & !OWNED {
+            0 => JointState::Disabled,
+            1 => JointState::Enabled,
+            _ => return Err(r.error("a joint neither enabled nor disabled")),
+        };
+        let owner = (tag & OWNED != 0).then(OwnerMark::default);
         let mut limits = [LimitImpulse::default(); MAX_LIMITS];
         for limit in &mut limits {
             *limit = LimitImpulse { now: r.vec3()?, before: r.vec3()? };
@@ -71,6 +82,7 @@ impl Joint {
             force,
             mass,
             reaction,
+            owner,
         })
     }
 }

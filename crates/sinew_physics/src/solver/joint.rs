@@ -39,6 +39,8 @@ pub(crate) struct SolverJoint {
     /// Rates of driven directions when the substep began.
     pub(super) start_rate: Vec6,
     pub saturated: Saturation,
+    /// Sign of the push of a pin's motor that contacts and stops have brought beyond its cap in this substep.
+    pub(super) exceeded: Saturation,
     pub limits: [LimitImpulse; MAX_LIMITS],
     /// Least slack of its hard rotational stops that are in reach, and what it was a substep before, radians.
     pub(super) least_slack: f32,

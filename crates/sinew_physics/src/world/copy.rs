@@ -32,6 +32,7 @@ impl Clone for World {
             fields: self.fields.clone(),
             functions: self.functions.clone(),
             library: self.library.clone(),
+            owners: self.owners.clone(),
             objects: self.objects.without_any(),
             movers: self.movers.copy(),
             parted: self.parted.clone(),

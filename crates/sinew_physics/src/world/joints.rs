@@ -44,8 +44,17 @@ impl World {
     }
 
     /// Takes a joint out; both bodies wake.
+    ///
+    /// # Panics
+    /// If it has an [owner](Self::own_joints): a character's limbs come off by its own calls.
     #[track_caller]
     pub fn remove_joint(&mut self, id: JointId) {
+        self.expect_own_joint(id);
+        self.take_joint(id);
+    }
+
+    /// Takes a joint out, whoever keeps it.
+    pub(super) fn take_joint(&mut self, id: JointId) {
         self.joint_changed(id);
         let joint = self.joints.take(id);
         self.activity.joints_of.remove(id.index, &joint);

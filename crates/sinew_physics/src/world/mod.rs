@@ -14,6 +14,7 @@ mod library;
 mod move_to;
 mod moved;
 mod objects;
+mod owners;
 mod pairs;
 mod shapes;
 mod snapshot;
@@ -34,6 +35,7 @@ use crate::arena::Arena;
 use crate::body::def::{BodyDef, BodyKind, WorldDef};
 use crate::body::external_work::Work;
 use crate::body::library::ShapeLibrary;
+use crate::body::owner::Owners;
 use crate::body::shape::{MassProperties, Sensing};
 use crate::body::{Body, Velocity};
 use crate::contact::Contact;
@@ -76,6 +78,7 @@ pub struct World {
     pub(crate) fields: Arena<FieldDef>,
     pub(crate) functions: Functions,
     pub(crate) library: ShapeLibrary,
+    pub(crate) owners: Owners,
     pub(crate) objects: Objects,
     pub(crate) movers: Movers,
     pub(crate) parted: DisabledPairs,
@@ -117,6 +120,7 @@ impl World {
             fields: Arena::new(lineage),
             functions: Functions::default(),
             library: ShapeLibrary::default(),
+            owners: Owners::default(),
             objects: Objects::new(lineage),
             movers: Movers::new(lineage),
             parted: DisabledPairs::default(),
@@ -168,12 +172,12 @@ impl World {
     /// Takes a body out, with its joints; what it touched wakes.
     ///
     /// # Panics
-    /// If particles are attached to it or have a backstop there.
+    /// If particles are attached to it or have a backstop there, or it has an [owner](Self::own_bodies): a character's are taken out by its own calls.
     #[track_caller]
     #[doc(alias = "despawn")]
     #[doc(alias = "destroy")]
     pub fn remove_body(&mut self, id: BodyId) {
-        self.expect(id);
+        self.expect_own_body(id);
         let worn = self.groups.iter().any(|(_, group)| group.carriers().any(|body| body == id));
         assert!(
             !worn,
@@ -182,7 +186,7 @@ impl World {
         self.wake_neighbors(id.index);
         let joints: Vec<JointId> = self.joints_of(id).collect();
         for joint in joints {
-            self.remove_joint(joint);
+            self.take_joint(joint);
         }
         self.meetings.changed.retain(|&index| index != id.index);
         for contact in self.contacts.extract_if(.., |contact| contact.key.has(id.index)) {

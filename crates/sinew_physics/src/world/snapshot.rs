@@ -5,6 +5,7 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::body::external_work::Work;
 use crate::body::library::LoadError;
+use crate::body::owner::{Owners, OwnersInOrder};
 use crate::body::snapshot::{body_index, load_body, load_def, load_option, save_body, save_def, save_option};
 use crate::contact::Contact;
 use crate::contact::events::Events;
@@ -33,8 +34,15 @@ impl World {
         w.u64(self.steps);
         w.u64(self.pending_nanoseconds);
         w.u32(self.sleepers);
-        self.bodies.save(w, save_body);
-        self.joints.save(w, |w, joint| joint.save(w));
+        let mut owners = OwnersInOrder::default();
+        self.bodies.save(w, |w, body| {
+            save_body(w, body);
+            body.owner.into_iter().for_each(|mark| owners.save(&self.owners, mark, w));
+        });
+        self.joints.save(w, |w, joint| {
+            joint.save(w);
+            joint.owner.into_iter().for_each(|mark| owners.save(&self.owners, mark, w));
+        });
         // Which pairs have none depends on how they came to where they are.
         let contacts: Vec<_> = self.contacts_in_order().filter(|contact| !contact.is_idle()).collect();
         w.count(contacts.len());
@@ -74,11 +82,22 @@ impl World {
         if steps > MOST_STEPS {
             return Err(r.error("more steps than any world takes").into());
         }
-        let mut bodies = Arena::load(r, |r| load_body(r, &self.library))?;
+        let (mut owners, mut in_order) = (Owners::default(), OwnersInOrder::default());
+        let mut bodies = Arena::load(r, |r| {
+            let mut body = load_body(r, &self.library)?;
+            if let Some(mark) = &mut body.owner {
+                *mark = in_order.load(&mut owners, r)?;
+            }
+            Ok::<_, LoadError>(body)
+        })?;
         self.check_rules(r, &bodies)?;
         let joints = Arena::load(r, |r| {
             let (a, b) = (body_index(r, &bodies)?, body_index(r, &bodies)?);
-            Joint::load(r, a, b)
+            let mut joint = Joint::load(r, a, b)?;
+            if let Some(mark) = &mut joint.owner {
+                *mark = in_order.load(&mut owners, r)?;
+            }
+            Ok::<_, ReadError>(joint)
         })?;
         let count = r.count(8)?;
         let mut contacts = Vec::with_capacity(count);
@@ -110,6 +129,7 @@ impl World {
         (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
         self.activity = Activity::new(&bodies, &joints);
         (self.bodies, self.joints, self.contacts) = (bodies, joints, contacts);
+        self.owners = owners;
         self.parted.restore(disabled, pair_function);
         let modifiers = core::mem::take(&mut self.meetings.modifiers);
         self.meetings = ContactTracking { modifiers, ..meetings };

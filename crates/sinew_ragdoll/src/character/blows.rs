@@ -3,7 +3,7 @@
 use super::{Blow, Character, CharacterEvent, State, Toughness};
 use crate::character::tuning::{FLINCH_HALF_LIFE, FLINCH_TIME, LEGS_WEAKEN, RETURNED_AFTER, TRUNK_WEAKENS};
 use crate::drive::{DriveMode, Muscle};
-use sinew_math::Vec3;
+use sinew_math::{Vec3, max};
 use sinew_physics::{BodyHit, BodyKind, World};
 
 /// Muscles that hold a limb that was struck until it comes back.
@@ -12,7 +12,7 @@ const GIVING: Muscle = Muscle { hertz: 3.0, damping_ratio: 1.0, strength: 0.5 };
 impl Character {
     /// Hits a body with an impulse (N·s, world axes) at its centre of mass. A character that is in a world and
     /// [tough](super::InWorld::toughness) enough flinches; any other goes limp at the speed it has. Gives the work that the
-    /// impulse did, joules.
+    /// impulse did, joules; 0 of a body that was [cut off](Self::detach).
     ///
     /// # Panics
     /// If there is no such body or the impulse is not finite.
@@ -31,7 +31,12 @@ impl Character {
     }
 
     fn strike(&mut self, world: &mut World, body: usize, impulse: Vec3, point: Option<Vec3>) -> f32 {
-        if self.react(world, body, impulse) { self.push(world, body, impulse, point) } else { 0.0 }
+        assert!(body < self.def.ragdoll.bodies.len(), "there is such a body");
+        if self.has_body(body) && self.react(world, body, impulse) {
+            self.push(world, body, impulse, point)
+        } else {
+            0.0
+        }
     }
 
     /// Flinches or falls by a blow that contacts brought to one of its bodies. A body that forces move has had the impulse with the contact.
@@ -131,6 +136,11 @@ impl Character {
             root = above;
         }
         vec![root]
+    }
+
+    /// Has a limb that gave way go on doing so: something holds it.
+    pub(super) fn flinch_on(&mut self) {
+        self.flinching = max(self.flinching, FLINCH_TIME + RETURNED_AFTER * FLINCH_HALF_LIFE);
     }
 
     /// Lets a limb that gave way come back; true once it has.

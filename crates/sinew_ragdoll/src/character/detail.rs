@@ -54,8 +54,6 @@ impl Character {
         self.undress(world);
         let Some(presence) = &mut self.presence else { return };
         presence.before.clear();
-        for body in presence.bodies.drain(..) {
-            world.remove_body(body);
-        }
+        self.remove_hit_bodies(world);
     }
 }

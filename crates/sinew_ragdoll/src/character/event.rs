@@ -70,6 +70,11 @@ pub enum CharacterEvent {
         /// Number of steps beside those that only brought its feet home.
         steps: u32,
     },
+    /// A limb was cut off.
+    Detached {
+        /// Index in the definition of the body where it was cut, which went with it.
+        body: usize,
+    },
     /// Its bodies took over.
     WentLimp,
     /// The first of its bodies touched something of the world since it went limp.

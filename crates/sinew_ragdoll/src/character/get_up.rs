@@ -80,7 +80,7 @@ impl Character {
         if self.presence.is_none() || self.stillness.steps as f32 * dt > BEARS_FOR {
             return false;
         }
-        let own = self.bodies();
+        let own = self.own();
         let weight = self.def.ragdoll.total_mass * world.def().gravity.length();
         let load = |contact: &BodyContact, other: BodyId, sign: f32| match world.kind(other) {
             BodyKind::Static => 0.0,
@@ -104,7 +104,7 @@ impl Character {
     /// Gives the pose back to the clips, by the moment of a get-up clip that is most like it.
     pub(super) fn get_up(&mut self, world: &mut World) {
         let lies = self.stance();
-        let own = self.presence.as_ref().map(|_| self.bodies());
+        let own = self.presence.as_ref().map(|_| self.own());
         self.lean = ground::slope(world, &lies.points, own);
         let def = self.def.clone();
         let moves = def.moves();
@@ -194,7 +194,7 @@ impl Character {
     /// Stands on the ground at `place`, stops what plays on the whole body, and lets the present pose and its motion die
     /// away within `seconds` in what will be played. Nothing moves in the world yet.
     fn settle_into(&mut self, world: &World, place: Transform, seconds: f32) {
-        let own = self.presence.as_ref().map(|_| self.bodies());
+        let own = self.presence.as_ref().map(|_| self.own());
         let mapping = self.def.mapping();
         let pelvis = mapping.world_from_model(self.world_from_character).point({
             let joint = self.def.ragdoll.bodies[0].joint;

@@ -6,7 +6,7 @@ use sinew_physics::ray::Ray;
 use sinew_physics::{BodyHit, BodyId, BodyKinds, ContactRule, QueryFilter, ShapeId, Velocity, World};
 
 /// Height of what bears under a point, sought from `above` metres over it: of the static world for a character that is not in
-/// it (`own` is `None`), else of whatever is there but its own bodies and those of others that their clips move.
+/// it (`own` is `None`), else of whatever is there but its own bodies, those of others that their clips move, and limbs that were cut off.
 pub(super) fn below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId]>) -> Option<f32> {
     let ray = Ray { origin: point + Vec3::Y * above, direction: Vec3::Y * -(above + GROUND_DEPTH) };
     let hit = match own {

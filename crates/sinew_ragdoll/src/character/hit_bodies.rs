@@ -2,6 +2,7 @@
 
 use super::{Character, CharacterEvent};
 use crate::character::tuning::TELEPORTED;
+use crate::owner::{is_limb, together};
 use sinew_math::{Vec3, max, min};
 use sinew_physics::{BodyId, BodyKind, Hit, Velocity, World};
 
@@ -30,7 +31,16 @@ impl Character {
                 *before = *now;
             }
         }
-        world.lead_all(&presence.bodies, &before, &now, world.def().dt());
+        let dt = world.def().dt();
+        if self.lost.is_empty() {
+            world.lead_all(&presence.bodies, &before, &now, dt);
+        } else {
+            let is_lost = |index: usize| self.lost.iter().any(|&(lost, _)| lost == index);
+            let own = presence.bodies.iter().zip(before.iter().zip(&now)).enumerate();
+            for (_, (&id, (before, now))) in own.filter(|(index, _)| !is_lost(*index)) {
+                world.lead_all(&[id], &[*before], &[*now], dt);
+            }
+        }
         (presence.before, self.scratch.after) = (now, before);
     }
 
@@ -45,7 +55,8 @@ impl Character {
             return;
         };
         let before = core::mem::replace(&mut presence.bearer, bearer).filter(|&body| world.contains(body));
-        for &own in self.bodies() {
+        let before = before.filter(|&body| !self.passes_through(world, body));
+        for &own in self.own() {
             if let Some(before) = before {
                 world.enable_pair(own, before);
             }
@@ -69,7 +80,7 @@ impl Character {
                 felt = Some((body, impulse));
             }
         };
-        let own = |id: BodyId| presence.bodies.iter().position(|&body| body == id);
+        let own = |id: BodyId| self.body_index(id);
         // Its own steps are no blows: what stands comes into nobody.
         let steps = self.steps();
         let stands = |id: BodyId| steps && world.contains(id) && world.kind(id) == BodyKind::Static;
@@ -132,6 +143,10 @@ impl Character {
     /// Mass of all of it and of what comes, as they answer to a push between them, kg; what joints hold, or nothing moves, may have any mass.
     fn meeting_mass(&self, world: &World, other: BodyId) -> f32 {
         let whole = self.def.ragdoll.total_mass;
+        if world.contains(other) && is_limb(world, other) {
+            let mass: f32 = together(world, other).iter().map(|&body| world.mass(body).mass).sum();
+            return mass * whole / (mass + whole);
+        }
         let is_free = world.contains(other)
             && world.kind(other) == BodyKind::Dynamic
             && world.joints_of(other).next().is_none();

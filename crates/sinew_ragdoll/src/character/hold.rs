@@ -3,6 +3,7 @@
 
 use super::memory::Hold;
 use super::{Character, CharacterEvent};
+use crate::owner::{is_limb, together};
 use sinew_math::{Transform, Vec3};
 use sinew_physics::{BodyId, ContactRule, JointDef, JointId, JointKind, Strength, Velocity, World, Yields};
 
@@ -25,14 +26,19 @@ impl Default for Grip {
 
 impl Character {
     /// Has one of its bodies (by role or bone) hold a dynamic body of the world, which is put there, on a fixed joint. As long as it
-    /// is held it passes through the character's own bodies and through movers.
+    /// is held it passes through the character's own bodies and through movers. For limbs of others there is [`grab`](Self::grab).
     ///
     /// # Panics
-    /// If no body is called so, the character has none in the world, or it holds that one already.
+    /// If no body is called so or it was [cut off](Self::detach), the character has none in the world, it holds that one already, or that is a part of a character or ragdoll.
+    #[track_caller]
     pub fn hold(&mut self, world: &mut World, bone: &str, held: BodyId, grip: &Grip) -> JointId {
         let body = self.def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
+        assert!(self.has_body(body), "it has lost '{bone}'");
         assert!(!self.bodies().is_empty(), "a character without bodies holds nothing");
         assert!(self.held().all(|other| other != held), "it holds that body already");
+        if let Some((owner, part)) = world.body_owner(held).filter(|_| !is_limb(world, held)) {
+            panic!("{held:?} is the {}'s {part}: `Character::grab` takes hold of it", owner.name);
+        }
         let holder = self.bodies()[body];
         let Velocity { linear, angular } = world.velocity(holder);
         let place = world.transform(holder) * grip.bone_from_held;
@@ -45,7 +51,7 @@ impl Character {
             ..JointDef::between(holder, held, grip.bone_from_held, Transform::IDENTITY, JointKind::Fixed)
         });
         let presence = self.presence.as_mut().expect("a character with bodies is in the world");
-        presence.holds.push(Hold { held, joint, body: body as u32, drops: grip.drops });
+        presence.holds.push(Hold { held, joint, body: body as u32, drops: grip.drops, grasp: None });
         joint
     }
 
@@ -74,6 +80,9 @@ impl Character {
         while let Some(lost) = self.lost(world) {
             self.release(world, lost);
         }
+        while let Some(lost) = self.pull_grips(world) {
+            self.release(world, lost);
+        }
     }
 
     fn lost(&self, world: &World) -> Option<BodyId> {
@@ -95,18 +104,27 @@ impl Character {
         }
     }
 
-    /// Lets a body pass through those of the character and through movers, or takes that back.
-    fn set_passes(&self, world: &mut World, other: BodyId, passes: bool) {
+    /// Lets a body pass through those of the character and through movers, or takes that back. One that a character keeps has rules of its own, and takes all of that
+    /// along; the two collide again once they are apart.
+    pub(super) fn set_passes(&mut self, world: &mut World, other: BodyId, passes: bool) {
         let rule = if passes { ContactRule::Yields(Yields::default()) } else { ContactRule::Push };
-        let shapes: Vec<_> = world.shape_ids(other).collect();
+        let is_owned = world.body_owner(other).is_some();
+        let shapes: Vec<_> = world.shape_ids(other).filter(|_| !is_owned).collect();
         for shape in shapes {
             world.set_contact_rule(shape, rule);
         }
-        for &own in self.bodies() {
-            if passes {
-                world.disable_pair(own, other);
-            } else {
-                world.enable_pair(own, other);
+        let whole = if is_owned { together(world, other) } else { vec![other] };
+        if is_owned && !passes {
+            self.freed.push(other);
+            return;
+        }
+        for &own in self.own() {
+            for &other in &whole {
+                if passes {
+                    world.disable_pair(own, other);
+                } else {
+                    world.enable_pair(own, other);
+                }
             }
         }
     }

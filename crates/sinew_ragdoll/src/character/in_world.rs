@@ -191,10 +191,19 @@ impl Character {
         let at = |&world_from_body: &Transform| BodyState { world_from_body, velocity: Velocity::default() };
         let states: Vec<BodyState> = poses.iter().map(at).collect();
         let rule = ContactRule::Yields(yields);
-        let bodies = Ragdoll::spawn_kinematic(world, &def.ragdoll, &states, &def.body_settings, rule);
+        let bodies = Ragdoll::spawn_kinematic_without(
+            world,
+            &def.ragdoll,
+            &states,
+            &def.body_settings,
+            rule,
+            &self.lost,
+        );
         if let Some(presence) = &mut self.presence {
             (presence.bodies, presence.bearer) = (bodies, None);
         }
+        self.keep_own();
+        self.mark_own(world);
         self.dress(world);
     }
 
@@ -221,9 +230,19 @@ impl Character {
             }
         }
         self.sit_down(world);
-        for body in self.presence.take().map_or(Vec::new(), |presence| presence.bodies) {
+        self.remove_hit_bodies(world);
+        self.presence = None;
+    }
+
+    /// Takes its hit bodies out of the world.
+    pub(super) fn remove_hit_bodies(&mut self, world: &mut World) {
+        let lost: Vec<usize> = self.lost.iter().map(|&(body, _)| body).collect();
+        let Some(presence) = &mut self.presence else { return };
+        for (_, body) in presence.bodies.drain(..).enumerate().filter(|(index, _)| !lost.contains(index)) {
+            world.disown_body(body);
             world.remove_body(body);
         }
+        self.keep_own();
     }
 
     /// Its mover in the world; `None` without one, and while it lies.
@@ -232,7 +251,7 @@ impl Character {
     }
 
     /// Its bodies in the world, in the order of the definition: hit bodies or those of its ragdoll; none of a character that
-    /// was not brought into a world.
+    /// was not brought into a world. Those that were [cut off](Self::detach) keep their places.
     pub fn bodies(&self) -> &[BodyId] {
         match (&self.ragdoll, &self.presence) {
             (Some(ragdoll), _) => &ragdoll.bodies,
@@ -243,7 +262,7 @@ impl Character {
 
     /// Index in the definition of a body of its: of what a ray hit, for one.
     pub fn body_index(&self, id: BodyId) -> Option<usize> {
-        self.bodies().iter().position(|&body| body == id)
+        self.bodies().iter().position(|&body| body == id).filter(|&body| self.has_body(body))
     }
 
     /// Puts a mover where it stands, at a share of its height.

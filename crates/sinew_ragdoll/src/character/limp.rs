@@ -12,7 +12,7 @@ use crate::hand_over::body_velocity;
 use crate::ragdoll::BodyState;
 use sinew_anim::{Animator, Motion, Pose};
 use sinew_math::{Transform, Vec3, min};
-use sinew_physics::{BodyId, BodyKind, ContactRule, Velocity, World};
+use sinew_physics::{BodyId, BodyKind, ContactRule, ShapeId, Velocity, World};
 
 impl Character {
     /// Lets the bodies take over, at the pose and the speed that the animation has now. Nothing happens if they did
@@ -37,7 +37,8 @@ impl Character {
     fn slacken(&self, world: &mut World) {
         let share = self.stillness.steps as f32 * world.def().dt() / SLACKENS;
         let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
-        for (joint, &id) in self.def.ragdoll.joints.iter().zip(&ragdoll.joints) {
+        for (child, id) in ragdoll.own_joints() {
+            let joint = &self.def.ragdoll.joints[child - 1];
             world.set_joint_friction(id, joint.friction_torque * min(share, 1.0));
         }
     }
@@ -76,7 +77,9 @@ impl Character {
             State::Preparing => false,
             State::Animated | State::Limp | State::GettingUp => return,
         };
-        self.slow_led(world);
+        let all: Vec<usize> =
+            (0..self.def.ragdoll.bodies.len()).filter(|&body| self.has_body(body)).collect();
+        self.slow_led(world, &all);
         self.let_go(world);
         self.state = State::Limp;
         self.stillness = Stillness { touched: !powered, ..Stillness::default() };
@@ -94,10 +97,11 @@ impl Character {
 
     /// Gives bodies that clips lead the velocities that they have in the clips: with those that bring them to their place within a step, which a mover
     /// that takes a kerb has put up by the height of it, they would be thrown once they are let go.
-    fn slow_led(&mut self, world: &mut World) {
+    pub(super) fn slow_led(&mut self, world: &mut World, bodies: &[usize]) {
         self.look_ahead(world);
         let ragdoll = self.ragdoll.as_ref().expect("it has bodies");
-        for (&id, &velocity) in ragdoll.bodies.iter().zip(&self.scratch.velocities) {
+        for (id, velocity) in bodies.iter().map(|&body| (ragdoll.bodies[body], self.scratch.velocities[body]))
+        {
             if world.kind(id) == BodyKind::Kinematic {
                 world.set_velocity(id, velocity);
             }
@@ -157,8 +161,7 @@ impl Character {
         let dt = world.def().dt();
         self.keep_earlier();
         self.animator.update(self.def.set(), dt);
-        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
-        ragdoll.poses(world, &mut self.scratch.after);
+        self.body_poses(world);
         // Bodies that lie where the last pose had them need no other: most of a fall is lying.
         if !self.lingering.is_over() || self.scratch.posed != self.scratch.after {
             self.pose_by_bodies(dt);
@@ -223,6 +226,25 @@ impl Character {
         self.drives.apply(world, &self.def.ragdoll, ragdoll, targets, velocities);
     }
 
+    /// True while something holds it: then movers pass through it, so that it is in nobody's way who drags it.
+    fn mind_grips(&mut self, world: &mut World) -> bool {
+        let is_gripped = self.is_gripped(world);
+        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
+        let now = world.contact_rule(ShapeId { body: ragdoll.bodies[0], shape: 0 });
+        if is_gripped && now == ContactRule::Push {
+            ragdoll.set_rule(world, self.def.in_world.rule());
+        } else if !is_gripped && now != ContactRule::Push && !self.is_entered(world) {
+            ragdoll.set_rule(world, ContactRule::Push);
+        }
+        if is_gripped {
+            // It lies anew once it is free.
+            let slack = (SLACKENS / world.def().dt()) as u32 + 1;
+            self.stillness.steps = u32::min(self.stillness.steps, slack);
+            self.stillness.settled &= self.stillness.calm_steps > 0;
+        }
+        is_gripped
+    }
+
     /// Waits until the bodies lie still.
     pub(super) fn lie(&mut self, world: &mut World) {
         self.follow_bodies(world);
@@ -233,28 +255,34 @@ impl Character {
         if was_slack {
             self.slacken(world);
         }
+        let gets_up = self.def.after_settling == AfterSettling::GetUp && self.may_get_up();
         let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
+        let own: &[BodyId] = if self.lost.is_empty() { &ragdoll.bodies } else { &self.kept };
         let still = &mut self.stillness;
-        if !still.touched && touches_world(world, &ragdoll.bodies) {
+        if !still.touched && touches_world(world, own) {
             still.touched = true;
             self.events.push(CharacterEvent::Touched);
         }
         let ground = match self.presence {
-            Some(_) => ground::motion_below(world, &ragdoll.bodies),
+            Some(_) => ground::motion_below(world, own),
             None => GroundMotion::default(),
         };
-        let is_still = is_still_on(world, &ragdoll.bodies, ground);
+        let is_still = is_still_on(world, own, ground);
         still.calm_steps = if is_still { still.calm_steps + 1 } else { 0 };
         let mut calm = still.calm_steps as f32 * dt;
-        if !still.settled && calm >= STILL_TIME && is_sunk(world, &ragdoll.bodies) {
+        if !still.settled && calm >= STILL_TIME && is_sunk(world, own) {
             (still.calm_steps, calm) = (0, 0.0);
         }
         if !still.settled && calm >= STILL_TIME {
             still.settled = true;
             self.events.push(CharacterEvent::Settled { since: world.time() as f32 - calm });
         }
+        if self.mind_grips(world) {
+            return;
+        }
+        let still = &mut self.stillness;
         let impatient = !still.settled && still.steps as f32 * dt >= self.def.patience;
-        if self.def.after_settling == AfterSettling::GetUp && (still.settled || impatient) {
+        if gets_up && (still.settled || impatient) {
             if impatient {
                 self.events.push(CharacterEvent::NeverSettled);
                 self.stillness.settled = true;

@@ -1,5 +1,6 @@
 //! Data that a character keeps from step to step, one for each thing that it does.
 
+use super::grasp::Grasp;
 use sinew_anim::{LocalTransform, TrackId};
 use sinew_math::Transform;
 use sinew_physics::{BodyId, JointId};
@@ -51,6 +52,8 @@ pub(super) struct Hold {
     /// Index of the body that holds it.
     pub body: u32,
     pub drops: bool,
+    /// A grip that pulls, and lets go; `None`: a fixed joint holds.
+    pub grasp: Option<Grasp>,
 }
 
 /// Smoothed ground under each foot, over the floor of the clip, and its rates of change, per second.

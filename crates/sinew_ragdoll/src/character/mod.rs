@@ -28,16 +28,21 @@
 mod animate;
 mod blows;
 mod def;
+mod detach;
 mod detail;
 mod distances;
 mod event;
 mod feet;
 mod floor;
 mod get_up;
+mod grab;
+mod grab_point;
+mod grasp;
 mod ground;
 mod hit_bodies;
 mod hold;
 mod in_world;
+mod limb;
 mod limp;
 mod memory;
 mod mirror;
@@ -62,8 +67,11 @@ pub(crate) use tuning::STILL_TIME;
 pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet, Opening};
 pub use distances::{Detail, Distances};
 pub use event::{CharacterEvent, State};
+pub use grab_point::GrabPoint;
+pub use grasp::Grab;
 pub use hold::Grip;
 pub use in_world::{Blow, HitBodies, InWorld, Toughness};
+pub use limb::Limb;
 pub use moves::MotionError;
 pub use powered::{Part, Preset};
 
@@ -76,7 +84,7 @@ use in_world::Presence;
 use memory::{Planting, Preparation, Rising, Shown, Stillness};
 use sinew_anim::{Animator, Inertia, LocalTransform, Pose};
 use sinew_math::{Affine, Transform, Vec3};
-use sinew_physics::{Velocity, World};
+use sinew_physics::{BodyId, Velocity, World};
 use std::sync::Arc;
 
 /// A character in a world.
@@ -110,6 +118,14 @@ pub struct Character {
     flinching: f32,
     ragdoll: Option<Ragdoll>,
     drives: Drives,
+    /// Bodies that were cut off, by index, with their ids.
+    lost: Vec<(usize, BodyId)>,
+    /// Bodies that are its own, where some were cut off.
+    kept: Vec<BodyId>,
+    /// Bodies of its own and others that were cut off, which overlap and pass through each other until they do not.
+    parting: Vec<(BodyId, BodyId)>,
+    /// Limbs that it has let go of, through whose bodies its own pass until they are apart.
+    freed: Vec<BodyId>,
     stillness: Stillness,
     preparation: Preparation,
     events: Vec<CharacterEvent>,
@@ -175,6 +191,10 @@ impl Character {
             flinching: 0.0,
             ragdoll: None,
             drives: Drives::new(&def.ragdoll),
+            lost: Vec::new(),
+            kept: Vec::new(),
+            parting: Vec::new(),
+            freed: Vec::new(),
             stillness: Stillness::default(),
             preparation: Preparation::default(),
             events: Vec::new(),
@@ -253,6 +273,8 @@ impl Character {
         self.keep_shown();
         self.note_contacts(world);
         self.mind_holds(world);
+        self.mind_parting(world);
+        self.mind_freed(world);
         if !self.is_frozen() {
             self.follow(world);
             self.settle_detail(world);

@@ -53,6 +53,7 @@ impl Character {
                 self.state = State::Flinching;
                 self.stumble(world);
             }
+            (Preset::Animated | Preset::Powered, _) if !self.may_get_up() => {}
             (Preset::Animated, State::Limp | State::Preparing) => self.get_up(world),
             (Preset::Animated, _) => {}
             (Preset::Flinching, State::Animated | State::Flinching) => {
@@ -151,10 +152,16 @@ impl Character {
         self.scratch.posed.clear();
         let def = self.def.clone();
         let hit = self.presence.as_ref().map(|presence| &presence.bodies).filter(|bodies| !bodies.is_empty());
+        let lost: Vec<usize> = self.lost.iter().map(|&(body, _)| body).collect();
         let ragdoll = match hit {
-            Some(bodies) => Ragdoll::wake(world, &def.ragdoll, bodies, &states, rule),
+            Some(bodies) => {
+                let ragdoll = Ragdoll::wake_without(world, &def.ragdoll, bodies, &states, &lost);
+                ragdoll.set_rule(world, rule);
+                ragdoll
+            }
             None => {
-                let ragdoll = Ragdoll::spawn(world, &def.ragdoll, &states, &def.body_settings);
+                let settings = &def.body_settings;
+                let ragdoll = Ragdoll::spawn_without(world, &def.ragdoll, &states, settings, &self.lost);
                 if rule != ContactRule::Push {
                     ragdoll.set_rule(world, rule);
                 }
@@ -162,6 +169,8 @@ impl Character {
             }
         };
         self.ragdoll = Some(ragdoll);
+        self.keep_own();
+        self.mark_own(world);
     }
 
     /// Gives the bodies back to the clips: they leave the world, or stay in it as hit bodies.
@@ -172,6 +181,7 @@ impl Character {
             Some(presence) => {
                 presence.before.clear();
                 ragdoll.lull(world, self.def.in_world.rule());
+                self.keep_own();
             }
             None => {
                 self.undress(world);
@@ -185,16 +195,18 @@ impl Character {
         self.animate(world);
         let in_vain = self.stumble(world);
         let dt = world.def().dt();
-        let ragdoll = self.ragdoll.as_ref().expect("a powered character has bodies");
         let mut resting = core::mem::take(&mut self.scratch.pose);
         resting.clone_from(&self.pose);
-        ragdoll.poses(world, &mut self.scratch.after);
+        self.body_poses(world);
         let place = self.world_from_character;
         let (mapping, bodies) = (self.def.mapping(), &self.scratch.after);
         self.physical.pose_over(mapping, &self.def.rig, &resting, place, bodies, &mut self.pose);
         self.scratch.pose = resting;
         if self.falls() || in_vain || self.state == State::Powered && self.is_toppled(world) {
             return self.go_limp(world);
+        }
+        if self.state == State::Flinching && self.is_gripped(world) {
+            self.flinch_on();
         }
         if self.state == State::Flinching && self.come_back(dt) {
             self.leave_bodies(world);

@@ -56,6 +56,9 @@ impl Character {
     /// Goes on with that for a step; gets up where the body lies as the clip begins, or time is up.
     pub(super) fn go_on_preparing(&mut self, world: &mut World) {
         self.follow_bodies(world);
+        if self.is_gripped(world) {
+            return self.go_limp(world);
+        }
         self.stillness.steps += 1;
         self.preparation.seconds -= world.def().dt();
         let lies = self.stance();

@@ -1,6 +1,7 @@
 //! A character's own state, beside the world's snapshot.
 
 use super::distances::Detail;
+use super::grasp::Grasp;
 use super::in_world::Presence;
 use super::memory::{Hold, Planting, Preparation, Rising, Stillness};
 use super::stumble::Stumble;
@@ -21,6 +22,10 @@ const IN_WORLD: u8 = 0x80;
 const WEARS: u8 = 0x40;
 /// Bit of a state: its garments follow at the end.
 const DRESSED: u8 = 0x20;
+/// Bit of a state: what was cut off follows after it.
+const LOST: u8 = 0x10;
+/// Bit of what is held: a grip that pulls follows.
+const GRASPS: u8 = 2;
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
 
@@ -39,7 +44,12 @@ impl Character {
         let in_world = if self.presence.is_some() { IN_WORLD } else { 0 };
         let wears = if self.def.springs().is_empty() { 0 } else { WEARS };
         let dressed = if self.def.garments().is_empty() { 0 } else { DRESSED };
-        w.u8(state | in_world | wears | dressed);
+        let is_whole = self.lost.is_empty() && self.parting.is_empty() && self.freed.is_empty();
+        let lost = if is_whole { 0 } else { LOST };
+        w.u8(state | in_world | wears | dressed | lost);
+        if lost != 0 {
+            self.save_lost(w);
+        }
         w.transform(self.world_from_character);
         w.f32(self.climbing);
         w.vec3(self.lean);
@@ -94,7 +104,7 @@ impl Character {
             return Err(ReadError { at: 0, what: "is not a character of this version" });
         }
         let tag = r.u8()?;
-        let state = match tag & !(IN_WORLD | WEARS | DRESSED) {
+        let state = match tag & !(IN_WORLD | WEARS | DRESSED | LOST) {
             0 => State::Animated,
             1 => State::Limp,
             2 => State::GettingUp,
@@ -103,6 +113,8 @@ impl Character {
             5 => State::Powered,
             _ => return Err(r.error("unknown state of a character")),
         };
+        let Apart { lost, parting, freed } =
+            if tag & LOST != 0 { self.load_lost(r)? } else { Default::default() };
         let (world_from_character, climbing, lean) = (r.transform()?, r.f32()?, r.vec3()?);
         let mut pair = || Ok([r.f32()?, r.f32()?]);
         let planting = Planting { heights: pair()?, rates: pair()?, slopes: pair()?, slope_rates: pair()? };
@@ -143,14 +155,10 @@ impl Character {
             (world_from_character, climbing, planting);
         (self.pose, self.earlier, self.ragdoll) = (pose, earlier, ragdoll);
         (self.presence, self.flinching, self.speed) = (presence, flinching, speed);
-        if !base.is_empty() {
-            self.physical.rebase(self.def.mapping(), &self.def.rig, &base);
-        }
-        if !planting.is_over() {
-            self.show_planted();
-        }
+        (self.lost, self.parting, self.freed) = (lost, parting, freed);
+        self.keep_own();
         (self.swing, self.worn) = (swing, worn);
-        self.show_loaded();
+        self.show_loaded(&base);
         self.keep_shown();
         self.events.clear();
         self.told = 0;
@@ -159,13 +167,52 @@ impl Character {
     }
 
     /// The pose with what it wears, as it was shown when it was saved.
-    fn show_loaded(&mut self) {
+    fn show_loaded(&mut self, base: &[LocalTransform]) {
+        if !base.is_empty() {
+            self.physical.rebase(self.def.mapping(), &self.def.rig, base);
+        }
+        if !self.planting.is_over() {
+            self.show_planted();
+        }
         self.swung.clear();
         if !(self.swing.turns().is_empty() && self.worn.turns.is_empty()) {
             self.swung = self.pose_without_springs().to_vec();
             self.show_springs();
             self.show_garments();
         }
+    }
+
+    fn save_lost(&self, w: &mut Writer) {
+        w.count(self.lost.len());
+        for &(body, id) in &self.lost {
+            w.u32(body as u32);
+            w.u64(id.to_bits());
+        }
+        w.count(self.parting.len());
+        self.parting.iter().flat_map(|&(a, b)| [a, b]).for_each(|body| w.u64(body.to_bits()));
+        w.count(self.freed.len());
+        self.freed.iter().for_each(|body| w.u64(body.to_bits()));
+    }
+
+    /// Limbs that were cut off or let go.
+    fn load_lost(&self, r: &mut Reader<'_>) -> Result<Apart, ReadError> {
+        let (mut lost, mut parting): (Vec<(usize, BodyId)>, _) = (Vec::new(), Vec::new());
+        for _ in 0..r.count(12)? {
+            lost.push((r.u32()? as usize, BodyId::from_bits(r.u64()?)));
+        }
+        let bodies = self.def.ragdoll.bodies.len();
+        let fits = lost.iter().all(|&(body, _)| (1..bodies).contains(&body));
+        if !fits || !lost.is_sorted_by(|a, b| a.0 < b.0) {
+            return Err(r.error("has lost what it never had"));
+        }
+        for _ in 0..r.count(16)? {
+            parting.push((BodyId::from_bits(r.u64()?), BodyId::from_bits(r.u64()?)));
+        }
+        let mut freed = Vec::new();
+        for _ in 0..r.count(8)? {
+            freed.push(BodyId::from_bits(r.u64()?));
+        }
+        Ok(Apart { lost, parting, freed })
     }
 
     fn load_preparation(&self, r: &mut Reader<'_>) -> Result<Preparation, ReadError> {
@@ -194,6 +241,14 @@ impl Character {
     }
 }
 
+/// Limbs that were cut off or let go.
+#[derive(Default)]
+struct Apart {
+    lost: Vec<(usize, BodyId)>,
+    parting: Vec<(BodyId, BodyId)>,
+    freed: Vec<BodyId>,
+}
+
 impl Presence {
     fn save(&self, w: &mut Writer) {
         w.u64(self.mover.map_or(u64::MAX, MoverId::to_bits));
@@ -211,11 +266,12 @@ impl Presence {
         w.bool(self.falls);
         w.u8(self.detail as u8);
         w.count(self.holds.len());
-        for &Hold { held, joint, body, drops } in &self.holds {
+        for Hold { held, joint, body, drops, grasp } in &self.holds {
             w.u64(held.to_bits());
             w.u64(joint.to_bits());
-            w.u32(body);
-            w.bool(drops);
+            w.u32(*body);
+            w.u8(u8::from(*drops) | if grasp.is_some() { GRASPS } else { 0 });
+            grasp.iter().for_each(|grasp| grasp.save(w));
         }
         w.bool(self.stumble.is_some());
         if let Some(stumble) = &self.stumble {
@@ -252,11 +308,13 @@ impl Presence {
         };
         for _ in 0..r.count(21)? {
             let (held, joint) = (BodyId::from_bits(r.u64()?), JointId::from_bits(r.u64()?));
-            let (body, drops) = (r.u32()?, r.bool()?);
-            if body as usize >= most {
+            let (body, tag) = (r.u32()?, r.u8()?);
+            let grasp = if tag & GRASPS != 0 { Some(Grasp::load(r)?) } else { None };
+            let drops = tag & 1 != 0;
+            if body as usize >= most || tag > (GRASPS | 1) {
                 return Err(r.error("is of another character"));
             }
-            presence.holds.push(Hold { held, joint, body, drops });
+            presence.holds.push(Hold { held, joint, body, drops, grasp });
         }
         presence.stumble = if r.bool()? { Some(Stumble::load(r)?) } else { None };
         Ok(presence)

@@ -39,7 +39,7 @@ impl Character {
     /// Matrices of a skin for a renderer, between the last step (`alpha` 0) and this one (1): `palette` is cleared and gets one
     /// for each joint of the skin, from the mesh's bind pose to the world in metres. Each is the upper three rows of a 4×4
     /// matrix that a column vector stands to the right of, **row after row**: `[m00, m01, m02, m03, m10, …, m23]`, the
-    /// translation in `m03`, `m13`, `m23`. Allocates a pose.
+    /// translation in `m03`, `m13`, `m23`. What was [cut off](Self::detach) shrinks to the point where it was cut. Allocates a pose.
     ///
     /// # Panics
     /// If the rig has no such skin.
@@ -50,13 +50,13 @@ impl Character {
         sinew_anim::local_to_model(&self.def.rig, &pose, &root, &mut model);
         let skin = &self.def.rig.skins[skin];
         palette.clear();
-        palette.extend(
-            skin.joints.iter().zip(&skin.inverse_bind).map(|(&joint, bind)| rows(&(model[joint] * *bind))),
-        );
+        palette.extend(skin.joints.iter().zip(&skin.inverse_bind).map(|(&joint, bind)| {
+            rows(&self.shrunk_joint(joint, &model).unwrap_or_else(|| model[joint] * *bind))
+        }));
     }
 }
 
-fn rows(m: &Affine) -> [f32; 12] {
+pub(super) fn rows(m: &Affine) -> [f32; 12] {
     let ([x, y, z], t) = ([m.linear.x_axis, m.linear.y_axis, m.linear.z_axis], m.translation);
     [x.x, y.x, z.x, t.x, x.y, y.y, z.y, t.y, x.z, y.z, z.z, t.z]
 }

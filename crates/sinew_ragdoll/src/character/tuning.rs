@@ -37,6 +37,42 @@ pub(crate) const TRUNK_WEAKENS: f32 = 0.5;
 /// Larger: it counts as flinching for longer. Smaller: it jumps at the end. Shown by the tests of `blows`.
 pub(crate) const RETURNED_AFTER: f32 = 6.0;
 
+// character/detach.rs
+
+/// Height of what was cut off for springs that come up against the body, metres, world: where nothing is.
+///
+/// Larger: springs may meet it. Smaller: nothing but rounding. Shown by the tests of `detach`.
+pub(crate) const FAR_BELOW: f32 = -1e6;
+
+// character/grasp.rs
+
+/// Gap of a grip below which it has no direction, metres.
+///
+/// Larger: the axes of the grip lie as they did while it already slips. Smaller: they follow noise. Shown by the tests of `grab`.
+pub(crate) const LEAST_GAP: f32 = 1e-4;
+
+/// Cosine of the angle between a grip's pull and the diagonal of its axes from which on these are laid anew.
+///
+/// Larger: they are laid anew all the time. Smaller: it pulls with less than its force. Shown by the tests of `grab`.
+pub(crate) const LEAST_ALONG: f32 = 0.98;
+
+/// Stretch of a grip at its full force, metres.
+///
+/// Larger: what is held hangs away from the hand. Smaller: it jerks. Shown by the tests of `grab`.
+pub(crate) const GRIP_STRETCH: f32 = 0.01;
+
+/// Share of a grip's force that its motor uses, 0 to 1: contacts and stops of joints add to it within a substep.
+///
+/// Larger: a grip is seen to pull harder than it may. Smaller: it lets go too early. Shown by the tests of `grab`.
+pub(crate) const GRIP_SHARE: f32 = 0.9;
+
+// character/grab.rs
+
+/// Distance between the bounds of two characters from which on they collide again after one has let go of the other, metres, twice.
+///
+/// Larger: they pass through each other for longer. Smaller: feet kick who is let go. Shown by the tests of `grab`.
+pub(crate) const PARTED: f32 = 0.05;
+
 // character/feet.rs
 
 /// Natural frequency with which feet follow the ground, critically damped, rad/s: a step of a stair asks for as much of a leg as a

@@ -67,7 +67,7 @@ impl Character {
         self.world_from_character = world_from_character;
         self.earlier.world_from_character = moved * self.earlier.world_from_character;
         self.shown.world_from_character = moved * self.shown.world_from_character;
-        for &body in self.bodies() {
+        for &body in self.own() {
             let velocity = world.velocity(body);
             world.set_transform(body, moved * world.transform(body));
             let turned = |v: Vec3| moved.rotation * v;

@@ -39,9 +39,11 @@ impl Character {
         if rig.meets_bodies() && !is_far && !returns {
             let pose = core::mem::take(&mut self.swung);
             self.bodies_of(&pose, place, &mut bodies);
+            self.hide_lost(&mut bodies);
             self.swung = pose;
         }
         let own = match (&self.ragdoll, &self.presence) {
+            _ if !self.lost.is_empty() => self.kept.as_slice(),
             (Some(ragdoll), _) => ragdoll.bodies.as_slice(),
             (None, Some(presence)) => presence.bodies.as_slice(),
             (None, None) => &[],
@@ -92,6 +94,7 @@ impl Character {
             pose,
             world_from_model: self.world_from_model(),
             bodies: self.bodies(),
+            lost: &self.lost,
         }
     }
 
@@ -100,6 +103,17 @@ impl Character {
         if !self.def.garments().is_empty() && self.worn.groups.is_empty() {
             self.worn.groups = self.wearer(self.pose_without_springs()).put_on(world);
         }
+    }
+
+    /// Hangs its garments on what is left of its bodies, as they lie.
+    pub(super) fn rehang(&mut self, world: &mut World) {
+        if self.worn.groups.is_empty() {
+            return;
+        }
+        let was = self.worn.lie(world);
+        self.undress(world);
+        self.dress(world);
+        self.worn.lay(world, &was);
     }
 
     /// Takes its garments off, before its bodies leave the world.

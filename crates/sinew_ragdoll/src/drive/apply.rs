@@ -34,6 +34,9 @@ impl Drives {
         for body in 0..count {
             let drive = &mut self.drives[body];
             let keyed = drive.pass(dt, recovery);
+            if ragdoll.lost.contains(&body) {
+                continue;
+            }
             let id = ragdoll.bodies[body];
             if keyed != drive.keyed {
                 drive.keyed = keyed;
@@ -44,7 +47,8 @@ impl Drives {
             }
             self.pin(world, id, body, def.bodies[body].mass.center, targets[body], velocities[body]);
         }
-        for (joint, &id) in def.joints.iter().zip(&ragdoll.joints) {
+        for (child, id) in ragdoll.own_joints() {
+            let joint = &def.joints[child - 1];
             let ends = [joint.parent, joint.child];
             let drive = &self.drives[joint.child];
             let torque = self.torques[joint.child];
@@ -65,21 +69,27 @@ impl Drives {
     /// Takes pins and motors out of the world and gives keyed bodies back to it, as fast as they were led. What is to be
     /// done before the ragdoll is taken out; the modes stay as they are.
     pub fn release(&mut self, world: &mut World, ragdoll: &Ragdoll) {
-        for (drive, &body) in self.drives.iter_mut().zip(&ragdoll.bodies) {
+        let all: Vec<usize> = ragdoll.own_bodies().map(|(body, _)| body).collect();
+        self.release_bodies(world, ragdoll, &all);
+        if let Some(ground) = self.ground.take().filter(|&ground| world.contains(ground)) {
+            world.remove_body(ground);
+        }
+    }
+
+    /// [`release`](Self::release) of some bodies, by index, and of the joints above them.
+    pub(crate) fn release_bodies(&mut self, world: &mut World, ragdoll: &Ragdoll, bodies: &[usize]) {
+        for &body in bodies {
+            let (drive, id) = (&mut self.drives[body], ragdoll.bodies[body]);
             if let Some(pin) = drive.pin.take().filter(|&pin| world.contains_joint(pin)) {
                 world.remove_joint(pin);
             }
-            if core::mem::take(&mut drive.keyed) && world.contains(body) {
-                world.set_kind(body, BodyKind::Dynamic);
+            if core::mem::take(&mut drive.keyed) && world.contains(id) {
+                world.set_kind(id, BodyKind::Dynamic);
             }
-        }
-        for &joint in &ragdoll.joints {
-            if world.contains_joint(joint) {
+            let joint = body.checked_sub(1).map(|joint| ragdoll.joints[joint]);
+            if let Some(joint) = joint.filter(|&joint| world.contains_joint(joint)) {
                 world.set_motor(joint, None);
             }
-        }
-        if let Some(ground) = self.ground.take().filter(|&ground| world.contains(ground)) {
-            world.remove_body(ground);
         }
     }
 
@@ -110,7 +120,9 @@ impl Drives {
     ) {
         let drive = &self.drives[body];
         let vigour = 1.0 - drive.weakness;
-        let softness = drive.level.pin.softness(vigour).filter(|_| !drive.keyed);
+        // The user may have made it kinematic or static.
+        let moves = !drive.keyed && world.kind(id) == BodyKind::Dynamic;
+        let softness = drive.level.pin.softness(vigour).filter(|_| moves);
         let old = drive.pin.filter(|&pin| world.contains_joint(pin));
         let Some(softness) = softness.filter(|_| drive.level.force + drive.level.torque > NO_STRENGTH) else {
             if let Some(pin) = old {

@@ -214,6 +214,11 @@ impl Drives {
         }
     }
 
+    /// True of a joint that is one of its pins.
+    pub(crate) fn is_pin(&self, joint: JointId) -> bool {
+        self.drives.iter().any(|drive| drive.pin == Some(joint))
+    }
+
     /// Leaves a body no weaker than that, share of its strength.
     pub(crate) fn steady(&mut self, body: usize, weakness: f32) {
         let drive = &mut self.drives[body];
@@ -243,7 +248,7 @@ fn parent(def: &RagdollDef, body: usize) -> Option<usize> {
 }
 
 /// True if a body is `ancestor` or below it.
-fn hangs_on(def: &RagdollDef, body: usize, ancestor: usize) -> bool {
+pub(crate) fn hangs_on(def: &RagdollDef, body: usize, ancestor: usize) -> bool {
     core::iter::successors(Some(body), |&at| parent(def, at)).any(|at| at == ancestor)
 }
 

@@ -28,6 +28,27 @@ impl Worn {
         self.places.clear();
     }
 
+    /// Places and velocities of all particles, sheet by sheet.
+    pub fn lie(&self, world: &World) -> Vec<(Vec<Vec3>, Vec<Vec3>)> {
+        let there = self.groups.iter().filter(|&&id| world.group_ids().any(|known| known == id));
+        let lie = |&id: &GroupId| {
+            let group = world.particles(id);
+            (group.positions().to_vec(), group.velocities().to_vec())
+        };
+        there.map(lie).collect()
+    }
+
+    /// Puts all particles where they were.
+    pub fn lay(&self, world: &mut World, was: &[(Vec<Vec3>, Vec<Vec3>)]) {
+        for (&id, (positions, velocities)) in self.groups.iter().zip(was) {
+            let group = world.particles_mut(id);
+            for (particle, (&position, &velocity)) in positions.iter().zip(velocities).enumerate() {
+                group.set_position(particle as u32, position);
+                group.set_velocity(particle as u32, velocity);
+            }
+        }
+    }
+
     /// Takes them along to where their wearer was put, as they are.
     pub fn carry(&self, world: &mut World, moved: Transform) {
         for &id in &self.groups {
@@ -88,6 +109,8 @@ pub(crate) struct Wearer<'a> {
     pub world_from_model: Affine,
     /// Bodies in the world, in the order of the definition.
     pub bodies: &'a [BodyId],
+    /// Bodies that are not its own any more, by index, ascending.
+    pub lost: &'a [(usize, BodyId)],
 }
 
 impl Wearer<'_> {
@@ -171,13 +194,35 @@ impl Wearer<'_> {
     /// Shapes of the wearer that a sheet meets, where they are in the world.
     fn shapes(&self, world: &World, sheet: &Sheet) -> Vec<(&Shape, Transform)> {
         let bodies = self.ragdoll.bodies.iter().zip(self.bodies).enumerate();
-        let met = bodies.filter(|(body, _)| !sheet.passed.contains(body));
+        let met = bodies.filter(|(body, _)| !sheet.passed.contains(body) && self.has(*body));
         met.map(|(_, (body, &id))| (&body.shape, world.transform(id))).collect()
+    }
+
+    /// True if a body is its own.
+    fn has(&self, body: usize) -> bool {
+        self.lost.iter().all(|&(lost, _)| lost != body)
+    }
+
+    /// The nearest body above one that was cut off; the body itself if it was not.
+    fn left_of(&self, body: usize) -> usize {
+        let mut at = body;
+        while !self.has(at) {
+            at = self.ragdoll.joints[at - 1].parent;
+        }
+        at
+    }
+
+    /// Pose of a body in the world; of one that was cut off, where it would be at rest.
+    fn frame(&self, world: &World, body: usize) -> Transform {
+        let left = self.left_of(body);
+        let bind = |body: usize| self.ragdoll.bodies[body].character_from_body;
+        let frame = world.transform(self.bodies[left]);
+        if left == body { frame } else { frame * (bind(left).inverse() * bind(body)) }
     }
 
     /// Velocity of a body of the wearer at a point.
     fn carried(&self, world: &World, body: usize, point: Vec3) -> Vec3 {
-        let body = self.bodies[body];
+        let body = self.bodies[self.left_of(body)];
         let velocity = world.velocity(body);
         velocity.linear + velocity.angular.cross(point - world.center_of_mass(body))
     }
@@ -187,8 +232,8 @@ impl Wearer<'_> {
         let bind = |body: usize| self.ragdoll.bodies[body].character_from_body;
         for (index, particle) in group.particles.iter_mut().enumerate() {
             let body = sheet.held_by[index];
-            let frame = world.transform(self.bodies[body]);
-            if sheet.is_held[index] {
+            let frame = self.frame(world, body);
+            if sheet.is_held[index] && self.has(body) {
                 // Where it was in the bind pose, whatever the clip does: joints of bodies do not stretch.
                 let point = bind(body).inverse_point(particle.position);
                 let target = AttachmentTarget::Body { body: self.bodies[body], point };
@@ -199,13 +244,17 @@ impl Wearer<'_> {
                 particle.position = places[index] + turn * sheet.moved_out[index];
             }
         }
-        group.backstops.extend(sheet.backings.iter().map(|backing| BackstopDef {
+        let is_left = |particle: u32| self.has(sheet.held_by[particle as usize]);
+        group.tethers.retain(|tether| is_left(tether.to));
+        let backings = sheet.backings.iter().filter(|backing| self.has(backing.body));
+        group.backstops.extend(backings.map(|backing| BackstopDef {
             particle: backing.particle as u32,
             body: self.bodies[backing.body],
             center: backing.center,
             radius: backing.radius,
         }));
-        group.passes = sheet.passed.iter().map(|&body| self.bodies[body]).collect();
+        let passed = sheet.passed.iter().filter(|&&body| self.has(body));
+        group.passes = passed.map(|&body| self.bodies[body]).collect();
         self.drape(world, sheet, &mut group);
         for (index, particle) in group.particles.iter_mut().enumerate() {
             let body = sheet.held_by[index];

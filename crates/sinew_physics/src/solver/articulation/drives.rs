@@ -130,6 +130,21 @@ impl SolverJoint {
         self.drive.motor.map_or(0.0, |motor| motor.cap(direction) * h)
     }
 
+    /// Notes in which directions the motor of a pin that only pulls (a hand, a grip) has come to push with more than its cap: it resists contacts and stops as inertia
+    /// does. Pins that turn bodies as well are drives, which hold them as firmly as that.
+    pub(in crate::solver) fn note_exceeded(&mut self, h: f32) {
+        self.exceeded = [0; DIRECTIONS];
+        if self.drive.motor.is_none_or(|motor| motor.max_torque > 0.0) {
+            return;
+        }
+        for row in self.rows.locked..self.rows.count {
+            let (direction, impulse) = (self.rows.direction(row), self.impulse[row]);
+            if self.saturated[direction] == 0 && impulse.abs() > self.motor_cap(direction, h) {
+                self.exceeded[direction] = if impulse > 0.0 { 1 } else { -1 };
+            }
+        }
+    }
+
     /// Impulses of the motor on A and on B, if it is saturated in that direction.
     pub(in crate::solver) fn push_of_motor(&self, direction: usize, h: f32) -> Option<[Vec6; 2]> {
         if self.saturated[direction] == 0 || self.drive.motor.is_none() {
@@ -431,13 +446,17 @@ impl IslandSolver {
         joint.motor_row(direction, self.h).impulse(joint.start_rate[direction], rate)
     }
 
-    /// Saturated motors that no longer ask for all they have are released, for the next substep: gives whether there are any. They have no rows
-    /// until these are refreshed.
+    /// Saturated motors that no longer ask for all they have are released, for the next substep, and pins that contacts have brought beyond their caps saturate: gives
+    /// whether there are any. Their rows change when they are refreshed.
     pub(in crate::solver) fn release_motors(&mut self) -> bool {
         let mut released = false;
         for joint in self.joints.iter_mut().filter(|joint| joint.drive.motor.is_some()) {
+            let exceeded = joint.exceeded;
             for i in 0..DIRECTIONS {
-                if joint.saturated[i] != 0 {
+                if core::mem::take(&mut joint.exceeded[i]) != 0 && joint.motor_cap(i, self.h) > 0.0 {
+                    joint.saturated[i] = exceeded[i];
+                    released = true;
+                } else if joint.saturated[i] != 0 {
                     let rate = joint.open_rate(i, &self.velocities);
                     let asked = joint.motor_row(i, self.h).impulse(rate, rate);
                     if asked * f32::from(joint.saturated[i]) < joint.motor_cap(i, self.h) {

@@ -134,6 +134,7 @@ impl IslandSolver {
                 let before = joint.start_rate[joint.rows.direction(row)];
                 joint.impulse[row] = joint.soft[row].impulse(before, rate[row]);
             }
+            joint.note_exceeded(self.h);
         }
     }
 

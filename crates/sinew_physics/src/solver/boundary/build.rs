@@ -291,6 +291,7 @@ impl IslandSolver {
                 least_mass: ZERO6,
                 start_rate: ZERO6,
                 saturated: joint.saturated,
+                exceeded: [0; DIRECTIONS],
                 limits: joint.limits.map(|limit| limit.of_substeps(self.stretch)),
                 least_slack: f32::NEG_INFINITY,
                 slack_before: f32::NEG_INFINITY,

@@ -75,6 +75,7 @@ impl Character {
             && self.def.in_world.most_steps > 0
             && self.def.feet().is_some()
             && self.mover().is_some()
+            && self.lost.is_empty()
     }
 
     /// Takes up an impulse that its bodies got, N·s.
@@ -245,7 +246,7 @@ impl Character {
         let rotation = (place.rotation * ankle.rotation).normalize();
         let translation = at - level(rotation * feet.balls[foot]) * 0.5;
         let floor = place.translation.y;
-        let own = self.bodies();
+        let own = self.own();
         let over = Vec3::new(at.x, floor, at.z);
         let ground =
             ground::below(world, over, STEP_RANGE, Some(own)).filter(|y| (y - floor).abs() < STEP_RANGE);

@@ -1,0 +1,60 @@
+//! A knight loses an arm and walks on, loses a leg and falls; its limbs are bodies of their own, each with its part of the skin.
+//!
+//! `cargo run --release --example dismember -p sinew`
+
+use sinew::prelude::*;
+use std::sync::Arc;
+
+/// Steps the world with the knight in it, and prints what it tells.
+fn play(world: &mut World, knight: &mut Character, seconds: f32) {
+    for _ in 0..(seconds * 60.0) as usize {
+        world.step();
+        knight.update(world);
+        for event in knight.events() {
+            match event {
+                CharacterEvent::Detached { body } => {
+                    println!("{:5.2} s: loses its {}", world.time(), knight.def().ragdoll.bodies[*body].role);
+                }
+                CharacterEvent::WentLimp => println!("{:5.2} s: falls", world.time()),
+                CharacterEvent::Settled { .. } => println!("{:5.2} s: lies still", world.time()),
+                _ => {}
+            }
+        }
+    }
+}
+
+fn main() {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+    let def = Arc::new(sinew::mannequin::character());
+    let mut knight = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    play(&mut world, &mut knight, 1.0);
+    // Without an arm it walks on. The limb falls by itself, and knows which joints of the skin are its own.
+    let mut arm = knight.detach(&mut world, "leftUpperArm").expect("it has two arms");
+    println!(
+        "the arm has {} bodies and {} joints of the skin",
+        arm.bodies().len(),
+        arm.skin_joints().count()
+    );
+    play(&mut world, &mut knight, 1.0);
+    assert_eq!(knight.state(), State::Animated);
+    // Without a leg it falls, and stays down.
+    let leg = knight.detach(&mut world, "rightLowerLeg").expect("it has two legs");
+    play(&mut world, &mut knight, 8.0);
+    assert_eq!(knight.state(), State::Limp);
+    // A limb comes apart as well.
+    let hand = arm.detach(&mut world, "leftHand").expect("the arm has a hand");
+    assert!(knight.detach(&mut world, "leftHand").is_none(), "the hand went with the arm");
+
+    // What a renderer draws: one mesh for each part, the rest of it shrunk to where that was cut.
+    let (mut body, mut limb) = (Vec::new(), Vec::new());
+    knight.skin_palette(0, 1.0, &mut body);
+    arm.skin_palette(&world, 0, 1.0, &mut limb);
+    assert_eq!(body.len(), limb.len());
+
+    for limb in [arm, hand, leg] {
+        limb.despawn(&mut world);
+    }
+    knight.despawn(&mut world);
+    assert_eq!(world.body_ids().count(), 1, "the ground is left");
+}

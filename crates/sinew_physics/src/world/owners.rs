@@ -1,0 +1,89 @@
+//! Owners of bodies and joints: what a user may not take out by calls of the world.
+
+use crate::body::owner::Owner;
+use crate::id::{BodyId, JointId};
+use crate::world::World;
+
+impl World {
+    /// Makes bodies those of an owner, `bodies[i]` its part `parts[i]`: from now on [`remove_body`](Self::remove_body) panics about them, and
+    /// says what to call instead. For code that keeps bodies and cannot do without them, as characters do; it gives them up by
+    /// [`disown_body`](Self::disown_body) before it takes them out. It changes nothing in a step, and is in the snapshot.
+    ///
+    /// ```should_panic
+    /// use sinew_physics::{BodyDef, Owner, Shape, World, WorldDef};
+    ///
+    /// let mut world = World::new(WorldDef::default());
+    /// let wheel = world.add_body(&BodyDef::dynamic(Shape::sphere(0.3)));
+    /// let car = Owner {
+    ///     name: "car".into(),
+    ///     calls: "`Car::scrap` takes all of it out".into(),
+    ///     parts: vec!["front wheel".into()],
+    /// };
+    /// world.own_bodies(&car, &[wheel], &[0]);
+    /// world.remove_body(wheel); // "BodyId 0v0 is the car's front wheel: `Car::scrap` takes all of it out"
+    /// ```
+    ///
+    /// # Panics
+    /// If the lists are not as long as each other, or the owner has no such part.
+    #[track_caller]
+    pub fn own_bodies(&mut self, owner: &Owner, bodies: &[BodyId], parts: &[usize]) {
+        assert_eq!(bodies.len(), parts.len(), "each body is a part");
+        let number = self.owners.number(owner);
+        for (&body, &part) in bodies.iter().zip(parts) {
+            self.expect_mut(body).owner = Some(self.owners.mark(number, part));
+        }
+    }
+
+    /// Makes joints those of an owner, `joints[i]` holding its part `parts[i]`, as [`own_bodies`](Self::own_bodies) does bodies.
+    ///
+    /// # Panics
+    /// If the lists are not as long as each other, or the owner has no such part.
+    #[track_caller]
+    pub fn own_joints(&mut self, owner: &Owner, joints: &[JointId], parts: &[usize]) {
+        assert_eq!(joints.len(), parts.len(), "each joint holds a part");
+        let number = self.owners.number(owner);
+        for (&joint, &part) in joints.iter().zip(parts) {
+            self.joints.expect_mut(joint).owner = Some(self.owners.mark(number, part));
+        }
+    }
+
+    /// Leaves a body without an owner.
+    #[track_caller]
+    pub fn disown_body(&mut self, body: BodyId) {
+        self.expect_mut(body).owner = None;
+    }
+
+    /// Leaves a joint without an owner.
+    #[track_caller]
+    pub fn disown_joint(&mut self, joint: JointId) {
+        self.joints.expect_mut(joint).owner = None;
+    }
+
+    /// Owner of a body, and the name of the part that the body is of it; `None`: the user's.
+    #[track_caller]
+    pub fn body_owner(&self, body: BodyId) -> Option<(&Owner, &str)> {
+        self.expect(body).owner.map(|mark| self.owners.of(mark))
+    }
+
+    /// Owner of a joint, and the name of the part that it holds; `None`: the user's.
+    #[track_caller]
+    pub fn joint_owner(&self, joint: JointId) -> Option<(&Owner, &str)> {
+        self.joints.expect(joint).owner.map(|mark| self.owners.of(mark))
+    }
+
+    /// Panics about a body that has an owner.
+    #[track_caller]
+    pub(super) fn expect_own_body(&self, body: BodyId) {
+        if let Some((owner, part)) = self.body_owner(body) {
+            panic!("{body:?} is the {}'s {part}: {}", owner.name, owner.calls);
+        }
+    }
+
+    /// Panics about a joint that has an owner.
+    #[track_caller]
+    pub(super) fn expect_own_joint(&self, joint: JointId) {
+        if let Some((owner, part)) = self.joint_owner(joint) {
+            panic!("{joint:?} holds the {}'s {part}: {}", owner.name, owner.calls);
+        }
+    }
+}

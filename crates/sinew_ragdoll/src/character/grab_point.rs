@@ -1,0 +1,137 @@
+//! A point that grabs: a mouse's, a crane's.
+
+use super::grasp::{Grab, Grasp};
+use sinew_math::{ReadError, Reader, Vec3, Writer};
+use sinew_physics::{BodyDef, BodyId, BodyKind, JointId, World};
+
+/// First bytes; the last is the version.
+const MAGIC: &[u8; 8] = b"sinew-g\x01";
+
+/// A point of the world that holds a body, a limb for one, and drags it to where the game says: with a mouse, for one. It goes there at
+/// [`Grab::speed`], not farther ahead of what it holds than its force stretches it, so that nothing is thrown however the target jumps.
+///
+/// ```
+/// use sinew_math::{Transform, Vec3};
+/// use sinew_physics::{BodyDef, Shape, World, WorldDef};
+/// use sinew_ragdoll::{Character, Grab, GrabPoint};
+/// use std::sync::Arc;
+///
+/// let mut world = World::new(WorldDef::default());
+/// world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+/// let def = Arc::new(sinew::mannequin::character());
+/// let mut puppet = Character::spawn(&mut world, &def, Transform::IDENTITY);
+/// puppet.go_limp(&mut world);
+/// let hand = puppet.bodies()[def.body_named("rightHand").expect("it has hands")];
+/// let at = world.center_of_mass(hand);
+/// let mut mouse = GrabPoint::take(&mut world, hand, at, &Grab::POINT).expect("the hand is there");
+/// mouse.set_target(at + Vec3::Y * 0.5);
+/// for _ in 0..180 {
+///     mouse.update(&mut world);
+///     world.step();
+///     puppet.update(&mut world);
+/// }
+/// assert!((world.center_of_mass(hand) - mouse.target()).length() < 0.05, "it hangs there");
+/// mouse.release(&mut world);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct GrabPoint {
+    /// Static, without shape, at the origin.
+    ground: BodyId,
+    joint: JointId,
+    held: BodyId,
+    /// Point at which it took hold, world.
+    origin: Vec3,
+    grasp: Grasp,
+}
+
+impl GrabPoint {
+    /// Takes hold of a body at the point of its surface nearest to `point` (metres, world), or at that itself if it is inside. `None` if that is farther away than [`Grab::reach`], or no force
+    /// moves the body.
+    ///
+    /// # Panics
+    /// If a number of the grip makes no sense, the point is not finite, or the body is not there.
+    #[track_caller]
+    pub fn take(world: &mut World, held: BodyId, point: Vec3, grab: &Grab) -> Option<Self> {
+        grab.check();
+        assert!(point.is_finite(), "a point is finite, not {point:?}");
+        if world.kind(held) != BodyKind::Dynamic {
+            return None;
+        }
+        let origin = Grasp::touch(world, held, point, grab.reach)?;
+        let ground = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
+        let (grasp, joint) = Grasp::take(world, [ground, held], [origin, point], grab);
+        Some(Self { ground, joint, held, origin, grasp })
+    }
+
+    /// Has it go to a point, metres, world.
+    ///
+    /// # Panics
+    /// If that is not finite.
+    #[track_caller]
+    pub fn set_target(&mut self, point: Vec3) {
+        assert!(point.is_finite(), "a point is finite, not {point:?}");
+        self.grasp.lead(point - self.origin);
+    }
+
+    /// Point to which it goes, metres, world.
+    pub fn target(&self) -> Vec3 {
+        self.origin + self.grasp.goal
+    }
+
+    /// Body that it holds, or held.
+    pub fn held(&self) -> BodyId {
+        self.held
+    }
+
+    /// Its joint in the world, whose [reaction](World::reaction) is the force of the grip.
+    pub fn joint(&self) -> JointId {
+        self.joint
+    }
+
+    /// Pulls through the next step: call it before each. False once it holds no more: what it held is gone, or farther from the target than [`Grab::slip`].
+    pub fn update(&mut self, world: &mut World) -> bool {
+        let is_there = world.contains_joint(self.joint) && world.contains(self.held);
+        if is_there && self.grasp.pull(world, self.joint, true) {
+            return true;
+        }
+        self.leave(world);
+        false
+    }
+
+    /// Lets go.
+    pub fn release(self, world: &mut World) {
+        self.leave(world);
+    }
+
+    fn leave(&self, world: &mut World) {
+        if world.contains(self.ground) {
+            world.remove_body(self.ground);
+        }
+    }
+
+    /// Writes what the world's snapshot does not hold.
+    pub fn save(&self, w: &mut Writer) {
+        w.raw(MAGIC);
+        w.u64(self.ground.to_bits());
+        w.u64(self.joint.to_bits());
+        w.u64(self.held.to_bits());
+        w.vec3(self.origin);
+        self.grasp.save(w);
+    }
+
+    /// A point that was saved; it goes with the world's snapshot of the same time.
+    ///
+    /// # Errors
+    /// If the bytes are not those of such a point of this version.
+    pub fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        if r.raw(MAGIC.len())? != MAGIC {
+            return Err(r.error("is not a point that grabs of this version"));
+        }
+        let (ground, joint) = (BodyId::from_bits(r.u64()?), JointId::from_bits(r.u64()?));
+        let (held, origin) = (BodyId::from_bits(r.u64()?), r.vec3()?);
+        if !origin.is_finite() {
+            return Err(r.error("a grip whose numbers make no sense"));
+        }
+        Ok(Self { ground, joint, held, origin, grasp: Grasp::load(r)? })
+    }
+}

@@ -1,0 +1,182 @@
+//! A grip: a joint with a motor that holds one point of what is held, as stiff as its force is reached at a hundredth of a metre.
+
+use super::tuning::{GRIP_SHARE, GRIP_STRETCH, LEAST_ALONG, LEAST_GAP};
+use sinew_math::{ReadError, Reader, Rotation, Transform, Vec3, Writer, max, min};
+use sinew_physics::{
+    BodyId, BodyKind, Gains, JointDef, JointId, JointKind, Motor, SixDof, Softness, Velocity, World,
+};
+
+/// A way to grab something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grab {
+    /// Most force of the grip, N. Default 1300: what drags a man at a walk.
+    pub max_force: f32,
+    /// Farthest that the surface of what is grabbed may be from the middle of the hand, or from the point, metres. Default 0.25.
+    pub reach: f32,
+    /// Distance by which the grip slips at its full force before it lets go, metres; of a [`GrabPoint`](super::GrabPoint) the distance from its target.
+    /// Default 0.4.
+    pub slip: f32,
+    /// Point in the frame of the hand's body to which it draws what it holds, at `speed`; `None`: to the hand's surface, where what touches it stays. Default `None`.
+    pub to: Option<Vec3>,
+    /// Speed at which it draws what it holds, and at which a [`GrabPoint`](super::GrabPoint) moves, m/s. Default 1.
+    pub speed: f32,
+    /// It lets go when its character goes limp. Default true.
+    pub drops: bool,
+}
+
+impl Grab {
+    /// Grip of a hand.
+    pub const HAND: Self =
+        Self { max_force: 1300.0, reach: 0.25, slip: 0.4, to: None, speed: 1.0, drops: true };
+    /// Grip of a point that a person moves, a mouse's: at most at 2.5 m/s, and it never lets go by itself.
+    pub const POINT: Self = Self { slip: f32::INFINITY, speed: 2.5, ..Self::HAND };
+
+    /// # Panics
+    /// If a number makes no sense.
+    #[track_caller]
+    pub(super) fn check(&self) {
+        let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
+        assert!(positive(self.max_force), "a grip's force is positive and finite, not {}", self.max_force);
+        assert!(positive(self.speed), "a grip's speed is positive and finite, not {}", self.speed);
+        assert!(self.reach >= 0.0, "a grip's reach is not negative, not {}", self.reach);
+        assert!(self.slip > 0.0, "a grip's slip is positive, not {}", self.slip);
+        assert!(self.to.is_none_or(Vec3::is_finite), "a grip draws to a finite point, not {:?}", self.to);
+    }
+}
+
+impl Default for Grab {
+    fn default() -> Self {
+        Self::HAND
+    }
+}
+
+/// A grip that holds. Points are seen from the anchor on the hand, in the axes of the hand's body, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Grasp {
+    /// Place at which it is to hold.
+    pub goal: Vec3,
+    /// From there to where it holds now, world axes: what is drawn to a hand from afar does not turn with it.
+    pub off: Vec3,
+    /// Anchors on the hand's body and on what is held, in their frames.
+    anchors: [Vec3; 2],
+    max_force: f32,
+    slip: f32,
+    speed: f32,
+    /// N·s/m.
+    damping: f32,
+}
+
+impl Grasp {
+    /// Point of `held` at which a hand at `palm` takes hold, world; `None` where it does not reach.
+    pub fn touch(world: &World, held: BodyId, palm: Vec3, reach: f32) -> Option<Vec3> {
+        let surface = world.nearest_surface(held, palm)?;
+        let point = if surface.distance <= 0.0 { palm } else { surface.point };
+        (surface.distance <= reach).then_some(point)
+    }
+
+    /// Joins two bodies at `point` of the one that is held, which is drawn to `to`; world.
+    pub fn take(
+        world: &mut World,
+        [hand, held]: [BodyId; 2],
+        [point, to]: [Vec3; 2],
+        grab: &Grab,
+    ) -> (Self, JointId) {
+        let [place, of_held] = [hand, held].map(|body| world.transform(body));
+        let anchors = [place.inverse_point(point), of_held.inverse_point(point)];
+        let moving = [held, hand].into_iter().filter(|&body| world.kind(body) == BodyKind::Dynamic);
+        let mass = moving.map(|body| world.mass(body).mass).fold(f32::INFINITY, min);
+        let grasp = Self {
+            goal: place.inverse_point(to) - anchors[0],
+            off: point - to,
+            anchors,
+            max_force: grab.max_force,
+            slip: grab.slip,
+            speed: grab.speed,
+            damping: 2.0 * (grab.max_force / GRIP_STRETCH * mass).sqrt(),
+        };
+        let [frame_a, frame_b] = anchors.map(Transform::from_translation);
+        let def = JointDef::between(hand, held, frame_a, frame_b, JointKind::SixDof(SixDof::FREE));
+        let joint = world.add_joint(&grasp.pulling(&def, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO));
+        (grasp, joint)
+    }
+
+    /// Pulls through the next step; `leads`: the point that it holds stays near what it holds, which is not dragged behind. False: it lets go.
+    pub fn pull(&mut self, world: &mut World, joint: JointId, leads: bool) -> bool {
+        let (dt, def) = (world.def().dt(), world.joint(joint));
+        let held = def.frame_a.rotation * world.joint_transform(joint).translation;
+        let world_from_hand = world.transform(def.body_a).rotation;
+        let before = self.off;
+        self.off -= before * min(self.speed * dt / max(before.length(), 1e-9), 1.0);
+        let hand_from_world = world_from_hand.inverse();
+        let velocity = hand_from_world * ((self.off - before) / dt);
+        let mut at = self.goal + hand_from_world * self.off;
+        let gap = held - if leads { self.goal } else { at };
+        if gap.length() > self.slip {
+            return false;
+        }
+        if leads {
+            at = near(at, held);
+            self.off = world_from_hand * (at - self.goal);
+        }
+        world.set_joint(joint, &self.pulling(&def, at, held, velocity));
+        true
+    }
+
+    /// Has it go to another place, seen from the anchor on a hand that is not turned.
+    pub fn lead(&mut self, goal: Vec3) {
+        self.off += self.goal - goal;
+        self.goal = goal;
+    }
+
+    /// The joint as it pulls what is held at a point; `velocity`: of where that is to be.
+    ///
+    /// Each axis has a cap of its own. The axes lie about the pull, all at the same angle to it: together they give the force, and no more in any direction.
+    fn pulling(&self, def: &JointDef, at: Vec3, held: Vec3, velocity: Vec3) -> JointDef {
+        let (gap, third) = (at - held, (1.0_f32 / 3.0).sqrt());
+        let (about, mut turn) = (Vec3::splat(third), def.frame_a.rotation);
+        if gap.length() > LEAST_GAP && (turn * about).dot(gap) < LEAST_ALONG * gap.length() {
+            turn = Rotation::from_arc(about, gap.normalize());
+        }
+        let back = turn.inverse();
+        let softness =
+            Softness::Stiffness { stiffness: self.max_force / GRIP_STRETCH, damping: self.damping };
+        let motor = Motor {
+            gains: Gains::Position(softness),
+            target: Transform::from_translation(back * near(at, held)),
+            velocity: Velocity { linear: back * velocity, angular: Vec3::ZERO },
+            max_force: self.max_force * (GRIP_SHARE * third),
+            max_torque: 0.0,
+        };
+        let [hand, held] = self.anchors;
+        JointDef {
+            frame_a: Transform::new(hand, turn),
+            frame_b: Transform::from_translation(held),
+            motor: Some(motor),
+            ..*def
+        }
+    }
+
+    pub fn save(&self, w: &mut Writer) {
+        let [hand, held] = self.anchors;
+        [self.goal, self.off, hand, held].into_iter().for_each(|v| w.vec3(v));
+        [self.max_force, self.slip, self.speed, self.damping].into_iter().for_each(|x| w.f32(x));
+    }
+
+    pub fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let (goal, off, anchors) = (r.vec3()?, r.vec3()?, [r.vec3()?, r.vec3()?]);
+        let (max_force, slip, speed, damping) = (r.f32()?, r.f32()?, r.f32()?, r.f32()?);
+        let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
+        let damps = (0.0..f32::INFINITY).contains(&damping);
+        let numbers = positive(max_force) && positive(speed) && damps;
+        if !(numbers && slip > 0.0 && [goal, off, anchors[0], anchors[1]].into_iter().all(Vec3::is_finite)) {
+            return Err(r.error("a grip whose numbers make no sense"));
+        }
+        Ok(Self { goal, off, anchors, max_force, slip, speed, damping })
+    }
+}
+
+/// The point nearest to `at` to which a grip stretches at its full force.
+fn near(at: Vec3, held: Vec3) -> Vec3 {
+    let gap = at - held;
+    held + gap * min(GRIP_STRETCH / max(gap.length(), 1e-9), 1.0)
+}

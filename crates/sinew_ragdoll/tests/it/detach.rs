@@ -1,0 +1,288 @@
+//! Limbs that are cut off: the limb goes on as it went, the rest lives on, and the world refuses to do it by its own calls.
+
+use crate::actor::{shared, walker};
+use crate::in_world::{level, run};
+use sinew_math::{Reader, Transform, Vec3, Writer, max};
+use sinew_physics::particles::AttachmentTarget;
+use sinew_physics::{BodyKind, JointId, Velocity, World};
+use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, Limb, Preset, State};
+use sinew_scenes::dressed::{CAPE, SKIRT, dressed};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+/// States in which a limb is cut off.
+const STATES: [State; 6] =
+    [State::Animated, State::Limp, State::Preparing, State::GettingUp, State::Flinching, State::Powered];
+
+/// A character that has come to a state.
+fn in_state(def: &Arc<CharacterDef>, state: State) -> (World, Character) {
+    let mut world = level();
+    let mut character = Character::spawn(&mut world, def, Transform::IDENTITY);
+    run(&mut world, &mut character, 20);
+    match state {
+        State::Animated => {}
+        State::Flinching => {
+            let hand = def.body_named("rightHand").expect("it has hands");
+            character.hit(&mut world, hand, Vec3::new(-6.0, 0.0, 0.0));
+        }
+        State::Powered => character.set_preset(&mut world, Preset::Powered),
+        _ => character.go_limp(&mut world),
+    }
+    for _ in 0..1200 {
+        if character.state() == state {
+            run(&mut world, &mut character, 3);
+            if character.state() == state {
+                return (world, character);
+            }
+        }
+        run(&mut world, &mut character, 1);
+        if state == State::Preparing && character.state() == State::Animated {
+            character.go_limp(&mut world);
+        }
+    }
+    panic!("it never came to {state:?}");
+}
+
+/// Total energy of the bodies, J.
+fn energy(world: &World) -> f32 {
+    world.energy().total()
+}
+
+/// Widest gap of the joints of characters and limbs, metres.
+fn widest_gap(world: &World) -> f32 {
+    let owned = world.joint_ids().filter(|&joint| world.joint_owner(joint).is_some());
+    owned.map(|joint| world.joint_gap(joint)).fold(0.0, max)
+}
+
+/// Speed of the fastest dynamic body, m/s.
+fn fastest(world: &World) -> f32 {
+    let dynamic = world.body_ids().filter(|&body| world.kind(body) == BodyKind::Dynamic);
+    dynamic.map(|body| world.velocity(body).linear.length()).fold(0.0, max)
+}
+
+fn message(panics: impl FnOnce()) -> String {
+    let panic = catch_unwind(AssertUnwindSafe(panics)).expect_err("the world refuses that");
+    panic.downcast_ref::<String>().expect("a message with names").clone()
+}
+
+#[test]
+fn the_world_names_the_character_and_the_call() {
+    let def = shared(walker());
+    let (mut world, character) = in_state(&def, State::Limp);
+    let arm = character.bodies()[def.body_named("leftUpperArm").expect("it has arms")];
+    let joints: Vec<JointId> = world.joints_of(arm).collect();
+    let said = message(|| world.remove_joint(joints[0]));
+    assert!(said.contains("character's leftUpperArm") && said.contains("`Character::detach`"), "{said}");
+    let said = message(|| world.remove_body(arm));
+    assert!(said.contains("character's leftUpperArm") && said.contains("`Character::despawn`"), "{said}");
+    // The same in a world that has loaded it, and of hit bodies.
+    let mut w = Writer::new();
+    world.save(&mut w);
+    let mut other = World::new(world.def().clone());
+    other.load(&mut Reader::new(w.as_bytes())).expect("it is a snapshot");
+    let said = message(|| other.remove_body(arm));
+    assert!(said.contains("character's leftUpperArm"), "{said}");
+    let (mut world, character) = in_state(&def, State::Animated);
+    let said = message(|| world.remove_body(character.bodies()[0]));
+    assert!(said.contains("character's hips"), "{said}");
+    character.despawn(&mut world);
+    assert_eq!(world.body_ids().count(), 1);
+    // What nobody owns comes out as ever.
+    let floor = world.body_ids().next().expect("the floor is there");
+    world.remove_body(floor);
+}
+
+#[test]
+fn whatever_it_does_the_limb_goes_on_and_the_rest_lives() {
+    let def = shared(walker());
+    for state in STATES {
+        for (bone, gets_up) in [
+            ("leftUpperArm", true),
+            ("rightHand", true),
+            ("leftUpperLeg", false),
+            ("rightFoot", false),
+            ("head", false),
+            ("spine", false),
+        ] {
+            let (mut world, mut character) = in_state(&def, state);
+            let what = format!("{bone} off in state {state:?}");
+            let first = def.body_named(bone).expect("it has that");
+            let had: Vec<_> = character.bodies().to_vec();
+            let is_led = world.kind(had[first]) != BodyKind::Dynamic;
+            let before: Vec<Velocity> = had.iter().map(|&body| world.velocity(body)).collect();
+            let (joules, speed) = (energy(&world), fastest(&world));
+            let limb = character.detach(&mut world, bone).expect("it has that");
+            assert!(character.events().contains(&CharacterEvent::Detached { body: first }), "{what}");
+            if !is_led {
+                assert!(energy(&world) <= joules * 1.0001, "{what}: {joules} J become {} J", energy(&world));
+                for (&part, &body) in limb.parts().iter().zip(limb.bodies()) {
+                    assert_eq!(world.velocity(body), before[part], "{what}: it goes on as it went");
+                }
+            }
+            for (&part, &body) in limb.parts().iter().zip(limb.bodies()) {
+                assert_eq!((body, character.has_body(part)), (had[part], false), "{what}");
+                assert_eq!(character.body_index(body), None, "{what}");
+                let away = (world.velocity(body).linear - before[part].linear).length();
+                assert!(away < 1.0, "{what}: body {part} is {away} m/s off");
+            }
+            let mut up = false;
+            let mut most = 0.0;
+            for step in 0..900 {
+                world.step();
+                character.update(&mut world);
+                most = max(most, fastest(&world));
+                assert!(widest_gap(&world) < 0.01, "{what}: {} m at step {step}", widest_gap(&world));
+                up |= character.events().contains(&CharacterEvent::Up);
+                let poses = character.pose().iter();
+                assert!(poses.clone().all(|local| local.rotation.is_finite()), "{what}");
+            }
+            assert!(most < max(speed, 10.0), "{what}: {most} m/s");
+            if gets_up {
+                assert_eq!(
+                    character.state(),
+                    if state == State::Powered { State::Powered } else { State::Animated },
+                    "{what}"
+                );
+                assert_eq!(
+                    up,
+                    !matches!(state, State::Animated | State::Powered | State::Flinching),
+                    "{what}"
+                );
+            } else {
+                assert_eq!((character.state(), up), (State::Limp, false), "{what}");
+            }
+            limb.despawn(&mut world);
+            run(&mut world, &mut character, 60);
+            character.despawn(&mut world);
+            assert_eq!((world.body_ids().count(), world.joint_ids().count()), (1, 0), "{what}");
+        }
+    }
+}
+
+#[test]
+fn a_limb_of_a_limb_and_what_is_left_have_all_of_the_skin() {
+    let def = shared(walker());
+    let (mut world, mut character) = in_state(&def, State::Limp);
+    let mut arm = character.detach(&mut world, "leftUpperArm").expect("it has arms");
+    let hand = arm.detach(&mut world, "leftHand").expect("the arm has a hand");
+    assert!(arm.detach(&mut world, "leftHand").is_none(), "it is off");
+    assert!(arm.detach(&mut world, "leftUpperArm").is_none(), "that is all of it");
+    assert!(character.detach(&mut world, "leftHand").is_none(), "it went with the arm");
+    assert_eq!(
+        [arm.bodies().len(), hand.bodies().len(), arm.joints().len(), hand.joints().len()],
+        [2, 1, 1, 0]
+    );
+    let lost = character.lost_joints();
+    let mut drawn: Vec<usize> = arm.skin_joints().chain(hand.skin_joints()).collect();
+    drawn.sort_unstable();
+    assert_eq!(drawn, lost, "each joint of the arm is drawn by one of them");
+    assert!(lost.len() >= 3 && lost.len() < def.rig.joints.len() / 2);
+    // A joint of the skin is where its body is.
+    run(&mut world, &mut character, 120);
+    let mut places = Vec::new();
+    arm.world_from_joints(&world, 1.0, &mut places);
+    let upper = def.body_named("leftUpperArm").expect("it has arms");
+    let bind = |body: usize| def.ragdoll.bodies[body].character_from_body;
+    let joint =
+        arm.skin_joints().position(|joint| joint == def.ragdoll.bodies[upper].joint).expect("its own");
+    let away = (places[joint].translation - world.transform(arm.bodies()[0]).translation).length();
+    assert!(away < 0.3, "the shoulder of the arm is {away} m from its middle ({:?})", bind(upper));
+    // Skins of both have a matrix for each joint, finite.
+    for skin in 0..def.rig.skins.len() {
+        let mut palettes = [Vec::new(), Vec::new(), Vec::new()];
+        character.skin_palette(skin, 1.0, &mut palettes[0]);
+        arm.skin_palette(&world, skin, 1.0, &mut palettes[1]);
+        hand.skin_palette(&world, skin, 1.0, &mut palettes[2]);
+        for palette in &palettes {
+            assert_eq!(palette.len(), def.rig.skins[skin].joints.len());
+            assert!(palette.iter().flatten().all(|x| x.is_finite()));
+        }
+        // Each joint is drawn by exactly one of the three.
+        for at in 0..palettes[0].len() {
+            let draws = palettes.iter().filter(|palette| palette[at][..3] != [0.0; 3]).count();
+            assert_eq!(draws, 1, "joint {at}");
+        }
+    }
+}
+
+#[test]
+fn a_character_without_limbs_is_the_same_in_a_fresh_world() {
+    let def = shared(walker());
+    for state in STATES {
+        let (mut world, mut character) = in_state(&def, state);
+        let mut limbs: Vec<Limb> = character.detach(&mut world, "leftUpperArm").into_iter().collect();
+        run(&mut world, &mut character, 10);
+        limbs.extend(character.detach(&mut world, "rightFoot"));
+        run(&mut world, &mut character, 2);
+        let mut w = Writer::new();
+        world.save(&mut w);
+        character.save(&mut w);
+        limbs.iter().for_each(|limb| limb.save(&mut w));
+        let mut r = Reader::new(w.as_bytes());
+        let mut other_world = World::new(world.def().clone());
+        other_world.load(&mut r).expect("it is a snapshot");
+        let mut other = Character::new(def.clone(), Transform::IDENTITY, 0.0);
+        other.load(&mut r).expect("it is a character");
+        let loaded: Vec<Limb> =
+            limbs.iter().map(|_| Limb::load(&def, &mut r).expect("it is a limb")).collect();
+        r.finish().expect("there is no more");
+        for step in 0..400 {
+            for (world, character) in [(&mut world, &mut character), (&mut other_world, &mut other)] {
+                world.step();
+                character.update(world);
+            }
+            assert_eq!(world.hash(), other_world.hash(), "{state:?}, step {step}");
+            assert_eq!(character.pose(), other.pose(), "{state:?}, step {step}");
+        }
+        for (mut world, limbs) in [(world, limbs), (other_world, loaded)] {
+            limbs.into_iter().for_each(|limb| limb.despawn(&mut world));
+        }
+    }
+}
+
+#[test]
+fn garments_hang_on_what_is_left() {
+    let def = Arc::new(dressed(&[&CAPE, &SKIRT], |_| ()));
+    for (bone, limp) in [("leftUpperLeg", false), ("leftUpperArm", false), ("head", true), ("spine", true)] {
+        let mut world = level();
+        let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+        if limp {
+            character.go_limp(&mut world);
+        }
+        run(&mut world, &mut character, 30);
+        let particles = |world: &World, character: &Character| {
+            let groups = character.garments().iter().map(|&id| world.particles(id).positions().to_vec());
+            groups.collect::<Vec<_>>()
+        };
+        let before = particles(&world, &character);
+        let limb = character.detach(&mut world, bone).expect("it has that");
+        assert_eq!(particles(&world, &character), before, "{bone}: cloth lies where it lay");
+        let attached = world.group_ids().flat_map(|id| world.particles(id).attachments().to_vec());
+        let holds = |target: &AttachmentTarget| match target {
+            AttachmentTarget::Body { body, .. } => limb.bodies().contains(body),
+            _ => false,
+        };
+        assert!(!attached.into_iter().any(|at| holds(&at.target)), "{bone}: none hangs on the limb");
+        run(&mut world, &mut character, 5);
+        limb.despawn(&mut world);
+        let mut w = Writer::new();
+        world.save(&mut w);
+        character.save(&mut w);
+        let mut r = Reader::new(w.as_bytes());
+        let mut other_world = World::new(world.def().clone());
+        other_world.load(&mut r).expect("it is a snapshot");
+        let mut other = Character::new(def.clone(), Transform::IDENTITY, 0.0);
+        other.load(&mut r).expect("it is a character");
+        for step in 0..200 {
+            for (world, character) in [(&mut world, &mut character), (&mut other_world, &mut other)] {
+                world.step();
+                character.update(world);
+            }
+            assert_eq!(world.hash(), other_world.hash(), "{bone}, step {step}");
+        }
+        assert!(particles(&world, &character).iter().flatten().all(|at| at.is_finite()), "{bone}");
+        assert_eq!(character.garments().len(), 2, "{bone}: it wears both");
+        character.despawn(&mut world);
+        assert_eq!((world.body_ids().count(), world.group_ids().count()), (1, 0), "{bone}");
+    }
+}
