@@ -111,6 +111,8 @@ impl Character {
         match choose(&moves.get_ups, &moves.landmarks, &lies) {
             Some(Choice { get_up, start, pose_similarity }) => {
                 self.settle_into(world, pose_similarity.motion, INTO_GET_UP);
+                let from = self.shown_depths();
+                self.pass(from, get_up.deepest, INTO_GET_UP);
                 let once =
                     TrackDef { start: start.time, loop_mode: LoopMode::Once, ..TrackDef::new(get_up.id) };
                 self.rising = Rising::ByClip(self.animator.play(def.set(), &once));
@@ -118,6 +120,8 @@ impl Character {
             }
             None => {
                 self.settle_into(world, moves.landmarks.compare(&moves.upright, &lies).motion, INTO_STANDING);
+                let from = self.shown_depths();
+                self.pass(from, moves.deepest, INTO_STANDING);
                 def.play_looped(&mut self.animator, 0.0);
                 self.rising = Rising::Without(INTO_STANDING);
                 self.events.push(CharacterEvent::GettingUp { clip: None });
@@ -125,6 +129,7 @@ impl Character {
         }
         self.leave_bodies(world);
         self.state = State::GettingUp;
+        self.show_planted();
         self.stand_up(world, LYING_MOVER);
     }
 
@@ -180,8 +185,10 @@ impl Character {
         let def = self.def.clone();
         let moves = def.moves();
         let stands = self.stance();
+        let from = self.shown_depths();
         self.lean = Vec3::ZERO;
         self.settle_into(world, moves.landmarks.compare(&moves.upright, &stands).motion, INTO_LOOP);
+        self.pass(from, moves.deepest, INTO_LOOP);
         def.play_looped(&mut self.animator, 0.0);
         self.be_up();
     }

@@ -1,5 +1,6 @@
 //! A character's own state, beside the world's snapshot.
 
+use super::clearance::{Depths, PARTS, Passage};
 use super::distances::Detail;
 use super::in_world::Presence;
 use super::memory::{Hold, Planting, Preparation, Rising, Stillness};
@@ -14,7 +15,7 @@ use sinew_math::{ReadError, Reader, Writer};
 use sinew_physics::{BodyId, JointId, MoverId};
 
 /// First bytes; the last is the version.
-const MAGIC: &[u8; 8] = b"sinew-c\x05";
+const MAGIC: &[u8; 8] = b"sinew-c\x06";
 /// Bit of a state: the character has its share of a world.
 const IN_WORLD: u8 = 0x80;
 /// Bit of a state: its springs follow at the end.
@@ -45,6 +46,8 @@ impl Character {
         w.vec3(self.lean);
         let Planting { heights, rates, slopes, slope_rates } = self.planting;
         [heights, rates, slopes, slope_rates].as_flattened().iter().for_each(|&x| w.f32(x));
+        let Passage { from, to, age, seconds } = self.passage;
+        from.iter().chain(&to).chain([&age, &seconds]).for_each(|&x| w.f32(x));
         self.animator.save(self.def.set(), w);
         save_rising(w, self.rising);
         save_pose(w, &self.pose);
@@ -106,6 +109,14 @@ impl Character {
         let (world_from_character, climbing, lean) = (r.transform()?, r.f32()?, r.vec3()?);
         let mut pair = || Ok([r.f32()?, r.f32()?]);
         let planting = Planting { heights: pair()?, rates: pair()?, slopes: pair()?, slope_rates: pair()? };
+        let mut depths = || -> Result<Depths, ReadError> {
+            let mut depths = [0.0; PARTS];
+            for depth in &mut depths {
+                *depth = r.f32()?;
+            }
+            Ok(depths)
+        };
+        let passage = Passage { from: depths()?, to: depths()?, age: r.f32()?, seconds: r.f32()? };
         let animator = Animator::load(self.def.set(), r)?;
         let rising = load_rising(r)?;
         let joints = self.def.rig.joints.len();
@@ -139,14 +150,14 @@ impl Character {
         (self.state, self.animator, self.rising, self.stillness) = (state, animator, rising, stillness);
         self.lingering = lingering;
         (self.drives, self.preparation, self.lean) = (drives, preparation, lean);
-        (self.world_from_character, self.climbing, self.planting) =
-            (world_from_character, climbing, planting);
+        (self.world_from_character, self.climbing) = (world_from_character, climbing);
+        (self.planting, self.passage) = (planting, passage);
         (self.pose, self.earlier, self.ragdoll) = (pose, earlier, ragdoll);
         (self.presence, self.flinching, self.speed) = (presence, flinching, speed);
         if !base.is_empty() {
             self.physical.rebase(self.def.mapping(), &self.def.rig, &base);
         }
-        if !planting.is_over() {
+        if self.is_planted() {
             self.show_planted();
         }
         (self.swing, self.worn) = (swing, worn);

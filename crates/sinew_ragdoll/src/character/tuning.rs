@@ -90,6 +90,18 @@ pub(crate) const WALKS_FROM: f32 = 0.3;
 /// As that of the animations. Shown by the tests of `slopes`.
 pub(crate) const BALL_AHEAD: f32 = 0.14;
 
+// character/clearance.rs
+
+/// Height by which a part of the body is raised out of the floor at most, as a share of the character's height.
+///
+/// Larger: it hovers where the skin of a limb is far from it. Smaller: limbs in the floor. Shown by the tests of `clearance`.
+pub(crate) const MOST_LIFT: f32 = 0.25;
+
+/// Length of a foot, as a share of the character's height, over which the ground under it may fall.
+///
+/// Larger: toes in the floor of a slope. Smaller: feet over it. Shown by the tests of `slopes`.
+pub(crate) const FOOT_SHARE: f32 = 0.15;
+
 // character/get_up.rs
 
 /// Time in which the bodies' pose dies away in a get-up clip, seconds.
