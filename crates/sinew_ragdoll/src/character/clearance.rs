@@ -280,13 +280,32 @@ fn directions() -> impl Iterator<Item = Vec3> {
         .map(Vec3::normalize)
 }
 
+impl CharacterDef {
+    /// Depth of the drawn skin of trunk, head, thighs and knees in the floor of a pose, metres; negative above it. `None` of a rig without
+    /// skin. The pose has a local transform per joint of the rig.
+    pub fn trunk_depth(&self, pose: &[LocalTransform]) -> Option<f32> {
+        let mut model = Vec::new();
+        local_to_model(&self.rig, pose, &self.mapping().character_from_model(), &mut model);
+        let depth = self.clearance.depths(&model)[TRUNK];
+        depth.is_finite().then_some(depth)
+    }
+
+    /// Raises what of the drawn skin is in the floor of a pose: feet, hands and elbows by their limbs, all else with the whole body. The pose has
+    /// a local transform per joint of the rig.
+    pub fn raise_out_of_floor(&self, pose: &mut [LocalTransform]) {
+        if !self.clearance.parts.is_empty() {
+            self.clearance.clear(self, &[0.0; PARTS], 1.0, pose, &mut Vec::new());
+        }
+    }
+}
+
 impl Character {
     /// Depths of the pose that is shown, at least 0.
     pub(super) fn shown_depths(&mut self) -> Depths {
         let def = self.def.clone();
         let mut model = core::mem::take(&mut self.scratch.model);
         local_to_model(&def.rig, self.led_pose(), &def.mapping().character_from_model(), &mut model);
-        let depths = larger(def.moves().clearance.depths(&model), [0.0; PARTS]);
+        let depths = larger(def.clearance().depths(&model), [0.0; PARTS]);
         self.scratch.model = model;
         depths
     }
@@ -315,7 +334,7 @@ impl Character {
     /// Raises a pose of the clips out of the floor, as it will be after `later` seconds more.
     pub(super) fn clear_floor(&mut self, later: f32, pose: &mut [LocalTransform]) {
         let share = if self.is_passing() { self.passage.share(later, self.state) } else { 0.0 };
-        if share <= 0.0 || self.def.moves().clearance.parts.is_empty() {
+        if share <= 0.0 || self.def.clearance().parts.is_empty() {
             return;
         }
         let mut allowed = self.passage.allowed(later);
@@ -327,7 +346,7 @@ impl Character {
         }
         let def = self.def.clone();
         let mut model = core::mem::take(&mut self.scratch.model);
-        def.moves().clearance.clear(&def, &allowed, share, pose, &mut model);
+        def.clearance().clear(&def, &allowed, share, pose, &mut model);
         self.scratch.model = model;
     }
 }

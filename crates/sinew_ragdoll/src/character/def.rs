@@ -1,5 +1,6 @@
 //! Definition that characters of one kind share.
 
+use super::clearance::Clearance;
 use super::feet::Feet;
 use super::in_world::InWorld;
 use super::moves::{MotionError, Moves};
@@ -118,6 +119,8 @@ pub struct CharacterDef {
     bind: Vec<Affine>,
     /// Feet that it stands on, if it is a humanoid.
     feet: Option<Feet>,
+    /// What keeps its skin out of the floor.
+    pub(super) clearance: Arc<Clearance>,
     /// Hair and the like, which swing.
     springs: SpringRig,
     /// Capes and the like, which are cloth in the world.
@@ -140,6 +143,7 @@ impl CharacterDef {
             springs: SpringRig::new(&rig, &ragdoll, &mapping, bind_model, &rig.springs),
             garments: GarmentRig::default(),
             feet: Feet::of(&rig, &ragdoll, &bind),
+            clearance: Arc::new(Clearance::of(&rig, &ragdoll, bind_model)),
             moves: Arc::new(Moves::none(&rig, &ragdoll, &mapping)),
             in_world: InWorld::of(&ragdoll),
             mapping,
@@ -260,6 +264,10 @@ impl CharacterDef {
 
     pub(super) fn feet(&self) -> Option<&Feet> {
         self.feet.as_ref()
+    }
+
+    pub(super) fn clearance(&self) -> &Clearance {
+        &self.clearance
     }
 
     pub(super) fn moves(&self) -> &Moves {

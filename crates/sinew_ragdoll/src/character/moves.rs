@@ -1,6 +1,6 @@
 //! A character's clips, ready to be played: made once for all characters of a kind.
 
-use super::clearance::{Clearance, Depths, PARTS};
+use super::clearance::{Depths, PARTS};
 use super::floor::{Raised, moved};
 use super::mirror::Mirror;
 use super::pose_similarity::{Landmarks, Stance};
@@ -38,8 +38,6 @@ pub(super) struct Moves {
     pub upright: Stance,
     /// Heights by which clips are raised to the floor of the rest pose.
     pub raised: Raised,
-    /// What keeps its skin out of the floor.
-    pub clearance: Clearance,
     /// Deepest of the clips that loop, or of the rest pose.
     pub deepest: Depths,
 }
@@ -73,8 +71,8 @@ impl Moves {
         let (landmarks, set) = (Landmarks::new(ragdoll), AnimationSet::new(Skeleton::new(rig)));
         let upright = stance(rig, mapping, &landmarks, &rest_pose(rig));
         let raised = Raised::default();
-        let (clearance, deepest) = (Clearance::default(), [0.0; PARTS]);
-        Self { set, clips: Vec::new(), get_ups: Vec::new(), landmarks, upright, raised, clearance, deepest }
+        let deepest = [0.0; PARTS];
+        Self { set, clips: Vec::new(), get_ups: Vec::new(), landmarks, upright, raised, deepest }
     }
 
     pub fn new(def: &CharacterDef, motions: &MotionSet) -> Result<Self, MotionError> {
@@ -109,7 +107,7 @@ impl Moves {
         }
         let landmarks = Landmarks::new(&def.ragdoll);
         let mirror = Mirror::new(def);
-        let clearance = Clearance::of(&def.rig, &def.ragdoll, &def.bind_model());
+        let clearance = def.clearance();
         let mut get_ups = Vec::new();
         for &clip in &motions.get_ups {
             let take = flat_take(def, &motions.clips[clip], MIRRORED_FRAME);
@@ -126,7 +124,7 @@ impl Moves {
         }
         let upright = stance(&def.rig, def.mapping(), &landmarks, &first_pose(def, motions));
         let deepest = clearance.deepest(def, &standing(def, motions));
-        Ok(Self { set, clips, get_ups, landmarks, upright, raised, clearance, deepest })
+        Ok(Self { set, clips, get_ups, landmarks, upright, raised, deepest })
     }
 }
 
