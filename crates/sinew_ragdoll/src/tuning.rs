@@ -148,6 +148,11 @@ pub(crate) const PAST_JOINT: f32 = 0.125;
 /// Larger: a sword in a hand is a part of it. Smaller: uneven sculpting is mended away. Shown by the tests of `rig_variants`.
 pub(crate) const BURDENED: f32 = 1.6;
 
+/// Distance of the skin of a tail from the shape that is nearest to it, from which on it is a spike, as a share of the character's size.
+///
+/// Larger: spikes in the floor. Smaller: hulls for thick tails. Shown by the tests of `skin`.
+pub(crate) const SPIKED: f32 = 0.04;
+
 /// Ratio of the volumes of twins from which on both get the shape that fits better.
 ///
 /// Larger: lopsided bodies. Smaller: what is really different is made alike. Shown by the tests of `build`.
