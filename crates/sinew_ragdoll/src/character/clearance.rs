@@ -280,7 +280,34 @@ fn directions() -> impl Iterator<Item = Vec3> {
         .map(Vec3::normalize)
 }
 
+/// A foot of a humanoid.
+pub(crate) struct Sole<'a> {
+    pub joint: JointIdx,
+    /// Up in its own axes where it stands flat.
+    pub up: Vec3,
+    skin: &'a Surface,
+}
+
+impl Sole<'_> {
+    /// Its outmost points, in the space of `model`.
+    pub fn places(&self, model: &[Affine], palette: &mut Vec<Affine>) -> Vec<Vec3> {
+        self.skin.palette(model, palette);
+        self.skin.sample.iter().map(|&vertex| self.skin.place(palette, vertex)).collect()
+    }
+}
+
 impl CharacterDef {
+    /// Feet that can stand.
+    pub(crate) fn soles(&self) -> Vec<Sole<'_>> {
+        let legs = self.clearance.limbs.iter().filter(|limb| FEET.contains(&limb.end));
+        let sole = |limb: &Limb| {
+            let joint = limb.bones.end;
+            let up = self.bind()[joint].to_rigid().rotation.inverse() * Vec3::Y;
+            Sole { joint, up, skin: &self.clearance.parts[limb.end] }
+        };
+        legs.map(sole).collect()
+    }
+
     /// Depth of the drawn skin of trunk, head, thighs and knees in the floor of a pose, metres; negative above it. `None` of a rig without
     /// skin. The pose has a local transform per joint of the rig.
     pub fn trunk_depth(&self, pose: &[LocalTransform]) -> Option<f32> {
