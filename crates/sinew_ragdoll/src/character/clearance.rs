@@ -5,7 +5,7 @@
 //! the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper arm.
 
 use super::{Character, CharacterDef, State};
-use crate::character::tuning::{FOOT_SHARE, MOST_LIFT};
+use crate::character::tuning::{FOOT_SHARE, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STRAIGHT_UP};
 use crate::def::RagdollDef;
 use crate::fit::surface::carried;
 use crate::skin::surface::Surface;
@@ -32,9 +32,26 @@ pub(super) struct Passage {
     pub from: Depths,
     /// Deepest of what it leads to, at least 0.
     pub to: Depths,
+    /// Ankles where it began, world, left and right.
+    pub ankles: [Transform; 2],
+    /// Least way that the feet have to go, metres.
+    pub far: [f32; 2],
     /// Seconds since it began, and how long it takes.
     pub age: f32,
     pub seconds: f32,
+}
+
+/// A foot on its way from where it stood to where a clip has it.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    /// Character space.
+    from: Transform,
+    /// Least way to where it goes, metres.
+    far: f32,
+    /// Share of the way.
+    along: f32,
+    /// Height over it, as a share of the whole height of the step.
+    over: f32,
 }
 
 impl Passage {
@@ -44,11 +61,24 @@ impl Passage {
         core::array::from_fn(|part| self.from[part] + (self.to[part] - self.from[part]) * share)
     }
 
+    /// Steps of the feet: at once while it lies, one after the other once it stands.
+    fn steps(&self, later: f32, state: State, place: Transform) -> [Step; 2] {
+        let u = if self.seconds > 0.0 { (self.age + later) / self.seconds } else { f32::INFINITY };
+        [0, 1].map(|foot| {
+            let own = if state == State::GettingUp { u } else { u - foot as f32 };
+            let along = smoothstep((own - STRAIGHT_UP) / (1.0 - 2.0 * STRAIGHT_UP));
+            let over = smoothstep(own / STRAIGHT_UP) * smoothstep((1.0 - own) / STRAIGHT_UP);
+            Step { from: place.inverse() * self.ankles[foot], far: self.far[foot], along, over }
+        })
+    }
+
     /// Share of a lift that is given: it goes back to none once the passage is over.
     fn share(&self, later: f32, state: State) -> f32 {
         match state {
             State::GettingUp => 1.0,
-            State::Animated if self.seconds > 0.0 => 1.0 - smoothstep((self.age + later) / self.seconds - 1.0),
+            State::Animated if self.seconds > 0.0 => {
+                1.0 - smoothstep((self.age + later) / self.seconds - 1.0)
+            }
             _ => 0.0,
         }
     }
@@ -61,6 +91,22 @@ struct Limb {
     /// Part of its end, and of its middle joint where that is raised by the limb.
     end: usize,
     middle: Option<usize>,
+}
+
+impl Limb {
+    /// An ankle that steps to `to`; `None` where it is there.
+    fn stepped(&self, to: Transform, steps: Option<[Step; 2]>, def: &CharacterDef) -> Option<Transform> {
+        let foot = FEET.into_iter().position(|part| part == self.end)?;
+        let Step { from, far, along, over } = steps?[foot];
+        if along >= 1.0 || from == to {
+            return None;
+        }
+        let way = to.translation - from.translation;
+        let far = max(Vec3::new(way.x, 0.0, way.z).length(), far);
+        let height = min(STEP_OVER * far, STEP_HEIGHT * def.ragdoll.height);
+        let place = from.translation + way * along + Vec3::Y * (over * height);
+        Some(Transform::new(place, from.rotation.nlerp(to.rotation, along)))
+    }
 }
 
 /// Points of the skin that reach the floor first, and what raises them.
@@ -136,6 +182,7 @@ impl Clearance {
         def: &CharacterDef,
         allowed: &Depths,
         share: f32,
+        steps: Option<[Step; 2]>,
         pose: &mut [LocalTransform],
         model: &mut Vec<Affine>,
     ) {
@@ -145,24 +192,34 @@ impl Clearance {
         let most = MOST_LIFT * def.ragdoll.height;
         let lift = |depth: f32, part: usize| min(max(share * (depth - allowed[part]), 0.0), most);
         let lifts: Depths = core::array::from_fn(|part| lift(depths[part], part));
-        if lifts.iter().all(|&lift| lift <= 0.0) {
+        let ends: Vec<Transform> = self.limbs.iter().map(|limb| model[limb.bones.end].to_rigid()).collect();
+        let steps: Vec<Option<Transform>> =
+            self.limbs.iter().zip(&ends).map(|(limb, &end)| limb.stepped(end, steps, def)).collect();
+        if lifts.iter().all(|&lift| lift <= 0.0) && steps.iter().all(Option::is_none) {
             return;
         }
-        let ends: Vec<Transform> = self.limbs.iter().map(|limb| model[limb.bones.end].to_rigid()).collect();
-        let carried: Vec<Transform> = self.strays.iter().map(|&(joint, carrier)| model[carrier].to_rigid().inverse() * model[joint].to_rigid()).collect();
+        let carried: Vec<Transform> = self
+            .strays
+            .iter()
+            .map(|&(joint, carrier)| model[carrier].to_rigid().inverse() * model[joint].to_rigid())
+            .collect();
         if lifts[TRUNK] > 0.0 {
             let up = Transform::new(Vec3::Y * lifts[TRUNK], Rotation::IDENTITY);
             def.mapping().reframe(pose, up, Transform::IDENTITY);
             local_to_model(rig, pose, &root, model);
         }
         let mut palette = Vec::new();
-        for (limb, was) in self.limbs.iter().zip(ends) {
+        for ((limb, was), step) in self.limbs.iter().zip(ends).zip(steps) {
             let bones = limb.bones;
-            if lifts[TRUNK] > 0.0 || lifts[limb.end] > 0.0 {
-                let wanted = was.translation + Vec3::Y * lifts[limb.end];
-                let side = model[bones.lower].translation - (model[bones.upper].translation + wanted) * 0.5;
-                two_bone_ik(rig, bones, &TwoBoneGoal::at(wanted, Pole::Keep(side)), pose, model);
-                turn_to(rig, bones.end, was.rotation, &root, pose, model);
+            if lifts[TRUNK] > 0.0 || lifts[limb.end] > 0.0 || step.is_some() {
+                let mut wanted = step.unwrap_or(was);
+                wanted.translation.y += if step.is_some() { 0.0 } else { lifts[limb.end] };
+                put(rig, bones, wanted, &root, pose, model);
+                let up = lift(self.depth(limb.end, model, &mut palette), limb.end);
+                if step.is_some() && up > 0.0 {
+                    wanted.translation.y += up;
+                    put(rig, bones, wanted, &root, pose, model);
+                }
             }
             let Some(middle) = limb.middle else { continue };
             let up = lift(self.depth(middle, model, &mut palette), middle);
@@ -184,6 +241,21 @@ impl Clearance {
             }
         }
     }
+}
+
+/// Brings the end of a limb to a place, in the axes of `model`.
+fn put(
+    rig: &Rig,
+    bones: TwoBone,
+    end: Transform,
+    root: &Affine,
+    pose: &mut [LocalTransform],
+    model: &mut Vec<Affine>,
+) {
+    let middle = (model[bones.upper].translation + end.translation) * 0.5;
+    let side = model[bones.lower].translation - middle;
+    two_bone_ik(rig, bones, &TwoBoneGoal::at(end.translation, Pole::Keep(side)), pose, model);
+    turn_to(rig, bones.end, end.rotation, root, pose, model);
 }
 
 /// Gives a joint a rotation in the axes of `model`; what hangs on it goes along.
@@ -239,7 +311,8 @@ fn part_of(def: &RagdollDef, limbs: &[Limb], bind: &[Affine], body: usize, place
     for limb in limbs {
         let joint = def.bodies[bearer].joint;
         let TwoBone { upper, lower, end } = limb.bones;
-        let above = core::iter::successors(Some(bearer), |&body| parent(body)).map(|body| def.bodies[body].joint);
+        let above =
+            core::iter::successors(Some(bearer), |&body| parent(body)).map(|body| def.bodies[body].joint);
         if above.into_iter().any(|joint| joint == end) {
             return limb.end;
         }
@@ -268,7 +341,8 @@ fn strays(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, JointIdx)> {
         let parent = rig.joints[joint].parent.and_then(|parent| carried[parent]);
         (!hangs(joint, carrier) && parent != carried[joint]).then_some((joint, carrier))
     });
-    of_bodies.chain(of_joints).collect()
+    // What carries its own carrier goes along with nothing.
+    of_bodies.chain(of_joints).filter(|&(joint, carrier)| !hangs(carrier, joint)).collect()
 }
 
 /// Directions to sides, edges and corners of a box.
@@ -321,25 +395,46 @@ impl CharacterDef {
     /// a local transform per joint of the rig.
     pub fn raise_out_of_floor(&self, pose: &mut [LocalTransform]) {
         if !self.clearance.parts.is_empty() {
-            self.clearance.clear(self, &[0.0; PARTS], 1.0, pose, &mut Vec::new());
+            self.clearance.clear(self, &[0.0; PARTS], 1.0, None, pose, &mut Vec::new());
         }
     }
 }
 
 impl Character {
-    /// Depths of the pose that is shown, at least 0.
-    pub(super) fn shown_depths(&mut self) -> Depths {
+    /// Depths of the pose that is shown, at least 0, and its ankles in the world.
+    pub(super) fn shown_depths(&mut self) -> (Depths, [Transform; 2]) {
         let def = self.def.clone();
         let mut model = core::mem::take(&mut self.scratch.model);
         local_to_model(&def.rig, self.led_pose(), &def.mapping().character_from_model(), &mut model);
         let depths = larger(def.clearance().depths(&model), [0.0; PARTS]);
+        let ankle = |part: usize| {
+            let limb = def.clearance().limbs.iter().find(|limb| limb.end == part);
+            limb.map_or(Transform::IDENTITY, |limb| {
+                self.world_from_character * model[limb.bones.end].to_rigid()
+            })
+        };
+        let ankles = FEET.map(ankle);
         self.scratch.model = model;
-        depths
+        (depths, ankles)
     }
 
     /// Begins a passage of so many seconds to what is no deeper than `to`.
-    pub(super) fn pass(&mut self, from: Depths, to: Depths, seconds: f32) {
-        self.passage = Passage { from, to, age: 0.0, seconds };
+    pub(super) fn pass(&mut self, (from, ankles): (Depths, [Transform; 2]), to: Depths, seconds: f32) {
+        self.passage = Passage { from, to, ankles, far: [0.0; 2], age: 0.0, seconds };
+    }
+
+    /// The passage just begun leads to where these bodies are, in the world: feet that go far are lifted at once.
+    pub(super) fn pass_to(&mut self, bodies: &[Transform], motion: Transform, to: &[Transform]) {
+        let def = self.def.clone();
+        for (foot, part) in FEET.into_iter().enumerate() {
+            let limb = def.clearance().limbs.iter().find(|limb| limb.end == part);
+            let body =
+                limb.and_then(|limb| def.ragdoll.bodies.iter().position(|body| body.joint == limb.bones.end));
+            if let Some(body) = body {
+                let way = motion.point(to[body].translation) - bodies[body].translation;
+                self.passage.far[foot] = Vec3::new(way.x, 0.0, way.z).length();
+            }
+        }
     }
 
     /// Goes on with it by a step.
@@ -373,7 +468,8 @@ impl Character {
         }
         let def = self.def.clone();
         let mut model = core::mem::take(&mut self.scratch.model);
-        def.clearance().clear(&def, &allowed, share, pose, &mut model);
+        let steps = self.passage.steps(later, self.state, self.world_from_character);
+        def.clearance().clear(&def, &allowed, share, Some(steps), pose, &mut model);
         self.scratch.model = model;
     }
 }

@@ -104,6 +104,7 @@ impl Character {
     /// Gives the pose back to the clips, by the moment of a get-up clip that is most like it.
     pub(super) fn get_up(&mut self, world: &mut World) {
         let lies = self.stance();
+        let lying = self.scratch.before.clone();
         let own = self.presence.as_ref().map(|_| self.bodies());
         self.lean = ground::slope(world, &lies.points, own);
         let def = self.def.clone();
@@ -113,6 +114,7 @@ impl Character {
                 self.settle_into(world, pose_similarity.motion, INTO_GET_UP);
                 let from = self.shown_depths();
                 self.pass(from, get_up.deepest, INTO_GET_UP);
+                self.pass_to(&lying, pose_similarity.motion, &start.bodies);
                 let once =
                     TrackDef { start: start.time, loop_mode: LoopMode::Once, ..TrackDef::new(get_up.id) };
                 self.rising = Rising::ByClip(self.animator.play(def.set(), &once));

@@ -46,8 +46,9 @@ impl Character {
         w.vec3(self.lean);
         let Planting { heights, rates, slopes, slope_rates } = self.planting;
         [heights, rates, slopes, slope_rates].as_flattened().iter().for_each(|&x| w.f32(x));
-        let Passage { from, to, age, seconds } = self.passage;
-        from.iter().chain(&to).chain([&age, &seconds]).for_each(|&x| w.f32(x));
+        let Passage { from, to, ankles, far, age, seconds } = self.passage;
+        from.iter().chain(&to).chain(&far).chain([&age, &seconds]).for_each(|&x| w.f32(x));
+        ankles.iter().for_each(|&ankle| w.transform(ankle));
         self.animator.save(self.def.set(), w);
         save_rising(w, self.rising);
         save_pose(w, &self.pose);
@@ -116,7 +117,9 @@ impl Character {
             }
             Ok(depths)
         };
-        let passage = Passage { from: depths()?, to: depths()?, age: r.f32()?, seconds: r.f32()? };
+        let (from, to) = (depths()?, depths()?);
+        let (far, age, seconds) = ([r.f32()?, r.f32()?], r.f32()?, r.f32()?);
+        let passage = Passage { from, to, far, ankles: [r.transform()?, r.transform()?], age, seconds };
         let animator = Animator::load(self.def.set(), r)?;
         let rising = load_rising(r)?;
         let joints = self.def.rig.joints.len();

@@ -97,6 +97,18 @@ pub(crate) const BALL_AHEAD: f32 = 0.14;
 /// Larger: it hovers where the skin of a limb is far from it. Smaller: limbs in the floor. Shown by the tests of `clearance`.
 pub(crate) const MOST_LIFT: f32 = 0.25;
 
+/// Height of a step with which a foot goes to where a clip has it, over its way, and the largest as a share of the character's height.
+///
+/// Larger: it stamps. Smaller: feet slide. Shown by the tests of `rising`.
+pub(crate) const STEP_OVER: f32 = 0.6;
+/// See [`STEP_OVER`].
+pub(crate) const STEP_HEIGHT: f32 = 0.05;
+
+/// Share of a step, at each end, in which the foot only goes up or down.
+///
+/// Larger: it jerks in between. Smaller: it slides. Shown by the tests of `rising`.
+pub(crate) const STRAIGHT_UP: f32 = 0.22;
+
 /// Length of a foot, as a share of the character's height, over which the ground under it may fall.
 ///
 /// Larger: toes in the floor of a slope. Smaller: feet over it. Shown by the tests of `slopes`.

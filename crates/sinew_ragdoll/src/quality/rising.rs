@@ -38,7 +38,8 @@ impl RisingQuality {
             // A figure that is no number is beyond it.
             if let Some(figure) = figure.filter(|figure| !(*figure <= bar)) {
                 let cm = 100.0 * figure;
-                let reason = format!("getting up {what} by {cm:.1} cm, more than {:.1} cm; {help}", 100.0 * bar);
+                let reason =
+                    format!("getting up {what} by {cm:.1} cm, more than {:.1} cm; {help}", 100.0 * bar);
                 faults.push(Fault { at_most: Verdict::Usable, reason });
             }
         };
