@@ -391,6 +391,12 @@ impl CharacterDef {
         depth.is_finite().then_some(depth)
     }
 
+    /// Depth of the deepest point of the drawn skin in the floor over a motion of its rig, metres: with what it holds; at least 0, and 0 of a rig
+    /// without skin.
+    pub fn deepest_skin(&self, take: &Take) -> f32 {
+        self.clearance.deepest(self, take).into_iter().fold(0.0, max)
+    }
+
     /// Raises what of the drawn skin is in the floor of a pose: feet, hands and elbows by their limbs, all else with the whole body. The pose has
     /// a local transform per joint of the rig.
     pub fn raise_out_of_floor(&self, pose: &mut [LocalTransform]) {
