@@ -28,7 +28,8 @@ pub use bake::{BakeHit, BakeInput, Baked, HitEffect, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
 pub use character::{
     AfterSettling, Blow, Character, CharacterDef, CharacterEvent, Detail, Distances, GettingReady, Grip,
-    HitBodies, InWorld, Locomotion, MotionError, MotionSet, Opening, Part, Preset, State, Toughness,
+    GroundContact, HitBodies, InWorld, Locomotion, MotionError, MotionSet, Opening, Part, Preset, State,
+    Toughness,
 };
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 pub use doctor::{Repair, cure, doctor};

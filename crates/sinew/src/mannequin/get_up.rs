@@ -35,13 +35,13 @@ struct Step {
 /// Height by which a step is lifted, metres.
 const STEP_HEIGHT: f32 = 0.09;
 /// Share of a step at each end in which the foot only goes up or down.
-const STRAIGHT_UP: f32 = 0.12;
+const STRAIGHT_UP: f32 = 0.08;
 
 impl Step {
     fn ankle(&self, from: Vec3, to: Vec3, time: f32) -> Vec3 {
         let u = (time - self.from) / (self.to - self.from);
         let along = smoothstep((u - STRAIGHT_UP) / (1.0 - 2.0 * STRAIGHT_UP));
-        from + (to - from) * along + Vec3::Y * (4.0 * u * (1.0 - u) * STEP_HEIGHT)
+        from + (to - from) * along + Vec3::Y * (16.0 * u * u * (1.0 - u) * (1.0 - u) * STEP_HEIGHT)
     }
 }
 

@@ -4,7 +4,7 @@
 //! Each part may be as deep as it is where the passage begins, and by and by as deep as it ever is in the clip. What is deeper is raised:
 //! the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper arm.
 
-use super::{Character, CharacterDef, State};
+use super::{Character, CharacterDef, GroundContact, State};
 use crate::character::tuning::{FOOT_SHARE, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STRAIGHT_UP};
 use crate::def::RagdollDef;
 use crate::fit::surface::carried;
@@ -424,14 +424,20 @@ impl Character {
         (depths, ankles)
     }
 
-    /// Begins a passage of so many seconds to what is no deeper than `to`.
+    /// Begins a passage of so many seconds to what is no deeper than `to`, from the pose that was shown.
     pub(super) fn pass(&mut self, (from, ankles): (Depths, [Transform; 2]), to: Depths, seconds: f32) {
-        self.passage = Passage { from, to, ankles, far: [0.0; 2], age: 0.0, seconds };
+        self.passage = match self.def.ground_contact {
+            GroundContact::Enforced => Passage { from, to, ankles, far: [0.0; 2], age: 0.0, seconds },
+            GroundContact::AsBlended => Passage::default(),
+        };
     }
 
     /// The passage just begun leads to where these bodies are, in the world: feet that go far are lifted at once.
     pub(super) fn pass_to(&mut self, bodies: &[Transform], motion: Transform, to: &[Transform]) {
         let def = self.def.clone();
+        if !self.is_passing() {
+            return;
+        }
         for (foot, part) in FEET.into_iter().enumerate() {
             let limb = def.clearance().limbs.iter().find(|limb| limb.end == part);
             let body =

@@ -49,6 +49,17 @@ pub enum GettingReady {
     RollOver,
 }
 
+/// Treatment of floor and feet while a character passes from its bodies to a get-up clip, and from that to what follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GroundContact {
+    /// None: the difference of the two poses dies away smoothly in every joint, though limbs may go through the floor on the way. Default.
+    #[default]
+    AsBlended,
+    /// The drawn skin stays out of the floor, as far as it was before and is in the clips, and feet that go elsewhere step there. Motions
+    /// are quicker for it.
+    Enforced,
+}
+
 /// Pose or clip of a character before anything has happened to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Opening {
@@ -103,6 +114,8 @@ pub struct CharacterDef {
     pub after_settling: AfterSettling,
     /// Default roll over.
     pub getting_ready: GettingReady,
+    /// Default as blended.
+    pub ground_contact: GroundContact,
     /// Drive mode of its bodies while it falls: powered, toward the pose that its clips go on with. Default limp.
     pub falling: DriveMode,
     /// Seconds for which a limp character may go on moving before it gets up all the same. Default 6.
@@ -154,6 +167,7 @@ impl CharacterDef {
             ragdoll,
             after_settling: AfterSettling::GetUp,
             getting_ready: GettingReady::RollOver,
+            ground_contact: GroundContact::default(),
             falling: DriveMode::Limp,
             patience: 6.0,
             body_settings: BodySettings::default(),

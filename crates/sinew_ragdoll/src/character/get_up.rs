@@ -131,7 +131,9 @@ impl Character {
         }
         self.leave_bodies(world);
         self.state = State::GettingUp;
-        self.show_planted();
+        if self.is_planted() {
+            self.show_planted();
+        }
         self.stand_up(world, LYING_MOVER);
     }
 

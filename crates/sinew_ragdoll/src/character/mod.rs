@@ -60,7 +60,7 @@ pub(crate) use floor::moved;
 pub(crate) use limp::{is_still, is_sunk, touches_world};
 pub(crate) use tuning::STILL_TIME;
 
-pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet, Opening};
+pub use def::{AfterSettling, CharacterDef, GettingReady, GroundContact, Locomotion, MotionSet, Opening};
 pub use distances::{Detail, Distances};
 pub use event::{CharacterEvent, State};
 pub use hold::Grip;

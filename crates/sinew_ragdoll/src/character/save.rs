@@ -15,13 +15,15 @@ use sinew_math::{ReadError, Reader, Writer};
 use sinew_physics::{BodyId, JointId, MoverId};
 
 /// First bytes; the last is the version.
-const MAGIC: &[u8; 8] = b"sinew-c\x06";
+const MAGIC: &[u8; 8] = b"sinew-c\x05";
 /// Bit of a state: the character has its share of a world.
 const IN_WORLD: u8 = 0x80;
 /// Bit of a state: its springs follow at the end.
 const WEARS: u8 = 0x40;
 /// Bit of a state: its garments follow at the end.
 const DRESSED: u8 = 0x20;
+/// Bit of a state: the way from one pose to another follows at the end.
+const PASSING: u8 = 0x10;
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
 
@@ -40,15 +42,13 @@ impl Character {
         let in_world = if self.presence.is_some() { IN_WORLD } else { 0 };
         let wears = if self.def.springs().is_empty() { 0 } else { WEARS };
         let dressed = if self.def.garments().is_empty() { 0 } else { DRESSED };
-        w.u8(state | in_world | wears | dressed);
+        let passing = if self.is_passing() { PASSING } else { 0 };
+        w.u8(state | in_world | wears | dressed | passing);
         w.transform(self.world_from_character);
         w.f32(self.climbing);
         w.vec3(self.lean);
         let Planting { heights, rates, slopes, slope_rates } = self.planting;
         [heights, rates, slopes, slope_rates].as_flattened().iter().for_each(|&x| w.f32(x));
-        let Passage { from, to, ankles, far, age, seconds } = self.passage;
-        from.iter().chain(&to).chain(&far).chain([&age, &seconds]).for_each(|&x| w.f32(x));
-        ankles.iter().for_each(|&ankle| w.transform(ankle));
         self.animator.save(self.def.set(), w);
         save_rising(w, self.rising);
         save_pose(w, &self.pose);
@@ -86,6 +86,9 @@ impl Character {
         if dressed != 0 {
             self.worn.save(w);
         }
+        if passing != 0 {
+            self.passage.save(w);
+        }
     }
 
     /// Brings back a saved state of a character of the same definition. Its bodies are those of the world's snapshot
@@ -98,7 +101,7 @@ impl Character {
             return Err(ReadError { at: 0, what: "is not a character of this version" });
         }
         let tag = r.u8()?;
-        let state = match tag & !(IN_WORLD | WEARS | DRESSED) {
+        let state = match tag & !(IN_WORLD | WEARS | DRESSED | PASSING) {
             0 => State::Animated,
             1 => State::Limp,
             2 => State::GettingUp,
@@ -110,16 +113,6 @@ impl Character {
         let (world_from_character, climbing, lean) = (r.transform()?, r.f32()?, r.vec3()?);
         let mut pair = || Ok([r.f32()?, r.f32()?]);
         let planting = Planting { heights: pair()?, rates: pair()?, slopes: pair()?, slope_rates: pair()? };
-        let mut depths = || -> Result<Depths, ReadError> {
-            let mut depths = [0.0; PARTS];
-            for depth in &mut depths {
-                *depth = r.f32()?;
-            }
-            Ok(depths)
-        };
-        let (from, to) = (depths()?, depths()?);
-        let (far, age, seconds) = ([r.f32()?, r.f32()?], r.f32()?, r.f32()?);
-        let passage = Passage { from, to, far, ankles: [r.transform()?, r.transform()?], age, seconds };
         let animator = Animator::load(self.def.set(), r)?;
         let rising = load_rising(r)?;
         let joints = self.def.rig.joints.len();
@@ -139,6 +132,7 @@ impl Character {
         let swing = if tag & WEARS != 0 { SpringSwing::load(springs, r)? } else { SpringSwing::new() };
         let garments = self.def.garments();
         let worn = if tag & DRESSED != 0 { Worn::load(garments, r)? } else { Worn::default() };
+        let passage = if tag & PASSING != 0 { Passage::load(r)? } else { Passage::default() };
         let has_bodies = !matches!(state, State::Animated | State::GettingUp);
         let fits = pose.len() == joints
             && springs.is_empty() == (tag & WEARS == 0)
@@ -205,6 +199,25 @@ impl Character {
             ragdoll.colliding.push((BodyId::from_bits(r.u64()?), BodyId::from_bits(r.u64()?)));
         }
         Ok(ragdoll)
+    }
+}
+
+impl Passage {
+    fn save(&self, w: &mut Writer) {
+        let Self { from, to, ankles, far, age, seconds } = self;
+        from.iter().chain(to).chain(far).chain([age, seconds]).for_each(|&x| w.f32(x));
+        ankles.iter().for_each(|&ankle| w.transform(ankle));
+    }
+
+    fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut numbers = [0.0; 2 * PARTS + 4];
+        for number in &mut numbers {
+            *number = r.f32()?;
+        }
+        let part = |first: usize| -> Depths { core::array::from_fn(|part| numbers[first + part]) };
+        let [left, right, age, seconds] = core::array::from_fn(|k| numbers[2 * PARTS + k]);
+        let ankles = [r.transform()?, r.transform()?];
+        Ok(Self { from: part(0), to: part(PARTS), ankles, far: [left, right], age, seconds })
     }
 }
 
