@@ -33,7 +33,7 @@ struct Step {
 }
 
 /// Height by which a step is lifted, metres.
-const STEP_HEIGHT: f32 = 0.09;
+const STEP_HEIGHT: f32 = 0.03;
 /// Share of a step at each end in which the foot only goes up or down.
 const STRAIGHT_UP: f32 = 0.08;
 
@@ -83,7 +83,7 @@ pub(super) fn from_back() -> Clip {
         (2.4, nearly),
         (2.8, Posture::standing()),
     ];
-    let steps = [Step { side: Left, from: 0.0, to: 0.45 }, Step { side: Right, from: 0.45, to: 0.9 }];
+    let steps = [Step { side: Left, from: 0.9, to: 1.2 }, Step { side: Right, from: 0.9, to: 1.2 }];
     clip("get_up_supine", &postures.map(|(at, posture)| Key { at, posture }), &steps)
 }
 
@@ -106,7 +106,7 @@ fn sitting_up() -> [Posture; 3] {
         chest: lean(14.0),
         neck: lean(16.0),
         head: lean(8.0),
-        left_foot: Foot::flat(Left, 0.105, 0.0, 8.0),
+        left_foot: lifted(v(0.13, 0.16, 0.18), -25.0, 10.0),
         right_foot: lifted(v(-0.15, 0.10, 0.38), -50.0, 10.0),
         ..lying
     };
@@ -117,8 +117,8 @@ fn sitting_up() -> [Posture; 3] {
         chest: lean(8.0),
         neck: lean(6.0),
         head: lean(0.0),
-        left_foot: Foot::flat(Left, 0.105, 0.0, 8.0),
-        right_foot: Foot::flat(Right, -0.108, 0.0, 8.0),
+        left_foot: lifted(v(0.11, 0.15, 0.06), -8.0, 8.0),
+        right_foot: lifted(v(-0.13, 0.16, 0.16), -15.0, 8.0),
         left_hand: palm(0.34, -0.62, 10.0, 50.0),
         right_hand: palm(-0.34, -0.62, 10.0, 50.0),
     };

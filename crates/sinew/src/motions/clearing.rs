@@ -95,8 +95,7 @@ impl<'a> Clearing<'a> {
         for frame in 0..fitted.take.frames() {
             let pose = fitted.take.pose_mut(frame);
             self.bring_props(pose, &mut model);
-            let depth = def.trunk_depth(pose).unwrap_or_else(|| self.depth(&self.trunk, pose));
-            depths.push(clamp(depth, 0.0, most));
+            depths.push(clamp(self.depth(&self.trunk, pose), 0.0, most));
             local_to_model(&def.rig, pose, &self.root, &mut model);
             ankles.push(self.legs.feet.each_ref().map(|foot| model[foot.leg.end].to_rigid()));
         }
@@ -119,7 +118,6 @@ impl<'a> Clearing<'a> {
                 }
             }
             self.bring_props(pose, &mut model);
-            def.raise_out_of_floor(pose);
         }
     }
 

@@ -82,7 +82,14 @@ pub fn builtin_motions(def: &CharacterDef, analysis: &RigAnalysis) -> Result<Bui
     };
     let cycle = |clip: &Clip| Ok(one_round(onto(&repeated(clip, PLAYED))?, clip));
     let (walks, idles) = (cycle(&clips[motions.walk])?, cycle(&clips[motions.idle])?);
-    let (supine, prone) = (onto(&clips[motions.get_up_supine])?, onto(&clips[motions.get_up_prone])?);
+    let rising = |clip: &Clip| -> Result<Retargeted, RetargetError> {
+        let mut fitted = onto(clip)?;
+        for frame in 0..fitted.take.frames() {
+            def.raise_limbs(fitted.take.pose_mut(frame));
+        }
+        Ok(fitted)
+    };
+    let (supine, prone) = (rising(&clips[motions.get_up_supine])?, rising(&clips[motions.get_up_prone])?);
     Ok(BuiltinMotions {
         walk: walks.clip(rig, &clips[motions.walk].name),
         walk_speed: motions.walk_speed * walks.scale / walks.pace,

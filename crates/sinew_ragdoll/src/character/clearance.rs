@@ -5,7 +5,7 @@
 //! the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper arm.
 
 use super::{Character, CharacterDef, GroundContact, State};
-use crate::character::tuning::{FOOT_SHARE, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STRAIGHT_UP};
+use crate::character::tuning::{FOOT_SHARE, LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STRAIGHT_UP};
 use crate::def::RagdollDef;
 use crate::fit::surface::carried;
 use crate::skin::surface::Surface;
@@ -138,7 +138,8 @@ impl Clearance {
                 let along = |place: &(usize, Vec3)| place.1.dot(direction);
                 let outmost = places.iter().reduce(|a, b| if along(b) > along(a) { b } else { a });
                 if let Some(&(vertex, place)) = outmost {
-                    chosen[part_of(def, &limbs, bind, body, place)].push(vertex);
+                    let part = part_of(def, &limbs, bind, body, place);
+                    part.into_iter().for_each(|part| chosen[part].push(vertex));
                 }
             }
         }
@@ -296,15 +297,15 @@ fn limbs(rig: &Rig, def: &RagdollDef) -> Vec<Limb> {
     limbs
 }
 
-/// The part of a point of a body's skin, in model space as bound.
-fn part_of(def: &RagdollDef, limbs: &[Limb], bind: &[Affine], body: usize, place: Vec3) -> usize {
+/// The part of a point of a body's skin, in model space as bound; `None` of tails and the like, for which nobody stands up higher.
+fn part_of(def: &RagdollDef, limbs: &[Limb], bind: &[Affine], body: usize, place: Vec3) -> Option<usize> {
     let is_human = |body: usize| {
         Role::from_name(&def.bodies[body].role).is_some_and(|role| HUMANOID_ROLES.contains(&role))
     };
     let parent = |body: usize| def.joints.iter().find(|joint| joint.child == body).map(|joint| joint.parent);
     // What is held or worn goes with the part that bears it.
     let bearers = core::iter::successors(Some(body), |&body| parent(body));
-    let Some(bearer) = bearers.into_iter().find(|&body| is_human(body)) else { return TRUNK };
+    let Some(bearer) = bearers.into_iter().find(|&body| is_human(body)) else { return Some(TRUNK) };
     let is_beyond = |joint: JointIdx, of: JointIdx| {
         (place - bind[joint].translation).length() < (place - bind[of].translation).length()
     };
@@ -314,16 +315,17 @@ fn part_of(def: &RagdollDef, limbs: &[Limb], bind: &[Affine], body: usize, place
         let above =
             core::iter::successors(Some(bearer), |&body| parent(body)).map(|body| def.bodies[body].joint);
         if above.into_iter().any(|joint| joint == end) {
-            return limb.end;
+            return Some(limb.end);
         }
         if joint == lower {
-            return if is_beyond(end, lower) { limb.end } else { limb.middle.unwrap_or(TRUNK) };
+            let middle = limb.middle.unwrap_or(TRUNK);
+            return Some(if is_beyond(end, lower) { limb.end } else { middle });
         }
         if joint == upper && is_beyond(lower, upper) {
-            return limb.middle.unwrap_or(TRUNK);
+            return Some(limb.middle.unwrap_or(TRUNK));
         }
     }
-    TRUNK
+    is_human(body).then_some(TRUNK)
 }
 
 /// Joints that do not hang on the joint of the body that carries them, topmost ones only.
@@ -382,26 +384,19 @@ impl CharacterDef {
         legs.map(sole).collect()
     }
 
-    /// Depth of the drawn skin of trunk, head, thighs and knees in the floor of a pose, metres; negative above it. `None` of a rig without
-    /// skin. The pose has a local transform per joint of the rig.
-    pub fn trunk_depth(&self, pose: &[LocalTransform]) -> Option<f32> {
-        let mut model = Vec::new();
-        local_to_model(&self.rig, pose, &self.mapping().character_from_model(), &mut model);
-        let depth = self.clearance.depths(&model)[TRUNK];
-        depth.is_finite().then_some(depth)
-    }
-
     /// Depth of the deepest point of the drawn skin in the floor over a motion of its rig, metres: with what it holds; at least 0, and 0 of a rig
     /// without skin.
     pub fn deepest_skin(&self, take: &Take) -> f32 {
         self.clearance.deepest(self, take).into_iter().fold(0.0, max)
     }
 
-    /// Raises what of the drawn skin is in the floor of a pose: feet, hands and elbows by their limbs, all else with the whole body. The pose has
-    /// a local transform per joint of the rig.
-    pub fn raise_out_of_floor(&self, pose: &mut [LocalTransform]) {
+    /// Raises feet, hands and elbows whose drawn skin is in the floor of a pose, by bending their limbs. The pose has a local transform per
+    /// joint of the rig.
+    pub fn raise_limbs(&self, pose: &mut [LocalTransform]) {
         if !self.clearance.parts.is_empty() {
-            self.clearance.clear(self, &[0.0; PARTS], 1.0, None, pose, &mut Vec::new());
+            let mut allowed = [LIMBS_SINK * self.ragdoll.height; PARTS];
+            allowed[TRUNK] = f32::INFINITY;
+            self.clearance.clear(self, &allowed, 1.0, None, pose, &mut Vec::new());
         }
     }
 }

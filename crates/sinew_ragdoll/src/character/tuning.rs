@@ -97,6 +97,11 @@ pub(crate) const BALL_AHEAD: f32 = 0.14;
 /// Larger: it hovers where the skin of a limb is far from it. Smaller: limbs in the floor. Shown by the tests of `clearance`.
 pub(crate) const MOST_LIFT: f32 = 0.25;
 
+/// Depth in the floor of the skin of feet, hands and elbows for which a clip to get up by is not bent, as a share of the character's height.
+///
+/// Larger: fingers in the floor. Smaller: soles over it. Shown by the tests of `motions`.
+pub(crate) const LIMBS_SINK: f32 = 0.003;
+
 /// Height of a step with which a foot goes to where a clip has it, over its way, and the largest as a share of the character's height.
 ///
 /// Larger: it stamps. Smaller: feet slide. Shown by the tests of `rising`.
