@@ -33,7 +33,7 @@ struct Step {
 }
 
 /// Height by which a step is lifted, metres.
-const STEP_HEIGHT: f32 = 0.03;
+const STEP_HEIGHT: f32 = 0.05;
 /// Share of a step at each end in which the foot only goes up or down.
 const STRAIGHT_UP: f32 = 0.08;
 
@@ -188,7 +188,8 @@ pub(super) fn from_face() -> Clip {
         (2.55, nearly),
         (2.9, Posture::standing()),
     ];
-    clip("get_up_prone", &postures.map(|(at, posture)| Key { at, posture }), &[])
+    let steps = [Step { side: Left, from: 1.4, to: 1.75 }, Step { side: Right, from: 2.55, to: 2.9 }];
+    clip("get_up_prone", &postures.map(|(at, posture)| Key { at, posture }), &steps)
 }
 
 fn pressing_up() -> [Posture; 4] {

@@ -72,24 +72,21 @@ pub fn builtin_motions(def: &CharacterDef, analysis: &RigAnalysis) -> Result<Bui
     let actor = Body { rig: &actor_rig, analysis: &actor_analysis };
     let body = Body { rig, analysis };
     let clearing = Clearing::new(def, analysis);
-    let onto = |clip: &Clip| -> Result<Retargeted, RetargetError> {
+    let onto = |clip: &Clip, bends: bool| -> Result<Retargeted, RetargetError> {
         let mut fitted = retarget(actor, clip, body, &options(actor, body))?;
         if let Some(clearing) = &clearing {
             clearing.clear(&mut fitted);
+            for frame in 0..if bends { fitted.take.frames() } else { 0 } {
+                def.raise_limbs(fitted.take.pose_mut(frame));
+            }
             carry_riders(body, &mut fitted.take);
         }
         Ok(fitted)
     };
-    let cycle = |clip: &Clip| Ok(one_round(onto(&repeated(clip, PLAYED))?, clip));
+    let cycle = |clip: &Clip| Ok(one_round(onto(&repeated(clip, PLAYED), false)?, clip));
     let (walks, idles) = (cycle(&clips[motions.walk])?, cycle(&clips[motions.idle])?);
-    let rising = |clip: &Clip| -> Result<Retargeted, RetargetError> {
-        let mut fitted = onto(clip)?;
-        for frame in 0..fitted.take.frames() {
-            def.raise_limbs(fitted.take.pose_mut(frame));
-        }
-        Ok(fitted)
-    };
-    let (supine, prone) = (rising(&clips[motions.get_up_supine])?, rising(&clips[motions.get_up_prone])?);
+    let (supine, prone) =
+        (onto(&clips[motions.get_up_supine], true)?, onto(&clips[motions.get_up_prone], true)?);
     Ok(BuiltinMotions {
         walk: walks.clip(rig, &clips[motions.walk].name),
         walk_speed: motions.walk_speed * walks.scale / walks.pace,
