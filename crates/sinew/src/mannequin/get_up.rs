@@ -188,7 +188,11 @@ pub(super) fn from_face() -> Clip {
         (2.55, nearly),
         (2.9, Posture::standing()),
     ];
-    let steps = [Step { side: Left, from: 1.4, to: 1.75 }, Step { side: Right, from: 2.55, to: 2.9 }];
+    let steps = [
+        Step { side: Left, from: 1.4, to: 1.75 },
+        Step { side: Right, from: 2.15, to: 2.55 },
+        Step { side: Right, from: 2.55, to: 2.9 },
+    ];
     clip("get_up_prone", &postures.map(|(at, posture)| Key { at, posture }), &steps)
 }
 
@@ -276,7 +280,7 @@ fn stepping_up(on_all_fours: Posture) -> [Posture; 4] {
         chest: lean(2.0),
         neck: lean(-6.0),
         head: lean(-6.0),
-        right_foot: lifted(v(-0.105, 0.17, -0.22), 26.0, 8.0),
+        right_foot: lifted(v(-0.105, 0.20, -0.22), 24.0, 8.0),
         ..rising
     }
     .with_arms(Hanging { forward: 14.0, out: 9.0, elbow: 28.0 });

@@ -5,7 +5,9 @@
 //! the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper arm.
 
 use super::{Character, CharacterDef, GroundContact, State};
-use crate::character::tuning::{FOOT_SHARE, LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STRAIGHT_UP};
+use crate::character::tuning::{
+    FOOT_SHARE, LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STEPS_FROM, STRAIGHT_UP,
+};
 use crate::def::RagdollDef;
 use crate::fit::surface::carried;
 use crate::skin::surface::Surface;
@@ -98,7 +100,9 @@ impl Limb {
     fn stepped(&self, to: Transform, steps: Option<[Step; 2]>, def: &CharacterDef) -> Option<Transform> {
         let foot = FEET.into_iter().position(|part| part == self.end)?;
         let Step { from, far, along, over } = steps?[foot];
-        if along >= 1.0 || from == to {
+        // A foot of a leg that lies is on no sole that could slide: lifted, it would press the knee into the floor.
+        let stands = from.rotation * (def.bind()[self.bones.end].to_rigid().rotation.inverse() * Vec3::Y);
+        if along >= 1.0 || from == to || stands.y < STEPS_FROM {
             return None;
         }
         let way = to.translation - from.translation;

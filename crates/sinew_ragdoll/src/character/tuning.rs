@@ -94,7 +94,7 @@ pub(crate) const BALL_AHEAD: f32 = 0.14;
 
 /// Height by which a part of the body is raised out of the floor at most, as a share of the character's height.
 ///
-/// Larger: it hovers where the skin of a limb is far from it. Smaller: limbs in the floor. Shown by the tests of `clearance`.
+/// Larger: it hovers where the skin of a limb is far from it. Smaller: limbs in the floor. Shown by the tests of `rising`.
 pub(crate) const MOST_LIFT: f32 = 0.25;
 
 /// Depth in the floor of the skin of feet, hands and elbows for which a clip to get up by is not bent, as a share of the character's height.
@@ -108,6 +108,11 @@ pub(crate) const LIMBS_SINK: f32 = 0.003;
 pub(crate) const STEP_OVER: f32 = 0.6;
 /// See [`STEP_OVER`].
 pub(crate) const STEP_HEIGHT: f32 = 0.05;
+
+/// Cosine of the largest tilt of a foot from which it steps to where a clip has it.
+///
+/// Larger: feet slide. Smaller: legs that lie kick. Shown by the tests of `rising`.
+pub(crate) const STEPS_FROM: f32 = 0.0;
 
 /// Share of a step, at each end, in which the foot only goes up or down.
 ///
