@@ -132,7 +132,7 @@ pub struct CharacterDef {
     bind: Vec<Affine>,
     /// Feet that it stands on, if it is a humanoid.
     feet: Option<Feet>,
-    /// What keeps its skin out of the floor.
+    /// Points of its skin that meet the floor first.
     pub(super) clearance: Arc<Clearance>,
     /// Hair and the like, which swing.
     springs: SpringRig,

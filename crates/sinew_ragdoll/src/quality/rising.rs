@@ -30,13 +30,13 @@ pub fn measure_rising(input: &BakeInput<'_>, baked: &Baked, floor: Option<f32>) 
 }
 
 impl RisingQuality {
-    /// What is beyond its bar, of a character so high (metres).
+    /// Figures that are beyond their bars, of a character so high (metres).
     pub fn faults(&self, height: f32) -> Vec<Fault> {
         let mut faults = Vec::new();
         let help = "--clips FILE brings a clip to get up by that is made for this body";
         let mut hold = |figure: Option<f32>, bar: f32, what: &str| {
             // A figure that is no number is beyond it.
-            if let Some(figure) = figure.filter(|figure| !(*figure <= bar)) {
+            if let Some(figure) = figure.filter(|figure| *figure > bar || figure.is_nan()) {
                 let cm = 100.0 * figure;
                 let reason =
                     format!("getting up {what} by {cm:.1} cm, more than {:.1} cm; {help}", 100.0 * bar);
