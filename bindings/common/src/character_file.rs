@@ -128,7 +128,7 @@ impl CharacterFile {
             match set_motions_with_builtin(&mut def, &self.analysis, own.clone()) {
                 Ok(()) => return Ok(def),
                 Err(BuiltinError::Motion(error)) => return Err(failed(&error)),
-                Err(BuiltinError::Retarget(_)) => {}
+                Err(BuiltinError::Retarget(_) | BuiltinError::InFloor(_)) => {}
             }
             def.after_settling = AfterSettling::StayDown;
         }

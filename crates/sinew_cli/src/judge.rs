@@ -50,8 +50,9 @@ pub fn judge_life(
     }
     let mut faults = faults_of_ragdoll(&character.document.rig, def);
     faults.extend(faults_of_bake(life.fall.input, &life.fall.baked));
-    Fault::weigh(&faults, &mut verdict, &mut reasons);
     let skin = SkinReport::of(character, def, tested, Some(life));
+    faults.extend(skin.rising.faults(def.height));
+    Fault::weigh(&faults, &mut verdict, &mut reasons);
     verdict = SkinQuality::verdict(&skin.flaws, verdict);
     reasons.extend(skin.flaws.iter().map(|flaw| format!("skin: {flaw}")));
     Judgement { verdict, reasons, skin }

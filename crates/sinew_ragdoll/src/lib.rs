@@ -29,8 +29,8 @@ pub use bake::{BakeHit, BakeInput, Baked, HitEffect, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
 pub use character::{
     AfterSettling, Blow, Character, CharacterDef, CharacterEvent, Detail, Distances, GettingReady, Grab,
-    GrabPoint, Grip, HitBodies, InWorld, Limb, Locomotion, MotionError, MotionSet, Opening, Part, Preset,
-    State, Toughness,
+    GrabPoint, Grip, GroundContact, HitBodies, InWorld, Limb, Locomotion, MotionError, MotionSet, Opening,
+    Part, Preset, State, Toughness,
 };
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 pub use doctor::{Repair, cure, doctor};

@@ -148,6 +148,11 @@ pub(crate) const PAST_JOINT: f32 = 0.125;
 /// Larger: a sword in a hand is a part of it. Smaller: uneven sculpting is mended away. Shown by the tests of `rig_variants`.
 pub(crate) const BURDENED: f32 = 1.6;
 
+/// Distance of the skin of a tail from the shape that is nearest to it, from which on it is a spike, as a share of the character's size.
+///
+/// Larger: spikes in the floor. Smaller: hulls for thick tails. Shown by the tests of `skin`.
+pub(crate) const SPIKED: f32 = 0.04;
+
 /// Ratio of the volumes of twins from which on both get the shape that fits better.
 ///
 /// Larger: lopsided bodies. Smaller: what is really different is made alike. Shown by the tests of `build`.
@@ -465,3 +470,27 @@ pub(crate) const STRETCH_PERCENTILE: f32 = 0.999;
 ///
 /// Larger: sides are missed. Smaller: rounding of files is looked at. Shown by the tests of `skin`.
 pub(crate) const SAME_WEIGHTS: f32 = 1e-3;
+
+// quality/rising.rs
+
+/// Way that a foot may slide while a character gets up, as a share of its height, and the least of it, metres.
+///
+/// Larger: skating counts as good. Smaller: rounding is told. Shown by the tests of `rising`.
+pub(crate) const SLIDES: f32 = 0.017;
+/// See [`SLIDES`].
+pub(crate) const SLIDES_LEAST: f32 = 0.03;
+
+/// Jump of a pose in a frame of 1/30 s, as a share of the height.
+///
+/// Larger: pops count as good. Smaller: what is quick is told. Shown by the tests of `rising`.
+pub(crate) const JUMPS: f32 = 0.03;
+
+/// Height over the floor up to which a point of a sole stands on it, as a share of the character's height.
+///
+/// Larger: steps count as slides. Smaller: skating just over the floor is not seen. Shown by the tests of `rising`.
+pub(crate) const STANDS_NEAR: f32 = 0.008;
+
+/// Cosine of the largest tilt of a foot that stands on its sole.
+///
+/// Larger: feet that come down are looked at. Smaller: heels of legs that lie are. Shown by the tests of `rising`.
+pub(crate) const STANDS_UPRIGHT: f32 = 0.8;

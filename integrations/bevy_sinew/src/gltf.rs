@@ -9,7 +9,9 @@ use bevy_reflect::TypePath;
 use sinew::anim::{Clip, NoSkin, analyze};
 use sinew::formats::{ReadOptions, no_files, read_gltf};
 use sinew::motions::{BuiltinError, set_motions_with_builtin};
-use sinew::ragdoll::{BuildError, BuildOptions, CharacterDef, Locomotion, MotionError, MotionSet, build};
+use sinew::ragdoll::{
+    AfterSettling, BuildError, BuildOptions, CharacterDef, Locomotion, MotionError, MotionSet, build,
+};
 use std::sync::Arc;
 
 /// Reads characters from GLB files. Needs Bevy's `AssetPlugin`.
@@ -113,7 +115,13 @@ pub fn read_character(
     let mut def = CharacterDef::new(document.rig, ragdoll, &analysis.bind_model);
     let motions = motions(&def, document.clips, settings)?;
     if analysis.humanoid {
-        set_motions_with_builtin(&mut def, &analysis, motions)?;
+        match set_motions_with_builtin(&mut def, &analysis, motions.clone()) {
+            Err(BuiltinError::InFloor(_)) => {
+                def.after_settling = AfterSettling::StayDown;
+                def.set_motions(motions)?;
+            }
+            other => other?,
+        }
     } else {
         def.set_motions(motions)?;
     }

@@ -5,13 +5,44 @@
 
 use super::keys::{Key, RATE, between, record};
 use super::posture::{Foot, Hand, Hanging, Posture};
-use super::skeleton::Side::{Left, Right};
-use crate::anim::Clip;
+use super::skeleton::Side::{self, Left, Right};
+use crate::anim::{Clip, smoothstep};
 use crate::math::Vec3;
 
-fn clip(name: &str, keys: &[Key]) -> Clip {
+fn clip(name: &str, keys: &[Key], steps: &[Step]) -> Clip {
     let frames = (keys[keys.len() - 1].at * RATE + 0.5) as usize;
-    record(name, frames, |time| between(keys, time))
+    record(name, frames, |time| {
+        let mut posture = between(keys, time);
+        for step in steps.iter().filter(|step| step.from < time && time < step.to) {
+            let foot = |of: Posture| if step.side == Left { of.left_foot } else { of.right_foot };
+            let [from, to] = [step.from, step.to].map(|at| foot(between(keys, at)).ankle);
+            let ankle = step.ankle(from, to, time);
+            let moved = if step.side == Left { &mut posture.left_foot } else { &mut posture.right_foot };
+            moved.ankle = ankle;
+        }
+        posture
+    })
+}
+
+/// A foot that is set elsewhere: it goes up, over and down, and nothing of it slides.
+struct Step {
+    side: Side,
+    /// Seconds.
+    from: f32,
+    to: f32,
+}
+
+/// Height by which a step is lifted, metres.
+const STEP_HEIGHT: f32 = 0.05;
+/// Share of a step at each end in which the foot only goes up or down.
+const STRAIGHT_UP: f32 = 0.08;
+
+impl Step {
+    fn ankle(&self, from: Vec3, to: Vec3, time: f32) -> Vec3 {
+        let u = (time - self.from) / (self.to - self.from);
+        let along = smoothstep((u - STRAIGHT_UP) / (1.0 - 2.0 * STRAIGHT_UP));
+        from + (to - from) * along + Vec3::Y * (16.0 * u * u * (1.0 - u) * (1.0 - u) * STEP_HEIGHT)
+    }
 }
 
 fn v(x: f32, y: f32, z: f32) -> Vec3 {
@@ -52,7 +83,8 @@ pub(super) fn from_back() -> Clip {
         (2.4, nearly),
         (2.8, Posture::standing()),
     ];
-    clip("get_up_supine", &postures.map(|(at, posture)| Key { at, posture }))
+    let steps = [Step { side: Left, from: 0.9, to: 1.2 }, Step { side: Right, from: 0.9, to: 1.2 }];
+    clip("get_up_supine", &postures.map(|(at, posture)| Key { at, posture }), &steps)
 }
 
 fn sitting_up() -> [Posture; 3] {
@@ -74,7 +106,7 @@ fn sitting_up() -> [Posture; 3] {
         chest: lean(14.0),
         neck: lean(16.0),
         head: lean(8.0),
-        left_foot: Foot::flat(Left, 0.13, 0.14, 8.0),
+        left_foot: lifted(v(0.13, 0.16, 0.18), -25.0, 10.0),
         right_foot: lifted(v(-0.15, 0.10, 0.38), -50.0, 10.0),
         ..lying
     };
@@ -85,8 +117,8 @@ fn sitting_up() -> [Posture; 3] {
         chest: lean(8.0),
         neck: lean(6.0),
         head: lean(0.0),
-        left_foot: Foot::flat(Left, 0.115, 0.0, 8.0),
-        right_foot: Foot::flat(Right, -0.135, 0.17, 8.0),
+        left_foot: lifted(v(0.11, 0.15, 0.06), -8.0, 8.0),
+        right_foot: lifted(v(-0.13, 0.16, 0.16), -15.0, 8.0),
         left_hand: palm(0.34, -0.62, 10.0, 50.0),
         right_hand: palm(-0.34, -0.62, 10.0, 50.0),
     };
@@ -99,8 +131,8 @@ fn standing_up(sitting: Posture) -> [Posture; 4] {
         pelvis_turn: v(-15.0, -8.0, 10.0),
         spine: lean(20.0),
         chest: lean(12.0),
-        left_foot: Foot { knee_out: 20.0, ..Foot::flat(Left, 0.11, 0.0, 8.0) },
-        right_foot: Foot { knee_out: 20.0, ..Foot::flat(Right, -0.12, 0.02, 8.0) },
+        left_foot: Foot { knee_out: 20.0, ..Foot::flat(Left, 0.105, 0.0, 8.0) },
+        right_foot: Foot { knee_out: 20.0, ..Foot::flat(Right, -0.108, 0.0, 8.0) },
         left_hand: hand(0.28, 0.50, -0.02, 0.0),
         right_hand: palm(-0.34, -0.58, 20.0, 30.0),
         ..sitting
@@ -156,7 +188,12 @@ pub(super) fn from_face() -> Clip {
         (2.55, nearly),
         (2.9, Posture::standing()),
     ];
-    clip("get_up_prone", &postures.map(|(at, posture)| Key { at, posture }))
+    let steps = [
+        Step { side: Left, from: 1.4, to: 1.75 },
+        Step { side: Right, from: 2.15, to: 2.55 },
+        Step { side: Right, from: 2.55, to: 2.9 },
+    ];
+    clip("get_up_prone", &postures.map(|(at, posture)| Key { at, posture }), &steps)
 }
 
 fn pressing_up() -> [Posture; 4] {
@@ -243,7 +280,7 @@ fn stepping_up(on_all_fours: Posture) -> [Posture; 4] {
         chest: lean(2.0),
         neck: lean(-6.0),
         head: lean(-6.0),
-        right_foot: lifted(v(-0.105, 0.17, -0.22), 26.0, 8.0),
+        right_foot: lifted(v(-0.105, 0.20, -0.22), 24.0, 8.0),
         ..rising
     }
     .with_arms(Hanging { forward: 14.0, out: 9.0, elbow: 28.0 });

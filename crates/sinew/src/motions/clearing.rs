@@ -117,6 +117,7 @@ impl<'a> Clearing<'a> {
                     two_bone_ik(&def.rig, arm.limb, &goal, pose, &mut model);
                 }
             }
+            self.bring_props(pose, &mut model);
         }
     }
 

@@ -7,7 +7,7 @@ use crate::anim::legs::Legs;
 use crate::anim::retarget::{Body, Pace, RetargetError, RetargetOptions, Retargeted, carry_riders, retarget};
 use crate::anim::{Clip, RigAnalysis, analyze};
 use crate::mannequin::{Mannequin, mannequin};
-use crate::math::clamp;
+use crate::math::{clamp, min};
 use crate::ragdoll::{AfterSettling, CharacterDef, Locomotion, MotionError, MotionSet, Opening};
 use clearing::Clearing;
 
@@ -35,7 +35,16 @@ pub enum BuiltinError {
     /// A clip cannot be played.
     #[error(transparent)]
     Motion(#[from] MotionError),
+    /// On its body no way to get up comes out well.
+    #[error(
+        "on its build the built-in ways to get up do not come out: {0:.2} m of it, or of what it holds, would be in the floor"
+    )]
+    InFloor(f32),
 }
+
+/// Depth in the floor from which on a way to get up is left out, as a share of the character's height: what raising and bending limbs does
+/// not mend.
+const LEFT_OUT: f32 = 0.2;
 
 /// Carries the built-in motions over to a humanoid, by the roles of its joints; where its bodies would be in the
 /// floor it is raised, or its hands are. The time that they take grows with the root of
@@ -63,17 +72,21 @@ pub fn builtin_motions(def: &CharacterDef, analysis: &RigAnalysis) -> Result<Bui
     let actor = Body { rig: &actor_rig, analysis: &actor_analysis };
     let body = Body { rig, analysis };
     let clearing = Clearing::new(def, analysis);
-    let onto = |clip: &Clip| -> Result<Retargeted, RetargetError> {
+    let onto = |clip: &Clip, bends: bool| -> Result<Retargeted, RetargetError> {
         let mut fitted = retarget(actor, clip, body, &options(actor, body))?;
         if let Some(clearing) = &clearing {
             clearing.clear(&mut fitted);
+            for frame in 0..if bends { fitted.take.frames() } else { 0 } {
+                def.raise_limbs(fitted.take.pose_mut(frame));
+            }
             carry_riders(body, &mut fitted.take);
         }
         Ok(fitted)
     };
-    let cycle = |clip: &Clip| Ok(one_round(onto(&repeated(clip, PLAYED))?, clip));
+    let cycle = |clip: &Clip| Ok(one_round(onto(&repeated(clip, PLAYED), false)?, clip));
     let (walks, idles) = (cycle(&clips[motions.walk])?, cycle(&clips[motions.idle])?);
-    let (supine, prone) = (onto(&clips[motions.get_up_supine])?, onto(&clips[motions.get_up_prone])?);
+    let (supine, prone) =
+        (onto(&clips[motions.get_up_supine], true)?, onto(&clips[motions.get_up_prone], true)?);
     Ok(BuiltinMotions {
         walk: walks.clip(rig, &clips[motions.walk].name),
         walk_speed: motions.walk_speed * walks.scale / walks.pace,
@@ -106,10 +119,11 @@ impl BuiltinMotions {
 }
 
 /// Gives a character motions, and what they lack of the built-in ones: it will get up, and go on as its own looped clip says, or
-/// walk where it has none.
+/// walk where it has none. A way to get up that would be far in the floor on its body is left out.
 ///
 /// # Errors
-/// A character that is no humanoid, or a clip that cannot be played; its motions are then as they were.
+/// A character that is no humanoid, a clip that cannot be played, or no way to get up that comes out on its body; its motions are then as
+/// they were.
 ///
 /// # Panics
 /// As [`CharacterDef::set_motions`].
@@ -119,7 +133,18 @@ pub fn set_motions_with_builtin(
     own: MotionSet,
 ) -> Result<(), BuiltinError> {
     let builtin = builtin_motions(def, analysis)?;
-    def.set_motions(builtin.fill_in(own))?;
+    let depths = [2, 3].map(|fit| def.deepest_skin(&builtin.fits[fit].take));
+    let comes_out = depths.map(|depth| depth <= LEFT_OUT * def.ragdoll.height);
+    let is_filled = own.get_ups.is_empty();
+    if is_filled && comes_out == [false; 2] {
+        return Err(BuiltinError::InFloor(min(depths[0], depths[1])));
+    }
+    let mut motions = builtin.fill_in(own);
+    if is_filled {
+        let mut fits = comes_out.into_iter();
+        motions.get_ups.retain(|_| fits.next().unwrap_or(true));
+    }
+    def.set_motions(motions)?;
     def.after_settling = AfterSettling::GetUp;
     Ok(())
 }

@@ -67,7 +67,7 @@ impl RagdollReport<'_> {
             "calm_to_asleep_s": time(drop.calm_to_asleep_s),
             "settled_omega_max_rad_s": time(drop.settled_omega_max),
             "nonadjacent_overlap_max_m": number(drop.nonadjacent_overlap_max_m),
-            "skin": skin_json(&self.skin.figures),
+            "skin": skin_json(self.skin),
         });
         if let Some(gated) = self.gated {
             quality["gate"] = gate_json(gated);
@@ -84,7 +84,7 @@ impl RagdollReport<'_> {
         text += &quality_text(drop);
         text += "Thrown at a wall at 15 m/s\n";
         text += &quality_text(wall);
-        text += &skin_text(&self.skin.figures);
+        text += &skin_text(self.skin);
         if let Some(gated) = self.gated {
             text += &gate_text(gated);
         }

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use sinew::math::{Affine, Vec3};
 use sinew::ragdoll::bake::Frame;
 use sinew::ragdoll::build::takes;
+use sinew::ragdoll::quality::{RisingQuality, measure_rising};
 use sinew::ragdoll::skin::{Phase, Stage};
 use sinew::ragdoll::{DropReport, Flaw, RagdollDef, SkinMeter, SkinQuality, State};
 
@@ -17,6 +18,7 @@ const MOST_FRAMES: usize = 256;
 pub struct SkinReport {
     pub figures: SkinQuality,
     pub flaws: Vec<Flaw>,
+    pub rising: RisingQuality,
 }
 
 /// A character's life as it is shown: a bake, and the height of its floor, metres, where that is the same everywhere.
@@ -44,7 +46,10 @@ impl SkinReport {
         }
         let figures = meter.figures();
         let flaws = figures.flaws(def);
-        Self { figures, flaws }
+        let rising = life.map_or_else(RisingQuality::default, |life| {
+            measure_rising(life.fall.input, &life.fall.baked, life.floor)
+        });
+        Self { figures, flaws, rising }
     }
 }
 
@@ -98,7 +103,8 @@ impl Life<'_> {
 }
 
 /// The figures under the keys of the contract.
-pub fn skin_json(skin: &SkinQuality) -> Value {
+pub fn skin_json(report: &SkinReport) -> Value {
+    let SkinReport { figures: skin, rising, .. } = report;
     let known = |figure: Option<f32>| figure.map_or(Value::Null, number);
     json!({
         "covered_share": number(skin.covered_share),
@@ -113,6 +119,8 @@ pub fn skin_json(skin: &SkinQuality) -> Value {
         "standing_height_m": known(skin.standing_height_m),
         "rising_height_m": known(skin.rising_height_m),
         "up_height_m": known(skin.up_height_m),
+        "foot_slide_m": known(rising.foot_slide_m),
+        "pose_jump_m": known(rising.pose_jump_m),
         "contiguous": skin.contiguous,
         "airborne_s": known(skin.airborne_s),
         "size_m": number(skin.size),
@@ -120,7 +128,8 @@ pub fn skin_json(skin: &SkinQuality) -> Value {
 }
 
 /// The figures in a few lines.
-pub fn skin_text(skin: &SkinQuality) -> String {
+pub fn skin_text(report: &SkinReport) -> String {
+    let SkinReport { figures: skin, rising, .. } = report;
     let (cm, percent) = (|meters: f32| 100.0 * meters, |share: f32| 100.0 * share);
     let stretch = |share: f32| cm(share * skin.size);
     let clips = match (skin.clips_stretch_p999, skin.clips_stretch_max) {
@@ -128,11 +137,19 @@ pub fn skin_text(skin: &SkinQuality) -> String {
         _ => String::new(),
     };
     let height = |height: Option<f32>| height.map_or("unknown".to_owned(), |m| format!("{:+.1} cm", cm(m)));
+    let slides = match (rising.foot_slide_m, rising.pose_jump_m) {
+        (Some(slide), Some(jump)) => format!(
+            "  getting up feet slide by {:.1} cm at most, the pose jumps by {:.1} cm\n",
+            cm(slide),
+            cm(jump)
+        ),
+        _ => String::new(),
+    };
     format!(
         "The drawn skin\n  {:.1} % of it within {:.0} cm of its body; left and right differ by {:.1} cm; {}\n\
          \x20 it is stretched by {:.1} cm (1 ‰) and {:.1} cm at most{clips}\n\
          \x20 {:.2} m high, {:.2} m as drawn; lowest point at rest {}{}\n\
-         \x20 lowest point standing {}, getting up {}, up again {}\n",
+         \x20 lowest point standing {}, getting up {}, up again {}\n{}",
         percent(skin.covered_share),
         cm(skin.tolerance()),
         cm(skin.symmetry_error_m),
@@ -150,5 +167,6 @@ pub fn skin_text(skin: &SkinQuality) -> String {
         height(skin.standing_height_m),
         height(skin.rising_height_m),
         height(skin.up_height_m),
+        slides,
     )
 }

@@ -79,6 +79,7 @@ impl Character {
         pose.clear();
         pose.extend(ahead.pose().iter());
         self.place_feet(self.planting.ahead(seconds), &mut pose);
+        self.clear_floor(seconds, &mut pose);
         self.hold_feet(*place, seconds, &mut pose);
         self.bodies_of(&pose, *place, out);
         self.scratch.pose = pose;

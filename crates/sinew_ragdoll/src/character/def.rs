@@ -1,5 +1,6 @@
 //! Definition that characters of one kind share.
 
+use super::clearance::Clearance;
 use super::feet::Feet;
 use super::in_world::InWorld;
 use super::moves::{MotionError, Moves};
@@ -46,6 +47,17 @@ pub enum GettingReady {
     AtOnce,
     /// It is rolled over and its limbs are drawn to where the nearest clip begins, within bounds of force and time.
     RollOver,
+}
+
+/// Treatment of floor and feet while a character passes from its bodies to a get-up clip, and from that to what follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GroundContact {
+    /// None: the difference of the two poses dies away smoothly in every joint, though limbs may go through the floor on the way. Default.
+    #[default]
+    AsBlended,
+    /// The drawn skin stays out of the floor, as far as it was before and is in the clips, and feet that go elsewhere step there. Motions
+    /// are quicker for it.
+    Enforced,
 }
 
 /// Pose or clip of a character before anything has happened to it.
@@ -102,6 +114,8 @@ pub struct CharacterDef {
     pub after_settling: AfterSettling,
     /// Default roll over.
     pub getting_ready: GettingReady,
+    /// Default as blended.
+    pub ground_contact: GroundContact,
     /// Drive mode of its bodies while it falls: powered, toward the pose that its clips go on with. Default limp.
     pub falling: DriveMode,
     /// Seconds for which a limp character may go on moving before it gets up all the same. Default 6.
@@ -118,6 +132,8 @@ pub struct CharacterDef {
     bind: Vec<Affine>,
     /// Feet that it stands on, if it is a humanoid.
     feet: Option<Feet>,
+    /// Points of its skin that meet the floor first.
+    pub(super) clearance: Arc<Clearance>,
     /// Hair and the like, which swing.
     springs: SpringRig,
     /// Capes and the like, which are cloth in the world.
@@ -140,6 +156,7 @@ impl CharacterDef {
             springs: SpringRig::new(&rig, &ragdoll, &mapping, bind_model, &rig.springs),
             garments: GarmentRig::default(),
             feet: Feet::of(&rig, &ragdoll, &bind),
+            clearance: Arc::new(Clearance::of(&rig, &ragdoll, bind_model)),
             moves: Arc::new(Moves::none(&rig, &ragdoll, &mapping)),
             in_world: InWorld::of(&ragdoll),
             mapping,
@@ -150,6 +167,7 @@ impl CharacterDef {
             ragdoll,
             after_settling: AfterSettling::GetUp,
             getting_ready: GettingReady::RollOver,
+            ground_contact: GroundContact::default(),
             falling: DriveMode::Limp,
             patience: 6.0,
             body_settings: BodySettings::default(),
@@ -260,6 +278,10 @@ impl CharacterDef {
 
     pub(super) fn feet(&self) -> Option<&Feet> {
         self.feet.as_ref()
+    }
+
+    pub(super) fn clearance(&self) -> &Clearance {
+        &self.clearance
     }
 
     pub(super) fn moves(&self) -> &Moves {

@@ -136,6 +136,14 @@ impl Character {
     /// Puts the feet of a character that gets up, or has and still stands there, on the ground under them. Of one that goes on
     /// they come back to where its clips have them.
     pub(super) fn plant(&mut self, world: &World) {
+        self.go_on_passing(world.def().dt());
+        self.plant_feet(world);
+        if self.is_planted() {
+            self.show_planted();
+        }
+    }
+
+    fn plant_feet(&mut self, world: &World) {
         let def = self.def.clone();
         let Some(feet) = def.feet() else { return };
         let share = match self.state {
@@ -151,7 +159,6 @@ impl Character {
             .iter_mut()
             .for_each(|need| (need.height, need.slope) = (share * need.height, share * need.slope));
         self.planting.follow(goals, world.def().dt());
-        self.show_planted();
     }
 
     /// Makes the pose that is shown of the clips'.
@@ -159,6 +166,7 @@ impl Character {
         let mut planted = core::mem::take(&mut self.planted);
         planted.clone_from(&self.pose);
         self.place_feet(self.planting, &mut planted);
+        self.clear_floor(0.0, &mut planted);
         self.planted = planted;
     }
 

@@ -104,6 +104,7 @@ impl Character {
     /// Gives the pose back to the clips, by the moment of a get-up clip that is most like it.
     pub(super) fn get_up(&mut self, world: &mut World) {
         let lies = self.stance();
+        let lying = self.scratch.before.clone();
         let own = self.presence.as_ref().map(|_| self.own());
         self.lean = ground::slope(world, &lies.points, own);
         let def = self.def.clone();
@@ -111,6 +112,9 @@ impl Character {
         match choose(&moves.get_ups, &moves.landmarks, &lies) {
             Some(Choice { get_up, start, pose_similarity }) => {
                 self.settle_into(world, pose_similarity.motion, INTO_GET_UP);
+                let from = self.shown_depths();
+                self.pass(from, get_up.deepest, INTO_GET_UP);
+                self.pass_to(&lying, pose_similarity.motion, &start.bodies);
                 let once =
                     TrackDef { start: start.time, loop_mode: LoopMode::Once, ..TrackDef::new(get_up.id) };
                 self.rising = Rising::ByClip(self.animator.play(def.set(), &once));
@@ -118,6 +122,8 @@ impl Character {
             }
             None => {
                 self.settle_into(world, moves.landmarks.compare(&moves.upright, &lies).motion, INTO_STANDING);
+                let from = self.shown_depths();
+                self.pass(from, moves.deepest, INTO_STANDING);
                 def.play_looped(&mut self.animator, 0.0);
                 self.rising = Rising::Without(INTO_STANDING);
                 self.events.push(CharacterEvent::GettingUp { clip: None });
@@ -125,6 +131,9 @@ impl Character {
         }
         self.leave_bodies(world);
         self.state = State::GettingUp;
+        if self.is_planted() {
+            self.show_planted();
+        }
         self.stand_up(world, LYING_MOVER);
     }
 
@@ -180,8 +189,10 @@ impl Character {
         let def = self.def.clone();
         let moves = def.moves();
         let stands = self.stance();
+        let from = self.shown_depths();
         self.lean = Vec3::ZERO;
         self.settle_into(world, moves.landmarks.compare(&moves.upright, &stands).motion, INTO_LOOP);
+        self.pass(from, moves.deepest, INTO_LOOP);
         def.play_looped(&mut self.animator, 0.0);
         self.be_up();
     }

@@ -15,12 +15,13 @@ impl Character {
         let mut before = core::mem::take(&mut presence.before);
         let mut now = core::mem::take(&mut self.scratch.after);
         let place = self.world_from_character;
-        let pose = core::mem::take(if self.planting.is_over() { &mut self.pose } else { &mut self.planted });
+        let is_planted = self.is_planted();
+        let pose = core::mem::take(if is_planted { &mut self.planted } else { &mut self.pose });
         self.bodies_of(&pose, place, &mut now);
-        if self.planting.is_over() {
-            self.pose = pose;
-        } else {
+        if is_planted {
             self.planted = pose;
+        } else {
+            self.pose = pose;
         }
         let presence = self.presence.as_mut().expect("it was there");
         if before.len() != now.len() {

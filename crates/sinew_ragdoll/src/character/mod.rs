@@ -27,6 +27,7 @@
 
 mod animate;
 mod blows;
+mod clearance;
 mod def;
 mod detach;
 mod detail;
@@ -64,7 +65,7 @@ pub(crate) use floor::moved;
 pub(crate) use limp::{is_still, is_sunk, touches_world};
 pub(crate) use tuning::STILL_TIME;
 
-pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet, Opening};
+pub use def::{AfterSettling, CharacterDef, GettingReady, GroundContact, Locomotion, MotionSet, Opening};
 pub use distances::{Detail, Distances};
 pub use event::{CharacterEvent, State};
 pub use grab_point::GrabPoint;
@@ -80,6 +81,7 @@ use crate::garments::Worn;
 use crate::mapping::Physical;
 use crate::ragdoll::Ragdoll;
 use crate::springs::SpringSwing;
+use clearance::Passage;
 use in_world::Presence;
 use memory::{Planting, Preparation, Rising, Shown, Stillness};
 use sinew_anim::{Animator, Inertia, LocalTransform, Pose};
@@ -98,7 +100,9 @@ pub struct Character {
     lean: Vec3,
     /// Ground under its feet where it is not the floor of its clips.
     planting: Planting,
-    /// The pose with the feet planted, while they are.
+    /// Way from one pose to another on which it is kept out of the floor.
+    passage: Passage,
+    /// The pose with the feet planted and out of the floor, while that is another.
     planted: Vec<LocalTransform>,
     /// Springs and garments that it wears, and the pose with them; empty of a character that wears none.
     swing: SpringSwing,
@@ -177,6 +181,7 @@ impl Character {
             rising: Rising::Without(0.0),
             lean: Vec3::ZERO,
             planting: Planting::default(),
+            passage: Passage::default(),
             planted: Vec::new(),
             swing: SpringSwing::new(),
             worn: Worn::default(),
@@ -233,7 +238,17 @@ impl Character {
 
     /// [`pose`](Self::pose) as clips and bodies have it, with all springs and garments at rest.
     pub fn pose_without_springs(&self) -> &[LocalTransform] {
-        if self.planting.is_over() { &self.pose } else { &self.planted }
+        self.led_pose()
+    }
+
+    /// The pose that the clips lead to, with feet on the ground and nothing deep in the floor.
+    fn led_pose(&self) -> &[LocalTransform] {
+        if self.is_planted() { &self.planted } else { &self.pose }
+    }
+
+    /// True while what is shown is not quite the clips' pose.
+    fn is_planted(&self) -> bool {
+        !self.planting.is_over() || self.is_passing()
     }
 
     /// Pose of the character in the world. While it is limp: the one in which it went limp.

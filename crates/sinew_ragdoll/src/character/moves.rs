@@ -1,5 +1,6 @@
 //! A character's clips, ready to be played: made once for all characters of a kind.
 
+use super::clearance::{Depths, PARTS};
 use super::floor::{Raised, moved};
 use super::mirror::Mirror;
 use super::pose_similarity::{Landmarks, Stance};
@@ -37,6 +38,8 @@ pub(super) struct Moves {
     pub upright: Stance,
     /// Heights by which clips are raised to the floor of the rest pose.
     pub raised: Raised,
+    /// Deepest of the clips that loop, or of the rest pose.
+    pub deepest: Depths,
 }
 
 /// A way to get up.
@@ -47,6 +50,8 @@ pub(super) struct GetUp {
     pub id: ClipId,
     /// Moments at which it may begin.
     pub starts: Vec<Start>,
+    /// Deepest that its parts are in the floor.
+    pub deepest: Depths,
 }
 
 /// A moment of a get-up clip.
@@ -66,7 +71,8 @@ impl Moves {
         let (landmarks, set) = (Landmarks::new(ragdoll), AnimationSet::new(Skeleton::new(rig)));
         let upright = stance(rig, mapping, &landmarks, &rest_pose(rig));
         let raised = Raised::default();
-        Self { set, clips: Vec::new(), get_ups: Vec::new(), landmarks, upright, raised }
+        let deepest = [0.0; PARTS];
+        Self { set, clips: Vec::new(), get_ups: Vec::new(), landmarks, upright, raised, deepest }
     }
 
     pub fn new(def: &CharacterDef, motions: &MotionSet) -> Result<Self, MotionError> {
@@ -103,21 +109,37 @@ impl Moves {
         }
         let landmarks = Landmarks::new(&def.ragdoll);
         let mirror = Mirror::new(def);
+        let clearance = def.clearance();
         let mut get_ups = Vec::new();
         for &clip in &motions.get_ups {
             let take = flat_take(def, &motions.clips[clip], MIRRORED_FRAME);
             let starts = starts(def, &landmarks, &take);
-            get_ups.push(GetUp { clip, id: clips[clip], starts });
+            let deepest = clearance.deepest(def, &take);
+            get_ups.push(GetUp { clip, id: clips[clip], starts, deepest });
             let image = mirrored(def, &mirror, &take);
             let starts = self::starts(def, &landmarks, &image);
             let mut mirrored = built(def, &image.to_clip(&def.rig, &motions.clips[clip].name))?;
             mirrored.events = events_of(motions, clip);
             let id = set.add_clip(mirrored);
-            get_ups.push(GetUp { clip, id, starts });
+            let deepest = clearance.deepest(def, &image);
+            get_ups.push(GetUp { clip, id, starts, deepest });
         }
         let upright = stance(&def.rig, def.mapping(), &landmarks, &first_pose(def, motions));
-        Ok(Self { set, clips, get_ups, landmarks, upright, raised })
+        let deepest = clearance.deepest(def, &standing(def, motions));
+        Ok(Self { set, clips, get_ups, landmarks, upright, raised, deepest })
     }
+}
+
+/// Poses of the clips that loop, or the rest pose.
+fn standing(def: &CharacterDef, motions: &MotionSet) -> Take {
+    let mut poses = Take { frame_time: MIRRORED_FRAME, joints: def.rig.joints.len(), poses: Vec::new() };
+    for clip in motions.looped.into_iter().chain(motions.idle) {
+        poses.poses.extend(flat_take(def, &motions.clips[clip], MIRRORED_FRAME).poses);
+    }
+    if poses.poses.is_empty() {
+        poses.poses.extend_from_slice(def.rest());
+    }
+    poses
 }
 
 /// Moments of a clip, in order of time.

@@ -143,11 +143,11 @@ impl Character {
 
     /// Brings the bodies into the hands of physics, with joints between them.
     pub(super) fn become_bodies(&mut self, world: &mut World, rule: ContactRule) {
-        if !self.planting.is_over() {
+        if self.is_planted() {
             self.pose.clone_from(&self.planted);
         }
         let states = self.carried();
-        self.planting = Default::default();
+        (self.planting, self.passage) = Default::default();
         self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
         self.scratch.posed.clear();
         let def = self.def.clone();

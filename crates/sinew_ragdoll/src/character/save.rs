@@ -1,5 +1,6 @@
 //! A character's own state, beside the world's snapshot.
 
+use super::clearance::{Depths, PARTS, Passage};
 use super::distances::Detail;
 use super::grasp::Grasp;
 use super::in_world::Presence;
@@ -26,6 +27,8 @@ const DRESSED: u8 = 0x20;
 const LOST: u8 = 0x10;
 /// Bit of what is held: a grip that pulls follows.
 const GRASPS: u8 = 2;
+/// Bit of a state: the way from one pose to another follows at the end.
+const PASSING: u8 = 0x08;
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
 
@@ -46,7 +49,8 @@ impl Character {
         let dressed = if self.def.garments().is_empty() { 0 } else { DRESSED };
         let is_whole = self.lost.is_empty() && self.parting.is_empty() && self.freed.is_empty();
         let lost = if is_whole { 0 } else { LOST };
-        w.u8(state | in_world | wears | dressed | lost);
+        let passing = if self.is_passing() { PASSING } else { 0 };
+        w.u8(state | in_world | wears | dressed | lost | passing);
         if lost != 0 {
             self.save_lost(w);
         }
@@ -92,6 +96,9 @@ impl Character {
         if dressed != 0 {
             self.worn.save(w);
         }
+        if passing != 0 {
+            self.passage.save(w);
+        }
     }
 
     /// Brings back a saved state of a character of the same definition. Its bodies are those of the world's snapshot
@@ -104,7 +111,7 @@ impl Character {
             return Err(ReadError { at: 0, what: "is not a character of this version" });
         }
         let tag = r.u8()?;
-        let state = match tag & !(IN_WORLD | WEARS | DRESSED | LOST) {
+        let state = match tag & !(IN_WORLD | WEARS | DRESSED | LOST | PASSING) {
             0 => State::Animated,
             1 => State::Limp,
             2 => State::GettingUp,
@@ -137,6 +144,7 @@ impl Character {
         let swing = if tag & WEARS != 0 { SpringSwing::load(springs, r)? } else { SpringSwing::new() };
         let garments = self.def.garments();
         let worn = if tag & DRESSED != 0 { Worn::load(garments, r)? } else { Worn::default() };
+        let passage = if tag & PASSING != 0 { Passage::load(r)? } else { Passage::default() };
         let has_bodies = !matches!(state, State::Animated | State::GettingUp);
         let fits = pose.len() == joints
             && springs.is_empty() == (tag & WEARS == 0)
@@ -151,8 +159,8 @@ impl Character {
         (self.state, self.animator, self.rising, self.stillness) = (state, animator, rising, stillness);
         self.lingering = lingering;
         (self.drives, self.preparation, self.lean) = (drives, preparation, lean);
-        (self.world_from_character, self.climbing, self.planting) =
-            (world_from_character, climbing, planting);
+        (self.world_from_character, self.climbing) = (world_from_character, climbing);
+        (self.planting, self.passage) = (planting, passage);
         (self.pose, self.earlier, self.ragdoll) = (pose, earlier, ragdoll);
         (self.presence, self.flinching, self.speed) = (presence, flinching, speed);
         (self.lost, self.parting, self.freed) = (lost, parting, freed);
@@ -171,7 +179,7 @@ impl Character {
         if !base.is_empty() {
             self.physical.rebase(self.def.mapping(), &self.def.rig, base);
         }
-        if !self.planting.is_over() {
+        if self.is_planted() {
             self.show_planted();
         }
         self.swung.clear();
@@ -247,6 +255,25 @@ struct Apart {
     lost: Vec<(usize, BodyId)>,
     parting: Vec<(BodyId, BodyId)>,
     freed: Vec<BodyId>,
+}
+
+impl Passage {
+    fn save(&self, w: &mut Writer) {
+        let Self { from, to, ankles, far, age, seconds } = self;
+        from.iter().chain(to).chain(far).chain([age, seconds]).for_each(|&x| w.f32(x));
+        ankles.iter().for_each(|&ankle| w.transform(ankle));
+    }
+
+    fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut numbers = [0.0; 2 * PARTS + 4];
+        for number in &mut numbers {
+            *number = r.f32()?;
+        }
+        let part = |first: usize| -> Depths { core::array::from_fn(|part| numbers[first + part]) };
+        let [left, right, age, seconds] = core::array::from_fn(|k| numbers[2 * PARTS + k]);
+        let ankles = [r.transform()?, r.transform()?];
+        Ok(Self { from: part(0), to: part(PARTS), ankles, far: [left, right], age, seconds })
+    }
 }
 
 impl Presence {

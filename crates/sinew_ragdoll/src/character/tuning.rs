@@ -126,6 +126,40 @@ pub(crate) const WALKS_FROM: f32 = 0.3;
 /// As that of the animations. Shown by the tests of `slopes`.
 pub(crate) const BALL_AHEAD: f32 = 0.14;
 
+// character/clearance.rs
+
+/// Height by which a part of the body is raised out of the floor at most, as a share of the character's height.
+///
+/// Larger: it hovers where the skin of a limb is far from it. Smaller: limbs in the floor. Shown by the tests of `rising`.
+pub(crate) const MOST_LIFT: f32 = 0.25;
+
+/// Depth in the floor of the skin of feet, hands and elbows for which a clip to get up by is not bent, as a share of the character's height.
+///
+/// Larger: fingers in the floor. Smaller: soles over it. Shown by the tests of `motions`.
+pub(crate) const LIMBS_SINK: f32 = 0.003;
+
+/// Height of a step with which a foot goes to where a clip has it, over its way, and the largest as a share of the character's height.
+///
+/// Larger: it stamps. Smaller: feet slide. Shown by the tests of `rising`.
+pub(crate) const STEP_OVER: f32 = 0.6;
+/// See [`STEP_OVER`].
+pub(crate) const STEP_HEIGHT: f32 = 0.05;
+
+/// Cosine of the largest tilt of a foot from which it steps to where a clip has it.
+///
+/// Larger: feet slide. Smaller: legs that lie kick. Shown by the tests of `rising`.
+pub(crate) const STEPS_FROM: f32 = 0.0;
+
+/// Share of a step, at each end, in which the foot only goes up or down.
+///
+/// Larger: it jerks in between. Smaller: it slides. Shown by the tests of `rising`.
+pub(crate) const STRAIGHT_UP: f32 = 0.22;
+
+/// Length of a foot, as a share of the character's height, over which the ground under it may fall.
+///
+/// Larger: toes in the floor of a slope. Smaller: feet over it. Shown by the tests of `slopes`.
+pub(crate) const FOOT_SHARE: f32 = 0.15;
+
 // character/get_up.rs
 
 /// Time in which the bodies' pose dies away in a get-up clip, seconds.

@@ -18,7 +18,7 @@ impl Character {
         if is_bare && is_far && self.swing.is_away() {
             return;
         }
-        self.swung.extend_from_slice(if self.planting.is_over() { &self.pose } else { &self.planted });
+        self.swung.extend_from_slice(if self.is_planted() { &self.planted } else { &self.pose });
         self.swing_springs(world, is_far);
         self.show_springs();
         self.wear_garments(world);

@@ -25,7 +25,7 @@ pub mod surface;
 
 use crate::build::bones::{Bone, Bones};
 use crate::build::part::Part;
-use crate::tuning::{BURDENED, INTRICATE, LEAST_HALF, PAST_JOINT, SHRINK, TAPERED, UNLIKE, UNUSUAL};
+use crate::tuning::{BURDENED, INTRICATE, LEAST_HALF, PAST_JOINT, SHRINK, SPIKED, TAPERED, UNLIKE, UNUSUAL};
 use core::mem::discriminant;
 use patch::{Patch, Selection, Symmetry};
 use sinew_math::{Mat3, Rotation, Transform, Vec3, clamp, max, min};
@@ -131,8 +131,22 @@ fn fit_bone(bones: &Bones, bone: usize, shares: &[Share], choice: ShapeChoice) -
     match choice {
         ShapeChoice::Box => solid::fit_box(bones, bone, &patch),
         ShapeChoice::Capsule => round::fit_capsule(bones, bone, &patch),
-        ShapeChoice::Auto => nearest(bones, bone, &patch),
+        ShapeChoice::Auto => spiked(bones, bone, &patch).unwrap_or_else(|| nearest(bones, bone, &patch)),
     }
+}
+
+/// The hull of a part of a tail with the spikes on it, which would lie in the floor; `None` of a tail without any.
+fn spiked(bones: &Bones, bone: usize, patch: &Patch) -> Option<Fit> {
+    if bones.list[bone].part != Part::Tail {
+        return None;
+    }
+    let Fit { shape, character_from_body, .. } = nearest(bones, bone, patch);
+    let out = |sample: &patch::Sample| shape.signed_distance(&character_from_body, sample.point).0;
+    let farthest = patch.samples.iter().map(out).fold(0.0, max);
+    if farthest <= SPIKED * bones.size() {
+        return None;
+    }
+    solid::fit_whole_hull(&solid::fit_box(bones, bone, patch), patch)
 }
 
 /// Shape, of all kinds, with the least error, weighed by how well its kind suits the part.

@@ -17,6 +17,7 @@ mod faults;
 mod gate;
 mod meter;
 mod plausible;
+mod rising;
 mod verdict;
 
 pub use drop_test::{DropReport, Fallen, drop_test};
@@ -24,6 +25,7 @@ pub use faults::{Fault, faults_of_bake, faults_of_ragdoll};
 pub use gate::{Bar, GateReport, Miss, gate, gate_on, random_fall, random_ground, random_pose};
 pub use meter::QualityMeter;
 pub use plausible::Doubt;
+pub use rising::{RisingQuality, measure_rising};
 pub use verdict::{Verdict, judge, judge_bake};
 
 /// Figures of a character's falls, see the fields. Times are seconds of the world.

@@ -33,6 +33,7 @@ struct Vertex {
 pub(crate) struct Side(pub usize, pub usize);
 
 /// The drawn skin: meshes with a skin, and those without one that hang on a body's bone. Deterministic samples of large ones.
+#[derive(Clone, Debug)]
 pub(crate) struct Surface {
     slots: Vec<Slot>,
     vertices: Vec<Vertex>,
@@ -58,6 +59,37 @@ impl Surface {
         let sides = strided(raw.sides.len(), MOST_SIDES).into_iter().map(|i| raw.sides[i]).collect();
         let owners = raw.slots.iter().map(|slot| carried[slot.joint]).collect();
         Self { slots: raw.slots, vertices: raw.vertices, owners, sample, sides, stretchable }
+    }
+
+    /// These vertices alone, with the slots that move them; no sides.
+    pub fn part(&self, vertices: &[usize]) -> Self {
+        let mut part = Self {
+            slots: Vec::new(),
+            vertices: Vec::new(),
+            owners: Vec::new(),
+            sample: (0..vertices.len()).collect(),
+            sides: Vec::new(),
+            stretchable: 0.0,
+        };
+        let mut index = vec![u32::MAX; self.slots.len()];
+        for &vertex in vertices {
+            let mut vertex = self.vertices[vertex];
+            for (slot, weight) in vertex.slots.iter_mut().zip(vertex.weights) {
+                let old = *slot as usize;
+                if weight <= 0.0 {
+                    *slot = 0;
+                    continue;
+                }
+                if index[old] == u32::MAX {
+                    index[old] = part.slots.len() as u32;
+                    part.slots.push(self.slots[old]);
+                    part.owners.push(self.owners[old]);
+                }
+                *slot = index[old];
+            }
+            part.vertices.push(vertex);
+        }
+        part
     }
 
     /// Matrices from mesh space to that of `model`, one per slot: `palette` is cleared and filled.

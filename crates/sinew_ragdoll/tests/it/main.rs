@@ -30,6 +30,7 @@ mod quality;
 
 mod retaken;
 mod rig_variants;
+mod rising;
 mod rollback;
 mod settings;
 mod skin;

@@ -251,7 +251,7 @@ fn beasts_keep_their_feet() {
     for name in ["animals_Wolf", "animals_Cow", "dinosaurs_Stegosaurus"] {
         let Some((skin, def)) = skin_of(&format!("../rigs_wild/{name}.glb")) else { return };
         assert!(skin.edge_stretch_p999 < 0.1 && skin.contiguous, "{name}: {skin:?}");
-        assert!(skin.rest_height_m.is_some_and(|height| height > -0.07 * skin.size), "{name}: {skin:?}");
+        assert!(skin.rest_height_m.is_some_and(|height| height > -0.06 * skin.size), "{name}: {skin:?}");
         assert!(kinds(&skin.flaws(&def)).iter().all(|kind| *kind != FlawKind::Torn), "{name}: {skin:?}");
     }
 }

@@ -5,7 +5,7 @@ use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
 use sinew::anim::retarget::RetargetError;
 use sinew::motions::{BuiltinError, set_motions_with_builtin};
-use sinew::ragdoll::{AfterSettling, CharacterDef, Locomotion, MotionSet, RagdollDef};
+use sinew::ragdoll::{AfterSettling, CharacterDef, GroundContact, Locomotion, MotionSet, RagdollDef};
 
 /// Source of the clips by which a character gets up.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +31,7 @@ pub fn actor(
     let CharacterFile { name, document, analysis, .. } = file;
     let failed = |error| Failure::of_file(name, error);
     let mut def = CharacterDef::new(document.rig.clone(), ragdoll, &analysis.bind_model);
+    def.ground_contact = GroundContact::Enforced;
     let mut get_ups = def.get_ups_among(&motions.clips);
     get_ups.retain(|&clip| Some(clip) != motions.looped);
     let Motions { clips, looped, .. } = motions;

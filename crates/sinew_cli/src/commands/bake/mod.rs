@@ -206,7 +206,7 @@ impl Bake {
         notes.extend(skin.flaws.iter().map(|flaw| format!("skin: {flaw}")));
         notes.extend(self.write(&file, &fall)?);
         let mut report = self.report(&file, &fall, &once(notes));
-        report.json["skin"] = skin_json(&skin.figures);
+        report.json["skin"] = skin_json(&skin);
         report.json["springs"] = springs.to_json();
         report.json["garments"] = garments.to_json();
         Ok(report)

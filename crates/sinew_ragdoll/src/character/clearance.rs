@@ -1,0 +1,486 @@
+//! Skin out of the floor while a character passes from its bodies to a clip and from clip to clip. Joints turn from one pose to the other by
+//! themselves, and on the way feet, hands and knees would go through the floor on which both poses lie.
+//!
+//! Each part may be as deep as it is where the passage begins, and by and by as deep as it ever is in the clip. What is deeper is raised:
+//! the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper arm.
+
+use super::{Character, CharacterDef, GroundContact, State};
+use crate::character::tuning::{
+    FOOT_SHARE, LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STEPS_FROM, STRAIGHT_UP,
+};
+use crate::def::RagdollDef;
+use crate::fit::surface::carried;
+use crate::skin::surface::Surface;
+use sinew_anim::ik::{Pole, TwoBone, TwoBoneGoal, two_bone_ik};
+use sinew_anim::roles::{HUMANOID_ROLES, Role, Side};
+use sinew_anim::take::Take;
+use sinew_anim::{JointIdx, LocalTransform, Rig, local_to_model, smoothstep};
+use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
+
+/// Number of parts: the trunk with its knees, the feet, the hands, the elbows, of each pair the left one first.
+pub(super) const PARTS: usize = 7;
+const TRUNK: usize = 0;
+const FEET: [usize; 2] = [1, 2];
+const HANDS: [usize; 2] = [3, 4];
+const ELBOWS: [usize; 2] = [5, 6];
+
+/// Depth of each part in the floor, metres; negative above it, without end where there is no such part.
+pub(super) type Depths = [f32; PARTS];
+
+/// The passage that a character is in.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Passage {
+    /// Depths where it began, at least 0.
+    pub from: Depths,
+    /// Deepest of what it leads to, at least 0.
+    pub to: Depths,
+    /// Ankles where it began, world, left and right.
+    pub ankles: [Transform; 2],
+    /// Least way that the feet have to go, metres.
+    pub far: [f32; 2],
+    /// Seconds since it began, and how long it takes.
+    pub age: f32,
+    pub seconds: f32,
+}
+
+/// A foot on its way from where it stood to where a clip has it.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    /// Character space.
+    from: Transform,
+    /// Least way to where it goes, metres.
+    far: f32,
+    /// Share of the way.
+    along: f32,
+    /// Height over it, as a share of the whole height of the step.
+    over: f32,
+}
+
+impl Passage {
+    /// Depths that parts may have after so many seconds more.
+    fn allowed(&self, later: f32) -> Depths {
+        let share = if self.seconds > 0.0 { smoothstep((self.age + later) / self.seconds) } else { 1.0 };
+        core::array::from_fn(|part| self.from[part] + (self.to[part] - self.from[part]) * share)
+    }
+
+    /// Steps of the feet: at once while it lies, one after the other once it stands.
+    fn steps(&self, later: f32, state: State, place: Transform) -> [Step; 2] {
+        let u = if self.seconds > 0.0 { (self.age + later) / self.seconds } else { f32::INFINITY };
+        [0, 1].map(|foot| {
+            let own = if state == State::GettingUp { u } else { u - foot as f32 };
+            let along = smoothstep((own - STRAIGHT_UP) / (1.0 - 2.0 * STRAIGHT_UP));
+            let over = smoothstep(own / STRAIGHT_UP) * smoothstep((1.0 - own) / STRAIGHT_UP);
+            Step { from: place.inverse() * self.ankles[foot], far: self.far[foot], along, over }
+        })
+    }
+
+    /// Share of a lift that is given: it goes back to none once the passage is over.
+    fn share(&self, later: f32, state: State) -> f32 {
+        match state {
+            State::GettingUp => 1.0,
+            State::Animated if self.seconds > 0.0 => {
+                1.0 - smoothstep((self.age + later) / self.seconds - 1.0)
+            }
+            _ => 0.0,
+        }
+    }
+}
+
+/// A limb whose end can be lifted by itself.
+#[derive(Clone, Copy, Debug)]
+struct Limb {
+    bones: TwoBone,
+    /// Part of its end, and of its middle joint where that is raised by the limb.
+    end: usize,
+    middle: Option<usize>,
+}
+
+impl Limb {
+    /// An ankle that steps to `to`; `None` where it is there.
+    fn stepped(&self, to: Transform, steps: Option<[Step; 2]>, def: &CharacterDef) -> Option<Transform> {
+        let foot = FEET.into_iter().position(|part| part == self.end)?;
+        let Step { from, far, along, over } = steps?[foot];
+        // A foot of a leg that lies is on no sole that could slide: lifted, it would press the knee into the floor.
+        let stands = from.rotation * (def.bind()[self.bones.end].to_rigid().rotation.inverse() * Vec3::Y);
+        if along >= 1.0 || from == to || stands.y < STEPS_FROM {
+            return None;
+        }
+        let way = to.translation - from.translation;
+        let far = max(Vec3::new(way.x, 0.0, way.z).length(), far);
+        let height = min(STEP_OVER * far, STEP_HEIGHT * def.ragdoll.height);
+        let place = from.translation + way * along + Vec3::Y * (over * height);
+        Some(Transform::new(place, from.rotation.nlerp(to.rotation, along)))
+    }
+}
+
+/// Points of the skin that reach the floor first, and what raises them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Clearance {
+    /// Skin of each part.
+    parts: Vec<Surface>,
+    limbs: Vec<Limb>,
+    /// Joints beside the limb that carries them, each with the joint that it goes with.
+    strays: Vec<(JointIdx, JointIdx)>,
+}
+
+impl Clearance {
+    /// From the drawn skin; `bind` is the bind pose in model space.
+    pub fn of(rig: &Rig, def: &RagdollDef, bind: &[Affine]) -> Self {
+        let surface = Surface::of(rig, def);
+        if surface.sample.is_empty() {
+            return Self::default();
+        }
+        let limbs = limbs(rig, def);
+        let mut palette = Vec::new();
+        surface.palette(bind, &mut palette);
+        let mut chosen: [Vec<usize>; PARTS] = Default::default();
+        for body in 0..def.bodies.len() {
+            let own = surface.sample.iter().copied().filter(|&vertex| surface.owner(vertex) == Some(body));
+            let places: Vec<(usize, Vec3)> =
+                own.map(|vertex| (vertex, surface.place(&palette, vertex))).collect();
+            for direction in directions() {
+                let along = |place: &(usize, Vec3)| place.1.dot(direction);
+                let outmost = places.iter().reduce(|a, b| if along(b) > along(a) { b } else { a });
+                if let Some(&(vertex, place)) = outmost {
+                    let part = part_of(def, &limbs, bind, body, place);
+                    part.into_iter().for_each(|part| chosen[part].push(vertex));
+                }
+            }
+        }
+        let parts = chosen.map(|mut vertices| {
+            vertices.sort_unstable();
+            vertices.dedup();
+            surface.part(&vertices)
+        });
+        Self { parts: parts.into(), strays: strays(rig, def), limbs }
+    }
+
+    fn depth(&self, part: usize, model: &[Affine], palette: &mut Vec<Affine>) -> f32 {
+        let surface = &self.parts[part];
+        surface.palette(model, palette);
+        let heights = surface.sample.iter().map(|&vertex| surface.place(palette, vertex).y);
+        -heights.fold(f32::INFINITY, min)
+    }
+
+    /// Depths of all parts; `model` is in character space.
+    pub fn depths(&self, model: &[Affine]) -> Depths {
+        let mut palette = Vec::new();
+        if self.parts.is_empty() {
+            return [f32::NEG_INFINITY; PARTS];
+        }
+        core::array::from_fn(|part| self.depth(part, model, &mut palette))
+    }
+
+    /// Deepest of each part over some poses, at least 0.
+    pub fn deepest(&self, def: &CharacterDef, take: &Take) -> Depths {
+        let (mut model, mut deepest) = (Vec::new(), [0.0; PARTS]);
+        for frame in 0..take.frames() {
+            local_to_model(&def.rig, take.pose(frame), &def.mapping().character_from_model(), &mut model);
+            deepest = larger(deepest, self.depths(&model));
+        }
+        deepest
+    }
+
+    /// Raises what is deeper than it may be, by `share` of that.
+    fn clear(
+        &self,
+        def: &CharacterDef,
+        allowed: &Depths,
+        share: f32,
+        steps: Option<[Step; 2]>,
+        pose: &mut [LocalTransform],
+        model: &mut Vec<Affine>,
+    ) {
+        let (rig, root) = (&def.rig, def.mapping().character_from_model());
+        local_to_model(rig, pose, &root, model);
+        let depths = self.depths(model);
+        let most = MOST_LIFT * def.ragdoll.height;
+        let lift = |depth: f32, part: usize| min(max(share * (depth - allowed[part]), 0.0), most);
+        let lifts: Depths = core::array::from_fn(|part| lift(depths[part], part));
+        let ends: Vec<Transform> = self.limbs.iter().map(|limb| model[limb.bones.end].to_rigid()).collect();
+        let steps: Vec<Option<Transform>> =
+            self.limbs.iter().zip(&ends).map(|(limb, &end)| limb.stepped(end, steps, def)).collect();
+        if lifts.iter().all(|&lift| lift <= 0.0) && steps.iter().all(Option::is_none) {
+            return;
+        }
+        let carried: Vec<Transform> = self
+            .strays
+            .iter()
+            .map(|&(joint, carrier)| model[carrier].to_rigid().inverse() * model[joint].to_rigid())
+            .collect();
+        if lifts[TRUNK] > 0.0 {
+            let up = Transform::new(Vec3::Y * lifts[TRUNK], Rotation::IDENTITY);
+            def.mapping().reframe(pose, up, Transform::IDENTITY);
+            local_to_model(rig, pose, &root, model);
+        }
+        let mut palette = Vec::new();
+        for ((limb, was), step) in self.limbs.iter().zip(ends).zip(steps) {
+            let bones = limb.bones;
+            if lifts[TRUNK] > 0.0 || lifts[limb.end] > 0.0 || step.is_some() {
+                let mut wanted = step.unwrap_or(was);
+                wanted.translation.y += if step.is_some() { 0.0 } else { lifts[limb.end] };
+                put(rig, bones, wanted, &root, pose, model);
+                let up = lift(self.depth(limb.end, model, &mut palette), limb.end);
+                if step.is_some() && up > 0.0 {
+                    wanted.translation.y += up;
+                    put(rig, bones, wanted, &root, pose, model);
+                }
+            }
+            let Some(middle) = limb.middle else { continue };
+            let up = lift(self.depth(middle, model, &mut palette), middle);
+            let bone = model[bones.lower].translation - model[bones.upper].translation;
+            if up > 0.0 && bone.length() > 0.0 {
+                let turned = Rotation::from_arc(bone.normalize(), (bone + Vec3::Y * up).normalize());
+                let rotation = turned * model[bones.upper].to_rigid().rotation;
+                turn_to(rig, bones.upper, rotation, &root, pose, model);
+            }
+        }
+        for (&(joint, carrier), at) in self.strays.iter().zip(carried) {
+            let parent = rig.joints[joint].parent.map_or(root, |parent| model[parent]);
+            let place = model[carrier].to_rigid() * at;
+            let translation = parent.inverse().point(place.translation);
+            if translation.is_finite() {
+                pose[joint].translation = translation;
+                pose[joint].rotation = (parent.to_rigid().rotation.inverse() * place.rotation).normalize();
+                local_to_model(rig, pose, &root, model);
+            }
+        }
+    }
+}
+
+/// Brings the end of a limb to a place, in the axes of `model`.
+fn put(
+    rig: &Rig,
+    bones: TwoBone,
+    end: Transform,
+    root: &Affine,
+    pose: &mut [LocalTransform],
+    model: &mut Vec<Affine>,
+) {
+    let middle = (model[bones.upper].translation + end.translation) * 0.5;
+    let side = model[bones.lower].translation - middle;
+    two_bone_ik(rig, bones, &TwoBoneGoal::at(end.translation, Pole::Keep(side)), pose, model);
+    turn_to(rig, bones.end, end.rotation, root, pose, model);
+}
+
+/// Gives a joint a rotation in the axes of `model`; what hangs on it goes along.
+fn turn_to(
+    rig: &Rig,
+    joint: JointIdx,
+    rotation: Rotation,
+    root: &Affine,
+    pose: &mut [LocalTransform],
+    model: &mut Vec<Affine>,
+) {
+    let parent = rig.joints[joint].parent.map_or(*root, |parent| model[parent]);
+    pose[joint].rotation = (parent.to_rigid().rotation.inverse() * rotation).normalize();
+    local_to_model(rig, pose, root, model);
+}
+
+fn larger(a: Depths, b: Depths) -> Depths {
+    core::array::from_fn(|part| max(a[part], b[part]))
+}
+
+/// Legs and arms by the roles of the bodies; a limb that is no chain of three joints is left out.
+fn limbs(rig: &Rig, def: &RagdollDef) -> Vec<Limb> {
+    let joint = |role: Role| def.bodies.iter().find(|body| body.role == role.name()).map(|body| body.joint);
+    let hangs = |joint: JointIdx, above: JointIdx| {
+        core::iter::successors(rig.joints[joint].parent, |&i| rig.joints[i].parent).any(|i| i == above)
+    };
+    let chain = |[upper, lower, end]: [Role; 3]| {
+        let bones = TwoBone { upper: joint(upper)?, lower: joint(lower)?, end: joint(end)? };
+        (hangs(bones.lower, bones.upper) && hangs(bones.end, bones.lower)).then_some(bones)
+    };
+    let mut limbs = Vec::new();
+    for (k, side) in [Side::Left, Side::Right].into_iter().enumerate() {
+        let leg = chain([Role::UpperLeg(side), Role::LowerLeg(side), Role::Foot(side)]);
+        let arm = chain([Role::UpperArm(side), Role::LowerArm(side), Role::Hand(side)]);
+        limbs.extend(leg.map(|bones| Limb { bones, end: FEET[k], middle: None }));
+        limbs.extend(arm.map(|bones| Limb { bones, end: HANDS[k], middle: Some(ELBOWS[k]) }));
+    }
+    limbs
+}
+
+/// The part of a point of a body's skin, in model space as bound; `None` of tails and the like, for which nobody stands up higher.
+fn part_of(def: &RagdollDef, limbs: &[Limb], bind: &[Affine], body: usize, place: Vec3) -> Option<usize> {
+    let is_human = |body: usize| {
+        Role::from_name(&def.bodies[body].role).is_some_and(|role| HUMANOID_ROLES.contains(&role))
+    };
+    let parent = |body: usize| def.joints.iter().find(|joint| joint.child == body).map(|joint| joint.parent);
+    // What is held or worn goes with the part that bears it.
+    let bearers = core::iter::successors(Some(body), |&body| parent(body));
+    let Some(bearer) = bearers.into_iter().find(|&body| is_human(body)) else { return Some(TRUNK) };
+    let is_beyond = |joint: JointIdx, of: JointIdx| {
+        (place - bind[joint].translation).length() < (place - bind[of].translation).length()
+    };
+    for limb in limbs {
+        let joint = def.bodies[bearer].joint;
+        let TwoBone { upper, lower, end } = limb.bones;
+        let above =
+            core::iter::successors(Some(bearer), |&body| parent(body)).map(|body| def.bodies[body].joint);
+        if above.into_iter().any(|joint| joint == end) {
+            return Some(limb.end);
+        }
+        if joint == lower {
+            let middle = limb.middle.unwrap_or(TRUNK);
+            return Some(if is_beyond(end, lower) { limb.end } else { middle });
+        }
+        if joint == upper && is_beyond(lower, upper) {
+            return Some(limb.middle.unwrap_or(TRUNK));
+        }
+    }
+    is_human(body).then_some(TRUNK)
+}
+
+/// Joints that do not hang on the joint of the body that carries them, topmost ones only.
+fn strays(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, JointIdx)> {
+    let hangs = |joint: JointIdx, above: JointIdx| {
+        core::iter::successors(Some(joint), |&i| rig.joints[i].parent).any(|i| i == above)
+    };
+    let of_bodies = def.joints.iter().filter_map(|joint| {
+        let (child, parent) = (def.bodies[joint.child].joint, def.bodies[joint.parent].joint);
+        (!hangs(child, parent)).then_some((child, parent))
+    });
+    let carried = carried(rig, def.bodies.iter().map(|body| (body.joint, body.merged.as_slice())));
+    let of_joints = (0..rig.joints.len()).filter_map(|joint| {
+        let carrier = def.bodies[carried[joint]?].joint;
+        let parent = rig.joints[joint].parent.and_then(|parent| carried[parent]);
+        (!hangs(joint, carrier) && parent != carried[joint]).then_some((joint, carrier))
+    });
+    // What carries its own carrier goes along with nothing.
+    of_bodies.chain(of_joints).filter(|&(joint, carrier)| !hangs(carrier, joint)).collect()
+}
+
+/// Directions to sides, edges and corners of a box.
+fn directions() -> impl Iterator<Item = Vec3> {
+    let steps = [-1.0_f32, 0.0, 1.0];
+    let all = steps.into_iter().flat_map(move |x| steps.into_iter().map(move |y| (x, y)));
+    all.flat_map(move |(x, y)| steps.into_iter().map(move |z| Vec3::new(x, y, z)))
+        .filter(|direction| *direction != Vec3::ZERO)
+        .map(Vec3::normalize)
+}
+
+/// A foot of a humanoid.
+pub(crate) struct Sole<'a> {
+    pub joint: JointIdx,
+    /// Up in its own axes where it stands flat.
+    pub up: Vec3,
+    skin: &'a Surface,
+}
+
+impl Sole<'_> {
+    /// Its outmost points, in the space of `model`.
+    pub fn places(&self, model: &[Affine], palette: &mut Vec<Affine>) -> Vec<Vec3> {
+        self.skin.palette(model, palette);
+        self.skin.sample.iter().map(|&vertex| self.skin.place(palette, vertex)).collect()
+    }
+}
+
+impl CharacterDef {
+    /// Feet that can stand.
+    pub(crate) fn soles(&self) -> Vec<Sole<'_>> {
+        let legs = self.clearance.limbs.iter().filter(|limb| FEET.contains(&limb.end));
+        let sole = |limb: &Limb| {
+            let joint = limb.bones.end;
+            let up = self.bind()[joint].to_rigid().rotation.inverse() * Vec3::Y;
+            Sole { joint, up, skin: &self.clearance.parts[limb.end] }
+        };
+        legs.map(sole).collect()
+    }
+
+    /// Depth of the deepest point of the drawn skin in the floor over a motion of its rig, metres: with what it holds; at least 0, and 0 of a rig
+    /// without skin.
+    pub fn deepest_skin(&self, take: &Take) -> f32 {
+        self.clearance.deepest(self, take).into_iter().fold(0.0, max)
+    }
+
+    /// Raises feet, hands and elbows whose drawn skin is in the floor of a pose, by bending their limbs. The pose has a local transform per
+    /// joint of the rig.
+    pub fn raise_limbs(&self, pose: &mut [LocalTransform]) {
+        if !self.clearance.parts.is_empty() {
+            let mut allowed = [LIMBS_SINK * self.ragdoll.height; PARTS];
+            allowed[TRUNK] = f32::INFINITY;
+            self.clearance.clear(self, &allowed, 1.0, None, pose, &mut Vec::new());
+        }
+    }
+}
+
+impl Character {
+    /// Depths of the pose that is shown, at least 0, and its ankles in the world.
+    pub(super) fn shown_depths(&mut self) -> (Depths, [Transform; 2]) {
+        let def = self.def.clone();
+        let mut model = core::mem::take(&mut self.scratch.model);
+        local_to_model(&def.rig, self.led_pose(), &def.mapping().character_from_model(), &mut model);
+        let depths = larger(def.clearance().depths(&model), [0.0; PARTS]);
+        let ankle = |part: usize| {
+            let limb = def.clearance().limbs.iter().find(|limb| limb.end == part);
+            limb.map_or(Transform::IDENTITY, |limb| {
+                self.world_from_character * model[limb.bones.end].to_rigid()
+            })
+        };
+        let ankles = FEET.map(ankle);
+        self.scratch.model = model;
+        (depths, ankles)
+    }
+
+    /// Begins a passage of so many seconds to what is no deeper than `to`, from the pose that was shown.
+    pub(super) fn pass(&mut self, (from, ankles): (Depths, [Transform; 2]), to: Depths, seconds: f32) {
+        self.passage = match self.def.ground_contact {
+            GroundContact::Enforced => Passage { from, to, ankles, far: [0.0; 2], age: 0.0, seconds },
+            GroundContact::AsBlended => Passage::default(),
+        };
+    }
+
+    /// The passage just begun leads to where these bodies are, in the world: feet that go far are lifted at once.
+    pub(super) fn pass_to(&mut self, bodies: &[Transform], motion: Transform, to: &[Transform]) {
+        let def = self.def.clone();
+        if !self.is_passing() {
+            return;
+        }
+        for (foot, part) in FEET.into_iter().enumerate() {
+            let limb = def.clearance().limbs.iter().find(|limb| limb.end == part);
+            let body =
+                limb.and_then(|limb| def.ragdoll.bodies.iter().position(|body| body.joint == limb.bones.end));
+            if let Some(body) = body {
+                let way = motion.point(to[body].translation) - bodies[body].translation;
+                self.passage.far[foot] = Vec3::new(way.x, 0.0, way.z).length();
+            }
+        }
+    }
+
+    /// Goes on with it by a step.
+    pub(super) fn go_on_passing(&mut self, dt: f32) {
+        if !self.is_passing() {
+            return;
+        }
+        self.passage.age += dt;
+        if self.state == State::Animated && self.passage.age >= 2.0 * self.passage.seconds {
+            self.passage = Passage::default();
+        }
+    }
+
+    /// True while what is shown is kept out of the floor.
+    pub(super) fn is_passing(&self) -> bool {
+        self.passage != Passage::default()
+    }
+
+    /// Raises a pose of the clips out of the floor, as it will be after `later` seconds more.
+    pub(super) fn clear_floor(&mut self, later: f32, pose: &mut [LocalTransform]) {
+        let share = if self.is_passing() { self.passage.share(later, self.state) } else { 0.0 };
+        if share <= 0.0 || self.def.clearance().parts.is_empty() {
+            return;
+        }
+        let mut allowed = self.passage.allowed(later);
+        let planting = self.planting.ahead(later);
+        for (foot, part) in FEET.into_iter().enumerate() {
+            // Feet on uneven ground go where it is.
+            allowed[part] += max(-planting.heights[foot], 0.0)
+                + planting.slopes[foot].abs() * FOOT_SHARE * self.def.ragdoll.height;
+        }
+        let def = self.def.clone();
+        let mut model = core::mem::take(&mut self.scratch.model);
+        let steps = self.passage.steps(later, self.state, self.world_from_character);
+        def.clearance().clear(&def, &allowed, share, Some(steps), pose, &mut model);
+        self.scratch.model = model;
+    }
+}

@@ -1,0 +1,115 @@
+//! Quality of getting up: feet that slide, and poses that jump where bodies hand over to clips.
+
+use super::{Fault, Verdict};
+use crate::bake::{BakeInput, Baked, Frame};
+use crate::character::{CharacterDef, State};
+use crate::tuning::{JUMPS, SLIDES, SLIDES_LEAST, STANDS_NEAR, STANDS_UPRIGHT};
+use sinew_anim::local_to_model;
+use sinew_math::{Affine, Vec3, max, min};
+
+/// Figures of getting up, metres; `None` where a character does not get up, or has no feet with skin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RisingQuality {
+    /// Longest way that a foot slides over the floor while it stands flat on it, over the stances of all get-ups. Only on a level floor.
+    pub foot_slide_m: Option<f32>,
+    /// Farthest that a body goes in the frame of a hand-over beyond what it does in the frames before and after: from bodies to a clip, and
+    /// from a get-up to what follows.
+    pub pose_jump_m: Option<f32>,
+}
+
+/// Measures all get-ups of a bake; `floor` is the height of the level floor (metres), where there is one.
+///
+/// # Panics
+/// If the bake is not one of the input's.
+pub fn measure_rising(input: &BakeInput<'_>, baked: &Baked, floor: Option<f32>) -> RisingQuality {
+    let def = &*input.character;
+    RisingQuality {
+        foot_slide_m: floor.and_then(|floor| foot_slide(def, baked, floor)),
+        pose_jump_m: pose_jump(def, baked),
+    }
+}
+
+impl RisingQuality {
+    /// Figures that are beyond their bars, of a character so high (metres).
+    pub fn faults(&self, height: f32) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        let help = "--clips FILE brings a clip to get up by that is made for this body";
+        let mut hold = |figure: Option<f32>, bar: f32, what: &str| {
+            // A figure that is no number is beyond it.
+            if let Some(figure) = figure.filter(|figure| *figure > bar || figure.is_nan()) {
+                let cm = 100.0 * figure;
+                let reason =
+                    format!("getting up {what} by {cm:.1} cm, more than {:.1} cm; {help}", 100.0 * bar);
+                faults.push(Fault { at_most: Verdict::Usable, reason });
+            }
+        };
+        hold(self.foot_slide_m, max(SLIDES * height, SLIDES_LEAST), "a foot slides");
+        hold(self.pose_jump_m, JUMPS * height, "the pose jumps");
+        faults
+    }
+}
+
+fn model_of(def: &CharacterDef, baked: &Baked, frame: &Frame, model: &mut Vec<Affine>) {
+    local_to_model(&def.rig, &frame.pose, &baked.world_from_model, model);
+}
+
+fn foot_slide(def: &CharacterDef, baked: &Baked, floor: f32) -> Option<f32> {
+    let near = STANDS_NEAR * def.ragdoll.height;
+    let mut farthest = None;
+    let (mut model, mut palette) = (Vec::new(), Vec::new());
+    for foot in def.soles() {
+        // Points and slide of the stance so far.
+        let mut stance: Option<(Vec<Vec3>, f32)> = None;
+        for frame in &baked.frames {
+            if frame.state != State::GettingUp {
+                stance = None;
+                continue;
+            }
+            model_of(def, baked, frame, &mut model);
+            let up = model[foot.joint].to_rigid().rotation * foot.up;
+            let places = foot.places(&model, &mut palette);
+            let is_on = |place: Vec3| place.y < floor + near;
+            if up.y < STANDS_UPRIGHT || !places.iter().any(|&place| is_on(place)) {
+                stance = None;
+                continue;
+            }
+            let mut slide = 0.0;
+            if let Some((before, sum)) = stance {
+                let both = before.iter().zip(&places).filter(|(a, b)| is_on(**a) && is_on(**b));
+                let ways = both.map(|(a, b)| ((b.x - a.x) * (b.x - a.x) + (b.z - a.z) * (b.z - a.z)).sqrt());
+                // A foot that rolls or turns has a point that stays.
+                slide = sum + ways.reduce(min).unwrap_or(0.0);
+            }
+            farthest = Some(max(farthest.unwrap_or(0.0), slide));
+            stance = Some((places, slide));
+        }
+    }
+    farthest
+}
+
+fn pose_jump(def: &CharacterDef, baked: &Baked) -> Option<f32> {
+    let frames = &baked.frames;
+    let mut farthest = None;
+    let mut models: [Vec<Affine>; 4] = Default::default();
+    for k in 1..frames.len().saturating_sub(2) {
+        let (before, after) = (frames[k].state, frames[k + 1].state);
+        let is_handed = matches!(
+            (before, after),
+            (State::Limp | State::Preparing, State::GettingUp) | (State::GettingUp, State::Animated)
+        );
+        if !is_handed {
+            continue;
+        }
+        for (model, frame) in models.iter_mut().zip(&frames[k - 1..]) {
+            model_of(def, baked, frame, model);
+        }
+        for body in &def.ragdoll.bodies {
+            let way = |i: usize| {
+                (models[i + 1][body.joint].translation - models[i][body.joint].translation).length()
+            };
+            let jump = way(1) - max(way(0), way(2));
+            farthest = Some(max(farthest.unwrap_or(0.0), jump));
+        }
+    }
+    farthest
+}

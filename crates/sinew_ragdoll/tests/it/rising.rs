@@ -1,0 +1,102 @@
+//! Getting up on the floor: skin that stays out of it, feet that do not slide, poses that do not jump.
+
+use crate::actor::{floor, shared, walker};
+use sinew_anim::local_to_model;
+use sinew_math::{Affine, Reader, Transform, Vec3, Writer, max, min};
+use sinew_physics::{World, WorldDef};
+use sinew_ragdoll::quality::{RisingQuality, measure_rising};
+use sinew_ragdoll::skin::Stage;
+use sinew_ragdoll::{BakeHit, BakeInput, Baked, Character, GroundContact, SkinMeter, State, Verdict, bake};
+use std::sync::Arc;
+
+/// Of the mannequin, metres.
+const HEIGHT: f32 = 1.8;
+
+const PUSHES: [Vec3; 6] = [
+    Vec3::new(0.0, 0.0, -70.0),
+    Vec3::new(0.0, 0.0, 70.0),
+    Vec3::new(60.0, 0.0, -20.0),
+    Vec3::new(-60.0, 0.0, 30.0),
+    Vec3::new(-30.0, 0.0, -70.0),
+    Vec3::new(45.0, 0.0, 60.0),
+];
+
+/// A life, its figures, and the lowest point of its skin while it gets up.
+fn lives(contact: GroundContact, push: Vec3) -> (Baked, RisingQuality, f32) {
+    let mut def = walker();
+    def.ground_contact = contact;
+    let def = shared(def);
+    let body = def.body_named("chest").expect("it has a chest");
+    let (bodies, hits) = ([floor()], [BakeHit { time: 0.8, body, impulse: push }]);
+    let input = BakeInput { bodies: &bodies, hits: &hits, seconds: 9.0, ..BakeInput::new(def.clone()) };
+    let baked = bake(&input);
+    let rising = measure_rising(&input, &baked, Some(0.0));
+    let mut bind = Vec::new();
+    local_to_model(&def.rig, def.rest(), &Affine::IDENTITY, &mut bind);
+    let mut meter = SkinMeter::new(&def.rig, &def.ragdoll, &bind, &[]);
+    for frame in baked.frames.iter().filter(|frame| frame.state == State::GettingUp) {
+        meter.stand(Stage::Rising, &frame.pose, &baked.world_from_model, 0.0);
+    }
+    let low = meter.figures().rising_height_m.expect("it gets up");
+    (baked, rising, low)
+}
+
+/// The blend alone takes feet and hands through the floor.
+#[test]
+fn enforced_contact_keeps_skin_out_of_the_floor_and_feet_from_sliding() {
+    let (mut blended, mut slid) = (0.0, 0.0);
+    for push in PUSHES {
+        let (_, rising, low) = lives(GroundContact::AsBlended, push);
+        blended = min(blended, low);
+        slid = max(slid, rising.foot_slide_m.unwrap_or(0.0));
+        let (baked, rising, low) = lives(GroundContact::Enforced, push);
+        println!("{push}: {low:.3} m, {rising:?}");
+        assert!(low > -0.02 * HEIGHT, "{push}: {low} m");
+        assert!(rising.foot_slide_m.is_none_or(|slide| slide < 0.03), "{push}: {rising:?}");
+        assert!(rising.pose_jump_m.is_some_and(|jump| jump < 0.02), "{push}: {rising:?}");
+        assert_eq!(rising.faults(HEIGHT), [], "{push}");
+        assert!(baked.quality.up_s.is_some());
+    }
+    println!("as blended: {blended:.3} m, feet slide by {slid:.3} m");
+    assert!(blended < -0.02 * HEIGHT && slid > 0.03, "there is something to mend: {blended} m, {slid} m");
+}
+
+#[test]
+fn figures_beyond_their_bars_are_told() {
+    let bad = RisingQuality { foot_slide_m: Some(0.2), pose_jump_m: Some(f32::NAN) };
+    let faults = bad.faults(HEIGHT);
+    assert_eq!(faults.len(), 2, "{faults:?}");
+    assert!(faults.iter().all(|fault| fault.at_most == Verdict::Usable));
+    assert!(faults[0].reason.starts_with("getting up a foot slides by 20.0 cm"), "{faults:?}");
+}
+
+/// The way from one pose to the other is a part of the state.
+#[test]
+fn a_character_that_gets_up_is_saved() {
+    let mut def = walker();
+    def.ground_contact = GroundContact::Enforced;
+    let def = shared(def);
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&floor());
+    let mut hero = Character::new(Arc::clone(&def), Transform::IDENTITY, 0.0);
+    hero.go_limp(&mut world);
+    let mut rising = 0;
+    while rising < 8 {
+        world.step();
+        hero.update(&mut world);
+        rising += u32::from(hero.state() == State::GettingUp);
+    }
+    let mut w = Writer::new();
+    hero.save(&mut w);
+    let mut other = Character::new(def, Transform::IDENTITY, 0.3);
+    other.load(&mut Reader::new(w.as_bytes())).expect("it is one of this kind");
+    assert_eq!(hero.pose(), other.pose());
+    let mut copy = world.clone();
+    for _ in 0..60 {
+        world.step();
+        hero.update(&mut world);
+        copy.step();
+        other.update(&mut copy);
+        assert_eq!(hero.pose(), other.pose());
+    }
+}
