@@ -9,6 +9,7 @@ use sinew_physics::*;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     HalfSpace,
+    /// A thick one: the short way out of it is up.
     Box,
     /// Boxes that abut.
     Boxes,
@@ -90,8 +91,8 @@ impl Life {
         let floor = match self.ground {
             Ground::HalfSpace => world.add_body(&BodyDef::fixed(Shape::HalfSpace)),
             Ground::Box => {
-                let slab = Shape::cuboid(Vec3::new(50.0, 0.5, 50.0));
-                world.add_body(&BodyDef::fixed(slab).at(Vec3::NEG_Y * 0.5))
+                let slab = Shape::cuboid(Vec3::new(50.0, 10.0, 50.0));
+                world.add_body(&BodyDef::fixed(slab).at(Vec3::NEG_Y * 10.0))
             }
             Ground::Boxes => {
                 let tile = |x, z| BodyDef::fixed(Shape::cuboid(Vec3::splat(1.0))).at(Vec3::new(x, -1.0, z));

@@ -263,7 +263,7 @@ pub fn program(life: &Life, lines: &[String]) -> String {
     out += match life.ground {
         Ground::HalfSpace => "    let body_0v0 = world.add_body(&BodyDef::fixed(Shape::HalfSpace));\n",
         Ground::Box => {
-            "    let body_0v0 = world.add_body(&BodyDef::fixed(Shape::cuboid(Vec3::new(50.0, 0.5, 50.0))).at(Vec3::NEG_Y * 0.5));\n"
+            "    let body_0v0 = world.add_body(&BodyDef::fixed(Shape::cuboid(Vec3::new(50.0, 10.0, 50.0))).at(Vec3::NEG_Y * 10.0));\n"
         }
         Ground::Boxes => {
             "    for (x, z) in (-3..=3).flat_map(|x| (-3..=3).map(move |z| (2.0 * x as f32, 2.0 * z as f32))) {\n        world.add_body(&BodyDef::fixed(Shape::cuboid(Vec3::splat(1.0))).at(Vec3::new(x, -1.0, z)));\n    }\n"

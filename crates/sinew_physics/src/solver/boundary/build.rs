@@ -1,6 +1,8 @@
 //! `prepare`: from the world to the arrays of one island's solver.
 
+use crate::body::def::BodyKind;
 use crate::body::external_work::Work;
+use crate::body::{Body, Velocity};
 use crate::collide::MAX_POINTS;
 use crate::contact::{ContactMemory, slop};
 use crate::island::Island;
@@ -19,7 +21,7 @@ use crate::solver::pass::Coupling;
 use crate::solver::piles::touch::Touch;
 use crate::solver::tuning::{BALLASTED_RATIO, FAST_APPROACH, MAX_EXACT_ROWS, REFRESH_TURN_RESPONSE};
 use crate::solver::view::{View, lasting_force};
-use crate::spatial::{ZERO6, join};
+use crate::spatial::{Vec6, ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
 
 /// Bodies and contacts more than an island has for which there is room: those that come and go ask for none.
@@ -249,7 +251,7 @@ impl IslandSolver {
                 is_limited: false,
             });
             let still = body.kind == crate::BodyKind::Dynamic && !body.is_active();
-            let velocity = if still { ZERO6 } else { join(body.velocity.linear, body.velocity.angular) };
+            let velocity = if still { ZERO6 } else { seen_velocity(body, view.def.max_turn / self.h) };
             self.velocities.push(velocity);
             s.faces.push(body, body.velocity.angular.length() * self.h >= 0.5 * REFRESH_TURN_RESPONSE);
         }
@@ -411,4 +413,15 @@ impl IslandSolver {
             self.manifolds.push(rows);
         }
     }
+}
+
+/// Velocity of a body as rows see it. Rows go on along tangents: of a kinematic body that turns beyond all measure these
+/// lead to where its surface never is.
+fn seen_velocity(body: &Body, max_spin: f32) -> Vec6 {
+    let Velocity { linear, angular } = body.velocity;
+    let spin = angular.length();
+    if body.kind == BodyKind::Kinematic && spin > max_spin {
+        return join(linear, angular * (max_spin / spin));
+    }
+    join(linear, angular)
 }
