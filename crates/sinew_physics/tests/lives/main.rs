@@ -16,6 +16,7 @@ mod code;
 mod deeds;
 mod functions;
 mod interface;
+mod lies;
 mod life;
 mod numbers;
 mod planted;

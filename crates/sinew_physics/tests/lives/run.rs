@@ -53,6 +53,18 @@ fn catch_panics() {
     });
 }
 
+/// What a function returns, or what it panics with.
+pub fn caught<T>(run: impl FnOnce() -> T) -> Result<T, String> {
+    catch_panics();
+    CATCHES.with(|catches| *catches.borrow_mut() = true);
+    let result = std::panic::catch_unwind(AssertUnwindSafe(run));
+    CATCHES.with(|catches| *catches.borrow_mut() = false);
+    result.map_err(|_| {
+        let text = CAUGHT.with(|caught| caught.borrow_mut().take());
+        text.unwrap_or_else(|| "on another thread".to_owned())
+    })
+}
+
 struct Run<'a> {
     life: &'a Life,
     actors: Vec<Actor>,
@@ -66,7 +78,6 @@ struct Run<'a> {
 
 /// Runs a life, with a fault planted in it or none; `told`: as a program too.
 pub fn run(life: &Life, plant: Option<Plant>, told: bool) -> Outcome {
-    catch_panics();
     let (world, floor) = life.world();
     let mut first = Actor::new(world, floor, None);
     first.lines = told.then(Vec::new);
@@ -75,13 +86,7 @@ pub fn run(life: &Life, plant: Option<Plant>, told: bool) -> Outcome {
     let names = vec!["the first".to_owned(), "the same calls on two threads".to_owned()];
     let watch = Watch::default();
     let mut run = Run { life, actors: vec![first, second], names, watch, plant, step: 0, deeds: 0 };
-    CATCHES.with(|catches| *catches.borrow_mut() = true);
-    let result = std::panic::catch_unwind(AssertUnwindSafe(|| run.all()));
-    CATCHES.with(|catches| *catches.borrow_mut() = false);
-    let result = result.unwrap_or_else(|_| {
-        let text = CAUGHT.with(|caught| caught.borrow_mut().take());
-        Err(Fault::Panic(text.unwrap_or_else(|| "on another thread".to_owned())))
-    });
+    let result = caught(|| run.all()).unwrap_or_else(|text| Err(Fault::Panic(text)));
     let step = run.step;
     let first = run.actors.swap_remove(0);
     Outcome {
