@@ -19,6 +19,18 @@ const LONG: Duration = Duration::from_secs(5);
 
 /// A world in the middle of a life, as bytes: its shapes and its state.
 fn saved(seed: u64) -> (Vec<u8>, Vec<u8>) {
+    let mut last = (Vec::new(), Vec::new());
+    at_each_step(seed, |world| {
+        let (mut shapes, mut state) = (Writer::new(), Writer::new());
+        world.save_shapes(&mut shapes);
+        world.save(&mut state);
+        last = (shapes.into_bytes(), state.into_bytes());
+    });
+    last
+}
+
+/// Shows a world after each of the first steps of a life.
+pub fn at_each_step(seed: u64, mut show: impl FnMut(&World)) {
     let life = Life::of(seed);
     let (world, floor) = life.world();
     let mut actor = Actor::new(world, floor, None);
@@ -28,11 +40,8 @@ fn saved(seed: u64) -> (Vec<u8>, Vec<u8>) {
             _ = (act.deed.run)(&mut actor, &mut life.numbers(act));
         }
         actor.step();
+        show(&actor.world);
     }
-    let (mut shapes, mut state) = (Writer::new(), Writer::new());
-    actor.world.save_shapes(&mut shapes);
-    actor.world.save(&mut state);
-    (shapes.into_bytes(), state.into_bytes())
 }
 
 fn lie(bytes: &mut Vec<u8>, random: &mut Random) {

@@ -14,6 +14,7 @@
 mod actor;
 mod code;
 mod deeds;
+mod deltas;
 mod functions;
 mod interface;
 mod lies;
