@@ -333,3 +333,54 @@ fn events_are_what_the_poses_say_for_any_threads_and_across_snapshots() {
     let seen: usize = (0..if full { 200 } else { 6 }).map(check).sum();
     assert!(seen > if full { 100_000 } else { 3_000 }, "{seen} pairs of shapes were looked at");
 }
+
+/// What is put to sleep just outside a sensor, or just inside, is told of as what it is.
+#[test]
+fn what_is_put_to_sleep_beside_a_sensor_is_not_in_it() {
+    for seed in 0..100 {
+        let mut random = Random::new(seed);
+        let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+        let sensor = ShapeDef { sensing: Sensing::Sensor, ..ShapeDef::new(Shape::sphere(0.4)) };
+        world.add_body(&BodyDef::fixed(sensor));
+        let (speed, until) = (random.range(0.5, 6.0), random.range(0.8, 1.0));
+        let start = Vec3::X * random.range(-1.2, 0.5);
+        let ball = BodyDef { linear_velocity: Vec3::X * speed, ..BodyDef::dynamic(Shape::sphere(0.5)) };
+        let ball = world.add_body(&ball.at(start));
+        let (mut begun, mut slept) = (0, false);
+        for _ in 0..300 {
+            world.step();
+            begun += world.events().sensor_begin.len();
+            begun -= world.events().sensor_end.len();
+            if !slept && world.transform(ball).translation.x > until {
+                world.put_to_sleep(ball);
+                slept = true;
+            }
+        }
+        let inside = usize::from(world.transform(ball).translation.x <= 0.9);
+        assert_eq!(begun, inside, "seed {seed}: at {}", world.transform(ball).translation.x);
+    }
+}
+
+/// Speeds beyond all numbers are limited by the step; what it tells of them is finite.
+#[test]
+fn hits_beyond_all_measure_are_told_in_numbers() {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+    let bouncy = Material { restitution: 0.5, ..Material::default() };
+    let side = ShapeDef { material: bouncy, ..ShapeDef::new(Shape::cuboid(Vec3::splat(0.2))) };
+    let crate_ = || BodyDef::dynamic(side.clone());
+    let lower = world.add_body(&crate_().at(Vec3::Y * 0.2));
+    let upper = world.add_body(&crate_().at(Vec3::new(0.1, 0.6, 0.0)));
+    let wild = |x| Velocity { linear: Vec3::new(x, -f32::MAX, 0.0), angular: Vec3::splat(f32::MAX) };
+    world.set_velocity(lower, wild(f32::MAX));
+    world.set_velocity(upper, wild(-f32::MAX));
+    for step in 0..30 {
+        world.step();
+        for hit in &world.events().hits {
+            let numbers = [hit.approach, hit.impulse, hit.greatest];
+            let finite =
+                numbers.iter().all(|x| x.is_finite()) && hit.point.is_finite() && hit.normal.is_finite();
+            assert!(finite, "step {step}: {hit:?}");
+        }
+    }
+}

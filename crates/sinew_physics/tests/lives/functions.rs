@@ -53,7 +53,10 @@ impl PhysicsObject for Tug {
         self.asked += 1;
         if forces.contains(self.body) {
             let pull = (self.place - forces.center_of_mass(self.body)) * self.stiffness;
-            forces.apply_force_at_center(self.body, pull);
+            // From beyond all numbers it pulls no more.
+            if pull.length() < 1e12 {
+                forces.apply_force_at_center(self.body, pull);
+            }
         }
     }
     fn draw(&self, world: &World, out: &mut dyn DebugDraw) {

@@ -72,8 +72,8 @@ const OVERSHOOT: f32 = 0.02;
 /// Gap at which bodies surely do not touch, metres, and steps until that must have been told.
 const FAR: f32 = 0.05;
 const LATE: u32 = 3;
-/// Depth of a centre below the floor, metres, and steps for which it may be pressed there.
-const DEPTH: f32 = 0.2;
+/// Depth of a whole body below the floor, metres, and steps for which it may be pressed there.
+const DEPTH: f32 = 0.05;
 const PRESSED: u32 = 60;
 
 fn fault<T>(fault: impl Fn(String) -> Fault, text: String) -> Result<T, Fault> {
@@ -176,8 +176,8 @@ impl Watch {
         let mut below = BTreeMap::new();
         if world.pair_function().is_none() {
             for id in world.body_ids().filter(|&id| is_borne(world, id, actor.floor)) {
-                let center = world.center_of_mass(id);
-                let is_below = center.y < -DEPTH && center.x.abs() < reach && center.z.abs() < reach;
+                let (center, top) = (world.center_of_mass(id), world.bounds(id).max.y);
+                let is_below = top < -DEPTH && center.x.abs() < reach && center.z.abs() < reach;
                 if is_below {
                     let steps = self.below.get(&id).copied().unwrap_or(0) + 1;
                     if steps > PRESSED {
