@@ -1,7 +1,7 @@
-//! Costs of snapshots, as a table: `cargo run --release -p sinew --example snapshots`.
+//! Costs of snapshots, as a table: `cargo test --release -p sinew --test it -- --ignored --nocapture cost_of_snapshots`.
 //!
 //! Bytes of a snapshot, and of its delta against that of the step before; microseconds to save, load and clone a world and to make a delta
-//! and take it; milliseconds to go back by eight ticks and do them again. `-- --quick` measures each once.
+//! and take it; milliseconds to go back by eight ticks and do them again.
 
 use sinew::physics::Snapshot;
 use sinew::prelude::*;
@@ -77,7 +77,7 @@ fn characters(count: usize, falling: bool) -> Match {
     (0..10).for_each(|_| them.tick());
     if falling {
         let Match { world, characters } = &mut them;
-        characters.iter_mut().for_each(|one| one.hit(world, 2, Vec3::new(250.0, 0.0, 30.0)));
+        characters.iter_mut().for_each(|one| _ = one.hit(world, 2, Vec3::new(250.0, 0.0, 30.0)));
         (0..20).for_each(|_| them.tick());
     }
     them
@@ -122,9 +122,8 @@ fn row(name: &str, mut it: Match, times: usize) {
     );
 }
 
-/// Prints the table.
-pub fn main() {
-    let times = if std::env::args().any(|argument| argument == "--quick") { 1 } else { 41 };
+/// Prints the table: each figure the median of so many, with so many characters.
+fn table(times: usize, counts: &[usize]) {
     println!(
         "| world | bodies | contacts | bytes | per body | delta, bytes | save, µs | load, µs | clone, µs | delta, µs | its snapshot, µs | 8 ticks again, ms |"
     );
@@ -132,8 +131,19 @@ pub fn main() {
     row("200 boxes that fall", boxes(200, 60.0, 0), times);
     row("200 boxes asleep", boxes(200, 0.25, 120), times);
     row("200 boxes in a wall", walls(200), times);
-    for count in [2, 8, 100] {
+    for &count in counts {
         row(&format!("{count} characters that stand"), characters(count, false), times);
         row(&format!("{count} characters that fall"), characters(count, true), times);
     }
+}
+
+#[test]
+fn deltas_of_snapshots_bring_them_back() {
+    table(1, &[2]);
+}
+
+#[test]
+#[ignore = "for people: prints, asserts nothing"]
+fn cost_of_snapshots() {
+    table(41, &[2, 8, 100]);
 }
