@@ -281,6 +281,10 @@ impl Actor {
                 self.world.step_with(threads, &NoProfiler);
                 self.count("step_with");
             }
+            None if self.world.step_count().is_multiple_of(2) => {
+                self.world.step_with(&Serial, &NoProfiler);
+                self.count("step_with");
+            }
             None => {
                 self.world.step();
                 self.count("step");

@@ -7,7 +7,7 @@
 //! sinks below the floor, energy does not come from nothing. A life that fails is made as short as it goes (`shrink.rs`) and
 //! written as Rust (`code.rs`).
 //!
-//! 150 lives, or ten minutes of them when `SINEW_FULL` is set. `SINEW_LIVES=17..1000` runs the seeds of the range:
+//! 60 lives, or ten minutes of them when `SINEW_FULL` is set. `SINEW_LIVES=17..1000` runs the seeds of the range:
 //! `SINEW_LIVES=0..1000 cargo test -p sinew_physics --test lives -- --nocapture lives_hold`.
 
 #[macro_use]
@@ -33,7 +33,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Lives of a plain run of the tests.
-const SOME: u64 = 150;
+const SOME: u64 = 60;
 /// Time of a full one.
 const LONG: Duration = Duration::from_secs(600);
 /// Time after which a life is told to be slow.

@@ -191,6 +191,8 @@ impl Run<'_> {
         let plant = self.plant;
         let seen = |velocity| plant.map_or(velocity, |plant| plant.seen(is_due, velocity));
         self.watch.look(self.life, &self.actors[0], seen)?;
+        // The watch asks for both.
+        ["events", "work"].into_iter().for_each(|name| self.actors[0].count(name));
         let events = self.actors[0].world.events().clone();
         if let Some(plant) = self.plant {
             self.watch.events(&plant.events(is_due, &events))?;

@@ -61,7 +61,7 @@ pub struct Watch {
 /// Steps after a deed from which on energy is held against a world.
 const SETTLED: u32 = 30;
 /// Rise of energy within a step, as a share of the kinetic energy or of 1 J/kg, and of what height and springs hold: rounding.
-const RISE: f32 = 0.05;
+const RISE: f32 = 0.01;
 const ROUNDING: f32 = 1e-5;
 /// The same while something is where it cannot stay, pressed into another.
 const STRAINED: f32 = 2.0;

@@ -23,6 +23,7 @@ pub const ALL: &[Deed] = &[
 fn ask_body(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.any_body(n)?;
     let point = others::near_pose(n).translation;
+    ask!(a.contains(id));
     ask!(a.transform(id));
     ask!(a.interpolated(id, 0.5));
     ask!(a.center_of_mass(id));
@@ -77,6 +78,7 @@ fn ask_shape(a: &mut Actor, n: &mut Numbers) -> Option<()> {
 
 fn ask_joint(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.joint(n)?;
+    ask!(a.contains_joint(id));
     ask!(a.joint(id));
     ask!(a.joint_bodies(id));
     ask!(a.reaction(id));
@@ -112,6 +114,7 @@ fn ask_world(a: &mut Actor, n: &mut Numbers) -> Option<()> {
 fn ask_others(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let (field, group, body, mover) = (a.field(n), a.group(n), a.any_body(n), a.mover(n));
     if let Some(id) = mover {
+        ask!(a.contains_mover(id));
         ask!(a.mover(id));
         ask!(a.mover_ground(id));
     }
@@ -122,6 +125,7 @@ fn ask_others(a: &mut Actor, n: &mut Numbers) -> Option<()> {
         say(&mut a.said, "particles", &sum);
     }
     if let Some(id) = field {
+        ask!(a.contains_field(id));
         ask!(a.field(id));
         ask!(a.field_energy(id));
         if let Some(body) = body {
@@ -133,6 +137,7 @@ fn ask_others(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     }
     let object = a.object(n);
     if let Some(id) = object {
+        ask!(a.contains_object(id));
         a.count("object");
         let Tug { asked, .. } = *a.world.object::<Tug>(id);
         say(&mut a.said, "object", &asked);
