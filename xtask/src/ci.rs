@@ -15,7 +15,7 @@ use std::time::Instant;
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
     /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
-    /// SINEW_WORLDS, as in 100..200); definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the viewer's window and its page; the plugin for Bevy; the libraries for C and Python; instruction counts; the oldest compiler
+    /// SINEW_WORLDS, as in 100..200); ten minutes of random lives; definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the viewer's window and its page; the plugin for Bevy; the libraries for C and Python; instruction counts; the oldest compiler
     #[arg(long)]
     full: bool,
 }
@@ -54,6 +54,7 @@ impl Ci {
             check("large scenes", &large_scenes);
             check("all cases", &all_cases);
             check("random worlds", &random_worlds);
+            check("random lives", &random_lives);
             check("serde", &serde);
             check("peers", &peers);
             check("window", &window);
@@ -164,6 +165,12 @@ fn random_worlds() -> Result<()> {
     let test = ["test", "--release", "--package", "sinew_physics", "--test", "it"];
     let mut test = command::cargo(&test);
     command::run(test.args(["--", "--nocapture", "ten_thousand_random_worlds"]).env("SINEW_FULL", "1"))
+}
+
+/// Ten minutes of lives made of all calls, or those of SINEW_LIVES; and every lie about snapshots.
+fn random_lives() -> Result<()> {
+    let mut test = command::cargo(&["test", "--release", "--package", "sinew_physics", "--test", "lives"]);
+    command::run(test.args(["--", "--nocapture"]).env("SINEW_FULL", "1"))
 }
 
 /// Definitions come back from JSON as they were.

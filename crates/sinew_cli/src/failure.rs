@@ -1,5 +1,6 @@
 //! Why a command did not do its work.
 
+use crate::report::Report;
 use serde_json::{Value, json};
 use std::fmt;
 use std::process::ExitCode;
@@ -14,6 +15,13 @@ pub enum Failure {
     File(sinew::formats::Error),
     /// Use of the program that makes no sense. Exit code 2.
     Usage(String),
+    /// The work was done, and its outcome misses what is expected of it; the report is printed all the same. Exit code 1.
+    Missed {
+        /// Report of the work.
+        report: Box<Report>,
+        /// Line that says what is missed.
+        what: String,
+    },
 }
 
 impl Failure {
@@ -30,7 +38,7 @@ impl Failure {
     /// Exit code of the process.
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
-            Self::File(_) => 1,
+            Self::File(_) | Self::Missed { .. } => 1,
             Self::Usage(_) => 2,
         })
     }
@@ -41,7 +49,7 @@ impl Failure {
             Self::File(error) => {
                 Some(json!({"error": {"file": error.file, "what": error.what, "where": error.where_}}))
             }
-            Self::Usage(_) => None,
+            Self::Usage(_) | Self::Missed { .. } => None,
         }
     }
 }
@@ -50,7 +58,7 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let line = match self {
             Self::File(error) => error.to_string(),
-            Self::Usage(what) => what.clone(),
+            Self::Usage(what) | Self::Missed { what, .. } => what.clone(),
         };
         // Names come from files: a line feed in one must not make two lines of this.
         line.chars().try_for_each(|c| {

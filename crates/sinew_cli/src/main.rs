@@ -13,7 +13,7 @@ mod report;
 use clap::Parser;
 use clap::builder::styling::{AnsiColor, Styles};
 use commands::Command;
-use serde_json::Value;
+use failure::Failure;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -44,29 +44,46 @@ struct Sinew {
 }
 
 fn main() -> ExitCode {
-    let Sinew { json, command } = Sinew::parse();
+    let Sinew { json, command } = match Sinew::try_parse() {
+        Ok(arguments) => arguments,
+        Err(told) => return help_or_usage(&told),
+    };
     match command.run() {
-        Ok(report) => {
-            print(&if json { one_object(&report.json) } else { report.text });
-            ExitCode::SUCCESS
+        Ok(report) => print(&report.shown(json), ExitCode::SUCCESS),
+        Err(Failure::Missed { report, what }) => {
+            let code = print(&report.shown(json), ExitCode::FAILURE);
+            eprintln!("error: {what}");
+            code
         }
         Err(failure) => {
             eprintln!("error: {failure}");
-            if json && let Some(object) = failure.to_json() {
-                print(&one_object(&object));
+            match failure.to_json() {
+                Some(object) if json => print(&report::one_object(&object), failure.exit_code()),
+                _ => failure.exit_code(),
             }
-            failure.exit_code()
         }
     }
 }
 
-fn one_object(value: &Value) -> String {
-    format!("{value:#}\n")
+/// Prints help or the version to stdout, what is wrong with the arguments to stderr.
+fn help_or_usage(told: &clap::Error) -> ExitCode {
+    let code = ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2));
+    written(told.print().and_then(|()| io::stdout().flush()), code)
 }
 
-/// To stdout. Whoever reads it may stop reading; that is no fault of the command.
-fn print(text: &str) {
+/// Writes text to stdout; the code is that of the process if all of it is written.
+fn print(text: &str, code: ExitCode) -> ExitCode {
     let mut out = io::stdout().lock();
-    // Nothing is left to tell and nobody to tell it to.
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    written(out.write_all(text.as_bytes()).and_then(|()| out.flush()), code)
+}
+
+/// Exit code after a write. Whoever reads the output may stop reading; that is no fault of the command.
+fn written(outcome: io::Result<()>, code: ExitCode) -> ExitCode {
+    match outcome {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            eprintln!("error: standard output: cannot write: {error}");
+            ExitCode::FAILURE
+        }
+        _ => code,
+    }
 }

@@ -65,4 +65,6 @@ pub use query::{
 };
 pub use runner::{Serial, TaskRunner, Threads};
 pub use user_object::{Corrections, Forces, PhysicsObject, Substep};
-pub use world::{BodyContact, BodyRef, ContactPoint, LockedAxes, MassUpdate, Reaction, Update, World};
+pub use world::{
+    BodyContact, BodyRef, ContactPoint, LockedAxes, MassUpdate, Reaction, Snapshot, Update, World,
+};

@@ -32,6 +32,7 @@ mod rollback_fight;
 mod rope;
 #[path = "../../examples/shooter.rs"]
 mod shooter;
+mod snapshots;
 #[path = "../../examples/stack.rs"]
 mod stack;
 #[path = "../../examples/threads.rs"]

@@ -49,13 +49,14 @@ impl Replay {
         let mut player = Player::start(recording).map_err(|error| error.with_file(&name))?;
         let steps = player.recording().steps.len();
         let progress = Progress::new("replaying", steps);
-        let mut diverged = None;
-        while let Some(step) = player.step() {
+        let mut diverged = player.misplaced().map(|_| 0);
+        while diverged.is_none()
+            && let Some(step) = player.step()
+        {
             progress.step();
-            if step.found != step.recorded {
-                diverged = Some(step.step);
-                break;
-            }
+            // A state that has its hash and not its poses was not recorded so.
+            let differs = step.found != step.recorded || player.misplaced().is_some();
+            diverged = differs.then_some(step.step);
         }
         if let (Some(step), true) = (diverged, self.verify) {
             let why = if is_ours {

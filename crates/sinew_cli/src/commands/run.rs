@@ -1,6 +1,6 @@
 //! `sinew run`: a named scene without a picture: figures, times, state hash.
 
-use crate::failure::Result;
+use crate::failure::{Failure, Result};
 use crate::input::scene_choice::choose;
 use crate::report::Report;
 use crate::report::progress::Progress;
@@ -22,7 +22,10 @@ Example:
   sinew run double_pendulum --quality exact
 
 'sinew scenes' lists the scenes, 'sinew scenes --json' their settings too. 'mjcf_drop', which it does
-not list, drops MuJoCo's humanoid, or another model in MJCF with the poses 'prone' and 'supine'.")]
+not list, drops MuJoCo's humanoid, or another model in MJCF with the poses 'prone' and 'supine'.
+
+A scene that misses what it expects ends with exit code 1, its report printed all the same; after --set,
+--steps or --quality it expects nothing.")]
 pub struct Run {
     /// Name of the scene
     scene: String,
@@ -77,8 +80,20 @@ impl Run {
             times,
             hash: instance.world().hash(),
             metrics: instance.metrics(),
+            has_bars: self.is_by_default(),
         };
-        Ok(Report { json: outcome.to_json(), text: outcome.to_text() })
+        let report = Report { json: outcome.to_json(), text: outcome.to_text() };
+        let missed = outcome.missed();
+        if missed.is_empty() {
+            return Ok(report);
+        }
+        let what = format!("{} misses what is expected of it: {}", scene.name, missed.join(", "));
+        Err(Failure::Missed { report: Box::new(report), what })
+    }
+
+    /// True if the scene is run as it is by default: what it expects is meant for that alone.
+    fn is_by_default(&self) -> bool {
+        self.settings.is_empty() && self.steps.is_none() && matches!(self.quality, QualityName::Balanced)
     }
 
     fn runner(&self) -> Box<dyn TaskRunner> {
@@ -147,9 +162,17 @@ struct Outcome<'a> {
     times: StepTimes,
     hash: u64,
     metrics: Vec<Metric>,
+    /// Its figures are held against what the scene expects.
+    has_bars: bool,
 }
 
 impl Outcome<'_> {
+    /// Figures that miss what the scene expects.
+    fn missed(&self) -> Vec<&'static str> {
+        let unmet = self.metrics.iter().filter(|metric| self.has_bars && !metric.is_met());
+        unmet.map(|metric| metric.name).collect()
+    }
+
     fn to_json(&self) -> Value {
         let metrics: Map<String, Value> =
             self.metrics.iter().map(|metric| (metric.name.to_owned(), json!(metric.value))).collect();
@@ -173,14 +196,12 @@ impl Outcome<'_> {
     }
 
     fn to_text(&self) -> String {
-        let Self { scene, steps, threads, times, hash, metrics } = self;
+        let Self { scene, steps, threads, times, hash, metrics, has_bars } = self;
         let mut text = format!("{}: {}\n\n", scene.name, scene.about);
         let mut table = Table::titled(&["figure", "value", "expected"]);
         for metric in metrics {
             let value = metric.value.map_or("not yet".to_owned(), |value| format!("{value:.6}"));
-            // What a scene expects holds once it has run its course.
-            let missed = *steps >= scene.steps && !metric.is_met();
-            let mark = if missed { "  MISSED" } else { "" };
+            let mark = if *has_bars && !metric.is_met() { "  MISSED" } else { "" };
             table.row([metric.name.to_owned(), value, expectation(metric.expected) + mark]);
         }
         text += &table.to_text();

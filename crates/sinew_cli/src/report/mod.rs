@@ -21,6 +21,18 @@ pub struct Report {
     pub text: String,
 }
 
+impl Report {
+    /// Text that goes to stdout.
+    pub fn shown(&self, as_json: bool) -> String {
+        if as_json { one_object(&self.json) } else { self.text.clone() }
+    }
+}
+
+/// An object as text that ends in a line feed.
+pub fn one_object(value: &Value) -> String {
+    format!("{value:#}\n")
+}
+
 /// A number with the fewest digits that tell it from its neighbours; null if it is not finite.
 pub fn number(x: f32) -> Value {
     // The decimal digits of the f32, not those of the f64 nearest to it.

@@ -1,6 +1,6 @@
 //! Manners of the command where something is odd: outputs, names, notes.
 
-use crate::sinew::{Folder, glb, shared_data, sinew};
+use crate::sinew::{Folder, Run, command, glb, shared_data, sinew};
 use serde_json::Value;
 use sinew::anim::Rig;
 use sinew::formats::{MotionOptions, ReadOptions, load_gltf, load_motion, write_world};
@@ -255,4 +255,46 @@ fn notes_come_once() {
     }
     let motion = load_motion(&file, &MotionOptions::default()).expect("it can be read");
     assert!(motion.notes.is_empty());
+}
+
+/// On a full disk nothing is written, and the command says so in a line.
+#[cfg(target_os = "linux")]
+#[test]
+fn output_that_cannot_be_written_is_a_line_and_a_failure() {
+    let folder = Folder::new("full-disk");
+    let file = folder.mannequin();
+    let bad = folder.file("bad.glb", "nothing");
+    let commands: [&[&str]; 9] = [
+        &["inspect", &file, "--json"],
+        &["inspect", &file],
+        &["inspect", &bad, "--json"],
+        &["run", "pendulum", "--steps", "5"],
+        &["scenes"],
+        &["scenes", "--json"],
+        &["ragdoll", "doctor", &file],
+        &["--help"],
+        &["--version"],
+    ];
+    for arguments in commands {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has it");
+        let run = Run::of(command(arguments).stdout(full));
+        let last = run.stderr.lines().last().unwrap_or_default();
+        let says = last.starts_with("error: standard output: cannot write: No space left");
+        assert!(run.code == Some(1) && says, "{arguments:?}: {run:?}");
+        assert_eq!(
+            run.stderr.lines().count(),
+            1 + usize::from(arguments[1..].contains(&bad.as_str())),
+            "{run:?}"
+        );
+    }
+}
+
+/// Who reads the beginning alone has all that it wants.
+#[cfg(unix)]
+#[test]
+fn a_reader_that_goes_is_no_failure() {
+    use std::process::Stdio;
+    let mut child = command(&["scenes", "--json"]).stdout(Stdio::piped()).spawn().expect("it starts");
+    drop(child.stdout.take());
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
 }

@@ -2,6 +2,7 @@
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, sinew};
+use sinew_scenes::recording::Recording;
 
 #[test]
 fn a_recording_verifies_and_differs_where_it_differs() {
@@ -24,20 +25,16 @@ fn a_recording_verifies_and_differs_where_it_differs() {
     assert!(sinew(&["replay", &mine, "--diff", &mine]).stdout.contains("50 steps, all equal"));
 
     // Of another version, and with another hash at the last step.
-    let mut bytes = std::fs::read(&mine).expect("it is there");
-    let version = bytes.windows(5).position(|it| it == b"0.1.0").expect("the version is in it");
-    bytes[version] = b'9';
-    let tampered = folder.file("tampered.sinewrec", &bytes);
+    let mut recording = Recording::read(&std::fs::read(&mine).expect("it is there")).expect("a recording");
+    recording.made_by = "9.1.0".to_owned();
+    let tampered = folder.file("tampered.sinewrec", recording.to_bytes());
     assert_eq!(
         sinew(&["replay", &tampered, "--verify"]).code,
         Some(0),
         "the bits are those of this version all the same"
     );
-    let hash = object["hash"].as_str().expect("a hash");
-    let hash = u64::from_str_radix(hash, 16).expect("hexadecimal").to_le_bytes();
-    let place = bytes.windows(8).position(|it| it == hash).expect("the last hash is in it");
-    bytes[place] ^= 1;
-    let tampered = folder.file("tampered.sinewrec", &bytes);
+    recording.steps[49].hash ^= 1;
+    let tampered = folder.file("tampered.sinewrec", recording.to_bytes());
     let refused = sinew(&["replay", &tampered, "--verify"]);
     let line = refused.refusal(1);
     assert!(line.contains("version 9.1.0, and this is 0.1.0 (step 50)"), "{line}");
@@ -45,6 +42,27 @@ fn a_recording_verifies_and_differs_where_it_differs() {
     assert!(told.stdout.contains("from step 50 on"), "{told:?}");
     let diff = sinew(&["replay", &mine, "--diff", &tampered]);
     assert!(diff.refusal(1).contains("though in the pose of no body"), "{diff:?}");
+}
+
+#[test]
+fn a_flipped_bit_and_a_pose_that_was_never_there_are_told() {
+    let folder = Folder::new("recordings-damaged");
+    let mine = folder.path("mine.sinewrec");
+    assert_eq!(sinew(&["record", "pendulum", "-o", &mine, "--steps", "50"]).code, Some(0));
+    let bytes = std::fs::read(&mine).expect("it is there");
+    for k in 0..60 {
+        let place = k * (bytes.len() - 1) / 59;
+        let mut flipped = bytes.clone();
+        flipped[place] ^= 1 << (k % 8);
+        let damaged = folder.file("damaged.sinewrec", &flipped);
+        let refused = sinew(&["replay", &damaged, "--verify"]);
+        assert!(refused.refusal(1).contains("damaged.sinewrec: "), "byte {place}: {refused:?}");
+    }
+    let mut recording = Recording::read(&bytes).expect("a recording");
+    recording.key_frames[1].bodies[0].1.translation.y += 0.5;
+    let tampered = folder.file("tampered.sinewrec", recording.to_bytes());
+    let line = sinew(&["replay", &tampered, "--verify"]).refusal(1).to_owned();
+    assert!(line.ends_with("by the same version (step 30)"), "{line}");
 }
 
 #[test]

@@ -73,3 +73,16 @@ fn a_model_in_mjcf_is_dropped() {
     let height = object["metrics"]["prone_rest_height_m"].as_f64().expect("a height");
     assert!((height - 0.1).abs() < 0.002, "{height}");
 }
+
+#[test]
+fn a_scene_that_misses_its_bars_by_default_fails_with_its_report() {
+    let run = sinew(&["run", "arch", "--json"]);
+    assert_eq!(run.refusal(1), "error: arch misses what is expected of it: shift_max_m");
+    let object: serde_json::Value = serde_json::from_str(&run.stdout).expect("the object all the same");
+    assert!(object["metrics"]["shift_max_m"].is_number());
+    let run = sinew(&["run", "arch"]);
+    assert!(run.code == Some(1) && run.stdout.matches("MISSED").count() == 1, "{run:?}");
+    // Of another length, nothing is expected.
+    let run = sinew(&["run", "arch", "--steps", "1000"]);
+    assert!(run.code == Some(0) && !run.stdout.contains("MISSED"), "{run:?}");
+}

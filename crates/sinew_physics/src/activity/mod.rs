@@ -156,7 +156,7 @@ impl Activity {
         for (_, group) in groups.iter().filter(|(_, group)| group.is_awake()) {
             let fastest = group.fastest();
             if fastest > speed {
-                let bounds = group.bounds().expand(fastest * dt);
+                let bounds = group.strike_bounds(fastest, dt);
                 let strikes = |shape: &Shape, at: &Transform| group.strikes(shape, at, speed, dt);
                 self.wake_met(bodies, group, (proxies, &bounds), strikes);
             }

@@ -426,6 +426,11 @@ impl ParticleGroup {
         self.velocities.iter().fold(0.0, |most, v| max(most, v.length_squared())).sqrt()
     }
 
+    /// Bounds of all shapes that [`strikes`](Self::strikes) may be true of, by the speed of the fastest particle, m/s.
+    pub(crate) fn strike_bounds(&self, fastest: f32, dt: f32) -> Aabb {
+        self.bounds().expand(fastest * dt + STRIKE_GAP + STRIKE_GAP)
+    }
+
     /// True if a particle comes to a shape at rest within `dt` seconds, and into it faster than `speed` (m/s).
     pub(crate) fn strikes(&self, shape: &Shape, at: &Transform, speed: f32, dt: f32) -> bool {
         let mut particles = self.positions.iter().zip(&self.velocities).zip(&self.radii);
@@ -439,10 +444,14 @@ impl ParticleGroup {
             for _ in 0..STRIDES {
                 let (distance, outward) = shape.signed_distance(at, position + velocity * (way / whole));
                 let gap = distance - radius;
-                if gap < STRIKE_GAP || way > whole * dt {
-                    return gap < STRIKE_GAP && velocity.dot(outward) < -speed;
+                if gap < STRIKE_GAP {
+                    return velocity.dot(outward) < -speed;
                 }
                 way += gap;
+                // The last stride may lead far beyond what it goes in the time.
+                if way > whole * dt {
+                    return false;
+                }
             }
             false
         })

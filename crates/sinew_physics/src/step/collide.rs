@@ -17,7 +17,7 @@ use crate::contact::{Contact, ContactKey, ContactMemory, Effect, slop};
 use crate::context::StepContext;
 use crate::slices::for_each_mut;
 use crate::step::pairs::{Asked, BroadPhase};
-use crate::step::tuning::YIELDING_DEPTH;
+use crate::step::tuning::{MOST_APPROACH, YIELDING_DEPTH};
 use sinew_math::{Vec3, max, min};
 
 /// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
@@ -169,7 +169,7 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, ahead: Ahead, dt: f32
     })
 }
 
-/// Approach speed of the fastest point, m/s; not negative.
+/// Approach speed of the fastest point, m/s; not negative, and at most [`MOST_APPROACH`].
 ///
 /// Bodies are rigid: from one point to another a rate differs by the relative spin times the way between them.
 pub(super) fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
@@ -178,7 +178,7 @@ pub(super) fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
     let rate = (b.velocity.at(p - b.center()) - a.velocity.at(p - a.center())).dot(n);
     let per_way = n.cross(b.velocity.angular - a.velocity.angular);
     let least = others.iter().fold(rate, |least, other| min(least, rate + per_way.dot(other.position - p)));
-    max(0.0, -least)
+    if least.is_finite() { min(max(0.0, -least), MOST_APPROACH) } else { MOST_APPROACH }
 }
 
 /// True if a surface pushes, wherever it is met.

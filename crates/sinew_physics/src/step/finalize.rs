@@ -43,7 +43,15 @@ pub(crate) fn finalize(
     for &index in activity.kinematic() {
         let body = bodies.at_mut(index);
         body.previous = body.world_from_principal;
-        body.world_from_principal = body.carried(context.h, context.substeps);
+        let carried = body.carried(context.h, context.substeps);
+        if (carried * body.principal_from_body).is_finite() {
+            body.world_from_principal = carried;
+        } else {
+            body.velocity = Default::default();
+            body.quarantined = true;
+            let id = bodies.id(index);
+            events.quarantined.push(id);
+        }
     }
     events.limited.sort_unstable();
 }

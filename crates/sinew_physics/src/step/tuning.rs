@@ -85,3 +85,10 @@ pub(super) const POINT_SLOPE: f32 = 5.0;
 ///
 /// Larger: points stay where they no longer bear. Smaller: points jump from particle to particle, and their impulses with them. Shown by `cape`.
 pub(super) const KEPT_POINT: f32 = 0.005;
+
+/// Most approach speed of a contact, m/s: bounces and hits are taken from no more.
+///
+/// A body that was given more is slowed when forces act, after contacts were looked at: what bounced as fast as it was told to had no finite
+/// impulse. Sensible from 1e5, well above [`WorldDef::max_speed`](crate::WorldDef::max_speed), to 1e12. Larger: impulses of heavy bodies are infinite. Smaller: what is allowed
+/// to be so fast bounces too slowly. Shown by the test `events::hits_beyond_all_measure_are_told_in_numbers`.
+pub(super) const MOST_APPROACH: f32 = 1e6;

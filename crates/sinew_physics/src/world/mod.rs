@@ -5,6 +5,7 @@ mod body_type;
 mod connect;
 mod copy;
 mod counts;
+mod delta;
 mod draw;
 mod explosions;
 mod fields;
@@ -25,6 +26,7 @@ mod weight;
 
 pub use body_ref::BodyRef;
 pub use connect::LockedAxes;
+pub use delta::Snapshot;
 pub use joints::Reaction;
 pub use shapes::MassUpdate;
 pub use surfaces::{BodyContact, ContactPoint};

@@ -35,6 +35,8 @@ impl World {
             let island = self.island_of(id.index);
             self.activity.sleep(&mut self.bodies, &island, self.sleepers);
             self.sleepers = self.sleepers.wrapping_add(1);
+            // Where the last step has brought them nothing has looked yet.
+            island.into_iter().for_each(|index| self.look_anew(self.bodies.id(index)));
         }
     }
 

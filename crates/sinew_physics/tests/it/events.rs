@@ -333,3 +333,59 @@ fn events_are_what_the_poses_say_for_any_threads_and_across_snapshots() {
     let seen: usize = (0..if full { 200 } else { 6 }).map(check).sum();
     assert!(seen > if full { 100_000 } else { 3_000 }, "{seen} pairs of shapes were looked at");
 }
+
+/// What is put to sleep just outside a sensor, or just inside, is told of as what it is.
+#[test]
+fn what_is_put_to_sleep_beside_a_sensor_is_not_in_it() {
+    for seed in 0..100 {
+        let mut random = Random::new(seed);
+        let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+        let sensor = ShapeDef { sensing: Sensing::Sensor, ..ShapeDef::new(Shape::sphere(0.4)) };
+        world.add_body(&BodyDef::fixed(sensor));
+        let (speed, until) = (random.range(0.5, 6.0), random.range(0.8, 1.0));
+        let start = Vec3::X * random.range(-1.2, 0.5);
+        let ball = BodyDef { linear_velocity: Vec3::X * speed, ..BodyDef::dynamic(Shape::sphere(0.5)) };
+        let ball = world.add_body(&ball.at(start));
+        let (mut begun, mut slept) = (0, false);
+        for _ in 0..300 {
+            world.step();
+            begun += world.events().sensor_begin.len();
+            begun -= world.events().sensor_end.len();
+            if !slept && world.transform(ball).translation.x > until {
+                world.put_to_sleep(ball);
+                slept = true;
+            }
+        }
+        let inside = usize::from(world.transform(ball).translation.x <= 0.9);
+        assert_eq!(begun, inside, "seed {seed}: at {}", world.transform(ball).translation.x);
+    }
+}
+
+/// Speeds beyond all numbers are limited by the step; what it tells of them is finite.
+#[test]
+fn hits_beyond_all_measure_are_told_in_numbers() {
+    let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+    let corners = [(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)];
+    let points = corners.map(|(x, z)| Vec3::new(x, 0.0, z));
+    let ground = Shape::mesh(&points, &[[0, 2, 1], [0, 3, 2]]).expect("a mesh");
+    world.add_body(&BodyDef::fixed(ground));
+    let mut last = None;
+    for i in 0..7 {
+        let at = Vec3::new((i / 5) as f32 * 0.41, 0.2 + (i % 5) as f32 * 0.405, 1.0);
+        last = Some(world.add_body(&BodyDef::dynamic(Shape::cuboid(Vec3::splat(0.2))).at(at)));
+    }
+    let last = last.expect("there are some");
+    let bouncy = Material { friction: 0.25, restitution: 0.5, ..Material::default() };
+    let cone = ShapeDef { material: bouncy, ..ShapeDef::new(Shape::cone(0.5, 0.25)) };
+    world.add_shape(last, &cone, MassUpdate::Keep);
+    world.apply_impulse(last, Vec3::new(0.0, -0.25, -f32::MAX), Vec3::new(0.41, 0.705, 1.0));
+    for step in 0..10 {
+        world.step();
+        for hit in &world.events().hits {
+            let numbers = [hit.approach, hit.impulse, hit.greatest];
+            let finite =
+                numbers.iter().all(|x| x.is_finite()) && hit.point.is_finite() && hit.normal.is_finite();
+            assert!(finite, "step {step}: {hit:?}");
+        }
+    }
+}

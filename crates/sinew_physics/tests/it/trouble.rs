@@ -156,3 +156,39 @@ fn spins_beyond_all_measure_are_limited_and_told_of() {
         assert_eq!(world.events().limited, [body], "{impulse:e}");
     }
 }
+
+/// Rows see the surface of what is led at such a spin go on along its tangent, to where it never is: they pushed a cone on a
+/// slider away for good, and told that it touches.
+#[test]
+fn a_kinematic_spin_beyond_all_measure_pushes_nothing_far_away() {
+    for spin in [1e4, 1e6, 1e12] {
+        let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+        let arm = ShapeDef {
+            body_from_shape: Transform::from_translation(Vec3::X * 0.3),
+            ..ShapeDef::new(Shape::sphere(0.2))
+        };
+        let led = BodyDef { angular_velocity: Vec3::new(0.3 * spin, 0.0, spin), ..BodyDef::kinematic(arm) };
+        world.add_body(&led);
+        let cone = Shape::cone(0.1, 0.1);
+        let body = world.add_body(&BodyDef::dynamic(cone).at(Vec3::new(3.0, 2.5, 0.3)));
+        for step in 0..60 {
+            world.step();
+            assert_eq!(world.velocity(body), Velocity::default(), "{spin:e}, step {step}");
+            assert!(world.events().begin.is_empty(), "{spin:e}, step {step}");
+        }
+    }
+}
+
+#[test]
+fn what_is_led_beyond_all_numbers_stops_and_is_told_of() {
+    let mut world = World::new(WorldDef::default());
+    let led = BodyDef { linear_velocity: Vec3::X * f32::MAX, ..BodyDef::kinematic(Shape::sphere(0.5)) };
+    let body = world.add_body(&led);
+    let mut told = 0;
+    for step in 0..120 {
+        world.step();
+        told += world.events().quarantined.iter().filter(|&&id| id == body).count();
+        assert!(world.transform(body).is_finite() && world.velocity(body).linear.is_finite(), "step {step}");
+    }
+    assert_eq!(told, 1);
+}

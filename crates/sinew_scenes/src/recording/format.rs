@@ -2,13 +2,18 @@
 
 use super::hands::Operation;
 use sinew::formats::Error;
+use sinew::math::hash::hash_bytes;
 use sinew::math::{ReadError, Reader, Transform, Writer};
 use sinew::physics::BodyId;
 
 /// First bytes of the file.
 const MAGIC: &[u8; 8] = b"sinewrec";
 /// Version of the format. What is added later comes with a higher one.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
+/// Version without checksums, which is read as well.
+const UNCHECKED: u32 = 1;
+/// Steps of a block, at most.
+const STEPS_OF_BLOCK: usize = 64;
 
 /// Record of what was done to a scene, and of what became of it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -46,55 +51,90 @@ pub struct KeyFrame {
 }
 
 impl Recording {
-    /// The bytes of the file.
+    /// The bytes of the file: the head, steps by the block, and key frames by the block, each block with its checksum.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Writer::new();
         out.raw(MAGIC);
         out.u32(FORMAT);
+        write_checked(&mut out, |out| {
+            self.write_head(out);
+            out.count(self.steps.len());
+            out.count(self.key_frames.len());
+        });
+        for steps in self.steps.chunks(STEPS_OF_BLOCK) {
+            write_checked(&mut out, |out| steps.iter().for_each(|step| write_step(out, step)));
+        }
+        for frame in &self.key_frames {
+            write_checked(&mut out, |out| write_key_frame(out, frame));
+        }
+        out.into_bytes()
+    }
+
+    fn write_head(&self, out: &mut Writer) {
         out.text(&self.made_by);
         out.text(&self.scene);
         out.count(self.settings.len());
         self.settings.iter().for_each(|setting| out.text(setting));
         out.f32(self.dt);
-        out.count(self.steps.len());
-        for step in &self.steps {
-            out.u64(step.hash);
-            out.count(step.operations.len());
-            // Each in a block: a reader passes over the kinds that it does not know.
-            step.operations.iter().for_each(|operation| out.block(|out| write_operation(out, operation)));
-        }
-        out.count(self.key_frames.len());
-        for frame in &self.key_frames {
-            out.u64(frame.step);
-            out.count(frame.bodies.len());
-            for (body, place) in &frame.bodies {
-                out.u64(body.to_bits());
-                out.transform(*place);
-            }
-        }
-        out.into_bytes()
     }
 
     /// Reads a file.
     ///
     /// # Errors
-    /// Bytes that are no recording, end too early, or come from a later format.
+    /// Bytes that are no recording, are not those that were written, end too early, or come from a later format.
     pub fn read(bytes: &[u8]) -> Result<Self, Error> {
         if bytes.get(..MAGIC.len()) != Some(MAGIC) {
             return Err(Error::malformed("is no recording", "byte 0"));
         }
         let mut reader = Reader::new(&bytes[MAGIC.len()..]);
         let format = reader.u32().map_err(|error| wrong(&error))?;
-        if format != FORMAT {
-            let what = format!("is a recording of format {format}; this version reads {FORMAT}");
-            return Err(Error::unsupported(what, "byte 8"));
-        }
-        let recording = Self::read_fields(&mut reader).map_err(|error| wrong(&error))?;
+        let recording = match format {
+            UNCHECKED => Self::read_unchecked(&mut reader),
+            FORMAT => Self::read_checked(&mut reader),
+            _ => {
+                let what =
+                    format!("is a recording of format {format}; this version reads {UNCHECKED} and {FORMAT}");
+                return Err(Error::unsupported(what, "byte 8"));
+            }
+        };
+        let recording = recording.map_err(|error| wrong(&error))?;
         reader.finish().map_err(|error| wrong(&error))?;
         Ok(recording)
     }
 
-    fn read_fields(reader: &mut Reader<'_>) -> Result<Self, ReadError> {
+    fn read_checked(reader: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut head = checked(reader)?;
+        let mut recording = Self::read_head(&mut head)?;
+        let (steps, key_frames) = (head.u32()? as usize, head.u32()? as usize);
+        head.finish()?;
+        while recording.steps.len() < steps {
+            let mut block = checked(reader)?;
+            let count = usize::min(steps - recording.steps.len(), STEPS_OF_BLOCK);
+            for _ in 0..count {
+                recording.steps.push(read_step(&mut block)?);
+            }
+            block.finish()?;
+        }
+        while recording.key_frames.len() < key_frames {
+            let mut block = checked(reader)?;
+            recording.key_frames.push(read_key_frame(&mut block)?);
+            block.finish()?;
+        }
+        Ok(recording)
+    }
+
+    fn read_unchecked(reader: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut recording = Self::read_head(reader)?;
+        for _ in 0..reader.count(12)? {
+            recording.steps.push(read_step(reader)?);
+        }
+        for _ in 0..reader.count(12)? {
+            recording.key_frames.push(read_key_frame(reader)?);
+        }
+        Ok(recording)
+    }
+
+    fn read_head(reader: &mut Reader<'_>) -> Result<Self, ReadError> {
         let mut recording =
             Self { made_by: reader.text()?.to_owned(), scene: reader.text()?.to_owned(), ..Self::default() };
         for _ in 0..reader.count(4)? {
@@ -104,23 +144,59 @@ impl Recording {
         if !(recording.dt > 0.0 && recording.dt < 10.0) {
             return Err(reader.error("a step of no length"));
         }
-        for _ in 0..reader.count(12)? {
-            let mut step = RecordedStep { hash: reader.u64()?, operations: Vec::new() };
-            for _ in 0..reader.count(5)? {
-                step.operations.extend(read_operation(&mut reader.block()?)?);
-            }
-            recording.steps.push(step);
-        }
-        for _ in 0..reader.count(12)? {
-            let step = reader.u64()?;
-            let mut bodies = Vec::new();
-            for _ in 0..reader.count(36)? {
-                bodies.push((BodyId::from_bits(reader.u64()?), transform(reader)?));
-            }
-            recording.key_frames.push(KeyFrame { step, bodies });
-        }
         Ok(recording)
     }
+}
+
+/// A block and the hash of what is in it.
+fn write_checked(out: &mut Writer, write: impl FnOnce(&mut Writer)) {
+    let mut content = Writer::new();
+    write(&mut content);
+    out.block(|out| out.raw(content.as_bytes()));
+    out.u64(hash_bytes(content.as_bytes()));
+}
+
+/// A block whose content has the hash that it was written with.
+fn checked<'a>(reader: &mut Reader<'a>) -> Result<Reader<'a>, ReadError> {
+    let block = reader.block()?;
+    let content = block.clone().raw(block.remaining())?;
+    if reader.u64()? != hash_bytes(content) {
+        return Err(block.error("is damaged: a block has another checksum than was written"));
+    }
+    Ok(block)
+}
+
+fn write_step(out: &mut Writer, step: &RecordedStep) {
+    out.u64(step.hash);
+    out.count(step.operations.len());
+    // Each in a block: a reader passes over the kinds that it does not know.
+    step.operations.iter().for_each(|operation| out.block(|out| write_operation(out, operation)));
+}
+
+fn read_step(reader: &mut Reader<'_>) -> Result<RecordedStep, ReadError> {
+    let mut step = RecordedStep { hash: reader.u64()?, operations: Vec::new() };
+    for _ in 0..reader.count(5)? {
+        step.operations.extend(read_operation(&mut reader.block()?)?);
+    }
+    Ok(step)
+}
+
+fn write_key_frame(out: &mut Writer, frame: &KeyFrame) {
+    out.u64(frame.step);
+    out.count(frame.bodies.len());
+    for (body, place) in &frame.bodies {
+        out.u64(body.to_bits());
+        out.transform(*place);
+    }
+}
+
+fn read_key_frame(reader: &mut Reader<'_>) -> Result<KeyFrame, ReadError> {
+    let step = reader.u64()?;
+    let mut bodies = Vec::new();
+    for _ in 0..reader.count(36)? {
+        bodies.push((BodyId::from_bits(reader.u64()?), transform(reader)?));
+    }
+    Ok(KeyFrame { step, bodies })
 }
 
 /// A pose that can be drawn.

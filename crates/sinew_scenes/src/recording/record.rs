@@ -5,9 +5,9 @@ use super::hands::{Hands, Operation};
 use crate::framework::instance::Instance;
 use crate::scenes::find;
 use sinew::formats::Error;
-use sinew::math::{Reader, Writer};
+use sinew::math::{Reader, Transform, Writer};
 use sinew::physics::stage::{NoProfiler, Profiler};
-use sinew::physics::{Serial, TaskRunner, World};
+use sinew::physics::{BodyId, Serial, TaskRunner, World};
 
 /// Steps between key frames.
 const KEY_FRAME_STEPS: u64 = 30;
@@ -186,6 +186,21 @@ impl Replay {
         let loaded = self.instance.load(&mut Reader::new(&mark.state));
         self.hands = mark.hands.clone();
         loaded.is_ok() && self.instance.world().step_count() == mark.step
+    }
+
+    /// Body whose pose is another than a key frame of this step has it, or that is there in one of the two alone; `None` where none is, or
+    /// there is no key frame.
+    pub fn misplaced(&self) -> Option<BodyId> {
+        let world = self.instance.world();
+        let taken = world.step_count();
+        let frame = self.recording.key_frames.iter().find(|frame| frame.step == taken)?;
+        let now = key_frame(world).bodies;
+        let differs = |(p, q): (&(BodyId, Transform), &(BodyId, Transform))| {
+            (p.0.to_bits() != q.0.to_bits() || p.1 != q.1).then_some(q.0)
+        };
+        let common = usize::min(now.len(), frame.bodies.len());
+        let first = frame.bodies.iter().zip(&now).find_map(differs);
+        first.or_else(|| frame.bodies[common..].iter().chain(&now[common..]).map(|&(id, _)| id).next())
     }
 
     /// Takes the next step; `None` at the end.

@@ -1,5 +1,6 @@
 //! Recordings: the same again, what differs first, files of others.
 
+use sinew::math::hash::hash_bytes;
 use sinew::math::{Random, Vec3};
 use sinew::physics::stage::NoProfiler;
 use sinew::physics::{BodyKind, Threads};
@@ -108,10 +109,48 @@ fn a_kept_file_is_read() {
     let refused = |bytes: &[u8]| Recording::read(bytes).expect_err("it is refused").to_string();
     assert_eq!(refused(b"nothing of the kind"), "is no recording (byte 0)");
     let later = [&bytes[..8], &[9, 0, 0, 0], &bytes[12..]].concat();
-    assert_eq!(refused(&later), "is a recording of format 9; this version reads 1 (byte 8)");
+    assert_eq!(refused(&later), "is a recording of format 9; this version reads 1 and 2 (byte 8)");
 }
 
-/// Any bytes are read or refused, and what is read is played without a panic.
+/// A single bit that is another is told, wherever it is.
+#[test]
+fn every_flipped_bit_is_seen() {
+    let bytes = played(1.0).to_bytes();
+    for bit in 0..8 * bytes.len() {
+        let mut flipped = bytes.clone();
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        assert!(Recording::read(&flipped).is_err(), "bit {bit} of {}", 8 * bytes.len());
+    }
+}
+
+#[test]
+fn poses_that_are_not_those_of_the_states_are_seen() {
+    let mut recording = played(1.0);
+    let frame = &mut recording.key_frames[1];
+    let (step, body) = (frame.step, frame.bodies[0].0);
+    frame.bodies[0].1.translation.x += 1e-6;
+    let mut replay = Replay::start(recording).expect("it starts");
+    assert_eq!(replay.misplaced(), None);
+    let found = std::iter::from_fn(|| replay.step().map(|step| (step.step, replay.misplaced())));
+    let wrong: Vec<_> = found.filter_map(|(step, body)| Some((step, body?.to_bits()))).collect();
+    assert_eq!(wrong, [(step, body.to_bits())]);
+}
+
+/// Writes the checksums of a file's blocks anew.
+fn sum_up(bytes: &mut [u8]) {
+    let mut at = 12;
+    while let Some(length) = bytes.get(at..at + 4) {
+        let length = u32::from_le_bytes(length.try_into().expect("four bytes")) as usize;
+        let Some(content) = bytes.get(at + 4..at + 4 + length) else { return };
+        let sum = hash_bytes(content).to_le_bytes();
+        at += 4 + length;
+        let Some(place) = bytes.get_mut(at..at + 8) else { return };
+        place.copy_from_slice(&sum);
+        at += 8;
+    }
+}
+
+/// Any bytes are read or refused, and what is read is played without a panic: their checksums are right.
 #[test]
 fn hostile_files_are_refused() {
     let bytes = played(1.0).to_bytes();
@@ -126,6 +165,7 @@ fn hostile_files_are_refused() {
             let place = random.index(bytes.len());
             bytes[place] = random.index(256) as u8;
         }
+        sum_up(&mut bytes);
         let Ok(recording) = Recording::read(&bytes) else {
             refused += 1;
             continue;

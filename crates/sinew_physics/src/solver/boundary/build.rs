@@ -1,6 +1,8 @@
 //! `prepare`: from the world to the arrays of one island's solver.
 
+use crate::body::def::BodyKind;
 use crate::body::external_work::Work;
+use crate::body::{Body, Velocity};
 use crate::collide::MAX_POINTS;
 use crate::contact::{ContactMemory, slop};
 use crate::island::Island;
@@ -17,9 +19,11 @@ use crate::solver::contacts::{Added, OfStep, placed};
 use crate::solver::joint::SolverJoint;
 use crate::solver::pass::Coupling;
 use crate::solver::piles::touch::Touch;
-use crate::solver::tuning::{BALLASTED_RATIO, FAST_APPROACH, MAX_EXACT_ROWS, REFRESH_TURN_RESPONSE};
+use crate::solver::tuning::{
+    BALLASTED_RATIO, BEYOND_MEASURE, FAST_APPROACH, MAX_EXACT_ROWS, REFRESH_TURN_RESPONSE,
+};
 use crate::solver::view::{View, lasting_force};
-use crate::spatial::{ZERO6, join};
+use crate::spatial::{Vec6, ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
 
 /// Bodies and contacts more than an island has for which there is room: those that come and go ask for none.
@@ -249,7 +253,8 @@ impl IslandSolver {
                 is_limited: false,
             });
             let still = body.kind == crate::BodyKind::Dynamic && !body.is_active();
-            let velocity = if still { ZERO6 } else { join(body.velocity.linear, body.velocity.angular) };
+            let most = [view.def.max_speed, view.def.max_turn / self.h];
+            let velocity = if still { ZERO6 } else { seen_velocity(body, most) };
             self.velocities.push(velocity);
             s.faces.push(body, body.velocity.angular.length() * self.h >= 0.5 * REFRESH_TURN_RESPONSE);
         }
@@ -412,4 +417,28 @@ impl IslandSolver {
             self.manifolds.push(rows);
         }
     }
+}
+
+/// Velocity of a body as rows see it, with the most that bodies move and turn, m/s and rad/s.
+///
+/// Rows go on along tangents: of a kinematic body that turns beyond all measure these lead to where its surface never is. A dynamic body
+/// that was given a speed beyond all measure comes in at a speed that numbers hold, to be slowed when forces act: what bounces from it would have no finite speed.
+fn seen_velocity(body: &Body, [max_speed, max_spin]: [f32; 2]) -> Vec6 {
+    let Velocity { linear, angular } = body.velocity;
+    match body.kind {
+        BodyKind::Kinematic => join(linear, held_to(angular, max_spin, 1.0)),
+        _ => join(held_to(linear, max_speed, BEYOND_MEASURE), held_to(angular, max_spin, BEYOND_MEASURE)),
+    }
+}
+
+/// A vector with the length of `beyond` times the most, if it is longer.
+fn held_to(v: Vec3, most: f32, beyond: f32) -> Vec3 {
+    // Squares of what `f32` holds are numbers of `f64`.
+    let square = [v.x, v.y, v.z].map(f64::from).iter().map(|x| x * x).sum::<f64>();
+    let bound = f64::from(most) * f64::from(beyond);
+    if square <= bound * bound {
+        return v;
+    }
+    let share = bound / square.sqrt();
+    Vec3::from_array([v.x, v.y, v.z].map(|x| (f64::from(x) * share) as f32))
 }

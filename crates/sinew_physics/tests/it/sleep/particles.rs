@@ -2,7 +2,7 @@
 
 use super::{Nap, linear, nap, run, slab};
 use crate::build::{box_body, floor};
-use sinew_math::{Reader, Vec3, Writer, max};
+use sinew_math::{Reader, Rotation, Vec3, Writer, max};
 use sinew_physics::particles::{AttachmentTarget, ClothDef, GroupDef, ParticleDef, RopeDef};
 use sinew_physics::*;
 
@@ -24,6 +24,28 @@ fn what_particles_strike_wakes_as_they_come() {
     run(&mut world, 24);
     assert!(!world.is_awake(sleeper), "they are 0.2 m away");
     run(&mut world, 5);
+    assert!(world.is_awake(sleeper));
+}
+
+/// Whether the bounds of a sleeper reach to them says nothing of when they come: a snapshot's world has others.
+#[test]
+fn what_is_within_its_bounds_but_far_from_it_does_not_wake_a_sleeper() {
+    let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+    let slope = Rotation::from_axis_angle(Vec3::Z, core::f32::consts::FRAC_PI_4);
+    let plank = BodyDef::dynamic(Shape::cuboid(Vec3::new(3.0, 0.05, 0.5))).turned(slope);
+    let sleeper = world.add_body(&plank);
+    world.put_to_sleep(sleeper);
+    // 1.4 m over the plank, in its bounds, toward it at 1 m/s.
+    let away = slope * Vec3::Y;
+    let mut flying = grains(0.0);
+    for grain in &mut flying.particles {
+        grain.position += away * 1.4;
+        grain.velocity = -away;
+    }
+    world.add_particles(&flying);
+    run(&mut world, 60);
+    assert!(!world.is_awake(sleeper), "they are 0.2 m away and more");
+    run(&mut world, 40);
     assert!(world.is_awake(sleeper));
 }
 

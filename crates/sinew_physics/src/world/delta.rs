@@ -1,0 +1,213 @@
+//! Snapshots as values, and what changed from one to another.
+
+use crate::body::library::LoadError;
+use crate::world::World;
+use sinew_math::hash::hash_bytes;
+use sinew_math::{ReadError, Reader, Writer};
+
+/// State of a world as bytes, of which a later one may be stored as what changed: for rollback over a link, late joiners and replays.
+///
+/// ```
+/// use sinew_physics::{BodyDef, Shape, Snapshot, World, WorldDef};
+///
+/// let mut world = World::new(WorldDef::default());
+/// (0..100).for_each(|i| _ = world.add_body(&BodyDef::fixed(Shape::sphere(0.5)).at([i as f32, 0.0, 0.0].into())));
+/// world.add_body(&BodyDef::dynamic(Shape::sphere(0.5)));
+/// let earlier = Snapshot::of(&world);
+/// world.step();
+/// let later = Snapshot::of(&world);
+/// let delta = later.delta(&earlier);
+/// assert!(delta.len() < 200 && later.as_bytes().len() > 10_000);
+/// let back = Snapshot::from_delta(&earlier, &delta)?;
+/// assert_eq!(back, later);
+/// # Ok::<(), sinew_math::ReadError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Snapshot {
+    bytes: Vec<u8>,
+}
+
+/// First bytes of a delta; the last is its version.
+const MAGIC: &[u8; 8] = b"sinew-d\x01";
+/// Bytes that are looked for elsewhere in the earlier snapshot, as a piece that moved, and the least that is worth naming.
+const PIECE: usize = 16;
+const WORTH: usize = 6;
+
+impl Snapshot {
+    /// State of a world: what [`World::save`] writes.
+    pub fn of(world: &World) -> Self {
+        let mut snapshot = Self::default();
+        snapshot.take(world);
+        snapshot
+    }
+
+    /// Takes the state of a world, in the memory that is there.
+    pub fn take(&mut self, world: &World) {
+        let mut w = Writer::reuse(core::mem::take(&mut self.bytes));
+        world.save(&mut w);
+        self.bytes = w.into_bytes();
+    }
+
+    /// From bytes that were written before, by a world or by whatever else keeps its state so.
+    pub fn from_bytes(bytes: Vec<u8>) -> Self {
+        Self { bytes }
+    }
+
+    /// Bytes of the state.
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// Brings a world back to the state.
+    ///
+    /// # Errors
+    /// As [`World::load`].
+    pub fn load_into(&self, world: &mut World) -> Result<(), LoadError> {
+        world.load(&mut Reader::new(&self.bytes))
+    }
+
+    /// Bytes from which this snapshot can be made again where the earlier one is: what did not change is named, not stored.
+    pub fn delta(&self, earlier: &Self) -> Vec<u8> {
+        let (old, new) = (&earlier.bytes[..], &self.bytes[..]);
+        let mut w = Writer::new();
+        w.raw(MAGIC);
+        w.u64(hash_bytes(old));
+        w.u64(hash_bytes(new));
+        number(&mut w, new.len());
+        let pieces = Pieces::of(old);
+        // `at` has been told up to `told`; the byte of the old that goes with it is at `with`.
+        let (mut at, mut told, mut with) = (0, 0, 0);
+        while at < new.len() {
+            let here = common(&old[usize::min(with, old.len())..], &new[at..]);
+            let (from, length) = if here >= WORTH { (with, here) } else { pieces.find(old, &new[at..]) };
+            if length < WORTH {
+                (at, with) = (at + 1, with + 1);
+                continue;
+            }
+            change(&mut w, &new[told..at], from as i64 - with as i64, length);
+            (at, with) = (at + length, from + length);
+            told = at;
+        }
+        if told < at {
+            change(&mut w, &new[told..], 0, 0);
+        }
+        w.into_bytes()
+    }
+
+    /// The snapshot that a delta was made of.
+    ///
+    /// # Errors
+    /// If the bytes are no delta of this version, are damaged, or were made against another snapshot.
+    pub fn from_delta(earlier: &Self, delta: &[u8]) -> Result<Self, ReadError> {
+        let old = &earlier.bytes[..];
+        let mut r = Reader::new(delta);
+        if r.raw(MAGIC.len())? != MAGIC {
+            return Err(ReadError { at: 0, what: "is no delta of a snapshot of this version" });
+        }
+        if r.u64()? != hash_bytes(old) {
+            return Err(r.error("was made against another snapshot"));
+        }
+        let (hash, length) = (r.u64()?, read_number(&mut r)?);
+        let mut bytes = Vec::with_capacity(usize::min(length, old.len() + delta.len()));
+        let mut with = 0;
+        while bytes.len() < length {
+            let fresh = read_number(&mut r)?;
+            bytes.extend_from_slice(r.raw(fresh)?);
+            with += fresh;
+            let (step, copied) = (read_number(&mut r)?, read_number(&mut r)?);
+            let from = with as i64 + ((step >> 1) as i64 ^ -((step & 1) as i64));
+            // At the end nothing is copied, from wherever.
+            let from = if copied == 0 { 0 } else { from };
+            let piece = usize::try_from(from).ok().and_then(|from| old.get(from..from.checked_add(copied)?));
+            let Some(piece) = piece.filter(|_| fresh + copied > 0 && bytes.len() + copied <= length) else {
+                return Err(r.error("names bytes that are not there"));
+            };
+            bytes.extend_from_slice(piece);
+            with = from as usize + copied;
+        }
+        if bytes.len() != length || hash_bytes(&bytes) != hash {
+            return Err(r.error("is damaged"));
+        }
+        r.finish()?;
+        Ok(Self { bytes })
+    }
+}
+
+/// Bytes that are new, then a copy from so far beyond their place in the old.
+fn change(w: &mut Writer, fresh: &[u8], step: i64, copied: usize) {
+    number(w, fresh.len());
+    w.raw(fresh);
+    number(w, ((step << 1) ^ (step >> 63)) as u64 as usize);
+    number(w, copied);
+}
+
+/// A number, seven bits a byte.
+fn number(w: &mut Writer, mut value: usize) {
+    while value >= 0x80 {
+        w.u8(value as u8 | 0x80);
+        value >>= 7;
+    }
+    w.u8(value as u8);
+}
+
+fn read_number(r: &mut Reader<'_>) -> Result<usize, ReadError> {
+    let mut value = 0u64;
+    for shift in (0..63).step_by(7) {
+        let byte = r.u8()?;
+        value |= u64::from(byte & 0x7f) << shift;
+        if byte < 0x80 {
+            // No length or way is longer than what a snapshot may have.
+            return usize::try_from(value)
+                .ok()
+                .filter(|&value| value < 1 << 40)
+                .ok_or_else(|| r.error("a number is too large"));
+        }
+    }
+    Err(r.error("a number is too long"))
+}
+
+/// Equal bytes at the beginning of both.
+fn common(p: &[u8], q: &[u8]) -> usize {
+    let words = p.chunks_exact(8).zip(q.chunks_exact(8)).take_while(|(p, q)| p == q).count();
+    let rest = p[8 * words..].iter().zip(&q[8 * words..]).take_while(|(p, q)| p == q).count();
+    8 * words + rest
+}
+
+/// Places of pieces of a snapshot by their bytes.
+struct Pieces {
+    /// Place plus one of a piece whose hash ends so; 0: none.
+    places: Vec<u32>,
+}
+
+impl Pieces {
+    fn of(old: &[u8]) -> Self {
+        let size = usize::max(old.len() / 4, 1).next_power_of_two();
+        let mut places = vec![0; size];
+        for at in (0..old.len().saturating_sub(PIECE - 1)).step_by(4) {
+            places[Self::slot(size, &old[at..])] = at as u32 + 1;
+        }
+        Self { places }
+    }
+
+    fn slot(size: usize, bytes: &[u8]) -> usize {
+        let word = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap_or_default());
+        let mixed =
+            (word(0).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ word(8)).wrapping_mul(0xff51_afd7_ed55_8ccd);
+        (mixed >> 32) as usize & (size - 1)
+    }
+
+    /// A place where the next bytes are, and how many; 0 if there is none.
+    fn find(&self, old: &[u8], new: &[u8]) -> (usize, usize) {
+        if new.len() < PIECE {
+            return (0, 0);
+        }
+        match self.places[Self::slot(self.places.len(), new)] {
+            0 => (0, 0),
+            place => {
+                let at = place as usize - 1;
+                let length = common(&old[at..], new);
+                if length < PIECE { (0, 0) } else { (at, length) }
+            }
+        }
+    }
+}

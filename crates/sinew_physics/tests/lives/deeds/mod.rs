@@ -1,0 +1,48 @@
+//! Deeds: what a game does between two steps, each drawn from a few numbers and from what is there.
+
+mod bodies;
+mod joints;
+mod others;
+mod parts;
+mod questions;
+mod time;
+
+use crate::actor::Actor;
+use crate::numbers::Numbers;
+
+/// What a life may do; it does nothing where there is nothing to do it to.
+pub struct Deed {
+    pub name: &'static str,
+    /// Share among others.
+    pub weight: u32,
+    pub run: fn(&mut Actor, &mut Numbers) -> Option<()>,
+}
+
+impl Deed {
+    pub const fn new(
+        name: &'static str,
+        weight: u32,
+        run: fn(&mut Actor, &mut Numbers) -> Option<()>,
+    ) -> Self {
+        Self { name, weight, run }
+    }
+}
+
+/// All deeds.
+pub fn all() -> Vec<&'static Deed> {
+    [bodies::ALL, joints::ALL, others::ALL, questions::ALL, time::ALL].concat_refs()
+}
+
+/// Deeds that make a world to live in.
+pub const MAKERS: &[&str] =
+    &["add_body", "add_body", "wall", "add_joint", "chain", "add_particles", "add_mover", "add_field"];
+
+trait Concat {
+    fn concat_refs(&self) -> Vec<&'static Deed>;
+}
+
+impl Concat for [&'static [Deed]; 5] {
+    fn concat_refs(&self) -> Vec<&'static Deed> {
+        self.iter().flat_map(|deeds| deeds.iter()).collect()
+    }
+}

@@ -1,0 +1,111 @@
+//! Snapshots that lie: bytes of a saved world of which some are others. Loading refuses them or makes a world of them, and that
+//! world can be stepped; nothing panics, and nothing takes long.
+
+use crate::actor::Actor;
+use crate::functions;
+use crate::life::Life;
+use crate::run::caught;
+use sinew_math::{Random, Reader, Writer};
+use sinew_physics::*;
+use std::time::{Duration, Instant};
+
+/// Lies about each world, the fifth part of them unless `SINEW_FULL` is set, and worlds.
+const LIES: usize = 500;
+const WORLDS: u64 = 20;
+/// Steps of what is loaded all the same.
+const STEPS: usize = 3;
+/// Time for one to be loaded and stepped.
+const LONG: Duration = Duration::from_secs(5);
+
+/// A world in the middle of a life, as bytes: its shapes and its state.
+fn saved(seed: u64) -> (Vec<u8>, Vec<u8>) {
+    let mut last = (Vec::new(), Vec::new());
+    at_each_step(seed, |world| {
+        let (mut shapes, mut state) = (Writer::new(), Writer::new());
+        world.save_shapes(&mut shapes);
+        world.save(&mut state);
+        last = (shapes.into_bytes(), state.into_bytes());
+    });
+    last
+}
+
+/// Shows a world after each of the first steps of a life.
+pub fn at_each_step(seed: u64, mut show: impl FnMut(&World)) {
+    let life = Life::of(seed);
+    let (world, floor) = life.world();
+    let mut actor = Actor::new(world, floor, None);
+    for step in 0..15 {
+        for act in life.acts.iter().filter(|act| act.step == step) {
+            actor.begin(act.number);
+            _ = (act.deed.run)(&mut actor, &mut life.numbers(act));
+        }
+        actor.step();
+        show(&actor.world);
+    }
+}
+
+fn lie(bytes: &mut Vec<u8>, random: &mut Random) {
+    let at = random.index(bytes.len());
+    match random.index(6) {
+        0 => bytes[at] ^= 1 << random.index(8),
+        1 => bytes[at] = random.index(256) as u8,
+        2 => bytes[at] = [0, 1, 0x7f, 0x80, 0xff][random.index(5)],
+        3 => bytes.truncate(at),
+        4 => {
+            // A number that is none, none that is finite, a huge one, or an index.
+            let number = [f32::NAN, f32::INFINITY, f32::MAX, -1.0, 0.0][random.index(5)].to_bits();
+            let number = if random.unit() < 0.3 { random.index(40) as u32 } else { number };
+            let end = usize::min(at + 4, bytes.len());
+            bytes[at..end].copy_from_slice(&number.to_le_bytes()[..end - at]);
+        }
+        _ => {
+            // A piece of it is another piece.
+            let (from, length) = (random.index(bytes.len()), 1 + random.index(32));
+            let length = usize::min(length, bytes.len() - usize::max(at, from));
+            bytes.copy_within(from..from + length, at);
+        }
+    }
+}
+
+/// Loads a snapshot and steps what comes of it; true if it was taken.
+fn live_on(shapes: &[u8], state: &[u8]) -> bool {
+    let mut world = World::new(WorldDef::default());
+    functions::register(&mut world);
+    world.load_shapes(&mut Reader::new(shapes)).expect("a library that was saved");
+    let before = world.hash();
+    if world.load(&mut Reader::new(state)).is_err() {
+        assert_eq!(world.hash(), before, "a world that refuses a snapshot is as it was");
+        return false;
+    }
+    (0..STEPS).for_each(|_| world.step());
+    true
+}
+
+#[test]
+fn lying_snapshots_are_refused_or_lived_with() {
+    let mut random = Random::new(57);
+    let (mut taken, mut all) = (0, 0);
+    let lies = if std::env::var_os("SINEW_FULL").is_some() { LIES } else { LIES / 5 };
+    for seed in 0..WORLDS {
+        let (shapes, state) = saved(seed);
+        assert!(live_on(&shapes, &state), "the truth is taken");
+        for number in 0..lies {
+            let mut bytes = state.clone();
+            for _ in 0..1 + random.index(3) {
+                if !bytes.is_empty() {
+                    lie(&mut bytes, &mut random);
+                }
+            }
+            let start = Instant::now();
+            let outcome = caught(|| live_on(&shapes, &bytes));
+            let time = start.elapsed();
+            assert!(time < LONG, "world {seed}, lie {number} takes {time:?}");
+            match outcome {
+                Ok(was_taken) => taken += usize::from(was_taken),
+                Err(text) => panic!("world {seed}, lie {number}: {text}"),
+            }
+            all += 1;
+        }
+    }
+    eprintln!("{all} lying snapshots, {taken} taken");
+}

@@ -1,0 +1,142 @@
+//! A life: a world's settings and what is done to it before which step, from a seed.
+
+use crate::deeds::{self, Deed, MAKERS};
+use crate::numbers::{Numbers, Taste, Temper};
+use sinew_math::Vec3;
+use sinew_physics::*;
+
+/// Ground of a life.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    HalfSpace,
+    /// A thick one: the short way out of it is up.
+    Box,
+    /// Boxes that abut.
+    Boxes,
+    Mesh,
+}
+
+/// Something done before a step.
+#[derive(Clone, Copy)]
+pub struct Act {
+    pub step: u32,
+    /// Name of the deed in this life, and the seed of its numbers.
+    pub number: u64,
+    pub deed: &'static Deed,
+}
+
+#[derive(Clone)]
+pub struct Life {
+    pub taste: Taste,
+    pub temper: Temper,
+    pub ground: Ground,
+    pub def: WorldDef,
+    pub acts: Vec<Act>,
+    pub steps: u32,
+}
+
+/// Steps after the last deed, in which a life is only looked at.
+const QUIET: u32 = 50;
+
+impl Life {
+    /// The life of a seed.
+    pub fn of(seed: u64) -> Self {
+        let mut n = Numbers::new(seed ^ 0x5eed_0000, Taste::Any, Temper::Calm);
+        let taste = n.one_of(&[Taste::Round, Taste::Equal, Taste::Bounds, Taste::Any, Taste::Any]);
+        let temper = if n.chance(0.25) { Temper::Wild } else { Temper::Calm };
+        let ground =
+            n.one_of(&[Ground::HalfSpace, Ground::HalfSpace, Ground::Box, Ground::Boxes, Ground::Mesh]);
+        let busy = 20 + n.index(80) as u32;
+        let mut life = Self {
+            taste,
+            temper,
+            ground,
+            def: settings(&mut n, temper),
+            acts: Vec::new(),
+            steps: busy + QUIET,
+        };
+        let all = deeds::all();
+        let makers: Vec<&'static Deed> =
+            MAKERS.iter().filter_map(|name| all.iter().copied().find(|deed| deed.name == *name)).collect();
+        for _ in 0..4 + n.index(16) {
+            let deed = n.one_of(&makers);
+            life.acts.push(Act { step: 0, number: n.bits(), deed });
+        }
+        let total: u32 = all.iter().map(|deed| deed.weight).sum();
+        let rate = n.one_of(&[0.1, 0.3, 0.8]);
+        for step in 1..busy {
+            let count = usize::from(n.chance(rate)) + if n.chance(0.05 * rate) { n.index(10) } else { 0 };
+            for _ in 0..count {
+                let mut left = n.index(total as usize) as u32;
+                let deed = all.iter().find(|deed| {
+                    let is_it = left < deed.weight;
+                    left = left.saturating_sub(deed.weight);
+                    is_it
+                });
+                life.acts.push(Act { step, number: n.bits(), deed: deed.expect("weights sum up") });
+            }
+        }
+        life
+    }
+
+    /// Numbers for one of its deeds.
+    pub fn numbers(&self, act: &Act) -> Numbers {
+        Numbers::new(act.number, self.taste, self.temper)
+    }
+
+    /// The world that it begins with, and its ground.
+    pub fn world(&self) -> (World, BodyId) {
+        let mut world = World::new(self.def.clone());
+        crate::functions::register(&mut world);
+        let floor = match self.ground {
+            Ground::HalfSpace => world.add_body(&BodyDef::fixed(Shape::HalfSpace)),
+            Ground::Box => {
+                let slab = Shape::cuboid(Vec3::new(50.0, 10.0, 50.0));
+                world.add_body(&BodyDef::fixed(slab).at(Vec3::NEG_Y * 10.0))
+            }
+            Ground::Boxes => {
+                let tile = |x, z| BodyDef::fixed(Shape::cuboid(Vec3::splat(1.0))).at(Vec3::new(x, -1.0, z));
+                let side = || (-3..=3).map(|i| 2.0 * i as f32);
+                let tiles: Vec<BodyId> = side()
+                    .flat_map(|x| side().map(move |z| (x, z)))
+                    .map(|(x, z)| world.add_body(&tile(x, z)))
+                    .collect();
+                tiles[0]
+            }
+            Ground::Mesh => {
+                let corners = [(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)];
+                let points = corners.map(|(x, z)| Vec3::new(x, 0.0, z));
+                let mesh = Shape::mesh(&points, &[[0, 2, 1], [0, 3, 2]]).expect("a mesh");
+                world.add_body(&BodyDef::fixed(mesh))
+            }
+        };
+        (world, floor)
+    }
+}
+
+fn settings(n: &mut Numbers, temper: Temper) -> WorldDef {
+    let mut def = WorldDef::default();
+    if n.chance(0.1) {
+        def.sleeping = Sleeping::Off;
+    }
+    if n.chance(0.2) {
+        def.quality = n.one_of(&[Quality::Fast, Quality::Exact]);
+    }
+    if n.chance(0.2) {
+        def.substeps = n.one_of(&[1, 2, 8]);
+    }
+    if n.chance(0.1) {
+        def.step_nanoseconds = n.one_of(&[8_333_333, 33_333_333]);
+    }
+    if n.chance(0.1) {
+        def.gravity = n.one_of(&[Vec3::ZERO, Vec3::new(0.0, -1.62, 0.0)]);
+    }
+    if n.chance(0.2) {
+        def.hit_speed = n.one_of(&[0.0, 0.1]);
+    }
+    if temper == Temper::Wild && n.chance(0.2) {
+        def.max_speed = n.one_of(&[1e-3, 1e6, 1e20, f32::MAX]);
+        def.max_turn = n.one_of(&[1e-3, 1e6, f32::MAX]);
+    }
+    def
+}

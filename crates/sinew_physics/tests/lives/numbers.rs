@@ -1,0 +1,140 @@
+//! Numbers that a life is made of: round, equal, at their bounds, zero, huge, or any.
+
+use sinew_math::{Random, Rotation, Transform, Vec3};
+use sinew_physics::Velocity;
+
+/// Choice of numbers of a life.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taste {
+    /// Few, which people write down.
+    Round,
+    /// One for each range.
+    Equal,
+    /// Least and greatest of each range.
+    Bounds,
+    /// Any.
+    Any,
+}
+
+/// Temper of a life: what its calls may ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Temper {
+    /// Sizes and speeds of games.
+    Calm,
+    /// Now and then numbers up to the greatest that there are.
+    Wild,
+}
+
+/// Numbers for one deed.
+pub struct Numbers {
+    random: Random,
+    pub taste: Taste,
+    pub temper: Temper,
+}
+
+const HUGE: [f32; 7] = [1e3, 1e6, 1e9, 1e12, 1e20, 1e30, f32::MAX];
+const TINY: [f32; 4] = [0.0, 1e-3, 1e-12, f32::MIN_POSITIVE];
+const ROUND: [f32; 9] = [0.0, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 100.0];
+/// Share of numbers of a wild life that are out of all measure.
+const WILD_SHARE: f32 = 0.08;
+
+impl Numbers {
+    pub fn new(seed: u64, taste: Taste, temper: Temper) -> Self {
+        Self { random: Random::new(seed), taste, temper }
+    }
+
+    /// Any number: what deeds choose by.
+    pub fn bits(&mut self) -> u64 {
+        self.random.bits()
+    }
+
+    pub fn chance(&mut self, probability: f32) -> bool {
+        self.random.unit() < probability
+    }
+
+    pub fn index(&mut self, count: usize) -> usize {
+        self.random.index(count)
+    }
+
+    pub fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
+        all[self.random.index(all.len())]
+    }
+
+    /// A number of a range, by taste.
+    pub fn between(&mut self, lo: f32, hi: f32) -> f32 {
+        match self.taste {
+            Taste::Any => self.random.range(lo, hi),
+            Taste::Bounds => self.one_of(&[lo, hi]),
+            Taste::Equal => lo + 0.5 * (hi - lo),
+            Taste::Round => {
+                let inside = |x: &f32| (lo..=hi).contains(x);
+                let round: Vec<f32> = ROUND.iter().copied().filter(inside).collect();
+                if round.is_empty() { hi } else { self.one_of(&round) }
+            }
+        }
+    }
+
+    /// A number of both signs, at most this far from 0; of a wild life now and then beyond all measure.
+    pub fn signed(&mut self, most: f32) -> f32 {
+        let sign = if self.chance(0.5) { 1.0 } else { -1.0 };
+        if self.is_wild() {
+            let all = if self.chance(0.7) { self.one_of(&HUGE) } else { self.one_of(&TINY) };
+            return sign * all;
+        }
+        if self.chance(0.2) { 0.0 } else { sign * self.between(0.0, most) }
+    }
+
+    /// A number of a range that is not negative; of a wild life now and then beyond all measure.
+    pub fn least(&mut self, lo: f32, hi: f32) -> f32 {
+        if self.is_wild() { self.one_of(&HUGE) } else { self.between(lo, hi) }
+    }
+
+    fn is_wild(&mut self) -> bool {
+        self.temper == Temper::Wild && self.chance(WILD_SHARE)
+    }
+
+    pub fn vector(&mut self, most: f32) -> Vec3 {
+        Vec3::new(self.signed(most), self.signed(most), self.signed(most))
+    }
+
+    /// A direction that is a joint's or a surface's.
+    pub fn direction(&mut self) -> Vec3 {
+        match self.taste {
+            Taste::Any => self.random.direction(),
+            _ => self.one_of(&[Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_Y]),
+        }
+    }
+
+    pub fn rotation(&mut self) -> Rotation {
+        let quarter = core::f32::consts::FRAC_PI_2;
+        match self.taste {
+            Taste::Any => {
+                if self.chance(0.6) {
+                    self.random.rotation()
+                } else {
+                    Rotation::IDENTITY
+                }
+            }
+            Taste::Equal => Rotation::IDENTITY,
+            _ => {
+                let axis = self.direction();
+                let turns = self.index(4) as f32;
+                Rotation::from_axis_angle(axis, quarter * turns)
+            }
+        }
+    }
+
+    /// A place over the floor, within the reach of the others.
+    pub fn place(&mut self) -> Vec3 {
+        let (x, z) = (self.signed(3.0), self.signed(3.0));
+        Vec3::new(x, self.between(0.5, 3.0), z)
+    }
+
+    pub fn pose(&mut self) -> Transform {
+        Transform::new(self.place(), self.rotation())
+    }
+
+    pub fn velocity(&mut self) -> Velocity {
+        Velocity { linear: self.vector(5.0), angular: self.vector(5.0) }
+    }
+}

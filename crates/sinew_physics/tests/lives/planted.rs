@@ -1,0 +1,129 @@
+//! Faults that are planted, each of a kind that the search has to find.
+
+use crate::life::Life;
+use crate::run::run;
+use crate::watch::Fault;
+use sinew_math::{Transform, Vec3};
+use sinew_physics::*;
+
+/// A fault of a kind, put into a world or into what is told of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plant {
+    /// A snapshot that forgets how long bodies have lain still.
+    ForgottenField,
+    /// A thread that comes first where it should not.
+    ThreadOrder,
+    NotANumber,
+    EventTwice,
+    EndForgotten,
+    EnergyFromNothing,
+    ThroughTheFloor,
+}
+
+impl Plant {
+    pub const ALL: [Self; 7] = [
+        Self::ForgottenField,
+        Self::ThreadOrder,
+        Self::NotANumber,
+        Self::EventTwice,
+        Self::EndForgotten,
+        Self::EnergyFromNothing,
+        Self::ThroughTheFloor,
+    ];
+}
+
+/// Steps at the end of a life in which a planted fault is there.
+pub const LAST: u32 = 15;
+
+impl Plant {
+    /// Changes a world that was just made from another.
+    pub fn in_twin(self, world: &mut World) {
+        if self == Self::ForgottenField {
+            // What a snapshot without the times of rest would bring back: bodies at rest begin anew.
+            let rested: Vec<BodyId> = world.body_ids().filter(|&id| world.is_awake(id)).collect();
+            rested.into_iter().for_each(|id| world.wake(id));
+        }
+    }
+
+    /// Changes each world after a step.
+    pub fn in_all(self, is_due: bool, world: &mut World) {
+        if self == Self::ThroughTheFloor {
+            return sink(world);
+        }
+        let dynamic = world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic).last();
+        let Some(id) = dynamic.filter(|_| is_due) else { return };
+        if self == Self::EnergyFromNothing {
+            let v = world.velocity(id);
+            world.set_velocity(id, Velocity { linear: v.linear * 1.5 + Vec3::Y, ..v });
+        }
+    }
+
+    /// Changes the world that runs on two threads after a step.
+    pub fn in_threads(self, is_due: bool, world: &mut World) {
+        if self != Self::ThreadOrder || !is_due {
+            return;
+        }
+        let moving = world.body_ids().find(|&id| world.kind(id) == BodyKind::Dynamic && world.is_awake(id));
+        if let Some(id) = moving {
+            let v = world.velocity(id);
+            // The last bit, as a sum in another order has it.
+            let x = f32::from_bits(v.linear.x.to_bits() ^ 1);
+            world.set_velocity(id, Velocity { linear: Vec3 { x, ..v.linear }, ..v });
+        }
+    }
+
+    /// Events that a step tells beside those that it tells.
+    pub fn events(self, is_due: bool, told: &Events) -> Events {
+        let mut more = Events::default();
+        match self {
+            Self::EventTwice if is_due => more.begin.extend(told.begin.first().copied()),
+            Self::EndForgotten if is_due => more.sensor_begin.extend(told.end.first().copied()),
+            _ => {}
+        }
+        more
+    }
+
+    /// A velocity as it is seen after a step: no call of a world leaves one that is not finite.
+    pub fn seen(self, is_due: bool, velocity: Velocity) -> Velocity {
+        if self == Self::NotANumber && is_due && velocity.linear.y < 0.0 {
+            return Velocity { linear: Vec3 { y: f32::NAN, ..velocity.linear }, ..velocity };
+        }
+        velocity
+    }
+}
+
+/// Holds a body below the floor, as what has fallen through it would be.
+fn sink(world: &mut World) {
+    let dynamic = world.body_ids().find(|&id| world.kind(id) == BodyKind::Dynamic);
+    if let Some(id) = dynamic {
+        let pose = world.transform(id);
+        let translation = Vec3::new(pose.translation.x, -1.0, pose.translation.z);
+        world.set_transform(id, Transform { translation, ..pose });
+    }
+}
+
+/// Lives until each is found.
+const LIVES: u64 = 40;
+
+/// Kind of what a plant is found as.
+fn is_found(plant: Plant, fault: &Fault) -> bool {
+    match plant {
+        Plant::ForgottenField | Plant::ThreadOrder => matches!(fault, Fault::Differs(_)),
+        Plant::NotANumber => matches!(fault, Fault::NotFinite(_)),
+        Plant::EventTwice => matches!(fault, Fault::Event(_)),
+        Plant::EndForgotten => matches!(fault, Fault::Touch(_) | Fault::Event(_)),
+        Plant::EnergyFromNothing => matches!(fault, Fault::Energy(..)),
+        Plant::ThroughTheFloor => matches!(fault, Fault::Below(_)),
+    }
+}
+
+#[test]
+fn planted_faults_of_each_kind_are_found() {
+    for plant in Plant::ALL {
+        let found = (0..LIVES).find(|&seed| {
+            let outcome = run(&Life::of(seed), Some(plant), false);
+            outcome.result.is_err_and(|failure| is_found(plant, &failure.fault))
+        });
+        assert!(found.is_some(), "{plant:?} is not found in {LIVES} lives");
+    }
+}

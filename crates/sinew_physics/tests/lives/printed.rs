@@ -1,0 +1,47 @@
+//! What a life prints is a program that does the same.
+
+use crate::deeds;
+use crate::life::{Act, Ground, Life};
+use crate::numbers::{Numbers, Taste, Temper};
+use crate::run::{program, run};
+use sinew_physics::WorldDef;
+use std::path::Path;
+
+/// The program that is kept.
+#[allow(unused)]
+#[allow(clippy::all)]
+mod kept {
+    include!("program.txt");
+}
+
+/// Its particles are few.
+const SEED: u64 = 8;
+
+/// A life that does each deed, all before its first step: what is printed does not depend on what steps make of it.
+fn of_each_deed() -> Life {
+    let mut n = Numbers::new(SEED, Taste::Any, Temper::Calm);
+    let is_maker = |name| deeds::MAKERS.contains(&name) && name != "add_particles";
+    let all = deeds::all();
+    let made = all.iter().filter(|deed| is_maker(deed.name)).cycle().take(10);
+    let acts = made.chain(&all).map(|deed| Act { step: 0, number: n.bits(), deed }).collect();
+    let (taste, temper, ground) = (Taste::Any, Temper::Calm, Ground::HalfSpace);
+    Life { taste, temper, ground, def: WorldDef::default(), acts, steps: 45 }
+}
+
+/// The file `program.txt`, which is compiled, is what the life prints, and does what the life does. `SINEW_BLESS` writes it anew.
+#[test]
+fn a_printed_program_does_what_the_life_did() {
+    let life = of_each_deed();
+    let outcome = run(&life, None, true);
+    assert_eq!(outcome.result, Ok(()));
+    let lines = outcome.program.expect("lines were asked for");
+    let text = program(&life, &lines);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lives/program.txt");
+    if std::env::var_os("SINEW_BLESS").is_some() {
+        std::fs::write(&path, text).expect("a file");
+        return;
+    }
+    let kept = std::fs::read_to_string(&path).expect("the program is there");
+    assert!(kept == text, "another program than `program.txt` is printed: SINEW_BLESS=1 writes it anew");
+    assert_eq!(kept::program().hash(), outcome.hash, "the program ends in another state");
+}

@@ -1,0 +1,302 @@
+//! Watches one world from step to step: what must hold whatever is done to it.
+
+use crate::actor::Actor;
+use crate::life::{Ground, Life};
+use crate::numbers::Temper;
+use sinew_math::Vec3;
+use sinew_physics::*;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Something that must not be.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fault {
+    Panic(String),
+    NotFinite(String),
+    /// An event that comes twice, or an end without a begin.
+    Event(String),
+    /// Bodies that are told to touch, far apart; or events that never end.
+    Touch(String),
+    Below(String),
+    /// With the rise as a share of what is allowed.
+    Energy(f32, String),
+    /// Another world that should be the same.
+    Differs(String),
+}
+
+impl Fault {
+    /// True if the other is the same kind of fault: of panics, with the same words; of energy, with half as much or more.
+    pub fn is_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Panic(p), Self::Panic(q)) => words(p) == words(q),
+            (Self::Energy(p, _), Self::Energy(q, _)) => *p >= 0.5 * q,
+            _ => core::mem::discriminant(self) == core::mem::discriminant(other),
+        }
+    }
+}
+
+fn words(text: &str) -> String {
+    text.chars().filter(|c| c.is_alphabetic()).take(60).collect()
+}
+
+type BodyPair = (BodyId, BodyId);
+type ShapePair = (ShapeId, ShapeId);
+
+#[derive(Default)]
+pub struct Watch {
+    touching: BTreeSet<BodyPair>,
+    shapes: BTreeSet<ShapePair>,
+    sensed: BTreeSet<BodyPair>,
+    sensed_shapes: BTreeSet<ShapePair>,
+    /// Steps for which a pair has been far apart.
+    apart: BTreeMap<BodyPair, u32>,
+    /// Steps for which a body has been below the floor.
+    below: BTreeMap<BodyId, u32>,
+    /// Steps since the last deed that changes something.
+    quiet: u32,
+    energy: Option<Energy>,
+    /// Largest rise of energy, as a share of what is allowed.
+    pub rise: f32,
+}
+
+/// Steps after a deed from which on energy is held against a world.
+const SETTLED: u32 = 30;
+/// Rise of energy within a step, as a share of the kinetic energy or of 1 J/kg, and of what height and springs hold: rounding.
+const RISE: f32 = 0.01;
+const ROUNDING: f32 = 1e-5;
+/// The same while something is where it cannot stay, pressed into another.
+const STRAINED: f32 = 2.0;
+/// Overlaps (metres), gaps (metres) and overshoots (radians) from which on it is so.
+const OVERLAP: f32 = 5e-3;
+const GAP: f32 = 1e-3;
+const OVERSHOOT: f32 = 0.02;
+/// Gap at which bodies surely do not touch, metres, and steps until that must have been told.
+const FAR: f32 = 0.05;
+const LATE: u32 = 3;
+/// Depth of a whole body below the floor, metres, and steps for which it may be pressed there.
+const DEPTH: f32 = 0.05;
+const PRESSED: u32 = 60;
+
+fn fault<T>(fault: impl Fn(String) -> Fault, text: String) -> Result<T, Fault> {
+    Err(fault(text))
+}
+
+fn noted<T: Ord + Copy + core::fmt::Debug>(
+    open: &mut BTreeSet<T>,
+    begin: &[T],
+    end: &[T],
+    what: &str,
+) -> Result<(), Fault> {
+    for pair in end {
+        if !open.remove(pair) {
+            return fault(Fault::Event, format!("{what} ends of {pair:?} without a begin"));
+        }
+    }
+    for &pair in begin {
+        if !open.insert(pair) {
+            return fault(Fault::Event, format!("{what} begins of {pair:?} twice"));
+        }
+    }
+    Ok(())
+}
+
+impl Watch {
+    /// A deed was done.
+    pub fn disturb(&mut self) {
+        self.quiet = 0;
+    }
+
+    /// A step was taken.
+    ///
+    /// # Errors
+    /// If something is as it must not be.
+    pub fn look(
+        &mut self,
+        life: &Life,
+        actor: &Actor,
+        seen: impl Fn(Velocity) -> Velocity,
+    ) -> Result<(), Fault> {
+        self.quiet += 1;
+        finite(&actor.world, seen)?;
+        self.events(actor.world.events())?;
+        self.stale(actor)?;
+        if life.temper == Temper::Calm {
+            self.floor(life, actor)?;
+            self.energy(&actor.world)?;
+        }
+        Ok(())
+    }
+
+    /// Counts what a step tells of.
+    pub fn events(&mut self, events: &Events) -> Result<(), Fault> {
+        noted(&mut self.touching, &events.begin, &events.end, "touch")?;
+        noted(&mut self.shapes, &events.shapes_begin, &events.shapes_end, "touch of shapes")?;
+        noted(&mut self.sensed, &events.sensor_begin, &events.sensor_end, "sensing")?;
+        let (begin, end) = (&events.sensor_shapes_begin, &events.sensor_shapes_end);
+        noted(&mut self.sensed_shapes, begin, end, "sensing of shapes")
+    }
+
+    /// Pairs that touch or sense are near each other.
+    fn stale(&mut self, actor: &Actor) -> Result<(), Fault> {
+        let world = &actor.world;
+        let dt = world.def().dt();
+        let mut apart = BTreeMap::new();
+        for &(a, b) in self.touching.iter().chain(&self.sensed) {
+            if !(world.contains(a) && world.contains(b)) {
+                let late = self.apart.get(&(a, b)).copied().unwrap_or(0) + 1;
+                if late > LATE {
+                    return fault(Fault::Touch, format!("{a:?} and {b:?} touch, but one is gone"));
+                }
+                apart.insert((a, b), late);
+                continue;
+            }
+            let reach = |id: BodyId| FAR + world.velocity(id).linear.length() * dt * 2.0;
+            let (p, q) = (world.bounds(a), world.bounds(b));
+            let margin = Vec3::splat(reach(a) + reach(b));
+            let near = (p.min - margin).cmple(q.max).all() && (q.min - margin).cmple(p.max).all();
+            if !near {
+                let late = self.apart.get(&(a, b)).copied().unwrap_or(0) + 1;
+                if late > LATE {
+                    return fault(Fault::Touch, format!("{a:?} and {b:?} touch, but are apart: {p:?} {q:?}"));
+                }
+                apart.insert((a, b), late);
+            }
+        }
+        self.apart = apart;
+        Ok(())
+    }
+
+    /// Nothing that the floor bears is below it.
+    fn floor(&mut self, life: &Life, actor: &Actor) -> Result<(), Fault> {
+        let world = &actor.world;
+        let reach = match life.ground {
+            Ground::HalfSpace => f32::INFINITY,
+            Ground::Box => 45.0,
+            _ => return Ok(()),
+        };
+        let mut below = BTreeMap::new();
+        if world.pair_function().is_none() {
+            for id in world.body_ids().filter(|&id| is_borne(world, id, actor.floor)) {
+                let (center, top) = (world.center_of_mass(id), world.bounds(id).max.y);
+                let is_below = top < -DEPTH && center.x.abs() < reach && center.z.abs() < reach;
+                if is_below {
+                    let steps = self.below.get(&id).copied().unwrap_or(0) + 1;
+                    if steps > PRESSED {
+                        return fault(Fault::Below, format!("{id:?} is at {center} below the floor"));
+                    }
+                    below.insert(id, steps);
+                }
+            }
+        }
+        self.below = below;
+        Ok(())
+    }
+
+    /// Energy rises by no more than what comes in.
+    fn energy(&mut self, world: &World) -> Result<(), Fault> {
+        let now = world.energy();
+        let Some(before) = self.energy.replace(now) else { return Ok(()) };
+        if self.quiet < SETTLED || !is_passive(world) || is_torn(world) {
+            return Ok(());
+        }
+        let mass: f32 = world.body_ids().map(|id| world.mass(id).mass).sum();
+        let all: f32 = world.body_ids().map(|id| world.body_energy(id).potential.abs()).sum();
+        let work = world.work();
+        let rise = now.total() - before.total() - sinew_math::max(work.total(), 0.0);
+        let share = if is_strained(world) { STRAINED } else { RISE };
+        let allowed =
+            share * sinew_math::max(before.kinetic, mass) + ROUNDING * (all + before.potential.abs());
+        self.rise = sinew_math::max(self.rise, rise / allowed);
+        if rise > allowed {
+            let text = format!("{before:?} becomes {now:?} with {work:?}: {rise} J of {allowed} J allowed");
+            return Err(Fault::Energy(rise / allowed, text));
+        }
+        Ok(())
+    }
+
+    /// The world is empty: whatever began has ended.
+    ///
+    /// # Errors
+    /// If something has not.
+    pub fn end(&self) -> Result<(), Fault> {
+        let open = self.touching.len() + self.shapes.len() + self.sensed.len() + self.sensed_shapes.len();
+        if open == 0 {
+            return Ok(());
+        }
+        let text =
+            format!("{:?} {:?} {:?} {:?}", self.touching, self.shapes, self.sensed, self.sensed_shapes);
+        fault(Fault::Touch, format!("all bodies are gone, and some touch: {text}"))
+    }
+}
+
+fn finite(world: &World, seen: impl Fn(Velocity) -> Velocity) -> Result<(), Fault> {
+    for id in world.body_ids() {
+        let (pose, velocity) = (world.transform(id), seen(world.velocity(id)));
+        if !(pose.is_finite() && velocity.linear.is_finite() && velocity.angular.is_finite()) {
+            return fault(Fault::NotFinite, format!("{id:?}: {pose:?} {velocity:?}"));
+        }
+    }
+    for id in world.group_ids() {
+        let group = world.particles(id);
+        if !group.positions().iter().chain(group.velocities()).all(|v| v.is_finite()) {
+            return fault(Fault::NotFinite, format!("{id:?}"));
+        }
+    }
+    for id in world.mover_ids() {
+        if !world.mover(id).position().is_finite() {
+            return fault(Fault::NotFinite, format!("{id:?}: {:?}", world.mover(id).position()));
+        }
+    }
+    Ok(())
+}
+
+/// True if nothing keeps a body from lying on the floor.
+fn is_borne(world: &World, id: BodyId, floor: BodyId) -> bool {
+    let plain = |shape: ShapeId| {
+        world.sensing(shape) == Sensing::Solid
+            && world.filter(shape) == Filter::default()
+            && world.contact_rule(shape) == ContactRule::Push
+    };
+    let pressed = |other: BodyId| world.kind(other) == BodyKind::Kinematic;
+    id != floor
+        && world.kind(id) == BodyKind::Dynamic
+        && world.shape_ids(id).count() > 0
+        && world.shape_ids(id).all(plain)
+        && world.joints_of(id).next().is_none()
+        && !world.neighbors(id).any(pressed)
+}
+
+/// True if nothing gives energy but what is counted as work.
+fn is_passive(world: &World) -> bool {
+    let is_still = |id: BodyId| {
+        let runs = |shape: ShapeId| {
+            let material = world.material(shape);
+            material.surface_velocity != Vec3::ZERO || material.surface_spin != Vec3::ZERO
+        };
+        world.forces_of(id).next().is_none() && !world.shape_ids(id).any(runs)
+    };
+    let is_plain = |id: JointId| {
+        let def = world.joint(id);
+        def.state == JointState::Disabled
+            || def.spring.is_none()
+                && def.weld.is_none()
+                && def.limit_softness.is_none()
+                && def.soft_zone.is_none()
+    };
+    world.field_ids().next().is_none()
+        && world.group_ids().next().is_none()
+        && world.object_ids().next().is_none()
+        && world.body_ids().all(is_still)
+        && world.joint_ids().all(is_plain)
+}
+
+/// True if shapes overlap by much: taking them apart raises weights.
+fn is_strained(world: &World) -> bool {
+    world.contacts().any(|contact| contact.points().iter().any(|point| point.separation < -OVERLAP))
+}
+
+/// True if joints gape: some cannot close, since a body that nothing moves is elsewhere.
+fn is_torn(world: &World) -> bool {
+    let enabled = |id: &JointId| world.joint(*id).state == JointState::Enabled;
+    let open = |id: JointId| world.joint_gap(id) > GAP || world.joint_overshoot(id) > OVERSHOOT;
+    world.joint_ids().filter(enabled).any(open)
+}
