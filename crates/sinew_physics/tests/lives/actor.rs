@@ -73,6 +73,14 @@ macro_rules! ask_all {
     }};
 }
 
+/// An owner of bodies and joints, and the same as Rust.
+pub fn owner() -> (Owner, String) {
+    let owner = Owner { name: "cart".into(), calls: "`Cart::scrap`".into(), parts: vec!["wheel".into()] };
+    let code =
+        "&Owner { name: \"cart\".into(), calls: \"`Cart::scrap`\".into(), parts: vec![\"wheel\".into()] }";
+    (owner, code.to_owned())
+}
+
 /// Says an answer, for other worlds to be held against.
 pub fn say(said: &mut String, name: &str, answer: &dyn core::fmt::Debug) {
     writeln!(said, "{name}: {answer:?}").expect("memory");
@@ -271,7 +279,7 @@ impl Actor {
 
     /// A body that nothing keeps from being taken out.
     pub fn removable(&self, numbers: &mut Numbers) -> Option<BodyId> {
-        self.body(numbers, |world, id| !is_worn(world, id))
+        self.body(numbers, |world, id| !is_worn(world, id) && world.body_owner(id).is_none())
     }
 
     pub fn step(&mut self) {

@@ -237,6 +237,7 @@ impl Run<'_> {
             }
             for id in actor.world.body_ids().collect::<Vec<BodyId>>() {
                 assert!(!is_worn(&actor.world, id), "nothing hangs on it");
+                call!(actor.disown_body(id));
                 call!(actor.remove_body(id));
             }
         }

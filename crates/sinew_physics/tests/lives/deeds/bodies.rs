@@ -1,7 +1,7 @@
 //! Deeds to bodies and shapes.
 
 use super::{Deed, parts};
-use crate::actor::Actor;
+use crate::actor::{Actor, owner};
 use crate::code;
 use crate::numbers::{Numbers, Temper};
 use sinew_math::{Rotation, Transform, Vec3};
@@ -42,6 +42,8 @@ pub const ALL: &[Deed] = &[
     Deed::new("disable_pair", 1, disable_pair),
     Deed::new("enable_pair", 1, enable_pair),
     Deed::new("set_pair_function", 1, set_pair_function),
+    Deed::new("own_body", 1, own),
+    Deed::new("disown_body", 1, disown),
 ];
 
 fn add(a: &mut Actor, n: &mut Numbers) -> Option<()> {
@@ -81,7 +83,7 @@ fn clear_place(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let at = n.place();
     for (_, id) in a.bodies.clone() {
         let near = a.world.contains(id) && (a.world.center_of_mass(id) - at).length() < 0.8;
-        if near && !crate::actor::is_worn(&a.world, id) {
+        if near && !crate::actor::is_worn(&a.world, id) && a.world.body_owner(id).is_none() {
             call!(a.remove_body(id));
         }
     }
@@ -339,5 +341,25 @@ fn set_pair_function(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let number = n.one_of(&[None, Some(crate::functions::NUMBER)]);
     call!(a.set_pair_function(number));
     ask!(a.pair_function());
+    Some(())
+}
+
+/// Nobody takes it out until it is disowned.
+fn own(a: &mut Actor, n: &mut Numbers) -> Option<()> {
+    let id = a.removable(n)?;
+    let (owner, code) = owner();
+    if a.lines.is_some() {
+        a.tell("own_bodies", &[code, code::argument("&[id]", &[id]), "&[0]".to_owned()]);
+    }
+    a.count("own_bodies");
+    a.world.own_bodies(&owner, &[id], &[0]);
+    ask!(a.body_owner(id));
+    Some(())
+}
+
+fn disown(a: &mut Actor, n: &mut Numbers) -> Option<()> {
+    let id = a.any_body(n)?;
+    call!(a.disown_body(id));
+    ask!(a.body_owner(id));
     Some(())
 }

@@ -1,7 +1,7 @@
 //! Deeds to joints.
 
 use super::{Deed, parts};
-use crate::actor::Actor;
+use crate::actor::{Actor, owner};
 use crate::code;
 use crate::numbers::Numbers;
 use sinew_math::{Range, SwingTwistLimit, Transform, Vec3};
@@ -9,9 +9,10 @@ use sinew_physics::*;
 
 pub const ALL: &[Deed] = &[
     Deed::new("add_joint", 4, add),
-    Deed::new("add_joint_by_name", 3, add_by_name),
+    Deed::new("add_joint_by_name", 4, add_by_name),
     Deed::new("chain", 2, chain),
     Deed::new("remove_joint", 2, remove),
+    Deed::new("own_joint", 1, own),
     Deed::new("set_joint", 2, set),
     Deed::new("set_motor", 3, set_motor),
     Deed::new("set_joint_friction", 1, set_friction),
@@ -202,6 +203,9 @@ fn drag(a: &mut Actor, n: &mut Numbers) -> Option<()> {
 
 fn remove(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.joint(n)?;
+    if a.world.joint_owner(id).is_some() {
+        call!(a.disown_joint(id));
+    }
     call!(a.remove_joint(id));
     Some(())
 }
@@ -241,5 +245,17 @@ fn set_state(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     a.tell("set_joint_state", &[code::Code::code(&id), format!("JointState::{state:?}")]);
     a.count("set_joint_state");
     a.world.set_joint_state(id, state);
+    Some(())
+}
+
+fn own(a: &mut Actor, n: &mut Numbers) -> Option<()> {
+    let id = a.joint(n)?;
+    let (owner, code) = owner();
+    if a.lines.is_some() {
+        a.tell("own_joints", &[code, code::argument("&[id]", &[id]), "&[0]".to_owned()]);
+    }
+    a.count("own_joints");
+    a.world.own_joints(&owner, &[id], &[0]);
+    ask!(a.joint_owner(id));
     Some(())
 }
