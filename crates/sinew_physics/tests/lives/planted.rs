@@ -103,7 +103,7 @@ fn sink(world: &mut World) {
 }
 
 /// Lives until each is found.
-const LIVES: u64 = 40;
+const LIVES: u64 = 80;
 
 /// Kind of what a plant is found as.
 fn is_found(plant: Plant, fault: &Fault) -> bool {

@@ -9,10 +9,11 @@ use sinew_physics::*;
 
 pub const ALL: &[Deed] = &[
     Deed::new("add_joint", 4, add),
-    Deed::new("add_joint_by_name", 4, add_by_name),
+    Deed::new("add_joint_by_name", 9, add_by_name),
     Deed::new("chain", 2, chain),
     Deed::new("remove_joint", 2, remove),
     Deed::new("own_joint", 1, own),
+    Deed::new("disown_joint", 2, disown),
     Deed::new("set_joint", 2, set),
     Deed::new("set_motor", 3, set_motor),
     Deed::new("set_joint_friction", 1, set_friction),
@@ -203,10 +204,9 @@ fn drag(a: &mut Actor, n: &mut Numbers) -> Option<()> {
 
 fn remove(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.joint(n)?;
-    if a.world.joint_owner(id).is_some() {
-        call!(a.disown_joint(id));
+    if a.world.joint_owner(id).is_none() {
+        call!(a.remove_joint(id));
     }
-    call!(a.remove_joint(id));
     Some(())
 }
 
@@ -256,6 +256,13 @@ fn own(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     }
     a.count("own_joints");
     a.world.own_joints(&owner, &[id], &[0]);
+    ask!(a.joint_owner(id));
+    Some(())
+}
+
+fn disown(a: &mut Actor, n: &mut Numbers) -> Option<()> {
+    let id = a.joint(n)?;
+    call!(a.disown_joint(id));
     ask!(a.joint_owner(id));
     Some(())
 }
