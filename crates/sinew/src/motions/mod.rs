@@ -5,7 +5,7 @@ mod clearing;
 
 use crate::anim::legs::Legs;
 use crate::anim::retarget::{Body, Pace, RetargetError, RetargetOptions, Retargeted, carry_riders, retarget};
-use crate::anim::{Clip, RigAnalysis, analyze};
+use crate::anim::{Channel, Clip, Interpolation, Rig, RigAnalysis, analyze};
 use crate::mannequin::{Mannequin, mannequin};
 use crate::math::{clamp, min};
 use crate::ragdoll::{AfterSettling, CharacterDef, Locomotion, MotionError, MotionSet, Opening};
@@ -139,7 +139,9 @@ pub fn set_motions_with_builtin(
     if is_filled && comes_out == [false; 2] {
         return Err(BuiltinError::InFloor(min(depths[0], depths[1])));
     }
+    let first = own.clips.len();
     let mut motions = builtin.fill_in(own);
+    hold_as_looped(&def.rig, &mut motions, first);
     if is_filled {
         let mut fits = comes_out.into_iter();
         motions.get_ups.retain(|_| fits.next().unwrap_or(true));
@@ -147,6 +149,30 @@ pub fn set_motions_with_builtin(
     def.set_motions(motions)?;
     def.after_settling = AfterSettling::GetUp;
     Ok(())
+}
+
+/// Gives the clips from the `first` on the pose at the start of the looped clip wherever they say nothing: of fingers, a jaw, or a weapon, which
+/// need not be in the hand in the rig's rest pose. Joints that carry something which a clip moves stay as it has them.
+fn hold_as_looped(rig: &Rig, motions: &mut MotionSet, first: usize) {
+    let Some(looped) = motions.looped.filter(|&index| index < first) else { return };
+    let held = motions.clips[looped].channels.clone();
+    for clip in &mut motions.clips[first..] {
+        let mut carries = vec![false; rig.joints.len()];
+        clip.channels.iter().for_each(|channel| carries[channel.joint] = true);
+        for (joint, above) in rig.joints.iter().enumerate().rev() {
+            if let Some(parent) = above.parent.filter(|_| carries[joint]) {
+                carries[parent] = true;
+            }
+        }
+        for channel in held.iter().filter(|channel| !carries[channel.joint]) {
+            let width = channel.property.width();
+            // Of three numbers of a cubic key the one in the middle is the value.
+            let at = if channel.interpolation == Interpolation::CubicSpline { width } else { 0 };
+            let values = channel.values[at..at + width].to_vec();
+            let interpolation = Interpolation::Linear;
+            clip.channels.push(Channel { interpolation, times: vec![0.0], values, ..channel.clone() });
+        }
+    }
 }
 
 /// Frames of the actor a second.

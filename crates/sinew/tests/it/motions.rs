@@ -3,11 +3,14 @@
 use sinew::anim::contact::sole_points;
 use sinew::anim::legs::Legs;
 use sinew::anim::retarget::Retargeted;
-use sinew::anim::{Clip, LocalTransform, Rig, RigAnalysis, Role, Side, analyze, local_to_model};
+use sinew::anim::{
+    Channel, Clip, Interpolation, Joint, LocalTransform, Property, Rig, RigAnalysis, Role, Side, analyze,
+    local_to_model,
+};
 use sinew::formats::{ReadOptions, load_gltf};
 use sinew::mannequin::{WALK_SPEED, mannequin};
-use sinew::math::{Affine, Transform};
-use sinew::motions::builtin_motions;
+use sinew::math::{Affine, Transform, Vec3};
+use sinew::motions::{builtin_motions, set_motions_with_builtin};
 use sinew::ragdoll::{BuildOptions, CharacterDef, Locomotion, MotionSet, Opening, RagdollBodyDef, build};
 use std::path::PathBuf;
 
@@ -130,4 +133,35 @@ fn only_what_is_missing_is_filled_in() {
     let own = builtin().fill_in(own);
     assert_eq!((own.looped, own.get_ups.as_slice(), own.opening), (Some(0), &[1, 2][..], Opening::Looped));
     assert_eq!(own.locomotion, Locomotion::InPlace);
+}
+
+/// A get-up that says nothing of a joint leaves it as the looped clip has it, not as the rig's rest pose does.
+#[test]
+fn what_a_get_up_says_nothing_of_stays_as_in_the_loop() {
+    let mannequin = mannequin();
+    let mut rig = mannequin.rig.clone();
+    let hand = rig.joints.iter().position(|joint| joint.name == "rightHand").expect("a hand");
+    let sword = rig.joints.len();
+    // At rest the sword lies two metres away; the clip has it in the hand.
+    let rest = LocalTransform { translation: Vec3::Y * 2.0, ..LocalTransform::default() };
+    rig.joints.push(Joint { name: "sword".into(), parent: Some(hand), rest, source: sword });
+    let mut walk = mannequin.clips[mannequin.motions.walk].clone();
+    walk.channels.push(Channel {
+        joint: sword,
+        property: Property::Translation,
+        interpolation: Interpolation::Linear,
+        times: vec![0.0],
+        values: vec![0.0, 0.1, 0.0],
+    });
+    let analysis = analyze(&rig).expect("a skin");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
+    let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    let own = MotionSet { clips: vec![walk], looped: Some(0), ..MotionSet::default() };
+    set_motions_with_builtin(&mut def, &analysis, own).expect("a human");
+    let motions = def.motions();
+    assert!(!motions.get_ups.is_empty());
+    for &get_up in &motions.get_ups {
+        let of_sword = motions.clips[get_up].channels.iter().find(|channel| channel.joint == sword);
+        assert_eq!(of_sword.map(|channel| channel.values.as_slice()), Some([0.0, 0.1, 0.0].as_slice()));
+    }
 }

@@ -143,7 +143,7 @@ impl Baked {
     /// the rest pose ([`CharacterDef::raised`]).
     pub fn clip_for_file(&self, character: &CharacterDef) -> Clip {
         let down = character.mapping().character_from_model().inverse().vector(Vec3::Y * -character.raised());
-        moved(&character.rig, &character.ragdoll, &self.clip, down)
+        moved(&character.rig, &character.ragdoll, &self.clip, down, down)
     }
 }
 

@@ -78,16 +78,16 @@ fn lowest(def: &CharacterDef, surface: &Surface, pose: &[LocalTransform]) -> f32
     heights.fold(f32::INFINITY, min)
 }
 
-/// A clip with all roots of the rig that carry the character moved by so much, model space.
-pub(crate) fn moved(rig: &Rig, ragdoll: &RagdollDef, clip: &Clip, by: Vec3) -> Clip {
+/// A clip with all roots of the rig that carry the character moved `by` so much, and the others, such as a floor of the file, by what is
+/// `beside`; model space.
+pub(crate) fn moved(rig: &Rig, ragdoll: &RagdollDef, clip: &Clip, by: Vec3, beside: Vec3) -> Clip {
     let mut moved = clip.clone();
-    if by == Vec3::ZERO {
-        return moved;
-    }
     let carries = carries_character(rig, ragdoll);
-    let roots =
-        rig.joints.iter().enumerate().filter(|(joint, root)| root.parent.is_none() && carries[*joint]);
-    for (joint, root) in roots {
+    for (joint, root) in rig.joints.iter().enumerate().filter(|(_, joint)| joint.parent.is_none()) {
+        let by = if carries[joint] { by } else { beside };
+        if by == Vec3::ZERO {
+            continue;
+        }
         let own = moved
             .channels
             .iter_mut()

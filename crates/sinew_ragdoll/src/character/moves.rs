@@ -84,7 +84,9 @@ impl Moves {
         let motions = &MotionSet {
             clips: own
                 .map(|(index, clip)| {
-                    moved(&def.rig, &def.ragdoll, clip, up.vector(Vec3::Y * raised.of_clip(index)))
+                    let [by, beside] =
+                        [raised.of_clip(index), raised.looped].map(|up_by| up.vector(Vec3::Y * up_by));
+                    moved(&def.rig, &def.ragdoll, clip, by, beside)
                 })
                 .collect(),
             ..motions.clone()
