@@ -139,19 +139,18 @@ fn plain(html: &str) -> String {
 /// Text whose links are words: of a page that a chapter leads to, whose own links lead into the repository.
 fn without_links(events: Vec<Event<'_>>) -> Vec<Event<'_>> {
     let is_link = |event: &Event<'_>| matches!(event, Event::Start(Tag::Link { dest_url, .. }) if !dest_url.starts_with("https://"));
-    let mut depth = Vec::new();
+    let mut is_open = Vec::new();
     let mut kept = Vec::with_capacity(events.len());
     for event in events {
-        match &event {
-            Event::Start(Tag::Link { .. }) => depth.push(is_link(&event)),
-            Event::End(TagEnd::Link) => {
-                if depth.pop() == Some(true) {
-                    continue;
-                }
+        let is_left_out = match &event {
+            Event::Start(Tag::Link { .. }) => {
+                is_open.push(is_link(&event));
+                is_link(&event)
             }
-            _ => {}
-        }
-        if !is_link(&event) {
+            Event::End(TagEnd::Link) => is_open.pop() == Some(true),
+            _ => false,
+        };
+        if !is_left_out {
             kept.push(event);
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::toy;
 use sinew_anim::weights::{SkinPart, lost_weights, weigh_by_nearness, weigh_loose_vertices};
-use sinew_anim::{Joint, LocalTransform, Rig};
+use sinew_anim::{Joint, LocalTransform, Rig, Role};
 use sinew_math::{Affine, Vec3};
 
 fn joint_named(role: &str) -> usize {
@@ -10,7 +10,7 @@ fn joint_named(role: &str) -> usize {
 }
 
 fn body() -> Rig {
-    toy::body(|role| role.name())
+    toy::body(Role::name)
 }
 
 /// Adds a triangle around a place, on a joint of the skin.
