@@ -157,9 +157,9 @@ fn read_number(r: &mut Reader<'_>) -> Result<usize, ReadError> {
         value |= u64::from(byte & 0x7f) << shift;
         if byte < 0x80 {
             // No length or way is longer than what a snapshot may have.
-            return usize::try_from(value)
-                .ok()
+            return Some(value)
                 .filter(|&value| value < 1 << 40)
+                .and_then(|value| usize::try_from(value).ok())
                 .ok_or_else(|| r.error("a number is too large"));
         }
     }
