@@ -5,7 +5,8 @@ use super::planes::{MOST, Planes};
 use super::segment::level;
 use crate::boxes::Overlap;
 use crate::mover::tuning::{
-    ARRIVED_SKIN, BEARING_SKIN, BESIDE_RADIUS, COPLANAR_SKIN, SLIDE_AWAY, STOP_SKIN, TOUCH_SKIN,
+    ARRIVED_SKIN, BEARING_SKIN, BESIDE_RADIUS, COPLANAR_SKIN, LONGEST_DETOUR, LONGEST_WAY_OUT, SLIDE_AWAY,
+    STOP_SKIN, TOUCH_SKIN,
 };
 use sinew_math::{Vec3, clamp, min};
 
@@ -210,7 +211,9 @@ impl Surroundings<'_> {
                 Course::Free => planes.closest(left),
                 Course::Level => planes.closest_level(left, self.up),
             };
-            let turned = turn(&planes).or_else(|| {
+            // Between walls that lean apart by a hair the way that keeps the skin free of both is long: it is no way along them.
+            let longest = LONGEST_DETOUR * left.length() + manner.skin;
+            let turned = turn(&planes).filter(|turned| turned.length() <= longest).or_else(|| {
                 planes.stop();
                 turn(&planes)
             });
@@ -241,10 +244,10 @@ impl Surroundings<'_> {
             for touch in around.as_slice() {
                 planes.push(touch.normal, clamp(stop - touch.distance, -reach, reach));
             }
-            let out = planes.closest(Vec3::ZERO).unwrap_or_else(|| {
-                let deepest = &touches.as_slice()[0];
-                deepest.normal * (0.5 * (stop - deepest.distance))
-            });
+            let deepest = &touches.as_slice()[0];
+            let lacking = stop - deepest.distance;
+            let out = planes.closest(Vec3::ZERO).filter(|out| out.length() <= LONGEST_WAY_OUT * lacking);
+            let out = out.unwrap_or(deepest.normal * (0.5 * lacking));
             let length = out.length();
             center += if length > reach { out * (reach / length) } else { out };
         }

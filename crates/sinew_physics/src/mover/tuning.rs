@@ -34,6 +34,18 @@ pub(super) const COPLANAR_SKIN: f32 = 0.04;
 /// Larger: movers jump away from what comes near. Smaller: they stay wedged between two walls. Shown by the tests of `mover`.
 pub(super) const SLIDE_AWAY: f32 = 0.3;
 
+/// Length of a slide along walls as a multiple of the way that is left, from which it is no way.
+///
+/// Larger: a mover wedged between crates is shot up between them. Smaller: it stops where a steep slope leads it on. Shown by the test
+/// `mover::a_cleft_that_opens_upward_shoots_nobody_up`.
+pub(super) const LONGEST_DETOUR: f32 = 4.0;
+
+/// Length of a way out of walls as a multiple of the distance that the deepest one lacks, from which it is no way out: that of a wedge of 4°.
+///
+/// Larger: a mover wedged between crates is pushed up between them. Smaller: it stays in sharp corners. Shown by the test
+/// `mover::a_cleft_that_opens_upward_shoots_nobody_up`.
+pub(super) const LONGEST_WAY_OUT: f32 = 32.0;
+
 /// Length of way that goes on beside a face that it may come to, in radii.
 ///
 /// Larger: slides past corners take more sweeps. Smaller: a mover comes upon a face that it has not seen. Shown by the tests of `mover`.

@@ -231,3 +231,28 @@ fn a_slope_is_walked_on_up_to_the_limit_and_slid_down_beyond_it() {
         }
     }
 }
+
+/// Two walls closer than the skin that lean apart by a hair: the skin would be free of both high above.
+#[test]
+fn a_cleft_that_opens_upward_shoots_nobody_up() {
+    for lean in [0.0006_f32, 0.001, 0.002, 0.005] {
+        for walk in [Vec3::ZERO, Vec3::Z, Vec3::new(0.5, 0.0, 0.5)] {
+            let mut world = level();
+            let MoverDef { radius, skin, height, .. } = MoverDef::default();
+            for side in [-1.0, 1.0] {
+                let turn = Rotation::from_axis_angle(Vec3::Z, -side * lean);
+                let face = Vec3::new(side * (radius + 0.5 * skin), 0.5 * height, 0.0);
+                let half_extents = Vec3::new(0.25, 10.0, 5.0);
+                let at = face + turn * Vec3::new(side * half_extents.x, 0.0, 0.0);
+                world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at(at).turned(turn));
+            }
+            let id = world.add_mover(&MoverDef::at(Vec3::Y * skin));
+            world.set_mover_walk(id, walk);
+            for step in 0..120 {
+                world.step();
+                let at = world.mover(id).position();
+                assert!(at.y < 0.1, "lean {lean}, walk {walk}, step {step}: at {at}");
+            }
+        }
+    }
+}
