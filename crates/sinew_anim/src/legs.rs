@@ -2,8 +2,7 @@
 
 use crate::ik::{TwoBone, set_rotation, shift};
 use crate::rig::{Joint, JointIdx, LocalTransform, Rig};
-use crate::roles::{Basis, HUMANOID_ROLES, RigAnalysis, Role, RoleGuess, Side};
-use crate::skinning::skin_vertices;
+use crate::roles::{Basis, Bound, HUMANOID_ROLES, RigAnalysis, Role, RoleGuess, Side};
 use crate::tuning::{ANKLE_HEIGHT, BALL_AHEAD, MADE_UP};
 use sinew_math::{Affine, Rotation, Vec3};
 
@@ -166,24 +165,9 @@ pub fn add_ankles(rig: &mut Rig, analysis: &mut RigAnalysis) -> usize {
 
 /// Middle of the lowest skin that a shank moves most, raised to where an ankle is; model space, file units.
 fn end_of_shank(rig: &Rig, analysis: &RigAnalysis, shank: JointIdx) -> Option<Vec3> {
-    let character = analysis.character_from_file();
-    let mut own: Vec<Vec3> = Vec::new();
-    let (mut positions, mut normals) = (Vec::new(), Vec::new());
-    for (m, mesh) in rig.meshes.iter().enumerate() {
-        let Some(skin) = mesh.skin.map(|skin| &rig.skins[skin]) else { continue };
-        for (p, primitive) in mesh.primitives.iter().enumerate().filter(|(_, part)| !part.joints.is_empty()) {
-            skin_vertices(rig, m, p, &analysis.bind_model, &mut positions, &mut normals);
-            for (at, (slots, weights)) in
-                positions.iter().zip(primitive.joints.iter().zip(&primitive.weights))
-            {
-                let most = slots.iter().zip(weights).max_by(|a, b| a.1.total_cmp(b.1));
-                if most.is_some_and(|(&slot, _)| skin.joints[usize::from(slot)] == shank) {
-                    own.push(character.point(*at));
-                }
-            }
-        }
-    }
-    own.retain(|at| at.is_finite());
+    let (character, bound) = (analysis.character_from_file(), Bound::of(rig)?);
+    let skin = bound.vertices.iter().zip(&bound.movers).filter(|(_, mover)| **mover == shank);
+    let own: Vec<Vec3> = skin.map(|(&vertex, _)| character.point(vertex)).collect();
     let lowest = own.iter().map(|at| at.y).reduce(sinew_math::min)?;
     let sole = lowest + ANKLE_HEIGHT * analysis.height;
     let (sum, count) = own

@@ -10,7 +10,7 @@ use sinew_math::{Affine, Vec3, max3, min3};
 use std::collections::BTreeMap;
 
 /// Geometry of a rig in its bind pose, model space, file units.
-pub(super) struct Bound {
+pub(crate) struct Bound {
     /// Transform of every joint.
     pub model: Vec<Affine>,
     /// Skin area that each joint moves (its weights times the area around the vertices).

@@ -27,7 +27,7 @@ mod symmetry;
 mod tuning;
 mod units;
 
-pub(crate) use bind::bind_pose;
+pub(crate) use bind::{Bound, bind_pose};
 pub use characters::characters;
 pub use correct::{Correction, CorrectionError};
 pub use gait::Gait;
@@ -38,7 +38,6 @@ pub use role::{HUMANOID_ROLES, Role, Side};
 
 use crate::rig::{JointIdx, LocalTransform, Rig};
 use anatomy::Anatomy;
-use bind::Bound;
 use humanoid::Stance;
 use keep::{Kept, Selection};
 use sinew_math::{Affine, Transform, Vec3};

@@ -18,10 +18,10 @@ use std::path::{Path, PathBuf};
 /// Source of the weights of a skin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum WeightSource {
-    /// As the file states them
+    /// The file's own
     #[default]
     File,
-    /// New ones by the nearness of vertices to bones, for a file whose own were lost
+    /// New ones, by the nearness of vertices to bones
     Nearest,
 }
 

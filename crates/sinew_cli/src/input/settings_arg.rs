@@ -35,7 +35,7 @@ pub struct SettingsArg {
     /// Axis of the file that points up; by default y, as glTF has it
     #[arg(help_heading = HEADING, long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
     up: Option<Vec3>,
-    /// Weights of the skin: the file's own, or new ones by the nearness of vertices to bones, where its own were lost
+    /// Weights of the skin; nearest is for a file whose own were lost
     #[arg(help_heading = HEADING, long, value_name = "SOURCE", value_enum, default_value_t)]
     weights: WeightSource,
     /// Mass of the whole character, kg; by default from its height or volume

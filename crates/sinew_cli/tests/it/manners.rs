@@ -152,7 +152,7 @@ fn what_does_not_happen_is_said() {
     };
     let low = folder.file("low.json", write_world(&[low]));
     said(&["--seconds", "1", "--world", &low, "--at", "0,0,0"], "low.json is 2.50 m below the character");
-    said(&["--seconds", "1", "--world", &low], "it stands at 0.00,-2.50,0.00, the flat place");
+    said(&["--seconds", "1", "--world", &low], "it stands at 0.00,-2.50,0.00, the place with room");
 }
 
 /// Nodes of a file may stand in any order; the list does not.
@@ -289,7 +289,7 @@ fn output_that_cannot_be_written_is_a_line_and_a_failure() {
     }
 }
 
-/// Who reads the beginning alone has all that it wants.
+/// A pipe that its reader closes early is no error.
 #[cfg(unix)]
 #[test]
 fn a_reader_that_goes_is_no_failure() {

@@ -98,7 +98,7 @@ pub(crate) struct Body {
     /// The user changed it since the last step.
     pub changed: bool,
     pub user_data: u64,
-    /// Who keeps it; `None`: the user.
+    /// Owner that keeps the body; `None` if it is the user's.
     pub owner: Option<OwnerMark>,
 }
 

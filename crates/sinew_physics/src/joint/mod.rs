@@ -114,7 +114,7 @@ pub(crate) struct Joint {
     pub mass: Vec6,
     /// Mean over the last step on body B, N and N·m about its anchor, world axes.
     pub reaction: Vec6,
-    /// Who keeps it; `None`: the user.
+    /// Owner that keeps the joint; `None` if it is the user's.
     pub owner: Option<OwnerMark>,
 }
 

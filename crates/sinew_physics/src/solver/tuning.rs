@@ -615,9 +615,9 @@ pub(super) const MOST_HALF_TURN: f32 = 1.2;
 /// (two links in each piece) to 64. Shown by `hanging_rope`, `chain_100_links`.
 pub(super) const CUT_STRANDS: usize = 24;
 
-/// Multiple of the most that a body may move or turn, beyond which contacts do not see it come, a ratio.
+/// Multiple of `max_speed` and `max_turn` at which contacts clamp an approach, a ratio.
 ///
-/// What is beyond the bound is slowed when forces act, and what contacts saw before that and do not see after it counted as the pull of
-/// forces: a bounce gave half of it back. Larger: bounces from speeds that nothing moves at. Smaller: what solves leave beyond the bound has other bits. Sensible from 2
+/// Forces slow a body that exceeds its bounds; contacts that had seen the full approach counted the slowing as a pull of
+/// forces, and a bounce returned half of it. Larger: bounces use speeds at which no body moves. Smaller: speeds that solves leave slightly beyond the bounds change bits. Sensible from 2
 /// to 100. Shown by the test `events::hits_beyond_all_measure_are_told_in_numbers`.
 pub(super) const BEYOND_MEASURE: f32 = 4.0;

@@ -334,7 +334,7 @@ fn events_are_what_the_poses_say_for_any_threads_and_across_snapshots() {
     assert!(seen > if full { 100_000 } else { 3_000 }, "{seen} pairs of shapes were looked at");
 }
 
-/// What is put to sleep just outside a sensor, or just inside, is told of as what it is.
+/// A body put to sleep just outside a sensor ends its overlap; one put to sleep just inside keeps it.
 #[test]
 fn what_is_put_to_sleep_beside_a_sensor_is_not_in_it() {
     for seed in 0..100 {

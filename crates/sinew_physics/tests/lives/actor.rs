@@ -73,13 +73,14 @@ macro_rules! ask_all {
     }};
 }
 
-/// An owner of bodies and joints, and the same as Rust.
-pub fn owner() -> (Owner, String) {
-    let owner = Owner { name: "cart".into(), calls: "`Cart::scrap`".into(), parts: vec!["wheel".into()] };
-    let code =
-        "&Owner { name: \"cart\".into(), calls: \"`Cart::scrap`\".into(), parts: vec![\"wheel\".into()] }";
-    (owner, code.to_owned())
+/// An owner of bodies and joints.
+pub fn owner() -> Owner {
+    Owner { name: "cart".into(), calls: "`Cart::scrap`".into(), parts: vec!["wheel".into()] }
 }
+
+/// [`owner`] as Rust.
+const OWNER: &str =
+    "&Owner { name: \"cart\".into(), calls: \"`Cart::scrap`\".into(), parts: vec![\"wheel\".into()] }";
 
 /// Says an answer, for other worlds to be held against.
 pub fn say(said: &mut String, name: &str, answer: &dyn core::fmt::Debug) {
@@ -87,6 +88,17 @@ pub fn say(said: &mut String, name: &str, answer: &dyn core::fmt::Debug) {
 }
 
 impl Actor {
+    /// Notes a call that gives [`owner`] one thing.
+    pub fn note_owned(&mut self, name: &'static str, id: &dyn core::fmt::Debug) {
+        if self.lines.is_some() {
+            self.tell(
+                name,
+                &[OWNER.to_owned(), format!("&[{}]", code::argument("id", id)), "&[0]".to_owned()],
+            );
+        }
+        self.count(name);
+    }
+
     pub fn new(world: World, floor: BodyId, threads: Option<Threads>) -> Self {
         Self {
             world,

@@ -149,7 +149,7 @@ fn shape(shape: &Shape) -> String {
     }
 }
 
-/// Those of some fields that are other than by default, as `name: value, `.
+/// Fields whose values differ from the default, as `name: value, `.
 macro_rules! changed {
     ($value:expr, $default:expr, $($field:ident),*) => {{
         let mut text = String::new();

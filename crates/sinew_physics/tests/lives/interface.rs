@@ -21,7 +21,7 @@ fn methods() -> BTreeSet<String> {
     found
 }
 
-/// Those of a file: its blocks `impl World`, up to the brace in the first column.
+/// Collects the public methods in a file's `impl World` blocks, each of which ends at a brace in the first column.
 fn of_file(source: &str, found: &mut BTreeSet<String>) {
     let mut inside = false;
     for line in source.lines() {

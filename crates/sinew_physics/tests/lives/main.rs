@@ -1,11 +1,10 @@
 //! Random lives: worlds made and changed by sequences of all calls that there are, looked at from step to step.
 //!
-//! What a life does is drawn from a seed (`life.rs`) as deeds (`deeds/`), each of which calls the world with numbers that are
-//! round, equal, at their bounds, zero, huge or any (`numbers.rs`). The same is done to several worlds (`run.rs`): on one and
-//! on two threads, to new worlds that load a snapshot, to clones. All of them have to stay the same, bit for bit, in all answers and
-//! events; and of each must hold (`watch.rs`): no panic, finite numbers, every begin has one end, what touches is near, nothing
-//! sinks below the floor, energy does not come from nothing. A life that fails is made as short as it goes (`shrink.rs`) and
-//! written as Rust (`code.rs`).
+//! A seed draws a life (`life.rs`): a sequence of deeds (`deeds/`), each of which calls the world with numbers that are
+//! round, equal, at their bounds, zero, huge or arbitrary (`numbers.rs`). Several worlds run the same life (`run.rs`): on one thread,
+//! on two, loaded from a snapshot into a new world, and cloned. All of them must return the same answers and events, bit for bit.
+//! Each must pass the checks of `watch.rs`: no panic, finite numbers, one end for every begin, touching shapes near each other, nothing
+//! below the floor, no energy from nothing. A failing life is shrunk (`shrink.rs`) and printed as Rust (`code.rs`).
 //!
 //! 60 lives, or ten minutes of them when `SINEW_FULL` is set. `SINEW_LIVES=17..1000` runs the seeds of the range:
 //! `SINEW_LIVES=0..1000 cargo test -p sinew_physics --test lives -- --nocapture lives_hold`.

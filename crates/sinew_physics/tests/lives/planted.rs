@@ -6,7 +6,7 @@ use crate::watch::Fault;
 use sinew_math::{Transform, Vec3};
 use sinew_physics::*;
 
-/// A fault of a kind, put into a world or into what is told of it.
+/// Fault that is planted into a world, or into its events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plant {
     /// A snapshot that forgets how long bodies have lain still.

@@ -8,8 +8,7 @@ use sinew_physics::WorldDef;
 use std::path::Path;
 
 /// The program that is kept.
-#[allow(unused)]
-#[allow(clippy::all)]
+#[allow(unused, clippy::all, reason = "a printed program names everything, and is formatted by no one")]
 mod kept {
     include!("program.txt");
 }

@@ -86,16 +86,16 @@ impl Passage {
     }
 }
 
-/// A limb whose end can be lifted by itself.
+/// Joints of a leg or an arm, whose end can be lifted by itself.
 #[derive(Clone, Copy, Debug)]
-struct Limb {
+struct LimbChain {
     bones: TwoBone,
     /// Part of its end, and of its middle joint where that is raised by the limb.
     end: usize,
     middle: Option<usize>,
 }
 
-impl Limb {
+impl LimbChain {
     /// An ankle that steps to `to`; `None` where it is there.
     fn stepped(&self, to: Transform, steps: Option<[Step; 2]>, def: &CharacterDef) -> Option<Transform> {
         let foot = FEET.into_iter().position(|part| part == self.end)?;
@@ -118,7 +118,7 @@ impl Limb {
 pub(super) struct Clearance {
     /// Skin of each part.
     parts: Vec<Surface>,
-    limbs: Vec<Limb>,
+    limbs: Vec<LimbChain>,
     /// Joints beside the limb that carries them, each with the joint that it goes with.
     strays: Vec<(JointIdx, JointIdx)>,
 }
@@ -282,7 +282,7 @@ fn larger(a: Depths, b: Depths) -> Depths {
 }
 
 /// Legs and arms by the roles of the bodies; a limb that is no chain of three joints is left out.
-fn limbs(rig: &Rig, def: &RagdollDef) -> Vec<Limb> {
+fn limbs(rig: &Rig, def: &RagdollDef) -> Vec<LimbChain> {
     let joint = |role: Role| def.bodies.iter().find(|body| body.role == role.name()).map(|body| body.joint);
     let hangs = |joint: JointIdx, above: JointIdx| {
         core::iter::successors(rig.joints[joint].parent, |&i| rig.joints[i].parent).any(|i| i == above)
@@ -295,14 +295,20 @@ fn limbs(rig: &Rig, def: &RagdollDef) -> Vec<Limb> {
     for (k, side) in [Side::Left, Side::Right].into_iter().enumerate() {
         let leg = chain([Role::UpperLeg(side), Role::LowerLeg(side), Role::Foot(side)]);
         let arm = chain([Role::UpperArm(side), Role::LowerArm(side), Role::Hand(side)]);
-        limbs.extend(leg.map(|bones| Limb { bones, end: FEET[k], middle: None }));
-        limbs.extend(arm.map(|bones| Limb { bones, end: HANDS[k], middle: Some(ELBOWS[k]) }));
+        limbs.extend(leg.map(|bones| LimbChain { bones, end: FEET[k], middle: None }));
+        limbs.extend(arm.map(|bones| LimbChain { bones, end: HANDS[k], middle: Some(ELBOWS[k]) }));
     }
     limbs
 }
 
 /// The part of a point of a body's skin, in model space as bound; `None` of tails and the like, for which nobody stands up higher.
-fn part_of(def: &RagdollDef, limbs: &[Limb], bind: &[Affine], body: usize, place: Vec3) -> Option<usize> {
+fn part_of(
+    def: &RagdollDef,
+    limbs: &[LimbChain],
+    bind: &[Affine],
+    body: usize,
+    place: Vec3,
+) -> Option<usize> {
     let is_human = |body: usize| {
         Role::from_name(&def.bodies[body].role).is_some_and(|role| HUMANOID_ROLES.contains(&role))
     };
@@ -380,7 +386,7 @@ impl CharacterDef {
     /// Feet that can stand.
     pub(crate) fn soles(&self) -> Vec<Sole<'_>> {
         let legs = self.clearance.limbs.iter().filter(|limb| FEET.contains(&limb.end));
-        let sole = |limb: &Limb| {
+        let sole = |limb: &LimbChain| {
             let joint = limb.bones.end;
             let up = self.bind()[joint].to_rigid().rotation.inverse() * Vec3::Y;
             Sole { joint, up, skin: &self.clearance.parts[limb.end] }

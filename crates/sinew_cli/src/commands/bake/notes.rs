@@ -33,7 +33,7 @@ pub fn stands_at(place: &Place, world: &str) -> Option<String> {
     let [x, y, z] = place.stands.translation.to_array();
     place.found.then(|| {
         format!(
-            "it stands at {x:.2},{y:.2},{z:.2}, the flat place with room over it nearest the middle of the largest ground of {world} that can be walked on; \
+            "it stands at {x:.2},{y:.2},{z:.2}, the place with room over it nearest the middle of the largest ground of {world} that can be walked on; \
              --at X,Y,Z says another"
         )
     })

@@ -27,7 +27,7 @@ fn what_particles_strike_wakes_as_they_come() {
     assert!(world.is_awake(sleeper));
 }
 
-/// Whether the bounds of a sleeper reach to them says nothing of when they come: a snapshot's world has others.
+/// Sleepers wake by contact, not by whether their bounds overlap: a world loaded from a snapshot has other bounds.
 #[test]
 fn what_is_within_its_bounds_but_far_from_it_does_not_wake_a_sleeper() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });

@@ -347,12 +347,8 @@ fn set_pair_function(a: &mut Actor, n: &mut Numbers) -> Option<()> {
 /// Nobody takes it out until it is disowned.
 fn own(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.removable(n)?;
-    let (owner, code) = owner();
-    if a.lines.is_some() {
-        a.tell("own_bodies", &[code, code::argument("&[id]", &[id]), "&[0]".to_owned()]);
-    }
-    a.count("own_bodies");
-    a.world.own_bodies(&owner, &[id], &[0]);
+    a.note_owned("own_bodies", &id);
+    a.world.own_bodies(&owner(), &[id], &[0]);
     ask!(a.body_owner(id));
     Some(())
 }

@@ -250,12 +250,8 @@ fn set_state(a: &mut Actor, n: &mut Numbers) -> Option<()> {
 
 fn own(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.joint(n)?;
-    let (owner, code) = owner();
-    if a.lines.is_some() {
-        a.tell("own_joints", &[code, code::argument("&[id]", &[id]), "&[0]".to_owned()]);
-    }
-    a.count("own_joints");
-    a.world.own_joints(&owner, &[id], &[0]);
+    a.note_owned("own_joints", &id);
+    a.world.own_joints(&owner(), &[id], &[0]);
     ask!(a.joint_owner(id));
     Some(())
 }

@@ -10,7 +10,7 @@ mod time;
 use crate::actor::Actor;
 use crate::numbers::Numbers;
 
-/// What a life may do; it does nothing where there is nothing to do it to.
+/// Operation on a world, drawn at random; does nothing if the world has no object that it applies to.
 pub struct Deed {
     pub name: &'static str,
     /// Share among others.

@@ -143,7 +143,7 @@ pub fn body(n: &mut Numbers, at: Vec3) -> BodyDef {
     def
 }
 
-/// What the documentation asks of a definition.
+/// True if every shape of a body's definition is valid.
 pub fn is_valid(def: &BodyDef) -> bool {
     def.shapes.iter().all(|shape| shape.check().is_ok())
 }
