@@ -35,7 +35,7 @@ use placed::{PlacedBox, PlacedCapsule, PlacedSphere, Plane};
 pub use seam::Faces;
 use sinew_math::{Transform, Vec3};
 pub use triangles::{
-    Half, MAX_PARTS, Motion, Patch, Scratch, collide_surface, is_hidden, is_on_face, name_as_face,
+    Ground, Half, MAX_PARTS, Motion, Patch, Scratch, collide_surface, is_hidden, is_on_face, name_as_face,
     name_as_hidden,
 };
 
@@ -102,24 +102,25 @@ pub fn collide_all(
     }
     let mut patch = Patch::default();
     let still = Motion { margin, ..Motion::default() };
-    collide_pair((a, world_from_a), (b, world_from_b), &still, &mut Scratch::default(), &mut patch);
+    collide_pair((a, world_from_a), (b, world_from_b), &still, None, &mut Scratch::default(), &mut patch);
     patch.manifolds().iter().for_each(visit);
 }
 
-/// The contacts of two placed shapes of which one is a surface: normals point from `a` to `b`.
+/// The contacts of two placed shapes of which one is a surface: normals point from `a` to `b`. `ground` is what lies beside the surface.
 pub fn collide_pair(
     (a, world_from_a): (&Shape, &Transform),
     (b, world_from_b): (&Shape, &Transform),
     motion: &Motion,
+    ground: Option<&Ground<'_>>,
     scratch: &mut Scratch,
     out: &mut Patch,
 ) {
     match (a.surface(), b.surface()) {
         (Some(surface), None) => {
-            collide_surface(&surface, world_from_a, b, world_from_b, motion, scratch, out);
+            collide_surface(&surface, world_from_a, b, world_from_b, motion, ground, scratch, out);
         }
         (None, Some(surface)) => {
-            collide_surface(&surface, world_from_b, a, world_from_a, motion, scratch, out);
+            collide_surface(&surface, world_from_b, a, world_from_a, motion, ground, scratch, out);
             out.flip();
         }
         _ => out.clear(),

@@ -135,6 +135,12 @@ impl Faces {
         })
     }
 
+    /// True if another solid hides one of the faces.
+    #[inline]
+    pub fn has_hidden(&self) -> bool {
+        self.hidden != 0
+    }
+
     /// The normal nearest to this one that the faces which are not hidden have between them, and the height of the point over the plane through
     /// them that it stands on, metres. `None` if all are hidden, or none looks that way.
     pub fn shown(&self, normal: Vec3) -> Option<(Vec3, f32)> {

@@ -13,7 +13,7 @@ mod slot_set;
 use crate::arena::Arena;
 use crate::body::def::{BodyKind, WorldDef};
 use crate::body::shape::Shape;
-use crate::body::{Body, Rest, Velocity};
+use crate::body::{Body, Gain, Rest, Velocity};
 use crate::boxes::Aabb;
 use crate::contact::Contact;
 use crate::contact::near::bear;
@@ -189,6 +189,7 @@ impl Activity {
         for &index in members {
             let body = bodies.at_mut(index);
             body.rest = Rest::Asleep { island };
+            body.gain = Gain::default();
             body.velocity = Velocity::default();
             body.previous = body.world_from_principal;
             self.note(index, body);

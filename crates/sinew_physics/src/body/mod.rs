@@ -51,6 +51,29 @@ pub(crate) enum Rest {
     Asleep { island: u32 },
 }
 
+/// Change of a body's velocity since it last changed the other way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Gain {
+    pub velocity: Velocity,
+    /// Seconds.
+    pub time: f32,
+}
+
+impl Gain {
+    /// Adds the change of a step of `dt` seconds; `arm` (m) weighs turns against ways.
+    pub fn add(&mut self, change: &Velocity, dt: f32, arm: f32) {
+        let Self { velocity: Velocity { linear, angular }, time } = self;
+        let along = linear.dot(change.linear) + arm * arm * angular.dot(change.angular);
+        if along > 0.0 {
+            *linear += change.linear;
+            *angular += change.angular;
+            *time += dt;
+        } else {
+            *self = Self { velocity: *change, time: 0.0 };
+        }
+    }
+}
+
 /// A shape of a body, in the body's principal frame. A body may have a million of them.
 #[derive(Clone, Debug)]
 pub(crate) struct BodyShape {
@@ -93,6 +116,7 @@ pub(crate) struct Body {
     pub quality: Option<Quality>,
     /// Pose at which its time at rest began.
     pub place: Transform,
+    pub gain: Gain,
     /// Set when its state became non-finite: it was rolled back and takes no further part.
     pub quarantined: bool,
     /// The user changed it since the last step.
@@ -199,6 +223,7 @@ impl Body {
             sleeping: def.sleeping,
             quality: def.quality,
             place: world_from_body * body_from_principal,
+            gain: Gain::default(),
             quarantined: false,
             changed: false,
             user_data: def.user_data,

@@ -9,7 +9,7 @@ use crate::body::material::{Combine, CombineRules, Material};
 use crate::body::owner::OwnerMark;
 use crate::body::shape::{Filter, Sensing, Shape};
 use crate::body::surface::{Surface, Surfaces};
-use crate::body::{Body, BodyShape, Rest, Velocity};
+use crate::body::{Body, BodyShape, Gain, Rest, Velocity};
 use sinew_geometry::DataKind;
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
@@ -116,9 +116,16 @@ pub(crate) fn save_body(w: &mut Writer, body: &Body) {
         save_shape(w, shape);
     }
     match body.rest {
-        Rest::Awake { rest_time } => {
+        Rest::Awake { rest_time } if body.gain == Gain::default() => {
             w.u8(0);
             w.f32(rest_time);
+        }
+        Rest::Awake { rest_time } => {
+            w.u8(2);
+            w.f32(rest_time);
+            w.vec3(body.gain.velocity.linear);
+            w.vec3(body.gain.velocity.angular);
+            w.f32(body.gain.time);
         }
         Rest::Asleep { island } => {
             w.u8(1);
@@ -164,9 +171,16 @@ pub(crate) fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Bo
     let (linear_damping, angular_damping, gravity_scale) = (r.f32()?, r.f32()?, r.f32()?);
     let surfaces = load_list(r, 29, load_surface)?;
     let shapes = load_list(r, 33, |r| load_shape(r, library, surfaces.len()))?;
+    let mut gain = Gain::default();
     let rest = match r.u8()? {
         0 => Rest::Awake { rest_time: r.f32()? },
         1 => Rest::Asleep { island: r.u32()? },
+        2 => {
+            let rest_time = r.f32()?;
+            gain.velocity = Velocity { linear: r.vec3()?, angular: r.vec3()? };
+            gain.time = r.f32()?;
+            Rest::Awake { rest_time }
+        }
         _ => return Err(r.error("a body neither awake nor asleep").into()),
     };
     let sleeping = load_sleeping(r)?;
@@ -175,6 +189,9 @@ pub(crate) fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Bo
     let finite =
         [world_from_principal, previous, principal_from_body, place].into_iter().all(Transform::is_finite)
             && [velocity.linear, velocity.angular, force, torque, inertia].into_iter().all(Vec3::is_finite)
+            && gain.velocity.linear.is_finite()
+            && gain.velocity.angular.is_finite()
+            && gain.time.is_finite()
             && [mass, linear_damping, angular_damping, gravity_scale].into_iter().all(f32::is_finite);
     if !finite {
         return Err(r.error("a body whose state is not finite").into());
@@ -200,6 +217,7 @@ pub(crate) fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Bo
         sleeping,
         quality,
         place,
+        gain,
         quarantined,
         changed: false,
         user_data,

@@ -1,13 +1,14 @@
 //! In `collide`: pairs that touch in several places at once, a mesh or a height field being one of them. Each of their manifolds
 //! is a contact of its own, a part of the pair.
 
-use crate::arena::Arena;
-use crate::body::Body;
-use crate::collide::{MAX_PARTS, Manifold, Motion, Patch, Scratch, collide_pair};
+use crate::collide::{Ground, MAX_PARTS, Manifold, Motion, Patch, Scratch, collide_pair};
+use crate::contact::proxies::Owner;
+use crate::contact::seams::Seams;
 use crate::contact::tuning::SAME_PART_COSINE;
-use crate::contact::{Contact, ContactMemory};
+use crate::contact::{Contact, ContactMemory, slop};
 use crate::context::StepContext;
 use crate::slices::for_each_mut;
+use sinew_math::Vec3;
 use std::sync::{Mutex, PoisonError};
 
 /// New manifolds of the pairs with parts; kept between steps for its memory.
@@ -16,7 +17,7 @@ pub(crate) struct Parts {
     pairs: Vec<Pair>,
     next: Vec<Contact>,
     /// Lists for as many threads as there were at once.
-    idle: Mutex<Vec<Scratch>>,
+    idle: Mutex<Vec<(Scratch, Vec<Owner>)>>,
 }
 
 /// Nothing in it lasts.
@@ -39,7 +40,7 @@ impl Parts {
     /// of them.
     pub fn update(
         &mut self,
-        bodies: &Arena<Body>,
+        seams: &Seams<'_>,
         contacts: &mut Vec<Contact>,
         context: &StepContext<'_>,
         motion: impl Fn(&Contact) -> Option<Motion>,
@@ -56,9 +57,9 @@ impl Parts {
         for_each_mut(context.runner, &mut self.pairs, |pair| {
             let lock = || idle.lock().unwrap_or_else(PoisonError::into_inner);
             let free = lock().pop();
-            let mut scratch = free.unwrap_or_default();
-            find(bodies, &contacts[pair.first], pair, &mut scratch);
-            lock().push(scratch);
+            let mut lists = free.unwrap_or_default();
+            find(seams, &contacts[pair.first], pair, &mut lists);
+            lock().push(lists);
         });
         self.replace(contacts);
     }
@@ -78,14 +79,29 @@ impl Parts {
     }
 }
 
-fn find(bodies: &Arena<Body>, contact: &Contact, pair: &mut Pair, scratch: &mut Scratch) {
+fn find(
+    seams: &Seams<'_>,
+    contact: &Contact,
+    pair: &mut Pair,
+    (scratch, beside): &mut (Scratch, Vec<Owner>),
+) {
     let key = contact.key;
-    let placed = |body: u32, shape: u32| {
-        let body = bodies.at(body);
-        (&body.shapes[shape as usize].shape, body.world_from_shape(shape as usize))
+    let [a, b] = [(key.a, key.shape_a), (key.b, key.shape_b)].map(|(body, shape)| Owner { body, shape });
+    let placed = |owner: Owner| {
+        let body = seams.bodies.at(owner.body);
+        (&body.shapes[owner.shape as usize].shape, body.world_from_shape(owner.shape as usize))
     };
-    let ((a, from_a), (b, from_b)) = (placed(key.a, key.shape_a), placed(key.b, key.shape_b));
-    collide_pair((a, &from_a), (b, &from_b), &pair.motion, scratch, &mut pair.patch);
+    let ((shape_a, from_a), (shape_b, from_b)) = (placed(a), placed(b));
+    let (ground, mover, bounds, thinnest) = match shape_a.surface() {
+        Some(_) => (a, b, shape_b.aabb(&from_b), shape_b.smallest_extent()),
+        None => (b, a, shape_a.aabb(&from_a), shape_a.smallest_extent()),
+    };
+    seams.beside(ground, mover, &bounds.expand(pair.motion.margin), beside);
+    let slop = slop(thinnest);
+    let shown = |point: Vec3, normal: Vec3| seams.shown(ground, beside, (point, normal), slop);
+    let around: Option<&Ground<'_>> = if beside.is_empty() { None } else { Some(&shown) };
+    let (a, b) = ((shape_a, &from_a), (shape_b, &from_b));
+    collide_pair(a, b, &pair.motion, around, scratch, &mut pair.patch);
 }
 
 /// The contacts of a pair: those that go on in the order in which they were, then new ones. There is at least one, which may

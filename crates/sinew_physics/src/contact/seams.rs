@@ -49,29 +49,36 @@ impl Seams<'_> {
     pub fn mend(&self, key: ContactKey, search: Search, manifold: &mut Manifold) {
         let Some(sides) = self.sides(key, manifold) else { return };
         let reach = SEAM_SLOPS * search.slop;
+        let is_as_found = |&(normal, _): &(Vec3, f32)| normal.dot(sides.out) > AS_FOUND;
         let mut faces: [Option<Faces>; MAX_POINTS] = [None; MAX_POINTS];
         let mut bounds = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
         for (around, point) in faces.iter_mut().zip(manifold.points()) {
             let on_ground = point.position - sides.out * (0.5 * point.separation);
-            let Some(found) = self.faces(sides.ground, on_ground, reach) else { return };
+            let Some(found) = self.faces(sides.ground, on_ground, reach) else { continue };
             // Away from the edges it is what it was found to be.
-            if found.count() < 2 {
+            if found.count() < 2 && found.shown(sides.out).is_none_or(|shown| is_as_found(&shown)) {
                 return;
             }
             bounds = Aabb { min: min3(bounds.min, on_ground), max: max3(bounds.max, on_ground) };
             *around = Some(found);
         }
         self.hide(&sides, manifold, (bounds.expand(reach), reach), &mut faces);
+        if !faces.iter().flatten().any(Faces::has_hidden) {
+            return;
+        }
         let shown = faces.map(|around| around.and_then(|faces| faces.shown(sides.out)));
-        let is_as_found = |&(normal, _): &(Vec3, f32)| normal.dot(sides.out) > AS_FOUND;
         if shown[..manifold.count].iter().flatten().any(is_as_found) {
             return;
         }
-        let mut deepest = 0;
-        for (i, point) in manifold.points().iter().enumerate() {
-            deepest = if point.separation < manifold.points[deepest].separation { i } else { deepest };
-        }
-        let ManifoldPoint { position, separation, .. } = manifold.points[deepest];
+        // On what of it lies on the shape: of a long one that comes over an edge aslant an end may be beside it.
+        let known = manifold.points().iter().enumerate().filter(|(i, _)| faces[*i].is_some());
+        let known = known.map(|(i, point)| (i, *point));
+        let deeper = |p: (usize, ManifoldPoint), q: (usize, ManifoldPoint)| {
+            if q.1.separation < p.1.separation { q } else { p }
+        };
+        let Some((deepest, ManifoldPoint { position, separation, .. })) = known.reduce(deeper) else {
+            return;
+        };
         let on_ground = position - sides.out * (0.5 * separation);
         let plane = shown[deepest].map(|(normal, height)| (normal, on_ground - normal * height));
         let found = plane.map(|plane| self.put_on(&sides, plane, (search, reach)));
@@ -79,6 +86,39 @@ impl Seams<'_> {
             Some(found) => *manifold = found,
             None => name_as_hidden(manifold, sides.of_ground),
         }
+    }
+
+    /// Shapes of the ground beside a surface within bounds, of which it may be that they go on where it ends.
+    pub fn beside(&self, ground: Owner, mover: Owner, bounds: &Aabb, list: &mut Vec<Owner>) {
+        list.clear();
+        if self.bodies.at(ground.body).kind == BodyKind::Dynamic || !self.pushes(ground) {
+            return;
+        }
+        let _ = self.proxies.overlapping(bounds, |other| {
+            if self.goes_on(ground, other) && self.stops(mover, other) {
+                list.push(other);
+            }
+            ControlFlow::<()>::Continue(())
+        });
+    }
+
+    /// Normal that a surface and what is beside it show at a point, and the height of the point over the plane with it, metres; `normal` where
+    /// nothing hides the surface, `None` where others hide all of it.
+    pub fn shown(
+        &self,
+        ground: Owner,
+        beside: &[Owner],
+        (point, normal): (Vec3, Vec3),
+        slop: f32,
+    ) -> Option<(Vec3, f32)> {
+        let reach = SEAM_SLOPS * slop;
+        let Some(mut faces) = self.faces(ground, point, reach) else { return Some((normal, 0.0)) };
+        for &other in beside {
+            if let Some(its) = self.faces(other, point, reach) {
+                faces.hide_behind(&its);
+            }
+        }
+        if faces.has_hidden() { faces.shown(normal) } else { Some((normal, 0.0)) }
     }
 
     /// `None` unless one of the two is dynamic and the other, with flat faces, is not, and both push.

@@ -54,7 +54,7 @@ pub(crate) fn collide(
         return;
     }
     let proxies = &broad.proxies;
-    parts.update(bodies, contacts, context, |contact| {
+    parts.update(&Seams { bodies, proxies, filter }, contacts, context, |contact| {
         surface_motion(bodies, contact, proxies.ahead(contact.key), context.dt)
     });
     for_each_mut(context.runner, contacts, |contact| {

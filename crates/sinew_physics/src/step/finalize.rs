@@ -2,7 +2,8 @@
 
 use crate::activity::Activity;
 use crate::arena::Arena;
-use crate::body::Body;
+use crate::body::def::WorldDef;
+use crate::body::{Body, Velocity};
 use crate::contact::events::Events;
 use crate::context::StepContext;
 use crate::solver::SolvedBody;
@@ -16,8 +17,10 @@ pub(crate) fn finalize(
     bodies: &mut Arena<Body>,
     activity: &mut Activity,
     events: &mut Events,
+    def: &WorldDef,
     context: &StepContext<'_>,
 ) {
+    let arm = def.sleep_thresholds.distance / def.sleep_thresholds.angle;
     events.quarantined.clear();
     events.limited.clear();
     for SolvedBody { index, pose, velocity, is_limited } in &islands.solution().bodies {
@@ -27,6 +30,11 @@ pub(crate) fn finalize(
         body.torque = Vec3::ZERO;
         if pose.is_finite() && velocity.linear.is_finite() && velocity.angular.is_finite() {
             body.world_from_principal = *pose;
+            let change = Velocity {
+                linear: velocity.linear - body.velocity.linear,
+                angular: velocity.angular - body.velocity.angular,
+            };
+            body.gain.add(&change, context.dt, arm);
             body.velocity = *velocity;
             if *is_limited {
                 let id = bodies.id(*index);

@@ -64,7 +64,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         store::store(islands, joints, parted, contacts, groups, events, context);
         pinches.store(groups, contacts);
     });
-    stage(Stage::Finalize, &mut || finalize::finalize(islands, bodies, activity, events, context));
+    stage(Stage::Finalize, &mut || finalize::finalize(islands, bodies, activity, events, def, context));
     let filter = parted.filter(joints);
     stage(Stage::Continuous, &mut || {
         continuous::continuous(islands, bodies, activity, broad, filter, context);

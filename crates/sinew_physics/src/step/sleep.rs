@@ -4,11 +4,12 @@
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::def::{SleepThresholds, Sleeping, WorldDef};
-use crate::body::{Body, Rest};
+use crate::body::{Body, Gain, Rest, Velocity};
 use crate::field::Fields;
 use crate::particles::ParticleGroup;
 use crate::step::islands::Islands;
-use crate::step::tuning::{CREEP, HANGING_SPEED, HANGING_SPIN, PUSHED_SPEED};
+use crate::step::tuning::{CREEP, GAINED, HANGING_SPEED, HANGING_SPIN, PUSHED_SPEED};
+use sinew_math::Vec3;
 
 /// Counts the calm time of every body and particle group and puts islands to sleep. `sleepers` numbers them; `of_groups` permits
 /// groups to sleep. A group keeps bodies awake that it holds; what it touches may rest before it.
@@ -35,6 +36,7 @@ pub(crate) fn sleep(
             }
             let calm = body.sleeping == Sleeping::On
                 && is_slower(body, thresholds.speed, thresholds.spin)
+                && !gains(body, thresholds)
                 && (creeps_little || stays(body, thresholds))
                 && (island.groups.is_empty() || hangs_still(body, def.dt()))
                 && !fields.keep_awake(body);
@@ -76,6 +78,14 @@ fn count(body: &mut Body, calm: bool, dt: f32) -> f32 {
             f32::NEG_INFINITY
         }
     }
+}
+
+/// True if what acts on a body moves it ever faster, or turns it round: a ball at the top of its way up a slope is slow for a second.
+fn gains(body: &Body, thresholds: &SleepThresholds) -> bool {
+    let Gain { velocity: Velocity { linear, angular }, time } = body.gain;
+    let is_fast = |gain: Vec3, threshold: f32| gain.length() >= GAINED * threshold / thresholds.time;
+    time >= 0.5 * thresholds.time
+        && (is_fast(linear, thresholds.distance) || is_fast(angular, thresholds.angle))
 }
 
 fn stays(body: &Body, thresholds: &SleepThresholds) -> bool {

@@ -14,6 +14,43 @@ enum Tiles {
     Shapes,
     /// Raised, lowered and parted by less than a slop.
     Rough,
+    /// Meshes without sides.
+    Sheets,
+    /// Meshes of boxes, closed.
+    Blocks,
+    /// Height fields.
+    Fields,
+    /// All of these and boxes by turns.
+    Mixed,
+}
+
+/// Every kind of tiles.
+const ALL: [Tiles; 8] = [
+    Tiles::Boxes,
+    Tiles::Hulls,
+    Tiles::Shapes,
+    Tiles::Rough,
+    Tiles::Sheets,
+    Tiles::Blocks,
+    Tiles::Fields,
+    Tiles::Mixed,
+];
+
+/// A mesh of a tile whose top is at its origin's height and half a metre above.
+fn block(is_closed: bool) -> Shape {
+    let corner =
+        |i: u32| Vec3::new(0.5 - (i & 1) as f32, 0.5 - (i >> 1 & 1) as f32, 0.5 - (i >> 2 & 1) as f32);
+    let points: Vec<Vec3> = (0..8).map(corner).collect();
+    let sides = [[0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let sides = if is_closed { &sides[..] } else { &sides[..1] };
+    let triangles: Vec<[u32; 3]> = sides.iter().flat_map(|&[a, b, c, d]| [[a, c, b], [a, d, c]]).collect();
+    Shape::mesh(&points, &triangles).expect("it is a mesh")
+}
+
+fn field() -> Shape {
+    let heights = vec![0.0; 9];
+    let def = HeightFieldDef { columns: 3, rows: 3, spacing: [0.5; 2], heights, holes: Vec::new() };
+    Shape::HeightField(HeightField::new(def).expect("it is a field").into())
 }
 
 const SIDE: i32 = 9;
@@ -37,6 +74,18 @@ fn lay(world: &mut World, tiles: Tiles, material: Material, random: &mut Random)
                 let by =
                     Vec3::new(random.range(-3e-4, 3e-4), random.range(-2e-4, 0.0), random.range(-3e-4, 3e-4));
                 world.add_body(&BodyDef::fixed(tile(Shape::cuboid(half))).at(at + by));
+            }
+            Tiles::Sheets | Tiles::Blocks | Tiles::Fields | Tiles::Mixed => {
+                let kinds = [Tiles::Sheets, Tiles::Blocks, Tiles::Fields, Tiles::Boxes];
+                let kind =
+                    if tiles == Tiles::Mixed { kinds[(i + 2 * j).rem_euclid(4) as usize] } else { tiles };
+                let shape = match kind {
+                    Tiles::Boxes => Shape::cuboid(half),
+                    Tiles::Fields => field(),
+                    _ => block(kind == Tiles::Blocks),
+                };
+                let by = if kind == Tiles::Fields { Vec3::new(-0.5, 0.5, -0.5) } else { Vec3::ZERO };
+                world.add_body(&BodyDef::fixed(tile(shape)).at(at + by));
             }
             _ => all.push(ShapeDef {
                 body_from_shape: Transform::from_translation(at),
@@ -78,6 +127,7 @@ fn goer(kind: usize, way: Vec3, random: &mut Random) -> Goer {
         3 => slides(Shape::cuboid(half), half.y, 0.1),
         4 => slides(box_hull(half), half.y, 0.0),
         5 => rolls(Shape::capsule(0.3, 0.1), 0.1, lying),
+        6 => Goer { spin: 0.0, friction: 0.0, ..rolls(Shape::capsule(0.3, 0.1), 0.1, lying) },
         _ => slides(Shape::cylinder(0.1, 0.2), 0.1, 0.0),
     }
 }
@@ -117,9 +167,9 @@ fn went(tiles: Tiles, kind: usize, speed: f32, seed: u64) -> Way {
 #[test]
 fn what_goes_over_seams_goes_as_over_one_box() {
     let mut seed = 0;
-    for kind in 0..7 {
+    for kind in 0..8 {
         for speed in [0.5, 1.0, 3.0, 6.0, 10.0] {
-            for tiles in [Tiles::Boxes, Tiles::Hulls, Tiles::Shapes, Tiles::Rough] {
+            for tiles in ALL {
                 seed += 1;
                 let (one, way) = (went(Tiles::One, kind, speed, seed), went(tiles, kind, speed, seed));
                 let case = format!("{tiles:?}, kind {kind} at {speed} m/s, seed {seed}: {way:?} for {one:?}");
@@ -143,7 +193,11 @@ fn real_edges_stop_what_comes() {
             let mut world = World::new(WorldDef::default());
             let smooth = Material { friction: 0.0, ..Material::DEFAULT };
             let def = |half: Vec3| ShapeDef { material: smooth, ..ShapeDef::new(Shape::cuboid(half)) };
-            world.add_body(&BodyDef::fixed(def(Vec3::splat(0.5))).at(Vec3::Y * -0.5));
+            let floor = ShapeDef {
+                shape: if seed % 2 == 0 { block(true) } else { Shape::cuboid(Vec3::splat(0.5)) },
+                ..def(half)
+            };
+            world.add_body(&BodyDef::fixed(floor).at(Vec3::Y * -0.5));
             world.add_body(&BodyDef::fixed(def(half)).at(at));
             let start = Vec3::new(-0.2, 0.15, random.range(-0.2, 0.2));
             let crate_of = BodyDef::dynamic(def(Vec3::splat(0.15))).at(start);

@@ -185,6 +185,12 @@ fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Telle
     if axis.separation > 0.0 && !(inside(s) && inside(t) && bound) {
         return None;
     }
+    // Two that touch along one direction, and not where these edges are, touch elsewhere.
+    let apart = (of_box.at(s) - edge.at(t)).length();
+    let tolerance = teller.solid.tolerance();
+    if axis.separation > -tolerance && apart > axis.separation.abs() + tolerance {
+        return None;
+    }
     let part = Part::on_edge(i, t);
     let under = under_face(placed, &edge, axis.normal, super::name::part(teller.triangle, part));
     let under = under.as_ref().map_or(&[][..], |points| within(points, teller.margin));

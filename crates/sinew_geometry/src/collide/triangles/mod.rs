@@ -12,9 +12,11 @@ mod other;
 mod outline;
 mod patch;
 mod round;
+mod seams;
 mod solid;
 
 pub use patch::{MAX_PARTS, Patch};
+pub use seams::Ground;
 
 use super::ManifoldPoint;
 use super::feature::{self, pair};
@@ -46,6 +48,8 @@ struct Candidate {
     part: Part,
     /// Now, or once the shape has come over the triangle.
     when: When,
+    /// Way of the shape until then, metres.
+    shift: Vec3,
     triangle: Triangle,
     /// Its points, in the list of all.
     first: u32,
@@ -71,13 +75,15 @@ pub struct Scratch {
     merging: patch::Merging,
 }
 
-/// Fills `out` with the contacts of a placed surface and a placed convex shape: normals from the surface to the shape.
+/// Fills `out` with the contacts of a placed surface and a placed convex shape: normals from the surface to the shape. `ground` is what lies
+/// beside the surface.
 pub fn collide_surface(
     surface: &Surface<'_>,
     world_from_surface: &Transform,
     shape: &Shape,
     world_from_shape: &Transform,
     motion: &Motion,
+    ground: Option<&Ground<'_>>,
     scratch: &mut Scratch,
     out: &mut Patch,
 ) {
@@ -105,6 +111,11 @@ pub fn collide_surface(
         sunk(surface, center, shape, &solid, scratch);
     }
     scratch.claims.settle(&mut scratch.candidates, solid.tolerance());
+    if let Some(ground) = ground {
+        let world_from_center = *world_from_surface * Transform::from_translation(center);
+        let bounds = (&solid, motion.margin);
+        seams::mend(ground, &world_from_center, bounds, &mut scratch.candidates, &mut scratch.points);
+    }
     patch::merge(&scratch.candidates, &scratch.points, solid.tolerance(), &mut scratch.merging, out);
     out.finish(world_from_surface, center);
 }
@@ -177,7 +188,11 @@ impl Teller<'_> {
     /// Tells of what is over the triangle, once it has moved by `shift`; false if nothing is.
     fn face(&mut self, shift: Vec3, when: When) -> bool {
         let over = self.over_face(shift);
-        self.face_points(&over, when)
+        let has_points = self.face_points(&over, when);
+        if let Some(candidate) = self.scratch.candidates.last_mut().filter(|_| has_points) {
+            candidate.shift = shift;
+        }
+        has_points
     }
 
     fn face_points(&mut self, over: &Outline, when: When) -> bool {
@@ -209,6 +224,7 @@ impl Teller<'_> {
             normal,
             part,
             when,
+            shift: Vec3::ZERO,
             triangle: *self.triangle,
             first: self.scratch.points.len() as u32,
             count: points.len() as u32,

@@ -55,6 +55,40 @@ fn what_creeps_down_a_slope_does_not_sleep() {
     assert!(world.is_awake(id) && (speed - expected).abs() < 0.03 * expected, "{speed} m/s, not {expected}");
 }
 
+/// At the top of its way up a slope a ball is slow for seconds and turns back all the same; a crate that friction holds there sleeps.
+#[test]
+fn what_turns_back_on_a_slope_does_not_sleep() {
+    for k in 0..15 {
+        let angle = (0.1 + 0.1 * k as f32).to_radians();
+        let (up, along) = (
+            Vec3::new(-trig::sin(angle), trig::cos(angle), 0.0),
+            Vec3::new(trig::cos(angle), trig::sin(angle), 0.0),
+        );
+        let mut world = World::new(WorldDef::default());
+        half_space_tilted(&mut world, angle, 0.6);
+        let (radius, speed) = (0.1, 0.1 + 0.01 * k as f32);
+        let rolling = BodyDef {
+            linear_velocity: along * speed,
+            angular_velocity: Vec3::Z * (-speed / radius),
+            ..sphere_body(radius, up * radius)
+        };
+        let ball = world.add_body(&rolling);
+        let crate_ = world.add_body(
+            &box_body(Vec3::splat(0.1), up * 0.1 - Vec3::Z)
+                .turned(sinew_math::Rotation::from_axis_angle(Vec3::Z, angle)),
+        );
+        // Up and down again: twice v / (5/7 g sin θ).
+        let steps = 2.0 * speed / (5.0 / 7.0 * 9.81 * trig::sin(angle)) * 60.0;
+        for step in 0..steps as u32 {
+            world.step();
+            assert!(world.is_awake(ball), "{angle} rad: it sleeps in step {step}");
+        }
+        let back = world.velocity(ball).linear.dot(along);
+        assert!((back + speed).abs() < 0.05 * speed, "{angle} rad: {back} m/s for {speed}");
+        assert!(!world.is_awake(crate_));
+    }
+}
+
 #[test]
 fn what_is_pushed_slowly_does_not_sleep() {
     let Nap { mut world, sleeper, .. } = nap();

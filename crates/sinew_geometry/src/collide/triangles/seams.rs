@@ -1,0 +1,77 @@
+//! Contacts with edges at which a surface ends, where another shape goes on: they are put on what the two show there.
+
+use super::solid::Solid;
+use super::{Candidate, name};
+use crate::collide::ManifoldPoint;
+use crate::collide::feature::pair;
+use crate::triangles::{Part, closest_on_triangle};
+use sinew_math::{Transform, Vec3, min};
+
+/// Normal that the ground shows at a point of the surface, in place of the one that was found there, and the height of the point over the
+/// plane with that normal: world, unit, metres. `None` where other shapes hide the surface.
+pub type Ground<'a> = dyn Fn(Vec3, Vec3) -> Option<(Vec3, f32)> + 'a;
+
+/// Cosine from which on a normal counts as the one that was found.
+const AS_FOUND: f32 = 0.999_999_9;
+
+/// Turns the candidates that hold to what the ground shows where they are. `margin` as in [`Motion`](super::Motion).
+pub(super) fn mend(
+    ground: &Ground<'_>,
+    world_from_center: &Transform,
+    (solid, margin): (&Solid<'_>, f32),
+    candidates: &mut [Candidate],
+    points: &mut Vec<ManifoldPoint>,
+) {
+    for candidate in candidates.iter_mut().filter(|candidate| candidate.holds) {
+        let own = &points[candidate.first as usize..][..candidate.count as usize];
+        let deeper = |p: ManifoldPoint, q: ManifoldPoint| if q.separation < p.separation { q } else { p };
+        let Some(deepest) = own.iter().copied().reduce(deeper) else { continue };
+        // Where it is once the shape is over the triangle.
+        let on_surface = deepest.position - candidate.normal * (0.5 * deepest.separation) + candidate.shift;
+        let (at, _) = closest_on_triangle(&candidate.triangle.corners, on_surface);
+        let shown = ground(world_from_center.point(at), world_from_center.rotation * candidate.normal);
+        let Some((normal, height)) = shown else {
+            candidate.holds = false;
+            continue;
+        };
+        let normal = world_from_center.rotation.inverse() * normal;
+        if normal.dot(candidate.normal) <= AS_FOUND {
+            put_on((normal, at - normal * height), (solid, margin), candidate, points);
+        }
+    }
+}
+
+/// Puts a candidate on a plane: the points of a box, which are points of its edges; of other shapes, which may roll, what lies lowest.
+fn put_on(
+    (normal, origin): (Vec3, Vec3),
+    (solid, margin): (&Solid<'_>, f32),
+    candidate: &mut Candidate,
+    points: &mut Vec<ManifoldPoint>,
+) {
+    let old = candidate.first as usize..(candidate.first + candidate.count) as usize;
+    let (first, mut nearest) = (points.len(), f32::INFINITY);
+    let mut put = |points: &mut Vec<ManifoldPoint>, on_shape: Vec3, of_shape: u16| {
+        let separation = (on_shape - origin).dot(normal);
+        if separation <= margin {
+            let position = on_shape - normal * (0.5 * separation);
+            points.push(ManifoldPoint { position, separation, feature: pair(name::FACE, of_shape) });
+            nearest = min(nearest, separation);
+        }
+    };
+    match solid {
+        Solid::Box(_) => {
+            for i in old {
+                let ManifoldPoint { position, separation, feature } = points[i];
+                put(points, position + candidate.normal * (0.5 * separation), (feature >> 16) as u16);
+            }
+        }
+        _ => {
+            for corner in solid.outline(normal).corners() {
+                put(points, corner.at - normal * solid.radius(), corner.of_shape);
+            }
+        }
+    }
+    (candidate.normal, candidate.part, candidate.nearest) = (normal, Part::Face, nearest);
+    (candidate.first, candidate.count) = (first as u32, (points.len() - first) as u32);
+    candidate.holds = candidate.count > 0;
+}
