@@ -145,6 +145,23 @@ fn solid(mass: f32, inertia: Vec3) -> bool {
     [mass, inertia.x, inertia.y, inertia.z].into_iter().all(positive)
 }
 
+/// Reads whether a body rests, and its gain of velocity.
+fn load_rest(r: &mut Reader<'_>) -> Result<(Rest, Gain), LoadError> {
+    let mut gain = Gain::default();
+    let rest = match r.u8()? {
+        0 => Rest::Awake { rest_time: r.f32()? },
+        1 => Rest::Asleep { island: r.u32()? },
+        2 => {
+            let rest_time = r.f32()?;
+            gain.velocity = Velocity { linear: r.vec3()?, angular: r.vec3()? };
+            gain.time = r.f32()?;
+            Rest::Awake { rest_time }
+        }
+        _ => return Err(r.error("a body neither awake nor asleep").into()),
+    };
+    Ok((rest, gain))
+}
+
 /// Reads a body; its owner, if it has one, is to be read.
 pub(crate) fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadError> {
     let tag = r.u8()?;
@@ -171,18 +188,7 @@ pub(crate) fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Bo
     let (linear_damping, angular_damping, gravity_scale) = (r.f32()?, r.f32()?, r.f32()?);
     let surfaces = load_list(r, 29, load_surface)?;
     let shapes = load_list(r, 33, |r| load_shape(r, library, surfaces.len()))?;
-    let mut gain = Gain::default();
-    let rest = match r.u8()? {
-        0 => Rest::Awake { rest_time: r.f32()? },
-        1 => Rest::Asleep { island: r.u32()? },
-        2 => {
-            let rest_time = r.f32()?;
-            gain.velocity = Velocity { linear: r.vec3()?, angular: r.vec3()? };
-            gain.time = r.f32()?;
-            Rest::Awake { rest_time }
-        }
-        _ => return Err(r.error("a body neither awake nor asleep").into()),
-    };
+    let (rest, gain) = load_rest(r)?;
     let sleeping = load_sleeping(r)?;
     let quality = load_option(r, load_quality)?;
     let (place, quarantined, user_data) = (r.transform()?, r.bool()?, r.u64()?);

@@ -59,6 +59,8 @@ impl Character {
         let all = 0..def.ragdoll.bodies.len();
         let parts: Vec<usize> =
             all.filter(|&body| hangs_on(&def.ragdoll, body, first) && self.has_body(body)).collect();
+        let was_clearing = self.is_clearing();
+        self.end_clearing(world);
         self.drop_from(world, &parts);
         let world_from_joint = self.world_from_joints();
         let (bodies, joints) = self.part_with(world, &parts);
@@ -76,6 +78,9 @@ impl Character {
         limb.own(world);
         self.live_on(world);
         self.rehang(world);
+        if was_clearing {
+            self.clear(world);
+        }
         self.events.push(CharacterEvent::Detached { body: first });
         Some(limb)
     }

@@ -30,6 +30,7 @@ impl Character {
         self.stillness = Stillness::default();
         self.slacken(world);
         self.events.push(CharacterEvent::WentLimp);
+        self.clear(world);
     }
 
     /// Brings friction into the joints over [`SLACKENS`] seconds: what muscles held a moment ago goes on, for all of it at once
@@ -93,6 +94,7 @@ impl Character {
             self.slacken(world);
         }
         self.events.push(CharacterEvent::WentLimp);
+        self.clear(world);
     }
 
     /// Gives bodies that clips lead the velocities that they have in the clips: with those that bring them to their place within a step, which a mover
@@ -248,6 +250,9 @@ impl Character {
     /// Waits until the bodies lie still.
     pub(super) fn lie(&mut self, world: &mut World) {
         self.follow_bodies(world);
+        if self.is_clearing() {
+            return self.go_out(world);
+        }
         self.brace(world);
         let dt = world.def().dt();
         let was_slack = self.stillness.steps as f32 * dt < SLACKENS;

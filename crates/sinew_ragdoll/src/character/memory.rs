@@ -2,8 +2,8 @@
 
 use super::grasp::Grasp;
 use sinew_anim::{LocalTransform, TrackId};
-use sinew_math::Transform;
-use sinew_physics::{BodyId, JointId};
+use sinew_math::{Transform, Vec3};
+use sinew_physics::{BodyId, JointId, Velocity};
 
 /// A character on its way up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +25,15 @@ pub(super) struct Stillness {
     pub touched: bool,
     /// Nobody was on it when it last wanted to get up.
     pub free: bool,
+}
+
+/// A limp character on its way out of a wall or the floor.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Clearing {
+    /// Way that is left after the next step, world, metres.
+    pub way: Vec3,
+    /// Velocities of its bodies at the end of the way; empty while it is on no such way.
+    pub velocities: Vec<Velocity>,
 }
 
 /// A body on its way to where a clip begins.

@@ -27,6 +27,7 @@
 
 mod animate;
 mod blows;
+mod clear;
 mod clearance;
 mod def;
 mod detach;
@@ -83,7 +84,7 @@ use crate::ragdoll::Ragdoll;
 use crate::springs::SpringSwing;
 use clearance::Passage;
 use in_world::Presence;
-use memory::{Planting, Preparation, Rising, Shown, Stillness};
+use memory::{Clearing, Planting, Preparation, Rising, Shown, Stillness};
 use sinew_anim::{Animator, Inertia, LocalTransform, Pose};
 use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::{BodyId, Velocity, World};
@@ -131,6 +132,8 @@ pub struct Character {
     /// Limbs that it has let go of, through whose bodies its own pass until they are apart.
     freed: Vec<BodyId>,
     stillness: Stillness,
+    /// Way out of what it was deep in when it went limp.
+    clearing: Clearing,
     preparation: Preparation,
     events: Vec<CharacterEvent>,
     /// Number of events that were there at the end of the last update.
@@ -201,6 +204,7 @@ impl Character {
             parting: Vec::new(),
             freed: Vec::new(),
             stillness: Stillness::default(),
+            clearing: Clearing::default(),
             preparation: Preparation::default(),
             events: Vec::new(),
             told: 0,

@@ -4,7 +4,7 @@ use super::clearance::{Depths, PARTS, Passage};
 use super::distances::Detail;
 use super::grasp::Grasp;
 use super::in_world::Presence;
-use super::memory::{Hold, Planting, Preparation, Rising, Stillness};
+use super::memory::{Clearing, Hold, Planting, Preparation, Rising, Stillness};
 use super::stumble::Stumble;
 use super::{Character, Earlier, State};
 use crate::drive::Drives;
@@ -13,7 +13,7 @@ use crate::ragdoll::Ragdoll;
 use crate::springs::SpringSwing;
 use sinew_anim::{Animator, Inertia, LocalTransform, TrackId};
 use sinew_math::{ReadError, Reader, Writer};
-use sinew_physics::{BodyId, JointId, MoverId};
+use sinew_physics::{BodyId, JointId, MoverId, Velocity};
 
 /// First bytes; the last is the version.
 const MAGIC: &[u8; 8] = b"sinew-c\x05";
@@ -29,6 +29,10 @@ const LOST: u8 = 0x10;
 const GRASPS: u8 = 2;
 /// Bit of a state: the way from one pose to another follows at the end.
 const PASSING: u8 = 0x08;
+/// All bits of a state.
+const FLAGS: u8 = IN_WORLD | WEARS | DRESSED | LOST | PASSING;
+/// Number of the state of a limp character that is on its way out of a wall, which follows at the end.
+const CLEARING: u8 = 6;
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
 
@@ -38,6 +42,7 @@ impl Character {
         w.raw(MAGIC);
         let state = match self.state {
             State::Animated => 0,
+            State::Limp if self.is_clearing() => CLEARING,
             State::Limp => 1,
             State::GettingUp => 2,
             State::Preparing => 3,
@@ -99,6 +104,9 @@ impl Character {
         if passing != 0 {
             self.passage.save(w);
         }
+        if self.is_clearing() {
+            self.clearing.save(w);
+        }
     }
 
     /// Brings back a saved state of a character of the same definition. Its bodies are those of the world's snapshot
@@ -111,9 +119,9 @@ impl Character {
             return Err(ReadError { at: 0, what: "is not a character of this version" });
         }
         let tag = r.u8()?;
-        let state = match tag & !(IN_WORLD | WEARS | DRESSED | LOST | PASSING) {
+        let state = match tag & !FLAGS {
             0 => State::Animated,
-            1 => State::Limp,
+            1 | CLEARING => State::Limp,
             2 => State::GettingUp,
             3 => State::Preparing,
             4 => State::Flinching,
@@ -145,6 +153,9 @@ impl Character {
         let garments = self.def.garments();
         let worn = if tag & DRESSED != 0 { Worn::load(garments, r)? } else { Worn::default() };
         let passage = if tag & PASSING != 0 { Passage::load(r)? } else { Passage::default() };
+        let is_clearing = tag & !FLAGS == CLEARING;
+        let clearing =
+            if is_clearing { Clearing::load(r, self.def.ragdoll.bodies.len())? } else { Clearing::default() };
         let has_bodies = !matches!(state, State::Animated | State::GettingUp);
         let fits = pose.len() == joints
             && springs.is_empty() == (tag & WEARS == 0)
@@ -160,7 +171,7 @@ impl Character {
         self.lingering = lingering;
         (self.drives, self.preparation, self.lean) = (drives, preparation, lean);
         (self.world_from_character, self.climbing) = (world_from_character, climbing);
-        (self.planting, self.passage) = (planting, passage);
+        (self.planting, self.passage, self.clearing) = (planting, passage, clearing);
         (self.pose, self.earlier, self.ragdoll) = (pose, earlier, ragdoll);
         (self.presence, self.flinching, self.speed) = (presence, flinching, speed);
         (self.lost, self.parting, self.freed) = (lost, parting, freed);
@@ -273,6 +284,30 @@ impl Passage {
         let [left, right, age, seconds] = core::array::from_fn(|k| numbers[2 * PARTS + k]);
         let ankles = [r.transform()?, r.transform()?];
         Ok(Self { from: part(0), to: part(PARTS), ankles, far: [left, right], age, seconds })
+    }
+}
+
+impl Clearing {
+    fn save(&self, w: &mut Writer) {
+        w.vec3(self.way);
+        w.count(self.velocities.len());
+        for velocity in &self.velocities {
+            w.vec3(velocity.linear);
+            w.vec3(velocity.angular);
+        }
+    }
+
+    fn load(r: &mut Reader<'_>, bodies: usize) -> Result<Self, ReadError> {
+        let way = r.vec3()?;
+        let count = r.count(24)?;
+        if count == 0 || count > bodies {
+            return Err(r.error("is of another character"));
+        }
+        let mut velocities = Vec::with_capacity(count);
+        for _ in 0..count {
+            velocities.push(Velocity { linear: r.vec3()?, angular: r.vec3()? });
+        }
+        Ok(Self { way, velocities })
     }
 }
 

@@ -599,3 +599,29 @@ pub(crate) const FASTEST_PACE: f32 = 2.0;
 ///
 /// Larger: characters float or sink by so much. Smaller: a toe that dips in lifts the whole. Shown by the tests of `floors`.
 pub(crate) const OWN_FLOOR: f32 = 0.03;
+
+/// Depth in what stands from which on a character that goes limp is taken out of it, metres.
+///
+/// Contacts push out half of it in 0.5 s. Larger: limbs stay in walls for seconds. Smaller: a foot that a clip puts into a stair lifts all of the
+/// figure. Shown by the tests of `clear`.
+pub(super) const DEEP: f32 = 0.1;
+
+/// Speed at which it is taken out, m/s.
+///
+/// Larger: it jumps. Smaller: it floats for longer. Shown by the tests of `clear`.
+pub(super) const CLEARING_SPEED: f32 = 1.9;
+
+/// Longest way out, metres.
+///
+/// Larger: what stands in a hill rises out of it. Smaller: what is in a thick wall stays there. Shown by the tests of `clear`.
+pub(super) const CLEARING_REACH: f32 = 1.2;
+
+/// Static shapes that it is taken out of one after the other, a number.
+///
+/// Floor, two walls of a corner, and one more. Larger: more queries where no way leads out. Smaller: corners are not left. Shown by the tests of `clear`.
+pub(super) const MOST_OBSTACLES: usize = 4;
+
+/// Cosine from which on two directions out of a shape are one.
+///
+/// 11°. Larger: more queries. Smaller: a slanting side of a hull is left by the way of the next. Shown by the tests of `clear`.
+pub(super) const SAME_WAY: f32 = 0.98;

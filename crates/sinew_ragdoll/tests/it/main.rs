@@ -8,6 +8,7 @@ mod borne;
 mod build;
 mod build_limits;
 mod character;
+mod clear;
 mod data;
 mod detach;
 mod disguise;

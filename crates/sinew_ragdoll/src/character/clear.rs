@@ -1,0 +1,145 @@
+//! The way of a limp character out of walls and floors that it is deep in, on the side that it came from. Contacts push each body
+//! out by itself, and slowly: a figure in a thin wall they hold from both sides.
+
+use super::memory::Clearing;
+use super::tuning::{CLEARING_REACH, CLEARING_SPEED, DEEP, MOST_OBSTACLES, SAME_WAY, SUNK};
+use super::{Character, State};
+use sinew_math::{Transform, Vec3, max, min, normalize_or};
+use sinew_physics::{
+    BodyId, BodyKind, BodyKinds, BodyPenetration, ContactRule, PenetrationOf, Probe, QueryFilter, Shape,
+    ShapeCast, ShapeId, Velocity, World,
+};
+
+impl Character {
+    /// Moves a limp character out of static shapes that it is deep in, at 1.9 m/s, all its bodies together; it falls from where it is clear.
+    /// Returns false if there is nothing to do: it is not limp, or held, or no body is deeper than 0.1 m, or no way of at most 1.2 m leads out.
+    ///
+    /// Of the two sides of a wall it takes the one that it came from by its velocity, or else the nearer one. Going limp does this by itself; call it for a character that lies where
+    /// a wall was put or a door has closed.
+    pub fn clear(&mut self, world: &mut World) -> bool {
+        if self.state != State::Limp || self.is_clearing() || self.is_gripped(world) {
+            return false;
+        }
+        let own = self.own().to_vec();
+        let momentum: Vec3 =
+            own.iter().map(|&body| world.velocity(body).linear * world.mass(body).mass).sum();
+        let back = normalize_or(-momentum, Vec3::ZERO);
+        let Some(way) = way_out(world, &own, back) else { return false };
+        let direction = normalize_or(way, Vec3::Y);
+        let mut velocities: Vec<Velocity> = own.iter().map(|&body| world.velocity(body)).collect();
+        for velocity in &mut velocities {
+            // What took it into the wall does not take it there again.
+            velocity.linear -= direction * min(velocity.linear.dot(direction), 0.0);
+        }
+        own.iter().for_each(|&body| world.set_kind(body, BodyKind::Kinematic));
+        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
+        ragdoll.set_rule(world, self.def.in_world.rule());
+        self.clearing = Clearing { way, velocities };
+        self.go_out(world);
+        true
+    }
+
+    pub(super) fn is_clearing(&self) -> bool {
+        !self.clearing.velocities.is_empty()
+    }
+
+    /// Goes on for the next step, or lets the bodies fall where the way ends.
+    pub(super) fn go_out(&mut self, world: &mut World) {
+        let way = &mut self.clearing.way;
+        let dt = world.def().dt();
+        let left = way.length();
+        if left <= 0.0 {
+            return self.end_clearing(world);
+        }
+        let step = min(left, CLEARING_SPEED * dt);
+        let linear = *way * (step / (left * dt));
+        *way = if left > step { *way * (1.0 - step / left) } else { Vec3::ZERO };
+        for &body in self.own() {
+            world.set_velocity(body, Velocity { linear, ..Velocity::default() });
+        }
+    }
+
+    /// Makes the bodies fall from where they are.
+    pub(super) fn end_clearing(&mut self, world: &mut World) {
+        let velocities = core::mem::take(&mut self.clearing).velocities;
+        if velocities.is_empty() {
+            return;
+        }
+        for (&body, &velocity) in self.own().iter().zip(&velocities) {
+            world.set_kind(body, BodyKind::Dynamic);
+            world.set_velocity(body, velocity);
+        }
+        self.ragdoll.as_ref().expect("a limp character has bodies").set_rule(world, ContactRule::Push);
+    }
+}
+
+/// Way on which bodies together come out of all that they are deep in, world, metres; `None` if nothing is deep, or no way leads out.
+/// `back` is the direction that they came from, of length 1 or 0.
+fn way_out(world: &World, bodies: &[BodyId], back: Vec3) -> Option<Vec3> {
+    let placed: Vec<(Shape, Transform)> = bodies.iter().flat_map(|&body| world.shapes(body)).collect();
+    let moved = |way: Vec3| {
+        placed.iter().map(move |(shape, pose)| {
+            let pose = Transform { translation: pose.translation + way, ..*pose };
+            Probe::new(shape.clone(), pose)
+        })
+    };
+    let (mut way, mut limit) = (Vec3::ZERO, DEEP);
+    for _ in 0..MOST_OBSTACLES {
+        let Some(deepest) = deepest(world, moved(way), limit) else { break };
+        let obstacle = ShapeId { body: deepest.body, shape: deepest.shape };
+        let out: Vec<(Vec3, f32)> = directions(world, moved(way), obstacle)
+            .into_iter()
+            .filter_map(|direction| {
+                let mut exits = moved(way).map(|probe| exit(world, probe, obstacle, direction));
+                let length = exits.try_fold(0.0, |most, exit| Some(max(most, exit?)))?;
+                Some((direction, length))
+            })
+            .collect();
+        let comes = |&(direction, _): &(Vec3, f32)| direction.dot(back) > 0.5;
+        let by_motion = out.iter().copied().find(comes);
+        let nearer = |a: (Vec3, f32), b: (Vec3, f32)| if b.1 < a.1 { b } else { a };
+        let (direction, length) = by_motion.or(out.into_iter().reduce(nearer))?;
+        way += direction * length;
+        limit = SUNK;
+    }
+    (way.length() > 0.0 && way.length() <= CLEARING_REACH).then_some(way)
+}
+
+/// Deepest overlap with a static shape that pushes, if it is deeper than `limit`, metres.
+fn deepest(world: &World, probes: impl Iterator<Item = Probe>, limit: f32) -> Option<BodyPenetration> {
+    let pushes = |body, shape| {
+        let rule = world.contact_rule(ShapeId { body, shape });
+        matches!(rule, ContactRule::Push | ContactRule::Modified { .. })
+    };
+    let query = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).accept(pushes);
+    let deeper = |a: BodyPenetration, b: BodyPenetration| if b.depth > a.depth { b } else { a };
+    let found =
+        probes.filter_map(|probe| query.first(&PenetrationOf(probe))).filter(|found| found.depth > limit);
+    found.reduce(deeper)
+}
+
+/// Directions in which probes are nearest to the outside of a shape, and those against them, each once.
+fn directions(world: &World, probes: impl Iterator<Item = Probe>, obstacle: ShapeId) -> Vec<Vec3> {
+    let only = |body, shape| obstacle == ShapeId { body, shape };
+    let mut directions: Vec<Vec3> = Vec::new();
+    for found in probes.filter_map(|probe| world.query().accept(only).first(&PenetrationOf(probe))) {
+        for direction in [found.direction, -found.direction] {
+            if !directions.iter().any(|known| known.dot(direction) > SAME_WAY) {
+                directions.push(direction);
+            }
+        }
+    }
+    directions
+}
+
+/// Way along `direction` on which a probe comes out of a shape, metres; `None` if it is in it still at the end of [`CLEARING_REACH`].
+fn exit(world: &World, mut probe: Probe, obstacle: ShapeId, direction: Vec3) -> Option<f32> {
+    let reach = direction * CLEARING_REACH;
+    probe.world_from_shape.translation += reach;
+    let only = |body, shape| obstacle == ShapeId { body, shape };
+    match world.query().accept(only).first(&ShapeCast { probe, translation: -reach }) {
+        None => Some(0.0),
+        Some(hit) if hit.start.is_some() => None,
+        Some(hit) => Some(CLEARING_REACH * (1.0 - hit.fraction)),
+    }
+}

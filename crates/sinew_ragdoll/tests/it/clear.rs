@@ -1,0 +1,140 @@
+//! Who goes limp in a wall or in the floor is taken out of it, quickly and gently, on the side that it came from.
+
+use sinew_math::{Random, Reader, Rotation, Transform, Vec3, Writer, max, min};
+use sinew_physics::{BodyDef, BodyId, BodyKind, Shape, Velocity, World, WorldDef};
+use sinew_ragdoll::{Character, CharacterDef};
+use std::sync::Arc;
+
+/// Half a second.
+const SOON: usize = 30;
+
+fn deepest(world: &World, character: &Character) -> f32 {
+    let statics: Vec<BodyId> = world.body_ids().filter(|&id| world.kind(id) == BodyKind::Static).collect();
+    let of = |&body: &BodyId| statics.iter().fold(0.0, |most, &other| max(most, world.overlap(body, other)));
+    character.bodies().iter().map(of).fold(0.0, max)
+}
+
+fn fastest(world: &World, character: &Character) -> f32 {
+    character.bodies().iter().fold(0.0, |most, &body| max(most, world.velocity(body).linear.length()))
+}
+
+/// A floor, and a wall 0.2 m thick across z = 0.
+fn world_with_wall() -> World {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+    let wall = Shape::cuboid(Vec3::new(3.0, 1.5, 0.1));
+    world.add_body(&BodyDef::fixed(wall).at(Vec3::Y * 1.5));
+    world
+}
+
+fn limp_at(world: &mut World, def: &Arc<CharacterDef>, place: Transform) -> Character {
+    let mut character = Character::spawn(world, def, place);
+    character.update(world);
+    character.go_limp(world);
+    character
+}
+
+/// Steps until nothing is deeper than 2 cm in what stands, and the fastest body until then; `None` after two seconds.
+fn out_of_it(world: &mut World, character: &mut Character) -> Option<(usize, f32)> {
+    let mut speed = 0.0;
+    for step in 0..120 {
+        world.step();
+        character.update(world);
+        speed = max(speed, fastest(world, character));
+        if deepest(world, character) < 0.02 {
+            return Some((step, speed));
+        }
+    }
+    None
+}
+
+#[test]
+fn out_of_the_floor_within_half_a_second() {
+    let def = Arc::new(sinew::mannequin::character());
+    for (depth, seed) in [0.15, 0.25, 0.4, 0.6, 0.8].into_iter().zip(0..) {
+        let mut world = World::new(WorldDef::default());
+        world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+        let turn = Rotation::from_axis_angle(Vec3::Y, Random::new(seed).range(0.0, 6.0));
+        let mut character = limp_at(&mut world, &def, Transform::new(Vec3::Y * -depth, turn));
+        let (step, speed) = out_of_it(&mut world, &mut character).expect("it comes out");
+        assert!(step < SOON && speed <= 2.5, "{depth} m: after {step} steps, {speed} m/s");
+    }
+}
+
+#[test]
+fn out_of_a_wall_on_the_side_that_it_came_from() {
+    let def = Arc::new(sinew::mannequin::character());
+    for seed in 0..20 {
+        let mut random = Random::new(seed);
+        let mut world = world_with_wall();
+        let (z, turn) = (random.range(-0.12, 0.12), random.range(0.0, 6.0));
+        let place = Transform::new(Vec3::Z * z, Rotation::from_axis_angle(Vec3::Y, turn));
+        let mut character = Character::spawn(&mut world, &def, place);
+        character.update(&mut world);
+        character.go_limp(&mut world);
+        let (step, speed) = out_of_it(&mut world, &mut character).expect("it comes out");
+        assert!(step < SOON && speed <= 2.5, "seed {seed}: after {step} steps, {speed} m/s");
+        let at = character.bodies().iter().map(|&body| world.transform(body).translation.z);
+        let (low, high) =
+            at.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), z| (min(low, z), max(high, z)));
+        assert!(low > 0.1 || high < -0.1, "seed {seed}: on both sides, {low} to {high}");
+        // From the middle either side is as near.
+        assert!(z.abs() < 0.06 || (low > 0.0) == (z > 0.0), "seed {seed}: {z} m, {low} to {high}");
+    }
+}
+
+/// A limp one that moves takes the side against its motion, and keeps what of it does not lead into the wall again.
+#[test]
+fn what_flew_into_a_wall_comes_out_where_it_flew_in() {
+    let def = Arc::new(sinew::mannequin::character());
+    for speed in [-3.0f32, 3.0] {
+        let mut world = world_with_wall();
+        let ahead = Transform::from_translation(Vec3::new(0.0, 0.0, 0.05 * speed.signum()));
+        let mut character = limp_at(&mut world, &def, Transform::from_translation(Vec3::Z * 5.0));
+        let by = ahead.translation - Vec3::Z * 5.0;
+        for &body in character.bodies() {
+            let pose = world.transform(body);
+            world.set_transform(body, Transform { translation: pose.translation + by, ..pose });
+            world.set_velocity(body, Velocity { linear: Vec3::Z * speed, ..Velocity::default() });
+        }
+        assert!(character.clear(&mut world) && !character.clear(&mut world));
+        let (step, _) = out_of_it(&mut world, &mut character).expect("it comes out");
+        let chest = world.transform(character.bodies()[0]).translation.z;
+        assert!(step < SOON && chest * speed < 0.0, "{speed} m/s: after {step} steps at {chest}");
+    }
+}
+
+/// A snapshot on the way out goes on the same, and so does the character when a limb is cut off there.
+#[test]
+fn a_snapshot_on_the_way_out_has_the_same_future() {
+    let def = Arc::new(sinew::mannequin::character());
+    let mut world = world_with_wall();
+    let mut character = limp_at(&mut world, &def, Transform::from_translation(Vec3::new(0.0, -0.3, 0.02)));
+    for _ in 0..5 {
+        world.step();
+        character.update(&mut world);
+    }
+    let mut bytes = Writer::new();
+    world.save(&mut bytes);
+    character.save(&mut bytes);
+    let mut input = Reader::new(bytes.as_bytes());
+    let mut other = World::new(WorldDef::default());
+    other.load(&mut input).expect("it was saved");
+    let mut twin = Character::new(def, Transform::IDENTITY, 0.0);
+    twin.load(&mut input).expect("it was saved");
+    for step in 0..120 {
+        for (world, character) in [(&mut world, &mut character), (&mut other, &mut twin)] {
+            if step == 2 {
+                character.detach(world, "leftUpperArm").expect("it has an arm");
+            }
+            world.step();
+            character.update(world);
+        }
+        assert_eq!(world.hash(), other.hash(), "step {step}");
+    }
+    let own = (0..character.bodies().len()).filter(|&body| character.has_body(body));
+    let statics: Vec<BodyId> = world.body_ids().filter(|&id| world.kind(id) == BodyKind::Static).collect();
+    for body in own.map(|body| character.bodies()[body]) {
+        assert!(statics.iter().all(|&other| world.overlap(body, other) < 0.02));
+    }
+}
