@@ -513,6 +513,7 @@ fn a_trunk_whose_bones_are_a_branch_of_their_own_is_found() {
         rig.meshes[0].primitives[0].positions[corner] += Vec3::new(-0.3, -0.2, 0.4);
     }
     bend(&mut rig, part("rightUpperArm"), Rotation::from_axis_angle(Vec3::Z, 0.6));
+    bend(&mut rig, part("leftUpperLeg"), Rotation::from_axis_angle(Vec3::X, -0.8));
     let found = analyze(&in_order(&rig)).expect("a skin");
     assert!(found.humanoid, "{:?}", found.notes);
     for (name, ..) in toy::BODY {
@@ -581,7 +582,9 @@ fn a_head_that_hangs_on_the_armature_goes_with_what_it_sits_on() {
     make_rigid(&mut rig, head, mesh, place);
     make_rigid(&mut rig, part("leftHand"), beside, Vec3::from_array(toy::BODY[part("leftHand")].2));
     let own = rig.meshes.iter_mut().find(|other| other.joint == mesh).expect("just added");
-    own.primitives[0].positions.iter_mut().for_each(|corner| *corner = *corner * 6.0 - Vec3::Y * 0.1);
+    // One corner of four touches the neck.
+    let corners = own.primitives[0].positions.iter_mut().enumerate();
+    corners.for_each(|(k, corner)| *corner = *corner * 6.0 + Vec3::Y * if k == 0 { -0.1 } else { 0.6 });
     let sorted = in_order(&rig);
     let at = |name: &str| sorted.joints.iter().position(|joint| joint.name == name).expect("it is there");
     let found = analyze(&sorted).expect("a skin");

@@ -76,6 +76,20 @@ fn masses_and_sizes_that_no_body_has_are_doubted() {
     assert_eq!(Doubt::of(&bear), None);
 }
 
+/// A blocky figure of 625 kg at 1.75 m that nothing tells for a human.
+#[test]
+fn a_creature_too_heavy_for_its_length_is_doubted() {
+    let creature = |mass: f32| {
+        let mut def = built();
+        def.bodies.iter_mut().enumerate().for_each(|(i, body)| body.role = format!("spine_{i}"));
+        def.total_mass = mass;
+        Doubt::of(&def)
+    };
+    let doubt = creature(625.0).expect("a doubt");
+    assert!(doubt.reason.contains("625 kg at a length of 1.7"), "{}", doubt.reason);
+    assert_eq!(creature(200.0), None);
+}
+
 /// A mannequin whose joints are rusted stands there like a statue when it goes limp.
 #[test]
 fn a_tall_body_that_stays_upright_is_told() {
