@@ -396,6 +396,12 @@ pub(crate) const NEVER_STILL: f32 = 6.0;
 /// Larger: who kneels or leans is said to have fallen. Smaller: who sits is said to stand. Shown by the tests of `faults`.
 pub(crate) const STILL_UPRIGHT: f32 = 0.8;
 
+/// Most that a character grows or shrinks between its clip and a get-up, times.
+///
+/// Larger: a giant that becomes a child for a second is let pass. Smaller: clips that stretch a figure a little are faults. Shown by the tests
+/// of `faults`.
+pub(crate) const OTHER_SIZE: f32 = 1.15;
+
 /// Least distance of two limbs' roots from the middle, as a share of the height, that tells on which side they are.
 ///
 /// Larger: narrow bodies are not looked at. Smaller: noise is a side. Shown by the tests of `faults`.

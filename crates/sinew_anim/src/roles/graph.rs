@@ -155,6 +155,8 @@ impl Graph {
     /// into it, go with the leg.
     fn hang_feet(&mut self, ends: &[(usize, Vec3)], bound: &Bound) {
         let size = bound.size();
+        let mut moved_by = vec![None; bound.model.len()];
+        self.nodes.iter().enumerate().for_each(|(node, own)| moved_by[own.joint] = Some(node));
         for foot in self.nodes[self.root].children.clone() {
             let own = self.subtree(foot);
             if own.len() > LONGEST_FOOT {
@@ -167,7 +169,18 @@ impl Graph {
             let at_end =
                 |&&(node, at): &&(usize, Vec3)| is_leg(node) && (at - start).length() < FOOT_AT_END * size;
             let grown = || self.grows_into(foot, 0..self.nodes.len(), bound).filter(|&leg| is_leg(leg));
-            let Some(leg) = ends.iter().find(at_end).map(|&(leg, _)| leg).or_else(grown) else { continue };
+            // Of parts that are rigid no skin runs into another: the nearest begins where the foot does.
+            let touching = || {
+                let skin = bound.vertices.iter().zip(&bound.movers);
+                let away = skin.filter_map(|(at, &mover)| {
+                    let node = moved_by[mover].filter(|node| !own.contains(node))?;
+                    Some(((*at - start).length(), node))
+                });
+                let (distance, leg) = away.reduce(|a, b| if b.0 < a.0 { b } else { a })?;
+                (distance < FOOT_AT_SKIN * size && is_leg(leg)).then_some(leg)
+            };
+            let at_end = ends.iter().find(at_end).map(|&(leg, _)| leg);
+            let Some(leg) = at_end.or_else(grown).or_else(touching) else { continue };
             self.nodes[foot].parent = Some(leg);
             self.nodes[leg].children.push(foot);
             let root = self.root;

@@ -618,3 +618,15 @@ fn eyes_with_a_skeleton_of_their_own_go_with_the_head() {
     let found = is_whole(&rig, &[]);
     assert_eq!(found.merge_into[eyes], Some(part("head")));
 }
+
+#[test]
+fn of_two_hands_without_skin_the_one_on_the_forearm_counts() {
+    let mut rig = toy::body(mixamo);
+    let [hand, forearm] = ["leftHand", "leftLowerArm"].map(part);
+    give_skin(&mut rig, hand, forearm);
+    add_bare(&mut rig, "ORG-mixamorig:LeftHand", None, Vec3::from_array(toy::BODY[hand].2), Vec3::ZERO);
+    let sorted = in_order(&rig);
+    let found = analyze(&sorted).expect("a skin");
+    let joint = found.joint_with(Role::Hand(Side::Left)).expect("a hand");
+    assert_eq!(sorted.joints[joint].name, "mixamorig:LeftHand");
+}
