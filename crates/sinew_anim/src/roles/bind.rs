@@ -313,7 +313,25 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     let root = slots
         .filter(|&slot| place(slot).is_finite() && is_alike(&place(slot)))
         .reduce(|a, b| if carries(b) > carries(a) { b } else { a });
-    root.map_or(*majority, place)
+    // A joint that carries less than half is a limb of its own, which the pose may have turned anywhere: what is turned most like all others says it.
+    match root {
+        Some(root) if 2 * carries(root).0 as usize >= said.len() => place(root),
+        _ => most_alike(&said, is_alike).unwrap_or(*majority),
+    }
+}
+
+/// The transform whose axes are turned most like those of all others, of those that pass.
+fn most_alike(all: &[Affine], passes: impl Fn(&Affine) -> bool) -> Option<Affine> {
+    let axes = |place: &Affine| {
+        [place.linear.x_axis, place.linear.y_axis, place.linear.z_axis].map(|axis| axis.normalize())
+    };
+    let likeness = |place: &Affine| {
+        let own = axes(place);
+        let with = |other: &Affine| axes(other).iter().zip(own).map(|(a, b)| a.dot(b)).sum::<f32>();
+        all.iter().filter(|place| passes(place)).map(with).sum::<f32>()
+    };
+    let scored = all.iter().filter(|place| passes(place)).map(|place| (likeness(place), place));
+    scored.reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, place)| *place)
 }
 
 /// Equal up to a thousandth of their scale.

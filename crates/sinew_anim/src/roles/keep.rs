@@ -6,7 +6,7 @@ use super::role::Role;
 use super::{KeptBone, RoleGuess};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::tuning::{
-    LARGEST_WORN, LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN, VOTERS, WORN_WITHIN,
+    LARGEST_ON_ARMATURE, LARGEST_WORN, LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN, VOTERS, WORN_WITHIN,
 };
 use crate::skinning::skin_vertices;
 use sinew_math::{Vec3, max, max3, min3};
@@ -253,6 +253,11 @@ impl Selection<'_> {
         for joint in waiting {
             owner[joint] = Some(self.nearest(joint, joints, &owner));
         }
+        // Hair on a head that hangs on no bone.
+        for joint in 0..self.rig.joints.len() {
+            let parent = self.rig.joints[joint].parent.filter(|&parent| place[parent].is_none());
+            owner[joint] = owner[joint].or_else(|| owner[parent?]);
+        }
         owner
     }
 
@@ -276,8 +281,12 @@ impl Selection<'_> {
         }
         let sides = extent.map_or(Vec3::ZERO, |(low, high)| high - low);
         let longest = max(sides.x, max(sides.y, sides.z));
-        let is_close = 2 * within > all || self.hangs_on_armature(joint);
-        within > 0 && is_close && longest < LARGEST_WORN * self.bound.size()
+        let (is_close, largest) = if self.hangs_on_armature(joint) {
+            (true, LARGEST_ON_ARMATURE)
+        } else {
+            (2 * within > all, LARGEST_WORN)
+        };
+        within > 0 && is_close && longest < largest * self.bound.size()
     }
 
     /// True if a node hangs on the one that carries the skeleton.

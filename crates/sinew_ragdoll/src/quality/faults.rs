@@ -109,13 +109,17 @@ pub fn faults_of_bake(input: &BakeInput<'_>, baked: &Baked) -> Vec<Fault> {
 fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let first = &input.character.ragdoll.bodies[0];
     let mut model = Vec::new();
-    let mut size = |state: State| {
-        let frame = baked.frames.iter().find(|frame| frame.state == state)?;
-        local_to_model(&input.character.rig, &frame.pose, &Affine::IDENTITY, &mut model);
-        Some(model[first.joint].linear.x_axis.length())
+    let mut size = |pose: &[LocalTransform]| {
+        local_to_model(&input.character.rig, pose, &Affine::IDENTITY, &mut model);
+        model[first.joint].linear.x_axis.length()
     };
-    let (by_clip, rising) = (size(State::Animated)?, size(State::GettingUp)?);
-    let times = rising / by_clip;
+    let by_clip = baked.frames.iter().find(|frame| frame.state == State::Animated)?;
+    let by_clip = size(&by_clip.pose);
+    // The size of the pose before dies away in the first frames: what is farthest from it counts.
+    let rising = baked.frames.iter().filter(|frame| frame.state == State::GettingUp);
+    let times = rising.map(|frame| size(&frame.pose) / by_clip);
+    let off = |times: f32| max(times, 1.0 / times);
+    let times = times.reduce(|a, b| if off(b) > off(a) { b } else { a })?;
     // Comparisons with NaN are false.
     let is_alike = times < OTHER_SIZE && times > 1.0 / OTHER_SIZE;
     (!is_alike).then(|| {
