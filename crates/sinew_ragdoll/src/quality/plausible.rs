@@ -2,7 +2,7 @@
 
 use super::{FallQuality, Verdict};
 use crate::def::RagdollDef;
-use crate::tuning::BIG_HEAD;
+use crate::tuning::{BIG_HEAD, CREATURE_BUILD, ROUND};
 use sinew_math::{max, max3, min, min3, trig};
 
 /// Mass that a human may have, kg.
@@ -14,10 +14,6 @@ const ADULT: core::ops::RangeInclusive<f32> = 0.9..=2.6;
 /// Mass that a creature may have, kg: from a small bird's to that of a bull or a bear of the largest kind. Above it are elephants, whales
 /// and what the file's author drew in another unit, which is far more common: a wolf of 2.5 t, a wasp of 1.6 t.
 const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=1000.0;
-/// Most that a creature weighs over the cube of its longest side, kg/m³: a human has 14, an elephant 20, a bear 40, a cow 50, a pig 60.
-const CREATURE_BUILD: f32 = 80.0;
-/// Creatures below this mass (kg) may be as round as they like: a toad, a chick, a hedgehog.
-const ROUND: f32 = 20.0;
 
 /// Doubt about a mass that was guessed: hardly any body weighs that. Where the size of a file's unit is guessed, that is what is wrong
 /// as a rule, and a verdict on the ragdoll says little.
