@@ -157,6 +157,11 @@ impl Graph {
         let size = bound.size();
         let mut moved_by = vec![None; bound.model.len()];
         self.nodes.iter().enumerate().for_each(|(node, own)| moved_by[own.joint] = Some(node));
+        let touched: Vec<(usize, usize)> = self.nodes[self.root]
+            .children
+            .iter()
+            .filter_map(|&child| Some((child, self.touched_by(child, &moved_by, bound)?)))
+            .collect();
         for foot in self.nodes[self.root].children.clone() {
             let own = self.subtree(foot);
             if own.len() > LONGEST_FOOT {
@@ -169,15 +174,11 @@ impl Graph {
             let at_end =
                 |&&(node, at): &&(usize, Vec3)| is_leg(node) && (at - start).length() < FOOT_AT_END * size;
             let grown = || self.grows_into(foot, 0..self.nodes.len(), bound).filter(|&leg| is_leg(leg));
-            // Of parts that are rigid no skin runs into another: the nearest begins where the foot does.
+            // Of parts that are rigid no skin runs into another: the nearest begins where the foot does, and each foot has a leg of its own.
             let touching = || {
-                let skin = bound.vertices.iter().zip(&bound.movers);
-                let away = skin.filter_map(|(at, &mover)| {
-                    let node = moved_by[mover].filter(|node| !own.contains(node))?;
-                    Some(((*at - start).length(), node))
-                });
-                let (distance, leg) = away.reduce(|a, b| if b.0 < a.0 { b } else { a })?;
-                (distance < FOOT_AT_SKIN * size && is_leg(leg)).then_some(leg)
+                let leg = touched.iter().find(|(child, _)| *child == foot).map(|&(_, leg)| leg)?;
+                let is_own = touched.iter().filter(|(_, other)| *other == leg).count() == 1;
+                (is_own && is_leg(leg)).then_some(leg)
             };
             let at_end = ends.iter().find(at_end).map(|&(leg, _)| leg);
             let Some(leg) = at_end.or_else(grown).or_else(touching) else { continue };
@@ -189,6 +190,18 @@ impl Graph {
                 self.adopted.push(foot);
             }
         }
+    }
+
+    /// The node of another tree whose skin is nearest to where a tree begins, if that touches it; `moved_by` has the node of each joint.
+    fn touched_by(&self, tree: usize, moved_by: &[Option<usize>], bound: &Bound) -> Option<usize> {
+        let (own, start) = (self.subtree(tree), self.nodes[tree].position);
+        let skin = bound.vertices.iter().zip(&bound.movers);
+        let away = skin.filter_map(|(at, &mover)| {
+            let node = moved_by[mover].filter(|node| !own.contains(node))?;
+            Some(((*at - start).length(), node))
+        });
+        let (distance, node) = away.reduce(|a, b| if b.0 < a.0 { b } else { a })?;
+        (distance < FOOT_AT_SKIN * bound.size()).then_some(node)
     }
 
     /// Place where a stray tree belongs. Rigs baked from inverse kinematics leave the feet beside the body: such a short stray belongs
