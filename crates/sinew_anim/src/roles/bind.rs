@@ -322,9 +322,8 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
 
 /// The transform whose axes are turned most like those of all others, of those that pass.
 fn most_alike(all: &[Affine], passes: impl Fn(&Affine) -> bool) -> Option<Affine> {
-    let axes = |place: &Affine| {
-        [place.linear.x_axis, place.linear.y_axis, place.linear.z_axis].map(|axis| axis.normalize())
-    };
+    let axes =
+        |place: &Affine| [place.linear.x_axis, place.linear.y_axis, place.linear.z_axis].map(Vec3::normalize);
     let likeness = |place: &Affine| {
         let own = axes(place);
         let with = |other: &Affine| axes(other).iter().zip(own).map(|(a, b)| a.dot(b)).sum::<f32>();
