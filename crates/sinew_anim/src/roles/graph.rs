@@ -178,7 +178,9 @@ impl Graph {
             let touching = || {
                 let leg = touched.iter().find(|(child, _)| *child == foot).map(|&(_, leg)| leg)?;
                 let is_own = touched.iter().filter(|(_, other)| *other == leg).count() == 1;
-                (is_own && is_leg(leg)).then_some(leg)
+                // Two antennae on one root carry nothing of each other.
+                let is_limb = is_leg(leg) && self.nodes[leg].parent != Some(self.root);
+                (is_own && is_limb).then_some(leg)
             };
             let at_end = ends.iter().find(at_end).map(|&(leg, _)| leg);
             let Some(leg) = at_end.or_else(grown).or_else(touching) else { continue };
