@@ -396,6 +396,22 @@ pub(crate) const NEVER_STILL: f32 = 6.0;
 /// Larger: who kneels or leans is said to have fallen. Smaller: who sits is said to stand. Shown by the tests of `faults`.
 pub(crate) const STILL_UPRIGHT: f32 = 0.8;
 
+/// Most that a creature weighs over the cube of its longest side, kg/m³: a human has 14, an elephant 20, a bear 40, a cow 50, a pig 60.
+///
+/// Larger: a block of 625 kg at 1.75 m is let pass. Smaller: a pig is doubted. Shown by the tests of `faults`.
+pub(crate) const CREATURE_BUILD: f32 = 80.0;
+
+/// Mass below which a creature may be as round as it likes, kg: a toad, a chick, a hedgehog.
+///
+/// Larger: a hog is let pass. Smaller: a hen is doubted. Shown by the tests of `faults`.
+pub(crate) const ROUND: f32 = 20.0;
+
+/// Most that a character grows or shrinks between its clip and a get-up, times.
+///
+/// Larger: a giant that becomes a child for a second is let pass. Smaller: clips that stretch a figure a little are faults. Shown by the tests
+/// of `faults`.
+pub(crate) const OTHER_SIZE: f32 = 1.15;
+
 /// Least distance of two limbs' roots from the middle, as a share of the height, that tells on which side they are.
 ///
 /// Larger: narrow bodies are not looked at. Smaller: noise is a side. Shown by the tests of `faults`.

@@ -443,7 +443,12 @@ impl<'a> Scene<'a> {
                     if side.is_some() { reading.side == side } else { self.on_side_of(joint, on) };
                 reading.part == Some(part) && roles[joint].is_none() && (part == Part::Neck || same_side)
             };
-            if let Some(joint) = (0..roles.len()).find(named) {
+            // Of several the one in line with what it hangs on: controls have the names of bones, too.
+            let is_above =
+                |above: JointIdx, joint: JointIdx| ancestors(self.rig, joint).any(|at| at == above);
+            let all: Vec<JointIdx> = (0..roles.len()).filter(named).collect();
+            let in_line = all.iter().find(|&&joint| is_above(on, joint) || is_above(joint, on));
+            if let Some(&joint) = in_line.or(all.first()) {
                 roles[joint] = Some(RoleGuess::new(role, Basis::Name));
             }
         };

@@ -52,8 +52,8 @@ impl Bound {
         Some(bound)
     }
 
-    /// Counts meshes without a skin as the skin of the joint that carries them, if that is named as a part of the body and moves none:
-    /// low-poly characters are put together of such parts.
+    /// Counts meshes without a skin as the skin of the joint that carries them, if that is named as a part of the body, or carries both
+    /// legs, and moves none: low-poly characters are put together of such parts.
     fn add_rigid_parts(&mut self, rig: &Rig) {
         let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
         let parents: Vec<Option<JointIdx>> = rig.joints.iter().map(|joint| joint.parent).collect();
@@ -61,9 +61,15 @@ impl Bound {
         let mut in_skin = vec![false; rig.joints.len()];
         rig.skins.iter().flat_map(|skin| &skin.joints).for_each(|&joint| in_skin[joint] = true);
         let is_bare: Vec<bool> = self.area.iter().map(|&area| area <= 0.0).collect();
+        let mut legs = vec![[false; 2]; rig.joints.len()];
+        for (thigh, reading) in readings.iter().enumerate() {
+            let Some(side) = reading.side.filter(|_| reading.part == Some(Part::UpperLeg)) else { continue };
+            ancestors(rig, thigh).for_each(|above| legs[above][side as usize] |= in_skin[thigh]);
+        }
         let is_part = |joint: JointIdx| {
             let part = readings[joint].part;
-            is_bare[joint] && part.is_some_and(|part| !matches!(part, Part::Appendix | Part::Tail))
+            let is_named = part.is_some_and(|part| !matches!(part, Part::Appendix | Part::Tail));
+            is_bare[joint] && (is_named || legs[joint] == [true; 2])
         };
         let (mut positions, mut normals) = (Vec::new(), Vec::new());
         for (m, mesh) in rig.meshes.iter().enumerate().filter(|(_, mesh)| mesh.skin.is_none()) {
@@ -307,7 +313,24 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     let root = slots
         .filter(|&slot| place(slot).is_finite() && is_alike(&place(slot)))
         .reduce(|a, b| if carries(b) > carries(a) { b } else { a });
-    root.map_or(*majority, place)
+    // A joint that carries less than half is a limb of its own, which the pose may have turned anywhere: what is turned most like all others says it.
+    match root {
+        Some(root) if 2 * carries(root).0 as usize >= said.len() => place(root),
+        _ => most_alike(&said, is_alike).unwrap_or(*majority),
+    }
+}
+
+/// The transform whose axes are turned most like those of all others, of those that pass.
+fn most_alike(all: &[Affine], passes: impl Fn(&Affine) -> bool) -> Option<Affine> {
+    let axes =
+        |place: &Affine| [place.linear.x_axis, place.linear.y_axis, place.linear.z_axis].map(Vec3::normalize);
+    let likeness = |place: &Affine| {
+        let own = axes(place);
+        let with = |other: &Affine| axes(other).iter().zip(own).map(|(a, b)| a.dot(b)).sum::<f32>();
+        all.iter().filter(|place| passes(place)).map(with).sum::<f32>()
+    };
+    let scored = all.iter().filter(|place| passes(place)).map(|place| (likeness(place), place));
+    scored.reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, place)| *place)
 }
 
 /// Equal up to a thousandth of their scale.

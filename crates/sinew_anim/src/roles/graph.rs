@@ -155,6 +155,13 @@ impl Graph {
     /// into it, go with the leg.
     fn hang_feet(&mut self, ends: &[(usize, Vec3)], bound: &Bound) {
         let size = bound.size();
+        let mut moved_by = vec![None; bound.model.len()];
+        self.nodes.iter().enumerate().for_each(|(node, own)| moved_by[own.joint] = Some(node));
+        let touched: Vec<(usize, usize)> = self.nodes[self.root]
+            .children
+            .iter()
+            .filter_map(|&child| Some((child, self.touched_by(child, &moved_by, bound)?)))
+            .collect();
         for foot in self.nodes[self.root].children.clone() {
             let own = self.subtree(foot);
             if own.len() > LONGEST_FOOT {
@@ -167,7 +174,16 @@ impl Graph {
             let at_end =
                 |&&(node, at): &&(usize, Vec3)| is_leg(node) && (at - start).length() < FOOT_AT_END * size;
             let grown = || self.grows_into(foot, 0..self.nodes.len(), bound).filter(|&leg| is_leg(leg));
-            let Some(leg) = ends.iter().find(at_end).map(|&(leg, _)| leg).or_else(grown) else { continue };
+            // Of parts that are rigid no skin runs into another: the nearest begins where the foot does, and each foot has a leg of its own.
+            let touching = || {
+                let leg = touched.iter().find(|(child, _)| *child == foot).map(|&(_, leg)| leg)?;
+                let is_own = touched.iter().filter(|(_, other)| *other == leg).count() == 1;
+                // Two antennae on one root carry nothing of each other.
+                let is_limb = is_leg(leg) && self.nodes[leg].parent != Some(self.root);
+                (is_own && is_limb).then_some(leg)
+            };
+            let at_end = ends.iter().find(at_end).map(|&(leg, _)| leg);
+            let Some(leg) = at_end.or_else(grown).or_else(touching) else { continue };
             self.nodes[foot].parent = Some(leg);
             self.nodes[leg].children.push(foot);
             let root = self.root;
@@ -176,6 +192,18 @@ impl Graph {
                 self.adopted.push(foot);
             }
         }
+    }
+
+    /// The node of another tree whose skin is nearest to where a tree begins, if that touches it; `moved_by` has the node of each joint.
+    fn touched_by(&self, tree: usize, moved_by: &[Option<usize>], bound: &Bound) -> Option<usize> {
+        let (own, start) = (self.subtree(tree), self.nodes[tree].position);
+        let skin = bound.vertices.iter().zip(&bound.movers);
+        let away = skin.filter_map(|(at, &mover)| {
+            let node = moved_by[mover].filter(|node| !own.contains(node))?;
+            Some(((*at - start).length(), node))
+        });
+        let (distance, node) = away.reduce(|a, b| if b.0 < a.0 { b } else { a })?;
+        (distance < FOOT_AT_SKIN * bound.size()).then_some(node)
     }
 
     /// Place where a stray tree belongs. Rigs baked from inverse kinematics leave the feet beside the body: such a short stray belongs

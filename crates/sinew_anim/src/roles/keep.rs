@@ -5,7 +5,9 @@ use super::graph::{Graph, ancestors};
 use super::role::Role;
 use super::{KeptBone, RoleGuess};
 use crate::rig::{JointIdx, Rig};
-use crate::roles::tuning::{LARGEST_WORN, LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN, WORN_WITHIN};
+use crate::roles::tuning::{
+    LARGEST_ON_ARMATURE, LARGEST_WORN, LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN, VOTERS, WORN_WITHIN,
+};
 use crate::skinning::skin_vertices;
 use sinew_math::{Vec3, max, max3, min3};
 
@@ -251,11 +253,17 @@ impl Selection<'_> {
         for joint in waiting {
             owner[joint] = Some(self.nearest(joint, joints, &owner));
         }
+        // Hair on a head that hangs on no bone.
+        for joint in 0..self.rig.joints.len() {
+            let parent = self.rig.joints[joint].parent.filter(|&parent| place[parent].is_none());
+            owner[joint] = owner[joint].or_else(|| owner[parent?]);
+        }
         owner
     }
 
     /// True if a node that hangs on no bone carries a mesh that is smaller than the body and lies within it or close to it: a hat, eyes or a
-    /// pack that nobody parented.
+    /// pack that nobody parented. It is enough that it touches the body where it hangs on the node that carries the skeleton: a head that was parented
+    /// to the armature and to none of its bones.
     fn is_worn(&self, joint: JointIdx) -> bool {
         let (mut positions, mut normals) = (Vec::new(), Vec::new());
         let margin = Vec3::splat(WORN_WITHIN * self.bound.size());
@@ -273,19 +281,41 @@ impl Selection<'_> {
         }
         let sides = extent.map_or(Vec3::ZERO, |(low, high)| high - low);
         let longest = max(sides.x, max(sides.y, sides.z));
-        within > 0 && 2 * within > all && longest < LARGEST_WORN * self.bound.size()
+        let (is_close, largest) = if self.hangs_on_armature(joint) {
+            (true, LARGEST_ON_ARMATURE)
+        } else {
+            (2 * within > all, LARGEST_WORN)
+        };
+        within > 0 && is_close && longest < largest * self.bound.size()
     }
 
-    /// The kept joint, by place, whose skin is nearest to that of a joint; the first if one of them has none.
+    /// True if a node hangs on the one that carries the skeleton.
+    fn hangs_on_armature(&self, joint: JointIdx) -> bool {
+        let first = self.graph.nodes[self.graph.root].joint;
+        let is_bone = |joint: JointIdx| self.rig.skins.iter().any(|skin| skin.joints.contains(&joint));
+        let armature = ancestors(self.rig, first).find(|&above| !is_bone(above));
+        armature.is_some() && self.rig.joints[joint].parent == armature
+    }
+
+    /// The kept joint, by place, whose skin is nearest to that of a joint, by the votes of its vertices; the first if one of them has none.
     fn nearest(&self, joint: JointIdx, joints: &[JointIdx], owner: &[Option<usize>]) -> usize {
         let own = self.bound.vertices.iter().zip(&self.bound.movers).filter(|(_, mover)| **mover == joint);
-        let (sum, count) =
-            own.fold((Vec3::ZERO, 0.0), |(sum, count), (vertex, _)| (sum + *vertex, count + 1.0));
-        let middle = if count > 0.0 { sum / count } else { self.middle_of_meshes(joint) };
-        let others = self.bound.vertices.iter().zip(&self.bound.movers);
-        let away = others.filter_map(|(vertex, mover)| Some(((*vertex - middle).length(), owner[*mover]?)));
-        let nearest = away.reduce(|a, b| if b.0 < a.0 { b } else { a });
-        nearest.map_or(0, |(_, body)| usize::min(body, joints.len() - 1))
+        let mut points: Vec<Vec3> = own.map(|(vertex, _)| *vertex).collect();
+        if points.is_empty() {
+            points = self.points_of_meshes(joint);
+        }
+        if points.is_empty() {
+            points.push(self.bound.model[joint].translation);
+        }
+        let mut votes = vec![0; joints.len()];
+        for point in points.iter().step_by(points.len().div_ceil(VOTERS)) {
+            let others = self.bound.vertices.iter().zip(&self.bound.movers);
+            let away = others
+                .filter_map(|(vertex, mover)| Some(((*vertex - *point).length_squared(), owner[*mover]?)));
+            let nearest = away.reduce(|a, b| if b.0 < a.0 { b } else { a });
+            votes[nearest.map_or(0, |(_, body)| body)] += 1;
+        }
+        (0..votes.len()).reduce(|a, b| if votes[b] > votes[a] { b } else { a }).unwrap_or(0)
     }
 
     /// Mesh and primitive of what moves with a node as a whole: meshes without a skin, and parts of others that have no weights.
@@ -297,16 +327,15 @@ impl Selection<'_> {
         })
     }
 
-    /// Middle of the meshes without a skin on a joint; the joint's place where it has none.
-    fn middle_of_meshes(&self, joint: JointIdx) -> Vec3 {
+    /// Vertices of the meshes without a skin on a joint, model space.
+    fn points_of_meshes(&self, joint: JointIdx) -> Vec<Vec3> {
         let (mut positions, mut normals) = (Vec::new(), Vec::new());
-        let (mut sum, mut count) = (Vec3::ZERO, 0.0);
+        let mut points = Vec::new();
         for (m, p) in self.rigid_parts(joint) {
             skin_vertices(self.rig, m, p, &self.bound.model, &mut positions, &mut normals);
-            sum = positions.iter().fold(sum, |sum, at| sum + *at);
-            count += positions.len() as f32;
+            points.extend(positions.iter().filter(|at| at.is_finite()));
         }
-        if count > 0.0 { sum / count } else { self.bound.model[joint].translation }
+        points
     }
 
     fn bones(&self, joints: &[JointIdx], parent: impl Fn(JointIdx) -> Option<usize>) -> Kept {

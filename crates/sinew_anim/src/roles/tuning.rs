@@ -204,6 +204,16 @@ pub(crate) const WORN_WITHIN: f32 = 0.08;
 /// Larger: the ground on which a figure stands goes along. Smaller: a rifle stays behind. Shown by the tests of `assembly`.
 pub(crate) const LARGEST_WORN: f32 = 0.9;
 
+/// Longest side of a mesh that hangs on the node of the skeleton and touches the body, as a share of the skin's size.
+///
+/// Larger: a stage under a figure goes along. Smaller: a goblin's head stays in the air. Shown by the tests of `assembly`.
+pub(crate) const LARGEST_ON_ARMATURE: f32 = 1.2;
+
+/// Vertices that vote on the body that carries a part without a bone, at most.
+///
+/// Larger: slower, of scenes with many parts. Smaller: one eye on a fringe of hair decides. Shown by the tests of `assembly`.
+pub(crate) const VOTERS: usize = 48;
+
 // roles/props.rs
 
 /// Least longest side of a prop with a body of its own, as a share of the skin's.

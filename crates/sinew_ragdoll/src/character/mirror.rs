@@ -13,6 +13,8 @@ use sinew_math::{Affine, Rotation, Transform, Vec3};
 pub(super) struct Mirror {
     /// A joint of the midline, or one that has no counterpart, is its own.
     twins: Vec<JointIdx>,
+    /// True for what one side alone carries, a sword in one hand: it stays on its limb as the motion has it.
+    one_sided: Vec<bool>,
     /// Character space.
     bind: Vec<Rotation>,
 }
@@ -29,7 +31,12 @@ impl Mirror {
                 *twin = joint;
             }
         }
-        Self { twins, bind: bind.iter().map(|bind| bind.rotation).collect() }
+        let mut one_sided: Vec<bool> = Vec::with_capacity(twins.len());
+        for (joint, node) in def.rig.joints.iter().enumerate() {
+            let is_below = node.parent.is_some_and(|parent| twins[parent] != parent || one_sided[parent]);
+            one_sided.push(twins[joint] == joint && is_below);
+        }
+        Self { twins, one_sided, bind: bind.iter().map(|bind| bind.rotation).collect() }
     }
 
     /// The mirror image of a flat pose. A joint that its clip moves along sits where its counterpart does; the others keep their
@@ -43,6 +50,10 @@ impl Mirror {
         let mut made: Vec<Affine> = Vec::with_capacity(pose.len());
         for (joint, node) in rig.joints.iter().enumerate() {
             let parent = node.parent.map_or(root, |parent| made[parent]);
+            if self.one_sided[joint] {
+                made.push(parent * image[joint].to_affine());
+                continue;
+            }
             let twin = self.twins[joint];
             if !mapping.carries(joint) {
                 let turned = shown[twin].to_rigid().rotation * self.bind[twin].inverse();

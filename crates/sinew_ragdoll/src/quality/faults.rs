@@ -4,7 +4,7 @@ use super::Verdict;
 use crate::bake::{BakeInput, Baked};
 use crate::character::{CharacterEvent, State};
 use crate::def::RagdollDef;
-use crate::tuning::{FALLEN_OUT, NEVER_STILL, ON_A_SIDE, STILL_UPRIGHT};
+use crate::tuning::{FALLEN_OUT, NEVER_STILL, ON_A_SIDE, OTHER_SIZE, STILL_UPRIGHT};
 use sinew_anim::{LocalTransform, Rig, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, min};
 use sinew_physics::{BodyKind, World, WorldDef};
@@ -95,13 +95,41 @@ fn sides(def: &RagdollDef) -> Option<Fault> {
     found.into_iter().next()
 }
 
-/// Faults of what became of a character: out of the world, never still, still upright.
+/// Faults of what became of a character: out of the world, never still, still upright, drawn in another size while it gets up.
 ///
 /// # Panics
 /// If the bake is not one of the input's.
 pub fn faults_of_bake(input: &BakeInput<'_>, baked: &Baked) -> Vec<Fault> {
     let fault = fell_out(input, baked).or_else(|| never_still(input, baked));
-    fault.or_else(|| stays_upright(input, baked)).into_iter().collect()
+    let fault = fault.or_else(|| stays_upright(input, baked));
+    fault.into_iter().chain(changes_size(input, baked)).collect()
+}
+
+/// A character that is drawn in another size while it gets up than by the clip before: the clip scales its bones, and the get-up does not.
+fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
+    let first = &input.character.ragdoll.bodies[0];
+    let mut model = Vec::new();
+    let mut size = |pose: &[LocalTransform]| {
+        local_to_model(&input.character.rig, pose, &Affine::IDENTITY, &mut model);
+        model[first.joint].linear.x_axis.length()
+    };
+    let by_clip = baked.frames.iter().find(|frame| frame.state == State::Animated)?;
+    let by_clip = size(&by_clip.pose);
+    // The size of the pose before dies away in the first frames: what is farthest from it counts.
+    let rising = baked.frames.iter().filter(|frame| frame.state == State::GettingUp);
+    let times = rising.map(|frame| size(&frame.pose) / by_clip);
+    let off = |times: f32| max(times, 1.0 / times);
+    let times = times.reduce(|a, b| if off(b) > off(a) { b } else { a })?;
+    // Comparisons with NaN are false.
+    let is_alike = times < OTHER_SIZE && times > 1.0 / OTHER_SIZE;
+    (!is_alike).then(|| {
+        let reason = format!(
+            "getting up it is drawn {times:.2} times as large as before its fall, for its clip scales {}; --clips FILE brings a clip to \
+             get up by that does so, too, --no-builtin-motions leaves it lying",
+            first.bone
+        );
+        Fault::new(Verdict::Bad, reason)
+    })
 }
 
 /// A body far below everything that stands.

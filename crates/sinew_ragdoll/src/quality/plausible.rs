@@ -2,8 +2,8 @@
 
 use super::{FallQuality, Verdict};
 use crate::def::RagdollDef;
-use crate::tuning::BIG_HEAD;
-use sinew_math::{min, trig};
+use crate::tuning::{BIG_HEAD, CREATURE_BUILD, ROUND};
+use sinew_math::{max, max3, min, min3, trig};
 
 /// Mass that a human may have, kg.
 const HUMAN: core::ops::RangeInclusive<f32> = 3.0..=300.0;
@@ -30,7 +30,7 @@ impl Doubt {
     pub fn of(def: &RagdollDef) -> Option<Self> {
         let (kind, range) = kin(def);
         if range.contains(&def.total_mass) {
-            return if kind == "human" { Self::of_human(def) } else { None };
+            return if kind == "human" { Self::of_human(def) } else { Self::of_build(def) };
         }
         let (mass, height) = (in_words(def.total_mass), def.height);
         let (least, most) = (in_words(*range.start()), in_words(*range.end()));
@@ -64,6 +64,25 @@ impl Doubt {
             return doubt(format!("a human with this head is between {least} m and {most} m tall"));
         }
         None
+    }
+
+    /// Doubt about a creature of a mass that creatures have: for how long, high or wide it is.
+    fn of_build(def: &RagdollDef) -> Option<Self> {
+        let boxes = def.bodies.iter().map(|body| body.shape.aabb(&body.character_from_body));
+        let corners = boxes.map(|own| (own.min, own.max));
+        let (low, high) = corners.reduce(|a, b| (min3(a.0, b.0), max3(a.1, b.1)))?;
+        let sides = high - low;
+        let longest = max(sides.x, max(sides.y, sides.z));
+        let mass = def.total_mass;
+        // Comparisons with NaN are false.
+        if !(mass > ROUND && mass > CREATURE_BUILD * longest * longest * longest) {
+            return None;
+        }
+        let mass = in_words(mass);
+        let reason = format!(
+            "mass of {mass} at a length of {longest:.3} m: hardly any creature of that size weighs as much"
+        );
+        Some(Self { reason, size: 1.0 })
     }
 
     /// Verdict and reasons on the falls of a ragdoll in doubt, drops and bakes alike: `judge` is who judges these figures where there is

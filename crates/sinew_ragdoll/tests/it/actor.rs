@@ -2,7 +2,7 @@
 
 use crate::data;
 use sinew_anim::retarget::{Body, RetargetOptions, retarget};
-use sinew_anim::{Channel, Clip, Joint, LocalTransform, Rig, RigAnalysis, analyze};
+use sinew_anim::{Channel, Clip, Joint, LocalTransform, Rig, RigAnalysis, Role, Side, analyze};
 use sinew_math::{Rotation, Transform, Vec3};
 use sinew_physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew_ragdoll::{BuildOptions, CharacterDef, Locomotion, MotionSet, build};
@@ -12,6 +12,22 @@ use std::sync::Arc;
 /// Walks, and gets up by either clip.
 pub fn walker() -> CharacterDef {
     let Mannequin { rig, clips, motions } = mannequin();
+    character(rig, clips, motions)
+}
+
+/// The same with a sword in its right hand: a joint without a counterpart, which no clip moves.
+pub fn armed_walker() -> CharacterDef {
+    let Mannequin { mut rig, clips, motions } = mannequin();
+    let hand = analyze(&rig).expect("a skin").joint_with(Role::Hand(Side::Right));
+    let rest = LocalTransform {
+        translation: Vec3::new(-1.48, -0.63, -0.05),
+        rotation: Rotation::from_scaled_axis(Vec3::new(-1.1, -1.4, -1.1)),
+        ..LocalTransform::default()
+    };
+    for (name, parent) in [("sword", hand), ("blade", Some(rig.joints.len()))] {
+        let source = rig.joints.len();
+        rig.joints.push(Joint { name: name.into(), parent, rest, source });
+    }
     character(rig, clips, motions)
 }
 

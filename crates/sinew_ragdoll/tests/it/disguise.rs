@@ -1,6 +1,9 @@
 //! Changes that a file may make to a rig without making another character of it.
 
-use sinew_anim::{Joint, JointIdx, LocalTransform, Primitive, Rig, RigAnalysis, RigMesh, Role, Side, Skin};
+use sinew_anim::{
+    Clip, Interpolation, Joint, JointIdx, LocalTransform, Primitive, Property, Rig, RigAnalysis, RigMesh,
+    Role, Side, Skin,
+};
 use sinew_math::{Affine, Random, Rotation, Transform, Vec3};
 
 /// The rig in other units and axes: every root and every bind matrix is told of it.
@@ -555,7 +558,7 @@ pub fn with_hair(rig: &Rig, analysis: &RigAnalysis, head: JointIdx, random: &mut
     let Some((mesh, slot)) = skinned_by(rig, head) else { return rig.clone() };
     let mut rig = rig.clone();
     let size = analysis.height / analysis.unit_scale;
-    let way = (analysis.up_axis + random.in_cube() * 0.8).normalize() * (0.03 * size);
+    let way = (analysis.up_axis + random.in_cube() * 0.8).normalize() * (0.02 * size);
     let head_from_mesh = rig.skins[rig.meshes[mesh].skin.expect("skinned")].inverse_bind[slot];
     let head_from_model = analysis.bind_model[head].inverse();
     let (mesh_from_head, step) = (head_from_mesh.inverse(), head_from_model.vector(way));
@@ -640,4 +643,82 @@ fn give_far_half(mesh: &mut RigMesh, joint_from_mesh: &Affine, middle: Vec3, slo
             }
         }
     }
+}
+
+/// The bones of a limb's beginning without skin of their own: what they moved is moved by the bone that carries them.
+pub fn unweighted(rig: &Rig, bones: &[(JointIdx, JointIdx)]) -> Rig {
+    let mut rig = rig.clone();
+    for (mesh, skin) in rig.meshes.iter_mut().filter_map(|mesh| mesh.skin.map(|skin| (mesh, skin))) {
+        let joints = &rig.skins[skin].joints;
+        let slot = |joint: JointIdx| joints.iter().position(|&other| other == joint);
+        for &(bone, carrier) in bones {
+            let (Some(from), Some(to)) = (slot(bone), slot(carrier)) else { continue };
+            let to = u16::try_from(to).expect("few");
+            for slots in mesh.primitives.iter_mut().flat_map(|primitive| &mut primitive.joints) {
+                slots.iter_mut().filter(|slot| usize::from(**slot) == from).for_each(|slot| *slot = to);
+            }
+        }
+    }
+    rig
+}
+
+/// Eyes with a skeleton of their own: one bone, on no other, that moves two small meshes before the face.
+pub fn with_eyes(rig: &Rig, analysis: &RigAnalysis, head: JointIdx) -> Rig {
+    let mut rig = rig.clone();
+    let size = analysis.height / analysis.unit_scale;
+    let to_model = analysis.character_from_model.inverse();
+    let place = analysis.bind_model[head].translation + analysis.up_axis * (0.04 * size);
+    let bone = add_joint(&mut rig, "EyeBone", None, place);
+    let mut primitive = Primitive::default();
+    for side in [-0.015, 0.015] {
+        let eye = place + to_model.rotation * (Vec3::new(side, 0.0, 0.03) * size);
+        let first = u32::try_from(primitive.positions.len()).expect("few");
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| eye + corner * (0.004 * size));
+        primitive.positions.extend(corners);
+        primitive.joints.extend([[0; 4]; 4]);
+        primitive.weights.extend([[1.0, 0.0, 0.0, 0.0]; 4]);
+        primitive.indices.extend([0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].map(|corner| first + corner));
+    }
+    rig.skins.push(Skin {
+        name: "eyes".into(),
+        joints: vec![bone],
+        inverse_bind: vec![Affine { translation: -place, ..Affine::IDENTITY }],
+    });
+    let skin = Some(rig.skins.len() - 1);
+    rig.meshes.push(RigMesh { name: "eyes".into(), joint: bone, skin, primitives: vec![primitive] });
+    rig
+}
+
+/// Half of the skin of a joint moved by a bone of its own in the same place, on the same parent: the halves of a pelvis, a breast.
+pub fn with_halves(rig: &Rig, joint: JointIdx, name: &str) -> Rig {
+    let Some((mesh, slot)) = skinned_by(rig, joint) else { return rig.clone() };
+    let mut rig = rig.clone();
+    let twin = Joint { name: name.into(), source: rig.joints.len(), ..rig.joints[joint].clone() };
+    rig.joints.push(Joint { parent: Some(joint), rest: LocalTransform::default(), ..twin });
+    let half = rig.joints.len() - 1;
+    let half = add_slot(&mut rig, mesh, slot, half, Vec3::ZERO);
+    for primitive in &mut rig.meshes[mesh].primitives {
+        for slots in primitive.joints.iter_mut().step_by(2) {
+            slots.iter_mut().filter(|other| usize::from(**other) == slot).for_each(|other| *other = half);
+        }
+    }
+    rig
+}
+
+/// Clips whose way is shifted to elsewhere in the file, as captures have it that were cut out of a longer one.
+pub fn shifted(clips: &[Clip], rig: &Rig, by: Vec3) -> Vec<Clip> {
+    let mut clips = clips.to_vec();
+    for channel in clips.iter_mut().flat_map(|clip| &mut clip.channels) {
+        let is_root =
+            rig.joints[channel.joint].parent.is_none_or(|parent| rig.joints[parent].parent.is_none());
+        if channel.property == Property::Translation
+            && is_root
+            && channel.interpolation != Interpolation::CubicSpline
+        {
+            for key in channel.values.chunks_exact_mut(3) {
+                key.iter_mut().zip(by.to_array()).for_each(|(value, by)| *value += by);
+            }
+        }
+    }
+    clips
 }

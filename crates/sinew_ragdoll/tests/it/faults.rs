@@ -3,7 +3,9 @@
 use sinew_anim::analyze;
 use sinew_physics::{BodyDef, Shape};
 use sinew_ragdoll::quality::{Doubt, faults_of_bake, faults_of_ragdoll};
-use sinew_ragdoll::{AfterSettling, BakeInput, BuildOptions, CharacterDef, RagdollDef, Verdict, bake, build};
+use sinew_ragdoll::{
+    AfterSettling, BakeInput, Baked, BuildOptions, CharacterDef, RagdollDef, State, Verdict, bake, build,
+};
 use sinew_scenes::mannequin::mannequin;
 use std::sync::Arc;
 
@@ -76,6 +78,20 @@ fn masses_and_sizes_that_no_body_has_are_doubted() {
     assert_eq!(Doubt::of(&bear), None);
 }
 
+/// A blocky figure of 625 kg at 1.75 m that nothing tells for a human.
+#[test]
+fn a_creature_too_heavy_for_its_length_is_doubted() {
+    let creature = |mass: f32| {
+        let mut def = built();
+        def.bodies.iter_mut().enumerate().for_each(|(i, body)| body.role = format!("spine_{i}"));
+        def.total_mass = mass;
+        Doubt::of(&def)
+    };
+    let doubt = creature(625.0).expect("a doubt");
+    assert!(doubt.reason.contains("625 kg at a length of 1.7"), "{}", doubt.reason);
+    assert_eq!(creature(200.0), None);
+}
+
 /// A mannequin whose joints are rusted stands there like a statue when it goes limp.
 #[test]
 fn a_tall_body_that_stays_upright_is_told() {
@@ -99,4 +115,32 @@ fn a_tall_body_that_stays_upright_is_told() {
     let found = faults(1e4);
     assert_eq!(found.len(), 1, "{found:?}");
     assert!(found[0].reason.contains("stays upright") && found[0].at_most == Verdict::Usable, "{found:?}");
+}
+
+/// A clip that scales the hips, before a get-up that does not.
+#[test]
+fn a_character_that_shrinks_to_get_up_is_told() {
+    let rig = mannequin().rig;
+    let analysis = analyze(&rig).expect("a skin");
+    let character = CharacterDef::new(rig, built(), &analysis.bind_model);
+    let hips = character.ragdoll.bodies[0].joint;
+    let ground = [BodyDef::fixed(Shape::HalfSpace)];
+    let input = BakeInput {
+        bodies: &ground,
+        limp_at: Some(0.5),
+        seconds: 4.0,
+        ..BakeInput::new(Arc::new(character))
+    };
+    let mut baked = bake(&input);
+    let last = baked.frames.len() - 1;
+    baked.frames[last].state = State::GettingUp;
+    assert_eq!(baked.frames[0].state, State::Animated);
+    let sized = |baked: &Baked| {
+        faults_of_bake(&input, baked).into_iter().find(|fault| fault.reason.contains("times as large"))
+    };
+    assert_eq!(sized(&baked), None);
+    baked.frames[0].pose[hips].scale *= 2.65;
+    let fault = sized(&baked).expect("a fault");
+    assert_eq!(fault.at_most, Verdict::Bad);
+    assert!(fault.reason.contains("0.38 times"), "{}", fault.reason);
 }

@@ -7,6 +7,7 @@ mod blows;
 mod borne;
 mod build;
 mod build_limits;
+mod built_rigs;
 mod character;
 mod clear;
 mod data;

@@ -1,6 +1,6 @@
 //! Getting up on the floor: skin that stays out of it, feet that do not slide, poses that do not jump.
 
-use crate::actor::{floor, shared, walker};
+use crate::actor::{armed_walker, floor, shared, walker};
 use sinew_anim::local_to_model;
 use sinew_math::{Affine, Reader, Transform, Vec3, Writer, max, min};
 use sinew_physics::{World, WorldDef};
@@ -59,6 +59,29 @@ fn enforced_contact_keeps_skin_out_of_the_floor_and_feet_from_sliding() {
     }
     println!("as blended: {blended:.3} m, feet slide by {slid:.3} m");
     assert!(blended < -0.02 * HEIGHT && slid > 0.03, "there is something to mend: {blended} m, {slid} m");
+}
+
+/// Which way it lies decides whether a get-up is played as recorded or as in a mirror. In neither the sword leaves the hand that
+/// holds it.
+#[test]
+fn a_sword_stays_in_its_hand_in_a_mirrored_get_up() {
+    let def = shared(armed_walker());
+    let held = |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("it is there");
+    let body = def.body_named("chest").expect("it has a chest");
+    let mut frames = 0;
+    for push in PUSHES {
+        let (bodies, hits) = ([floor()], [BakeHit { time: 0.8, body, impulse: push }]);
+        let input = BakeInput { bodies: &bodies, hits: &hits, seconds: 9.0, ..BakeInput::new(def.clone()) };
+        for frame in bake(&input).frames.iter().filter(|frame| frame.state == State::GettingUp) {
+            frames += 1;
+            for joint in ["sword", "blade"].map(held) {
+                let rest = def.rig.joints[joint].rest.rotation;
+                let off = (frame.pose[joint].rotation * rest.inverse()).to_scaled_axis().length();
+                assert!(off < 0.01, "{push}: {off} rad at {} s", frame.time);
+            }
+        }
+    }
+    assert!(frames > 100, "it gets up in {frames} frames");
 }
 
 #[test]

@@ -55,7 +55,14 @@ pub(super) fn read_names(names: &[&str], parents: &[Option<usize>]) -> Vec<Readi
     let upper_arm = has(&[Sense::Arm, Sense::Part(Part::UpperArm)]);
     let thigh = has(&[Sense::Part(Part::UpperLeg)]);
     let shank = has(&[Sense::Part(Part::LowerLeg)]);
-    let (wrist, ankle) = (has(&[Sense::Wrist]), has(&[Sense::Ankle]));
+    // Of the same side: a mesh beside the skeleton may be called a wrist, too.
+    let sides_with = |wanted: Sense| {
+        [Side::Left, Side::Right].map(|side| {
+            (0..senses.len()).any(|i| senses[i] == Some(wanted) && readings[i].side == Some(side))
+        })
+    };
+    let (wrists, ankles) = (sides_with(Sense::Wrist), sides_with(Sense::Ankle));
+    let on_side = |sides: [bool; 2], side: Option<Side>| side.is_some_and(|side| sides[side as usize]);
     let alone = |sense: Sense, side: Option<Side>| {
         (0..senses.len()).filter(|&i| senses[i] == Some(sense) && readings[i].side == side).count() == 1
     };
@@ -76,9 +83,11 @@ pub(super) fn read_names(names: &[&str], parents: &[Option<usize>]) -> Vec<Readi
             Some(Sense::Leg | Sense::LegOrFoot) if thigh => Some(Part::LowerLeg),
             Some(Sense::Leg | Sense::LegOrFoot) if shank || one_leg => Some(Part::UpperLeg),
             Some(Sense::Leg | Sense::LegOrFoot) => None,
-            Some(Sense::Hand) => Some(if wrist { Part::Appendix } else { Part::Hand }),
+            Some(Sense::Hand) => {
+                Some(if on_side(wrists, reading.side) { Part::Appendix } else { Part::Hand })
+            }
             Some(Sense::Wrist) => Some(Part::Hand),
-            Some(Sense::Foot) => Some(if ankle { Part::Toes } else { Part::Foot }),
+            Some(Sense::Foot) => Some(if on_side(ankles, reading.side) { Part::Toes } else { Part::Foot }),
             Some(Sense::Ankle) => Some(Part::Foot),
             Some(Sense::Part(Part::Spine | Part::Neck | Part::Head)) if sided => None,
             Some(Sense::Part(part)) => Some(*part),
@@ -164,7 +173,13 @@ pub(super) fn settle_trunk(
         let mut trunk: Vec<usize> = up(top).take_while(|&at| at != fork).collect();
         trunk.push(fork);
         let lowest = trunk.into_iter().rev().find(|&at| moves_skin(at))?;
-        matches!(readings[lowest].part, None | Some(Part::Spine)).then_some(lowest)
+        let is_spine = |at: usize| readings[at].part == Some(Part::Spine);
+        if readings[lowest].part.is_none() || is_spine(lowest) {
+            return Some(lowest);
+        }
+        // Nothing between the legs and the neck moves skin: the trunk's bones are a branch of their own, which constraints moved.
+        let on_bare = |at: usize| up(at).skip(1).all(|above| !is_spine(above) || !moves_skin(above));
+        (0..readings.len()).find(|&at| is_spine(at) && moves_skin(at) && on_bare(at))
     });
     let Some(hips) = hips else { return };
     for above in up(hips).skip(1) {
@@ -441,6 +456,8 @@ mod tests {
                 (Some(Appendix), r),
             ],
         );
+        // A mesh beside the skeleton that is called a wrist makes no fingers of hands.
+        check(&["Wrist_2", "mixamorig:LeftHand"], &[(Some(Hand), None), (Some(Hand), l)]);
         check(&["leg_joint_L_1", "torso_joint_3", "Cube"], &[(None, l), (Some(Spine), None), (None, None)]);
     }
 }
