@@ -100,7 +100,8 @@ fn peers() -> Result<()> {
 fn window() -> Result<()> {
     command::provide("Xvfb", "xvfb")?;
     command::provide("xdotool", "xdotool")?;
-    let mut test = command::cargo(&["test", "--package", "sinew_cli", "--features", "viewer", "--test", "it"]);
+    let mut test =
+        command::cargo(&["test", "--package", "sinew_cli", "--features", "viewer", "--test", "it"]);
     command::run(test.args(["--", "--ignored", "--nocapture", "--test-threads", "1", "window::"]))?;
     for tests in ["kept::", "endurance::"] {
         let mut viewer = command::cargo(&["test", "--package", "sinew_viewer", "--test", "it"]);

@@ -396,5 +396,12 @@ fn film<'a>(fall: &'a Fall<'a>) -> Film<'a> {
         let [color, other] = if is_floor { FLOOR } else { [OBSTACLES[index % OBSTACLES.len()]; 2] };
         set.extend(body_models(body, FLOOR_HALF_SIZE, color, other));
     }
-    Film { fall, set, direction: Vec3::new(0.75, 0.4, 0.75), view: View::Whole, sun: Sun::default() }
+    Film {
+        fall,
+        from: 0.0,
+        set,
+        direction: Vec3::new(0.75, 0.4, 0.75),
+        view: View::Whole,
+        sun: Sun::default(),
+    }
 }
