@@ -232,9 +232,10 @@ fn unwrap_container(bytes: &[u8]) -> Result<Unwrapped<'_>> {
     }
     match bytes.iter().find(|b| !b.is_ascii_whitespace()) {
         Some(b'{') => Ok((Container::Gltf, bytes, None, &[])),
-        Some(_) => {
-            Err(Error::malformed("not a glTF file: begins neither with `glTF` nor with `{`", "byte 0"))
-        }
+        Some(_) => Err(match crate::motion::foreign(bytes) {
+            Some(what) => Error::unsupported(what, "byte 0"),
+            None => Error::malformed("not a glTF file: begins neither with `glTF` nor with `{`", "byte 0"),
+        }),
         None => Err(Error::malformed("file is empty", "byte 0")),
     }
 }
