@@ -121,7 +121,8 @@ mod tests {
     #[test]
     fn every_kind_of_png_is_rgba() {
         let (eight, sixteen) = (BitDepth::Eight, BitDepth::Sixteen);
-        let cases: &[(ColorType, BitDepth, Option<&[u8]>, &[u8], [u8; 8])] = &[
+        type Case = (ColorType, BitDepth, Option<&'static [u8]>, &'static [u8], [u8; 8]);
+        let cases: &[Case] = &[
             (ColorType::Rgba, eight, None, &[1, 2, 3, 4, 5, 6, 7, 8], [1, 2, 3, 4, 5, 6, 7, 8]),
             (ColorType::Rgb, eight, None, &[1, 2, 3, 5, 6, 7], [1, 2, 3, 255, 5, 6, 7, 255]),
             (ColorType::Grayscale, eight, None, &[9, 8], [9, 9, 9, 255, 8, 8, 8, 255]),

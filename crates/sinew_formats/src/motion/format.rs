@@ -22,7 +22,7 @@ pub enum MotionFormat {
     Jolt,
 }
 
-/// What a file is that is often given in place of one with clips.
+/// Kind of a file that is often given in place of one with clips, in words.
 pub(crate) fn foreign(bytes: &[u8]) -> Option<&'static str> {
     // Elements after an XML header and comments.
     const NEAR: usize = 4096;
