@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 
 const MANIFEST: &str = "bindings/Cargo.toml";
 /// Pages whose programs are run as they are printed.
-const C_PAGES: &[&str] = &["README.md", "docs/c.md"];
+const C_PAGES: &[&str] = &["docs/c.md"];
 const PYTHON_PAGES: &[&str] = &["README.md", "docs/python.md"];
 /// Strict enough for a library's header: nothing of it may disturb its user's build.
 const WARNINGS: &[&str] = &["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"];

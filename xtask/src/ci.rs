@@ -100,7 +100,8 @@ fn peers() -> Result<()> {
 fn window() -> Result<()> {
     command::provide("Xvfb", "xvfb")?;
     command::provide("xdotool", "xdotool")?;
-    let mut test = command::cargo(&["test", "--package", "sinew_cli", "--test", "it"]);
+    let mut test =
+        command::cargo(&["test", "--package", "sinew_cli", "--features", "viewer", "--test", "it"]);
     command::run(test.args(["--", "--ignored", "--nocapture", "--test-threads", "1", "window::"]))?;
     for tests in ["kept::", "endurance::"] {
         let mut viewer = command::cargo(&["test", "--package", "sinew_viewer", "--test", "it"]);
@@ -190,7 +191,7 @@ fn all_cases() -> Result<()> {
 
 pub fn clippy() -> Result<()> {
     // With what is off by default, so that it compiles.
-    let features = ["--features", "sinew_physics/serde"];
+    let features = ["--features", "sinew_physics/serde,sinew_cli/viewer"];
     let mut clippy = command::cargo(&["clippy", "--workspace", "--all-targets"]);
     command::run(clippy.args(features).args(["--", "-D", "warnings"]))
 }
@@ -212,8 +213,7 @@ fn oldest_compiler() -> Result<()> {
     command::run(Command::new("rustup").args(["toolchain", "install", version, "--profile", "minimal"]))?;
     let mut check = Command::new("rustup");
     let workspace = ["check", "--workspace", "--exclude", "sinew_viewer"];
-    let without_window = ["--no-default-features", "--features", "sinew_cli/fbx"];
-    check.args(["run", version, "cargo"]).args(workspace).args(without_window).current_dir(command::root());
+    check.args(["run", version, "cargo"]).args(workspace).current_dir(command::root());
     command::run(check.env_remove("CARGO").arg("--target-dir").arg(command::target().join("oldest")))
 }
 

@@ -96,8 +96,7 @@ pub enum Profile {
 /// # Errors
 /// If it does not compile.
 pub fn build_sinew(profile: Profile) -> Result<PathBuf> {
-    let mut command =
-        cargo(&["build", "--package", "sinew_cli", "--no-default-features", "--features", "fbx"]);
+    let mut command = cargo(&["build", "--package", "sinew_cli"]);
     if profile == Profile::Release {
         command.arg("--release");
     }

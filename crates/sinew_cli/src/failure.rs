@@ -60,6 +60,11 @@ impl fmt::Display for Failure {
             Self::File(error) => error.to_string(),
             Self::Usage(what) | Self::Missed { what, .. } => what.clone(),
         };
+        // The system's number of an error says nothing that its words do not.
+        let line = match line.find(" (os error ") {
+            Some(at) => line[..at].to_owned() + line[at..].split_once(')').map_or("", |(_, rest)| rest),
+            None => line,
+        };
         // Names come from files: a line feed in one must not make two lines of this.
         line.chars().try_for_each(|c| {
             if c.is_control() { write!(f, "{}", c.escape_default()) } else { write!(f, "{c}") }

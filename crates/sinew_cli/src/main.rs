@@ -10,8 +10,8 @@ mod judge;
 mod render;
 mod report;
 
-use clap::Parser;
 use clap::builder::styling::{AnsiColor, Styles};
+use clap::{CommandFactory, FromArgMatches, Parser};
 use commands::Command;
 use failure::Failure;
 use std::io::{self, Write};
@@ -44,7 +44,8 @@ struct Sinew {
 }
 
 fn main() -> ExitCode {
-    let Sinew { json, command } = match Sinew::try_parse() {
+    let arguments = with_negative_numbers(Sinew::command()).try_get_matches();
+    let Sinew { json, command } = match arguments.and_then(|arguments| Sinew::from_arg_matches(&arguments)) {
         Ok(arguments) => arguments,
         Err(told) => return help_or_usage(&told),
     };
@@ -63,6 +64,15 @@ fn main() -> ExitCode {
             }
         }
     }
+}
+
+/// The command, in which `-1` after an option is its value everywhere, so that whoever reads the value says what is wrong with it.
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    let accept = |arg: clap::Arg| {
+        let takes = arg.get_action().takes_values();
+        if takes { arg.allow_negative_numbers(true) } else { arg }
+    };
+    command.mut_args(accept).mut_subcommands(with_negative_numbers)
 }
 
 /// Prints help or the version to stdout, what is wrong with the arguments to stderr.

@@ -37,19 +37,25 @@ pub fn read_bytes(path: impl AsRef<Path>) -> Result<Vec<u8>> {
 
 fn read_regular(path: &Path) -> Result<Vec<u8>, String> {
     // A device or a pipe may never end.
-    let metadata = fs::metadata(path).map_err(|e| reason(&e))?;
+    let metadata = fs::metadata(path).map_err(|e| reason(path, &e))?;
     if !metadata.is_file() {
         return Err("is not a regular file".into());
     }
-    fs::read(path).map_err(|e| reason(&e))
+    fs::read(path).map_err(|e| reason(path, &e))
 }
 
 /// One line for what the operating system said, the same on every system where it matters.
-fn reason(error: &io::Error) -> String {
+fn reason(path: &Path, error: &io::Error) -> String {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match error.kind() {
+        io::ErrorKind::NotFound if folder.is_some_and(|folder| !folder.is_dir()) => "no such folder".into(),
         io::ErrorKind::NotFound => "no such file".into(),
+        io::ErrorKind::NotADirectory => "its folder is a file".into(),
+        io::ErrorKind::IsADirectory => "is a folder".into(),
         io::ErrorKind::PermissionDenied => "permission denied".into(),
-        _ => error.to_string(),
+        io::ErrorKind::StorageFull => "no space left".into(),
+        // Without the number, which differs between systems.
+        _ => error.to_string().split(" (os error ").next().unwrap_or_default().to_owned(),
     }
 }
 
@@ -79,7 +85,7 @@ pub fn write_all_atomic(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)]) -> Resul
 }
 
 fn cannot_write(path: &Path, error: &io::Error) -> Error {
-    Error::io(format!("cannot write: {}", reason(error))).with_file(path.display().to_string())
+    Error::io(format!("cannot write: {}", reason(path, error))).with_file(path.display().to_string())
 }
 
 /// Place that the bytes of an output go to: the end of its links, and never what is no regular file.
@@ -262,7 +268,8 @@ pub fn load_world(path: impl AsRef<Path>) -> Result<Vec<BodyDef>> {
 fn read_beside(folder: &Path, relative: &str) -> Result<Vec<u8>> {
     let fail = |what: String| Error::io(format!("{}: {what}", quoted(relative)));
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let real = |path: &Path| -> Result<PathBuf> { fs::canonicalize(path).map_err(|e| fail(reason(&e))) };
+    let real =
+        |path: &Path| -> Result<PathBuf> { fs::canonicalize(path).map_err(|e| fail(reason(path, &e))) };
     let target = real(&folder.join(relative))?;
     if !target.starts_with(real(folder)?) {
         return Err(fail("leaves the folder of the file".into()));

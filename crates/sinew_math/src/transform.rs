@@ -60,6 +60,15 @@ impl Mul for Transform {
     }
 }
 
+/// Image of a point, as [`Transform::point`]; for directions and velocities use `transform.rotation * v`.
+impl Mul<Vec3> for Transform {
+    type Output = Vec3;
+    #[inline]
+    fn mul(self, point: Vec3) -> Vec3 {
+        self.point(point)
+    }
+}
+
 /// A linear map followed by a translation: joints of a rig may scale and shear. `a * b` applies `b` first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine {

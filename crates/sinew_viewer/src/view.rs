@@ -19,6 +19,10 @@ const FARTHEST: f32 = 20_000.0;
 const STEEPEST: f32 = 1.54;
 /// Field of view, radians (45°): wider than in pictures, since one looks about.
 const FOV: f32 = core::f32::consts::FRAC_PI_4;
+/// Height of the camera above the ground at least, as a share of its distance: the near plane cuts nothing off.
+const CLEARANCE: f32 = 0.02;
+/// Upward share of a normal from which on a surface is ground and no wall.
+const LEVEL: f32 = 0.7;
 /// Part of the world that a ray from the eye looks at, metres.
 const SIGHT: f32 = 1e5;
 
@@ -110,6 +114,17 @@ impl Orbit {
     /// Goes nearer (below 1) or farther by a factor.
     pub fn zoom(&mut self, factor: f32) {
         self.distance = clamp(self.distance * factor, NEAREST, FARTHEST);
+    }
+
+    /// Looks down more steeply where the camera would be in or below the ground, so that it stays above.
+    pub fn rise_above(&mut self, world: &World) {
+        let way = Ray { origin: self.target, direction: self.back() * self.distance };
+        let ground = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&way);
+        if let Some(hit) = ground.filter(|hit| hit.normal.y > LEVEL) {
+            let above = max(CLEARANCE * self.distance, 0.02);
+            let lowest = clamp((hit.point.y + above - self.target.y) / self.distance, -1.0, 1.0);
+            self.pitch = clamp(max(self.pitch, trig::asin(lowest)), -STEEPEST, STEEPEST);
+        }
     }
 
     /// Ray through a point of the picture (0 to 1, from the upper left corner), as far as one can see.
@@ -227,5 +242,33 @@ fn add_grid(around: &Aabb, stage: &mut Stage<'_>) {
             let (from, to) = (middle - along * reach, middle + along * reach);
             stage.scene.lines.push(Line { from, to, color, depth: LineDepth::Tested });
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew::physics::{BodyDef, Shape, WorldDef};
+
+    #[test]
+    fn the_camera_stays_above_the_ground() {
+        let mut world = World::new(WorldDef::default());
+        world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+        world.step();
+        for (height, distance) in [(1.0, 5.0), (0.2, 40.0), (0.5, 0.3)] {
+            let target = Vec3::new(0.0, height, 0.0);
+            let mut orbit = Orbit { target, yaw: 0.4, pitch: 0.6, distance };
+            let before = orbit;
+            orbit.rise_above(&world);
+            assert_eq!(orbit, before, "it is above");
+            orbit.turn(0.0, -3.0);
+            orbit.rise_above(&world);
+            assert!(orbit.camera().position.y > 0.01, "{height} {distance}: {:?}", orbit.camera());
+        }
+        // From below the ground one sees what is there.
+        let mut below = Orbit { target: Vec3::NEG_Y, yaw: 0.0, pitch: -0.5, distance: 3.0 };
+        let before = below;
+        below.rise_above(&world);
+        assert_eq!(below, before);
     }
 }

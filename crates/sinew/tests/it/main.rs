@@ -42,6 +42,7 @@ mod wind;
 
 mod motions;
 mod pictures;
+mod prelude;
 
 #[test]
 fn the_flock_flies() {

@@ -30,6 +30,9 @@ pub struct Boxes {
     /// Most boxes
     #[arg(long, value_name = "N", default_value = "150", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     max: u16,
+    /// Factor for all lengths of the mesh, as 0.01 for one in centimetres
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = factor)]
+    scale: f32,
     /// World file to write
     #[arg(short, long, value_name = "WORLD.json")]
     output: PathBuf,
@@ -38,12 +41,19 @@ pub struct Boxes {
     picture: Option<PictureFile>,
 }
 
+/// A number above 0.
+fn factor(text: &str) -> Result<f32, String> {
+    let number: f32 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
+    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be above 0".to_owned()) }
+}
+
 impl Boxes {
     /// Reads, cooks, draws, writes.
     pub fn run(&self) -> Result<Report> {
         self.check_outputs()?;
         let name = self.mesh.display().to_string();
-        let mesh = load_mesh(&self.mesh)?;
+        let mut mesh = load_mesh(&self.mesh)?;
+        mesh.positions.iter_mut().for_each(|position| *position *= self.scale);
         let cooked = self.cook(&name, &mesh)?;
         let bodies: Vec<BodyDef> = cooked.boxes.iter().map(BodyDef::fixed_box).collect();
         let mut outputs = Outputs::default();

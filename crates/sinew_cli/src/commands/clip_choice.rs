@@ -82,7 +82,7 @@ pub fn few(names: &[String]) -> String {
 
 /// Name by which the user may call a clip.
 fn called(index: usize, name: &str) -> String {
-    if name.is_empty() { format!("{index} (without a name)") } else { shown(name) }
+    if name.is_empty() { format!("number {index}, which has no name") } else { shown(name) }
 }
 
 /// Indices of the clips that the user named, in that order; of all if none.

@@ -5,7 +5,7 @@ use crate::failure::{Failure, Result};
 use crate::input::files::{CharacterFile, Outputs, WeightSource, must_end_in, never_over};
 use crate::input::motion::Motion;
 use crate::input::onto::{Carried, carry};
-use crate::input::picture_file::{PictureFile, longest};
+use crate::input::picture_file::{PictureFile, longest, rate};
 use crate::input::skeleton::{bones_only, frame_rate, lost_meshes, transform};
 use crate::render::bones::flesh_out;
 use crate::render::show::Show;
@@ -56,8 +56,8 @@ pub struct Convert {
     #[arg(long, value_name = "CHARACTER")]
     onto: Option<PathBuf>,
     /// Frames per second of what is sampled anew; by default those of the file
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=240))]
-    fps: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = rate)]
+    fps: Option<f32>,
     /// Metres per unit of a BVH that is written
     #[arg(long, value_name = "METRES", default_value = "0.01", value_parser = metres)]
     unit: f32,

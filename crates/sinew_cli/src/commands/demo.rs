@@ -12,6 +12,8 @@ use sinew_picture::{PictureFormat, Sun};
 use sinew_scenes::cabin::{Prop, Site};
 use std::path::{Path, PathBuf};
 
+/// Time at which the film begins, seconds: the mannequin has stepped out of the door, which hides it before.
+const FILM_FROM: f32 = 0.6;
 /// Half size of the meadow in the file, metres to each side; the picture shows it up to the haze.
 const MEADOW_HALF_SIZE: f32 = 12.0;
 /// Every second square of the meadow.
@@ -95,5 +97,5 @@ fn film<'a>(fall: &'a Fall<'a>, props: &[Prop]) -> Film<'a> {
     let set =
         props.iter().flat_map(|prop| body_models(&prop.body, FLOOR_HALF_SIZE, prop.color, MOWN)).collect();
     let sun = Sun { direction: Vec3::new(0.45, 0.8, 0.5), ..Sun::default() };
-    Film { fall, set, direction: Vec3::new(0.9, 0.28, 0.42), view: View::Around(1.5), sun }
+    Film { fall, from: FILM_FROM, set, direction: Vec3::new(0.9, 0.28, 0.42), view: View::Around(1.5), sun }
 }

@@ -24,7 +24,7 @@ use clap::Subcommand;
 #[derive(Subcommand)]
 pub enum Command {
     Demo(demo::Demo),
-    Bake(bake::Bake),
+    Bake(Box<bake::Bake>),
     /// Work on ragdolls: build one from a rigged file, find out what is wrong with one, write it for other engines
     #[command(subcommand)]
     Ragdoll(Ragdoll),

@@ -51,7 +51,7 @@ impl Record {
         outputs.write()?;
         let path = self.output.display().to_string();
         let text = format!(
-            "{}: {steps} steps, {} key frames, state {hash}\n\n  wrote {path}\n",
+            "{}: {steps} steps, {} key frames, state {hash}\nwrote {path}\n",
             scene.name,
             recording.key_frames.len()
         );

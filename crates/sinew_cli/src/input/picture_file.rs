@@ -48,6 +48,17 @@ pub fn longest(seconds: f32) -> f32 {
     if seconds < LONGEST { seconds } else { LONGEST }
 }
 
+/// Pictures or keys a second.
+pub fn rate(text: &str) -> Result<f32, String> {
+    const MOST: f32 = 240.0;
+    let rate: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (1.0..=MOST).contains(&rate) {
+        Ok(rate)
+    } else {
+        Err(format!("must lie between 1 and {MOST} a second"))
+    }
+}
+
 /// A time that takes a while.
 pub fn length(text: &str) -> Result<f32, String> {
     let time = seconds(text)?;

@@ -39,7 +39,7 @@ pub struct SettingsArg {
     #[arg(help_heading = HEADING, long, value_name = "SOURCE", value_enum, default_value_t)]
     weights: WeightSource,
     /// Mass of the whole character, kg; by default from its height or volume
-    #[arg(help_heading = HEADING, long, value_name = "KG", allow_negative_numbers = true)]
+    #[arg(help_heading = HEADING, long, value_name = "KG", value_parser = positive, allow_negative_numbers = true)]
     mass: Option<f32>,
     /// Say which bone is what, as in hips=Bone_12; 'sinew inspect' lists both; repeatable
     #[arg(help_heading = HEADING, long = "role", value_name = "ROLE=BONE")]
@@ -75,7 +75,7 @@ impl FromStr for RoleArg {
     }
 }
 
-/// A length above 0.
+/// A number above 0.
 fn positive(text: &str) -> Result<f32, String> {
     let number: f32 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be above 0".to_owned()) }

@@ -29,6 +29,8 @@ const ARROW_COLOR: [f32; 3] = [0.85, 0.06, 0.03];
 pub struct Film<'a> {
     /// The fall.
     pub fall: &'a Fall<'a>,
+    /// Time at which it begins, seconds.
+    pub from: f32,
     /// Models of what stands around.
     pub set: Vec<Model>,
     /// From the character to the camera.
@@ -56,9 +58,10 @@ impl Film<'_> {
         let mut renderer = Renderer::new(settings);
         let mut movie = Movie::new(format, FPS);
         let frames = (self.fall.input.seconds * FPS as f32) as u32 + 1;
-        let progress = Progress::new("drawing", frames as usize);
+        let first = (self.from * FPS as f32) as u32;
+        let progress = Progress::new("drawing", (frames - first) as usize);
         let mut shots = Shots::new(self, frames);
-        for frame in 0..frames {
+        for frame in first..frames {
             movie.push(&shots.shoot(&mut renderer, frame))?;
             progress.step();
         }
@@ -89,7 +92,7 @@ struct Shots<'a> {
 
 impl<'a> Shots<'a> {
     fn new(film: Film<'a>, frames: u32) -> Self {
-        let Film { fall, set, direction, view, sun } = film;
+        let Film { fall, set, direction, view, sun, .. } = film;
         let rig = &fall.input.character.rig;
         let radius = if let View::Around(radius) = view { radius } else { 0.0 };
         let mut shots = Self {
@@ -260,8 +263,14 @@ mod tests {
         let up = at(|event| matches!(event, CharacterEvent::Up));
         let settled = settled.expect("it lies still");
         let frames = (fall.input.seconds * FPS as f32) as u32 + 1;
-        let film =
-            Film { fall: &fall, set: vec![], direction: Vec3::Z, view: View::Whole, sun: Sun::default() };
+        let film = Film {
+            fall: &fall,
+            from: 0.0,
+            set: vec![],
+            direction: Vec3::Z,
+            view: View::Whole,
+            sun: Sun::default(),
+        };
         let mut shots = Shots::new(film, frames);
         let mut renderer = Renderer::new(RenderSettings {
             width: 32,

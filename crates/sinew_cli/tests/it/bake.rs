@@ -214,7 +214,7 @@ fn outputs_come_together_or_not_at_all_and_never_over_an_input() {
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));
     let picture = folder.path("missing/out.gif");
     let run = sinew(&["bake", &file, "--seconds", "0.1", "-o", &out, "--picture", &picture]);
-    assert_eq!(run.refusal(1), format!("error: {picture}: cannot write: no such file"));
+    assert_eq!(run.refusal(1), format!("error: {picture}: cannot write: no such folder"));
     assert_eq!(folder.names(), ["mannequin.glb"]);
     let settings = folder.file("mannequin.ragdoll.json", r#"{ "sinew": "ragdoll-settings", "version": 1 }"#);
     let before = [&file, &settings].map(|path| fs::read(path).expect("the file"));
@@ -250,8 +250,10 @@ fn what_would_never_happen_is_refused() {
         let run = sinew(&["bake", &file, "-o", &out, option, "-1"]);
         assert!(run.code == Some(2) && run.stderr.contains(why), "{run:?}");
     }
-    let run = sinew(&["ragdoll", "build", &file, "--mass", "-4"]);
-    assert!(run.refusal(1).ends_with("a mass of -4 kg: it must be positive (--mass)"), "{run:?}");
+    for option in ["--mass", "--height"] {
+        let run = sinew(&["ragdoll", "build", &file, option, "-4"]);
+        assert!(run.code == Some(2) && run.stderr.contains("must be above 0"), "{run:?}");
+    }
 }
 
 #[test]

@@ -298,3 +298,76 @@ fn a_reader_that_goes_is_no_failure() {
     drop(child.stdout.take());
     assert_eq!(child.wait().expect("it ends").code(), Some(0));
 }
+
+#[test]
+fn numbers_out_of_range_are_told_with_the_range() {
+    let folder = Folder::new("ranges");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let cases: [(&[&str], &str); 8] = [
+        (&["bake", &file, "-o", &out, "--fps", "-5"], "between 1 and 240 a second"),
+        (&["bake", &file, "-o", &out, "--fps", "nan"], "between 1 and 240 a second"),
+        (&["convert", &file, &out, "--fps", "0"], "between 1 and 240 a second"),
+        (&["view", "pendulum", "--picture", "a.png", "--at", "-1"], "between 0 and 600 s"),
+        (&["run", "pendulum", "--steps", "-1"], "-1 is not in 1.."),
+        (&["bake", &file, "-o", &out, "--mass", "0"], "must be above 0"),
+        (&["bake", &file, "-o", &out, "--height", "0"], "must be above 0"),
+        (&["boxes", &file, "-o", "a.json", "--scale", "-1"], "must be above 0"),
+    ];
+    for (arguments, range) in cases {
+        let run = sinew(arguments);
+        assert!(run.code == Some(2) && run.stderr.contains(range), "{arguments:?}: {run:?}");
+        assert!(!run.stderr.contains("to pass"), "{arguments:?}: {run:?}");
+    }
+}
+
+#[test]
+fn a_rate_may_be_broken() {
+    let folder = Folder::new("rate");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let object = sinew(&["bake", &file, "--fps", "29.97", "--seconds", "1", "-o", &out, "--json"]).json();
+    assert_eq!(object["frames"], 30);
+}
+
+#[test]
+fn files_of_other_kinds_are_named() {
+    let folder = Folder::new("foreign");
+    fs::write(folder.path("packed.glb"), [0x1f, 0x8b, 8, 0]).expect("it is written");
+    let urdf = r#"<?xml version="1.0"?><robot name="arm"><link name="base"/></robot>"#;
+    let robot = folder.file("robot.urdf", urdf);
+    for (file, what) in [(folder.path("packed.glb"), "compressed by gzip"), (robot, "a URDF robot")] {
+        for arguments in [&["inspect", &file][..], &["bake", &file, "-o", "out.glb"]] {
+            let line = sinew(arguments).refusal(1).to_owned();
+            assert!(line.contains(what), "{line}");
+        }
+    }
+    let absent = sinew(&["bake", &folder.path("no/such.glb"), "-o", "out.glb"]);
+    assert!(absent.refusal(1).ends_with("such.glb: no such folder"), "{absent:?}");
+    // A folder that cannot be made, for a file has its name.
+    let file = folder.file("taken", "");
+    let demo = sinew(&["demo", "--out", &format!("{file}/out"), "--width", "16", "--height", "16"]);
+    assert!(!demo.refusal(1).contains("os error"), "{demo:?}");
+}
+
+#[test]
+fn what_is_written_is_told_in_one_form() {
+    let folder = Folder::new("wrote");
+    let (file, world) = (folder.mannequin(), folder.path("w.json"));
+    let (glb, picture, record) = (folder.path("a.glb"), folder.path("a.png"), folder.path("a.sinewrec"));
+    let commands: [(&[&str], &[&str]); 4] = [
+        (&["bake", &file, "--seconds", "0.2", "-o", &glb], &[&glb]),
+        (&["boxes", &file, "-o", &world, "--scale", "2", "--max", "2"], &[&world]),
+        (&["view", "pendulum", "--at", "0", "--picture", &picture], &[&picture]),
+        (&["record", "pendulum", "--steps", "2", "-o", &record], &[&record]),
+    ];
+    for (arguments, written) in commands {
+        let run = sinew(arguments);
+        for path in written {
+            assert!(run.stdout.lines().any(|line| line == format!("wrote {path}")), "{run:?}");
+        }
+    }
+    // The mannequin is 1.8 m high; twice as large it is 3.6 m.
+    let scaled = sinew(&["boxes", &file, "-o", &world, "--scale", "2", "--max", "2", "--json"]).json();
+    let plain = sinew(&["boxes", &file, "-o", &world, "--max", "2", "--json"]).json();
+    let height = |object: &Value| object["height_m"].as_f64().expect("a height");
+    assert!((height(&scaled) / height(&plain) - 2.0).abs() < 1e-4, "{scaled} {plain}");
+}

@@ -1,6 +1,8 @@
 //! Materials: base colour and its texture (glTF 2.0 §3.8, §3.9).
 
 use super::Textures;
+#[cfg(feature = "pictures")]
+use super::picture::decode_picture;
 use super::source::Source;
 use crate::container::json::At;
 use crate::container::uri::{self, Uri};
@@ -9,9 +11,6 @@ use sinew_anim::TextureImage;
 use sinew_math::clamp;
 use std::collections::BTreeMap;
 
-/// Pixels across or down that a picture may have.
-#[cfg(feature = "pictures")]
-const MAX_SIDE: u32 = 4096;
 /// Bytes that all decoded pictures of a file may take together.
 pub(crate) const MAX_DECODED: usize = 256 << 20;
 
@@ -117,28 +116,8 @@ impl<'s, 'a> Materials<'s, 'a> {
     }
 }
 
-/// A PNG or JPEG as RGBA, within the limits of side and of `budget` bytes.
-#[cfg(feature = "pictures")]
-pub(crate) fn decode_picture(bytes: &[u8], budget: usize) -> Result<TextureImage, String> {
-    let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|e| one_line(&e))?;
-    let mut limits = image::Limits::default();
-    limits.max_image_width = Some(MAX_SIDE);
-    limits.max_image_height = Some(MAX_SIDE);
-    limits.max_alloc = Some(budget as u64);
-    reader.limits(limits);
-    let rgba = reader.decode().map_err(|e| one_line(&e))?.into_rgba8();
-    Ok(TextureImage { width: rgba.width(), height: rgba.height(), rgba: rgba.into_raw() })
-}
-
-/// The same where this build decodes none: always an error.
+/// A picture where this build decodes none: always an error.
 #[cfg(not(feature = "pictures"))]
 pub(crate) fn decode_picture(_: &[u8], _: usize) -> Result<TextureImage, String> {
     Err("the feature `pictures` of sinew_formats is off".into())
-}
-
-#[cfg(feature = "pictures")]
-fn one_line(error: &dyn core::fmt::Display) -> String {
-    error.to_string().lines().next().unwrap_or_default().to_owned()
 }

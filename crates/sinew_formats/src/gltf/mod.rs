@@ -28,6 +28,8 @@ mod khr;
 mod material;
 mod mesh;
 mod meshopt;
+#[cfg(feature = "pictures")]
+mod picture;
 mod scene;
 mod sheets;
 mod source;
@@ -38,9 +40,13 @@ mod write;
 pub use append::{NewClip, append_clip, append_clips};
 pub use khr::{KhrFile, write_khr};
 #[cfg(feature = "fbx")]
-pub(crate) use material::{MAX_DECODED, decode_picture};
+pub(crate) use material::MAX_DECODED;
+#[cfg(all(feature = "fbx", not(feature = "pictures")))]
+pub(crate) use material::decode_picture;
 #[cfg(feature = "fbx")]
 pub(crate) use mesh::strongest_four;
+#[cfg(all(feature = "fbx", feature = "pictures"))]
+pub(crate) use picture::decode_picture;
 pub use springs::SpringFormat;
 pub use write::{write_gltf, write_motion};
 
@@ -226,9 +232,10 @@ fn unwrap_container(bytes: &[u8]) -> Result<Unwrapped<'_>> {
     }
     match bytes.iter().find(|b| !b.is_ascii_whitespace()) {
         Some(b'{') => Ok((Container::Gltf, bytes, None, &[])),
-        Some(_) => {
-            Err(Error::malformed("not a glTF file: begins neither with `glTF` nor with `{`", "byte 0"))
-        }
+        Some(_) => Err(match crate::motion::foreign(bytes) {
+            Some(what) => Error::unsupported(what, "byte 0"),
+            None => Error::malformed("not a glTF file: begins neither with `glTF` nor with `{`", "byte 0"),
+        }),
         None => Err(Error::malformed("file is empty", "byte 0")),
     }
 }

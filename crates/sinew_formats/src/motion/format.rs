@@ -22,6 +22,23 @@ pub enum MotionFormat {
     Jolt,
 }
 
+/// Kind of a file that is often given in place of one with clips, in words.
+pub(crate) fn foreign(bytes: &[u8]) -> Option<&'static str> {
+    // Elements after an XML header and comments.
+    const NEAR: usize = 4096;
+    let near = &bytes[..bytes.len().min(NEAR)];
+    let has = |element: &[u8]| near.windows(element.len()).any(|window| window == element);
+    match bytes {
+        [0x1f, 0x8b, ..] => Some("a file compressed by gzip: unpack it first"),
+        [b'P', b'K', 3, 4, ..] => Some("a ZIP archive: unpack it first"),
+        _ if has(b"<robot") => Some("a URDF robot, which is not read; as MJCF it is"),
+        _ if has(b"<mujoco") => Some(
+            "an MJCF model, which has no skin and no clips; 'ragdoll doctor' and 'ragdoll export' read it",
+        ),
+        _ => None,
+    }
+}
+
 impl MotionFormat {
     /// The format of some bytes.
     ///
@@ -41,10 +58,13 @@ impl MotionFormat {
             _ if begins(b"Kaydara FBX Binary") || begins(b"; FBX ") || begins(b"FBXHeaderExtension") => {
                 Ok(Self::Fbx)
             }
-            _ => Err(Error::malformed(
-                "not a glTF file, nor BVH, FBX, DeepMimic or Jolt: begins like none",
-                "byte 0",
-            )),
+            _ => Err(match foreign(bytes) {
+                Some(what) => Error::unsupported(what, "byte 0"),
+                None => Error::malformed(
+                    "not a glTF file, nor BVH, FBX, DeepMimic or Jolt: begins like none",
+                    "byte 0",
+                ),
+            }),
         }
     }
 

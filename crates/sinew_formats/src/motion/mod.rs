@@ -13,6 +13,7 @@
 mod format;
 
 pub use format::MotionFormat;
+pub(crate) use format::foreign;
 
 use crate::bvh::{BvhOptions, read_bvh};
 use crate::deepmimic::{DeepMimicCharacter, read_deepmimic, read_deepmimic_character};

@@ -86,7 +86,12 @@ fn missing_files_and_folders_are_named() {
     let error = read_bytes(&folder).unwrap_err();
     assert_eq!(error.to_string(), format!("{}: is not a regular file", folder.display()));
     let error = write_atomic(folder.join("none/a"), b"").unwrap_err();
-    assert_eq!(error.what, "cannot write: no such file");
+    assert_eq!(error.what, "cannot write: no such folder");
+    let below_a_file = folder.join("a.txt/b.glb");
+    fs::write(folder.join("a.txt"), b"text").unwrap();
+    for error in [read_bytes(&below_a_file).unwrap_err(), write_atomic(&below_a_file, b"").unwrap_err()] {
+        assert!(!error.what.contains("os error") && error.what.contains("folder"), "{error}");
+    }
     fs::remove_dir_all(folder).unwrap();
 }
 

@@ -25,6 +25,20 @@ pub struct HeightFieldDef {
     pub holes: Vec<u32>,
 }
 
+impl HeightFieldDef {
+    /// A field without holes, `columns` × `rows` vertices that are `spacing` metres apart along x and z, with heights in metres,
+    /// row after row.
+    pub fn new(columns: usize, rows: usize, spacing: f32, heights: Vec<f32>) -> Self {
+        Self { columns, rows, spacing: [spacing; 2], heights, holes: Vec::new() }
+    }
+
+    /// The same with the height that a function gives for a column and a row, metres.
+    pub fn from_fn(columns: usize, rows: usize, spacing: f32, height: impl Fn(usize, usize) -> f32) -> Self {
+        let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+        Self::new(columns, rows, spacing, cells.map(|(column, row)| height(column, row)).collect())
+    }
+}
+
 /// Why numbers make no height field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeightFieldError {

@@ -31,6 +31,16 @@ pub struct Velocity {
 }
 
 impl Velocity {
+    /// A motion without turning, m/s.
+    pub const fn linear(linear: Vec3) -> Self {
+        Self { linear, angular: Vec3::ZERO }
+    }
+
+    /// A turning without motion of the centre of mass, rad/s.
+    pub const fn angular(angular: Vec3) -> Self {
+        Self { linear: Vec3::ZERO, angular }
+    }
+
     /// True if nothing moves.
     pub fn is_zero(&self) -> bool {
         self.linear == Vec3::ZERO && self.angular == Vec3::ZERO

@@ -47,6 +47,6 @@ fn the_scene_asks_for_its_file_and_is_in_no_list() {
     let missing = settings.check().expect_err("it has no file yet");
     assert_eq!(missing.to_string(), "`file` is not set: it takes the path of a model in MJCF");
     let absent = settings.assign("file=no/such.xml").expect_err("there is no such file");
-    assert!(matches!(absent, SettingError::File(_)) && absent.to_string() == "no/such.xml: no such file");
+    assert!(matches!(absent, SettingError::File(_)) && absent.to_string() == "no/such.xml: no such folder");
     assert_eq!(find("pendulum").expect("it is listed").settings().check(), Ok(()));
 }

@@ -35,7 +35,7 @@ fn what_is_no_motion_is_refused() {
     let missing = settings.check().expect_err("it has no file yet");
     assert_eq!(missing.to_string(), "`motion` is not set: it takes the path of a captured motion, a BVH");
     let absent = settings.assign("motion=no/such.bvh").expect_err("there is no such file");
-    assert!(matches!(absent, SettingError::File(_)) && absent.to_string() == "no/such.bvh: no such file");
+    assert!(matches!(absent, SettingError::File(_)) && absent.to_string() == "no/such.bvh: no such folder");
     let other = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
     let refused = settings.assign(&format!("motion={other}")).expect_err("it is no BVH").to_string();
     assert!(refused.starts_with(other), "{refused}");

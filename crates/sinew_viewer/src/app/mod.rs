@@ -63,8 +63,10 @@ pub struct Options {
 /// Frames in which panels find their sizes.
 const SETTLING: u8 = 4;
 
-/// Scene of the first minute: a figure falls down stairs.
-const FIRST: &str = "stairs";
+/// Scene of the first minute, with its settings: figures in colour walk, are hit, fall and get up. The camera goes along.
+const FIRST: (&str, &str) = ("crowd", "n=6");
+/// Time in which a camera that goes along makes up for two thirds of its distance, seconds: limbs that swing do not shake it.
+const FOLLOWING: f32 = 0.4;
 
 /// The viewer without its window.
 pub struct App {
@@ -79,6 +81,8 @@ pub struct App {
     pending: f64,
     last_frame: Option<Instant>,
     frame_time: f32,
+    /// Time from the last frame to this, seconds.
+    passed: f32,
     layers: Vec<Layer>,
     search: String,
     focuses_search: bool,
@@ -125,7 +129,7 @@ impl App {
         let shows_hints = options.subject.is_none();
         let subject = match options.subject {
             Some(subject) => subject,
-            None => Subject::scene(FIRST, &[])?,
+            None => Subject::scene(FIRST.0, &[FIRST.1.to_owned()])?,
         };
         let mut session = Session::start(subject).map_err(|error| error.to_string())?;
         if let Some(path) = &options.ghost {
@@ -146,6 +150,7 @@ impl App {
             pending: 0.0,
             last_frame: None,
             frame_time: 0.0,
+            passed: 0.0,
             layers: preferences.layers,
             search: String::new(),
             focuses_search: false,
@@ -172,6 +177,7 @@ impl App {
             screenshot: options.screenshot.map(|path| (path, SETTLING)),
         };
         app.begin();
+        app.follows = shows_hints.then(|| view::bounds(app.session.instance()).center());
         Ok(app)
     }
 
@@ -436,6 +442,7 @@ impl App {
         let now = Instant::now();
         let passed = self.last_frame.map_or(0.0, |last| (now - last).as_secs_f64());
         self.last_frame = Some(now);
+        self.passed = passed as f32;
         self.frame_time += (passed as f32 - self.frame_time) * 0.1;
         if self.seeking.is_some() {
             return self.go_on_seeking();
@@ -489,11 +496,15 @@ impl App {
                 }
             }
             if let Some(before) = self.follows {
-                let now = view::bounds(self.session.instance()).center();
+                let goal = view::bounds(self.session.instance()).center();
+                // A picture of a moment has no time to come after.
+                let share = if self.hides_times { 1.0 } else { self.passed / (self.passed + FOLLOWING) };
+                let now = before + (goal - before) * share;
                 self.orbit.target += now - before;
                 self.follows = Some(now);
             }
             mouse::act(self, ui);
+            self.orbit.rise_above(self.session.instance().world());
             bench::overlay(self, ui);
             help::overlay(self, ui);
         });

@@ -154,3 +154,26 @@ fn keys_walk_a_character() {
     }
     assert_eq!(replay.instance().steered(), Some(place(&viewer)));
 }
+
+/// It opens on figures that are drawn with their skin, and they stay in the picture.
+#[test]
+fn the_first_scene_stays_in_sight() {
+    let Some(gpu) = gpu() else { return };
+    let options = Options { hides_times: true, steps: Some(300), ..Options::default() };
+    let app = App::new(options).expect("it starts");
+    assert!(!app.session().instance().figures().is_empty());
+    let mut viewer = Headless::new(app, gpu, SIZE);
+    settled(&mut viewer);
+    while viewer.app().session().world().step_count() < 300 {
+        viewer.app_mut().advance();
+        viewer.frame().expect("the card draws");
+        let (camera, instance) = (viewer.app().camera(), viewer.app().session().instance());
+        assert!(camera.position.y > 0.0);
+        for figure in instance.figures() {
+            let to = figure.world_from_joint[0].translation - camera.position;
+            let angle = to.angle_between(camera.target - camera.position);
+            assert!(angle < 0.5, "a figure is {angle} rad from the middle");
+        }
+    }
+    look("first", &settled(&mut viewer));
+}

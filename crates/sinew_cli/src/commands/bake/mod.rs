@@ -14,7 +14,7 @@ mod place;
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
 use crate::input::files::{CharacterFile, Outputs, WeightSource, never_over};
-use crate::input::picture_file::{PictureFile, length, seconds};
+use crate::input::picture_file::{PictureFile, length, rate, seconds};
 use crate::input::ragdoll_file::read_definition;
 use crate::input::settings_arg::{SettingsArg, unit_note};
 use crate::judge::{Judgement, LIMP_AT, judge_life};
@@ -116,8 +116,8 @@ pub struct Bake {
     #[arg(long, value_name = "S", default_value = "8", value_parser = length, allow_negative_numbers = true)]
     seconds: f32,
     /// Frames per second of the clip
-    #[arg(long, value_name = "N", default_value = "30", value_parser = clap::value_parser!(u16).range(1..=240))]
-    fps: u16,
+    #[arg(long, value_name = "N", default_value = "30", value_parser = rate)]
+    fps: f32,
     /// Most that any joint of the clip may be from the simulation at a frame, mm, and by how many tenths of a degree it may
     /// be turned; 0 keeps a key for every frame. Default 0.1: a tenth of a millimetre, a hundredth of a degree
     #[arg(long, value_name = "MM", value_parser = key_error, allow_negative_numbers = true)]
@@ -188,7 +188,7 @@ impl Bake {
             hit_effect: if self.flinch { HitEffect::FlinchesOrFalls } else { HitEffect::Falls },
             limp_at,
             seconds: self.seconds,
-            fps: f32::from(self.fps),
+            fps: self.fps,
             key_bound,
             name: &name,
             ..BakeInput::new(character)
@@ -396,5 +396,12 @@ fn film<'a>(fall: &'a Fall<'a>) -> Film<'a> {
         let [color, other] = if is_floor { FLOOR } else { [OBSTACLES[index % OBSTACLES.len()]; 2] };
         set.extend(body_models(body, FLOOR_HALF_SIZE, color, other));
     }
-    Film { fall, set, direction: Vec3::new(0.75, 0.4, 0.75), view: View::Whole, sun: Sun::default() }
+    Film {
+        fall,
+        from: 0.0,
+        set,
+        direction: Vec3::new(0.75, 0.4, 0.75),
+        view: View::Whole,
+        sun: Sun::default(),
+    }
 }

@@ -158,7 +158,8 @@ impl View {
         let paths: Vec<String> = self.outputs().map(|file| file.path().display().to_string()).collect();
         let at = self.picture.as_ref().map(|_| number(at));
         let seconds = self.movie.as_ref().map(|_| number(seconds));
-        let text = format!("{}\n\n  wrote {}\n", shown(subject), paths.join(", "));
+        let wrote: String = paths.iter().map(|path| format!("wrote {path}\n")).collect();
+        let text = format!("{}\n{wrote}", shown(subject));
         let json =
             json!({"subject": subject, "clip": clip, "at_s": at, "seconds": seconds, "outputs": paths});
         Report { json, text }

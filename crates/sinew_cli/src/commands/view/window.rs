@@ -45,10 +45,23 @@ impl View {
         Ok(Report { json: json!({"subject": title, "outputs": outputs}), text: String::new() })
     }
 
-    /// Says that there is none.
+    /// Says that there is none, and the command that adds it.
     #[cfg(not(feature = "viewer"))]
     pub(super) fn open(&self) -> Result<Report> {
-        let line = "this 'sinew' was built without its window: give a scene and --picture OUT or --movie OUT";
-        Err(Failure::Usage(line.into()))
+        use crate::input::scene_choice::choose;
+        use std::path::Path;
+
+        // What is wrong with the subject is told first: no other build helps there.
+        match self.subject.as_deref() {
+            Some(name) if Path::new(name).extension().is_none() => drop(choose(name, &self.settings)?),
+            Some(name) if !Path::new(name).exists() => return Err(Failure::of_file(name, "no such file")),
+            _ => {}
+        }
+        let given: Vec<_> = std::env::args().skip(1).collect();
+        Err(Failure::Usage(format!(
+            "this 'sinew' was built without its window; 'cargo run --release --features viewer -- {}' builds and opens it; \
+             --picture OUT and --movie OUT need none",
+            given.join(" ")
+        )))
     }
 }
