@@ -27,6 +27,11 @@ pub(crate) const FLINCH_HALF_LIFE: f32 = 0.08;
 /// Larger: it kneels before its foot is down. Smaller: legs like poles. Shown by the tests of `stumble`.
 pub(crate) const LEGS_WEAKEN: f32 = 0.2;
 
+/// Blow that fells who is still near the ground as it gets up, over the one that fells who stands.
+///
+/// Larger: nothing stops who gets up. Smaller: in a crowd few come to stand. Shown by the tests of `blows`.
+pub(crate) const LOW_STANDS: f32 = 2.5;
+
 /// Largest share of its strength, 0 to 1, that a blow takes from the trunk of a character that steps.
 ///
 /// Larger: it folds. Smaller: it steps like a board. Shown by the tests of `stumble`.
@@ -196,7 +201,7 @@ pub(crate) const ON_TOP: f32 = 0.3;
 /// Time after its fall for which a body waits for such a load to go, seconds.
 ///
 /// Larger: it lies long under a crate, which nobody takes away. Smaller: it throws off who takes long to get up. Shown as [`BEARS`].
-pub(crate) const BEARS_FOR: f32 = 20.0;
+pub(crate) const BEARS_FOR: f32 = 5.0;
 
 /// Height of a mover over a body that lies, as a share of its own.
 ///
