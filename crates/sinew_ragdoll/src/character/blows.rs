@@ -92,7 +92,7 @@ impl Character {
     }
 
     /// 1 for a body near the ground, which little can fell, to 0 for one that stands upright.
-    fn lowness(&self) -> f32 {
+    pub(super) fn lowness(&self) -> f32 {
         match self.state {
             State::Limp | State::Preparing => 1.0,
             State::GettingUp => clamp(self.lies_still(), 0.0, 1.0),

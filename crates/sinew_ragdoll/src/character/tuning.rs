@@ -564,7 +564,12 @@ pub(crate) const STEP_SETTLES: f32 = 14.0;
 /// Farthest that a character is shown from its mover, metres.
 ///
 /// Larger: it floats after a drop. Smaller: high steps jerk. Shown by the tests of `in_world`.
-pub(crate) const MOST_OVER: f32 = 0.4;
+pub(crate) const MOST_BESIDE: f32 = 0.4;
+
+/// Speed beside its own at which a mover that is pushed aside takes its character along at once, m/s; beyond it the character follows.
+///
+/// Larger: it jumps aside. Smaller: what pushes it is seen in it. Shown by the tests of `in_world`.
+pub(crate) const PUSHED_ASIDE: f32 = 1.5;
 
 /// Rise of the ground over the way, a slope, from which on it is a step.
 ///

@@ -13,7 +13,7 @@ use crate::parts::{cuboid, fixed, floor};
 use sinew::anim::local_to_model;
 use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer};
 use sinew::physics::{BodyId, World};
-use sinew::ragdoll::{Character, CharacterDef, Preset, State};
+use sinew::ragdoll::{Character, CharacterDef, GroundContact, Preset, State};
 use std::sync::Arc;
 use watch::{Watch, Watched};
 
@@ -59,6 +59,7 @@ fn brawl(setup: &Setup<'_>) -> Instance {
     }
     let mut def = sinew::mannequin::character();
     def.patience = PATIENCE;
+    def.ground_contact = GroundContact::Enforced;
     let def = Arc::new(def);
     let count = setup.whole("n");
     let row = (count as f32).sqrt().ceil() as usize;
