@@ -36,7 +36,8 @@ pub struct Blow {
 pub enum Toughness {
     /// Each blow does.
     None,
-    /// Blows of that many N·s and more; weaker ones let it flinch. Default: the speed of 0.6 m/s for its whole mass.
+    /// Blows of that many N·s and more; weaker ones let it flinch. While it gets up, 2.5 times as many where it is still near the ground.
+    /// Default: the speed of 0.6 m/s for its whole mass.
     Impulse(f32),
     /// The user's function says: true fells it.
     Function(fn(&Character, &Blow) -> bool),

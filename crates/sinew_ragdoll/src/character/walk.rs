@@ -36,7 +36,7 @@ impl Character {
         }
     }
 
-    /// Has it turn to look along a direction, at [`InWorld::turn_speed`](super::InWorld::turn_speed). A direction that is
+    /// Has it turn to look along a direction, at [`InWorld::turn_speed`](super::InWorld::turn_speed), once it stands. A direction that is
     /// level nowhere does nothing.
     ///
     /// # Panics
@@ -107,7 +107,7 @@ impl Character {
         let level = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
         let beyond = way - velocity * dt;
         // What overlaps it, and a tread in front of it, push it aside within a step.
-        let aside = level(beyond);
+        let aside = if ground.is_some() { level(beyond) } else { beyond };
         let pushed = aside * max(1.0 - PUSHED_ASIDE * dt / max(aside.length(), 1e-6), 0.0);
         presence.beside -= pushed;
         if ground.is_some() && beyond.y.abs() > STEP_SLOPE * level(way - pushed).length() + 1e-3 {

@@ -156,6 +156,7 @@ scenes!(
         mover_course,
         street,
         arena,
+        brawl,
         elastic_pairs,
         newtons_cradle,
         bouncing_balls,

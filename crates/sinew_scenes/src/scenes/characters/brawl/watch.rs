@@ -270,19 +270,30 @@ impl Watch {
         Ok(())
     }
 
+    /// What is expected are the bars of a crowd that can be shown in a game.
     pub fn metrics(&self) -> Vec<Metric> {
         let count = |name: &str| {
             f64::from(self.counts[COUNTS.iter().position(|&other| other == name).expect("it is counted")])
         };
-        let share = |of: &str, all: &str| if count(all) > 0.0 { count(of) / count(all) } else { 0.0 };
+        let share = |part: f64, of: f64| if of > 0.0 { part / of } else { 0.0 };
+        let ended = count("rises_up") + count("rises_fall");
         let mut metrics = vec![
-            Metric::new("down_share", share("down", "seen"), Expected::Anything),
-            Metric::new("rises_up_share", share("rises_up", "rises"), Expected::Anything),
+            Metric::new("down_share", share(count("down"), count("seen")), Expected::AtMost(0.45)),
+            Metric::new("rises_lost_share", share(count("rises_fall"), ended), Expected::AtMost(0.3)),
         ];
+        let expected = |name: &str| match name {
+            "outside" | "stuck" | "lost" => Expected::AtMost(0.0),
+            "struck_ms" => Expected::Anything,
+            "depth_m" => Expected::AtMost(f64::from(SEEN)),
+            "up_after_s" => Expected::AtMost(4.0),
+            name if name.ends_with("_ms") => Expected::AtMost(15.0),
+            name if name.ends_with("_m") => Expected::AtMost(0.08),
+            _ => Expected::Anything,
+        };
         let counts = COUNTS.iter().zip(self.counts);
-        metrics.extend(counts.map(|(&name, value)| Metric::new(name, value, Expected::Anything)));
+        metrics.extend(counts.map(|(&name, value)| Metric::new(name, value, expected(name))));
         let sizes = SIZES.iter().zip(self.sizes);
-        metrics.extend(sizes.map(|(&name, value)| Metric::new(name, value, Expected::Anything)));
+        metrics.extend(sizes.map(|(&name, value)| Metric::new(name, value, expected(name))));
         metrics
     }
 }
