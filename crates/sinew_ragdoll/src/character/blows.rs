@@ -3,7 +3,7 @@
 use super::hit_bodies::Strike;
 use super::{Blow, Character, CharacterEvent, State, Toughness};
 use crate::character::tuning::{
-    FLINCH_HALF_LIFE, FLINCH_TIME, LEGS_WEAKEN, LOW_STANDS, RETURNED_AFTER, TRUNK_WEAKENS,
+    FLINCH_HALF_LIFE, FLINCH_TIME, GIVES_WAY, LEGS_WEAKEN, LOW_STANDS, RETURNED_AFTER, TRUNK_WEAKENS,
 };
 use crate::drive::{DriveMode, Muscle};
 use sinew_math::{Vec3, clamp, max, min, normalize_or};
@@ -58,8 +58,9 @@ impl Character {
         let way = normalize_or(strike.impulse, Vec3::ZERO);
         let parent = |&body: &usize| body.checked_sub(1).map(|joint| def.joints[joint].parent);
         let mut left = strike.impulse.length();
+        let speed = max(strike.speed, GIVES_WAY);
         for body in core::iter::successors(Some(body), parent) {
-            let share = min(left, def.bodies[body].mass.mass * strike.speed);
+            let share = min(left, def.bodies[body].mass.mass * speed);
             world.apply_impulse_at_center(bodies[body], way * share);
             left -= share;
         }

@@ -27,6 +27,11 @@ pub(crate) const FLINCH_HALF_LIFE: f32 = 0.08;
 /// Larger: it kneels before its foot is down. Smaller: legs like poles. Shown by the tests of `stumble`.
 pub(crate) const LEGS_WEAKEN: f32 = 0.2;
 
+/// Speed at which a led body gives way to what presses it slowly and hard, m/s; faster only to what comes faster.
+///
+/// Larger: who treads on somebody kicks. Smaller: a foot stays pressed on what it treads on. Shown by the tests of `grab`.
+pub(crate) const GIVES_WAY: f32 = 3.0;
+
 /// Blow that fells who is still near the ground as it gets up, over the one that fells who stands.
 ///
 /// Larger: nothing stops who gets up. Smaller: in a crowd few come to stand. Shown by the tests of `blows`.

@@ -293,26 +293,6 @@ fn fastest(world: &World, character: &Character) -> f32 {
     character.bodies().iter().map(|&body| world.velocity(body).linear.length()).fold(0.0, max)
 }
 
-#[test]
-fn what_falls_on_a_shin_flings_no_shin_away() {
-    let def = shared(walker());
-    let shin = def.body_named("leftLowerLeg").expect("it has shins");
-    let (mut world, mut character) = walking(&def);
-    let at = world.center_of_mass(character.bodies()[shin]);
-    let mut ball = BodyDef::dynamic(Shape::Sphere { radius: 0.17 }).at(at + Vec3::new(0.5, 0.1, 0.1));
-    ball.linear_velocity = Vec3::X * -7.0;
-    world.add_body(&ball);
-    let mut most = 0.0;
-    let mut fell = false;
-    for _ in 0..20 {
-        run(&mut world, &mut character, 1);
-        fell |= character.state() == State::Limp;
-        most = max(most, fastest(&world, &character));
-    }
-    assert!(fell, "20 kg at 7 m/s fell who stands");
-    assert!(most < 12.0, "a body goes at {most} m/s, where 7 came");
-}
-
 /// Lets it fall by a blow after it flinched, up to the first moment of a state; and its fastest body since it lay.
 fn until(world: &mut World, character: &mut Character, state: State) -> f32 {
     let mut most = 0.0;

@@ -11,7 +11,7 @@ use crate::framework::scene::{Chapter, Scene};
 use crate::framework::setting::{Setting, Setup};
 use crate::parts::{cuboid, fixed, floor};
 use sinew::anim::local_to_model;
-use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer};
+use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer, min};
 use sinew::physics::{BodyId, World};
 use sinew::ragdoll::{Character, CharacterDef, GroundContact, Preset, State};
 use std::sync::Arc;
@@ -107,7 +107,7 @@ fn on_stairs(place: Vec3, apart: f32) -> Vec3 {
     let (x, z) = (place.x - 0.9 * ROOM, place.z - 0.9 * ROOM);
     let beside = x + 0.25 * apart > ROOM - 2.0 * half;
     let step = ((-1.5 - z) / depth + 1.0).floor();
-    if beside && step > 0.0 { Vec3::Y * (height * f32::min(step, steps as f32)) } else { Vec3::ZERO }
+    if beside && step > 0.0 { Vec3::Y * (height * min(step, steps as f32)) } else { Vec3::ZERO }
 }
 
 pub(super) struct Fighter {

@@ -22,7 +22,7 @@ const ROOM_TO_RISE: f32 = 0.6;
 /// Depth that is seen, metres.
 const SEEN: f32 = 0.02;
 
-/// What is kept of one from step to step.
+/// Record of one character from step to step.
 #[derive(Clone, Default)]
 pub(super) struct Watched {
     /// Joints of the bodies in the last three frames, the latest first.
@@ -96,7 +96,7 @@ impl Watched {
 /// Figures of all.
 #[derive(Default)]
 pub(super) struct Watch {
-    /// What is fixed.
+    /// Fixed bodies: floor, walls, stairs.
     stands: Vec<BodyId>,
     /// Counts and sizes, in the order of [`COUNTS`] and [`SIZES`].
     counts: [u32; COUNTS.len()],
@@ -270,7 +270,7 @@ impl Watch {
         Ok(())
     }
 
-    /// What is expected are the bars of a crowd that can be shown in a game.
+    /// Figures so far; expectations are the bars of a crowd that can be shown in a game.
     pub fn metrics(&self) -> Vec<Metric> {
         let count = |name: &str| {
             f64::from(self.counts[COUNTS.iter().position(|&other| other == name).expect("it is counted")])
