@@ -1,9 +1,12 @@
 //! Blows: what is below the threshold lets a limb give way, what is above fells.
 
+use super::hit_bodies::Strike;
 use super::{Blow, Character, CharacterEvent, State, Toughness};
-use crate::character::tuning::{FLINCH_HALF_LIFE, FLINCH_TIME, LEGS_WEAKEN, RETURNED_AFTER, TRUNK_WEAKENS};
+use crate::character::tuning::{
+    FLINCH_HALF_LIFE, FLINCH_TIME, GIVES_WAY, LEGS_WEAKEN, LOW_STANDS, RETURNED_AFTER, TRUNK_WEAKENS,
+};
 use crate::drive::{DriveMode, Muscle};
-use sinew_math::{Vec3, max};
+use sinew_math::{Vec3, clamp, max, min, normalize_or};
 use sinew_physics::{BodyHit, BodyKind, World};
 
 /// Muscles that hold a limb that was struck until it comes back.
@@ -40,10 +43,26 @@ impl Character {
     }
 
     /// Flinches or falls by a blow that contacts brought to one of its bodies. A body that forces move has had the impulse with the contact.
-    pub(super) fn be_struck(&mut self, world: &mut World, body: usize, impulse: Vec3) {
+    pub(super) fn be_struck(&mut self, world: &mut World, body: usize, strike: Strike) {
         let is_led = world.kind(self.bodies()[body]) != BodyKind::Dynamic;
-        if self.react(world, body, impulse) && is_led {
-            self.push(world, body, impulse, None);
+        if self.react(world, body, strike.impulse) && is_led {
+            self.take_up(world, body, strike);
+        }
+    }
+
+    /// Gives the impulse that a led body stopped to the body, and what would make that faster than what struck it to the bodies above it, up to
+    /// the pelvis: all of it on a hand would fling the hand away.
+    fn take_up(&self, world: &mut World, body: usize, strike: Strike) {
+        let def = &self.def.ragdoll;
+        let bodies = &self.ragdoll.as_ref().expect("it has bodies").bodies;
+        let way = normalize_or(strike.impulse, Vec3::ZERO);
+        let parent = |&body: &usize| body.checked_sub(1).map(|joint| def.joints[joint].parent);
+        let mut left = strike.impulse.length();
+        let speed = max(strike.speed, GIVES_WAY);
+        for body in core::iter::successors(Some(body), parent) {
+            let share = min(left, def.bodies[body].mass.mass * speed);
+            world.apply_impulse_at_center(bodies[body], way * share);
+            left -= share;
         }
     }
 
@@ -61,14 +80,25 @@ impl Character {
     }
 
     fn stands_blow(&self, blow: Blow) -> bool {
-        let stands = matches!(self.state, State::Animated | State::Flinching | State::Powered);
-        let is_there = self.presence.is_some() && stands;
-        is_there
+        self.presence.is_some()
+            && self.state != State::Limp
             && match self.def.in_world.toughness {
                 Toughness::None => false,
-                Toughness::Impulse(least) => self.steps() || blow.impulse.length() < least,
+                Toughness::Impulse(least) => {
+                    self.steps()
+                        || blow.impulse.length() < least * (1.0 + self.lowness() * (LOW_STANDS - 1.0))
+                }
                 Toughness::Function(fells) => !fells(self, &blow),
             }
+    }
+
+    /// 1 for a body near the ground, which little can fell, to 0 for one that stands upright.
+    pub(super) fn lowness(&self) -> f32 {
+        match self.state {
+            State::Limp | State::Preparing => 1.0,
+            State::GettingUp => clamp(self.lies_still(), 0.0, 1.0),
+            State::Animated | State::Flinching | State::Powered => 0.0,
+        }
     }
 
     /// Gives a body an impulse, and what that did.
@@ -82,9 +112,14 @@ impl Character {
         world.body_energy(id).kinetic - before
     }
 
-    /// Lets the limb that was struck give way; false if none may.
+    /// Lets the limb that was struck give way; false if none may. Of one whose bodies are being brought to where a clip begins all do.
     pub(super) fn flinch(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
-        if self.state == State::Animated && !self.gives_way() {
+        if self.state == State::Preparing {
+            self.drives.hit(&self.def.ragdoll, body, impulse.length());
+            self.events.push(CharacterEvent::Flinched { body });
+            return true;
+        }
+        if self.state == State::GettingUp || self.state == State::Animated && !self.gives_way() {
             self.events.push(CharacterEvent::Flinched { body });
             return false;
         }

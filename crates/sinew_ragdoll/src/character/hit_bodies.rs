@@ -6,6 +6,15 @@ use crate::owner::{is_limb, together};
 use sinew_math::{Vec3, max, min};
 use sinew_physics::{BodyId, BodyKind, Hit, Velocity, World};
 
+/// A blow that contacts brought.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Strike {
+    /// N·s, world axes.
+    pub impulse: Vec3,
+    /// Fastest that what struck can make what it meets, m/s.
+    pub speed: f32,
+}
+
 impl Character {
     /// Has the hit bodies go where the pose will be at the end of the next step, as far as it goes on as it did.
     pub(super) fn lead_bodies(&mut self, world: &mut World) {
@@ -74,11 +83,11 @@ impl Character {
         if presence.bodies.is_empty() || least == f32::INFINITY {
             return;
         }
-        let mut felt: Option<(usize, Vec3)> = None;
-        let mut note = |body: usize, impulse: Vec3| {
-            let size = impulse.length();
-            if size >= least && felt.is_none_or(|(_, felt)| size > felt.length()) {
-                felt = Some((body, impulse));
+        let mut felt: Option<(usize, Strike)> = None;
+        let mut note = |body: usize, strike: Strike| {
+            let size = strike.impulse.length();
+            if size >= least && felt.is_none_or(|(_, felt)| size > felt.impulse.length()) {
+                felt = Some((body, strike));
             }
         };
         let own = |id: BodyId| self.body_index(id);
@@ -105,9 +114,9 @@ impl Character {
                 _ => {}
             }
         }
-        if let Some((body, impulse)) = felt {
-            self.events.push(CharacterEvent::Struck { body, impulse: impulse.length() });
-            self.be_struck(world, body, impulse);
+        if let Some((body, strike)) = felt {
+            self.events.push(CharacterEvent::Struck { body, impulse: strike.impulse.length() });
+            self.be_struck(world, body, strike);
         }
     }
 
@@ -132,13 +141,13 @@ impl Character {
 
     /// Impulse of a hit on one of its bodies by another, `way` being from that to it, N·s: no more than what comes could bring to all of it, and to a
     /// led body what comes by itself. A foot that comes down on a hand presses that to the ground however hard it is led.
-    fn taken(&self, world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3) -> Vec3 {
+    fn taken(&self, world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3) -> Strike {
         let Velocity { linear, angular } = world.velocity(own);
         let led = linear + angular.cross(hit.point - world.center_of_mass(own));
         let shoves = if world.kind(own) == BodyKind::Dynamic { 0.0 } else { -led.dot(way) };
         let bounce = hit.materials.iter().fold(1.0, |most, material| max(most, 1.0 + material.restitution));
-        let most = self.meeting_mass(world, other) * bounce * max(hit.approach - shoves, 0.0);
-        way * min(hit.impulse, most)
+        let speed = bounce * max(hit.approach - shoves, 0.0);
+        Strike { impulse: way * min(hit.impulse, self.meeting_mass(world, other) * speed), speed }
     }
 
     /// Mass of all of it and of what comes, as they answer to a push between them, kg; what joints hold, or nothing moves, may have any mass.
@@ -159,10 +168,10 @@ impl Character {
     }
 
     /// Impulse that a body that goes through one of its own would give it, if the two stopped each other: N·s.
-    fn passing(&self, world: &World, own: BodyId, other: BodyId) -> Vec3 {
+    fn passing(&self, world: &World, own: BodyId, other: BodyId) -> Strike {
         let gone = !world.contains(other) || !world.contains(own);
         if gone || world.kind(other) != BodyKind::Dynamic || world.kind(own) == BodyKind::Dynamic {
-            return Vec3::ZERO;
+            return Strike::default();
         }
         let relative = world.velocity(other).linear - world.velocity(own).linear;
         let toward = world.center_of_mass(own) - world.center_of_mass(other);
@@ -170,6 +179,7 @@ impl Character {
         // What comes by itself, not what it walks into.
         let comes = max(world.velocity(other).linear.dot(way), 0.0);
         let closing = max(relative.dot(way), 0.0);
-        way * (self.meeting_mass(world, other) * min(closing, comes))
+        let speed = min(closing, comes);
+        Strike { impulse: way * (self.meeting_mass(world, other) * speed), speed }
     }
 }

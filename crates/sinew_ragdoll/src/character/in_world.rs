@@ -36,7 +36,8 @@ pub struct Blow {
 pub enum Toughness {
     /// Each blow does.
     None,
-    /// Blows of that many N·s and more; weaker ones let it flinch. Default: the speed of 0.6 m/s for its whole mass.
+    /// Blows of that many N·s and more; weaker ones let it flinch. While it gets up, 2.5 times as many where it is still near the ground.
+    /// Default: the speed of 0.6 m/s for its whole mass.
     Impulse(f32),
     /// The user's function says: true fells it.
     Function(fn(&Character, &Blow) -> bool),
@@ -144,8 +145,8 @@ pub(super) struct Presence {
     pub pace: f32,
     /// Seconds since the mover had ground.
     pub air: f32,
-    /// Height over its mover at which it is shown: it takes a moment to come down a step, metres.
-    pub over: f32,
+    /// Way from its mover to where it is shown: it takes a moment to come down a step, or to where the mover was pushed out, metres.
+    pub beside: Vec3,
     /// It left the ground for too long or came down too fast.
     pub falls: bool,
     /// Steps with which it catches itself.
@@ -279,8 +280,8 @@ impl Character {
         };
         let mover = MoverDef { position, height, lets_pass, ..mover.clone() };
         presence.mover = Some(world.add_mover(&mover));
-        (presence.yaw, presence.air, presence.over, presence.pace) = (0.0, 0.0, 0.0, 0.0);
-        (presence.velocity, presence.falls) = (Vec3::ZERO, false);
+        (presence.yaw, presence.air, presence.pace) = (0.0, 0.0, 0.0);
+        (presence.velocity, presence.beside, presence.falls) = (Vec3::ZERO, Vec3::ZERO, false);
         presence.stumble = None;
     }
 

@@ -16,7 +16,7 @@ use sinew_math::{ReadError, Reader, Writer};
 use sinew_physics::{BodyId, JointId, MoverId, Velocity};
 
 /// First bytes; the last is the version.
-const MAGIC: &[u8; 8] = b"sinew-c\x05";
+const MAGIC: &[u8; 8] = b"sinew-c\x06";
 /// Bit of a state: the character has its share of a world.
 const IN_WORLD: u8 = 0x80;
 /// Bit of a state: its springs follow at the end.
@@ -324,7 +324,8 @@ impl Presence {
             w.vec3(wish.unwrap_or_default());
         }
         w.vec3(self.velocity);
-        [self.yaw, self.pace, self.air, self.over].into_iter().for_each(|x| w.f32(x));
+        [self.yaw, self.pace, self.air].into_iter().for_each(|x| w.f32(x));
+        w.vec3(self.beside);
         w.bool(self.falls);
         w.u8(self.detail as u8);
         w.count(self.holds.len());
@@ -359,7 +360,7 @@ impl Presence {
         (presence.wish, presence.facing) = (wish()?, wish()?);
         presence.velocity = r.vec3()?;
         (presence.yaw, presence.pace) = (r.f32()?, r.f32()?);
-        (presence.air, presence.over) = (r.f32()?, r.f32()?);
+        (presence.air, presence.beside) = (r.f32()?, r.vec3()?);
         presence.falls = r.bool()?;
         presence.detail = match r.u8()? {
             0 => Detail::Frozen,

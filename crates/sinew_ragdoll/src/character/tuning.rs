@@ -27,6 +27,16 @@ pub(crate) const FLINCH_HALF_LIFE: f32 = 0.08;
 /// Larger: it kneels before its foot is down. Smaller: legs like poles. Shown by the tests of `stumble`.
 pub(crate) const LEGS_WEAKEN: f32 = 0.2;
 
+/// Speed at which a led body gives way to what presses it slowly and hard, m/s; faster only to what comes faster.
+///
+/// Larger: who treads on somebody kicks. Smaller: a foot stays pressed on what it treads on. Shown by the tests of `grab`.
+pub(crate) const GIVES_WAY: f32 = 3.0;
+
+/// Blow that fells who is still near the ground as it gets up, over the one that fells who stands.
+///
+/// Larger: nothing stops who gets up. Smaller: in a crowd few come to stand. Shown by the tests of `blows`.
+pub(crate) const LOW_STANDS: f32 = 2.5;
+
 /// Largest share of its strength, 0 to 1, that a blow takes from the trunk of a character that steps.
 ///
 /// Larger: it folds. Smaller: it steps like a board. Shown by the tests of `stumble`.
@@ -196,7 +206,7 @@ pub(crate) const ON_TOP: f32 = 0.3;
 /// Time after its fall for which a body waits for such a load to go, seconds.
 ///
 /// Larger: it lies long under a crate, which nobody takes away. Smaller: it throws off who takes long to get up. Shown as [`BEARS`].
-pub(crate) const BEARS_FOR: f32 = 20.0;
+pub(crate) const BEARS_FOR: f32 = 5.0;
 
 /// Height of a mover over a body that lies, as a share of its own.
 ///
@@ -559,7 +569,12 @@ pub(crate) const STEP_SETTLES: f32 = 14.0;
 /// Farthest that a character is shown from its mover, metres.
 ///
 /// Larger: it floats after a drop. Smaller: high steps jerk. Shown by the tests of `in_world`.
-pub(crate) const MOST_OVER: f32 = 0.4;
+pub(crate) const MOST_BESIDE: f32 = 0.4;
+
+/// Speed beside its own at which a mover that is pushed aside takes its character along at once, m/s; beyond it the character follows.
+///
+/// Larger: it jumps aside. Smaller: what pushes it is seen in it. Shown by the tests of `in_world`.
+pub(crate) const PUSHED_ASIDE: f32 = 1.5;
 
 /// Rise of the ground over the way, a slope, from which on it is a step.
 ///

@@ -2,7 +2,8 @@
 
 use super::{Character, State};
 use crate::character::tuning::{
-    FASTEST_PACE, MOST_OVER, PACE_RATE, PICKS_UP, STANDS_BELOW, STANDS_IN, STEP_SETTLES, STEP_SLOPE,
+    FASTEST_PACE, MOST_BESIDE, PACE_RATE, PICKS_UP, PUSHED_ASIDE, STANDS_BELOW, STANDS_IN, STEP_SETTLES,
+    STEP_SLOPE,
 };
 use sinew_anim::{ClipId, MotionTrack, TrackDef, TrackId, smoothstep};
 use sinew_math::{Rotation, Transform, Vec3, clamp, max, min, normalize_or, trig};
@@ -35,7 +36,7 @@ impl Character {
         }
     }
 
-    /// Has it turn to look along a direction, at [`InWorld::turn_speed`](super::InWorld::turn_speed). A direction that is
+    /// Has it turn to look along a direction, at [`InWorld::turn_speed`](super::InWorld::turn_speed), once it stands. A direction that is
     /// level nowhere does nothing.
     ///
     /// # Panics
@@ -82,7 +83,7 @@ impl Character {
         self.worn.carry(world, moved);
         let Some(presence) = &mut self.presence else { return };
         presence.before.iter_mut().for_each(|pose| *pose = moved * *pose);
-        (presence.air, presence.over, presence.velocity) = (0.0, 0.0, Vec3::ZERO);
+        (presence.air, presence.beside, presence.velocity) = (0.0, Vec3::ZERO, Vec3::ZERO);
         presence.stumble = None;
         if let Some(mover) = presence.mover {
             let skin = world.mover(mover).def().skin;
@@ -93,6 +94,8 @@ impl Character {
     /// Place that it comes to within a step, with the mover that stands for it; notes what the mover feels.
     pub(super) fn ride(&mut self, world: &World, step: Transform) -> Option<Transform> {
         let from = self.world_from_character;
+        // Who lies would be swung about by its feet: it turns as it comes to stand.
+        let turns = self.def.in_world.turn_speed * (1.0 - self.lowness());
         let presence = self.presence.as_mut()?;
         let mover = world.mover(presence.mover?);
         let settings = &self.def.in_world;
@@ -102,11 +105,16 @@ impl Character {
         let floor = ground.map_or(Vec3::ZERO, |ground| ground.velocity);
         let way = feet - mover.interpolated(0.0);
         let level = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
-        let rise = way.y - velocity.y * dt;
-        if ground.is_some() && rise.abs() > STEP_SLOPE * level(way).length() + 1e-3 {
-            presence.over -= rise;
+        let beyond = way - velocity * dt;
+        // What overlaps it, and a tread in front of it, push it aside within a step.
+        let aside = if ground.is_some() { level(beyond) } else { beyond };
+        let pushed = aside * max(1.0 - PUSHED_ASIDE * dt / max(aside.length(), 1e-6), 0.0);
+        presence.beside -= pushed;
+        if ground.is_some() && beyond.y.abs() > STEP_SLOPE * level(way - pushed).length() + 1e-3 {
+            presence.beside.y -= beyond.y;
         }
-        presence.over = clamp(presence.over, -MOST_OVER, MOST_OVER) * trig::exp(-STEP_SETTLES * dt);
+        let length = max(presence.beside.length(), 1e-6);
+        presence.beside *= min(MOST_BESIDE / length, 1.0) * trig::exp(-STEP_SETTLES * dt);
         let fell = floor.y - presence.velocity.y;
         let landed = ground.is_some() && presence.air > 0.0;
         presence.air = if ground.is_some() { 0.0 } else { presence.air + dt };
@@ -120,12 +128,12 @@ impl Character {
         presence.yaw = mover.yaw();
         let heading = carried * from.rotation;
         let rotation = match presence.facing {
-            Some(facing) => turned_to(heading, facing, settings.turn_speed * dt),
+            Some(facing) => turned_to(heading, facing, turns * dt),
             None if presence.wish.is_some() => heading,
             None => heading * step.rotation,
         };
         // The mover keeps its skin free, the character stands on its soles.
-        Some(Transform::new(feet + Vec3::Y * (presence.over - mover.def().skin), rotation.normalize()))
+        Some(Transform::new(feet + presence.beside - Vec3::Y * mover.def().skin, rotation.normalize()))
     }
 
     /// Tells the mover where to go in the next step, and lets it grow to its height.

@@ -46,7 +46,7 @@ pub(super) struct Level {
 }
 
 impl Level {
-    fn of(mode: DriveMode) -> Self {
+    pub fn of(mode: DriveMode) -> Self {
         let muscle = |m: Muscle| Self {
             muscle: Spring::new(m.hertz, m.damping_ratio),
             strength: m.strength,

@@ -198,6 +198,10 @@ impl Drives {
             (drive.mode, drive.since) = (mode, 0.0);
         }
         drive.half_life = half_life;
+        if half_life == 0.0 {
+            // At once, whether time passes for the drive or not: none does while its body is limp.
+            drive.level = Level::of(mode);
+        }
     }
 
     /// [`set`](Self::set) for all bodies.

@@ -287,3 +287,79 @@ fn the_preset_of_a_flinch_gives_way_all_over_and_comes_back() {
     assert_eq!(character.state(), State::Animated);
     assert!(most > 0.01 && apart(&character, &twin) < 2e-3, "{most} m, then {}", apart(&character, &twin));
 }
+
+/// Speed of the fastest body, m/s.
+fn fastest(world: &World, character: &Character) -> f32 {
+    character.bodies().iter().map(|&body| world.velocity(body).linear.length()).fold(0.0, max)
+}
+
+/// Lets it fall by a blow after it flinched, up to the first moment of a state; and its fastest body since it lay.
+fn until(world: &mut World, character: &mut Character, state: State) -> f32 {
+    let mut most = 0.0;
+    for step in 0..900 {
+        run(world, character, 1);
+        if step > 150 || character.state() != State::Limp {
+            most = max(most, fastest(world, character));
+        }
+        if character.state() == state {
+            return most;
+        }
+    }
+    panic!("it never came to {state:?}");
+}
+
+#[test]
+fn who_flinched_and_fell_is_rolled_over_gently() {
+    let def = shared(walker());
+    let chest = def.body_named("chest").expect("it has a chest");
+    let (mut world, mut character) = walking(&def);
+    character.hit(&mut world, chest, Vec3::X * 10.0);
+    run(&mut world, &mut character, 10);
+    assert_eq!(character.state(), State::Flinching);
+    character.hit(&mut world, chest, Vec3::new(90.0, 0.0, 30.0));
+    let most = until(&mut world, &mut character, State::GettingUp);
+    assert!(most < 9.0, "a body goes at {most} m/s on its way to where the clip begins");
+}
+
+#[test]
+fn who_gets_up_stands_more_near_the_ground() {
+    let def = shared(walker());
+    let chest = def.body_named("chest").expect("it has a chest");
+    let (mut world, mut character) = walking(&def);
+    character.hit(&mut world, chest, Vec3::new(70.0, 0.0, 20.0));
+    until(&mut world, &mut character, State::GettingUp);
+    character.hit(&mut world, chest, Vec3::X * 60.0);
+    run(&mut world, &mut character, 1);
+    assert_eq!(character.state(), State::GettingUp, "60 N·s fell who stands, not who lies");
+    character.hit(&mut world, chest, Vec3::X * 200.0);
+    assert_eq!(character.state(), State::Limp);
+    until(&mut world, &mut character, State::Animated);
+    character.hit(&mut world, chest, Vec3::X * 60.0);
+    assert_eq!(character.state(), State::Limp);
+}
+
+#[test]
+fn who_gets_up_turns_as_it_stands() {
+    let def = shared(walker());
+    let chest = def.body_named("chest").expect("it has a chest");
+    let mut speeds = [0.0; 2];
+    for (faces, speed) in [false, true].into_iter().zip(&mut speeds) {
+        let (mut world, mut character) = walking(&def);
+        character.hit(&mut world, chest, Vec3::new(70.0, 0.0, 20.0));
+        until(&mut world, &mut character, State::GettingUp);
+        let heading = character.world_from_character().rotation * Vec3::Z;
+        if faces {
+            character.face(-heading);
+        }
+        for _ in 0..20 {
+            run(&mut world, &mut character, 1);
+            *speed = max(*speed, fastest(&world, &character));
+        }
+        until(&mut world, &mut character, State::Animated);
+        run(&mut world, &mut character, 60);
+        let turned = (character.world_from_character().rotation * Vec3::Z).dot(heading);
+        assert!(!faces || turned < -0.9, "it looks there once it stands: {turned}");
+    }
+    let [free, facing] = speeds;
+    assert!(facing < 1.2 * free + 0.5, "{facing} m/s as it turns, {free} where it does not");
+}

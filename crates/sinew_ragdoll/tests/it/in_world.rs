@@ -620,3 +620,23 @@ fn it_sets_off_and_stops_without_a_jerk() {
     }
     assert!(fastest < 8.0, "a hand or a foot goes at {fastest} m/s");
 }
+
+#[test]
+fn what_comes_to_be_where_it_stands_pushes_it_aside_smoothly() {
+    let def = shared(walker());
+    let mut world = level();
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    character.set_move(Vec3::ZERO);
+    run(&mut world, &mut character, 60);
+    let before = place(&character);
+    block(&mut world, before + Vec3::new(0.05, 0.0, -1.0), before + Vec3::new(2.0, 1.9, 1.0));
+    let (mut most, mut last) = (0.0, before);
+    for _ in 0..60 {
+        run(&mut world, &mut character, 1);
+        most = max(most, (place(&character) - last).length());
+        last = place(&character);
+    }
+    let gone = (last - before).length();
+    assert!(gone > 0.2, "it went {gone} m aside");
+    assert!(most < 0.08, "it went {most} m of {gone} within a step");
+}

@@ -67,6 +67,7 @@ const REGISTRY: &[Scene] = &[
     characters::movers::COURSE,
     characters::street::STREET,
     characters::arena::ARENA,
+    characters::brawl::BRAWL,
     contacts::impacts::ELASTIC_PAIRS,
     contacts::impacts::NEWTONS_CRADLE,
     contacts::impacts::BOUNCING_BALLS,

@@ -7,6 +7,9 @@ use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, Settings, find, re
 const NOT_YET: &[(&str, &[&str])] = &[
     // 2.07 mm instead of 2; its line of thrust is nearer to the middle than when it met this.
     ("arch", &["shift_max_m"]),
+    // One who has just got up is lifted by half a metre within a step where it stands on somebody; walks set feet into steps of stairs and toes into the floor; to lie
+    // still, be rolled over and get up takes 4.3 s.
+    ("brawl", &["animated_ms", "depth_m", "up_after_s"]),
     // Heaps are chaotic: from starts that differ by 1 mm the sticks sleep after 212 to 226 steps.
     ("mesh_drop", &["asleep_steps"]),
     // A foot that the clip of getting up sets on the cape stands on it for a frame with 2 mm to spare, its middle 17 mm inside; and the shin stretches the skirt to three times
@@ -238,7 +241,7 @@ scenes!(
         hair,
         crowd,
     ],
-    large: [cape, chain_100_links, joint_grid, net, ragdoll_pile, skirt],
+    large: [brawl, cape, chain_100_links, joint_grid, net, ragdoll_pile, skirt],
 );
 
 #[test]

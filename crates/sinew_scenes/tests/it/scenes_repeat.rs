@@ -117,6 +117,37 @@ fn loaded_by_strangers() {
     assert!(met * 10 > registry().len() * 9, "{met} scenes of {} were met", registry().len());
 }
 
+/// A brawl that is saved at any moment, with characters in every state, goes on in a world that never knew it as in its own.
+#[test]
+fn a_brawl_goes_on_among_strangers() {
+    let scene = find("brawl").expect("the registry has it");
+    for powered in 0..2 {
+        let mut settings = scene.settings();
+        settings.assign("hits=12").expect("it is in range");
+        settings.assign(&format!("powered={powered}")).expect("it is in range");
+        let mut run = scene.start(&settings);
+        for round in 0..3 {
+            (0..150).for_each(|_| run.step());
+            let (mut saved, mut shapes) = (Writer::new(), Writer::new());
+            run.save(&mut saved);
+            run.world().save_shapes(&mut shapes);
+            let mut stranger = scene.start(&settings);
+            let mut world = World::new(WorldDef::default());
+            world.load_shapes(&mut Reader::new(shapes.as_bytes())).expect("they were just saved");
+            *stranger.world_mut() = world;
+            stranger.load(&mut Reader::new(saved.as_bytes())).expect("it was just saved");
+            for step in 0..60 {
+                run.step();
+                stranger.step_with(&Threads::new(2), &NoProfiler);
+                let [mut own, mut other] = [Writer::new(), Writer::new()];
+                run.save(&mut own);
+                stranger.save(&mut other);
+                assert!(own.as_bytes() == other.as_bytes(), "powered {powered}, round {round}, step {step}");
+            }
+        }
+    }
+}
+
 #[test]
 fn settings_are_checked() {
     let scene = find("mass_ratio").expect("the registry has it");

@@ -141,7 +141,7 @@ impl Character {
     fn begin_stumble(&mut self, stand: &Stand, push: Vec3) {
         let Some(feet) = self.def.feet() else { return };
         let Some(presence) = &mut self.presence else { return };
-        let air = presence.over + self.world_from_character.translation.y + feet.ankle_height + AIRBORNE;
+        let air = presence.beside.y + self.world_from_character.translation.y + feet.ankle_height + AIRBORNE;
         let footing = |ankle: Transform| {
             if ankle.translation.y < air {
                 return Footing::Planted(ankle);

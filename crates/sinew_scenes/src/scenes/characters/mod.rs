@@ -2,6 +2,7 @@
 
 pub(super) mod arena;
 pub(super) mod blending;
+pub(super) mod brawl;
 pub(super) mod callbacks;
 pub(super) mod cape;
 pub(super) mod hair;

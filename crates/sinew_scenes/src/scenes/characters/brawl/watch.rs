@@ -1,0 +1,306 @@
+//! Figures of a brawl.
+
+use super::{Fighter, ROOM};
+use crate::framework::metric::{Expected, Metric};
+use sinew::math::{ReadError, Reader, Vec3, Writer, max};
+use sinew::physics::{BodyId, World};
+use sinew::ragdoll::{CharacterEvent, State};
+
+/// States of a character; figures of each are kept apart.
+pub(super) const STATES: [State; 6] =
+    [State::Animated, State::Flinching, State::Powered, State::Limp, State::Preparing, State::GettingUp];
+/// Steps between two looks at how deep bodies are in what is fixed.
+const LOOKS: u64 = 4;
+/// Steps after a blow in which the speed of a limb is the blow's.
+const BLOW_LASTS: u32 = 30;
+/// Steps after which one who has not got up is stuck.
+const STUCK: u32 = 480;
+/// Speed of the pelvis below which one that fell lies, m/s.
+const LIES: f32 = 0.3;
+/// Distance of a stander's place from a pelvis that leaves room to get up, metres.
+const ROOM_TO_RISE: f32 = 0.6;
+/// Depth that is seen, metres.
+const SEEN: f32 = 0.02;
+
+/// Record of one character from step to step.
+#[derive(Clone, Default)]
+pub(super) struct Watched {
+    /// Joints of the bodies in the last three frames, the latest first.
+    frames: [Vec<Vec3>; 3],
+    /// States after the last two updates, by index, the latest first; and whether a blow fell before them.
+    states: [u8; 2],
+    blows: [bool; 2],
+    /// Steps since the last blow, since it fell, and those in which it lay and had room.
+    since_blow: u32,
+    down: u32,
+    roomy: u32,
+    limp: u32,
+    lies: bool,
+    rises: bool,
+}
+
+impl Watched {
+    pub fn be_struck(&mut self) {
+        self.since_blow = 0;
+        self.blows[0] = true;
+    }
+
+    pub fn save(&self, out: &mut Writer) {
+        for frame in &self.frames {
+            out.count(frame.len());
+            frame.iter().for_each(|&place| out.vec3(place));
+        }
+        self.states.iter().for_each(|&state| out.u8(state));
+        self.blows.iter().for_each(|&blow| out.bool(blow));
+        [self.since_blow, self.down, self.roomy, self.limp].into_iter().for_each(|x| out.u32(x));
+        out.bool(self.lies);
+        out.bool(self.rises);
+    }
+
+    pub fn load(&mut self, bytes: &mut Reader<'_>) -> Result<(), ReadError> {
+        for frame in &mut self.frames {
+            frame.clear();
+            for _ in 0..bytes.count(12)? {
+                frame.push(bytes.vec3()?);
+            }
+        }
+        for state in &mut self.states {
+            *state = u8::min(bytes.u8()?, STATES.len() as u8 - 1);
+        }
+        self.blows = [bytes.bool()?, bytes.bool()?];
+        (self.since_blow, self.down) = (bytes.u32()?, bytes.u32()?);
+        (self.roomy, self.limp) = (bytes.u32()?, bytes.u32()?);
+        (self.lies, self.rises) = (bytes.bool()?, bytes.bool()?);
+        Ok(())
+    }
+
+    /// Largest way of a joint in the frame before the last beyond those of its neighbours, metres.
+    fn jump(&self, now: &[Vec3]) -> f32 {
+        let [c, b, a] = &self.frames;
+        if a.len() != now.len() || b.len() != now.len() || c.len() != now.len() {
+            return 0.0;
+        }
+        let way = |from: Vec3, to: Vec3| (to - from).length();
+        let beyond = |i: usize| way(b[i], c[i]) - max(way(a[i], b[i]), way(c[i], now[i]));
+        (0..now.len()).map(beyond).fold(0.0, max)
+    }
+
+    fn push(&mut self, now: Vec<Vec3>, state: u8) {
+        self.frames.rotate_right(1);
+        self.frames[0] = now;
+        self.states = [state, self.states[0]];
+        self.blows = [false, self.blows[0]];
+    }
+}
+
+/// Figures of all.
+#[derive(Default)]
+pub(super) struct Watch {
+    /// Fixed bodies: floor, walls, stairs.
+    stands: Vec<BodyId>,
+    /// Counts and sizes, in the order of [`COUNTS`] and [`SIZES`].
+    counts: [u32; COUNTS.len()],
+    sizes: [f32; SIZES.len()],
+    work_in: f32,
+}
+
+const COUNTS: [&str; 11] =
+    ["blows", "seen", "down", "falls", "rises", "rises_up", "rises_fall", "deep", "outside", "stuck", "lost"];
+const SIZES: [&str; 15] = [
+    "animated_ms",
+    "flinching_ms",
+    "powered_ms",
+    "limp_ms",
+    "preparing_ms",
+    "getting_up_ms",
+    "struck_ms",
+    "depth_m",
+    "to_animated_m",
+    "to_flinching_m",
+    "to_powered_m",
+    "to_limp_m",
+    "to_preparing_m",
+    "to_getting_up_m",
+    "up_after_s",
+];
+
+fn state_index(state: State) -> usize {
+    STATES.iter().position(|&other| other == state).expect("all states are listed")
+}
+
+impl Watch {
+    pub fn new(stands: Vec<BodyId>) -> Self {
+        Self { stands, ..Self::default() }
+    }
+
+    pub fn add_work(&mut self, work: f32) {
+        self.work_in += work;
+    }
+
+    pub fn work_in(&self) -> f32 {
+        self.work_in
+    }
+
+    pub fn count_blow(&mut self) {
+        self.count("blows", 1);
+    }
+
+    fn count(&mut self, name: &str, by: u32) {
+        self.counts[COUNTS.iter().position(|&other| other == name).expect("it is counted")] += by;
+    }
+
+    fn size(&mut self, name: &str, value: f32) {
+        let at = SIZES.iter().position(|&other| other == name).expect("it is measured");
+        self.sizes[at] = max(self.sizes[at], value);
+    }
+
+    pub fn look(&mut self, world: &World, fighters: &mut [Fighter]) {
+        self.count("lost", world.events().quarantined.len() as u32);
+        let movers: Vec<Vec3> = fighters
+            .iter()
+            .map(|fighter| fighter.character.mover().map_or(Vec3::Y * -100.0, |m| world.mover(m).position()))
+            .collect();
+        for (index, fighter) in fighters.iter_mut().enumerate() {
+            self.look_at(world, fighter);
+            let hips = fighter.character.bodies()[0];
+            let place = world.transform(hips).translation;
+            let away = |mover: &Vec3| ((*mover - place) * Vec3::new(1.0, 0.0, 1.0)).length();
+            let is_free = |(other, mover): (usize, &Vec3)| {
+                other == index || mover.y < -50.0 || away(mover) > ROOM_TO_RISE
+            };
+            let has_room = movers.iter().enumerate().all(is_free) && !is_touched(world, fighter);
+            let lies = world.velocity(hips).linear.length() < LIES;
+            self.follow_fall(fighter, has_room, lies);
+        }
+        if world.step_count().is_multiple_of(LOOKS) {
+            self.look_deep(world, fighters);
+        }
+    }
+
+    fn look_at(&mut self, world: &World, fighter: &mut Fighter) {
+        let def = fighter.character.def().clone();
+        let state = state_index(fighter.character.state());
+        let joints: Vec<Vec3> =
+            def.ragdoll.bodies.iter().map(|body| fighter.model[body.joint].translation).collect();
+        let watched = &mut fighter.watched;
+        let [last, before] = watched.states;
+        if last != before && !watched.blows[1] {
+            let jump = watched.jump(&joints);
+            self.size(SIZES[8 + last as usize], jump);
+        }
+        watched.push(joints, state as u8);
+        watched.since_blow = watched.since_blow.saturating_add(1);
+        let fastest = fighter
+            .character
+            .bodies()
+            .iter()
+            .map(|&body| world.velocity(body).linear.length())
+            .fold(0.0, max);
+        let struck = watched.since_blow <= BLOW_LASTS;
+        self.size(if struck { "struck_ms" } else { SIZES[state] }, fastest);
+        let place = world.transform(fighter.character.bodies()[0]).translation;
+        let is_out = [place.x, place.z].iter().any(|x| x.abs() > ROOM + 0.2) || place.y < -0.5;
+        self.count("outside", u32::from(is_out));
+        self.count("seen", 1);
+    }
+
+    fn follow_fall(&mut self, fighter: &mut Fighter, has_room: bool, lies: bool) {
+        let state = fighter.character.state();
+        let is_down = matches!(state, State::Limp | State::Preparing | State::GettingUp);
+        let events: Vec<CharacterEvent> = fighter.character.events().to_vec();
+        let watched = &mut fighter.watched;
+        if watched.rises && matches!(state, State::Limp | State::Preparing) {
+            watched.rises = false;
+            self.count("rises_fall", 1);
+        }
+        for event in events {
+            match event {
+                CharacterEvent::WentLimp => {
+                    self.count(
+                        "falls",
+                        u32::from(!matches!(STATES[watched.states[1] as usize], State::Preparing)),
+                    );
+                    (watched.down, watched.roomy, watched.lies) = (0, 0, false);
+                }
+                CharacterEvent::GettingUp { .. } => {
+                    watched.rises = true;
+                    self.count("rises", 1);
+                }
+                CharacterEvent::Up => {
+                    watched.rises = false;
+                    self.count("rises_up", 1);
+                    self.size("up_after_s", watched.roomy as f32 / 60.0);
+                }
+                _ => {}
+            }
+        }
+        self.count("down", u32::from(is_down));
+        watched.down = if is_down { watched.down + 1 } else { 0 };
+        watched.lies |= is_down && lies;
+        watched.roomy += u32::from(is_down && watched.lies && has_room);
+        let is_limp = matches!(state, State::Limp | State::Preparing);
+        watched.limp = if is_limp { watched.limp + 1 } else { 0 };
+        self.count("stuck", u32::from(watched.limp == STUCK));
+    }
+
+    fn look_deep(&mut self, world: &World, fighters: &[Fighter]) {
+        for fighter in fighters {
+            for &body in fighter.character.bodies() {
+                let depth = self.stands.iter().map(|&stand| world.overlap(body, stand)).fold(0.0, max);
+                self.size("depth_m", depth);
+                self.count("deep", u32::from(depth > SEEN));
+            }
+        }
+    }
+
+    pub fn save(&self, out: &mut Writer) {
+        self.counts.iter().for_each(|&count| out.u32(count));
+        self.sizes.iter().for_each(|&size| out.f32(size));
+        out.f32(self.work_in);
+    }
+
+    pub fn load(&mut self, bytes: &mut Reader<'_>) -> Result<(), ReadError> {
+        for count in &mut self.counts {
+            *count = bytes.u32()?;
+        }
+        for size in &mut self.sizes {
+            *size = bytes.f32()?;
+        }
+        self.work_in = bytes.f32()?;
+        Ok(())
+    }
+
+    /// Figures so far; expectations are the bars of a crowd that can be shown in a game.
+    pub fn metrics(&self) -> Vec<Metric> {
+        let count = |name: &str| {
+            f64::from(self.counts[COUNTS.iter().position(|&other| other == name).expect("it is counted")])
+        };
+        let share = |part: f64, of: f64| if of > 0.0 { part / of } else { 0.0 };
+        let ended = count("rises_up") + count("rises_fall");
+        let mut metrics = vec![
+            Metric::new("down_share", share(count("down"), count("seen")), Expected::AtMost(0.45)),
+            Metric::new("rises_lost_share", share(count("rises_fall"), ended), Expected::AtMost(0.3)),
+        ];
+        let expected = |name: &str| match name {
+            "outside" | "stuck" | "lost" => Expected::AtMost(0.0),
+            "struck_ms" => Expected::Anything,
+            "depth_m" => Expected::AtMost(f64::from(SEEN)),
+            "up_after_s" => Expected::AtMost(4.0),
+            name if name.ends_with("_ms") => Expected::AtMost(15.0),
+            name if name.ends_with("_m") => Expected::AtMost(0.08),
+            _ => Expected::Anything,
+        };
+        let counts = COUNTS.iter().zip(self.counts);
+        metrics.extend(counts.map(|(&name, value)| Metric::new(name, value, expected(name))));
+        let sizes = SIZES.iter().zip(self.sizes);
+        metrics.extend(sizes.map(|(&name, value)| Metric::new(name, value, expected(name))));
+        metrics
+    }
+}
+
+/// True if a body of another touches one of its.
+fn is_touched(world: &World, fighter: &Fighter) -> bool {
+    let own = fighter.character.bodies();
+    let owned = |body: BodyId| world.body_owner(body).is_some();
+    own.iter().any(|&body| world.neighbors(body).any(|other| !own.contains(&other) && owned(other)))
+}
