@@ -83,9 +83,11 @@ fn way_out(world: &World, bodies: &[BodyId], back: Vec3) -> Option<Vec3> {
             Probe::new(shape.clone(), pose)
         })
     };
+    let meets = world.shape_def(ShapeId { body: *bodies.first()?, shape: 0 }).filter;
+    let filter = QueryFilter { meets, ..QueryFilter::of(BodyKinds::STATIC) };
     let (mut way, mut limit) = (Vec3::ZERO, DEEP);
     for _ in 0..MOST_OBSTACLES {
-        let Some(deepest) = deepest(world, moved(way), limit) else { break };
+        let Some(deepest) = deepest((world, filter), moved(way), limit) else { break };
         let obstacle = ShapeId { body: deepest.body, shape: deepest.shape };
         let out: Vec<(Vec3, f32)> = directions(world, moved(way), obstacle)
             .into_iter()
@@ -106,12 +108,16 @@ fn way_out(world: &World, bodies: &[BodyId], back: Vec3) -> Option<Vec3> {
 }
 
 /// Deepest overlap with a static shape that pushes, if it is deeper than `limit`, metres.
-fn deepest(world: &World, probes: impl Iterator<Item = Probe>, limit: f32) -> Option<BodyPenetration> {
+fn deepest(
+    (world, filter): (&World, QueryFilter<'_>),
+    probes: impl Iterator<Item = Probe>,
+    limit: f32,
+) -> Option<BodyPenetration> {
     let pushes = |body, shape| {
         let rule = world.contact_rule(ShapeId { body, shape });
         matches!(rule, ContactRule::Push | ContactRule::Modified { .. })
     };
-    let query = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).accept(pushes);
+    let query = world.query().filter(filter).accept(pushes);
     let deeper = |a: BodyPenetration, b: BodyPenetration| if b.depth > a.depth { b } else { a };
     let found =
         probes.filter_map(|probe| query.first(&PenetrationOf(probe))).filter(|found| found.depth > limit);

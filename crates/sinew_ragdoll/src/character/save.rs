@@ -307,6 +307,10 @@ impl Clearing {
         for _ in 0..count {
             velocities.push(Velocity { linear: r.vec3()?, angular: r.vec3()? });
         }
+        let are_finite = |v: &Velocity| v.linear.is_finite() && v.angular.is_finite();
+        if !way.is_finite() || !velocities.iter().all(are_finite) {
+            return Err(r.error("a way or a velocity that is not finite"));
+        }
         Ok(Self { way, velocities })
     }
 }

@@ -1,7 +1,7 @@
 //! Who goes limp in a wall or in the floor is taken out of it, quickly and gently, on the side that it came from.
 
 use sinew_math::{Random, Reader, Rotation, Transform, Vec3, Writer, max, min};
-use sinew_physics::{BodyDef, BodyId, BodyKind, Shape, Velocity, World, WorldDef};
+use sinew_physics::{BodyDef, BodyId, BodyKind, Filter, Shape, ShapeDef, Velocity, World, WorldDef};
 use sinew_ragdoll::{Character, CharacterDef};
 use std::sync::Arc;
 
@@ -102,6 +102,22 @@ fn what_flew_into_a_wall_comes_out_where_it_flew_in() {
         let chest = world.transform(character.bodies()[0]).translation.z;
         assert!(step < SOON && chest * speed < 0.0, "{speed} m/s: after {step} steps at {chest}");
     }
+}
+
+/// What its filter lets it pass it is not taken out of.
+#[test]
+fn what_it_passes_through_does_not_move_it() {
+    let def = Arc::new(sinew::mannequin::character());
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+    let water = ShapeDef {
+        filter: Filter { layers: 0x8000_0000, mask: 0x8000_0000, ..Filter::default() },
+        ..ShapeDef::new(Shape::cuboid(Vec3::splat(0.5)))
+    };
+    world.add_body(&BodyDef::fixed(water).at(Vec3::Y * 0.5));
+    let mut character = limp_at(&mut world, &def, Transform::IDENTITY);
+    assert!(!character.clear(&mut world));
+    assert!(character.bodies().iter().all(|&body| world.kind(body) == BodyKind::Dynamic));
 }
 
 /// A snapshot on the way out goes on the same, and so does the character when a limb is cut off there.
