@@ -61,7 +61,7 @@ pub(crate) enum Rest {
     Asleep { island: u32 },
 }
 
-/// Change of a body's velocity since it last changed the other way.
+/// Change of a body's velocity since it last changed the other way, of which a share is forgotten in each step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Gain {
     pub velocity: Velocity,
@@ -70,13 +70,13 @@ pub(crate) struct Gain {
 }
 
 impl Gain {
-    /// Adds the change of a step of `dt` seconds; `arm` (m) weighs turns against ways.
-    pub fn add(&mut self, change: &Velocity, dt: f32, arm: f32) {
+    /// Adds the change of a step of `dt` seconds and keeps a share of what was there; `arm` (m) weighs turns against ways.
+    pub fn add(&mut self, change: &Velocity, dt: f32, (arm, share): (f32, f32)) {
         let Self { velocity: Velocity { linear, angular }, time } = self;
         let along = linear.dot(change.linear) + arm * arm * angular.dot(change.angular);
         if along > 0.0 {
-            *linear += change.linear;
-            *angular += change.angular;
+            *linear = *linear * share + change.linear;
+            *angular = *angular * share + change.angular;
             *time += dt;
         } else {
             *self = Self { velocity: *change, time: 0.0 };

@@ -8,7 +8,7 @@ use crate::contact::events::Events;
 use crate::context::StepContext;
 use crate::solver::SolvedBody;
 use crate::step::islands::Islands;
-use sinew_math::Vec3;
+use sinew_math::{Vec3, max};
 
 /// `finalize`: poses and velocities; a body whose state is not finite keeps its old pose, stops and is quarantined.
 /// Kinematic bodies move as their velocity says; forces of the step are used up.
@@ -20,7 +20,8 @@ pub(crate) fn finalize(
     def: &WorldDef,
     context: &StepContext<'_>,
 ) {
-    let arm = def.sleep_thresholds.distance / def.sleep_thresholds.angle;
+    let rest = &def.sleep_thresholds;
+    let gain = (rest.distance / rest.angle, max(1.0 - context.dt / max(rest.time, context.dt), 0.0));
     events.quarantined.clear();
     events.limited.clear();
     for SolvedBody { index, pose, velocity, is_limited } in &islands.solution().bodies {
@@ -34,7 +35,7 @@ pub(crate) fn finalize(
                 linear: velocity.linear - body.velocity.linear,
                 angular: velocity.angular - body.velocity.angular,
             };
-            body.gain.add(&change, context.dt, arm);
+            body.gain.add(&change, context.dt, gain);
             body.velocity = *velocity;
             if *is_limited {
                 let id = bodies.id(*index);

@@ -36,7 +36,7 @@ pub(crate) fn sleep(
             }
             let calm = body.sleeping == Sleeping::On
                 && is_slower(body, thresholds.speed, thresholds.spin)
-                && !gains(body, thresholds)
+                && !(island.joints.is_empty() && gains(body, thresholds))
                 && (creeps_little || stays(body, thresholds))
                 && (island.groups.is_empty() || hangs_still(body, def.dt()))
                 && !fields.keep_awake(body);
@@ -80,7 +80,8 @@ fn count(body: &mut Body, calm: bool, dt: f32) -> f32 {
     }
 }
 
-/// True if what acts on a body moves it ever faster, or turns it round: a ball at the top of its way up a slope is slow for a second.
+/// True if what acts on a body moves it ever faster, or turns it round: a ball at the top of its way up a slope is slow for a second. Not asked of bodies
+/// with joints, which sag for seconds against the friction in them.
 fn gains(body: &Body, thresholds: &SleepThresholds) -> bool {
     let Gain { velocity: Velocity { linear, angular }, time } = body.gain;
     let is_fast = |gain: Vec3, threshold: f32| gain.length() >= GAINED * threshold / thresholds.time;

@@ -10,7 +10,7 @@
 /// Shown by `ragdoll_pile`, `ragdoll_poses`.
 pub(super) const CREEP: f32 = 2.0;
 
-/// Gain of velocity over the time that rest takes or longer from which on a body is not at rest, in thresholds of distance and of angle
+/// Gain of velocity over about the time that rest takes from which on a body is not at rest, in thresholds of distance and of angle
 /// over that time, a ratio.
 ///
 /// 4 mm/s in 0.5 s: a ball at the top of its way up a slope of 0.07 degrees, where it is slower than what creeps for a second. Larger: it
