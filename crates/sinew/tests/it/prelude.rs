@@ -1,4 +1,4 @@
-//! What the prelude brings is enough for a first program, and its short constructors say what their long forms do.
+//! Tests that the prelude is enough for a first program, and that short constructors equal their long forms.
 
 use sinew::prelude::*;
 

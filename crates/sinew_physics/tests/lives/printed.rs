@@ -8,7 +8,11 @@ use sinew_physics::WorldDef;
 use std::path::Path;
 
 /// The program that is kept.
-#[allow(unused, clippy::all, reason = "a printed program names everything, and is formatted by no one")]
+#[allow(
+    unused,
+    clippy::all,
+    reason = "the printed program imports names that it may not use, and is not formatted"
+)]
 mod kept {
     include!("program.txt");
 }

@@ -1,5 +1,5 @@
-//! The way of a limp character out of walls and floors that it is deep in, on the side that it came from. Contacts push each body
-//! out by itself, and slowly: a figure in a thin wall they hold from both sides.
+//! Moving a limp character out of walls and floors that it is deep in. Contacts push bodies out one by one and slowly, and out of a thin wall to both
+//! sides.
 
 use super::memory::Clearing;
 use super::tuning::{CLEARING_REACH, CLEARING_SPEED, DEEP, MOST_OBSTACLES, SAME_WAY, SUNK};
@@ -14,8 +14,8 @@ impl Character {
     /// Moves a limp character out of static shapes that it is deep in, at 1.9 m/s, all its bodies together; it falls from where it is clear.
     /// Returns false if there is nothing to do: it is not limp, or held, or no body is deeper than 0.1 m, or no way of at most 1.2 m leads out.
     ///
-    /// Of the two sides of a wall it takes the one that it came from by its velocity, or else the nearer one. Going limp does this by itself; call it for a character that lies where
-    /// a wall was put or a door has closed.
+    /// A character that moves leaves a wall on the side that it came from, one at rest on the nearer side. Going limp calls this; call it yourself for
+    /// a limp character where a wall was put or a door has closed.
     pub fn clear(&mut self, world: &mut World) -> bool {
         if self.state != State::Limp || self.is_clearing() || self.is_gripped(world) {
             return false;

@@ -1,4 +1,4 @@
-//! Who goes limp in a wall or in the floor is taken out of it, quickly and gently, on the side that it came from.
+//! Tests of `Character::clear`: a character that goes limp in a wall or floor is moved out of it.
 
 use sinew_math::{Random, Reader, Rotation, Transform, Vec3, Writer, max, min};
 use sinew_physics::{BodyDef, BodyId, BodyKind, Filter, Shape, ShapeDef, Velocity, World, WorldDef};
@@ -104,7 +104,7 @@ fn what_flew_into_a_wall_comes_out_where_it_flew_in() {
     }
 }
 
-/// What its filter lets it pass it is not taken out of.
+/// A character is not moved out of shapes that its filter does not meet.
 #[test]
 fn what_it_passes_through_does_not_move_it() {
     let def = Arc::new(sinew::mannequin::character());

@@ -61,8 +61,7 @@ fn enforced_contact_keeps_skin_out_of_the_floor_and_feet_from_sliding() {
     assert!(blended < -0.02 * HEIGHT && slid > 0.03, "there is something to mend: {blended} m, {slid} m");
 }
 
-/// Which way it lies decides whether a get-up is played as recorded or as in a mirror. In neither the sword leaves the hand that
-/// holds it.
+/// A sword stays in its hand, whether a get-up is played as recorded or mirrored, which depends on how the character lies.
 #[test]
 fn a_sword_stays_in_its_hand_in_a_mirrored_get_up() {
     let def = shared(armed_walker());

@@ -81,7 +81,7 @@ struct Variant {
     hints: Hints,
     /// Per joint of the plain rig where it went.
     place: Vec<usize>,
-    /// What was done, in words.
+    /// Description of the variant, for messages.
     said: String,
 }
 
