@@ -20,7 +20,7 @@ const LIES: f32 = 0.3;
 /// Distance of a stander's place from a pelvis that leaves room to get up, metres.
 const ROOM_TO_RISE: f32 = 0.6;
 /// Depth that is seen, metres.
-const SEEN: f32 = 0.02;
+const SEEN: f64 = 0.02;
 
 /// Record of one character from step to step.
 #[derive(Clone, Default)]
@@ -248,7 +248,7 @@ impl Watch {
             for &body in fighter.character.bodies() {
                 let depth = self.stands.iter().map(|&stand| world.overlap(body, stand)).fold(0.0, max);
                 self.size("depth_m", depth);
-                self.count("deep", u32::from(depth > SEEN));
+                self.count("deep", u32::from(f64::from(depth) > SEEN));
             }
         }
     }
@@ -284,7 +284,7 @@ impl Watch {
         let expected = |name: &str| match name {
             "outside" | "stuck" | "lost" => Expected::AtMost(0.0),
             "struck_ms" => Expected::Anything,
-            "depth_m" => Expected::AtMost(f64::from(SEEN)),
+            "depth_m" => Expected::AtMost(SEEN),
             "up_after_s" => Expected::AtMost(4.0),
             name if name.ends_with("_ms") => Expected::AtMost(15.0),
             name if name.ends_with("_m") => Expected::AtMost(0.08),
