@@ -3,6 +3,7 @@
 use crate::mocap::{actor, character};
 use crate::toy;
 use core::f32::consts::TAU;
+use needs_data::needs_data;
 use sinew_anim::cleanup::{SpikeSettings, despike, project_limits, remove_penetration, smooth};
 use sinew_anim::contact::{lowest, sole_points};
 use sinew_anim::learned_limits::learn_limits;
@@ -126,12 +127,10 @@ fn joints_come_back_into_their_limits() {
     assert!(project_limits(&mut take, &limits).is_empty());
 }
 
+#[needs_data]
 #[test]
 fn a_body_is_lifted_out_of_the_floor() {
-    let (Some(walk), Some((rig, analysis))) = (actor("cmu_12_01_walk.bvh"), character("mannequiny.glb"))
-    else {
-        return;
-    };
+    let (walk, (rig, analysis)) = (actor("cmu_12_01_walk.bvh"), character("mannequiny.glb"));
     let (actor, body) =
         (Body { rig: &walk.rig, analysis: &walk.analysis }, Body { rig: &rig, analysis: &analysis });
     let mut take = retarget(actor, &walk.clip, body, &RetargetOptions::default()).unwrap().take;
@@ -151,10 +150,11 @@ fn a_body_is_lifted_out_of_the_floor() {
 }
 
 /// Real captures: what is cut off is little, and after that there is nothing more to do.
+#[needs_data]
 #[test]
 fn captures_are_cleaned_once_and_for_all() {
     for name in ["cmu_12_01_walk.bvh", "cmu_01_01_jumps.bvh", "cmu_02_03_run_iclone.bvh"] {
-        let Some(found) = actor(name) else { return };
+        let found = actor(name);
         let clean = Take::of(&found.rig, &found.clip, FRAME);
         let mut take = clean.clone();
         let spikes = despike(&mut take, &SpikeSettings::default());

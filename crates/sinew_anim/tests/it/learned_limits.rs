@@ -2,6 +2,7 @@
 
 use crate::mocap::actor;
 use crate::toy;
+use needs_data::needs_data;
 use sinew_anim::learned_limits::{LearnedLimit, learn_limits};
 use sinew_anim::{LocalTransform, Take};
 use sinew_math::{Random, Rotation, SwingTwistLimit, Vec3};
@@ -85,10 +86,11 @@ fn a_hinge_is_found_with_its_axis_and_range() {
 }
 
 /// The lab's skeleton has one degree of freedom in knees and elbows; hips and shoulders have three.
+#[needs_data]
 #[test]
 fn captured_knees_and_elbows_are_hinges() {
     for file in ["cmu_12_01_walk.bvh", "cmu_01_01_jumps.bvh"] {
-        let Some(found) = actor(file) else { return };
+        let found = actor(file);
         let take = Take::of(&found.rig, &found.clip, 1.0 / 120.0);
         let limits = learn_limits(&found.rig, &[&take]);
         let of = |name: &str| {

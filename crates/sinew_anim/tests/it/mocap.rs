@@ -13,26 +13,26 @@ pub struct Actor {
     pub reference: Reference,
 }
 
-/// A BVH file under ../shared/data/mocap; `None` where the data is absent.
-pub fn actor(name: &str) -> Option<Actor> {
-    let bytes = crate::rigs::bytes(&format!("mocap/{name}"))?;
+/// A BVH file under ../shared/data/mocap, for tests with `needs_data`.
+pub fn actor(name: &str) -> Actor {
+    let bytes = crate::rigs::bytes(&format!("mocap/{name}"));
     let document = read_bvh(&bytes, BvhOptions::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
     let BvhDocument { rig, clip, rest_pose, .. } = document;
     let (analysis, reference) = stand(&rig, &clip, rest_pose.as_deref()).expect("bones");
-    Some(Actor { rig, clip, analysis, reference })
+    Actor { rig, clip, analysis, reference }
 }
 
-/// A DeepMimic clip under ../shared/data/mocap; `None` where the data is absent.
-pub fn imitation(name: &str) -> Option<Actor> {
-    let skeleton = read_deepmimic_character(&crate::rigs::bytes("mocap/deepmimic_humanoid3d.txt")?).unwrap();
-    let clip = read_deepmimic(&crate::rigs::bytes(&format!("mocap/{name}"))?, &skeleton).unwrap().clip;
+/// A DeepMimic clip under ../shared/data/mocap, for tests with `needs_data`.
+pub fn imitation(name: &str) -> Actor {
+    let skeleton = read_deepmimic_character(&crate::rigs::bytes("mocap/deepmimic_humanoid3d.txt")).unwrap();
+    let clip = read_deepmimic(&crate::rigs::bytes(&format!("mocap/{name}")), &skeleton).unwrap().clip;
     let (analysis, reference) = stand(&skeleton.rig, &clip, None).expect("bones");
-    Some(Actor { rig: skeleton.rig, clip, analysis, reference })
+    Actor { rig: skeleton.rig, clip, analysis, reference }
 }
 
-/// A character under ../shared/data/rigs; `None` where the data is absent.
-pub fn character(name: &str) -> Option<(Rig, RigAnalysis)> {
-    let (rig, _) = crate::rigs::load(&format!("rigs/{name}"))?;
+/// A character under ../shared/data/rigs, for tests with `needs_data`.
+pub fn character(name: &str) -> (Rig, RigAnalysis) {
+    let (rig, _) = crate::rigs::load(&format!("rigs/{name}"));
     let analysis = analyze(&rig).expect("a skin");
-    Some((rig, analysis))
+    (rig, analysis)
 }

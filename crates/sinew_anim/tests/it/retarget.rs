@@ -1,6 +1,7 @@
 //! A captured walk on bodies of other sizes and builds.
 
 use crate::mocap::{Actor, actor, character, imitation};
+use needs_data::needs_data;
 use sinew_anim::contact::{ContactSettings, contacts, floor_under, foot_slide, lowest, sole_points};
 use sinew_anim::legs::Legs;
 use sinew_anim::retarget::{
@@ -60,9 +61,10 @@ fn bone_error(
     (0..to.frames()).map(angle).fold(0.0, sinew_math::max)
 }
 
+#[needs_data]
 #[test]
 fn a_captured_walk_is_understood() {
-    let Some(walk) = actor(WALK) else { return };
+    let walk = actor(WALK);
     assert_eq!(walk.reference, Reference::Stated);
     let name = |role: Role| walk.analysis.joint_with(role).map(|joint| walk.rig.joints[joint].name.as_str());
     for (role, expected) in [
@@ -93,12 +95,13 @@ fn a_captured_walk_is_understood() {
     assert!(foot_slide(&take, &feet, &points, &found).mean < 0.25);
 }
 
+#[needs_data]
 #[test]
 fn every_capture_finds_its_body() {
     for (name, reference) in
         [("cmu_01_01_jumps.bvh", Some(Reference::Stated)), ("cmu_02_03_run_iclone.bvh", None)]
     {
-        let Some(found) = actor(name) else { return };
+        let found = actor(name);
         assert!(found.analysis.humanoid, "{name}: {:?}", found.analysis.notes);
         assert!(
             reference.is_none_or(|expected| found.reference == expected),
@@ -109,13 +112,10 @@ fn every_capture_finds_its_body() {
     }
 }
 
+#[needs_data]
 #[test]
 fn a_walk_fits_every_body() {
-    let (Some(walk), Some(man), Some(mannequin)) =
-        (actor(WALK), character("CesiumMan.glb"), character("mannequiny.glb"))
-    else {
-        return;
-    };
+    let (walk, man, mannequin) = (actor(WALK), character("CesiumMan.glb"), character("mannequiny.glb"));
     let child = scaled(&mannequin.0, &mannequin.1, 0.8 / mannequin.1.height);
     let giant = scaled(&mannequin.0, &mannequin.1, 14.0 / mannequin.1.height);
     assert!((giant.1.height - 14.0).abs() < 0.01 && (child.1.height - 0.8).abs() < 0.001);
@@ -161,9 +161,10 @@ fn a_walk_fits_every_body() {
 }
 
 /// Every humanoid of the data takes the walk, feet that the rig hangs beside the body included.
+#[needs_data]
 #[test]
 fn every_humanoid_walks() {
-    let Some(walk) = actor(WALK) else { return };
+    let walk = actor(WALK);
     for name in [
         "RiggedFigure.glb",
         "kaykit_Knight.glb",
@@ -171,7 +172,7 @@ fn every_humanoid_walks() {
         "quaternius_cyberpunk_Character.glb",
         "CoolLoops_mixamorig_vrm0.vrm",
     ] {
-        let (rig, analysis) = character(name).unwrap();
+        let (rig, analysis) = character(name);
         let found = onto(&walk, &rig, &analysis, &RetargetOptions::default());
         let slide = 100.0 * found.feet.slide[1].mean / analysis.height;
         println!(
@@ -204,9 +205,10 @@ fn every_humanoid_walks() {
 }
 
 /// The walk with joints named as other tools do, and with every second name lost, and with none: the same body, the same walk.
+#[needs_data]
 #[test]
 fn a_walk_by_other_names_is_a_walk() {
-    let (Some(walk), Some((rig, analysis))) = (actor(WALK), character("mannequiny.glb")) else { return };
+    let (walk, (rig, analysis)) = (actor(WALK), character("mannequiny.glb"));
     let parts = [
         ("UpLeg", "UpperLeg"),
         ("ForeArm", "LowerArm"),
@@ -273,17 +275,13 @@ fn in_the_air(rig: &Rig, analysis: &RigAnalysis, take: &Take) -> f32 {
 }
 
 /// Hops, a run whose skeleton rests in no pose at all, motion imitation's run and get-up: all of them fit.
+#[needs_data]
 #[test]
 fn every_captured_body_moves_a_character() {
-    let (Some((rig, analysis)), Some(hops), Some(run), Some(mixed)) = (
-        character("mannequiny.glb"),
-        actor("cmu_01_01_jumps.bvh"),
-        actor("cmu_02_03_run_iclone.bvh"),
-        actor("mixed_rotation_orders.bvh"),
-    ) else {
-        return;
-    };
-    let imitated = ["deepmimic_run.txt", "deepmimic_getup_faceup.txt"].map(|name| imitation(name).unwrap());
+    let (rig, analysis) = character("mannequiny.glb");
+    let files = ["cmu_01_01_jumps.bvh", "cmu_02_03_run_iclone.bvh", "mixed_rotation_orders.bvh"];
+    let [hops, run, mixed] = files.map(actor);
+    let imitated = ["deepmimic_run.txt", "deepmimic_getup_faceup.txt"].map(imitation);
     let all = [
         ("hops", &hops),
         ("run", &run),
@@ -322,9 +320,10 @@ fn every_captured_body_moves_a_character() {
 }
 
 /// The walk with its way taken out: the ground is found to move, and the feet stand as long as they did.
+#[needs_data]
 #[test]
 fn a_walk_on_the_spot_is_a_walk() {
-    let (Some(walk), Some((rig, analysis))) = (actor(WALK), character("mannequiny.glb")) else { return };
+    let (walk, (rig, analysis)) = (actor(WALK), character("mannequiny.glb"));
     let mut on_the_spot = Actor { clip: walk.clip.clone(), rig: walk.rig.clone(), ..walk };
     let shifts = on_the_spot.clip.channels.iter_mut().find(|c| c.property == Property::Translation).unwrap();
     let last = shifts.times.len() - 1;
@@ -335,7 +334,7 @@ fn a_walk_on_the_spot_is_a_walk() {
         let at = place(&shifts.values, key) - speed * time;
         shifts.values[3 * key..3 * key + 3].copy_from_slice(&at.to_array());
     }
-    let walk = actor(WALK).unwrap();
+    let walk = actor(WALK);
     let far = onto(&walk, &rig, &analysis, &RetargetOptions::default());
     let near = onto(&on_the_spot, &rig, &analysis, &RetargetOptions::default());
     assert_eq!(far.ground.velocity, Vec3::ZERO);
@@ -352,12 +351,13 @@ fn a_walk_on_the_spot_is_a_walk() {
 }
 
 /// Clips that were drawn for one character move another; a file of clips without a skin does too.
+#[needs_data]
 #[test]
 fn drawn_clips_move_other_characters() {
-    let Some((man, man_analysis)) = character("CesiumMan.glb") else { return };
+    let (man, man_analysis) = character("CesiumMan.glb");
     let to = Body { rig: &man, analysis: &man_analysis };
     for name in ["mannequiny.glb", "kaykit_mannequin/Med_Simulation.glb"] {
-        let (rig, clips) = crate::rigs::load(&format!("rigs/{name}")).unwrap();
+        let (rig, clips) = crate::rigs::load(&format!("rigs/{name}"));
         for clip in &clips {
             let analysis =
                 sinew_anim::analyze(&rig).or_else(|_| stand(&rig, clip, None).map(|found| found.0)).unwrap();
@@ -382,13 +382,10 @@ fn drawn_clips_move_other_characters() {
 }
 
 /// Bones that are not mended at the ground point where the actor's point.
+#[needs_data]
 #[test]
 fn bones_point_where_the_actors_do() {
-    let (Some(walk), Some(man), Some(mannequin)) =
-        (actor(WALK), character("CesiumMan.glb"), character("mannequiny.glb"))
-    else {
-        return;
-    };
+    let (walk, man, mannequin) = (actor(WALK), character("CesiumMan.glb"), character("mannequiny.glb"));
     let source = Take::of(&walk.rig, &walk.clip, 1.0 / 60.0);
     for (rig, analysis) in [&man, &mannequin] {
         let free = RetargetOptions { feet: Feet::Free, ..RetargetOptions::default() };
@@ -409,13 +406,10 @@ fn bones_point_where_the_actors_do() {
 }
 
 /// Knees bend forward and elbows too, whichever way a rig's joints are turned.
+#[needs_data]
 #[test]
 fn knees_bend_forward() {
-    let (Some(walk), Some(man), Some(mannequin)) =
-        (actor(WALK), character("CesiumMan.glb"), character("mannequiny.glb"))
-    else {
-        return;
-    };
+    let (walk, man, mannequin) = (actor(WALK), character("CesiumMan.glb"), character("mannequiny.glb"));
     for (rig, analysis) in [&man, &mannequin] {
         let found = onto(&walk, rig, analysis, &RetargetOptions::default());
         let joint = |role: Role| analysis.joint_with(role).unwrap();
@@ -437,9 +431,10 @@ fn knees_bend_forward() {
 
 /// Holding the feet makes no joint jerk: the largest change of any leg joint's speed from frame to frame stays near what it
 /// is when the feet are free.
+#[needs_data]
 #[test]
 fn held_legs_do_not_pop() {
-    let (Some(walk), Some((rig, analysis))) = (actor(WALK), character("mannequiny.glb")) else { return };
+    let (walk, (rig, analysis)) = (actor(WALK), character("mannequiny.glb"));
     let jerk = |feet: Feet| {
         let found = onto(&walk, &rig, &analysis, &RetargetOptions { feet, ..RetargetOptions::default() });
         let legs = Legs::of(&rig, &analysis)
@@ -461,9 +456,10 @@ fn held_legs_do_not_pop() {
     assert!(held < 1.5 * free + 1.0, "{held}° per frame², {free}° with free feet");
 }
 
+#[needs_data]
 #[test]
 fn a_body_on_itself_is_itself() {
-    let Some(walk) = actor(WALK) else { return };
+    let walk = actor(WALK);
     let free = RetargetOptions { feet: Feet::Free, ..RetargetOptions::default() };
     let found = onto(&walk, &walk.rig, &walk.analysis, &free);
     assert!((found.scale - 1.0).abs() < 1e-6 && found.unmatched.is_empty());
@@ -483,9 +479,10 @@ fn a_body_on_itself_is_itself() {
     }
 }
 
+#[needs_data]
 #[test]
 fn the_clip_is_the_take() {
-    let (Some(walk), Some((rig, analysis))) = (actor(WALK), character("mannequiny.glb")) else { return };
+    let (walk, (rig, analysis)) = (actor(WALK), character("mannequiny.glb"));
     let found = onto(
         &walk,
         &rig,
@@ -504,9 +501,10 @@ fn the_clip_is_the_take() {
     assert!(first.start >= 0.0 && first.end > first.start);
 }
 
+#[needs_data]
 #[test]
 fn what_has_no_roles_is_refused() {
-    let (Some(walk), Some((rig, analysis))) = (actor(WALK), character("Fox.glb")) else { return };
+    let (walk, (rig, analysis)) = (actor(WALK), character("Fox.glb"));
     let body = Body { rig: &walk.rig, analysis: &walk.analysis };
     let fox = Body { rig: &rig, analysis: &analysis };
     let refused = |a, b, options| retarget(a, &walk.clip, b, &options).unwrap_err();
@@ -520,13 +518,11 @@ fn what_has_no_roles_is_refused() {
 }
 
 /// Files with random bytes changed: whatever can be read can be looked at and carried over, or is refused.
+#[needs_data]
 #[test]
 fn captures_made_to_be_bad_do_no_harm() {
-    let (Some(whole), Some((rig, analysis))) =
-        (crate::rigs::bytes("mocap/cmu_12_01_walk.bvh"), character("mannequiny.glb"))
-    else {
-        return;
-    };
+    let whole = crate::rigs::bytes("mocap/cmu_12_01_walk.bvh");
+    let (rig, analysis) = character("mannequiny.glb");
     // The skeleton and forty rows.
     let rows: Vec<&[u8]> = whole.split_inclusive(|&byte| byte == b'\n').take(227).collect();
     let whole = rows.concat();
@@ -560,9 +556,10 @@ fn captures_made_to_be_bad_do_no_harm() {
 }
 
 /// Slide of two feet made by hand: the one stands, the other is dragged at 0.3 m/s for a second.
+#[needs_data]
 #[test]
 fn slide_is_what_it_says() {
-    let Some(walk) = actor(WALK) else { return };
+    let walk = actor(WALK);
     let feet = Legs::of(&walk.rig, &walk.analysis).unwrap().feet;
     let take = Take { frame_time: 0.1, joints: 1, poses: vec![sinew_anim::LocalTransform::default(); 21] };
     let point = |frame: usize| {

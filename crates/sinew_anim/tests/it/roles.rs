@@ -1,5 +1,6 @@
 use crate::{rigs, toy};
 use expect_test::{Expect, expect};
+use needs_data::needs_data;
 use sinew_anim::{Basis, LocalTransform, NoSkin, Rig, RigAnalysis, Role, Side, analyze};
 use sinew_math::{Affine, Random, Rotation, Vec3};
 
@@ -25,11 +26,11 @@ fn axis(v: Vec3) -> String {
     format!("{}{name}", if value < 0.0 { "-" } else { "+" })
 }
 
-fn analyzed(file: &str) -> Option<(Rig, RigAnalysis)> {
-    let (rig, _) = rigs::load(&format!("rigs/{file}"))?;
+fn analyzed(file: &str) -> (Rig, RigAnalysis) {
+    let (rig, _) = rigs::load(&format!("rigs/{file}"));
     let found = analyze(&rig).expect("a skin");
     sound(&rig, &found);
-    Some((rig, found))
+    (rig, found)
 }
 
 /// Checks that hold for every analysis, whatever the rig.
@@ -69,8 +70,8 @@ fn skinned_joints(rig: &Rig) -> Vec<(usize, f32)> {
 }
 
 /// A human body: all parts there, each on its own side and at its own height.
-fn check_humanoid(file: &str, bodies: usize) -> Option<RigAnalysis> {
-    let (_, found) = analyzed(file)?;
+fn check_humanoid(file: &str, bodies: usize) {
+    let (_, found) = analyzed(file);
     assert!(found.humanoid, "{file}");
     let of_the_body = found.kept.iter().filter(|bone| !bone.is_prop).count();
     assert_eq!(of_the_body, bodies, "{file}");
@@ -93,9 +94,9 @@ fn check_humanoid(file: &str, bodies: usize) -> Option<RigAnalysis> {
         assert!(chain[0].y > chain[1].y && chain[1].y > chain[2].y, "{file}: {chain:?}");
         assert!(chain[2].y - found.floor < 0.12 * found.height, "{file}: feet on the floor");
     }
-    Some(found)
 }
 
+#[needs_data]
 #[test]
 fn human_shapes_are_recognised_with_both_sides_right() {
     for (file, bodies) in [
@@ -109,10 +110,11 @@ fn human_shapes_are_recognised_with_both_sides_right() {
         ("CoolLoops_mixamorig_vrm0.vrm", 18),
         ("quaternius_Robot.glb", 14),
     ] {
-        let Some(_) = check_humanoid(file, bodies) else { return };
+        check_humanoid(file, bodies);
     }
 }
 
+#[needs_data]
 #[test]
 fn files_face_where_their_toes_point() {
     for (file, forward) in [
@@ -122,17 +124,17 @@ fn files_face_where_their_toes_point() {
         ("CoolLoops_mixamorig_vrm0.vrm", "-z"),
         ("Fox.glb", "+z"),
     ] {
-        let Some((_, found)) = analyzed(file) else { return };
+        let (_, found) = analyzed(file);
         assert_eq!(axis(found.character_from_model.rotation.inverse() * Vec3::Z), forward, "{file}");
     }
 }
 
 fn check(file: &str, expected: &Expect) {
-    if let Some((rig, found)) = analyzed(file) {
-        expected.assert_eq(&table(&rig, &found));
-    }
+    let (rig, found) = analyzed(file);
+    expected.assert_eq(&table(&rig, &found));
 }
 
+#[needs_data]
 #[test]
 fn a_rig_with_misleading_names() {
     check(
@@ -160,6 +162,7 @@ fn a_rig_with_misleading_names() {
     );
 }
 
+#[needs_data]
 #[test]
 fn feet_beside_the_body_and_a_joint_above_the_hips() {
     check(
@@ -186,6 +189,7 @@ fn feet_beside_the_body_and_a_joint_above_the_hips() {
     );
 }
 
+#[needs_data]
 #[test]
 fn a_fox_is_no_human_whatever_its_joints_are_called() {
     check(
@@ -219,9 +223,10 @@ fn a_fox_is_no_human_whatever_its_joints_are_called() {
 }
 
 /// Parts that stick out of the knight are held by what they hang on; the helmet goes with the head.
+#[needs_data]
 #[test]
 fn a_knight_holds_what_it_carries() {
-    let Some((rig, found)) = analyzed("kaykit_Knight.glb") else { return };
+    let (rig, found) = analyzed("kaykit_Knight.glb");
     let name = |joint: usize| rig.joints[joint].name.as_str();
     let props = found.kept.iter().filter(|bone| bone.is_prop);
     let held: Vec<_> = props
@@ -232,6 +237,7 @@ fn a_knight_holds_what_it_carries() {
     assert_eq!(found.merge_into[helmet].map(name), Some("head"));
 }
 
+#[needs_data]
 #[test]
 fn a_spider_gets_its_feet_back() {
     check(
@@ -269,6 +275,7 @@ fn a_spider_gets_its_feet_back() {
     );
 }
 
+#[needs_data]
 #[test]
 fn chains_without_limbs() {
     check(
@@ -301,9 +308,10 @@ fn chains_without_limbs() {
     );
 }
 
+#[needs_data]
 #[test]
 fn many_skeletons_in_one_file_are_analysed_without_complaint() {
-    let Some((_, found)) = analyzed("RecursiveSkeletons.glb") else { return };
+    let (_, found) = analyzed("RecursiveSkeletons.glb");
     assert!(!found.humanoid);
 }
 
@@ -332,11 +340,12 @@ fn shuffled(rig: &Rig, seed: u64) -> Rig {
     rig
 }
 
+#[needs_data]
 #[test]
 fn names_size_and_axes_of_the_file_do_not_change_the_roles() {
     let z_up = Rotation::from_axis_angle(Vec3::X, std::f32::consts::FRAC_PI_2);
     for file in ["CesiumMan.glb", "RiggedFigure.glb", "mannequiny.glb", "mesh2motion_human_rigify.glb"] {
-        let Some((rig, plain)) = analyzed(file) else { return };
+        let (rig, plain) = analyzed(file);
         for seed in 0..5 {
             let other = shuffled(&placed(&rig, z_up, 100.0), seed);
             let found = analyze(&other).expect("a skin");
@@ -357,9 +366,10 @@ fn names_size_and_axes_of_the_file_do_not_change_the_roles() {
     }
 }
 
+#[needs_data]
 #[test]
 fn a_character_turned_around_keeps_its_left_hand() {
-    let Some((rig, _)) = analyzed("mannequiny.glb") else { return };
+    let (rig, _) = analyzed("mannequiny.glb");
     let about = placed(&rig, Rotation::from_axis_angle(Vec3::Y, std::f32::consts::PI), 1.0);
     let found = analyze(&about).expect("a skin");
     assert_eq!(axis(found.character_from_model.rotation.inverse() * Vec3::Z), "-z");
@@ -422,17 +432,19 @@ fn roles_that_the_file_states_are_taken_at_their_word() {
     assert_eq!(found.kept.len(), toy::BODY.len());
 }
 
+#[needs_data]
 #[test]
 fn a_rig_without_skin_is_refused() {
     assert_eq!(analyze(&Rig::default()), Err(NoSkin));
-    let Some((rig, _)) = rigs::load("negative/kenney_character_unskinned.glb") else { return };
+    let (rig, _) = rigs::load("negative/kenney_character_unskinned.glb");
     assert_eq!(analyze(&rig), Err(NoSkin));
     assert_eq!(NoSkin.to_string(), "no skin: nothing to build a ragdoll from");
 }
 
+#[needs_data]
 #[test]
 fn the_bind_pose_is_that_of_the_skin_not_of_the_rest_pose() {
-    let Some((rig, plain)) = analyzed("mannequiny.glb") else { return };
+    let (rig, plain) = analyzed("mannequiny.glb");
     // Bend the arms of the rest pose: the skin still says where they were.
     let mut bent = rig.clone();
     for joint in bent.joints.iter_mut().filter(|joint| joint.name.starts_with("upperarm")) {
@@ -459,8 +471,7 @@ fn role_names_round_trip() {
 }
 
 /// Limbs of a wild creature, each from the trunk outward: the joints' names.
-fn limbs_of(file: &str) -> Option<(Vec<Vec<String>>, Vec<String>)> {
-    rigs::bytes(file)?;
+fn limbs_of(file: &str) -> (Vec<Vec<String>>, Vec<String>) {
     let options = sinew_formats::ReadOptions::default();
     let rig = sinew_formats::load_gltf(format!("{}{file}", rigs::DATA), options).expect("a rig").rig;
     let found = analyze(&rig).expect("a skin");
@@ -478,10 +489,11 @@ fn limbs_of(file: &str) -> Option<(Vec<Vec<String>>, Vec<String>)> {
             _ => trunk.push(name),
         }
     }
-    Some((limbs, trunk))
+    (limbs, trunk)
 }
 
 /// Frogs, rats, dinosaurs: feet beside the body, hips and back beside the shoulders, bodies whose root moves nothing.
+#[needs_data]
 #[test]
 fn wild_beasts_have_their_limbs_and_their_trunk() {
     let side = |part: &str, side: &str| format!("{part}.{side}");
@@ -524,7 +536,7 @@ fn wild_beasts_have_their_limbs_and_their_trunk() {
             &["Hips", "Torso", "Shoulders", "Neck", "Head", "Back", "Tail1", "Tail5"],
         ),
     ] {
-        let Some((limbs, middle)) = limbs_of(file) else { return };
+        let (limbs, middle) = limbs_of(file);
         for part in trunk {
             assert!(
                 middle.iter().any(|name| name == part),
@@ -544,10 +556,11 @@ fn wild_beasts_have_their_limbs_and_their_trunk() {
 }
 
 /// Monsters of a head and a body on one line: nothing of them is a limb, whatever lies above and below the root.
+#[needs_data]
 #[test]
 fn what_stands_on_the_midline_has_no_twin_below() {
     for file in ["rigs_wild/platformer_game_Enemy.glb", "rigs_wild/platformer_game_Crab.glb"] {
-        let Some((limbs, trunk)) = limbs_of(file) else { return };
+        let (limbs, trunk) = limbs_of(file);
         assert!(limbs.is_empty() && trunk.len() == 4, "{file}: {limbs:?} {trunk:?}");
     }
 }

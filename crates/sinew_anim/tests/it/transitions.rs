@@ -1,6 +1,7 @@
 //! Transitions: no pop, that is no jump of velocity, and no more acceleration than offset and time ask for.
 
 use crate::{rigs, stage};
+use needs_data::needs_data;
 use sinew_anim::{
     AnimatedClip, AnimationSet, Animator, BuiltClip, ClipBuildOptions, ClipId, Cursor, Decay, Easing,
     LocalTransform, LoopMode, Pose, Skeleton, TrackDef, Transition,
@@ -50,14 +51,14 @@ fn an_offset_that_comes_back_by_itself_does_not_overshoot() {
 }
 
 /// A set of looped clips of a rig, by their names.
-fn set_of(file: &str) -> Option<AnimationSet> {
-    let (rig, clips) = rigs::load(&format!("rigs/{file}"))?;
+fn set_of(file: &str) -> AnimationSet {
+    let (rig, clips) = rigs::load(&format!("rigs/{file}"));
     let mut set = AnimationSet::new(Skeleton::new(&rig));
     for clip in &clips {
         let built = BuiltClip::build(clip, &rig, &ClipBuildOptions::default()).expect("an open clip");
         set.add_clip(AnimatedClip::from(built));
     }
-    Some(set)
+    set
 }
 
 fn turn(from: Rotation, to: Rotation) -> Vec3 {
@@ -188,7 +189,7 @@ fn budget([a, b]: [&Alone; 2], joint: usize, first: usize, transition: Transitio
 }
 
 fn no_pops(file: &str, transition: Transition, allowed: f32) {
-    let Some(set) = set_of(file) else { return };
+    let set = set_of(file);
     let alone: Vec<Alone> = set.clips().map(|clip| Alone::new(&set, clip)).collect();
     let (mut worst, mut pairs, mut beyond) = ((0.0, String::new()), 0, 0);
     let stride = if alone.len() < 20 || std::env::var_os("SINEW_FULL").is_some() { 1 } else { 7 };
@@ -211,12 +212,14 @@ fn no_pops(file: &str, transition: Transition, allowed: f32) {
 const INERTIAL: Transition = Transition::Inertial { seconds: BLEND };
 const CROSSFADE: Transition = Transition::Crossfade { seconds: BLEND, easing: Easing::Smooth };
 
+#[needs_data]
 #[test]
 fn no_pair_of_mannequiny_pops() {
     no_pops("mannequiny.glb", INERTIAL, 1.0);
     no_pops("mannequiny.glb", CROSSFADE, 1.0);
 }
 
+#[needs_data]
 #[test]
 fn no_pair_of_the_knight_pops() {
     no_pops("kaykit_Knight.glb", INERTIAL, 1.0);

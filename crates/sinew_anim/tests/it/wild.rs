@@ -1,6 +1,7 @@
 //! Roles of rigs from the wild against a table that was written before the recogniser first ran on them.
 
 use crate::rigs;
+use needs_data::needs_data;
 use sinew_anim::roles::HUMANOID_ROLES;
 use sinew_anim::{Joint, LocalTransform, Primitive, Rig, RigMesh, Skin, analyze};
 use sinew_math::{Affine, Random, Vec3};
@@ -203,7 +204,7 @@ struct Scores {
 /// A rig of the shared data.
 fn load(file: &str) -> Rig {
     if file.starts_with("skeletons/") {
-        let bytes = rigs::bytes(file).expect("the data");
+        let bytes = rigs::bytes(file);
         return of_skeleton(&serde_json::from_slice(&bytes).expect("JSON"));
     }
     let path = format!("{}{file}", rigs::DATA);
@@ -244,11 +245,9 @@ fn tell(table: &[(String, Scores)]) {
     std::fs::write(path, serde_json::Value::from(rows).to_string()).expect("the table is written");
 }
 
+#[needs_data]
 #[test]
 fn roles_of_rigs_from_the_wild() {
-    if rigs::bytes("skeletons/README.md").is_none() {
-        return;
-    }
     let (mut rows, mut table) = (String::new(), Vec::new());
     let truths = truths();
     for truth in &truths {
@@ -297,14 +296,12 @@ const BEASTS: [&str; 14] = [
     "siege_bakery_",
 ];
 
+#[needs_data]
 #[test]
 fn no_beast_is_a_human_whatever_its_joints_are_called() {
-    if rigs::bytes("skeletons/README.md").is_none() {
-        return;
-    }
     let mut seen = 0;
     for file in BEASTS.iter().flat_map(|start| files(&format!("skeletons/{start}*"))) {
-        let json = serde_json::from_slice(&rigs::bytes(&file).expect("the data")).expect("JSON");
+        let json = serde_json::from_slice(&rigs::bytes(&file)).expect("JSON");
         let rig = of_skeleton(&json);
         for rig in [rig.clone(), blurred(&rig, 2)] {
             assert!(!analyze(&rig).expect("a skin").humanoid, "{file}");

@@ -2,6 +2,7 @@
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, glb, shared_data, sinew};
+use needs_data::needs_data;
 use sinew::anim::{Clip, Joint, Rig, Wrap, local_to_model, rest_pose, sample};
 use sinew::formats::bvh::BvhUnit;
 use sinew::formats::{BvhDocument, BvhOptions, Document, ReadOptions, load_gltf, read_bvh, write_world};
@@ -256,9 +257,10 @@ fn what_would_never_happen_is_refused() {
     }
 }
 
+#[needs_data]
 #[test]
 fn strangers_are_baked() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let folder = Folder::new("strangers");
     for name in [
         "CesiumMan.glb",
@@ -275,9 +277,10 @@ fn strangers_are_baked() {
     }
 }
 
+#[needs_data]
 #[test]
 fn strangers_become_a_bvh() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let folder = Folder::new("strangers-bvh");
     for name in ["CesiumMan.glb", "kaykit_Knight.glb", "Fox.glb", "quaternius_cyberpunk_Character.glb"] {
         let file = data.join("rigs").join(name).display().to_string();
@@ -297,6 +300,7 @@ fn strangers_become_a_bvh() {
     }
 }
 
+#[needs_data]
 #[test]
 fn a_human_without_clips_gets_up_and_walks_on() {
     let folder = Folder::new("builtin");
@@ -331,7 +335,7 @@ fn a_human_without_clips_gets_up_and_walks_on() {
     let object = baked(&bare, &["--no-builtin-motions"]);
     assert!(object["up_s"].is_null());
     says(&object, "--no-builtin-motions leaves out Sinew's");
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let object = baked(&data.join("rigs/Fox.glb").display().to_string(), &[]);
     assert!(object["up_s"].is_null());
     says(&object, "it does not get up: Sinew's own motions are a human's, and this is none");
@@ -452,6 +456,7 @@ fn feet_on_the_root_fall_with_their_legs_and_stay_on_the_root() {
 }
 
 /// A hit, a travelling clip and a world are held to the bars of a drop, and what is beyond them is said.
+#[needs_data]
 #[test]
 fn a_bake_is_judged_like_a_drop() {
     let folder = Folder::new("bake-judged");
@@ -474,7 +479,7 @@ fn a_bake_is_judged_like_a_drop() {
     .json();
     assert_eq!(baked["verdict"], "good", "{baked:#}");
     assert_eq!(baked["reasons"], serde_json::json!([]));
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     // While motors roll it over, energy comes from nowhere but them: it was 0.15 of it in a step.
     let ogre = data.join("rigs_wild/ultimate_space_Enemy_Large-transformed.glb").display().to_string();
     let baked = sinew(&["bake", &ogre, "--seconds", "6", "-o", &out, "--json"]).json();

@@ -2,6 +2,7 @@
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, gltf_files, shared_data, sinew};
+use needs_data::needs_data;
 use serde_json::Value;
 use sinew::formats::read_world;
 use sinew::math::Vec3;
@@ -57,9 +58,10 @@ fn boxes_come_back_as_they_were() {
     assert_eq!(folder.names(), ["table.json", "table.obj"]);
 }
 
+#[needs_data]
 #[test]
 fn a_house_keeps_its_stairs_and_bakes() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let folder = Folder::new("house");
     let file = data.join("worlds/house_2story_stairs.glb").display().to_string();
     let (out, picture) = (folder.path("house.json"), folder.path("house.png"));
@@ -129,9 +131,10 @@ fn bounce_down(house: &[BodyDef]) {
     assert_eq!(met.last(), Some(&ground), "it ends on the ground");
 }
 
+#[needs_data]
 #[test]
 fn pieces_of_a_dungeon() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let folder = Folder::new("dungeon");
     // Of the floor tile the missing underside is all that is off.
     for (piece, share) in [("stairs", 0.05), ("wall", 0.05), ("floor_tile_large", 1.01)] {
@@ -182,9 +185,10 @@ fn lying_objs_are_refused() {
     assert!(run.refusal(2).ends_with("is an input: write to another file"), "{run:?}");
 }
 
+#[needs_data]
 #[test]
 fn bad_input_becomes_boxes_or_is_refused() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let folder = Folder::new("bad-boxes");
     for file in gltf_files(&data.join("bad_input")) {
         let run = sinew(&["boxes", &file, "-o", &folder.path("out.json")]);

@@ -2,6 +2,7 @@
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, shared_data, sinew};
+use needs_data::needs_data;
 use sinew::anim::{Wrap, rest_pose, sample};
 use sinew::formats::{MotionFile, MotionOptions, ReadOptions, load_gltf, load_motion};
 
@@ -138,9 +139,10 @@ fn fbx_to_glb() {
     assert!(sinew(&["inspect", &cut]).refusal(1).starts_with(&format!("error: {cut}: ")));
 }
 
+#[needs_data]
 #[test]
 fn a_vrm_animation_moves_what_it_says() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let folder = Folder::new("convert-vrma");
     let file = |name: &str| data.join("rigs").join(name).display().to_string();
     let out = folder.path("out.glb");
@@ -186,7 +188,7 @@ fn what_cannot_be_converted() {
     );
     let cut = folder.file("cut.bvh", &BVH[..BVH.len() - 9]);
     refused(&["convert", &cut, &folder.path("out.glb")], 1, "(line");
-    refused(&["events", "detect", &bvh], 1, "no human legs");
+    refused(&["events", "detect", &bvh], 1, "footsteps are found on the two legs of a human");
 }
 
 #[test]
@@ -205,9 +207,10 @@ fn footsteps_of_the_mannequin() {
     assert_eq!(again["clips"][0]["events"], serde_json::json!([]));
 }
 
+#[needs_data]
 #[test]
 fn every_captured_file_becomes_a_glb() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let folder = Folder::new("convert-mocap");
     for entry in std::fs::read_dir(data.join("mocap")).expect("the folder is there") {
         let path = entry.expect("an entry").path().display().to_string();

@@ -1,6 +1,7 @@
 //! Corrections by the user: roles, what is ignored, which bones get bodies; names that nearly fit.
 
 use crate::sinew::{Folder, glb, shared_data, sinew};
+use needs_data::needs_data;
 use serde_json::Value;
 use sinew::anim::{Clip, Rig};
 use sinew_scenes::mannequin::mannequin;
@@ -197,9 +198,10 @@ fn a_hit_on_what_has_no_body_meets_the_nearest_and_says_so() {
 }
 
 /// A creature has a spine as well, by other names.
+#[needs_data]
 #[test]
 fn a_hit_on_the_chest_of_a_creature_meets_its_spine() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let folder = Folder::new("said-fox");
     let (file, out) = (data.join("rigs/Fox.glb").display().to_string(), folder.path("out.glb"));
     let run = |hit: &str| sinew(&["bake", &file, "--hit", hit, "--seconds", "0.2", "-o", &out, "--json"]);

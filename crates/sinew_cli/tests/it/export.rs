@@ -2,6 +2,7 @@
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, gltf_files, shared_data, sinew};
+use needs_data::needs_data;
 use serde_json::Value;
 use sinew::anim::{Rig, analyze};
 use sinew::formats::{
@@ -114,9 +115,10 @@ fn a_mujoco_model_reads_back() {
     assert_eq!(object["bodies"], def.bodies.len());
 }
 
+#[needs_data]
 #[test]
 fn rigs_of_others_read_back_from_mujoco_models() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     for file in gltf_files(&data.join("rigs")) {
         let document = load_gltf(&file, ReadOptions::default()).expect("a file of the collection");
         let Ok(analysis) = analyze(&document.rig) else { continue };
@@ -303,9 +305,10 @@ fn physics_in_the_users_own_file_reads_back() {
     assert_eq!(std::fs::read(&out).expect("written"), bytes);
 }
 
+#[needs_data]
 #[test]
 fn rigs_of_others_read_back_with_physics() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     for file in gltf_files(&data.join("rigs")) {
         let document = load_gltf(&file, ReadOptions::default()).expect("a file of the collection");
         let Ok(analysis) = analyze(&document.rig) else { continue };

@@ -1,6 +1,7 @@
 //! Manners of the command where something is odd: outputs, names, notes.
 
 use crate::sinew::{Folder, Run, command, glb, shared_data, sinew};
+use needs_data::needs_data;
 use serde_json::Value;
 use sinew::anim::Rig;
 use sinew::formats::{MotionOptions, ReadOptions, load_gltf, load_motion, write_world};
@@ -177,9 +178,10 @@ fn joints_are_listed_as_a_tree() {
 }
 
 /// Some formats list joints level by level; below a joint stands what hangs on it all the same.
+#[needs_data]
 #[test]
 fn a_list_level_by_level_is_shown_as_a_tree() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let file = data.join("mocap/deepmimic_humanoid3d.txt").display().to_string();
     let object = sinew(&["inspect", &file, "--json"]).json();
     let joints = object["joints"].as_array().expect("joints");

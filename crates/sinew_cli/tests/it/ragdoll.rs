@@ -2,6 +2,7 @@
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, glb, gltf_files, shared_data, sinew};
+use needs_data::needs_data;
 use serde_json::Value;
 use sinew::formats::{read_ragdoll, write_ragdoll};
 use sinew::physics::JointKind;
@@ -76,9 +77,10 @@ fn a_head_that_the_rig_has_is_given_back() {
 }
 
 /// No false alarm: what a build gives from a sound rig has no errors.
+#[needs_data]
 #[test]
 fn rigs_of_others_have_no_errors() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     for file in gltf_files(&data.join("rigs")) {
         let run = sinew(&["ragdoll", "doctor", &file, "--json"]);
         if run.code == Some(1) {
@@ -92,9 +94,10 @@ fn rigs_of_others_have_no_errors() {
 }
 
 /// The fish's skin reaches far around its bodies: it lies in the floor, which is said with the bone and a remedy.
+#[needs_data]
 #[test]
 fn skin_in_the_floor_is_told() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let file = data.join("rigs/quaternius_MandarinFish.glb").display().to_string();
     let object = sinew(&["ragdoll", "doctor", &file, "--json"]).json();
     check_keys("ragdoll doctor", &object);
@@ -107,9 +110,10 @@ fn skin_in_the_floor_is_told() {
     assert!(reasons.iter().any(|reason| reason.as_str().is_some_and(|r| r.starts_with("skin: at rest"))));
 }
 
+#[needs_data]
 #[test]
 fn models_of_others_are_examined() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let file = data.join("robots/mujoco_humanoid.xml").display().to_string();
     let object = sinew(&["ragdoll", "doctor", &file, "--json"]).json();
     assert!(
@@ -121,9 +125,10 @@ fn models_of_others_are_examined() {
 }
 
 /// Failings planted into a model that others wrote.
+#[needs_data]
 #[test]
 fn failings_in_models_of_others_are_named() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let folder = Folder::new("models");
     let text = std::fs::read_to_string(data.join("robots/mujoco_humanoid.xml")).expect("the model");
     for (from, to, code) in [

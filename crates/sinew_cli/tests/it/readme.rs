@@ -1,6 +1,7 @@
 //! The README's own lines, one after the other, as a reader would type them.
 
 use crate::sinew::{Folder, Run, command, shared_data};
+use needs_data::needs_data;
 use std::fs;
 
 const README: &str = include_str!("../../../../README.md");
@@ -17,9 +18,10 @@ fn lines(heading: &str) -> Vec<Vec<&'static str>> {
     lines.map(|line| line.split('#').next().unwrap_or(line).split_whitespace().collect()).collect()
 }
 
+#[needs_data]
 #[test]
 fn its_lines_run_one_after_the_other() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     for rig in ["rigs/quaternius_cyberpunk_Character.glb", "rigs_wild/platformer_game_Character.glb"] {
         let folder = Folder::new("readme");
         let copy = |from: &str, to: &str| {

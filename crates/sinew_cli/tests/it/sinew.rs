@@ -5,7 +5,6 @@ use sinew::anim::{Clip, Rig};
 use sinew::formats::write_gltf;
 use sinew_scenes::mannequin::mannequin;
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -109,16 +108,9 @@ pub fn glb(rig: &Rig, clips: &[Clip]) -> Vec<u8> {
     write_gltf(rig, clips).expect("a rig made by code can be written")
 }
 
-/// The folder of test data beside the workspace, or a note on why the test does nothing.
-pub fn shared_data() -> Option<PathBuf> {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
-    if folder.is_dir() {
-        return Some(folder.to_path_buf());
-    }
-    // Not println, which the harness swallows where a test passes.
-    let test = std::thread::current().name().unwrap_or("a test").to_owned();
-    let _ = writeln!(std::io::stderr(), "{test} skipped: no ../shared/data");
-    None
+/// The folder of test data beside the workspace, for tests with `needs_data`.
+pub fn shared_data() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"))
 }
 
 /// Every glTF, GLB, VRM and VRMA file below `folder`, sorted.

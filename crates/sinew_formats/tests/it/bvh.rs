@@ -1,6 +1,7 @@
 //! BVH: real files, files made of all that can differ, and the way back.
 
 use crate::data::{files, shared_data};
+use needs_data::needs_data;
 use sinew_anim::{
     Channel, Clip, Interpolation, Joint, LocalTransform, Property, Rig, Wrap, local_to_model, sample,
 };
@@ -22,9 +23,9 @@ fn complaint(text: &str) -> String {
     read_bvh(text.as_bytes(), AS_IT_IS).err().map(|e| e.to_string()).unwrap_or_default()
 }
 
-fn shared(name: &str, options: BvhOptions) -> Option<BvhDocument> {
-    let path = shared_data()?.join("mocap").join(name);
-    Some(read_bvh(&std::fs::read(path).unwrap(), options).unwrap_or_else(|e| panic!("{name}: {e}")))
+fn shared(name: &str, options: BvhOptions) -> BvhDocument {
+    let path = shared_data().join("mocap").join(name);
+    read_bvh(&std::fs::read(path).unwrap(), options).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
 fn pose(document: &BvhDocument, frame: usize) -> Vec<LocalTransform> {
@@ -198,6 +199,7 @@ fn a_hundred_thousand_nested_joints_are_read_and_written() {
     assert!(!complaint(&"HIERARCHY ROOT r {".repeat(DEEP)).is_empty());
 }
 
+#[needs_data]
 #[test]
 fn units_are_told_by_the_length_of_the_bones() {
     for (name, metres) in [
@@ -207,30 +209,31 @@ fn units_are_told_by_the_length_of_the_bones() {
         ("mixed_rotation_orders.bvh", 0.0254),
         ("sinusoidal.bvh", 0.01),
     ] {
-        let Some(found) = shared(name, BvhOptions::default()) else { return };
+        let found = shared(name, BvhOptions::default());
         assert!((found.metres_per_unit - metres).abs() < 1e-6, "{name}: {:?}", found.notes);
     }
     let options = BvhOptions { unit: BvhUnit::Metres(0.5), ..AS_IT_IS };
-    assert_eq!(shared("cmu_12_01_walk.bvh", options).unwrap().metres_per_unit, 0.5);
+    assert_eq!(shared("cmu_12_01_walk.bvh", options).metres_per_unit, 0.5);
 }
 
+#[needs_data]
 #[test]
 fn the_rest_pose_before_a_motion_is_found() {
-    let Some(found) = shared("cmu_12_01_walk.bvh", BvhOptions::default()) else { return };
+    let found = shared("cmu_12_01_walk.bvh", BvhOptions::default());
     assert_eq!((found.frames, found.clip.channels[0].times.len()), (523, 523));
     assert!(found.rest_pose.is_some());
     assert!((found.clip.duration - 522.0 / 120.0).abs() < 1e-5);
-    let kept = shared("cmu_12_01_walk.bvh", AS_IT_IS).unwrap();
+    let kept = shared("cmu_12_01_walk.bvh", AS_IT_IS);
     assert_eq!(kept.frames, 524);
     let stated = kept.rest_pose.as_ref().unwrap();
     assert!(pose(&kept, 0).iter().zip(stated).all(|(a, b)| a.rotation.angle_to(b.rotation) < 1e-5));
     for name in
         ["cmu_02_03_run_iclone.bvh", "mixed_rotation_orders.bvh", "sinusoidal.bvh", "rotation_first_root.bvh"]
     {
-        let other = shared(name, BvhOptions::default()).unwrap();
+        let other = shared(name, BvhOptions::default());
         assert!(other.rest_pose.is_none(), "{name}: {:?}", other.notes);
     }
-    assert!(shared("cmu_01_01_jumps.bvh", BvhOptions::default()).unwrap().rest_pose.is_some());
+    assert!(shared("cmu_01_01_jumps.bvh", BvhOptions::default()).rest_pose.is_some());
 }
 
 fn options_of(document: &BvhDocument) -> BvhWriteOptions<'_> {
@@ -259,9 +262,10 @@ fn difference(a: &BvhDocument, b: &BvhDocument) -> (f32, f32) {
     (turn, shift)
 }
 
+#[needs_data]
 #[test]
 fn every_file_comes_back_as_it_was() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let found = files(&data.join("mocap"), &["bvh"]);
     assert!(found.len() >= 6);
     for path in found {
@@ -350,9 +354,10 @@ fn random_motions_come_back_as_they_were() {
 }
 
 /// Joints of a glTF rig have axes of their own at rest; in the file they have those of the model.
+#[needs_data]
 #[test]
 fn a_rig_with_turned_joints_keeps_its_motion() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let path = data.join("rigs/CesiumMan.glb");
     let document = sinew_formats::load_gltf(path, sinew_formats::ReadOptions::default()).unwrap();
     let (rig, clip) = (&document.rig, &document.clips[0]);
@@ -421,6 +426,7 @@ fn read_and_check(bytes: &[u8]) -> Option<String> {
     strict.err().map(|error| error.to_string())
 }
 
+#[needs_data]
 #[test]
 fn a_file_cut_anywhere_is_refused() {
     let end = TWO_JOINTS.trim_end().len();
@@ -428,7 +434,7 @@ fn a_file_cut_anywhere_is_refused() {
         // The last number may lose digits and still be one.
         assert!(read_and_check(&TWO_JOINTS.as_bytes()[..length]).is_some(), "{length}");
     }
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let mut random = Random::new(5);
     for path in files(&data.join("mocap"), &["bvh"]) {
         let whole = std::fs::read(&path).unwrap();
@@ -450,7 +456,8 @@ fn a_file_cut_anywhere_is_refused() {
 fn mutated_files_do_no_harm() {
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 10_000 } else { 1000 };
     let mut whole = vec![TWO_JOINTS.as_bytes().to_vec()];
-    if let Some(data) = shared_data() {
+    let data = shared_data();
+    if data.is_dir() {
         let small = |name: &str| std::fs::read(data.join("mocap").join(name)).unwrap();
         whole.extend([small("rotation_first_root.bvh"), small("sinusoidal.bvh")]);
     }

@@ -2,19 +2,11 @@
 
 use sinew_anim::{Channel, Clip, Interpolation, Joint, LocalTransform, Property, Rig};
 use sinew_math::{Rotation, Vec3};
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// The folder of test data beside the workspace, or a note on why the test does nothing.
-pub fn shared_data() -> Option<PathBuf> {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
-    if folder.is_dir() {
-        return Some(folder.to_path_buf());
-    }
-    // Not println, which the harness swallows where a test passes.
-    let test = std::thread::current().name().unwrap_or("a test").to_owned();
-    let _ = writeln!(std::io::stderr(), "{test} skipped: no ../shared/data");
-    None
+/// The folder of test data beside the workspace, for tests with `needs_data`.
+pub fn shared_data() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"))
 }
 
 /// Every file below `folder` with one of these extensions, in a fixed order.

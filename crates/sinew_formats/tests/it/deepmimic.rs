@@ -1,18 +1,19 @@
 //! DeepMimic characters and clips.
 
 use crate::data::shared_data;
+use needs_data::needs_data;
 use sinew_anim::{Property, Wrap, local_to_model, rest_pose, sample};
 use sinew_formats::deepmimic::{
     DeepMimicCharacter, DeepMimicJoint, read_deepmimic, read_deepmimic_character,
 };
 use sinew_math::{Affine, Random};
 
-fn bytes(name: &str) -> Option<Vec<u8>> {
-    Some(std::fs::read(shared_data()?.join("mocap").join(name)).unwrap())
+fn bytes(name: &str) -> Vec<u8> {
+    std::fs::read(shared_data().join("mocap").join(name)).unwrap()
 }
 
-fn humanoid() -> Option<DeepMimicCharacter> {
-    Some(read_deepmimic_character(&bytes("deepmimic_humanoid3d.txt")?).unwrap())
+fn humanoid() -> DeepMimicCharacter {
+    read_deepmimic_character(&bytes("deepmimic_humanoid3d.txt")).unwrap()
 }
 
 /// Heights of all joints at a time, metres.
@@ -24,14 +25,15 @@ fn heights(character: &DeepMimicCharacter, clip: &sinew_anim::Clip, time: f32) -
     model.iter().map(|joint| joint.translation.y).collect()
 }
 
+#[needs_data]
 #[test]
 fn clips_are_what_the_manifest_says() {
-    let Some(character) = humanoid() else { return };
+    let character = humanoid();
     assert_eq!(character.rig.joints.len(), 15);
     for (name, frames, duration, wrap) in
         [("deepmimic_run.txt", 25, 0.8, Wrap::Loop), ("deepmimic_getup_faceup.txt", 227, 3.77, Wrap::Clamp)]
     {
-        let found = read_deepmimic(&bytes(name).unwrap(), &character).unwrap();
+        let found = read_deepmimic(&bytes(name), &character).unwrap();
         assert_eq!((found.clip.channels[0].times.len(), found.wrap), (frames, wrap), "{name}");
         assert!((found.clip.duration - duration).abs() < 0.01, "{name}: {}", found.clip.duration);
         // Root: two channels; fixed wrists: none.
@@ -42,17 +44,18 @@ fn clips_are_what_the_manifest_says() {
 }
 
 /// The get-up starts on the back and ends on the feet; the run never touches the ground with more than its feet.
+#[needs_data]
 #[test]
 fn bodies_are_where_they_should_be() {
-    let Some(character) = humanoid() else { return };
-    let up = read_deepmimic(&bytes("deepmimic_getup_faceup.txt").unwrap(), &character).unwrap().clip;
+    let character = humanoid();
+    let up = read_deepmimic(&bytes("deepmimic_getup_faceup.txt"), &character).unwrap().clip;
     let place = |name: &str| character.rig.joints.iter().position(|joint| joint.name == name).unwrap();
     let (neck, ankle) = (place("neck"), place("left_ankle"));
     let lying = heights(&character, &up, 0.0);
     assert!(lying[neck] < 0.5, "{lying:?}");
     let standing = heights(&character, &up, up.duration);
     assert!(standing[neck] > 1.15 && standing[ankle] < 0.2, "{standing:?}");
-    let run = read_deepmimic(&bytes("deepmimic_run.txt").unwrap(), &character).unwrap().clip;
+    let run = read_deepmimic(&bytes("deepmimic_run.txt"), &character).unwrap().clip;
     for frame in 0..25 {
         let height = heights(&character, &run, frame as f32 * 0.0333);
         assert!(height[neck] > 1.0 && height.iter().all(|&y| y > -0.02), "{height:?}");
@@ -73,9 +76,10 @@ fn a_hinge_turns_about_z() {
     assert!((2.0 * sinew_math::trig::atan2(knee.values[2], knee.values[3]) - 0.75).abs() < 1e-6);
 }
 
+#[needs_data]
 #[test]
 fn complaints_name_the_place() {
-    let Some(character) = humanoid() else { return };
+    let character = humanoid();
     for (text, expected) in [
         (r#"{"Frames":[]}"#, "no frames (Frames)"),
         (r#"{"Frames":[[0.1,2]]}"#, "2 numbers; a frame of this character has 44 (Frames[0])"),
@@ -88,7 +92,7 @@ fn complaints_name_the_place() {
     let text = format!(r#"{{"Frames":[{still},{still}]}}"#);
     let error = read_deepmimic(text.as_bytes(), &character).unwrap_err();
     assert_eq!(error.to_string(), "the frame does not last (Frames[0])");
-    let wrong = String::from_utf8(bytes("deepmimic_humanoid3d.txt").unwrap()).unwrap();
+    let wrong = String::from_utf8(bytes("deepmimic_humanoid3d.txt")).unwrap();
     let said =
         |from: &str, to: &str| read_deepmimic_character(wrong.replacen(from, to, 1).as_bytes()).unwrap_err();
     assert_eq!(said("spherical", "rubber").to_string(), "a joint of type `rubber` (Skeleton.Joints[1].Type)");
@@ -99,10 +103,11 @@ fn complaints_name_the_place() {
 }
 
 /// Files cut and changed at random places: an error or a clip, never a panic.
+#[needs_data]
 #[test]
 fn mutated_files_do_no_harm() {
-    let Some(character) = humanoid() else { return };
-    let (whole, skeleton) = (bytes("deepmimic_run.txt").unwrap(), bytes("deepmimic_humanoid3d.txt").unwrap());
+    let character = humanoid();
+    let (whole, skeleton) = (bytes("deepmimic_run.txt"), bytes("deepmimic_humanoid3d.txt"));
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 2000 } else { 200 };
     let mut random = Random::new(9);
     for _ in 0..cases {

@@ -5,6 +5,7 @@ use draco_core::{
     DataType, EncoderBuffer, EncoderOptions, FaceIndex, GeometryAttributeType, Mesh, MeshEncoder,
     PointAttribute, PointIndex,
 };
+use needs_data::needs_data;
 use serde_json::{Value, json};
 use sinew_formats::{Document, ErrorKind, ReadOptions, Result, load_gltf, no_files, read_gltf};
 use sinew_math::{Random, Vec3};
@@ -237,9 +238,10 @@ fn peak(call: impl FnOnce()) -> u64 {
     allocation_counter::measure(call).bytes_max
 }
 
+#[needs_data]
 #[test]
 fn the_compressed_rigs_of_shared_are_read() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     for (file, vertices, triangles) in [
         ("Astronaut_RaeTheRedPanda", 5382, 17052 / 3),
         ("Enemy_Flying", 2848, 11460 / 3),

@@ -1,6 +1,7 @@
 //! Bytes that want to break the reader: an error with a place each time, never a panic, never memory on credit.
 
 use crate::data::{GLTF, files, shared_data};
+use needs_data::needs_data;
 use sinew_formats::{Error, ReadOptions, Result, Textures, append_clip, load_gltf, no_files, read_gltf};
 use sinew_math::Random;
 use std::path::Path;
@@ -182,9 +183,10 @@ fn assert_one_line(error: &Error) {
     assert!(!text.chars().any(char::is_control) && text.len() < 600, "{text}");
 }
 
+#[needs_data]
 #[test]
 fn files_made_to_be_bad_do_no_harm() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let (mut read, mut refused) = (0, 0);
     for folder in ["bad_input", "negative", "worlds"] {
         for path in files(&data.join(folder), &GLTF) {
@@ -203,18 +205,20 @@ fn files_made_to_be_bad_do_no_harm() {
     assert!(read > 60 && refused > 40, "{read} read, {refused} refused");
 }
 
+#[needs_data]
 #[test]
 fn valid_files_that_are_no_characters_are_read() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     for path in files(&data.join("negative"), &GLTF) {
         load_gltf(&path, DECODE).unwrap_or_else(|e| panic!("{e}"));
     }
 }
 
 /// Random bytes changed in small rigs. 2,000 cases when `SINEW_FULL` is set, a tenth of that otherwise.
+#[needs_data]
 #[test]
 fn mutated_rigs_do_no_harm() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 2000 } else { 200 };
     for (seed, name) in ["RiggedSimple.glb", "SimpleSkin.gltf", "vrma_test.vrma"].iter().enumerate() {
         let path = data.join("rigs").join(name);

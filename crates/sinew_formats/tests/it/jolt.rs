@@ -1,6 +1,7 @@
 //! Ragdolls and animations of Jolt: a small one written here, bytes that want to break the reader, and Jolt's own human.
 
 use crate::data::shared_data;
+use needs_data::needs_data;
 use sinew_anim::{Clip, Interpolation, LocalTransform, Property, Rig, Wrap, rest_pose, sample};
 use sinew_formats::{JoltRagdoll, read_jolt_animation, read_jolt_ragdoll};
 use sinew_math::{Random, Rotation, Transform, Vec3};
@@ -276,17 +277,18 @@ fn every_prefix_and_every_changed_byte_gives_an_answer() {
 }
 
 /// Jolt's human and a clip of its.
-fn human(clip: &str) -> Option<(JoltRagdoll, Clip)> {
-    let folder = shared_data()?.join("peers/jolt");
+fn human(clip: &str) -> (JoltRagdoll, Clip) {
+    let folder = shared_data().join("peers/jolt");
     let ragdoll = read_jolt_ragdoll(&std::fs::read(folder.join("Human.tof")).unwrap()).unwrap();
     let clip = std::fs::read(folder.join("Human").join(clip)).unwrap();
     let clip = read_jolt_animation(&clip, &ragdoll.rig).unwrap();
-    Some((ragdoll, clip))
+    (ragdoll, clip)
 }
 
+#[needs_data]
 #[test]
 fn jolts_human_is_whole() {
-    let Some((JoltRagdoll { rig, def, motors }, clip)) = human("walk.tof") else { return };
+    let (JoltRagdoll { rig, def, motors }, clip) = human("walk.tof");
     assert_eq!((def.bodies.len(), def.joints.len(), rig.joints.len()), (23, 22, 23));
     assert!(motors[1..].iter().all(|motor| motor.is_some_and(|motor| motor.hertz == 20.0)));
     assert!((1.4..2.1).contains(&def.height), "{} m", def.height);
@@ -395,9 +397,10 @@ impl Stage {
     }
 }
 
+#[needs_data]
 #[test]
 fn motors_track_the_walk_of_jolts_human() {
-    let Some((ragdoll, clip)) = human("walk.tof") else { return };
+    let (ragdoll, clip) = human("walk.tof");
     let stage = Stage::new(ragdoll, clip);
     let (pinned, force) = stage.track(DriveMode::Pinned(Muscle::STIFF, Pin::FIRM));
     println!("pinned: {pinned} degrees, {force} N");

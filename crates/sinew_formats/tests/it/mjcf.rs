@@ -2,6 +2,7 @@
 
 use crate::data::shared_data;
 use core::f32::consts::FRAC_1_SQRT_2 as H;
+use needs_data::needs_data;
 use sinew_formats::mjcf::MjcfJoint;
 use sinew_formats::{Error, MjcfModel, read_mjcf};
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, max};
@@ -9,13 +10,13 @@ use sinew_physics::{
     AxisMotion, BodyKind, JointCollision, JointKind, Shape, Softness, Spring, World, WorldDef,
 };
 
-fn humanoid_text() -> Option<String> {
-    let path = shared_data()?.join("robots/mujoco_humanoid.xml");
-    Some(std::fs::read_to_string(path).expect("the humanoid is there"))
+fn humanoid_text() -> String {
+    let path = shared_data().join("robots/mujoco_humanoid.xml");
+    std::fs::read_to_string(path).expect("the humanoid is there")
 }
 
-fn humanoid() -> Option<MjcfModel> {
-    Some(read_mjcf(humanoid_text()?.as_bytes()).expect("it is read"))
+fn humanoid() -> MjcfModel {
+    read_mjcf(humanoid_text().as_bytes()).expect("it is read")
 }
 
 /// From MuJoCo's axes to ours.
@@ -49,9 +50,10 @@ const BODIES: [BodyRow; 16] = [
     ("hand_left", 0.268083, [0.0; 3], 0.000515, [0.36, 0.17, 1.342]),
 ];
 
+#[needs_data]
 #[test]
 fn the_bodies_of_the_humanoid_are_those_that_mujoco_makes() {
-    let Some(model) = humanoid() else { return };
+    let model = humanoid();
     assert_eq!(model.bodies.len(), 1 + BODIES.len());
     assert_eq!(model.bodies[0].def.kind, BodyKind::Static);
     assert_eq!(model.bodies[0].def.shapes[0].shape, Shape::HalfSpace);
@@ -70,9 +72,10 @@ fn the_bodies_of_the_humanoid_are_those_that_mujoco_makes() {
 }
 
 /// Full tensors of two bodies that have none of the axes for principal ones: MuJoCo 4.0.0.
+#[needs_data]
 #[test]
 fn inertia_is_turned_like_the_body() {
-    let Some(model) = humanoid() else { return };
+    let model = humanoid();
     // Diagonal and (yz, xz, xy), in our axes.
     for (name, diagonal, off) in [
         ("torso", [0.051135, 0.031288, 0.031967], [0.0, 0.0, -0.001666]),
@@ -91,9 +94,10 @@ fn joint<'a>(model: &'a MjcfModel, child: &str) -> &'a MjcfJoint {
     model.joints.iter().find(|joint| joint.child == child).expect("it has a joint")
 }
 
+#[needs_data]
 #[test]
 fn the_joints_of_the_humanoid_are_where_mujoco_has_them() {
-    let Some(model) = humanoid() else { return };
+    let model = humanoid();
     assert_eq!(model.joints.len(), 15);
     let pose = model.rest_pose();
     for (child, anchor, twist_axis) in [
@@ -133,9 +137,10 @@ fn two_ranges(joint: &MjcfJoint) -> [Range; 2] {
     })
 }
 
+#[needs_data]
 #[test]
 fn the_ranges_of_the_humanoid_are_those_of_its_classes() {
-    let Some(model) = humanoid() else { return };
+    let model = humanoid();
     let JointKind::Hinge { limit: Some(knee) } = joint(&model, "shin_right").kind else { panic!("a hinge") };
     assert_range(knee, -160.0, 2.0);
     let limit = |child: &str| match joint(&model, child).kind {
@@ -154,9 +159,10 @@ fn the_ranges_of_the_humanoid_are_those_of_its_classes() {
     }
 }
 
+#[needs_data]
 #[test]
 fn what_mujoco_keeps_from_colliding_is_kept_from_it() {
-    let Some(model) = humanoid() else { return };
+    let model = humanoid();
     let excluded = |a: &str, b: &str| {
         let (a, b) = (model.body(a).expect(a), model.body(b).expect(b));
         let joined = model.joints.iter().any(|joint| {
@@ -174,9 +180,10 @@ fn what_mujoco_keeps_from_colliding_is_kept_from_it() {
 }
 
 /// Places of bodies in keyframes, MuJoCo 4.0.0. Feet are left out: their two hinges are 4 cm apart there.
+#[needs_data]
 #[test]
 fn keyframes_are_the_poses_that_mujoco_makes() {
-    let Some(model) = humanoid() else { return };
+    let model = humanoid();
     for (keyframe, rows) in [
         (
             "prone",
@@ -211,9 +218,10 @@ fn keyframes_are_the_poses_that_mujoco_makes() {
     }
 }
 
+#[needs_data]
 #[test]
 fn what_is_left_out_is_said() {
-    let Some(model) = humanoid() else { return };
+    let model = humanoid();
     for note in [
         "`ankle_y_right` and `ankle_x_right` are 0.040 m apart; here they are one, in the middle",
         "springs of `abdomen_z` and `abdomen_y` are not the same; here all have the softest",
@@ -479,9 +487,10 @@ fn read_and_try(bytes: &[u8]) -> Result<(), Error> {
     Ok(())
 }
 
+#[needs_data]
 #[test]
 fn every_prefix_of_the_humanoid_is_refused() {
-    let Some(text) = humanoid_text() else { return };
+    let text = humanoid_text();
     let text = text.trim_end();
     let step = if std::env::var_os("SINEW_FULL").is_some() { 1 } else { 37 };
     for length in (0..text.len()).step_by(step) {
@@ -491,10 +500,11 @@ fn every_prefix_of_the_humanoid_is_refused() {
 
 /// Random bytes of the humanoid changed, and numbers of it replaced by hostile ones. 10,000 cases when `SINEW_FULL` is
 /// set, a hundredth of that otherwise.
+#[needs_data]
 #[test]
 fn mutated_humanoids_do_no_harm() {
     const WORDS: [&str; 10] = ["0", "-1", "1e9", "1e-30", "nan", "1e40", "", "\"", "<body>", "0 0 0 0"];
-    let Some(text) = humanoid_text() else { return };
+    let text = humanoid_text();
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 10_000 } else { 100 };
     // Behind the comment at its head.
     let start = text.find("<mujoco").expect("the root");

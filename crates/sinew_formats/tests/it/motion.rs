@@ -1,6 +1,7 @@
 //! Any file with clips by one function.
 
 use crate::data::{bar, files, shared_data};
+use needs_data::needs_data;
 use sinew_anim::ClipEvent;
 use sinew_formats::{
     BvhWriteOptions, ErrorKind, MotionFormat, MotionOptions, no_files, read_motion, write_bvh, write_gltf,
@@ -59,9 +60,10 @@ fn a_vrm_animation_states_its_bones() {
 }
 
 #[cfg(feature = "fs")]
+#[needs_data]
 #[test]
 fn every_captured_file_loads_by_one_function() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     let found = files(&data.join("mocap"), &["bvh", "txt"]);
     assert!(found.len() >= 9);
     for path in found {

@@ -1,6 +1,7 @@
 //! Ragdoll files: the example of the documentation, round trips, complaints.
 
 use crate::world::documented_example;
+use needs_data::needs_data;
 use serde_json::{Value, json};
 use sinew_formats::{ReadOptions, load_gltf, read_ragdoll, write_ragdoll};
 use sinew_math::{Random, Range, SwingTwistLimit, Sym3, Transform, Vec3};
@@ -191,9 +192,10 @@ fn bytes_changed_at_random_do_no_harm() {
 }
 
 /// Numbers that lie, in a whole body: refused, or examined, mended and written again, whatever they say.
+#[needs_data]
 #[test]
 fn lies_are_refused_or_examined() {
-    let Some(data) = crate::data::shared_data() else { return };
+    let data = crate::data::shared_data();
     let document = load_gltf(data.join("rigs/mannequiny.glb"), ReadOptions::default()).unwrap();
     let analysis = sinew_anim::analyze(&document.rig).unwrap();
     let (def, _) = build(&document.rig, &analysis, &BuildOptions::default()).unwrap();

@@ -1,18 +1,19 @@
 //! Rigs that nobody here drew: what the manifest beside them says is what is read.
 
 use crate::data::{GLTF, files, shared_data};
+use needs_data::needs_data;
 use sinew_anim::{Interpolation, Primitive};
 use sinew_formats::{Document, ReadOptions, Textures, load_gltf};
 use sinew_math::{Affine, Vec3};
 
-fn load(name: &str) -> Option<Document> {
-    let path = shared_data()?.join("rigs").join(name);
-    Some(load_gltf(path, ReadOptions { textures: Textures::Decode }).unwrap())
+fn load(name: &str) -> Document {
+    let path = shared_data().join("rigs").join(name);
+    load_gltf(path, ReadOptions { textures: Textures::Decode }).unwrap()
 }
 
 /// (skin joints, vertices, triangles, clips, duration of the first clip) as the manifest of the data states them.
 fn check(name: &str, skin_joints: usize, vertices: usize, triangles: usize, clips: usize, duration: f32) {
-    let Some(document) = load(name) else { return };
+    let document = load(name);
     let rig = &document.rig;
     let primitives = || rig.meshes.iter().flat_map(|m| &m.primitives);
     let found = (
@@ -26,6 +27,7 @@ fn check(name: &str, skin_joints: usize, vertices: usize, triangles: usize, clip
     assert!((first - duration).abs() < 0.006, "{name}: {first}");
 }
 
+#[needs_data]
 #[test]
 fn counts_match_the_manifest() {
     check("CesiumMan.glb", 19, 3273, 4672, 1, 2.0);
@@ -83,9 +85,10 @@ fn assert_sound_primitive(part: &Primitive, slots: Option<usize>, textures: usiz
     }
 }
 
+#[needs_data]
 #[test]
 fn every_rig_keeps_the_promises_of_its_types() {
-    let Some(data) = shared_data() else { return };
+    let data = shared_data();
     for path in files(&data.join("rigs"), &GLTF) {
         let document = load_gltf(&path, ReadOptions { textures: Textures::Decode });
         let document = document.unwrap_or_else(|e| panic!("{e}"));
@@ -96,12 +99,13 @@ fn every_rig_keeps_the_promises_of_its_types() {
 
 /// At rest a skinned mesh is where the file's bind pose says: rest × inverse bind is the identity, up to the place of
 /// the armature, for rigs of which the manifest says that both poses agree.
+#[needs_data]
 #[test]
 fn inverse_bind_matrices_undo_the_rest_pose() {
     for name in
         ["CesiumMan.glb", "RiggedFigure.glb", "kaykit_Knight.glb", "mannequiny.glb", "quaternius_Robot.glb"]
     {
-        let Some(document) = load(name) else { return };
+        let document = load(name);
         let rig = &document.rig;
         let mut model: Vec<Affine> = Vec::new();
         for joint in &rig.joints {
@@ -119,9 +123,10 @@ fn inverse_bind_matrices_undo_the_rest_pose() {
     }
 }
 
+#[needs_data]
 #[test]
 fn vrm_files_state_their_roles_by_the_names_of_vrm_1() {
-    let Some(document) = load("CoolLoops_mixamorig_vrm0.vrm") else { return };
+    let document = load("CoolLoops_mixamorig_vrm0.vrm");
     let rig = &document.rig;
     let joint = |role: &str| {
         let stated = rig.stated_roles.iter().find(|(name, _)| name == role);
@@ -133,7 +138,7 @@ fn vrm_files_state_their_roles_by_the_names_of_vrm_1() {
     assert_eq!(joint("rightThumbDistal"), "mixamorig:RightHandThumb3");
     assert_eq!(joint("rightLowerLeg"), "mixamorig:RightLeg");
 
-    let document = load("vrm1_unskinned_humanoid.vrm").unwrap();
+    let document = load("vrm1_unskinned_humanoid.vrm");
     assert!(
         document
             .rig

@@ -80,13 +80,13 @@ pub fn in_centimetres_and_z_up() -> CharacterDef {
 
 /// The KayKit mannequin of the shared data: its walk, its way to stand up from its back, and the mannequin's from its face
 /// on its body. `None` where the data are not there.
-pub fn kaykit() -> Option<CharacterDef> {
+pub fn kaykit() -> CharacterDef {
     let of = |name: &str| data::document(&format!("kaykit_mannequin/{name}"));
-    let rig = of("manny_med_mod.gltf")?.rig;
+    let rig = of("manny_med_mod.gltf").rig;
     let analysis = analyze(&rig).expect("it has a skin");
     let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("it has bones");
     let own = |file: &str, clip: &str| {
-        let document = of(file).expect("it is beside the other");
+        let document = of(file);
         let clip = document.clips.iter().find(|own| own.name.ends_with(clip)).expect("it has that clip");
         let renamed = |channel: &Channel| {
             let name = &document.rig.joints[channel.joint].name;
@@ -105,7 +105,7 @@ pub fn kaykit() -> Option<CharacterDef> {
     let motions =
         MotionSet { clips, looped: Some(0), get_ups: vec![1, 2], locomotion, ..MotionSet::default() };
     def.set_motions(motions).expect("clips of a file that was read can be played");
-    Some(def)
+    def
 }
 
 /// Clip by which the mannequin gets up from its face, on another body.

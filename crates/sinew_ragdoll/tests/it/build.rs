@@ -1,6 +1,7 @@
 //! From files to definitions: bodies, masses, invariances.
 
 use crate::data::rig;
+use needs_data::needs_data;
 use sinew_anim::Rig;
 use sinew_anim::roles::analyze;
 use sinew_math::Vec3;
@@ -65,10 +66,11 @@ pub fn check_sound(name: &str, def: &RagdollDef) {
     }
 }
 
+#[needs_data]
 #[test]
 fn people_have_the_bodies_of_people() {
     for name in PEOPLE {
-        let Some(rig) = rig(name) else { return };
+        let rig = rig(name);
         let (def, report) = built(&rig, &BuildOptions { mass: Some(75.0), ..BuildOptions::default() });
         check_sound(name, &def);
         assert!((13..=25).contains(&def.bodies.len()), "{name}: {} bodies", def.bodies.len());
@@ -89,10 +91,11 @@ fn people_have_the_bodies_of_people() {
     }
 }
 
+#[needs_data]
 #[test]
 fn odd_rigs_are_sound_too() {
     for name in OTHERS {
-        let Some(rig) = rig(name) else { return };
+        let rig = rig(name);
         for shapes in [ShapeChoice::Auto, ShapeChoice::Box, ShapeChoice::Capsule] {
             let (def, _) = built(&rig, &BuildOptions { shapes, ..BuildOptions::default() });
             check_sound(name, &def);
@@ -102,9 +105,10 @@ fn odd_rigs_are_sound_too() {
     }
 }
 
+#[needs_data]
 #[test]
 fn sex_and_mass_are_heeded() {
-    let Some(rig) = rig("mannequiny.glb") else { return };
+    let rig = rig("mannequiny.glb");
     let of = |sex, mass| built(&rig, &BuildOptions { sex, mass, ..BuildOptions::default() }).0;
     let (man, woman) = (of(Sex::Male, None), of(Sex::Female, None));
     let thigh = |def: &RagdollDef| def.bodies[body(def, "leftUpperLeg")].mass.mass / def.total_mass;
@@ -114,9 +118,10 @@ fn sex_and_mass_are_heeded() {
     assert!((of(Sex::Male, Some(60.0)).total_mass - 60.0).abs() < 1e-3);
 }
 
+#[needs_data]
 #[test]
 fn refuses_what_it_cannot_build() {
-    let Some(rig) = rig("SimpleSkin.gltf") else { return };
+    let rig = rig("SimpleSkin.gltf");
     let analysis = analyze(&rig).expect("a skin");
     let bare = Rig { skins: Vec::new(), ..rig.clone() };
     assert_eq!(build(&bare, &analysis, &BuildOptions::default()), Err(BuildError::NoSkin));

@@ -2,23 +2,22 @@
 
 use sinew_anim::Rig;
 use sinew_formats::{Document, ReadOptions, load_gltf};
-use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::Path;
 
-/// A rig of the shared data; `None`, with a line that says so, where the data are not there.
-pub fn rig(name: &str) -> Option<Rig> {
-    document(name).map(|document| document.rig)
+const RIGS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/rigs");
+
+/// True where the shared data are present: for tests that also have rigs of their own.
+pub fn is_there() -> bool {
+    Path::new(RIGS).is_dir()
+}
+
+/// A rig of the shared data, for tests with `needs_data`.
+pub fn rig(name: &str) -> Rig {
+    document(name).rig
 }
 
 /// A file of the shared rigs, likewise.
-pub fn document(name: &str) -> Option<Document> {
-    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/rigs"));
-    if !folder.is_dir() {
-        // Not println, which the harness swallows where a test passes.
-        let test = std::thread::current().name().unwrap_or("a test").to_owned();
-        let _ = writeln!(std::io::stderr(), "{test} skipped: no ../shared/data");
-        return None;
-    }
-    let document = load_gltf(folder.join(name), ReadOptions::default());
-    Some(document.unwrap_or_else(|error| panic!("{name}: {error}")))
+pub fn document(name: &str) -> Document {
+    let document = load_gltf(Path::new(RIGS).join(name), ReadOptions::default());
+    document.unwrap_or_else(|error| panic!("{name}: {error}"))
 }

@@ -3,6 +3,7 @@
 use crate::actor::{floor, kaykit, shared, walker};
 use crate::pops::Pops;
 use core::fmt::Write as _;
+use needs_data::needs_data;
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::{World, WorldDef};
 use sinew_ragdoll::{Character, CharacterDef, CharacterEvent, State};
@@ -122,8 +123,9 @@ fn the_mannequin_stands_again() {
     everyone_stands_again("mannequin", walker());
 }
 
+#[needs_data]
 #[test]
 fn the_kaykit_mannequin_stands_again() {
-    let Some(def) = kaykit() else { return };
+    let def = kaykit();
     everyone_stands_again("KayKit mannequin", def);
 }

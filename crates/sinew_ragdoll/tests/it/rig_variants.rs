@@ -3,6 +3,7 @@
 use crate::build::{OTHERS, PEOPLE, built, check_sound};
 use crate::data::rig;
 use crate::disguise::{misnamed, nameless, shuffled, transformed, under_a_mirror, z_up};
+use needs_data::needs_data;
 use sinew_anim::Rig;
 use sinew_math::Rotation;
 use sinew_ragdoll::{BuildOptions, DropReport, RagdollBodyDef, RagdollDef, Verdict, drop_test, gate};
@@ -45,9 +46,10 @@ const COPIES: &str = "RecursiveSkeletons.glb";
 
 fn rigs() -> impl Iterator<Item = (&'static str, Rig)> {
     let names = PEOPLE.into_iter().chain(OTHERS).filter(|&name| name != COPIES);
-    names.map_while(|name| Some((name, rig(name)?)))
+    names.map(|name| (name, rig(name)))
 }
 
+#[needs_data]
 #[test]
 fn the_order_of_joints_does_not_matter() {
     for (name, rig) in rigs() {
@@ -58,9 +60,10 @@ fn the_order_of_joints_does_not_matter() {
     }
 }
 
+#[needs_data]
 #[test]
 fn copies_are_copies_in_any_order() {
-    let Some(rig) = rig(COPIES) else { return };
+    let rig = rig(COPIES);
     let masses = |rig: &Rig| {
         let (def, _) = built(rig, &BuildOptions::default());
         let mut masses: Vec<f32> = def.bodies.iter().map(|body| body.mass.mass).collect();
@@ -74,6 +77,7 @@ fn copies_are_copies_in_any_order() {
     }
 }
 
+#[needs_data]
 #[test]
 fn units_and_axes_do_not_matter() {
     for (name, rig) in rigs() {
@@ -85,6 +89,7 @@ fn units_and_axes_do_not_matter() {
     }
 }
 
+#[needs_data]
 #[test]
 fn a_node_of_negative_scale_above_the_skeleton_does_not_matter() {
     for (name, rig) in rigs() {
@@ -96,6 +101,7 @@ fn a_node_of_negative_scale_above_the_skeleton_does_not_matter() {
 /// Their names tell what their shape does not: which of two joints in one place is the pelvis, where a shoulder ends.
 const NAMED: [&str; 2] = ["quaternius_cyberpunk_Character.glb", "quaternius_Robot.glb"];
 
+#[needs_data]
 #[test]
 fn names_do_not_matter_where_the_shape_tells() {
     for (name, rig) in rigs() {
@@ -158,6 +164,7 @@ impl Falls {
 }
 
 /// All at once.
+#[needs_data]
 #[test]
 fn a_rig_in_other_guise_falls_as_well() {
     for (name, rig) in rigs() {

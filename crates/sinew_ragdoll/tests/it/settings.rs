@@ -1,5 +1,6 @@
 //! Settings: each does what it says, and nothing else.
 
+use needs_data::needs_data;
 use sinew_anim::{Joint, LocalTransform, Role, analyze};
 use sinew_math::{Range, Vec3};
 use sinew_physics::{BodyDef, JointKind, Shape};
@@ -117,9 +118,10 @@ fn bones_are_dropped_and_kept() {
     assert_eq!(with(&settings).expect("comes back"), before);
 }
 
+#[needs_data]
 #[test]
 fn a_bone_that_the_build_merges_is_kept() {
-    let Some(rig) = crate::data::rig("mesh2motion_human_rigify.glb") else { return };
+    let rig = crate::data::rig("mesh2motion_human_rigify.glb");
     let analysis = analyze(&rig).expect("a skin");
     let options = BuildOptions::default();
     let (before, _) = build(&rig, &analysis, &options).expect("bones");
@@ -221,9 +223,9 @@ fn roles_that_are_given_and_bones_that_are_no_part_of_the_body() {
 #[test]
 fn any_roles_make_a_ragdoll_or_a_refusal() {
     let mut rigs = vec![mannequin().rig];
-    rigs.extend(
-        ["Fox.glb", "quaternius_Spider.glb", "RiggedSimple.glb"].iter().filter_map(|f| crate::data::rig(f)),
-    );
+    if crate::data::is_there() {
+        rigs.extend(["Fox.glb", "quaternius_Spider.glb", "RiggedSimple.glb"].map(crate::data::rig));
+    }
     let mut random = sinew_math::Random::new(6);
     let (mut ragdolls, mut refusals) = (0, 0);
     for rig in &rigs {

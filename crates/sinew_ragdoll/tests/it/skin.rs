@@ -1,6 +1,7 @@
 //! The verdict of the skin: each measure on a mannequin that has just that fault, and on rigs of others.
 
 use crate::data::document;
+use needs_data::needs_data;
 use sinew_anim::{Joint, LocalTransform, Primitive, Rig, RigAnalysis, RigMesh, Role, analyze};
 use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::Shape;
@@ -236,20 +237,21 @@ fn figures_that_are_no_numbers_are_flaws_and_nothing_panics() {
 }
 
 /// The verdict of the skin on a rig of others: figures over its drops.
-fn skin_of(name: &str) -> Option<(SkinQuality, RagdollDef)> {
-    let document = document(name)?;
+fn skin_of(name: &str) -> (SkinQuality, RagdollDef) {
+    let document = document(name);
     let subject = Subject::of(document.rig);
     let moves = takes(&subject.rig, &document.clips);
     let falls = drop_test(&subject.def).falls;
     let skin = measure_skin(&subject.rig, &subject.def, &subject.analysis.bind_model, &moves, &falls);
-    Some((skin, subject.def))
+    (skin, subject.def)
 }
 
 /// Feet whose joints are named as controls, or hang on the root, fall with their legs: they tore by half a height.
+#[needs_data]
 #[test]
 fn beasts_keep_their_feet() {
     for name in ["animals_Wolf", "animals_Cow", "dinosaurs_Stegosaurus"] {
-        let Some((skin, def)) = skin_of(&format!("../rigs_wild/{name}.glb")) else { return };
+        let (skin, def) = skin_of(&format!("../rigs_wild/{name}.glb"));
         assert!(skin.edge_stretch_p999 < 0.1 && skin.contiguous, "{name}: {skin:?}");
         assert!(skin.rest_height_m.is_some_and(|height| height > -0.06 * skin.size), "{name}: {skin:?}");
         assert!(kinds(&skin.flaws(&def)).iter().all(|kind| *kind != FlawKind::Torn), "{name}: {skin:?}");
@@ -257,18 +259,20 @@ fn beasts_keep_their_feet() {
 }
 
 /// The swords and shields of the knight lay 1.9 m in the floor.
+#[needs_data]
 #[test]
 fn the_knight_lies_on_his_sword_and_not_around_it() {
-    let Some((skin, def)) = skin_of("kaykit_Knight.glb") else { return };
+    let (skin, def) = skin_of("kaykit_Knight.glb");
     assert_eq!(skin.flaws(&def), [], "{skin:?}");
     let held = def.joints.iter().filter(|joint| joint.kind == sinew_physics::JointKind::Fixed).count();
     assert_eq!(held, 3, "both hands and the cape");
 }
 
 /// The sword is skinned to the hand itself, and stood 1 m in the floor: the hand's shape goes around it.
+#[needs_data]
 #[test]
 fn a_sword_that_is_skinned_to_a_hand_lies_on_the_floor() {
-    let Some((skin, def)) = skin_of("quaternius_cyberpunk_Character.glb") else { return };
+    let (skin, def) = skin_of("quaternius_cyberpunk_Character.glb");
     assert_eq!(skin.flaws(&def), [], "{skin:?}");
     let radius = |role: &str| {
         let body = def.bodies.iter().find(|body| body.role == role).expect("a hand");

@@ -2,7 +2,7 @@
 
 use crate::build::{built, check_sound};
 use crate::built_rigs::{beetle, block_man, dog};
-use crate::data::document;
+use crate::data::{document, is_there};
 use crate::disguise::{
     CONVENTIONS, affixed, bound_in, cut_loose, hung_on_root, renamed, shifted, shuffled, transformed,
     under_a_mirror, unweighted, with_controls, with_eyes, with_hair, with_halves, with_hat, with_twists,
@@ -104,8 +104,8 @@ impl Subject {
         ];
         let mut all: Vec<Self> =
             built.into_iter().map(|(name, rig, clips)| Self { name, rig, clips }).collect();
-        for name in RIGS {
-            let Some(Document { rig, clips, .. }) = document(name) else { break };
+        for name in RIGS.into_iter().filter(|_| is_there()) {
+            let Document { rig, clips, .. } = document(name);
             all.push(Self { name, rig, clips });
         }
         all

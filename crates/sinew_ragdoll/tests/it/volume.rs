@@ -1,6 +1,7 @@
 //! Mass of creatures: what their skin encloses, once, of what they are made of.
 
 use crate::build::built;
+use needs_data::needs_data;
 use sinew_anim::{Joint, LocalTransform, Primitive, Rig, RigMesh, Skin};
 use sinew_math::{Affine, Random, Rotation, Vec3};
 use sinew_ragdoll::BuildOptions;
@@ -87,6 +88,7 @@ fn worm(names: [&str; 3]) -> Rig {
     rig
 }
 
+#[needs_data]
 #[test]
 fn a_creature_weighs_what_its_skin_encloses() {
     // From -0.2 to 1.4 m along, 0.6 m wide and high: 576 litres, of which the links together have 864.

@@ -1,18 +1,13 @@
-//! A captured walk, where its file is present.
+//! A captured walk.
 
+use needs_data::needs_data;
 use sinew_scenes::scenes::{SettingError, find};
-use std::io::Write as _;
-use std::path::Path;
 
 const WALK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/mocap/cmu_12_01_walk.bvh");
 
+#[needs_data]
 #[test]
 fn a_captured_walk_fits_three_bodies() {
-    if !Path::new(WALK).is_file() {
-        // Not println, which the harness swallows where a test passes.
-        let _ = writeln!(std::io::stderr(), "captured walk skipped: no ../shared/data");
-        return;
-    }
     let scene = find("mocap").expect("it can be found");
     let mut settings = scene.settings();
     settings.assign(&format!("motion={WALK}")).expect("the walk can be read");

@@ -1,5 +1,6 @@
 //! Movers in worlds: the cabin, a house of triangles, pieces of a dungeon.
 
+use needs_data::needs_data;
 use sinew::formats::{TriangleMesh, load_mesh};
 use sinew::math::trig::{cos, sin};
 use sinew::math::{Random, Transform, Vec3};
@@ -7,8 +8,6 @@ use sinew::physics::boxes::Aabb;
 use sinew::physics::{BodyDef, MoverDef, MoverId, PenetrationOf, Probe, Shape, World, WorldDef};
 use sinew_scenes::cabin::Site;
 use sinew_scenes::walks::{Ours, Tally, Terrain};
-use std::io::Write as _;
-use std::path::Path;
 
 const WORLDS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/worlds");
 
@@ -35,17 +34,12 @@ fn cabin() -> World {
     world
 }
 
-/// A file's triangles, `scale` metres for each of its units; `None`, and a line that says so, if it is not there.
-fn level(name: &str, scale: f32) -> Option<TriangleMesh> {
+/// A file's triangles, `scale` metres for each of its units, for tests with `needs_data`.
+fn level(name: &str, scale: f32) -> TriangleMesh {
     let path = format!("{WORLDS}/{name}");
-    if !Path::new(&path).is_file() {
-        // Not println, which the harness swallows where a test passes.
-        let _ = writeln!(std::io::stderr(), "movers in {name} skipped: no ../shared/data");
-        return None;
-    }
     let level = load_mesh(&path).expect("the file can be read");
     let positions = level.positions.iter().map(|&p| p * scale).collect();
-    Some(TriangleMesh { positions, ..level })
+    TriangleMesh { positions, ..level }
 }
 
 fn bounds(level: &TriangleMesh) -> Aabb {
@@ -100,19 +94,17 @@ fn walks_in_and_around_the_cabin() {
     wander("cabin", 3_000, 50, |_| Terrain::cabin());
 }
 
+#[needs_data]
 #[test]
 fn walks_in_the_house() {
-    let Some(house) = level("house_2story_stairs.glb", 3.0) else { return };
+    let house = level("house_2story_stairs.glb", 3.0);
     wander("house", 2_500, 50, |_| Terrain::house(&house));
 }
 
+#[needs_data]
 #[test]
 fn walks_in_the_dungeon() {
-    let (Some(stairs), Some(wall)) =
-        (level("kaykit_dungeon/stairs.obj", 1.0), level("kaykit_dungeon/wall.obj", 1.0))
-    else {
-        return;
-    };
+    let (stairs, wall) = (level("kaykit_dungeon/stairs.obj", 1.0), level("kaykit_dungeon/wall.obj", 1.0));
     wander("dungeon", 2_500, 50, |_| Terrain::dungeon(&stairs, &wall));
 }
 
@@ -148,9 +140,10 @@ fn the_cabins_stairs_down_and_up_without_leaving_the_ground() {
 }
 
 /// The steps of the dungeon: triangles.
+#[needs_data]
 #[test]
 fn the_dungeons_stairs_are_climbed() {
-    let Some(stairs) = level("kaykit_dungeon/stairs.obj", 1.0) else { return };
+    let stairs = level("kaykit_dungeon/stairs.obj", 1.0);
     let size = bounds(&stairs);
     let mut highest = 0.0_f32;
     for turn in 0..4_u8 {

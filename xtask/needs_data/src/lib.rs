@@ -1,0 +1,27 @@
+//! An attribute for tests that read the data beside the repository.
+#![forbid(unsafe_code)]
+
+use proc_macro::TokenStream;
+use std::path::Path;
+
+/// The data, as they lie beside a clone; they are not part of the repository.
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
+
+/// Ignores a test where the data beside the repository were absent when it was compiled: `cargo test` then counts it as ignored.
+/// It stands above `#[test]`, which reads the attributes below itself.
+///
+/// ```text
+/// #[needs_data]
+/// #[test]
+/// fn a_rig_is_read() {}
+/// ```
+#[proc_macro_attribute]
+pub fn needs_data(_: TokenStream, test: TokenStream) -> TokenStream {
+    if Path::new(DATA).is_dir() {
+        return test;
+    }
+    let mut ignored: TokenStream =
+        "#[ignore = \"no ../shared/data\"]".parse().expect("an attribute is made of tokens");
+    ignored.extend(test);
+    ignored
+}
