@@ -7,7 +7,7 @@
 //! | feature | brings | default |
 //! |---|---|---|
 //! | `ragdoll` | `ragdoll`: from rig to ragdoll, animated to limp and back | yes |
-//! | `formats` | `formats`: files in and out, `load`; needs `ragdoll` | yes |
+//! | `formats` | `formats`: files in and out, `load`, `load_character`; needs `ragdoll` | yes |
 //! | `pictures` | base colour pictures of files, for `Textures::Decode` | no |
 //! | `fbx` | FBX files among those; compiles C | no |
 //! | `parallel` | `all_threads`: a world stepped by every core of the machine | yes |
@@ -23,10 +23,15 @@ pub use sinew_physics as physics;
 #[cfg(feature = "ragdoll")]
 pub use sinew_ragdoll as ragdoll;
 
+#[cfg(feature = "formats")]
+mod loaded;
 pub mod mannequin;
 #[cfg(feature = "ragdoll")]
 pub mod motions;
 pub mod prelude;
+
+#[cfg(feature = "formats")]
+pub use loaded::{LoadCharacterError, LoadedCharacter, character_of, load_character};
 
 /// Reads a character from a GLB, glTF, VRM or VRMA with the files beside it: rig, clips, and what is needed to write a
 /// clip back into the same file. Pictures are left out.
@@ -71,6 +76,7 @@ mod pages {
         MoverPage: "../../../docs/mover.md",
         GuideIntroduction: "../../../docs/guide/src/introduction.md",
         GuideFirstRagdoll: "../../../docs/guide/src/first_ragdoll.md",
+        GuideYourCharacter: "../../../docs/guide/src/your_character.md",
         GuideWorlds: "../../../docs/guide/src/worlds.md",
         GuideCharacters: "../../../docs/guide/src/characters.md",
         GuideJoints: "../../../docs/guide/src/joints.md",

@@ -27,6 +27,30 @@ pub(crate) const GOES_ON: f32 = 0.1;
 /// cannot be rushed through. Shown by the tests of `animators`.
 pub const MAX_SPEED: f32 = 1_000.0;
 
+// contact/footsteps.rs
+
+/// Time between the frames of a clip that are searched for footfalls, seconds.
+///
+/// Larger: footfalls are told later and less exactly. Smaller: it takes longer. Shown by `sinew_cli` `convert`.
+pub(crate) const STEP_FRAME_TIME: f64 = 1.0 / 60.0;
+
+/// Share of the body's speed by which a foot may slide while it stands, 0 to 1: a run is seldom drawn, or captured, to the speed of one
+/// foot.
+///
+/// Larger: a foot that swings low is taken for one that stands. Smaller: runs have no footsteps. Shown by `sinew_cli` `convert`.
+pub(crate) const STEP_SLIDE: f32 = 0.2;
+
+/// Largest turn of a joint from the last pose of a loop to its first, radians, and largest way, as a share of the leg.
+///
+/// Larger: a clip that ends near its beginning counts as a loop. Smaller: a loop that does not quite close loses the footfall at its seam.
+/// Shown by `sinew_cli` `convert`.
+pub(crate) const LOOP_SEAM: f32 = 0.1;
+
+/// Frames before the end of a loop whose motion comes on top of [`LOOP_SEAM`]: many loops end one frame before their first pose.
+///
+/// Larger: as with a larger [`LOOP_SEAM`], for fast clips. Smaller: likewise. Shown by `sinew_cli` `convert`.
+pub(crate) const LAST_FRAMES: usize = 4;
+
 // cleanup/foot_slide.rs
 
 /// Largest share of its length that a leg is stretched to, below 1.

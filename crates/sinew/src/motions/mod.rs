@@ -2,10 +2,14 @@
 //! humanoid, for files that have none of their own.
 
 mod clearing;
+mod own;
 
+pub use own::{OwnMotions, looped_among, own_motions};
+
+use crate::anim::contact::footsteps;
 use crate::anim::legs::Legs;
 use crate::anim::retarget::{Body, Pace, RetargetError, RetargetOptions, Retargeted, carry_riders, retarget};
-use crate::anim::{Channel, Clip, Interpolation, Rig, RigAnalysis, analyze};
+use crate::anim::{Channel, Clip, ClipEvent, Interpolation, Rig, RigAnalysis, analyze};
 use crate::mannequin::{Mannequin, mannequin};
 use crate::math::{clamp, min};
 use crate::ragdoll::{AfterSettling, CharacterDef, Locomotion, MotionError, MotionSet, Opening};
@@ -18,6 +22,8 @@ pub struct BuiltinMotions {
     pub walk: Clip,
     /// Speed forward at which the feet of `walk` do not slide, m/s: of the size of the character.
     pub walk_speed: f32,
+    /// Footfalls of `walk`: events `footstep` with the payload `left` or `right`.
+    pub footsteps: Vec<ClipEvent>,
     /// Standing and breathing, a cycle that begins as the clips to get up by end.
     pub idle: Clip,
     /// To get up by: from lying on the back, and on the face.
@@ -87,8 +93,10 @@ pub fn builtin_motions(def: &CharacterDef, analysis: &RigAnalysis) -> Result<Bui
     let (walks, idles) = (cycle(&clips[motions.walk])?, cycle(&clips[motions.idle])?);
     let (supine, prone) =
         (onto(&clips[motions.get_up_supine], true)?, onto(&clips[motions.get_up_prone], true)?);
+    let walk = walks.clip(rig, &clips[motions.walk].name);
     Ok(BuiltinMotions {
-        walk: walks.clip(rig, &clips[motions.walk].name),
+        footsteps: footsteps(rig, analysis, &walk).unwrap_or_default().events,
+        walk,
         walk_speed: motions.walk_speed * walks.scale / walks.pace,
         idle: idles.clip(rig, &clips[motions.idle].name),
         get_ups: [
@@ -100,16 +108,23 @@ pub fn builtin_motions(def: &CharacterDef, analysis: &RigAnalysis) -> Result<Bui
 }
 
 impl BuiltinMotions {
-    /// Adds what is missing in a character's own motions: ways to get up where there are none; where no clip loops, the walk,
-    /// which begins after getting up, for until then the character stands in its rest pose.
+    /// Adds what is missing in a character's own motions: ways to get up, standing still, and where no clip loops, the walk,
+    /// which begins after getting up, for until then the character stands in its rest pose. The walk has events `footstep` with the payload
+    /// `left` or `right`.
     pub fn fill_in(self, own: MotionSet) -> MotionSet {
         let mut set = own;
         if set.get_ups.is_empty() {
             set.get_ups = vec![set.clips.len(), set.clips.len() + 1];
             set.clips.extend(self.get_ups);
         }
+        if set.idle.is_none() {
+            set.idle = Some(set.clips.len());
+            set.clips.push(self.idle);
+        }
         if set.looped.is_none() {
-            set.looped = Some(set.clips.len());
+            let walk = set.clips.len();
+            set.looped = Some(walk);
+            set.events.extend(self.footsteps.into_iter().map(|step| (walk, step)));
             set.clips.push(self.walk);
             set.locomotion = Locomotion::Forward { speed: self.walk_speed };
             set.opening = Opening::Rest;

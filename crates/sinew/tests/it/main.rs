@@ -1,5 +1,7 @@
 //! The examples run, and what they assert holds.
 
+mod loaded;
+
 #[path = "../../examples/active_ragdoll.rs"]
 mod active_ragdoll;
 #[path = "../../examples/character_get_up.rs"]
@@ -39,6 +41,9 @@ mod stack;
 mod threads;
 #[path = "../../examples/wind.rs"]
 mod wind;
+#[expect(dead_code, reason = "its main reads the command line")]
+#[path = "../../examples/your_character.rs"]
+mod your_character;
 
 mod motions;
 mod pictures;

@@ -4,12 +4,12 @@ use crate::commands::clip_choice::choose_clips;
 use crate::failure::{Failure, Result};
 use crate::input::files::{Outputs, must_end_in, never_over};
 use crate::input::motion::Motion;
-use crate::report::footsteps::footsteps;
 use crate::report::table::{Table, counted, shown};
 use crate::report::{Report, number};
 use clap::Subcommand;
 use serde_json::{Value, json};
 use sinew::anim::ClipEvent;
+use sinew::anim::contact::{NoFootsteps, footsteps};
 use sinew::formats::{MotionOptions, write_events};
 use std::path::PathBuf;
 
@@ -60,18 +60,14 @@ impl Detect {
         self.output.iter().try_for_each(|output| must_end_in(output, &["json"]))?;
         never_over([self.file.as_path()], self.output.as_deref())?;
         let motion = Motion::load(&self.file, &MotionOptions::default())?;
-        let Some(analysis) = motion.analysis.as_ref().filter(|analysis| analysis.humanoid) else {
-            return Err(Failure::of_file(&motion.name, "no human legs to look at: footsteps cannot be told"));
-        };
+        let failed = |why| Failure::of_file(&motion.name, why);
+        let analysis = motion.analysis.as_ref().ok_or(NoFootsteps::NotHumanoid).map_err(failed)?;
         let rig = &motion.file.rig;
         let chosen = choose_clips(&motion, &self.clips)?;
         let mut found = Vec::new();
         for &index in &chosen {
-            let Some(steps) = footsteps(rig, analysis, &motion.file.clips[index]) else {
-                let what = "a leg lacks a joint, or a clip is too long: footsteps cannot be told";
-                return Err(Failure::of_file(&motion.name, what));
-            };
-            found.push(new_steps(&motion.file.events[index], steps));
+            let steps = footsteps(rig, analysis, &motion.file.clips[index]).map_err(failed)?;
+            found.push(new_steps(&motion.file.events[index], steps.events));
         }
         let mut outputs = Outputs::default();
         if let Some(path) = &self.output {

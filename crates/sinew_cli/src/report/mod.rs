@@ -1,6 +1,5 @@
 //! Report of a command.
 
-pub(crate) mod footsteps;
 pub(crate) mod garments_report;
 pub(crate) mod progress;
 pub(crate) mod quality_report;

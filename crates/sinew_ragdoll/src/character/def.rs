@@ -193,6 +193,11 @@ impl CharacterDef {
         Ok(())
     }
 
+    /// Sets what a character does before anything has happened to it. Characters that are there already are of the definition before.
+    pub fn set_opening(&mut self, opening: Opening) {
+        self.motions.opening = opening;
+    }
+
     /// Gives it other springs than those of its rig, or none. Characters that are there already are of the definition before.
     ///
     /// # Panics

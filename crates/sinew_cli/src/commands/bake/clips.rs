@@ -5,12 +5,11 @@ use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
 use crate::input::motion::Motion;
 use crate::input::onto::carry;
-use crate::report::footsteps::footsteps;
+use sinew::anim::Clip;
 use sinew::anim::retarget::RetargetOptions;
-use sinew::anim::{Clip, Interpolation};
 use sinew::formats::bvh::BvhRows;
 use sinew::formats::{BvhOptions, MotionOptions};
-use sinew::math::max;
+use sinew::motions::looped_among;
 use std::path::{Path, PathBuf};
 
 /// The motions of a character.
@@ -27,9 +26,6 @@ pub struct Motions {
 /// played until the next fall unless it is asked for.
 pub const CLIP_NAME: &str = "sinew";
 
-/// Names of clips that get a body up, without case, blanks, `-` and `_`: none to play until the fall.
-const GET_UP_NAMES: [&str; 3] = ["getup", "standup", "gettingup"];
-
 impl Motions {
     /// From the character's file and from `others`; `wanted` is the user's choice of a clip.
     pub fn gather(file: &CharacterFile, others: &[PathBuf], wanted: Option<&str>) -> Result<Self> {
@@ -38,62 +34,14 @@ impl Motions {
         for path in others {
             clips.extend(read_clips(path, file, &mut notes)?);
         }
-        let plain: Vec<String> = clips.iter().map(|clip| plain(&clip.name)).collect();
-        let is_get_up = |index: &usize| GET_UP_NAMES.iter().any(|name| plain[*index].contains(name));
-        let is_baked = |index: &usize| {
-            let number = plain[*index].strip_prefix(CLIP_NAME);
-            number.is_some_and(|number| number.chars().all(|c| c.is_ascii_digit()))
-        };
         let looped = match wanted {
             Some(name) => {
                 Some(find_clip(&clips, name).map_err(|what| Failure::at(&file.name, what, "--clip"))?)
             }
-            None => {
-                let called = |word: &str| plain.iter().position(|name| name.contains(word));
-                let first = (0..clips.len()).find(|index| !is_get_up(index) && !is_baked(index));
-                let walks =
-                    (0..clips.len()).filter(|&index| plain[index].contains("walk") && !is_baked(&index));
-                walk(&clips, walks, file).or_else(|| called("idle")).or(first)
-            }
+            None => looped_among(&file.document.rig, &file.analysis, &clips),
         };
         Ok(Self { clips, looped, notes })
     }
-}
-
-/// Least way of a joint's key from the first that is a motion: of a rotation's components or in file units of a translation, as a share of
-/// the largest.
-const MOVES: f32 = 0.01;
-
-/// The walk among clips that are called so: one that moves, and of several the first in which both feet take turns.
-fn walk(clips: &[Clip], called: impl Iterator<Item = usize>, file: &CharacterFile) -> Option<usize> {
-    let moving: Vec<usize> = called.filter(|&index| moves(&clips[index])).collect();
-    if moving.len() < 2 {
-        return moving.first().copied();
-    }
-    let CharacterFile { document, analysis, .. } = file;
-    let takes_turns = |&index: &usize| {
-        let steps = footsteps(&document.rig, analysis, &clips[index]).unwrap_or_default();
-        ["left", "right"].iter().all(|side| steps.iter().any(|step| step.payload == *side))
-    };
-    moving.iter().copied().find(takes_turns).or(moving.first().copied())
-}
-
-/// True if any joint of a clip moves: a pose that is held is no walk, whatever its name.
-fn moves(clip: &Clip) -> bool {
-    clip.channels.iter().any(|channel| {
-        let width = channel.property.width();
-        // A cubic key has slopes before and after its value.
-        let cubic = channel.interpolation == Interpolation::CubicSpline;
-        let (stride, at) = if cubic { (3 * width, width) } else { (width, 0) };
-        let keys: Vec<&[f32]> = channel.values.chunks_exact(stride).map(|key| &key[at..at + width]).collect();
-        let Some(first) = keys.first() else { return false };
-        let size = keys.iter().flat_map(|key| key.iter()).fold(1e-6, |most, value| max(most, value.abs()));
-        keys.iter().any(|key| key.iter().zip(*first).any(|(a, b)| (a - b).abs() > MOVES * size))
-    })
-}
-
-fn plain(name: &str) -> String {
-    name.chars().filter(|c| !matches!(c, ' ' | '_' | '-')).flat_map(char::to_lowercase).collect()
 }
 
 /// The clips of another file, on this character: by the names of joints, else by roles.

@@ -1,5 +1,9 @@
 //! Contacts of the feet with the ground, and the slide of the feet during these.
 
+mod footsteps;
+
+pub use footsteps::{Footsteps, NoFootsteps, footsteps};
+
 use crate::clip::take::Take;
 use crate::legs::Foot;
 use crate::pose::local_to_model;

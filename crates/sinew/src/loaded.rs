@@ -1,0 +1,190 @@
+//! A character from a file in one call.
+
+use crate::anim::legs::add_ankles;
+use crate::anim::{Hints, NoSkin, Rig, RigAnalysis, analyze_hinted, characters};
+use crate::formats::{self, Document, read_bytes, read_ragdoll_settings, settings_path};
+use crate::math::Vec3;
+use crate::motions::{BuiltinError, OwnMotions, own_motions, set_motions_with_builtin};
+use crate::ragdoll::build::{BuildReport, takes};
+use crate::ragdoll::settings::analyze_with;
+use crate::ragdoll::{
+    AfterSettling, BuildOptions, CharacterDef, MotionError, Opening, Settings, SettingsError, build_moving,
+};
+use std::path::Path;
+
+/// A character read from a file.
+#[derive(Clone, Debug)]
+pub struct LoadedCharacter {
+    /// Definition for [`Character::spawn`](crate::ragdoll::Character::spawn), which takes it behind an `Arc`.
+    pub def: CharacterDef,
+    /// Roles of its joints, its unit and its axes.
+    pub analysis: RigAnalysis,
+    /// Assumptions, chosen clips, and what was not found, one sentence each.
+    pub notes: Vec<String>,
+    /// Remarks of the build on single bodies.
+    pub report: BuildReport,
+}
+
+/// Reason why a file gives no character.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadCharacterError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    Format(#[from] formats::Error),
+    /// The file has no skin.
+    #[error("{file}: {source}")]
+    NoSkin {
+        /// The file.
+        file: String,
+        /// The reason.
+        source: NoSkin,
+    },
+    /// No ragdoll can be built of it, or the settings beside it do not fit.
+    #[error("{file}: {source}")]
+    Settings {
+        /// The file.
+        file: String,
+        /// The reason.
+        source: SettingsError,
+    },
+    /// A clip cannot be played.
+    #[error("{file}: {source}")]
+    Motion {
+        /// The file.
+        file: String,
+        /// The reason.
+        source: MotionError,
+    },
+}
+
+/// Makes a character of a GLB, glTF or VRM file: reads it, finds the roles of its joints, builds the ragdoll, and chooses walk, idle and
+/// get-ups among its clips ([`own_motions`]). A human that lacks one of these has the built-in ones
+/// ([`set_motions_with_builtin`]); any other without a way to get up stays down. Of several characters in the file it takes the one with
+/// the most vertices. Settings in `NAME.ragdoll.json` beside the file are followed.
+///
+/// ```no_run
+/// use sinew::prelude::*;
+/// use std::sync::Arc;
+///
+/// let hero = sinew::load_character("hero.glb")?;
+/// for note in &hero.notes {
+///     println!("{note}");
+/// }
+/// let mut world = World::new(WorldDef::default());
+/// world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+/// let mut hero = Character::spawn(&mut world, &Arc::new(hero.def), Transform::IDENTITY);
+/// hero.set_move(Vec3::Z * 1.2); // m/s
+/// # Ok::<(), sinew::LoadCharacterError>(())
+/// ```
+///
+/// # Errors
+/// A file that cannot be read, has no skin, or gives no ragdoll; settings that do not fit; a clip that cannot be played.
+pub fn load_character(path: impl AsRef<Path>) -> Result<LoadedCharacter, LoadCharacterError> {
+    let path = path.as_ref();
+    let document = crate::load(path)?;
+    let beside = settings_path(path);
+    let settings = match beside.is_file() {
+        true => {
+            let read = read_bytes(&beside).and_then(|bytes| read_ragdoll_settings(&bytes));
+            read.map_err(|error| error.with_file(beside.display().to_string()))?
+        }
+        false => Settings::default(),
+    };
+    character_of(document, &path.display().to_string(), &settings)
+}
+
+/// Makes a character of a file in memory, as [`load_character`] does of one on disk. `name` is the file's: errors begin with it, and its
+/// words help to tell what the character is.
+///
+/// # Errors
+/// As [`load_character`].
+pub fn character_of(
+    mut document: Document,
+    name: &str,
+    settings: &Settings,
+) -> Result<LoadedCharacter, LoadCharacterError> {
+    let file = || name.to_owned();
+    let no_skin = |source| LoadCharacterError::NoSkin { file: file(), source };
+    let refused = |source| LoadCharacterError::Settings { file: file(), source };
+    let mut notes = Vec::new();
+    notes.extend(keep_largest(&mut document.rig));
+    let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    let hints = Hints {
+        name: stem.unwrap_or_default(),
+        up: Some(Vec3::Y),
+        exporter: document.generator().to_owned(),
+        ..Hints::of_clips(&document.rig, &document.clips)
+    };
+    let nodes = document.node_count();
+    let Document { mut rig, clips, .. } = document;
+    let plain = analyze_hinted(&rig, &hints).map_err(no_skin)?;
+    let mut analysis = analyze_with(&rig, &plain, settings).map_err(refused)?;
+    if settings.garments.has_meshes() {
+        settings.garments.lay_sheets(&mut rig, &analysis, nodes).map_err(refused)?;
+        let plain = analyze_hinted(&rig, &hints).map_err(no_skin)?;
+        analysis = analyze_with(&rig, &plain, settings).map_err(refused)?;
+    }
+    add_ankles(&mut rig, &mut analysis);
+    notes.extend(analysis.unit_guess.iter().map(|guess| guess.note.clone()));
+    notes.extend(analysis.notes.iter().cloned());
+    let source = settings.springs.unwrap_or_default();
+    rig.springs = settings.springs_of(source, &rig, analysis.up_axis).map_err(refused)?;
+    let garments = settings.garments.garments(&rig).map_err(refused)?;
+    let moves = takes(&rig, &clips);
+    let built = build_moving(&rig, &analysis, &moves, &BuildOptions::default(), settings);
+    let (ragdoll, report) = built.map_err(refused)?;
+    let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    def.set_garments(&garments);
+    let found = set_motions(&mut def, &analysis, clips);
+    notes.extend(found.map_err(|source| LoadCharacterError::Motion { file: file(), source })?);
+    Ok(LoadedCharacter { def, analysis, notes, report })
+}
+
+/// Gives a character its own clips and, if it is a human, the built-in ones for what they lack; returns what there is to say of them.
+fn set_motions(
+    def: &mut CharacterDef,
+    analysis: &RigAnalysis,
+    clips: Vec<crate::anim::Clip>,
+) -> Result<Vec<String>, MotionError> {
+    let OwnMotions { motions, mut notes } = own_motions(def, analysis, clips);
+    let (walks, gets_up) = (motions.looped.is_some(), !motions.get_ups.is_empty());
+    match set_motions_with_builtin(def, analysis, motions.clone()) {
+        Ok(()) => {
+            def.set_opening(Opening::Looped);
+            let lacks = [(walks, "walks"), (gets_up, "gets up")].into_iter().filter(|(has, _)| !has);
+            notes.extend(lacks.map(|(_, what)| format!("it {what} by the built-in motions")));
+            return Ok(notes);
+        }
+        Err(BuiltinError::Motion(error)) => return Err(error),
+        Err(_) if gets_up => {}
+        Err(error) => {
+            notes.push(format!("it stays down after a fall: {error}"));
+            def.after_settling = AfterSettling::StayDown;
+        }
+    }
+    def.set_motions(motions)?;
+    Ok(notes)
+}
+
+/// Leaves out the meshes of all characters but the one with the most vertices; returns a note if there were several.
+fn keep_largest(rig: &mut Rig) -> Option<String> {
+    let all = characters(rig);
+    let vertices = |own: &Vec<usize>| -> usize {
+        let primitives = own.iter().flat_map(|&mesh| &rig.meshes[mesh].primitives);
+        primitives.map(|primitive| primitive.positions.len()).sum()
+    };
+    let largest = (0..all.len()).reduce(|a, b| if vertices(&all[b]) > vertices(&all[a]) { b } else { a })?;
+    if all.len() < 2 {
+        return None;
+    }
+    let is_others = |mesh: usize| {
+        all.iter().enumerate().any(|(index, meshes)| index != largest && meshes.contains(&mesh))
+            && !all[largest].contains(&mesh)
+    };
+    let mut index = 0;
+    rig.meshes.retain(|_| {
+        index += 1;
+        !is_others(index - 1)
+    });
+    Some(format!("there are {} characters in the file; the one with the most vertices is taken", all.len()))
+}

@@ -1,0 +1,124 @@
+//! Motions among a file's own clips.
+
+use crate::anim::contact::{Footsteps, footsteps};
+use crate::anim::{Clip, Interpolation, Rig, RigAnalysis};
+use crate::math::max;
+use crate::ragdoll::{CharacterDef, Locomotion, MotionSet};
+
+/// Words of clip names that are walks, standing, and ways to get up, without case, blanks, `-` and `_`.
+const WALK: &str = "walk";
+const IDLE: &str = "idle";
+const GET_UP: [&str; 3] = ["getup", "standup", "gettingup"];
+/// Name of the clips that `sinew bake` adds, with or without a number: falls that were simulated before.
+const BAKED: &str = "sinew";
+
+/// Motions of a file's own clips.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OwnMotions {
+    /// The clips, and which of them is what.
+    pub motions: MotionSet,
+    /// Choices that were made, and what was not found, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Chooses the motions of a character among its file's own clips.
+///
+/// | motion | clip |
+/// |---|---|
+/// | `looped` | as [`looped_among`] |
+/// | `idle` | of those whose names contain `idle` the one with the shortest name, unless it is the looped one |
+/// | `get_ups` | those of [`CharacterDef::get_ups_among`] that are neither |
+/// | `events` | footfalls of the looped clip ([`footsteps`]) |
+/// | `locomotion` | by the clip if it gets on; at the speed of its feet if it walks on the spot |
+///
+/// # Panics
+/// If the analysis or a clip is not one of the character's rig.
+pub fn own_motions(def: &CharacterDef, analysis: &RigAnalysis, clips: Vec<Clip>) -> OwnMotions {
+    let looped = looped_among(&def.rig, analysis, &clips);
+    let idles = (0..clips.len()).filter(|&clip| plain(&clips[clip].name).contains(IDLE));
+    let idle = idles.min_by_key(|&clip| clips[clip].name.len()).filter(|&clip| Some(clip) != looped);
+    let mut get_ups = def.get_ups_among(&clips);
+    get_ups.retain(|&clip| Some(clip) != looped && Some(clip) != idle);
+    let mut notes = Vec::new();
+    let name = |clip: usize| format!("\"{}\"", clips[clip].name);
+    match looped {
+        Some(clip) => notes.push(format!("{} is the clip that loops", name(clip))),
+        None => notes.push("the file has no clip that loops".to_owned()),
+    }
+    notes.extend(idle.map(|clip| format!("{} is the clip that stands", name(clip))));
+    if !get_ups.is_empty() {
+        let names: Vec<String> = get_ups.iter().map(|&clip| name(clip)).collect();
+        notes.push(format!("it gets up by {}", names.join(" or ")));
+    }
+    let mut motions =
+        MotionSet { looped, idle, get_ups, locomotion: Locomotion::ByClip, ..MotionSet::default() };
+    if let Some(clip) = looped {
+        match footsteps(&def.rig, analysis, &clips[clip]) {
+            Ok(Footsteps { events, speed }) => {
+                if events.is_empty() {
+                    notes.push(format!(
+                        "{} has no footsteps: no foot comes to rest on the ground",
+                        name(clip)
+                    ));
+                }
+                motions.events = events.into_iter().map(|event| (clip, event)).collect();
+                if speed > 0.0 {
+                    motions.locomotion = Locomotion::Forward { speed };
+                }
+            }
+            Err(reason) => notes.push(format!("{} has no footsteps: {reason}", name(clip))),
+        }
+    }
+    motions.clips = clips;
+    OwnMotions { motions, notes }
+}
+
+/// Index of the clip that a character plays while nothing happens to it: the first that is called a walk and moves (of several the first in
+/// which both feet come down); else the first whose name contains `idle`; else the first that is neither a way to get up
+/// nor a baked fall. `None` if there is none of these.
+///
+/// # Panics
+/// If the analysis or a clip is not one of the rig's.
+pub fn looped_among(rig: &Rig, analysis: &RigAnalysis, clips: &[Clip]) -> Option<usize> {
+    let names: Vec<String> = clips.iter().map(|clip| plain(&clip.name)).collect();
+    let is_get_up = |clip: usize| GET_UP.iter().any(|word| names[clip].contains(word));
+    let is_baked = |clip: usize| {
+        let number = names[clip].strip_prefix(BAKED);
+        number.is_some_and(|number| number.chars().all(|c| c.is_ascii_digit()))
+    };
+    let is_walk = |&clip: &usize| names[clip].contains(WALK) && !is_baked(clip) && moves(&clips[clip]);
+    let walks: Vec<usize> = (0..clips.len()).filter(is_walk).collect();
+    let takes_turns = |&clip: &usize| {
+        let steps = footsteps(rig, analysis, &clips[clip]).unwrap_or_default().events;
+        ["left", "right"].iter().all(|side| steps.iter().any(|step| step.payload == *side))
+    };
+    let walk = match walks[..] {
+        [] | [_] => walks.first().copied(),
+        _ => walks.iter().copied().find(takes_turns).or(walks.first().copied()),
+    };
+    let idle = || names.iter().position(|name| name.contains(IDLE));
+    let first = || (0..clips.len()).find(|&clip| !is_get_up(clip) && !is_baked(clip));
+    walk.or_else(idle).or_else(first)
+}
+
+/// Least change of a key against the first for a clip that moves, as a share of the largest number in the channel.
+const MOVES: f32 = 0.01;
+
+/// True if any joint of a clip moves: a pose that is held is no walk, whatever its name.
+fn moves(clip: &Clip) -> bool {
+    clip.channels.iter().any(|channel| {
+        let width = channel.property.width();
+        // A cubic key has slopes before and after its value.
+        let cubic = channel.interpolation == Interpolation::CubicSpline;
+        let (stride, at) = if cubic { (3 * width, width) } else { (width, 0) };
+        let keys: Vec<&[f32]> = channel.values.chunks_exact(stride).map(|key| &key[at..at + width]).collect();
+        let Some(first) = keys.first() else { return false };
+        let size = keys.iter().flat_map(|key| key.iter()).fold(1e-6, |most, value| max(most, value.abs()));
+        keys.iter().any(|key| key.iter().zip(*first).any(|(a, b)| (a - b).abs() > MOVES * size))
+    })
+}
+
+/// A name in small letters, without blanks, `-` and `_`.
+fn plain(name: &str) -> String {
+    name.chars().filter(|c| !matches!(c, ' ' | '_' | '-')).flat_map(char::to_lowercase).collect()
+}
