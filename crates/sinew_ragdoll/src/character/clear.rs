@@ -1,75 +1,53 @@
 //! Moving a limp character out of walls and floors that it is deep in. Contacts push bodies out one by one and slowly, and out of a thin wall to both
 //! sides.
 
-use super::memory::Clearing;
+use super::limp::Clearing;
 use super::tuning::{CLEARING_REACH, CLEARING_SPEED, DEEP, MOST_OBSTACLES, SAME_WAY, SUNK};
-use super::{Character, State};
 use sinew_math::{Transform, Vec3, max, min, normalize_or};
 use sinew_physics::{
     BodyId, BodyKind, BodyKinds, BodyPenetration, ContactRule, PenetrationOf, Probe, QueryFilter, Shape,
     ShapeCast, ShapeId, Velocity, World,
 };
 
-impl Character {
-    /// Moves a limp character out of static shapes that it is deep in, at 1.9 m/s, all its bodies together; it falls from where it is clear.
-    /// Returns false if there is nothing to do: it is not limp, or held, or no body is deeper than 0.1 m, or no way of at most 1.2 m leads out.
-    ///
-    /// A character that moves leaves a wall on the side that it came from, one at rest on the nearer side. Going limp calls this; call it yourself for
-    /// a limp character where a wall was put or a door has closed.
-    pub fn clear(&mut self, world: &mut World) -> bool {
-        if self.state != State::Limp || self.is_clearing() || self.is_gripped(world) {
-            return false;
-        }
-        let own = self.own().to_vec();
-        let momentum: Vec3 =
-            own.iter().map(|&body| world.velocity(body).linear * world.mass(body).mass).sum();
-        let back = normalize_or(-momentum, Vec3::ZERO);
-        let Some(way) = way_out(world, &own, back) else { return false };
-        let direction = normalize_or(way, Vec3::Y);
-        let mut velocities: Vec<Velocity> = own.iter().map(|&body| world.velocity(body)).collect();
-        for velocity in &mut velocities {
-            // What took it into the wall does not take it there again.
-            velocity.linear -= direction * min(velocity.linear.dot(direction), 0.0);
-        }
-        own.iter().for_each(|&body| world.set_kind(body, BodyKind::Kinematic));
-        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
-        ragdoll.set_rule(world, self.def.in_world.rule());
-        self.clearing = Clearing { way, velocities };
-        self.go_out(world);
-        true
+/// Lets bodies go out of static shapes that they are deep in, all together; `None` if nothing is deep, or no way leads out.
+pub(super) fn begin(own: &[BodyId], world: &mut World) -> Option<Clearing> {
+    let momentum: Vec3 = own.iter().map(|&body| world.velocity(body).linear * world.mass(body).mass).sum();
+    let back = normalize_or(-momentum, Vec3::ZERO);
+    let way = way_out(world, own, back)?;
+    let direction = normalize_or(way, Vec3::Y);
+    let mut velocities: Vec<Velocity> = own.iter().map(|&body| world.velocity(body)).collect();
+    for velocity in &mut velocities {
+        // What took it into the wall does not take it there again.
+        velocity.linear -= direction * min(velocity.linear.dot(direction), 0.0);
     }
+    own.iter().for_each(|&body| world.set_kind(body, BodyKind::Kinematic));
+    Some(Clearing { way, velocities })
+}
 
-    pub(super) fn is_clearing(&self) -> bool {
-        !self.clearing.velocities.is_empty()
-    }
-
-    /// Goes on for the next step, or lets the bodies fall where the way ends.
-    pub(super) fn go_out(&mut self, world: &mut World) {
-        let way = &mut self.clearing.way;
+impl Clearing {
+    /// Goes on for the next step; false where the way ends.
+    pub fn go_on(&mut self, own: &[BodyId], world: &mut World) -> bool {
+        let way = &mut self.way;
         let dt = world.def().dt();
         let left = way.length();
         if left <= 0.0 {
-            return self.end_clearing(world);
+            return false;
         }
         let step = min(left, CLEARING_SPEED * dt);
         let linear = *way * (step / (left * dt));
         *way = if left > step { *way * (1.0 - step / left) } else { Vec3::ZERO };
-        for &body in self.own() {
+        for &body in own {
             world.set_velocity(body, Velocity { linear, ..Velocity::default() });
         }
+        true
     }
 
     /// Makes the bodies fall from where they are.
-    pub(super) fn end_clearing(&mut self, world: &mut World) {
-        let velocities = core::mem::take(&mut self.clearing).velocities;
-        if velocities.is_empty() {
-            return;
-        }
-        for (&body, &velocity) in self.own().iter().zip(&velocities) {
+    pub fn end(self, own: &[BodyId], world: &mut World) {
+        for (&body, &velocity) in own.iter().zip(&self.velocities) {
             world.set_kind(body, BodyKind::Dynamic);
             world.set_velocity(body, velocity);
         }
-        self.ragdoll.as_ref().expect("a limp character has bodies").set_rule(world, ContactRule::Push);
     }
 }
 

@@ -4,10 +4,8 @@
 //! Each part may be as deep as it is where the passage begins, and by and by as deep as it ever is in the clip. What is deeper is raised:
 //! the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper arm.
 
-use super::{Character, CharacterDef, GroundContact, State};
-use crate::character::tuning::{
-    FOOT_SHARE, LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STEPS_FROM, STRAIGHT_UP,
-};
+use super::{CharacterDef, State};
+use crate::character::tuning::{LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STEPS_FROM, STRAIGHT_UP};
 use crate::def::RagdollDef;
 use crate::fit::surface::carried;
 use crate::skin::surface::Surface;
@@ -20,7 +18,7 @@ use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
 /// Number of parts: the trunk with its knees, the feet, the hands, the elbows, of each pair the left one first.
 pub(super) const PARTS: usize = 7;
 const TRUNK: usize = 0;
-const FEET: [usize; 2] = [1, 2];
+pub(super) const FEET: [usize; 2] = [1, 2];
 const HANDS: [usize; 2] = [3, 4];
 const ELBOWS: [usize; 2] = [5, 6];
 
@@ -45,7 +43,7 @@ pub(super) struct Passage {
 
 /// A foot on its way from where it stood to where a clip has it.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+pub(super) struct Step {
     /// Character space.
     from: Transform,
     /// Least way to where it goes, metres.
@@ -58,13 +56,13 @@ struct Step {
 
 impl Passage {
     /// Depths that parts may have after so many seconds more.
-    fn allowed(&self, later: f32) -> Depths {
+    pub fn allowed(&self, later: f32) -> Depths {
         let share = if self.seconds > 0.0 { smoothstep((self.age + later) / self.seconds) } else { 1.0 };
         core::array::from_fn(|part| self.from[part] + (self.to[part] - self.from[part]) * share)
     }
 
     /// Steps of the feet: at once while it lies, one after the other once it stands.
-    fn steps(&self, later: f32, state: State, place: Transform) -> [Step; 2] {
+    pub fn steps(&self, later: f32, state: State, place: Transform) -> [Step; 2] {
         let u = if self.seconds > 0.0 { (self.age + later) / self.seconds } else { f32::INFINITY };
         [0, 1].map(|foot| {
             let own = if state == State::GettingUp { u } else { u - foot as f32 };
@@ -75,7 +73,7 @@ impl Passage {
     }
 
     /// Share of a lift that is given: it goes back to none once the passage is over.
-    fn share(&self, later: f32, state: State) -> f32 {
+    pub fn share(&self, later: f32, state: State) -> f32 {
         match state {
             State::GettingUp => 1.0,
             State::Animated if self.seconds > 0.0 => {
@@ -155,6 +153,16 @@ impl Clearance {
         Self { parts: parts.into(), strays: strays(rig, def), limbs }
     }
 
+    /// True of a rig without skin.
+    pub fn is_empty(&self) -> bool {
+        self.parts.is_empty()
+    }
+
+    /// Joint of an ankle, left and right.
+    pub fn ankle(&self, foot: usize) -> Option<JointIdx> {
+        self.limbs.iter().find(|limb| limb.end == FEET[foot]).map(|limb| limb.bones.end)
+    }
+
     fn depth(&self, part: usize, model: &[Affine], palette: &mut Vec<Affine>) -> f32 {
         let surface = &self.parts[part];
         surface.palette(model, palette);
@@ -182,7 +190,7 @@ impl Clearance {
     }
 
     /// Raises what is deeper than it may be, by `share` of that.
-    fn clear(
+    pub fn clear(
         &self,
         def: &CharacterDef,
         allowed: &Depths,
@@ -277,7 +285,7 @@ fn turn_to(
     local_to_model(rig, pose, root, model);
 }
 
-fn larger(a: Depths, b: Depths) -> Depths {
+pub(super) fn larger(a: Depths, b: Depths) -> Depths {
     core::array::from_fn(|part| max(a[part], b[part]))
 }
 
@@ -408,85 +416,5 @@ impl CharacterDef {
             allowed[TRUNK] = f32::INFINITY;
             self.clearance.clear(self, &allowed, 1.0, None, pose, &mut Vec::new());
         }
-    }
-}
-
-impl Character {
-    /// Depths of the pose that is shown, at least 0, and its ankles in the world.
-    pub(super) fn shown_depths(&mut self) -> (Depths, [Transform; 2]) {
-        let def = self.def.clone();
-        let mut model = core::mem::take(&mut self.scratch.model);
-        local_to_model(&def.rig, self.led_pose(), &def.mapping().character_from_model(), &mut model);
-        let depths = larger(def.clearance().depths(&model), [0.0; PARTS]);
-        let ankle = |part: usize| {
-            let limb = def.clearance().limbs.iter().find(|limb| limb.end == part);
-            limb.map_or(Transform::IDENTITY, |limb| {
-                self.world_from_character * model[limb.bones.end].to_rigid()
-            })
-        };
-        let ankles = FEET.map(ankle);
-        self.scratch.model = model;
-        (depths, ankles)
-    }
-
-    /// Begins a passage of so many seconds to what is no deeper than `to`, from the pose that was shown.
-    pub(super) fn pass(&mut self, (from, ankles): (Depths, [Transform; 2]), to: Depths, seconds: f32) {
-        self.passage = match self.def.ground_contact {
-            GroundContact::Enforced => Passage { from, to, ankles, far: [0.0; 2], age: 0.0, seconds },
-            GroundContact::AsBlended => Passage::default(),
-        };
-    }
-
-    /// The passage just begun leads to where these bodies are, in the world: feet that go far are lifted at once.
-    pub(super) fn pass_to(&mut self, bodies: &[Transform], motion: Transform, to: &[Transform]) {
-        let def = self.def.clone();
-        if !self.is_passing() {
-            return;
-        }
-        for (foot, part) in FEET.into_iter().enumerate() {
-            let limb = def.clearance().limbs.iter().find(|limb| limb.end == part);
-            let body =
-                limb.and_then(|limb| def.ragdoll.bodies.iter().position(|body| body.joint == limb.bones.end));
-            if let Some(body) = body {
-                let way = motion.point(to[body].translation) - bodies[body].translation;
-                self.passage.far[foot] = Vec3::new(way.x, 0.0, way.z).length();
-            }
-        }
-    }
-
-    /// Goes on with it by a step.
-    pub(super) fn go_on_passing(&mut self, dt: f32) {
-        if !self.is_passing() {
-            return;
-        }
-        self.passage.age += dt;
-        if self.state == State::Animated && self.passage.age >= 2.0 * self.passage.seconds {
-            self.passage = Passage::default();
-        }
-    }
-
-    /// True while what is shown is kept out of the floor.
-    pub(super) fn is_passing(&self) -> bool {
-        self.passage != Passage::default()
-    }
-
-    /// Raises a pose of the clips out of the floor, as it will be after `later` seconds more.
-    pub(super) fn clear_floor(&mut self, later: f32, pose: &mut [LocalTransform]) {
-        let share = if self.is_passing() { self.passage.share(later, self.state) } else { 0.0 };
-        if share <= 0.0 || self.def.clearance().parts.is_empty() {
-            return;
-        }
-        let mut allowed = self.passage.allowed(later);
-        let planting = self.planting.ahead(later);
-        for (foot, part) in FEET.into_iter().enumerate() {
-            // Feet on uneven ground go where it is.
-            allowed[part] += max(-planting.heights[foot], 0.0)
-                + planting.slopes[foot].abs() * FOOT_SHARE * self.def.ragdoll.height;
-        }
-        let def = self.def.clone();
-        let mut model = core::mem::take(&mut self.scratch.model);
-        let steps = self.passage.steps(later, self.state, self.world_from_character);
-        def.clearance().clear(&def, &allowed, share, Some(steps), pose, &mut model);
-        self.scratch.model = model;
     }
 }

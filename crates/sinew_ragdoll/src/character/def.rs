@@ -1,8 +1,8 @@
 //! Definition that characters of one kind share.
 
 use super::clearance::Clearance;
-use super::feet::Feet;
 use super::in_world::InWorld;
+use super::legs::Legs;
 use super::moves::{MotionError, Moves};
 use crate::def::RagdollDef;
 use crate::drive::DriveMode;
@@ -130,8 +130,8 @@ pub struct CharacterDef {
     rest: Vec<LocalTransform>,
     /// Bind pose in character space, metres.
     bind: Vec<Affine>,
-    /// Feet that it stands on, if it is a humanoid.
-    feet: Option<Feet>,
+    /// Legs that it stands on, if it is a humanoid.
+    legs: Option<Legs>,
     /// Points of its skin that meet the floor first.
     pub(super) clearance: Arc<Clearance>,
     /// Hair and the like, which swing.
@@ -155,7 +155,7 @@ impl CharacterDef {
         Self {
             springs: SpringRig::new(&rig, &ragdoll, &mapping, bind_model, &rig.springs),
             garments: GarmentRig::default(),
-            feet: Feet::of(&rig, &ragdoll, &bind),
+            legs: Legs::of(&rig, &ragdoll, &bind),
             clearance: Arc::new(Clearance::of(&rig, &ragdoll, bind_model)),
             moves: Arc::new(Moves::none(&rig, &ragdoll, &mapping)),
             in_world: InWorld::of(&ragdoll),
@@ -281,8 +281,8 @@ impl CharacterDef {
         self.moves.raised.looped
     }
 
-    pub(super) fn feet(&self) -> Option<&Feet> {
-        self.feet.as_ref()
+    pub(super) fn legs(&self) -> Option<&Legs> {
+        self.legs.as_ref()
     }
 
     pub(super) fn clearance(&self) -> &Clearance {

@@ -99,3 +99,32 @@ pub enum CharacterEvent {
     /// It is animated again.
     Up,
 }
+
+/// Events of a character that were not told yet, and those of its last update.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Events {
+    pub list: Vec<CharacterEvent>,
+    /// Number of events that were there at the end of the last update.
+    told: usize,
+}
+
+impl Events {
+    pub fn push(&mut self, event: CharacterEvent) {
+        self.list.push(event);
+    }
+
+    /// Forgets what was there at the end of the last update.
+    pub fn begin(&mut self) {
+        self.list.drain(..self.told);
+    }
+
+    /// Ends an update.
+    pub fn end(&mut self) {
+        self.told = self.list.len();
+    }
+
+    pub fn clear(&mut self) {
+        self.list.clear();
+        self.told = 0;
+    }
+}

@@ -1,9 +1,12 @@
 //! Bodies of a character that its clips move: led from pose to pose, and what strikes them.
 
-use super::{Character, CharacterEvent};
-use crate::character::tuning::TELEPORTED;
+use super::figure::Scratch;
+use super::physique::Physique;
+use super::{CharacterDef, CharacterEvent};
+use crate::character::tuning::{GIVES_WAY, TELEPORTED};
 use crate::owner::{is_limb, together};
-use sinew_math::{Vec3, max, min};
+use sinew_anim::LocalTransform;
+use sinew_math::{Transform, Vec3, max, min, normalize_or};
 use sinew_physics::{BodyId, BodyKind, Hit, Velocity, World};
 
 /// A blow that contacts brought.
@@ -15,24 +18,22 @@ pub(super) struct Strike {
     pub speed: f32,
 }
 
-impl Character {
+impl Physique {
     /// Has the hit bodies go where the pose will be at the end of the next step, as far as it goes on as it did.
-    pub(super) fn lead_bodies(&mut self, world: &mut World) {
-        let Some(presence) = self.presence.as_mut().filter(|presence| !presence.bodies.is_empty()) else {
+    pub fn lead(
+        &mut self,
+        def: &CharacterDef,
+        pose: &[LocalTransform],
+        place: Transform,
+        scratch: &mut Scratch,
+        world: &mut World,
+    ) {
+        if self.hit.is_empty() {
             return;
-        };
-        let mut before = core::mem::take(&mut presence.before);
-        let mut now = core::mem::take(&mut self.scratch.after);
-        let place = self.world_from_character;
-        let is_planted = self.is_planted();
-        let pose = core::mem::take(if is_planted { &mut self.planted } else { &mut self.pose });
-        self.bodies_of(&pose, place, &mut now);
-        if is_planted {
-            self.planted = pose;
-        } else {
-            self.pose = pose;
         }
-        let presence = self.presence.as_mut().expect("it was there");
+        let mut before = core::mem::take(&mut self.before);
+        let mut now = core::mem::take(&mut scratch.after);
+        scratch.bodies_of(def, pose, place, &mut now);
         if before.len() != now.len() {
             before.clone_from(&now);
         }
@@ -43,46 +44,23 @@ impl Character {
         }
         let dt = world.def().dt();
         if self.lost.is_empty() {
-            world.lead_all(&presence.bodies, &before, &now, dt);
+            world.lead_all(&self.hit, &before, &now, dt);
         } else {
-            let is_lost = |index: usize| self.lost.iter().any(|&(lost, _)| lost == index);
-            let own = presence.bodies.iter().zip(before.iter().zip(&now)).enumerate();
-            for (_, (&id, (before, now))) in own.filter(|(index, _)| !is_lost(*index)) {
+            let own = self.hit.iter().zip(before.iter().zip(&now)).enumerate();
+            for (_, (&id, (before, now))) in own.filter(|(index, _)| self.has(*index)) {
                 world.lead_all(&[id], &[*before], &[*now], dt);
             }
         }
-        (presence.before, self.scratch.after) = (now, before);
+        (self.before, scratch.after) = (now, before);
     }
 
-    /// Has its bodies pass through the dynamic body that bears its mover, which presses it with its weight alone: feet that kicked a crate on
-    /// which they ride would drive it, and themselves with it, faster and faster.
-    pub(super) fn spare_bearer(&mut self, world: &mut World) {
-        let ground = self.mover().and_then(|mover| world.mover_ground(mover));
-        let bearer = ground.and_then(|ground| ground.shape).map(|shape| shape.body);
-        let bearer = bearer.filter(|&body| world.kind(body) == BodyKind::Dynamic);
-        let bearer = bearer.filter(|&body| self.held().all(|held| held != body));
-        let Some(presence) = self.presence.as_mut().filter(|presence| presence.bearer != bearer) else {
-            return;
-        };
-        let before = core::mem::replace(&mut presence.bearer, bearer).filter(|&body| world.contains(body));
-        let before = before.filter(|&body| !self.passes_through(world, body));
-        for &own in self.own() {
-            if let Some(before) = before {
-                world.enable_pair(own, before);
-            }
-            if let Some(bearer) = bearer {
-                world.disable_pair(own, bearer);
-            }
+    /// The hardest of what struck its bodies in the last step, if that is felt. `steps`: it stands on its own feet, whose steps are no blows.
+    pub fn felt(&self, def: &CharacterDef, steps: bool, world: &World) -> Option<(usize, Strike)> {
+        let least = def.in_world.feels;
+        if self.hit.is_empty() || least == f32::INFINITY {
+            return None;
         }
-    }
-
-    /// Flinches or falls by what struck its bodies in the last step.
-    pub(super) fn feel(&mut self, world: &mut World) {
-        let least = self.def.in_world.feels;
-        let Some(presence) = &self.presence else { return };
-        if presence.bodies.is_empty() || least == f32::INFINITY {
-            return;
-        }
+        let whole = def.ragdoll.total_mass;
         let mut felt: Option<(usize, Strike)> = None;
         let mut note = |body: usize, strike: Strike| {
             let size = strike.impulse.length();
@@ -90,96 +68,110 @@ impl Character {
                 felt = Some((body, strike));
             }
         };
-        let own = |id: BodyId| self.body_index(id);
+        let own = |id: BodyId| self.index_of(id);
         // Its own steps are no blows: what stands comes into nobody.
-        let steps = self.steps();
         let stands = |id: BodyId| steps && world.contains(id) && world.kind(id) == BodyKind::Static;
         for hit in &world.events().hits {
             match (own(hit.a.body), own(hit.b.body)) {
                 (Some(_), None) if stands(hit.b.body) => {}
                 (None, Some(_)) if stands(hit.a.body) => {}
                 (Some(body), None) => {
-                    note(body, self.taken(world, hit, [hit.a.body, hit.b.body], -hit.normal));
+                    note(body, taken(world, hit, [hit.a.body, hit.b.body], -hit.normal, whole));
                 }
                 (None, Some(body)) => {
-                    note(body, self.taken(world, hit, [hit.b.body, hit.a.body], hit.normal));
+                    note(body, taken(world, hit, [hit.b.body, hit.a.body], hit.normal, whole));
                 }
                 _ => {}
             }
         }
         for &(a, b) in &world.events().begin {
             match (own(a), own(b)) {
-                (Some(body), None) => note(body, self.passing(world, a, b)),
-                (None, Some(body)) => note(body, self.passing(world, b, a)),
+                (Some(body), None) => note(body, passing(world, a, b, whole)),
+                (None, Some(body)) => note(body, passing(world, b, a, whole)),
                 _ => {}
             }
         }
-        if let Some((body, strike)) = felt {
-            self.events.push(CharacterEvent::Struck { body, impulse: strike.impulse.length() });
-            self.be_struck(world, body, strike);
-        }
+        felt
     }
 
-    /// Tells of what its bodies began and stopped to touch in the last step.
-    pub(super) fn note_contacts(&mut self, world: &World) {
-        if !self.def.in_world.tells_contacts || self.bodies().is_empty() {
-            return;
-        }
-        let mut events = core::mem::take(&mut self.events);
+    /// Contacts that its bodies began and ended in the last step, as events.
+    pub fn contacts(&self, world: &World) -> impl Iterator<Item = CharacterEvent> {
         let told = world.events();
-        for (pairs, begins) in [(&told.begin, true), (&told.end, false)] {
-            for &(a, b) in pairs {
-                match (self.body_index(a), self.body_index(b)) {
-                    (Some(body), None) => events.push(CharacterEvent::Contact { body, other: b, begins }),
-                    (None, Some(body)) => events.push(CharacterEvent::Contact { body, other: a, begins }),
-                    _ => {}
-                }
-            }
-        }
-        self.events = events;
+        let all = [(&told.begin, true), (&told.end, false)].into_iter();
+        let all = all.flat_map(|(pairs, begins)| pairs.iter().map(move |&pair| (pair, begins)));
+        all.filter_map(|((a, b), begins)| match (self.index_of(a), self.index_of(b)) {
+            (Some(body), None) => Some(CharacterEvent::Contact { body, other: b, begins }),
+            (None, Some(body)) => Some(CharacterEvent::Contact { body, other: a, begins }),
+            _ => None,
+        })
     }
 
-    /// Impulse of a hit on one of its bodies by another, `way` being from that to it, N·s: no more than what comes could bring to all of it, and to a
-    /// led body what comes by itself. A foot that comes down on a hand presses that to the ground however hard it is led.
-    fn taken(&self, world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3) -> Strike {
-        let Velocity { linear, angular } = world.velocity(own);
-        let led = linear + angular.cross(hit.point - world.center_of_mass(own));
-        let shoves = if world.kind(own) == BodyKind::Dynamic { 0.0 } else { -led.dot(way) };
-        let bounce = hit.materials.iter().fold(1.0, |most, material| max(most, 1.0 + material.restitution));
-        let speed = bounce * max(hit.approach - shoves, 0.0);
-        Strike { impulse: way * min(hit.impulse, self.meeting_mass(world, other) * speed), speed }
+    /// Gives the impulse that a led body stopped to the body, and what would make that faster than what struck it to the bodies above it, up to
+    /// the pelvis: all of it on a hand would fling the hand away.
+    pub fn take_up(&self, def: &CharacterDef, body: usize, strike: Strike, world: &mut World) {
+        let def = &def.ragdoll;
+        let way = normalize_or(strike.impulse, Vec3::ZERO);
+        let parent = |&body: &usize| body.checked_sub(1).map(|joint| def.joints[joint].parent);
+        let mut left = strike.impulse.length();
+        let speed = max(strike.speed, GIVES_WAY);
+        for body in core::iter::successors(Some(body), parent) {
+            let share = min(left, def.bodies[body].mass.mass * speed);
+            world.apply_impulse_at_center(self.limp().bodies[body], way * share);
+            left -= share;
+        }
     }
 
-    /// Mass of all of it and of what comes, as they answer to a push between them, kg; what joints hold, or nothing moves, may have any mass.
-    fn meeting_mass(&self, world: &World, other: BodyId) -> f32 {
-        let whole = self.def.ragdoll.total_mass;
-        if world.contains(other) && is_limb(world, other) {
-            let mass: f32 = together(world, other).iter().map(|&body| world.mass(body).mass).sum();
-            return mass * whole / (mass + whole);
+    /// Gives a body an impulse, at a point or at its centre of mass, and what work that did, joules.
+    pub fn push(&self, body: usize, impulse: Vec3, point: Option<Vec3>, world: &mut World) -> f32 {
+        let id = self.limp().bodies[body];
+        let before = world.body_energy(id).kinetic;
+        match point {
+            Some(point) => world.apply_impulse(id, impulse, point),
+            None => world.apply_impulse_at_center(id, impulse),
         }
-        let is_free = world.contains(other)
-            && world.kind(other) == BodyKind::Dynamic
-            && world.joints_of(other).next().is_none();
-        if !is_free {
-            return whole;
-        }
-        let mass = world.mass(other).mass;
-        mass * whole / (mass + whole)
+        world.body_energy(id).kinetic - before
     }
+}
 
-    /// Impulse that a body that goes through one of its own would give it, if the two stopped each other: N·s.
-    fn passing(&self, world: &World, own: BodyId, other: BodyId) -> Strike {
-        let gone = !world.contains(other) || !world.contains(own);
-        if gone || world.kind(other) != BodyKind::Dynamic || world.kind(own) == BodyKind::Dynamic {
-            return Strike::default();
-        }
-        let relative = world.velocity(other).linear - world.velocity(own).linear;
-        let toward = world.center_of_mass(own) - world.center_of_mass(other);
-        let way = sinew_math::normalize_or(toward, Vec3::ZERO);
-        // What comes by itself, not what it walks into.
-        let comes = max(world.velocity(other).linear.dot(way), 0.0);
-        let closing = max(relative.dot(way), 0.0);
-        let speed = min(closing, comes);
-        Strike { impulse: way * (self.meeting_mass(world, other) * speed), speed }
+/// Impulse of a hit on one of its bodies by another, `way` being from that to it, N·s: no more than what comes could bring to all of it, `whole` kg, and to a
+/// led body what comes by itself. A foot that comes down on a hand presses that to the ground however hard it is led.
+fn taken(world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3, whole: f32) -> Strike {
+    let Velocity { linear, angular } = world.velocity(own);
+    let led = linear + angular.cross(hit.point - world.center_of_mass(own));
+    let shoves = if world.kind(own) == BodyKind::Dynamic { 0.0 } else { -led.dot(way) };
+    let bounce = hit.materials.iter().fold(1.0, |most, material| max(most, 1.0 + material.restitution));
+    let speed = bounce * max(hit.approach - shoves, 0.0);
+    Strike { impulse: way * min(hit.impulse, meeting_mass(world, other, whole) * speed), speed }
+}
+
+/// Mass of all of it and of what comes, as they answer to a push between them, kg; what joints hold, or nothing moves, may have any mass.
+fn meeting_mass(world: &World, other: BodyId, whole: f32) -> f32 {
+    if world.contains(other) && is_limb(world, other) {
+        let mass: f32 = together(world, other).iter().map(|&body| world.mass(body).mass).sum();
+        return mass * whole / (mass + whole);
     }
+    let is_free = world.contains(other)
+        && world.kind(other) == BodyKind::Dynamic
+        && world.joints_of(other).next().is_none();
+    if !is_free {
+        return whole;
+    }
+    let mass = world.mass(other).mass;
+    mass * whole / (mass + whole)
+}
+
+/// Impulse that a body that goes through one of its own would give it, if the two stopped each other: N·s.
+fn passing(world: &World, own: BodyId, other: BodyId, whole: f32) -> Strike {
+    let gone = !world.contains(other) || !world.contains(own);
+    if gone || world.kind(other) != BodyKind::Dynamic || world.kind(own) == BodyKind::Dynamic {
+        return Strike::default();
+    }
+    let relative = world.velocity(other).linear - world.velocity(own).linear;
+    let toward = world.center_of_mass(own) - world.center_of_mass(other);
+    let way = normalize_or(toward, Vec3::ZERO);
+    // What comes by itself, not what it walks into.
+    let comes = max(world.velocity(other).linear.dot(way), 0.0);
+    let closing = max(relative.dot(way), 0.0);
+    let speed = min(closing, comes);
+    Strike { impulse: way * (meeting_mass(world, other, whole) * speed), speed }
 }

@@ -1,11 +1,14 @@
 //! Bodies that hang on a character's: a sword in a hand, a lantern on a belt. Hit bodies and ragdoll are the same bodies, so that what hangs
 //! on them does in every state.
 
-use super::memory::Hold;
-use super::{Character, CharacterEvent};
-use crate::owner::{is_limb, together};
+use super::CharacterEvent;
+use super::event::Events;
+use super::grasp::Grasp;
+use crate::owner::together;
 use sinew_math::{Transform, Vec3};
-use sinew_physics::{BodyId, ContactRule, JointDef, JointId, JointKind, Strength, Velocity, World, Yields};
+use sinew_physics::{
+    BodyId, BodyKind, ContactRule, JointDef, JointId, JointKind, MoverId, Strength, Velocity, World, Yields,
+};
 
 /// A way to hold a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,89 +27,118 @@ impl Default for Grip {
     }
 }
 
-impl Character {
-    /// Has one of its bodies (by role or bone) hold a dynamic body of the world, which is put there, on a fixed joint. As long as it
-    /// is held it passes through the character's own bodies and through movers. For limbs of others there is [`grab`](Self::grab).
-    ///
-    /// # Panics
-    /// If no body is called so or it was [cut off](Self::detach), the character has none in the world, it holds that one already, or that is a part of a character or ragdoll.
-    #[track_caller]
-    pub fn hold(&mut self, world: &mut World, bone: &str, held: BodyId, grip: &Grip) -> JointId {
-        let body = self.def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
-        assert!(self.has_body(body), "it has lost '{bone}'");
-        assert!(!self.bodies().is_empty(), "a character without bodies holds nothing");
-        assert!(self.held().all(|other| other != held), "it holds that body already");
-        if let Some((owner, part)) = world.body_owner(held).filter(|_| !is_limb(world, held)) {
-            panic!("{held:?} is the {}'s {part}: `Character::grab` takes hold of it", owner.name);
-        }
-        let holder = self.bodies()[body];
+/// A body that is held, and by what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Hold {
+    pub held: BodyId,
+    pub joint: JointId,
+    /// Index of the body that holds it.
+    pub body: u32,
+    pub drops: bool,
+    /// A grip that pulls, and lets go; `None`: a fixed joint holds.
+    pub grasp: Option<Grasp>,
+}
+
+/// Bodies that a character holds, has let go of, and stands on: its own pass through all of these.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Grips {
+    pub holds: Vec<Hold>,
+    /// Limbs that it has let go of, through whose bodies its own pass until they are apart.
+    pub freed: Vec<BodyId>,
+    /// Dynamic body that bears the mover.
+    pub bearer: Option<BodyId>,
+}
+
+impl Grips {
+    /// Puts a body on a fixed joint to one of its own, `own[body]`, at that one's velocity.
+    pub fn hold(
+        &mut self,
+        (ids, own): (&[BodyId], &[BodyId]),
+        body: usize,
+        held: BodyId,
+        grip: &Grip,
+        world: &mut World,
+    ) -> JointId {
+        let holder = ids[body];
         let Velocity { linear, angular } = world.velocity(holder);
         let place = world.transform(holder) * grip.bone_from_held;
         let arm: Vec3 = place.translation - world.center_of_mass(holder);
         world.set_transform(held, place);
         world.set_velocity(held, Velocity { linear: linear + angular.cross(arm), angular });
-        self.set_passes(world, held, true);
+        self.set_passes(own, held, true, world);
         let joint = world.add_joint(&JointDef {
             strength: grip.strength,
             ..JointDef::between(holder, held, grip.bone_from_held, Transform::IDENTITY, JointKind::Fixed)
         });
-        let presence = self.presence.as_mut().expect("a character with bodies is in the world");
-        presence.holds.push(Hold { held, joint, body: body as u32, drops: grip.drops, grasp: None });
+        self.holds.push(Hold { held, joint, body: body as u32, drops: grip.drops, grasp: None });
         joint
     }
 
     /// Lets go of what it holds; false if it does not hold that.
-    pub fn release(&mut self, world: &mut World, held: BodyId) -> bool {
-        let Some(presence) = &mut self.presence else { return false };
-        let Some(index) = presence.holds.iter().position(|hold| hold.held == held) else { return false };
-        let hold = presence.holds.remove(index);
+    pub fn release(&mut self, own: &[BodyId], held: BodyId, world: &mut World, events: &mut Events) -> bool {
+        let Some(index) = self.holds.iter().position(|hold| hold.held == held) else { return false };
+        let hold = self.holds.remove(index);
         if world.contains_joint(hold.joint) {
             world.remove_joint(hold.joint);
         }
         if world.contains(held) {
-            self.set_passes(world, held, false);
+            self.set_passes(own, held, false, world);
         }
-        self.events.push(CharacterEvent::LetGo { body: hold.body as usize, held });
+        events.push(CharacterEvent::LetGo { body: hold.body as usize, held });
         true
     }
 
     /// Bodies that it holds, in the order in which it took them.
     pub fn held(&self) -> impl Iterator<Item = BodyId> {
-        self.presence.iter().flat_map(|presence| &presence.holds).map(|hold| hold.held)
+        self.holds.iter().map(|hold| hold.held)
     }
 
-    /// Lets go of what was torn off or is no longer there.
-    pub(super) fn mind_holds(&mut self, world: &mut World) {
-        while let Some(lost) = self.lost(world) {
-            self.release(world, lost);
+    /// Lets go of what was torn off or is no longer there, and has the others pull.
+    pub fn mind(&mut self, own: &[BodyId], world: &mut World, events: &mut Events) {
+        while let Some(lost) = self.torn(world) {
+            self.release(own, lost, world, events);
         }
-        while let Some(lost) = self.pull_grips(world) {
-            self.release(world, lost);
+        while let Some(lost) = self.pull(world) {
+            self.release(own, lost, world, events);
         }
     }
 
-    fn lost(&self, world: &World) -> Option<BodyId> {
+    fn torn(&self, world: &World) -> Option<BodyId> {
         let is_lost = |hold: &&Hold| {
             !world.contains(hold.held)
                 || !world.contains_joint(hold.joint)
                 || world.events().broken.contains(&hold.joint)
         };
-        Some(self.presence.as_ref()?.holds.iter().find(is_lost)?.held)
+        Some(self.holds.iter().find(is_lost)?.held)
     }
 
     /// Lets go of what it holds, or only of what it drops when it goes limp.
-    pub(super) fn release_all(&mut self, world: &mut World, only_dropped: bool) {
+    pub fn release_all(
+        &mut self,
+        own: &[BodyId],
+        only_dropped: bool,
+        world: &mut World,
+        events: &mut Events,
+    ) {
         let next = |hold: &&Hold| hold.drops || !only_dropped;
-        while let Some(hold) =
-            self.presence.as_ref().and_then(|presence| presence.holds.iter().find(next)).copied()
-        {
-            self.release(world, hold.held);
+        while let Some(hold) = self.holds.iter().find(next).copied() {
+            self.release(own, hold.held, world, events);
+        }
+    }
+
+    /// Lets go of what these bodies hold, by index.
+    pub fn drop_from(&mut self, own: &[BodyId], parts: &[usize], world: &mut World, events: &mut Events) {
+        let holds = self.holds.iter();
+        let dropped: Vec<BodyId> =
+            holds.filter(|hold| parts.contains(&(hold.body as usize))).map(|hold| hold.held).collect();
+        for held in dropped {
+            self.release(own, held, world, events);
         }
     }
 
     /// Lets a body pass through those of the character and through movers, or takes that back. One that a character keeps has rules of its own, and takes all of that
     /// along; the two collide again once they are apart.
-    pub(super) fn set_passes(&mut self, world: &mut World, other: BodyId, passes: bool) {
+    pub fn set_passes(&mut self, own: &[BodyId], other: BodyId, passes: bool, world: &mut World) {
         let rule = if passes { ContactRule::Yields(Yields::default()) } else { ContactRule::Push };
         let is_owned = world.body_owner(other).is_some();
         let shapes: Vec<_> = world.shape_ids(other).filter(|_| !is_owned).collect();
@@ -118,13 +150,35 @@ impl Character {
             self.freed.push(other);
             return;
         }
-        for &own in self.own() {
+        for &own in own {
             for &other in &whole {
                 if passes {
                     world.disable_pair(own, other);
                 } else {
                     world.enable_pair(own, other);
                 }
+            }
+        }
+    }
+
+    /// Has its bodies pass through the dynamic body that bears its mover, which presses it with its weight alone: feet that kicked a crate on
+    /// which they ride would drive it, and themselves with it, faster and faster.
+    pub fn spare_bearer(&mut self, own: &[BodyId], mover: Option<MoverId>, world: &mut World) {
+        let ground = mover.and_then(|mover| world.mover_ground(mover));
+        let bearer = ground.and_then(|ground| ground.shape).map(|shape| shape.body);
+        let bearer = bearer.filter(|&body| world.kind(body) == BodyKind::Dynamic);
+        let bearer = bearer.filter(|&body| self.held().all(|held| held != body));
+        if self.bearer == bearer {
+            return;
+        }
+        let before = core::mem::replace(&mut self.bearer, bearer).filter(|&body| world.contains(body));
+        let before = before.filter(|&body| !self.passes_through(world, body));
+        for &own in own {
+            if let Some(before) = before {
+                world.enable_pair(own, before);
+            }
+            if let Some(bearer) = bearer {
+                world.disable_pair(own, bearer);
             }
         }
     }

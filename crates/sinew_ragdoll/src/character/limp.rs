@@ -1,305 +1,144 @@
-//! Going limp at the speed of the animation, and lying still.
+//! Lying: what a limp character keeps from step to step, and when it lies still.
 
+use super::CharacterDef;
+use super::figure::{Figure, Scratch};
 use super::ground::{self, GroundMotion};
-use super::memory::Stillness;
-use super::{AfterSettling, Character, CharacterEvent, State};
-use crate::character::tuning::{
-    HAND_OVER_TIME, LINGERS, SLACKENS, STILL_ANGULAR, STILL_LINEAR, STILL_TIME, SUNK,
-};
-use crate::def::RagdollBodyDef;
-use crate::drive::DriveMode;
-use crate::hand_over::body_velocity;
-use crate::ragdoll::BodyState;
-use sinew_anim::{Animator, Motion, Pose};
-use sinew_math::{Transform, Vec3, min};
-use sinew_physics::{BodyId, BodyKind, ContactRule, ShapeId, Velocity, World};
+use super::physique::Physique;
+use crate::character::tuning::{LINGERS, SLACKENS, STILL_ANGULAR, STILL_LINEAR, STILL_TIME, SUNK};
+use crate::ragdoll::Ragdoll;
+use sinew_anim::{Motion, Pose};
+use sinew_math::{Vec3, min};
+use sinew_physics::{BodyId, Velocity, World};
 
-impl Character {
-    /// Lets the bodies take over, at the pose and the speed that the animation has now. Nothing happens if they did
-    /// already.
-    pub fn go_limp(&mut self, world: &mut World) {
-        if self.ragdoll.is_some() {
-            return self.fall_again(world);
+/// A limp character.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Lying {
+    pub stillness: Stillness,
+    /// Way out of what it was deep in when it went limp.
+    pub clearing: Clearing,
+}
+
+/// Time for which a limp character has been still, in steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Stillness {
+    /// Steps since it went limp.
+    pub steps: u32,
+    /// Steps for which every body has been slow.
+    pub calm_steps: u32,
+    pub settled: bool,
+    pub touched: bool,
+    /// Nobody was on it when it last wanted to get up.
+    pub free: bool,
+}
+
+/// A limp character on its way out of a wall or the floor.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Clearing {
+    /// Way that is left after the next step, world, metres.
+    pub way: Vec3,
+    /// Velocities of its bodies at the end of the way; empty while it is on no such way.
+    pub velocities: Vec<Velocity>,
+}
+
+/// Outcome of a step for one who lies.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Lain {
+    /// The first of its bodies touched something.
+    pub touched: bool,
+    /// It lies still since so many seconds.
+    pub settled: Option<f32>,
+}
+
+impl Stillness {
+    /// Looks whether the bodies touch something and lie still, after a step. `on_ground`: beside what bears them.
+    pub fn look(&mut self, world: &World, own: &[BodyId], on_ground: bool) -> Lain {
+        let mut lain = Lain::default();
+        if !self.touched && touches_world(world, own) {
+            (self.touched, lain.touched) = (true, true);
         }
-        self.release_all(world, true);
-        self.become_bodies(world, ContactRule::Push);
-        self.let_linger(world);
-        self.sit_down(world);
-        self.drives.set_all(self.def.falling, 0.0);
-        self.state = State::Limp;
-        self.stillness = Stillness::default();
-        self.slacken(world);
-        self.events.push(CharacterEvent::WentLimp);
-        self.clear(world);
+        let ground = if on_ground { ground::motion_below(world, own) } else { GroundMotion::default() };
+        let is_still = is_still_on(world, own, ground);
+        self.calm_steps = if is_still { self.calm_steps + 1 } else { 0 };
+        let mut calm = self.calm_steps as f32 * world.def().dt();
+        if !self.settled && calm >= STILL_TIME && is_sunk(world, own) {
+            (self.calm_steps, calm) = (0, 0.0);
+        }
+        if !self.settled && calm >= STILL_TIME {
+            self.settled = true;
+            lain.settled = Some(calm);
+        }
+        lain
     }
 
-    /// Brings friction into the joints over [`SLACKENS`] seconds: what muscles held a moment ago goes on, for all of it at once
-    /// would stop a hand within a step.
-    fn slacken(&self, world: &mut World) {
-        let share = self.stillness.steps as f32 * world.def().dt() / SLACKENS;
-        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
-        for (child, id) in ragdoll.own_joints() {
-            let joint = &self.def.ragdoll.joints[child - 1];
+    /// Something holds it: it lies anew once it is free.
+    pub fn wait(&mut self, dt: f32) {
+        let slack = (SLACKENS / dt) as u32 + 1;
+        self.steps = u32::min(self.steps, slack);
+        self.settled &= self.calm_steps > 0;
+    }
+
+    /// Share of the joints' friction that one who is limp for so long has.
+    pub fn slackness(&self, dt: f32) -> f32 {
+        self.steps as f32 * dt / SLACKENS
+    }
+}
+
+impl Physique {
+    /// The ragdoll of one who has one.
+    pub fn limp(&self) -> &Ragdoll {
+        self.ragdoll.as_ref().expect("a limp character has bodies")
+    }
+
+    /// Brings a share of the friction into the joints: what muscles held a moment ago goes on, for all of it at once would stop a
+    /// hand within a step.
+    pub fn slacken(&self, def: &CharacterDef, share: f32, world: &mut World) {
+        for (child, id) in self.limp().own_joints() {
+            let joint = &def.ragdoll.joints[child - 1];
             world.set_joint_friction(id, joint.friction_torque * min(share, 1.0));
         }
     }
 
     /// Lets what no body moves come to rest by and by: toes, helpers, and the places of joints that a clip moved along.
-    fn let_linger(&mut self, world: &World) {
-        let now: Pose = self.pose.iter().copied().collect();
-        let earlier: Pose = self.earlier.pose.iter().copied().collect();
-        let seconds = world.def().dt();
+    pub fn let_linger(&mut self, figure: &Figure, seconds: f32, scratch: &mut Scratch) {
+        let now: Pose = figure.pose.iter().copied().collect();
+        let earlier: Pose = figure.earlier.pose.iter().copied().collect();
         let from = Motion { now: &now, other: &earlier, seconds };
         self.lingering.start(from, Motion { now: &now, other: &now, seconds }, LINGERS);
-        self.scratch.resting = now;
+        scratch.resting = now;
     }
 
-    /// The base pose, and what lingers of its motion a step later.
-    fn come_to_rest(&mut self, seconds: f32) {
+    /// The base pose, and what lingers of its motion a step later, in `scratch.pose`.
+    fn come_to_rest(&mut self, seconds: f32, scratch: &mut Scratch) {
         let base = self.physical.base();
-        self.scratch.pose.clear();
+        scratch.pose.clear();
         if self.lingering.is_over() {
-            self.scratch.pose.extend_from_slice(base);
+            scratch.pose.extend_from_slice(base);
             return;
         }
-        let resting = &mut self.scratch.resting;
+        let resting = &mut scratch.resting;
         if resting.len() != base.len() {
             *resting = Pose::new(base.len());
         }
         base.iter().enumerate().for_each(|(joint, local)| resting.set(joint, local));
         self.lingering.apply(seconds, resting);
-        self.scratch.pose.extend(resting.iter());
+        scratch.pose.extend(resting.iter());
     }
 
-    /// A body that was about to get up, or that muscles held, is limp again.
-    fn fall_again(&mut self, world: &mut World) {
-        let powered = match self.state {
-            State::Flinching | State::Powered => true,
-            State::Preparing => false,
-            State::Animated | State::Limp | State::GettingUp => return,
-        };
-        let all: Vec<usize> =
-            (0..self.def.ragdoll.bodies.len()).filter(|&body| self.has_body(body)).collect();
-        self.slow_led(world, &all);
-        self.let_go(world);
-        self.state = State::Limp;
-        self.stillness = Stillness { touched: !powered, ..Stillness::default() };
-        if powered {
-            self.release_all(world, true);
-            self.let_linger(world);
-            self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
-            self.scratch.posed.clear();
-            self.sit_down(world);
-            self.ragdoll.as_ref().expect("it has bodies").set_rule(world, ContactRule::Push);
-            self.slacken(world);
-        }
-        self.events.push(CharacterEvent::WentLimp);
-        self.clear(world);
-    }
-
-    /// Gives bodies that clips lead the velocities that they have in the clips: with those that bring them to their place within a step, which a mover
-    /// that takes a kerb has put up by the height of it, they would be thrown once they are let go.
-    pub(super) fn slow_led(&mut self, world: &mut World, bodies: &[usize]) {
-        self.look_ahead(world);
-        let ragdoll = self.ragdoll.as_ref().expect("it has bodies");
-        for (id, velocity) in bodies.iter().map(|&body| (ragdoll.bodies[body], self.scratch.velocities[body]))
-        {
-            if world.kind(id) == BodyKind::Kinematic {
-                world.set_velocity(id, velocity);
-            }
-        }
-    }
-
-    /// Takes all drives off the bodies but those of a fall.
-    pub(super) fn let_go(&mut self, world: &mut World) {
-        if let Some(ragdoll) = &self.ragdoll {
-            self.drives.release(world, ragdoll);
-        }
-        self.drives.set_all(self.def.falling, 0.0);
-    }
-
-    /// Poses and velocities of the bodies as the animation carries them, whatever it is made of: by where it will
-    /// have them in a moment, for tracks, weights and transitions may all have changed since the last pose.
-    pub(super) fn carried(&mut self) -> Vec<BodyState> {
-        let (mut now, mut ahead) =
-            (core::mem::take(&mut self.scratch.before), core::mem::take(&mut self.scratch.after));
-        // Seen by the character: far from the world's origin small ways drown in rounding.
-        let pose = core::mem::take(&mut self.pose);
-        self.bodies_of(&pose, Transform::IDENTITY, &mut now);
-        self.pose = pose;
-        let (mut animator, mut way) = (self.sent_ahead(), Transform::IDENTITY);
-        let laps = laps(&animator);
-        self.bodies_ahead(&mut animator, &mut way, HAND_OVER_TIME, &mut ahead);
-        let mut further = Vec::new();
-        self.bodies_ahead(&mut animator, &mut way, HAND_OVER_TIME, &mut further);
-        let mut from = now.clone();
-        if self::laps(&animator) != laps {
-            // Across a loop's seam poses may jump: what counts is how they go on behind it.
-            core::mem::swap(&mut from, &mut further);
-            self.bodies_ahead(&mut animator, &mut way, HAND_OVER_TIME, &mut ahead);
-            self.bodies_ahead(&mut animator, &mut way, HAND_OVER_TIME, &mut further);
-        }
-        self.scratch.ahead = Some(animator);
-        let place = self.world_from_character;
-        let state = |(index, body): (usize, &RagdollBodyDef)| {
-            let [first, second, third] = [from[index], ahead[index], further[index]];
-            let between = |a, b| body_velocity(a, b, body.mass.center, HAND_OVER_TIME, self.def.speed_bound);
-            let (soon, later) = (between(first, second), between(second, third));
-            // Means of two spans, brought to the start of the first: a transition may well change speeds by a tenth in one.
-            let start = |soon: Vec3, later: Vec3| place.rotation * (soon + (soon - later) * 0.5);
-            let velocity = Velocity {
-                linear: start(soon.linear, later.linear),
-                angular: start(soon.angular, later.angular),
-            };
-            BodyState { world_from_body: place * now[index], velocity }
-        };
-        let states = self.def.ragdoll.bodies.iter().enumerate().map(state).collect();
-        (self.scratch.before, self.scratch.after) = (now, ahead);
-        states
-    }
-
-    /// Takes the pose from the bodies, but for what they do not move.
-    pub(super) fn follow_bodies(&mut self, world: &World) {
-        let dt = world.def().dt();
-        self.keep_earlier();
-        self.animator.update(self.def.set(), dt);
-        self.body_poses(world);
-        // Bodies that lie where the last pose had them need no other: most of a fall is lying.
-        if !self.lingering.is_over() || self.scratch.posed != self.scratch.after {
-            self.pose_by_bodies(dt);
-        }
-        for &joint in self.def.mapping().free() {
-            self.pose[joint] = self.animator.pose().get(joint);
-        }
-    }
-
-    /// The pose for bodies at `scratch.after`.
-    fn pose_by_bodies(&mut self, dt: f32) {
-        self.scratch.posed.clear();
-        if self.lingering.is_over() {
-            self.scratch.posed.extend_from_slice(&self.scratch.after);
-        }
-        self.come_to_rest(dt);
-        self.physical.pose_over(
-            self.def.mapping(),
-            &self.def.rig,
-            &self.scratch.pose,
-            self.world_from_character,
-            &self.scratch.after,
-            &mut self.pose,
-        );
-    }
-
-    /// Powers the joints of a falling body, for the next step, toward the pose of its clips.
-    fn brace(&mut self, world: &mut World) {
-        if self.def.falling != DriveMode::Limp {
-            self.drive_toward_clips(world);
-        }
-    }
-
-    /// Poses of the bodies in the clips at the end of the next step, in `scratch.after`, and their velocities on the way there, in `scratch.velocities`.
-    fn look_ahead(&mut self, world: &World) {
-        let mut targets = core::mem::take(&mut self.scratch.after);
-        let mut before = core::mem::take(&mut self.scratch.before);
-        let mut ahead = self.sent_ahead();
-        let mut way = Transform::IDENTITY;
-        self.bodies_ahead(&mut ahead, &mut way, 0.0, &mut before);
-        let dt = world.def().dt();
-        self.bodies_ahead(&mut ahead, &mut way, dt, &mut targets);
-        self.scratch.ahead = Some(ahead);
-        let place = self.world_from_character;
-        for pose in before.iter_mut().chain(&mut targets) {
-            *pose = place * *pose;
-        }
-        let velocity = |((&now, &ahead), body): ((&Transform, &Transform), &RagdollBodyDef)| {
-            body_velocity(now, ahead, body.mass.center, dt, self.def.speed_bound)
-        };
-        let velocities = before.iter().zip(&targets).zip(&self.def.ragdoll.bodies).map(velocity);
-        self.scratch.velocities.clear();
-        self.scratch.velocities.extend(velocities);
-        (self.scratch.before, self.scratch.after) = (before, targets);
-    }
-
-    /// Drives the bodies, for the next step, toward the pose that the clips will have then.
-    pub(super) fn drive_toward_clips(&mut self, world: &mut World) {
-        self.look_ahead(world);
-        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
-        let (targets, velocities) = (&self.scratch.after, &self.scratch.velocities);
-        self.drives.apply(world, &self.def.ragdoll, ragdoll, targets, velocities);
-    }
-
-    /// True while something holds it: then movers pass through it, so that it is in nobody's way who drags it.
-    fn mind_grips(&mut self, world: &mut World) -> bool {
-        let is_gripped = self.is_gripped(world);
-        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
-        let now = world.contact_rule(ShapeId { body: ragdoll.bodies[0], shape: 0 });
-        if is_gripped && now == ContactRule::Push {
-            ragdoll.set_rule(world, self.def.in_world.rule());
-        } else if !is_gripped && now != ContactRule::Push && !self.is_entered(world) {
-            ragdoll.set_rule(world, ContactRule::Push);
-        }
-        if is_gripped {
-            // It lies anew once it is free.
-            let slack = (SLACKENS / world.def().dt()) as u32 + 1;
-            self.stillness.steps = u32::min(self.stillness.steps, slack);
-            self.stillness.settled &= self.stillness.calm_steps > 0;
-        }
-        is_gripped
-    }
-
-    /// Waits until the bodies lie still.
-    pub(super) fn lie(&mut self, world: &mut World) {
-        self.follow_bodies(world);
-        if self.is_clearing() {
-            return self.go_out(world);
-        }
-        self.brace(world);
-        let dt = world.def().dt();
-        let was_slack = self.stillness.steps as f32 * dt < SLACKENS;
-        self.stillness.steps += 1;
-        if was_slack {
-            self.slacken(world);
-        }
-        let gets_up = self.def.after_settling == AfterSettling::GetUp && self.may_get_up();
-        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
-        let own: &[BodyId] = if self.lost.is_empty() { &ragdoll.bodies } else { &self.kept };
-        let still = &mut self.stillness;
-        if !still.touched && touches_world(world, own) {
-            still.touched = true;
-            self.events.push(CharacterEvent::Touched);
-        }
-        let ground = match self.presence {
-            Some(_) => ground::motion_below(world, own),
-            None => GroundMotion::default(),
-        };
-        let is_still = is_still_on(world, own, ground);
-        still.calm_steps = if is_still { still.calm_steps + 1 } else { 0 };
-        let mut calm = still.calm_steps as f32 * dt;
-        if !still.settled && calm >= STILL_TIME && is_sunk(world, own) {
-            (still.calm_steps, calm) = (0, 0.0);
-        }
-        if !still.settled && calm >= STILL_TIME {
-            still.settled = true;
-            self.events.push(CharacterEvent::Settled { since: world.time() as f32 - calm });
-        }
-        if self.mind_grips(world) {
+    /// Has a figure take its pose from the bodies, but for what they do not move. Bodies that lie where the last pose had them need no
+    /// other: most of a fall is lying.
+    pub fn pose(&mut self, def: &CharacterDef, figure: &mut Figure, world: &World, scratch: &mut Scratch) {
+        self.poses(def, world, scratch);
+        if self.lingering.is_over() && scratch.posed == scratch.after {
             return;
         }
-        let still = &mut self.stillness;
-        let impatient = !still.settled && still.steps as f32 * dt >= self.def.patience;
-        if gets_up && (still.settled || impatient) {
-            if impatient {
-                self.events.push(CharacterEvent::NeverSettled);
-                self.stillness.settled = true;
-            }
-            self.prepare(world);
+        scratch.posed.clear();
+        if self.lingering.is_over() {
+            scratch.posed.extend_from_slice(&scratch.after);
         }
+        self.come_to_rest(world.def().dt(), scratch);
+        let (place, pose) = (figure.place, &mut figure.pose);
+        self.physical.pose_over(def.mapping(), &def.rig, &scratch.pose, place, &scratch.after, pose);
     }
-}
-
-/// Laps of all tracks, summed: another sum after a moment tells of a seam between.
-fn laps(animator: &Animator) -> i64 {
-    animator.tracks().fold(0, |sum, track| sum.wrapping_add(track.playhead().lap()))
 }
 
 /// True if every body is slower than what counts as still.

@@ -25,17 +25,21 @@
 //! assert!(world.center_of_mass(chest).y < 1.0, "it falls");
 //! ```
 
-mod animate;
+mod activity;
 mod blows;
+mod calls;
+mod changes;
 mod clear;
 mod clearance;
 mod def;
 mod detach;
-mod detail;
 mod distances;
 mod event;
 mod feet;
+mod figure;
 mod floor;
+mod foresight;
+mod gait;
 mod get_up;
 mod grab;
 mod grab_point;
@@ -44,11 +48,13 @@ mod ground;
 mod hit_bodies;
 mod hold;
 mod in_world;
+mod legs;
 mod limb;
 mod limp;
-mod memory;
+
 mod mirror;
 mod moves;
+mod physique;
 mod pose_similarity;
 mod powered;
 mod prepare;
@@ -59,7 +65,6 @@ mod size;
 mod stumble;
 mod travel;
 mod tuning;
-mod walk;
 mod wear;
 
 pub(crate) use floor::moved;
@@ -77,96 +82,40 @@ pub use limb::Limb;
 pub use moves::MotionError;
 pub use powered::{Part, Preset};
 
-use crate::drive::Drives;
-use crate::garments::Worn;
-use crate::mapping::Physical;
-use crate::ragdoll::Ragdoll;
-use crate::springs::SpringSwing;
-use clearance::Passage;
-use in_world::Presence;
-use memory::{Clearing, Planting, Preparation, Rising, Shown, Stillness};
-use sinew_anim::{Animator, Inertia, LocalTransform, Pose};
-use sinew_math::{Affine, Transform, Vec3};
-use sinew_physics::{BodyId, Velocity, World};
+use crate::drive::DriveMode;
+use activity::Activity;
+use event::Events;
+use feet::{Feet, Stand};
+use figure::{Figure, Moment, Scratch};
+use gait::Gait;
+use get_up::{Choice, Risen};
+use grab::is_entered;
+use hold::Grips;
+use limp::Lying;
+use physique::Physique;
+use sinew_math::Transform;
+use sinew_physics::{ContactRule, ShapeId, World};
 use std::sync::Arc;
+use stumble::Balancing;
+use tuning::FLINCH_HALF_LIFE;
+use wear::{Bearer, Wear};
 
 /// A character in a world.
 #[derive(Clone, Debug)]
 pub struct Character {
     def: Arc<CharacterDef>,
-    state: State,
-    animator: Animator,
-    rising: Rising,
-    /// Slope of the ground on which it gets up, as a turn from the vertical: scaled axis, world axes.
-    lean: Vec3,
-    /// Ground under its feet where it is not the floor of its clips.
-    planting: Planting,
-    /// Way from one pose to another on which it is kept out of the floor.
-    passage: Passage,
-    /// The pose with the feet planted and out of the floor, while that is another.
-    planted: Vec<LocalTransform>,
-    /// Springs and garments that it wears, and the pose with them; empty of a character that wears none.
-    swing: SpringSwing,
-    worn: Worn,
-    swung: Vec<LocalTransform>,
-    /// Speed over the ground in the last step, m/s.
-    speed: f32,
-    world_from_character: Transform,
-    /// Speed at which the ground took the character's origin up in the last step, m/s.
-    climbing: f32,
-    /// As bodies or clips have it.
-    pose: Vec<LocalTransform>,
-    earlier: Earlier,
-    shown: Shown,
-    presence: Option<Presence>,
-    /// Seconds until a limb that was struck has come back.
-    flinching: f32,
-    ragdoll: Option<Ragdoll>,
-    drives: Drives,
-    /// Bodies that were cut off, by index, with their ids.
-    lost: Vec<(usize, BodyId)>,
-    /// Bodies that are its own, where some were cut off.
-    kept: Vec<BodyId>,
-    /// Bodies of its own and others that were cut off, which overlap and pass through each other until they do not.
-    parting: Vec<(BodyId, BodyId)>,
-    /// Limbs that it has let go of, through whose bodies its own pass until they are apart.
-    freed: Vec<BodyId>,
-    stillness: Stillness,
-    /// Way out of what it was deep in when it went limp.
-    clearing: Clearing,
-    preparation: Preparation,
-    events: Vec<CharacterEvent>,
-    /// Number of events that were there at the end of the last update.
-    told: usize,
-    physical: Physical,
-    /// Motion of what neither bodies nor clips move, as it dies away after the bodies took over.
-    lingering: Inertia,
+    /// State, with what only that state knows.
+    activity: Activity,
+    /// Detail that it has, or will have once its clips move it; `None`: it is in no world.
+    detail: Option<Detail>,
+    gait: Gait,
+    figure: Figure,
+    feet: Feet,
+    physique: Physique,
+    grips: Grips,
+    wear: Wear,
+    events: Events,
     scratch: Scratch,
-}
-
-/// The pose a step ago, and where it was.
-#[derive(Clone, Debug)]
-struct Earlier {
-    pose: Vec<LocalTransform>,
-    world_from_character: Transform,
-}
-
-/// Buffers that are kept to be used again; but for `posed` they hold nothing from one call to the next.
-#[derive(Clone, Debug, Default)]
-struct Scratch {
-    /// Bodies that the present pose was made of, where it will be the same as long as they stay; else nothing. Work that is
-    /// saved, not state: the pose is the same without it.
-    posed: Vec<Transform>,
-    ahead: Option<Animator>,
-    pose: Vec<LocalTransform>,
-    resting: Pose,
-    wanted: Vec<LocalTransform>,
-    model: Vec<Affine>,
-    frames: Vec<(Transform, f32)>,
-    points: Vec<Vec3>,
-    before: Vec<Transform>,
-    after: Vec<Transform>,
-    velocities: Vec<Velocity>,
 }
 
 impl Character {
@@ -177,110 +126,20 @@ impl Character {
     /// If `phase` is not finite.
     pub fn new(def: Arc<CharacterDef>, world_from_character: Transform, phase: f32) -> Self {
         let animator = def.opening(phase);
-        let pose: Vec<LocalTransform> = animator.pose().iter().collect();
+        let figure = Figure::new(animator.pose().iter().collect(), world_from_character);
         Self {
-            state: State::Animated,
-            animator,
-            rising: Rising::Without(0.0),
-            lean: Vec3::ZERO,
-            planting: Planting::default(),
-            passage: Passage::default(),
-            planted: Vec::new(),
-            swing: SpringSwing::new(),
-            worn: Worn::default(),
-            swung: Vec::new(),
-            speed: 0.0,
-            climbing: 0.0,
-            earlier: Earlier { pose: pose.clone(), world_from_character },
-            shown: Shown { pose: pose.clone(), world_from_character },
-            world_from_character,
-            pose,
-            presence: None,
-            flinching: 0.0,
-            ragdoll: None,
-            drives: Drives::new(&def.ragdoll),
-            lost: Vec::new(),
-            kept: Vec::new(),
-            parting: Vec::new(),
-            freed: Vec::new(),
-            stillness: Stillness::default(),
-            clearing: Clearing::default(),
-            preparation: Preparation::default(),
-            events: Vec::new(),
-            told: 0,
-            physical: Physical::default(),
-            lingering: Inertia::default(),
+            activity: Activity::Animated,
+            detail: None,
+            gait: Gait::new(animator),
+            figure,
+            feet: Feet::default(),
+            physique: Physique::new(&def),
+            grips: Grips::default(),
+            wear: Wear::new(),
+            events: Events::default(),
             scratch: Scratch::default(),
             def,
         }
-    }
-
-    /// Definition that it shares with its kind.
-    pub fn def(&self) -> &Arc<CharacterDef> {
-        &self.def
-    }
-
-    /// State of the character: what decides its pose.
-    pub fn state(&self) -> State {
-        self.state
-    }
-
-    /// Its bodies, while it has any: limp, or preparing to get up.
-    pub fn ragdoll(&self) -> Option<&Ragdoll> {
-        self.ragdoll.as_ref()
-    }
-
-    /// Drives of its bodies, while it has any.
-    pub fn drives(&self) -> &Drives {
-        &self.drives
-    }
-
-    /// Local transform of every joint of the rig, springs, garments and all; nodes above the pelvis are at rest (see [`crate::mapping`]).
-    pub fn pose(&self) -> &[LocalTransform] {
-        if self.swung.is_empty() { self.pose_without_springs() } else { &self.swung }
-    }
-
-    /// [`pose`](Self::pose) as clips and bodies have it, with all springs and garments at rest.
-    pub fn pose_without_springs(&self) -> &[LocalTransform] {
-        self.led_pose()
-    }
-
-    /// The pose that the clips lead to, with feet on the ground and nothing deep in the floor.
-    fn led_pose(&self) -> &[LocalTransform] {
-        if self.is_planted() { &self.planted } else { &self.pose }
-    }
-
-    /// True while what is shown is not quite the clips' pose.
-    fn is_planted(&self) -> bool {
-        !self.planting.is_over() || self.is_passing()
-    }
-
-    /// Pose of the character in the world. While it is limp: the one in which it went limp.
-    pub fn world_from_character(&self) -> Transform {
-        self.world_from_character
-    }
-
-    /// From the file's model space to the world: what a renderer puts above the pose.
-    pub fn world_from_model(&self) -> Affine {
-        self.def.mapping().world_from_model(self.world_from_character)
-    }
-
-    /// Animator that plays its clips: those of [`CharacterDef::set`].
-    pub fn animator(&self) -> &Animator {
-        &self.animator
-    }
-
-    /// Animator that plays its clips, to be given others: tracks, crossfades, layers. To begin with it plays the looped clip, and
-    /// again after getting up; getting up stops all other tracks of layer 0. While the character is limp, what plays still moves
-    /// the joints that no body does ([`Mapping::free`](crate::Mapping::free)), and events go on.
-    pub fn animator_mut(&mut self) -> &mut Animator {
-        &mut self.animator
-    }
-
-    /// Events of the last [`update`](Self::update) and since the one before it ended, in order, and what calls have brought about
-    /// since. Who reads it after each update, and only then, is told of everything exactly once.
-    pub fn events(&self) -> &[CharacterEvent] {
-        &self.events
     }
 
     /// Follows the world by the step that it has just taken.
@@ -288,58 +147,287 @@ impl Character {
     /// # Panics
     /// If the world is not the one that the character is in.
     pub fn update(&mut self, world: &mut World) {
-        self.events.drain(..self.told);
+        self.events.begin();
         self.keep_shown();
-        self.note_contacts(world);
-        self.mind_holds(world);
-        self.mind_parting(world);
-        self.mind_freed(world);
+        if self.def.in_world.tells_contacts {
+            self.events.list.extend(self.physique.contacts(world));
+        }
+        self.grips.mind(self.physique.own(), world, &mut self.events);
+        self.physique.mind_parting(world);
+        self.grips.mind_freed(self.physique.own(), world);
         if !self.is_frozen() {
             self.follow(world);
             self.settle_detail(world);
-            self.wear(world);
+            self.go_on_wearing(world);
         }
-        self.told = self.events.len();
+        self.events.end();
     }
 
+    /// Takes a step of its state.
     fn follow(&mut self, world: &mut World) {
-        match self.state {
-            State::Limp => self.lie(world),
-            State::Preparing => self.go_on_preparing(world),
+        match self.state() {
+            State::Animated => self.go_animated(world),
+            State::GettingUp => self.go_rising(world),
             State::Flinching | State::Powered => {
                 self.feel(world);
-                match self.state {
+                match self.state() {
                     State::Limp => self.follow_bodies(world),
-                    _ => self.go_on_powered(world),
+                    _ => self.go_powered(world),
                 }
             }
-            State::Animated => {
-                self.animate(world);
-                self.plant(world);
-                self.attend(world);
-            }
-            State::GettingUp => {
-                self.animate(world);
-                self.straighten();
-                self.rise(world);
-                self.plant(world);
-                self.attend(world);
-            }
+            State::Limp => self.go_lying(world),
+            State::Preparing => self.go_preparing(world),
         }
+    }
+
+    fn go_animated(&mut self, world: &mut World) {
+        self.advance(world);
+        self.plant(world);
+        self.attend(world);
+    }
+
+    fn go_rising(&mut self, world: &mut World) {
+        self.advance(world);
+        let animator = &self.gait.animator;
+        let Activity::GettingUp(rising) = &mut self.activity else { return };
+        rising.straighten(&self.def, animator, &mut self.figure);
+        match rising.go_on(animator, world.def().dt()) {
+            Risen::NotYet => {}
+            Risen::ByClip => self.stand(world),
+            Risen::Without => self.be_up(),
+        }
+        self.plant(world);
+        self.attend(world);
+    }
+
+    /// Takes the clips forward by a step, and the character over the ground with them.
+    fn advance(&mut self, world: &World) {
+        let own = self.detail.map(|_| self.physique.hit.as_slice());
+        self.gait.advance(&self.def, &self.activity, &mut self.figure, own, world);
+        let fired = self.gait.animator.events();
+        self.events.list.extend(fired.iter().map(|&fired| CharacterEvent::Clip(fired)));
+    }
+
+    /// Puts the feet on the ground.
+    fn plant(&mut self, world: &World) {
+        let stand = Stand {
+            def: &self.def,
+            activity: &self.activity,
+            animator: &self.gait.animator,
+            figure: &self.figure,
+            speed: self.gait.speed,
+            own: self.detail.map(|_| self.physique.hit.as_slice()),
+        };
+        self.feet.plant(&stand, world, &mut self.scratch.model);
     }
 
     /// Exchange of a character that its clips move with the world: blows, hit bodies, steering.
     fn attend(&mut self, world: &mut World) {
-        if self.presence.is_none() {
+        if !self.is_in_world() {
             return;
         }
-        if self.falls() {
+        if self.gait.falls {
             return self.go_limp(world);
         }
         self.feel(world);
-        if self.ragdoll.is_none() {
+        if self.physique.ragdoll.is_none() {
             self.lead_bodies(world);
         }
         self.steer(world);
+    }
+
+    /// Flinches or falls by what struck its bodies in the last step.
+    fn feel(&mut self, world: &mut World) {
+        if !self.is_in_world() {
+            return;
+        }
+        if let Some((body, strike)) = self.physique.felt(&self.def, self.steps(), world) {
+            self.events.push(CharacterEvent::Struck { body, impulse: strike.impulse.length() });
+            self.be_struck(world, body, strike);
+        }
+    }
+
+    /// Has the hit bodies go where the pose will be.
+    fn lead_bodies(&mut self, world: &mut World) {
+        let pose = self.feet.led(&self.figure.pose);
+        self.physique.lead(&self.def, pose, self.figure.place, &mut self.scratch, world);
+    }
+
+    /// Tells its mover where to go.
+    fn steer(&mut self, world: &mut World) {
+        let mover = self.gait.mover;
+        self.grips.spare_bearer(self.physique.own(), mover, world);
+        let (rotation, steps) = (self.figure.place.rotation, self.steps());
+        self.gait.steer(&self.def, &self.activity, rotation, steps, world);
+    }
+
+    /// A step while clips and physics share the bodies.
+    fn go_powered(&mut self, world: &mut World) {
+        self.advance(world);
+        let in_vain = self.keep_balance(world);
+        let def = &self.def;
+        let mut resting = core::mem::take(&mut self.scratch.pose);
+        resting.clone_from(&self.figure.pose);
+        self.physique.poses(def, world, &mut self.scratch);
+        let (place, pose) = (self.figure.place, &mut self.figure.pose);
+        let bodies = &self.scratch.after;
+        self.physique.physical.pose_over(def.mapping(), &def.rig, &resting, place, bodies, pose);
+        self.scratch.pose = resting;
+        if self.gait.falls || in_vain || self.is_toppled(world) {
+            return self.go_limp(world);
+        }
+        if self.goes_on_flinching(world) {
+            self.drive_bodies(world);
+        } else {
+            self.leave_bodies(world);
+            self.activity = Activity::Animated;
+            self.events.push(CharacterEvent::Recovered);
+            self.lead_bodies(world);
+        }
+        self.steer(world);
+    }
+
+    /// Takes a flinch forward; false once its limb has come back. True of one who is powered.
+    fn goes_on_flinching(&mut self, world: &World) -> bool {
+        let Activity::Flinching(flinch) = &mut self.activity else { return true };
+        if self.grips.is_gripped(&self.physique, world) {
+            flinch.go_on();
+        }
+        if flinch.turns_back(world.def().dt()) {
+            self.physique.drives.set_all(DriveMode::Keyed, FLINCH_HALF_LIFE);
+        }
+        flinch.seconds > 0.0
+    }
+
+    /// Steps to keep its balance, if it does; true if that is in vain.
+    fn keep_balance(&mut self, world: &World) -> bool {
+        let steps = self.steps();
+        let Activity::Powered(balance) = &mut self.activity else { return false };
+        let on = Balancing {
+            def: &self.def,
+            place: self.figure.place,
+            gait: &self.gait,
+            physique: &self.physique,
+        };
+        balance.go_on(on, steps, &mut self.scratch, world, &mut self.events)
+    }
+
+    fn is_toppled(&mut self, world: &World) -> bool {
+        let (animator, place) = (&self.gait.animator, self.figure.place);
+        matches!(self.activity, Activity::Powered(_))
+            && powered::is_toppled(&self.def, animator, place, &self.physique, &mut self.scratch, world)
+    }
+
+    /// A step of lying, until the bodies lie still.
+    fn go_lying(&mut self, world: &mut World) {
+        self.follow_bodies(world);
+        if self.activity.is_clearing() {
+            return self.go_out(world);
+        }
+        if self.def.falling != DriveMode::Limp {
+            // Muscles draw it toward the pose of its clips.
+            self.drive_bodies(world);
+        }
+        let dt = world.def().dt();
+        let on_ground = self.is_in_world();
+        let Activity::Limp(lying) = &mut self.activity else { return };
+        let still = &mut lying.stillness;
+        let is_slack = still.slackness(dt) >= 1.0;
+        still.steps += 1;
+        if !is_slack {
+            self.physique.slacken(&self.def, still.slackness(dt), world);
+        }
+        let lain = still.look(world, self.physique.own(), on_ground);
+        if lain.touched {
+            self.events.push(CharacterEvent::Touched);
+        }
+        if let Some(calm) = lain.settled {
+            self.events.push(CharacterEvent::Settled { since: world.time() as f32 - calm });
+        }
+        if self.mind_grips(world) {
+            return;
+        }
+        let gets_up = self.def.after_settling == AfterSettling::GetUp && self.physique.may_get_up(&self.def);
+        let Activity::Limp(Lying { stillness: still, .. }) = &mut self.activity else { return };
+        let impatient = !still.settled && still.steps as f32 * dt >= self.def.patience;
+        if gets_up && (still.settled || impatient) {
+            if impatient {
+                self.events.push(CharacterEvent::NeverSettled);
+                still.settled = true;
+            }
+            self.prepare(world);
+        }
+    }
+
+    /// True while something holds it: then movers pass through it, so that it is in nobody's way who drags it.
+    fn mind_grips(&mut self, world: &mut World) -> bool {
+        let is_gripped = self.grips.is_gripped(&self.physique, world);
+        let ragdoll = self.physique.limp();
+        let now = world.contact_rule(ShapeId { body: ragdoll.bodies[0], shape: 0 });
+        if is_gripped && now == ContactRule::Push {
+            ragdoll.set_rule(world, self.def.in_world.rule());
+        } else if !is_gripped && now != ContactRule::Push && !is_entered(world, self.physique.own()) {
+            ragdoll.set_rule(world, ContactRule::Push);
+        }
+        if let Some(still) = self.activity.stillness_mut().filter(|_| is_gripped) {
+            still.wait(world.def().dt());
+        }
+        is_gripped
+    }
+
+    /// A step of being brought to where a clip begins; gets up where the body lies as the clip begins, or time is up.
+    fn go_preparing(&mut self, world: &mut World) {
+        self.follow_bodies(world);
+        if self.grips.is_gripped(&self.physique, world) {
+            return self.go_limp(world);
+        }
+        let Activity::Preparing(preparing) = &mut self.activity else { return };
+        preparing.stillness.steps += 1;
+        preparing.seconds -= world.def().dt();
+        let preparing = *preparing;
+        let def = self.def.clone();
+        let moves = def.moves();
+        let lies = self.figure.stance(&def, &mut self.scratch);
+        let get_up = &moves.get_ups[preparing.get_up as usize];
+        let start = &get_up.starts[preparing.start as usize];
+        let choice = Choice { get_up, start, pose_similarity: moves.landmarks.compare(&start.stance, &lies) };
+        let is_over = preparing.seconds <= 0.0 || choice.is_reached(&def, lies.pelvis);
+        self.scratch.points = lies.points;
+        if is_over {
+            return self.get_up_where_free(world);
+        }
+        prepare::draw(&def, &choice, &mut self.physique, &mut self.scratch, world);
+    }
+
+    /// Takes the pose from the bodies, but for what they do not move.
+    fn follow_bodies(&mut self, world: &World) {
+        self.figure.keep_earlier();
+        let animator = &mut self.gait.animator;
+        animator.update(self.def.set(), world.def().dt());
+        self.physique.pose(&self.def, &mut self.figure, world, &mut self.scratch);
+        for &joint in self.def.mapping().free() {
+            self.figure.pose[joint] = self.gait.animator.pose().get(joint);
+        }
+    }
+
+    /// Takes what it wears forward.
+    fn go_on_wearing(&mut self, world: &mut World) {
+        let is_far = self.level_of_detail() <= Detail::Keyed;
+        let mends = self.state() == State::Animated;
+        let bearer = Bearer {
+            def: &self.def,
+            pose: self.feet.led(&self.figure.pose),
+            place: self.figure.place,
+            physique: &self.physique,
+        };
+        self.wear.go_on(bearer, &self.figure.shown, (is_far, mends), &mut self.scratch, world);
+    }
+
+    /// Keeps what is shown now for [`interpolated`](Self::interpolated).
+    fn keep_shown(&mut self) {
+        let mut pose = core::mem::take(&mut self.figure.shown.pose);
+        pose.clear();
+        pose.extend_from_slice(self.pose());
+        self.figure.shown = Moment { pose, place: self.figure.place };
     }
 }

@@ -1,163 +1,175 @@
 //! Springs and garments that a character wears, over the pose that clips or bodies give it.
 
-use super::{Character, Detail, State};
-use crate::garments::Wearer;
-use crate::springs::SpringStep;
-use sinew_physics::{GroupId, World};
+use super::CharacterDef;
+use super::figure::{Moment, Scratch};
+use super::physique::Physique;
+use crate::garments::{Wearer, Worn};
+use crate::springs::{SpringStep, SpringSwing};
+use sinew_anim::LocalTransform;
+use sinew_math::Transform;
+use sinew_physics::World;
 
-impl Character {
-    /// Takes what it wears forward by a step of the world, about the pose that it has now.
-    pub(super) fn wear(&mut self, world: &mut World) {
-        let def = self.def.clone();
+/// Springs and garments of a character.
+#[derive(Clone, Debug)]
+pub(super) struct Wear {
+    pub springs: SpringSwing,
+    pub garments: Worn,
+    /// The pose with springs and garments as they are; empty of a character that wears none.
+    pub pose: Vec<LocalTransform>,
+}
+
+/// Who wears it.
+#[derive(Clone, Copy)]
+pub(super) struct Bearer<'a> {
+    pub def: &'a CharacterDef,
+    /// Pose without springs and garments, and place.
+    pub pose: &'a [LocalTransform],
+    pub place: Transform,
+    pub physique: &'a Physique,
+}
+
+impl<'a> Bearer<'a> {
+    fn wearer(self) -> Wearer<'a> {
+        Wearer {
+            rig: self.def.garments(),
+            ragdoll: &self.def.ragdoll,
+            pose: self.pose,
+            world_from_model: self.def.mapping().world_from_model(self.place),
+            bodies: self.physique.ids(),
+            lost: &self.physique.lost,
+        }
+    }
+}
+
+impl Wear {
+    pub fn new() -> Self {
+        Self { springs: SpringSwing::new(), garments: Worn::default(), pose: Vec::new() }
+    }
+
+    /// Takes what it wears forward by a step of the world, about the pose that the bearer has now. `shown`: the moment that was shown last;
+    /// `is_far`: springs rest; `mends`: what clips have caught is freed.
+    pub fn go_on(
+        &mut self,
+        bearer: Bearer<'_>,
+        shown: &Moment,
+        (is_far, mends): (bool, bool),
+        scratch: &mut Scratch,
+        world: &mut World,
+    ) {
+        let def = bearer.def;
         if def.springs().is_empty() && def.garments().is_empty() {
             return;
         }
-        let is_far = self.level_of_detail() <= Detail::Keyed;
-        let is_bare = self.worn.groups.is_empty() && (def.garments().is_empty() || self.bodies().is_empty());
-        self.swung.clear();
-        if is_bare && is_far && self.swing.is_away() {
+        let has_no_bodies = bearer.physique.ids().is_empty();
+        let is_bare = self.garments.groups.is_empty() && (def.garments().is_empty() || has_no_bodies);
+        self.pose.clear();
+        if is_bare && is_far && self.springs.is_away() {
             return;
         }
-        self.swung.extend_from_slice(if self.is_planted() { &self.planted } else { &self.pose });
-        self.swing_springs(world, is_far);
-        self.show_springs();
-        self.wear_garments(world);
-        self.show_garments();
+        self.pose.extend_from_slice(bearer.pose);
+        self.swing(bearer, shown, is_far, scratch, world);
+        self.show_springs(def);
+        self.drape(bearer, mends, world);
+        self.show_garments(def);
     }
 
     /// Springs of one who is far away are the pose, and return with its motion: that which was shown.
-    fn swing_springs(&mut self, world: &World, is_far: bool) {
-        let def = self.def.clone();
+    fn swing(
+        &mut self,
+        bearer: Bearer<'_>,
+        shown: &Moment,
+        is_far: bool,
+        scratch: &mut Scratch,
+        world: &World,
+    ) {
+        let Bearer { def, place, physique, .. } = bearer;
         let rig = def.springs();
         if rig.is_empty() {
             return;
         }
-        let place = self.world_from_character;
-        let returns = self.swing.is_eased() && !is_far;
-        let mut bodies = core::mem::take(&mut self.scratch.after);
+        let returns = self.springs.is_eased() && !is_far;
+        let mut bodies = core::mem::take(&mut scratch.after);
         bodies.clear();
         if rig.meets_bodies() && !is_far && !returns {
-            let pose = core::mem::take(&mut self.swung);
-            self.bodies_of(&pose, place, &mut bodies);
-            self.hide_lost(&mut bodies);
-            self.swung = pose;
+            scratch.bodies_of(def, &self.pose, place, &mut bodies);
+            physique.hide_lost(&mut bodies);
         }
-        let own = match (&self.ragdoll, &self.presence) {
-            _ if !self.lost.is_empty() => self.kept.as_slice(),
-            (Some(ragdoll), _) => ragdoll.bodies.as_slice(),
-            (None, Some(presence)) => presence.bodies.as_slice(),
-            (None, None) => &[],
-        };
         let step = SpringStep {
             rig,
-            pose: &self.swung,
+            pose: &self.pose,
             world_from_model: def.mapping().world_from_model(place),
             bodies: &bodies,
-            world: Some((world, own)),
+            world: Some((world, physique.own())),
             seconds: world.def().dt(),
         };
         if is_far {
-            self.swing.ease(&step);
+            self.springs.ease(&step);
         } else if returns {
-            let root = def.mapping().world_from_model(self.shown.world_from_character);
-            self.swing.take_up(&step, &self.shown.pose, root);
+            let root = def.mapping().world_from_model(shown.place);
+            self.springs.take_up(&step, &shown.pose, root);
         } else {
-            self.swing.step(&step);
+            self.springs.step(&step);
         }
-        self.scratch.after = bodies;
+        scratch.after = bodies;
     }
 
     /// Puts its garments on if it has bodies to wear them, mends what its clips have caught, and looks how they lie. Their joints are shown below springs that have
     /// swung; cloth itself lies as the pose without springs has it, from near and from afar.
-    fn wear_garments(&mut self, world: &mut World) {
-        if self.def.garments().is_empty() {
+    fn drape(&mut self, bearer: Bearer<'_>, mends: bool, world: &mut World) {
+        self.dress(bearer, world);
+        if self.garments.groups.is_empty() {
             return;
         }
-        let mut worn = core::mem::take(&mut self.worn);
-        if worn.groups.is_empty() && !self.bodies().is_empty() {
-            worn.groups = self.wearer(self.pose_without_springs()).put_on(world);
+        // Where the pose of one who is getting up has the sheet is ground.
+        if mends {
+            bearer.wearer().mend(world, &self.garments.groups);
         }
-        if !worn.groups.is_empty() {
-            // Where the pose of one who is getting up has the sheet is ground.
-            if self.state == State::Animated {
-                self.wearer(self.pose_without_springs()).mend(world, &worn.groups);
-            }
-            self.wearer(&self.swung).turns(world, &mut worn);
-        }
-        self.worn = worn;
-    }
-
-    fn wearer<'a>(&'a self, pose: &'a [sinew_anim::LocalTransform]) -> Wearer<'a> {
-        Wearer {
-            rig: self.def.garments(),
-            ragdoll: &self.def.ragdoll,
-            pose,
-            world_from_model: self.world_from_model(),
-            bodies: self.bodies(),
-            lost: &self.lost,
-        }
+        Bearer { pose: &self.pose, ..bearer }.wearer().turns(world, &mut self.garments);
     }
 
     /// Puts its garments on, before the first step in which it has bodies.
-    pub(super) fn dress(&mut self, world: &mut World) {
-        if !self.def.garments().is_empty() && self.worn.groups.is_empty() {
-            self.worn.groups = self.wearer(self.pose_without_springs()).put_on(world);
+    pub fn dress(&mut self, bearer: Bearer<'_>, world: &mut World) {
+        let is_there = !bearer.physique.ids().is_empty();
+        if !bearer.def.garments().is_empty() && self.garments.groups.is_empty() && is_there {
+            self.garments.groups = bearer.wearer().put_on(world);
         }
     }
 
     /// Hangs its garments on what is left of its bodies, as they lie.
-    pub(super) fn rehang(&mut self, world: &mut World) {
-        if self.worn.groups.is_empty() {
+    pub fn rehang(&mut self, bearer: Bearer<'_>, world: &mut World) {
+        if self.garments.groups.is_empty() {
             return;
         }
-        let was = self.worn.lie(world);
-        self.undress(world);
-        self.dress(world);
-        self.worn.lay(world, &was);
-    }
-
-    /// Takes its garments off, before its bodies leave the world.
-    pub(super) fn undress(&mut self, world: &mut World) {
-        self.worn.take_off(world);
+        let was = self.garments.lie(world);
+        self.garments.take_off(world);
+        self.dress(bearer, world);
+        self.garments.lay(world, &was);
     }
 
     /// Turns the bones of springs as they are, in the pose that is shown.
-    pub(super) fn show_springs(&mut self) {
-        let def = self.def.clone();
-        for (joint, &turn) in def.springs().joints().zip(self.swing.turns()) {
-            self.swung[joint].rotation = turn;
+    fn show_springs(&mut self, def: &CharacterDef) {
+        for (joint, &turn) in def.springs().joints().zip(self.springs.turns()) {
+            self.pose[joint].rotation = turn;
         }
     }
 
     /// Turns and moves the joints of garments as they are, in the pose that is shown.
-    pub(super) fn show_garments(&mut self) {
-        let def = self.def.clone();
-        for (joint, &turn) in def.garments().joints().zip(&self.worn.turns) {
-            self.swung[joint].rotation = turn;
+    fn show_garments(&mut self, def: &CharacterDef) {
+        for (joint, &turn) in def.garments().joints().zip(&self.garments.turns) {
+            self.pose[joint].rotation = turn;
         }
-        for (joint, &place) in def.garments().moving().zip(&self.worn.places) {
-            self.swung[joint].translation = place;
-        }
-    }
-
-    /// Has its springs start over at rest with the next step: after a cut, where the way from the place before is none.
-    pub fn reset_springs(&mut self) {
-        self.swing.reset();
-    }
-
-    /// Has its garments start over at rest: after a cut, where the way from the place before is none.
-    ///
-    /// # Panics
-    /// If the world is not the one that the character is in.
-    pub fn reset_garments(&mut self, world: &mut World) {
-        if !self.worn.groups.is_empty() {
-            self.undress(world);
-            self.dress(world);
+        for (joint, &place) in def.garments().moving().zip(&self.garments.places) {
+            self.pose[joint].translation = place;
         }
     }
 
-    /// Particles of its garments in the world, in the order of [`CharacterDef::garments`](super::CharacterDef::garments); none while it has no bodies.
-    pub fn garments(&self) -> &[GroupId] {
-        &self.worn.groups
+    /// Shows what it wears over a pose, as it was when it was saved.
+    pub fn show_loaded(&mut self, def: &CharacterDef, pose: &[LocalTransform]) {
+        self.pose.clear();
+        if !(self.springs.turns().is_empty() && self.garments.turns.is_empty()) {
+            self.pose.extend_from_slice(pose);
+            self.show_springs(def);
+            self.show_garments(def);
+        }
     }
 }

@@ -162,8 +162,8 @@ fn thresholds_decide_between_flinch_and_fall() {
     };
     assert!(fells(Toughness::None, 0.5));
     assert!(!fells(Toughness::Impulse(20.0), 19.0) && fells(Toughness::Impulse(20.0), 21.0));
-    fn heads_only(character: &Character, blow: &Blow) -> bool {
-        character.def().body_named("head") == Some(blow.body)
+    fn heads_only(def: &CharacterDef, blow: &Blow) -> bool {
+        def.body_named("head") == Some(blow.body)
     }
     assert!(!fells(Toughness::Function(heads_only), 500.0));
 }

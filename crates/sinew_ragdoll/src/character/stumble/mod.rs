@@ -8,7 +8,11 @@
 mod step;
 mod support;
 
-use super::{Character, CharacterDef, CharacterEvent, State, ground};
+use super::event::Events;
+use super::figure::Scratch;
+use super::gait::Gait;
+use super::physique::Physique;
+use super::{CharacterDef, CharacterEvent, State, ground};
 use crate::character::tuning::{
     AIMS_UNTIL, AIRBORNE, CAPTURE_MARGIN, CAUGHT_SHARE, CAUGHT_SPEED, DROP_TIME, FLIES_AFTER, HOME_TIME,
     HOPELESS, HURRY, LIFT, PELVIS_SINKS, RESUMES, SOLE_RIM, STEP_RANGE, STRAIN_COST, UNTOLD_MARGIN,
@@ -59,58 +63,65 @@ struct Stand {
     omega: f32,
 }
 
-impl Character {
-    /// True while it steps to catch itself.
-    pub fn stumbles(&self) -> bool {
-        self.stumbling().is_some()
-    }
+/// Balance of a powered character.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Balance {
+    /// Steps with which it catches itself.
+    pub stumble: Option<Stumble>,
+}
 
-    pub(super) fn stumbling(&self) -> Option<&Stumble> {
-        self.presence.as_ref()?.stumble.as_ref()
-    }
+/// Parts that balance looks at.
+#[derive(Clone, Copy)]
+pub(super) struct Balancing<'a> {
+    pub def: &'a CharacterDef,
+    /// World from character.
+    pub place: Transform,
+    pub gait: &'a Gait,
+    pub physique: &'a Physique,
+}
 
-    /// True if it catches itself from pushes by steps.
-    pub(super) fn steps(&self) -> bool {
-        self.state == State::Powered
-            && self.def.in_world.most_steps > 0
-            && self.def.feet().is_some()
-            && self.mover().is_some()
-            && self.lost.is_empty()
-    }
-
-    /// Takes up an impulse that its bodies got, N·s.
-    pub(super) fn shove(&mut self, world: &mut World, impulse: Vec3) {
-        if !self.steps() {
-            return;
-        }
-        let Some(stand) = self.clips_stand(world) else { return };
-        let push = level(impulse) / self.def.ragdoll.total_mass;
-        if let Some(stumble) = self.presence.as_mut().and_then(|presence| presence.stumble.as_mut()) {
+impl Balance {
+    /// Takes up an impulse that its bodies got, N·s; false if it has no ground.
+    pub fn shove(
+        &mut self,
+        on: Balancing<'_>,
+        impulse: Vec3,
+        scratch: &mut Scratch,
+        world: &World,
+        events: &mut Events,
+    ) -> bool {
+        let Some(stand) = on.clips_stand(world, scratch) else { return false };
+        let push = level(impulse) / on.def.ragdoll.total_mass;
+        if let Some(stumble) = &mut self.stumble {
             stumble.velocity += push;
             (stumble.age, stumble.steps) = (0, 0);
             stumble.regain(&stand.ankles);
-        } else if self.is_off(&stand, push / stand.omega, CAPTURE_MARGIN) {
-            self.begin_stumble(&stand, push);
+        } else if on.is_off(&stand, push / stand.omega, CAPTURE_MARGIN) {
+            self.begin(on, &stand, push, events);
         }
-        self.steer(world);
+        true
     }
 
-    /// Goes on for a step of the world; true if it can no longer catch itself.
-    pub(super) fn stumble(&mut self, world: &World) -> bool {
-        let stand = if self.steps() { self.clips_stand(world) } else { None };
-        let (Some(stand), Some(presence)) = (stand, self.presence.as_mut()) else {
-            let steps = self.steps();
-            if let Some(presence) =
-                self.presence.as_mut().filter(|presence| !steps || presence.air > FLIES_AFTER)
-            {
-                presence.stumble = None;
+    /// Goes on for a step of the world; true if it can no longer catch itself. `steps`: it may step.
+    pub fn go_on(
+        &mut self,
+        on: Balancing<'_>,
+        steps: bool,
+        scratch: &mut Scratch,
+        world: &World,
+        events: &mut Events,
+    ) -> bool {
+        let stand = if steps { on.clips_stand(world, scratch) } else { None };
+        let Some(stand) = stand else {
+            if !steps || on.gait.air > FLIES_AFTER {
+                self.stumble = None;
             }
             return false;
         };
-        let Some(mut stumble) = presence.stumble.take() else {
-            let sway = self.sway(world, &stand);
-            if self.is_off(&stand, sway, UNTOLD_MARGIN) {
-                self.begin_stumble(&stand, sway * stand.omega);
+        let Some(mut stumble) = self.stumble.take() else {
+            let sway = on.sway(world, &stand);
+            if on.is_off(&stand, sway, UNTOLD_MARGIN) {
+                self.begin(on, &stand, sway * stand.omega, events);
             }
             return false;
         };
@@ -118,7 +129,7 @@ impl Character {
         stumble.floor = stand.floor;
         if stumble.age >= FOLLOWS {
             // Walls stop it.
-            stumble.velocity = level(presence.velocity - stand.floor);
+            stumble.velocity = level(on.gait.velocity - stand.floor);
         }
         let dt = world.def().dt();
         stumble.carry(dt);
@@ -126,39 +137,38 @@ impl Character {
             stumble.go_home(&stand, dt);
             false
         } else {
-            self.catch(world, &stand, &mut stumble)
+            on.catch(world, &stand, &mut stumble)
         };
         let is_over = stumble.caught && stumble.feet == [Footing::Free; 2];
         if is_over {
-            self.events.push(CharacterEvent::Caught { steps: stumble.steps });
+            events.push(CharacterEvent::Caught { steps: stumble.steps });
         }
-        if let Some(presence) = &mut self.presence {
-            presence.stumble = (!is_over).then_some(stumble);
-        }
+        self.stumble = (!is_over).then_some(stumble);
         falls
     }
 
-    fn begin_stumble(&mut self, stand: &Stand, push: Vec3) {
-        let Some(feet) = self.def.feet() else { return };
-        let Some(presence) = &mut self.presence else { return };
-        let air = presence.beside.y + self.world_from_character.translation.y + feet.ankle_height + AIRBORNE;
+    fn begin(&mut self, on: Balancing<'_>, stand: &Stand, push: Vec3, events: &mut Events) {
+        let Some(legs) = on.def.legs() else { return };
+        let air = on.gait.beside.y + on.place.translation.y + legs.ankle_height + AIRBORNE;
         let footing = |ankle: Transform| {
             if ankle.translation.y < air {
                 return Footing::Planted(ankle);
             }
             Footing::Swinging { from: ankle, to: ankle, time: 0.0, lasts: STEP_TIMES[0], home: false }
         };
-        presence.stumble = Some(Stumble {
-            velocity: level(presence.velocity - stand.floor) + push,
+        self.stumble = Some(Stumble {
+            velocity: level(on.gait.velocity - stand.floor) + push,
             floor: stand.floor,
             feet: stand.ankles.map(footing),
             steps: 0,
             age: 0,
             caught: false,
         });
-        self.events.push(CharacterEvent::Stumbled);
+        events.push(CharacterEvent::Stumbled);
     }
+}
 
+impl Balancing<'_> {
     /// Lets it fall over as far as its feet do not hold it, and swings them to where they will. True if that is in vain.
     fn catch(&self, world: &World, stand: &Stand, stumble: &mut Stumble) -> bool {
         let dt = world.def().dt();
@@ -239,24 +249,24 @@ impl Character {
 
     /// The ankle of a foot whose sole is to come down around a place.
     fn tread(&self, world: &World, foot: usize, at: Vec3) -> Transform {
-        let def = &self.def;
-        let feet = def.feet().expect("it stands on feet");
-        let place = self.world_from_character;
-        let ankle = def.bind()[feet.legs[foot].end].to_rigid();
+        let def = self.def;
+        let legs = def.legs().expect("it stands on feet");
+        let place = self.place;
+        let ankle = def.bind()[legs.chains[foot].end].to_rigid();
         let rotation = (place.rotation * ankle.rotation).normalize();
-        let translation = at - level(rotation * feet.balls[foot]) * 0.5;
+        let translation = at - level(rotation * legs.balls[foot]) * 0.5;
         let floor = place.translation.y;
-        let own = self.own();
+        let own = self.physique.own();
         let over = Vec3::new(at.x, floor, at.z);
         let ground =
             ground::below(world, over, STEP_RANGE, Some(own)).filter(|y| (y - floor).abs() < STEP_RANGE);
-        Transform::new(translation + Vec3::Y * (ground.unwrap_or(floor) + feet.ankle_height), rotation)
+        Transform::new(translation + Vec3::Y * (ground.unwrap_or(floor) + legs.ankle_height), rotation)
     }
 
     /// Heel and ball of a foot, by its ankle.
     fn sole(&self, ankle: Transform, foot: usize) -> [Vec3; 2] {
-        let feet = self.def.feet().expect("it stands on feet");
-        [ankle.translation, ankle.point(feet.balls[foot])]
+        let legs = self.def.legs().expect("it stands on feet");
+        [ankle.translation, ankle.point(legs.balls[foot])]
     }
 
     /// Ground under the feet that are down, left and right, by their ankles.
@@ -276,7 +286,7 @@ impl Character {
             velocity,
             wish: stand.wish,
             omega: stand.omega,
-            heading: self.world_from_character.rotation,
+            heading: self.place.rotation,
             height: self.def.ragdoll.height,
         }
     }
@@ -289,77 +299,45 @@ impl Character {
     }
 
     /// Stand in which its clips have it, if they do.
-    fn clips_stand(&mut self, world: &World) -> Option<Stand> {
-        let mover = self.mover()?;
-        let ground = world.mover_ground(mover)?;
-        let def = self.def.clone();
-        let feet = def.feet()?;
-        let place = self.world_from_character;
-        let mut wanted = core::mem::take(&mut self.scratch.wanted);
+    fn clips_stand(&self, world: &World, scratch: &mut Scratch) -> Option<Stand> {
+        let ground = world.mover_ground(self.gait.mover?)?;
+        let def = self.def;
+        let legs = def.legs()?;
+        let place = self.place;
+        let mut wanted = core::mem::take(&mut scratch.wanted);
         wanted.clear();
-        wanted.extend(self.animator.pose().iter());
-        let mut bodies = core::mem::take(&mut self.scratch.before);
-        local_to_model(&def.rig, &wanted, &Affine::IDENTITY, &mut self.scratch.model);
-        def.mapping().bodies_from_model(&self.scratch.model, place, &mut bodies);
+        wanted.extend(self.gait.animator.pose().iter());
+        let mut bodies = core::mem::take(&mut scratch.before);
+        local_to_model(&def.rig, &wanted, &Affine::IDENTITY, &mut scratch.model);
+        def.mapping().bodies_from_model(&scratch.model, place, &mut bodies);
         let weighed = bodies.iter().zip(&def.ragdoll.bodies);
         let sum =
             weighed.fold(Vec3::ZERO, |sum, (pose, body)| sum + pose.point(body.mass.center) * body.mass.mass);
-        (self.scratch.wanted, self.scratch.before) = (wanted, bodies);
+        (scratch.wanted, scratch.before) = (wanted, bodies);
         let center = sum / def.ragdoll.total_mass;
         let root = def.mapping().world_from_model(place);
-        let ankle = |foot: usize| (root * self.scratch.model[feet.legs[foot].end]).to_rigid();
+        let ankle = |foot: usize| (root * scratch.model[legs.chains[foot].end]).to_rigid();
         let height = max(center.y - place.translation.y, 0.2 * def.ragdoll.height);
         Some(Stand {
             center,
             ankles: [ankle(0), ankle(1)],
             floor: ground.velocity,
-            wish: level(self.wanted_walk(world.def().dt())),
+            wish: level(self.gait.wanted_walk(def, State::Powered, place.rotation, world.def().dt())),
             omega: (world.def().gravity.length() / height).sqrt(),
         })
     }
 
     /// Capture point of its bodies beside the one of its clips: what pushes it without telling.
     fn sway(&self, world: &World, stand: &Stand) -> Vec3 {
-        let (Some(ragdoll), Some(presence)) = (&self.ragdoll, &self.presence) else { return Vec3::ZERO };
+        let Some(ragdoll) = &self.physique.ragdoll else { return Vec3::ZERO };
         let (mut place, mut momentum) = (Vec3::ZERO, Vec3::ZERO);
         for (&id, body) in ragdoll.bodies.iter().zip(&self.def.ragdoll.bodies) {
             place += world.center_of_mass(id) * body.mass.mass;
             momentum += world.velocity(id).linear * body.mass.mass;
         }
         let mass = self.def.ragdoll.total_mass;
-        let velocity = momentum / mass - presence.velocity;
+        let velocity = momentum / mass - self.gait.velocity;
         level(place / mass - stand.center + velocity / stand.omega)
-    }
-
-    /// Brings the legs of a pose of the clips to where a stumble has them in so many seconds; `way`: from where it stands now to where it
-    /// will then.
-    pub(super) fn hold_feet(&mut self, way: Transform, seconds: f32, pose: &mut [LocalTransform]) {
-        let Some(&stumble) = self.stumbling() else { return };
-        let def: &CharacterDef = &self.def;
-        let Some(feet) = def.feet() else { return };
-        let model = &mut self.scratch.model;
-        local_to_model(&def.rig, pose, &def.mapping().character_from_model(), model);
-        let seen = (self.world_from_character * way).inverse();
-        let lift = LIFT * def.ragdoll.height;
-        let goals = [0, 1].map(|foot| {
-            let clips = model[feet.legs[foot].end].to_rigid();
-            let at = |ankle: Transform| {
-                seen * Transform::new(ankle.translation + stumble.floor * seconds, ankle.rotation)
-            };
-            match stumble.feet[foot] {
-                Footing::Free => clips,
-                Footing::Planted(ankle) => at(ankle),
-                Footing::Swinging { from, to, time, lasts, home } => {
-                    let share = smoothstep((time + seconds) / lasts);
-                    let (from, to) = (at(from), if home { clips } else { at(to) });
-                    let way = from.translation * (1.0 - share) + to.translation * share;
-                    let wide = min((to.translation - from.translation).length() / WIDE_STEP, 1.0);
-                    let up = 4.0 * share * (1.0 - share) * lift * wide;
-                    Transform::new(way + Vec3::Y * up, from.rotation.nlerp(to.rotation, share))
-                }
-            }
-        });
-        hold_feet(&def.rig, feet.pelvis, &feet.legs, &goals, PELVIS_SINKS * def.ragdoll.height, pose, model);
     }
 }
 
@@ -373,6 +351,50 @@ impl Footing {
 }
 
 impl Stumble {
+    /// Brings the legs of a pose of the clips to where a stumble has them in so many seconds; `way`: from where it stands now to where it
+    /// will then. `place`: where that is.
+    pub fn hold_feet(
+        &self,
+        def: &CharacterDef,
+        place: Transform,
+        way: Transform,
+        seconds: f32,
+        pose: &mut [LocalTransform],
+        model: &mut Vec<Affine>,
+    ) {
+        let Some(legs) = def.legs() else { return };
+        local_to_model(&def.rig, pose, &def.mapping().character_from_model(), model);
+        let seen = (place * way).inverse();
+        let lift = LIFT * def.ragdoll.height;
+        let goals = [0, 1].map(|foot| {
+            let clips = model[legs.chains[foot].end].to_rigid();
+            let at = |ankle: Transform| {
+                seen * Transform::new(ankle.translation + self.floor * seconds, ankle.rotation)
+            };
+            match self.feet[foot] {
+                Footing::Free => clips,
+                Footing::Planted(ankle) => at(ankle),
+                Footing::Swinging { from, to, time, lasts, home } => {
+                    let share = smoothstep((time + seconds) / lasts);
+                    let (from, to) = (at(from), if home { clips } else { at(to) });
+                    let way = from.translation * (1.0 - share) + to.translation * share;
+                    let wide = min((to.translation - from.translation).length() / WIDE_STEP, 1.0);
+                    let up = 4.0 * share * (1.0 - share) * lift * wide;
+                    Transform::new(way + Vec3::Y * up, from.rotation.nlerp(to.rotation, share))
+                }
+            }
+        });
+        hold_feet(
+            &def.rig,
+            legs.pelvis,
+            &legs.chains,
+            &goals,
+            PELVIS_SINKS * def.ragdoll.height,
+            pose,
+            model,
+        );
+    }
+
     /// Loses its balance again: what is not on its way is down where it is.
     fn regain(&mut self, ankles: &[Transform; 2]) {
         self.caught = false;

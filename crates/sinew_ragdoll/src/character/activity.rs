@@ -1,0 +1,114 @@
+//! The state of a character, with what only that state knows.
+
+use super::get_up::Rising;
+use super::limp::{Lying, Stillness};
+use super::prepare::Preparing;
+use super::stumble::{Balance, Stumble};
+use super::{CharacterDef, State};
+use crate::character::tuning::{FLINCH_HALF_LIFE, FLINCH_TIME, RETURNED_AFTER};
+use sinew_anim::Animator;
+use sinew_math::{clamp, max};
+
+/// State of a character and its data. [`State`] is the same without data.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Activity {
+    Animated,
+    Flinching(Flinch),
+    Powered(Balance),
+    Limp(Lying),
+    Preparing(Preparing),
+    GettingUp(Rising),
+}
+
+impl Activity {
+    pub fn state(&self) -> State {
+        match self {
+            Self::Animated => State::Animated,
+            Self::Flinching(_) => State::Flinching,
+            Self::Powered(_) => State::Powered,
+            Self::Limp(_) => State::Limp,
+            Self::Preparing(_) => State::Preparing,
+            Self::GettingUp(_) => State::GettingUp,
+        }
+    }
+
+    /// Stumble that goes on.
+    pub fn stumble(&self) -> Option<&Stumble> {
+        match self {
+            Self::Powered(balance) => balance.stumble.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Time for which a character has lain, in the two states in which it lies.
+    pub fn stillness(&self) -> Option<&Stillness> {
+        match self {
+            Self::Limp(lying) => Some(&lying.stillness),
+            Self::Preparing(preparing) => Some(&preparing.stillness),
+            _ => None,
+        }
+    }
+
+    /// [`stillness`](Self::stillness), to be changed.
+    pub fn stillness_mut(&mut self) -> Option<&mut Stillness> {
+        match self {
+            Self::Limp(lying) => Some(&mut lying.stillness),
+            Self::Preparing(preparing) => Some(&mut preparing.stillness),
+            _ => None,
+        }
+    }
+
+    /// True of a limp character on its way out of a wall.
+    pub fn is_clearing(&self) -> bool {
+        matches!(self, Self::Limp(lying) if !lying.clearing.velocities.is_empty())
+    }
+
+    /// Share of a get-up that is left until the character stands upright: 1 and more as long as it still lies, 0 and less once it
+    /// stands. 0 in all other states.
+    pub fn left_to_rise(&self, def: &CharacterDef, animator: &Animator) -> f32 {
+        match self {
+            Self::GettingUp(rising) => rising.left(def, animator),
+            _ => 0.0,
+        }
+    }
+
+    /// 1 for a body near the ground, which little can fell, to 0 for one that stands upright.
+    pub fn lowness(&self, def: &CharacterDef, animator: &Animator) -> f32 {
+        match self {
+            Self::Limp(_) | Self::Preparing(_) => 1.0,
+            Self::GettingUp(rising) => clamp(rising.left(def, animator), 0.0, 1.0),
+            Self::Animated | Self::Flinching(_) | Self::Powered(_) => 0.0,
+        }
+    }
+}
+
+/// A character of which a limb was struck.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Flinch {
+    /// Seconds until the limb has come back.
+    pub seconds: f32,
+}
+
+/// Seconds that a limb takes to come back.
+fn comes_back() -> f32 {
+    RETURNED_AFTER * FLINCH_HALF_LIFE
+}
+
+impl Flinch {
+    /// A limb that was struck just now.
+    pub fn begun() -> Self {
+        Self { seconds: FLINCH_TIME + comes_back() }
+    }
+
+    /// Has the limb go on giving way: something holds it.
+    pub fn go_on(&mut self) {
+        self.seconds = max(self.seconds, Self::begun().seconds);
+    }
+
+    /// Takes the flinch forward; true in the moment in which the limb begins to come back.
+    pub fn turns_back(&mut self, dt: f32) -> bool {
+        let before = self.seconds;
+        self.seconds -= dt;
+        before > comes_back() && self.seconds <= comes_back()
+    }
+}

@@ -1,0 +1,506 @@
+//! The calls of a user: what a character is told and asked, from outside.
+
+use super::activity::{Activity, Flinch};
+use super::grasp::Grab;
+use super::hold::Grip;
+use super::show::rows;
+use super::{Character, CharacterDef, CharacterEvent, Detail, Limb, Part, Preset, State, blows, clear};
+use crate::character::tuning::{POWERED_HALF_LIFE, RETURNED_AFTER};
+use crate::drive::{DriveMode, Drives};
+use crate::owner::is_limb;
+use crate::ragdoll::Ragdoll;
+use sinew_anim::{Animator, JointIdx, LocalTransform, local_to_model};
+use sinew_math::{Affine, Transform, Vec3, normalize_or};
+use sinew_physics::{BodyHit, BodyId, GroupId, JointId, MoverId, Velocity, World};
+use std::sync::Arc;
+
+impl Character {
+    // Coming and going
+
+    /// A character in a world, animated: with a mover and hit bodies as [`CharacterDef::in_world`] says. `world_from_character`
+    /// is where it stands (metres, its +Y up, +Z the way it faces). [`despawn`](Self::despawn) takes all of it out again.
+    ///
+    /// # Panics
+    /// If the place is not finite.
+    pub fn spawn(world: &mut World, def: &Arc<CharacterDef>, world_from_character: Transform) -> Self {
+        let mut character = Self::new(def.clone(), world_from_character, 0.0);
+        character.enter(world);
+        character
+    }
+
+    /// Brings a character that was made [`new`](Self::new) into a world, as [`spawn`](Self::spawn) does. Nothing happens if it
+    /// is in one.
+    ///
+    /// # Panics
+    /// If it stands nowhere finite, or is not animated.
+    pub fn enter(&mut self, world: &mut World) {
+        if self.is_in_world() {
+            return;
+        }
+        assert!(self.figure.place.is_finite(), "a character stands at a finite place");
+        assert!(self.state() == State::Animated, "a character comes into a world standing");
+        self.detail = Some(Detail::default());
+        self.settle_detail(world);
+    }
+
+    /// Takes all of it out of the world: bodies, joints, drives, mover.
+    ///
+    /// # Panics
+    /// If something of it is no longer there.
+    pub fn despawn(mut self, world: &mut World) {
+        self.leave(world);
+    }
+
+    /// Puts it elsewhere at once, standing; what lies between is not asked. A character that lies is brought there as it lies, springs and
+    /// garments as they swing; [`reset_springs`](Self::reset_springs) and [`reset_garments`](Self::reset_garments) start those over.
+    ///
+    /// # Panics
+    /// If the place is not finite.
+    pub fn teleport(&mut self, world: &mut World, world_from_character: Transform) {
+        assert!(world_from_character.is_finite(), "a character stands at a finite place");
+        let moved = world_from_character * self.figure.place.inverse();
+        self.figure.carry(world_from_character);
+        for &body in self.physique.own() {
+            let velocity = world.velocity(body);
+            world.set_transform(body, moved * world.transform(body));
+            let turned = |v: Vec3| moved.rotation * v;
+            let velocity = Velocity { linear: turned(velocity.linear), angular: turned(velocity.angular) };
+            world.set_velocity(body, velocity);
+        }
+        self.scratch.posed.clear();
+        self.wear.springs.carry(self.def.springs(), moved);
+        self.wear.garments.carry(world, moved);
+        self.physique.before.iter_mut().for_each(|pose| *pose = moved * *pose);
+        self.gait.teleport(world_from_character.translation, world);
+        if let Activity::Powered(balance) = &mut self.activity {
+            balance.stumble = None;
+        }
+    }
+
+    /// Detail that it has, or will have once its clips move it again. Full for a character that is in no world.
+    pub fn level_of_detail(&self) -> Detail {
+        self.detail.unwrap_or_default()
+    }
+
+    /// Gives it as much detail as that: at once if its clips move it, else once they do again, for what flinches, lies or gets up goes on
+    /// until then. The pose and the place are the same before and after. Less than hit bodies takes its bodies out of the world,
+    /// unless it holds something; they come back with other ids. Its springs ease to the pose with less than hit bodies, whatever it does, and cost nothing from there
+    /// until they return with the motion of the pose. Without a world nothing happens.
+    pub fn set_level_of_detail(&mut self, world: &mut World, detail: Detail) {
+        if self.is_in_world() {
+            self.detail = Some(detail);
+        }
+        self.settle_detail(world);
+    }
+
+    // What it is
+
+    /// Definition that it shares with its kind.
+    pub fn def(&self) -> &Arc<CharacterDef> {
+        &self.def
+    }
+
+    /// State of the character: what decides its pose.
+    pub fn state(&self) -> State {
+        self.activity.state()
+    }
+
+    /// True while it steps to catch itself.
+    pub fn stumbles(&self) -> bool {
+        self.activity.stumble().is_some()
+    }
+
+    /// Pose of the character in the world. While it is limp: the one in which it went limp.
+    pub fn world_from_character(&self) -> Transform {
+        self.figure.place
+    }
+
+    /// From the file's model space to the world: what a renderer puts above the pose.
+    pub fn world_from_model(&self) -> Affine {
+        self.def.mapping().world_from_model(self.figure.place)
+    }
+
+    /// Local transform of every joint of the rig, springs, garments and all; nodes above the pelvis are at rest (see [`crate::mapping`]).
+    pub fn pose(&self) -> &[LocalTransform] {
+        if self.wear.pose.is_empty() { self.pose_without_springs() } else { &self.wear.pose }
+    }
+
+    /// [`pose`](Self::pose) as clips and bodies have it, with all springs and garments at rest.
+    pub fn pose_without_springs(&self) -> &[LocalTransform] {
+        self.feet.led(&self.figure.pose)
+    }
+
+    /// Pose and place between the last step (`alpha` 0) and this one (1): `pose` is cleared and gets one local transform per
+    /// joint; gives where it stands.
+    pub fn interpolated(&self, alpha: f32, pose: &mut Vec<LocalTransform>) -> Transform {
+        self.figure.between(self.pose(), alpha, pose)
+    }
+
+    /// Matrices of a skin for a renderer, between the last step (`alpha` 0) and this one (1): `palette` is cleared and gets one
+    /// for each joint of the skin, from the mesh's bind pose to the world in metres. Each is the upper three rows of a 4×4
+    /// matrix that a column vector stands to the right of, **row after row**: `[m00, m01, m02, m03, m10, …, m23]`, the
+    /// translation in `m03`, `m13`, `m23`. What was [cut off](Self::detach) shrinks to the point where it was cut. Allocates a pose.
+    ///
+    /// # Panics
+    /// If the rig has no such skin.
+    pub fn skin_palette(&self, skin: usize, alpha: f32, palette: &mut Vec<[f32; 12]>) {
+        let (mut pose, mut model) = (Vec::new(), Vec::new());
+        let place = self.interpolated(alpha, &mut pose);
+        let root = self.def.mapping().world_from_model(place);
+        sinew_anim::local_to_model(&self.def.rig, &pose, &root, &mut model);
+        let skin = &self.def.rig.skins[skin];
+        palette.clear();
+        palette.extend(skin.joints.iter().zip(&skin.inverse_bind).map(|(&joint, bind)| {
+            rows(
+                &self.physique.shrunk_joint(&self.def, joint, &model).unwrap_or_else(|| model[joint] * *bind),
+            )
+        }));
+    }
+
+    /// Animator that plays its clips: those of [`CharacterDef::set`].
+    pub fn animator(&self) -> &Animator {
+        &self.gait.animator
+    }
+
+    /// Animator that plays its clips, to be given others: tracks, crossfades, layers. To begin with it plays the looped clip, and
+    /// again after getting up; getting up stops all other tracks of layer 0. While the character is limp, what plays still moves
+    /// the joints that no body does ([`Mapping::free`](crate::Mapping::free)), and events go on.
+    pub fn animator_mut(&mut self) -> &mut Animator {
+        &mut self.gait.animator
+    }
+
+    /// Events of the last [`update`](Self::update) and since the one before it ended, in order, and what calls have brought about
+    /// since. Who reads it after each update, and only then, is told of everything exactly once.
+    pub fn events(&self) -> &[CharacterEvent] {
+        &self.events.list
+    }
+
+    /// Its bodies, while it has any: limp, or preparing to get up.
+    pub fn ragdoll(&self) -> Option<&Ragdoll> {
+        self.physique.ragdoll.as_ref()
+    }
+
+    /// Drives of its bodies, while it has any.
+    pub fn drives(&self) -> &Drives {
+        &self.physique.drives
+    }
+
+    /// Drives of its bodies, to be changed: they count while it has any. [`set_drive`](Self::set_drive) gives it some.
+    pub fn drives_mut(&mut self) -> &mut Drives {
+        &mut self.physique.drives
+    }
+
+    /// Its mover in the world; `None` without one, and while it lies.
+    pub fn mover(&self) -> Option<MoverId> {
+        self.gait.mover
+    }
+
+    /// Its bodies in the world, in the order of the definition: hit bodies or those of its ragdoll; none of a character that
+    /// was not brought into a world. Those that were [cut off](Self::detach) keep their places.
+    pub fn bodies(&self) -> &[BodyId] {
+        self.physique.ids()
+    }
+
+    /// Index in the definition of a body of its: of what a ray hit, for one.
+    pub fn body_index(&self, id: BodyId) -> Option<usize> {
+        self.physique.index_of(id)
+    }
+
+    /// True if a body, by index in the definition, was not cut off.
+    pub fn has_body(&self, body: usize) -> bool {
+        self.physique.has(body)
+    }
+
+    /// Joints of the rig whose skin went with what was cut off, ascending: what is drawn of the character leaves them out.
+    pub fn lost_joints(&self) -> Vec<JointIdx> {
+        self.physique.lost_joints(&self.def)
+    }
+
+    // Where it goes
+
+    /// Has it go at a velocity over the ground from now on, m/s, whatever its clips do: they are played as fast as it really
+    /// goes. Its part along up does nothing. Without a mover nothing happens.
+    ///
+    /// # Panics
+    /// If the velocity is not finite.
+    pub fn set_move(&mut self, velocity: Vec3) {
+        assert!(velocity.is_finite(), "a velocity is finite");
+        if self.is_in_world() {
+            self.gait.wish = Some(velocity);
+        }
+    }
+
+    /// Has it go as its clips go again, which it does to begin with.
+    pub fn follow_clips(&mut self) {
+        self.gait.follow_clips(&self.def);
+    }
+
+    /// Has it turn to look along a direction, at [`InWorld::turn_speed`](super::InWorld::turn_speed), once it stands. A direction that is
+    /// level nowhere does nothing.
+    ///
+    /// # Panics
+    /// If the direction is not finite.
+    pub fn face(&mut self, direction: Vec3) {
+        assert!(direction.is_finite(), "a direction is finite");
+        let level = normalize_or(direction * Vec3::new(1.0, 0.0, 1.0), Vec3::ZERO);
+        if self.is_in_world() && level != Vec3::ZERO {
+            self.gait.facing = Some(level);
+        }
+    }
+
+    /// Has it jump in the next step, if it has ground then.
+    pub fn jump(&mut self, world: &mut World) {
+        if let Some(mover) = self.gait.mover {
+            world.mover_jump(mover, self.def.in_world.jump_speed);
+        }
+    }
+
+    // What moves it
+
+    /// Hits a body with an impulse (N·s, world axes) at its centre of mass. A character that is in a world and
+    /// [tough](super::InWorld::toughness) enough flinches; any other goes limp at the speed it has. Gives the work that the
+    /// impulse did, joules; 0 of a body that was [cut off](Self::detach).
+    ///
+    /// # Panics
+    /// If there is no such body or the impulse is not finite.
+    pub fn hit(&mut self, world: &mut World, body: usize, impulse: Vec3) -> f32 {
+        self.strike(world, body, impulse, None)
+    }
+
+    /// [`hit`](Self::hit) where a ray or a shape hit one of its bodies, at that point. `None`, and nothing happens, if it is no
+    /// body of this character.
+    ///
+    /// # Panics
+    /// If the impulse is not finite.
+    pub fn hit_at(&mut self, world: &mut World, hit: &BodyHit, impulse: Vec3) -> Option<f32> {
+        let body = self.body_index(hit.body)?;
+        Some(self.strike(world, body, impulse, Some(hit.point)))
+    }
+
+    /// Lets the bodies take over, at the pose and the speed that the animation has now. Nothing happens if they did
+    /// already.
+    pub fn go_limp(&mut self, world: &mut World) {
+        self.fall(world);
+    }
+
+    /// Has all of it moved in another way.
+    ///
+    /// # Panics
+    /// If it is not in the world.
+    pub fn set_preset(&mut self, world: &mut World, preset: Preset) {
+        let may_get_up = self.physique.may_get_up(&self.def);
+        match (preset, self.state()) {
+            (Preset::Limp, _) => self.fall(world),
+            (Preset::Animated, State::Powered) => {
+                self.physique.drives.set_all(DriveMode::Keyed, POWERED_HALF_LIFE);
+                self.activity = Activity::Flinching(Flinch { seconds: RETURNED_AFTER * POWERED_HALF_LIFE });
+            }
+            (Preset::Animated, State::Limp | State::Preparing) if may_get_up => self.get_up(world),
+            (Preset::Flinching, State::Animated | State::Flinching) => {
+                for body in blows::pelvis_children(&self.def.ragdoll) {
+                    self.flinch(world, body, Vec3::ZERO);
+                }
+            }
+            (Preset::Powered, _) if may_get_up => self.power(world),
+            _ => {}
+        }
+    }
+
+    /// Has part of it moved in another way: half of the change is made within `half_life` seconds. What stands is powered
+    /// from then on, all else of it as its clips have it.
+    ///
+    /// # Panics
+    /// If no body is called so, or as [`Drives::set`].
+    pub fn set_drive(&mut self, world: &mut World, part: Part<'_>, mode: DriveMode, half_life: f32) {
+        let def = self.def.clone();
+        let named = |name: &str| def.body_named(name).unwrap_or_else(|| panic!("no body is called '{name}'"));
+        if self.state() == State::Animated {
+            self.take_bodies(world, DriveMode::Keyed);
+        }
+        if matches!(self.state(), State::Animated | State::Flinching) {
+            self.become_powered();
+        }
+        match part {
+            Part::All => self.physique.drives.set_all(mode, half_life),
+            Part::Body(body) => self.physique.drives.set(body, mode, half_life),
+            Part::Named(name) => self.physique.drives.set(named(name), mode, half_life),
+            Part::From(name) => self.physique.drives.set_from(&def.ragdoll, named(name), mode, half_life),
+        }
+        if self.state() == State::Powered {
+            self.drive_bodies(world);
+        }
+    }
+
+    /// Moves a limp character out of static shapes that it is deep in, at 1.9 m/s, all its bodies together; it falls from where it is clear.
+    /// Returns false if there is nothing to do: it is not limp, or held, or no body is deeper than 0.1 m, or no way of at most 1.2 m leads out.
+    ///
+    /// A character that moves leaves a wall on the side that it came from, one at rest on the nearer side. Going limp calls this; call it yourself for
+    /// a limp character where a wall was put or a door has closed.
+    pub fn clear(&mut self, world: &mut World) -> bool {
+        let is_gripped = self.grips.is_gripped(&self.physique, world);
+        let Activity::Limp(lying) = &mut self.activity else { return false };
+        if !lying.clearing.velocities.is_empty() || is_gripped {
+            return false;
+        }
+        let Some(clearing) = clear::begin(self.physique.own(), world) else { return false };
+        lying.clearing = clearing;
+        self.physique.set_rule(world, self.def.in_world.rule());
+        self.go_out(world);
+        true
+    }
+
+    // What it holds
+
+    /// Has one of its bodies (by role or bone) hold a dynamic body of the world, which is put there, on a fixed joint. As long as it
+    /// is held it passes through the character's own bodies and through movers. For limbs of others there is [`grab`](Self::grab).
+    ///
+    /// # Panics
+    /// If no body is called so or it was [cut off](Self::detach), the character has none in the world, it holds that one already, or that is a part of a character or ragdoll.
+    #[track_caller]
+    pub fn hold(&mut self, world: &mut World, bone: &str, held: BodyId, grip: &Grip) -> JointId {
+        let body = self.def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
+        assert!(self.physique.has(body), "it has lost '{bone}'");
+        assert!(!self.physique.ids().is_empty(), "a character without bodies holds nothing");
+        assert!(self.grips.held().all(|other| other != held), "it holds that body already");
+        if let Some((owner, part)) = world.body_owner(held).filter(|_| !is_limb(world, held)) {
+            panic!("{held:?} is the {}'s {part}: `Character::grab` takes hold of it", owner.name);
+        }
+        let bodies = (self.physique.ids(), self.physique.own());
+        self.grips.hold(bodies, body, held, grip, world)
+    }
+
+    /// Lets go of what it holds; false if it does not hold that.
+    pub fn release(&mut self, world: &mut World, held: BodyId) -> bool {
+        self.grips.release(self.physique.own(), held, world, &mut self.events)
+    }
+
+    /// Bodies that it holds, in the order in which it took them.
+    pub fn held(&self) -> impl Iterator<Item = BodyId> {
+        self.grips.held()
+    }
+
+    /// Has one of its bodies (by role or bone) take hold of a body of the world: another's limb, a crate. It holds the point of its surface that is nearest
+    /// to the hand, where that is, so that nothing snaps, and draws what is not yet at the hand there at [`speed`](Grab::speed); what is held turns freely about the point. From then on it drags and lifts with
+    /// [`max_force`](Grab::max_force), and lets go where that does not do: [`CharacterEvent::LetGo`](super::CharacterEvent::LetGo). [`release`](Self::release) lets go
+    /// at once. What is held passes through the character's own bodies, and through movers.
+    ///
+    /// Forces must move one of the two: a hand that clips lead drags what is limp or powered. Who is held stays limp, and does not get up.
+    ///
+    /// `None` if what is to be grabbed is out of reach, its own, held by it already, or no force moves either of them; or if it has no such body
+    /// in the world, since that was cut off or it has none at all.
+    ///
+    /// ```
+    /// use sinew_math::{Rotation, Transform, Vec3};
+    /// use sinew_physics::{BodyDef, Shape, World, WorldDef};
+    /// use sinew_ragdoll::{Character, Grab};
+    /// use std::sync::Arc;
+    ///
+    /// let mut world = World::new(WorldDef::default());
+    /// world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+    /// let def = Arc::new(sinew::mannequin::character());
+    /// let mut hero = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    /// let mut other = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::X * 0.5));
+    /// other.go_limp(&mut world);
+    /// let wrist = other.bodies()[def.body_named("rightLowerArm").expect("it has one")];
+    /// let grab = Grab { reach: 0.5, ..Grab::HAND };
+    /// let grip = hero.grab(&mut world, "leftHand", wrist, &grab).expect("it is in reach");
+    /// for _ in 0..60 {
+    ///     world.step();
+    ///     hero.update(&mut world);
+    ///     other.update(&mut world);
+    ///     assert!(!world.contains_joint(grip) || world.reaction(grip).force.length() < 1.05 * grab.max_force);
+    /// }
+    /// ```
+    ///
+    /// # Panics
+    /// If no body is called so, or a number of the grip makes no sense.
+    #[track_caller]
+    pub fn grab(&mut self, world: &mut World, bone: &str, held: BodyId, grab: &Grab) -> Option<JointId> {
+        grab.check();
+        let body = self.def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
+        if !self.is_in_world() {
+            return None;
+        }
+        self.grips.grab(&self.physique, body, held, grab, world)
+    }
+
+    /// Cuts a limb off: the body called so, by role or bone, and all that hang on it. They are bodies of their own from now on, as fast as they were, in
+    /// whatever state the character is; who holds them goes on holding them. What they held themselves is dropped, garments hang on what is left.
+    ///
+    /// The character lives on. Without an arm or a hand it does all that it did. Without a leg, a foot, the head or a part of the trunk it goes limp, and does not
+    /// get up again. [`bodies`](Self::bodies) keeps its order: the ids of the limb's bodies stay where they were, and [`has_body`](Self::has_body) is false of them.
+    ///
+    /// `None` if it has lost that body already.
+    ///
+    /// ```
+    /// use sinew_math::Transform;
+    /// use sinew_physics::{BodyDef, Shape, World, WorldDef};
+    /// use sinew_ragdoll::Character;
+    /// use std::sync::Arc;
+    ///
+    /// let mut world = World::new(WorldDef::default());
+    /// world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+    /// let def = Arc::new(sinew::mannequin::character());
+    /// let mut knight = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    /// let arm = knight.detach(&mut world, "leftUpperArm").expect("it has that arm");
+    /// assert_eq!(arm.parts().len(), 3, "upper arm, lower arm and hand");
+    /// assert!(knight.detach(&mut world, "leftHand").is_none(), "the hand went with the arm");
+    /// for _ in 0..90 {
+    ///     world.step();
+    ///     knight.update(&mut world);
+    /// }
+    /// assert!(world.transform(arm.bodies()[0]).translation.y < 0.2, "it lies on the ground");
+    /// ```
+    ///
+    /// # Panics
+    /// If no body is called so, or it is the first of the definition, the pelvis.
+    #[track_caller]
+    pub fn detach(&mut self, world: &mut World, bone: &str) -> Option<Limb> {
+        let def = self.def.clone();
+        let first = def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
+        assert!(first > 0, "a character is what hangs on its pelvis: cut off the legs or the trunk");
+        if !self.physique.has(first) {
+            return None;
+        }
+        let parts = self.physique.limb_from(&def, first);
+        let was_clearing = self.activity.is_clearing();
+        self.end_clearing(world);
+        self.grips.drop_from(self.physique.own(), &parts, world, &mut self.events);
+        let mut world_from_joint = Vec::new();
+        local_to_model(&def.rig, self.pose(), &self.world_from_model(), &mut world_from_joint);
+        let (bodies, joints) = self.part_with(world, &parts);
+        let poses: Vec<Transform> = bodies.iter().map(|&body| world.transform(body)).collect();
+        let limb = Limb::new(def, parts, bodies, joints, &world_from_joint, &poses);
+        limb.own(world);
+        self.live_on(world);
+        if was_clearing {
+            self.clear(world);
+        }
+        self.events.push(CharacterEvent::Detached { body: first });
+        Some(limb)
+    }
+
+    // What it wears
+
+    /// Has its springs start over at rest with the next step: after a cut, where the way from the place before is none.
+    pub fn reset_springs(&mut self) {
+        self.wear.springs.reset();
+    }
+
+    /// Has its garments start over at rest: after a cut, where the way from the place before is none.
+    ///
+    /// # Panics
+    /// If the world is not the one that the character is in.
+    pub fn reset_garments(&mut self, world: &mut World) {
+        if !self.wear.garments.groups.is_empty() {
+            self.wear.garments.take_off(world);
+            let (wear, bearer) = self.wearing();
+            wear.dress(bearer, world);
+        }
+    }
+
+    /// Particles of its garments in the world, in the order of [`CharacterDef::garments`](super::CharacterDef::garments); none while it has no bodies.
+    pub fn garments(&self) -> &[GroupId] {
+        &self.wear.garments.groups
+    }
+}

@@ -1,0 +1,529 @@
+//! Changes from state to state, which concern several parts at once.
+
+use super::activity::{Activity, Flinch};
+use super::figure::Scratch;
+use super::foresight::Foresight;
+use super::get_up::{Choice, Rising, Way, choose, is_taken, is_under, standing};
+use super::hit_bodies::Strike;
+use super::limp::{Lying, Stillness};
+use super::prepare::Preparing;
+use super::stumble::{Balance, Balancing};
+use super::wear::{Bearer, Wear};
+use super::{
+    Blow, Character, CharacterEvent, Detail, GettingReady, HitBodies, State, Toughness, blows, ground,
+    powered, prepare,
+};
+use crate::character::tuning::{ABOVE_PELVIS, INTO_GET_UP, INTO_LOOP, INTO_STANDING, LYING_MOVER};
+use crate::drive::{DriveMode, Muscle};
+use crate::ragdoll::BodyState;
+use sinew_anim::{LoopMode, Pose, Track, TrackDef, TrackId, local_to_model};
+use sinew_math::{Affine, Transform, Vec3};
+use sinew_physics::{BodyId, BodyKind, ContactRule, JointId, World, Yields};
+
+impl Character {
+    pub(super) fn is_in_world(&self) -> bool {
+        self.detail.is_some()
+    }
+
+    pub(super) fn is_frozen(&self) -> bool {
+        self.detail == Some(Detail::Frozen) && self.state() == State::Animated
+    }
+
+    /// True if it catches itself from pushes by steps.
+    pub(super) fn steps(&self) -> bool {
+        matches!(self.activity, Activity::Powered(_))
+            && self.def.in_world.most_steps > 0
+            && self.def.legs().is_some()
+            && self.gait.mover.is_some()
+            && self.physique.lost.is_empty()
+    }
+
+    // Detail
+
+    /// Brings bodies and mover in or out as its detail asks.
+    pub(super) fn settle_detail(&mut self, world: &mut World) {
+        let Some(detail) = self.detail else { return };
+        if self.state() != State::Animated || self.physique.ragdoll.is_some() {
+            return;
+        }
+        let wants = detail >= Detail::HitBodies && self.def.in_world.hit_bodies != HitBodies::Absent;
+        let has = !self.physique.hit.is_empty();
+        if wants && !has {
+            self.enter_bodies(world);
+        } else if !wants && has && self.grips.holds.is_empty() {
+            self.wear.garments.take_off(world);
+            self.physique.remove_hit(world);
+        }
+        if detail == Detail::Frozen {
+            self.sit_down(world);
+        } else {
+            self.stand_up(world, 1.0);
+        }
+    }
+
+    /// Puts hit bodies into the world where the pose has them.
+    fn enter_bodies(&mut self, world: &mut World) {
+        let HitBodies::Present(yields) = self.def.in_world.hit_bodies else { return };
+        let mut poses = Vec::new();
+        let pose = self.feet.led(&self.figure.pose);
+        self.scratch.bodies_of(&self.def, pose, self.figure.place, &mut poses);
+        self.physique.enter(&self.def, &poses, ContactRule::Yields(yields), world);
+        self.grips.bearer = None;
+        let (wear, bearer) = self.wearing();
+        wear.dress(bearer, world);
+    }
+
+    /// Takes all of it out of the world and keeps its clips going, at the place where it stood.
+    pub(super) fn leave(&mut self, world: &mut World) {
+        self.grips.release_all(self.physique.own(), false, world, &mut self.events);
+        self.wear.garments.take_off(world);
+        if let Some(ragdoll) = self.physique.ragdoll.take() {
+            self.physique.drives.release(world, &ragdoll);
+            ragdoll.despawn(world);
+            self.physique.hit.clear();
+        }
+        self.sit_down(world);
+        self.physique.remove_hit(world);
+        self.detail = None;
+    }
+
+    /// Puts a mover where it stands, at a share of its height.
+    fn stand_up(&mut self, world: &mut World, share: f32) {
+        if self.is_in_world() {
+            self.gait.stand_up(&self.def, self.figure.place.translation, world, share);
+        }
+    }
+
+    /// Takes its mover out: it lies.
+    fn sit_down(&mut self, world: &mut World) {
+        self.gait.sit_down(world);
+        self.grips.spare_bearer(self.physique.own(), None, world);
+    }
+
+    // Bodies and clips
+
+    /// Foresight of what its clips will do, and buffers for it.
+    fn ahead(&mut self) -> (Foresight<'_>, &mut Scratch) {
+        let foresight = Foresight {
+            def: &self.def,
+            state: self.activity.state(),
+            gait: &self.gait,
+            figure: &self.figure,
+            feet: &self.feet,
+            stumble: self.activity.stumble(),
+        };
+        (foresight, &mut self.scratch)
+    }
+
+    fn carried(&mut self) -> Vec<BodyState> {
+        let (foresight, scratch) = self.ahead();
+        foresight.carried(scratch)
+    }
+
+    /// Drives the bodies toward the pose that its clips will have at the end of the next step.
+    pub(super) fn drive_bodies(&mut self, world: &mut World) {
+        if self.physique.ragdoll.is_some() {
+            let (foresight, scratch) = self.ahead();
+            foresight.next(world.def().dt(), scratch);
+            self.physique.drive(&self.def, &self.scratch.after, &self.scratch.velocities, world);
+        }
+    }
+
+    /// Makes its bodies those of a ragdoll, at the pose and the speed that the animation has now, driven in one way.
+    pub(super) fn take_bodies(&mut self, world: &mut World, mode: DriveMode) {
+        if self.physique.ragdoll.is_none() {
+            self.become_bodies(world, self.def.in_world.rule());
+            self.physique.drives.set_all(mode, 0.0);
+        }
+    }
+
+    /// Brings the bodies into the hands of physics, with joints between them.
+    fn become_bodies(&mut self, world: &mut World, rule: ContactRule) {
+        if self.feet.are_placed() {
+            self.figure.pose.clone_from(&self.feet.pose);
+        }
+        let states = self.carried();
+        (self.feet.planting, self.feet.passage) = Default::default();
+        self.physique.physical.rebase(self.def.mapping(), &self.def.rig, &self.figure.pose);
+        self.scratch.posed.clear();
+        self.physique.wake(&self.def, &states, rule, world);
+    }
+
+    /// Gives the bodies back to the clips: they leave the world, or stay in it as hit bodies.
+    pub(super) fn leave_bodies(&mut self, world: &mut World) {
+        self.physique.let_go(&self.def, world);
+        let Some(ragdoll) = self.physique.ragdoll.take() else { return };
+        if self.physique.hit.is_empty() {
+            self.wear.garments.take_off(world);
+            ragdoll.despawn(world);
+        } else {
+            self.physique.before.clear();
+            ragdoll.lull(world, self.def.in_world.rule());
+        }
+        self.physique.keep_own();
+    }
+
+    /// Gives bodies that clips lead the velocities that they have in the clips: with those that bring them to their place within a step, which a mover
+    /// that takes a kerb has put up by the height of it, they would be thrown once they are let go.
+    fn slow_led(&mut self, world: &mut World, bodies: &[usize]) {
+        let (foresight, scratch) = self.ahead();
+        foresight.next(world.def().dt(), scratch);
+        let ragdoll = self.physique.limp();
+        for (id, velocity) in bodies.iter().map(|&body| (ragdoll.bodies[body], self.scratch.velocities[body]))
+        {
+            if world.kind(id) == BodyKind::Kinematic {
+                world.set_velocity(id, velocity);
+            }
+        }
+    }
+
+    // Blows
+
+    pub(super) fn strike(
+        &mut self,
+        world: &mut World,
+        body: usize,
+        impulse: Vec3,
+        point: Option<Vec3>,
+    ) -> f32 {
+        assert!(body < self.def.ragdoll.bodies.len(), "there is such a body");
+        if self.physique.has(body) && self.react(world, body, impulse) {
+            self.physique.push(body, impulse, point, world)
+        } else {
+            0.0
+        }
+    }
+
+    /// Flinches or falls by a blow that contacts brought to one of its bodies. A body that forces move has had the impulse with the contact.
+    pub(super) fn be_struck(&mut self, world: &mut World, body: usize, strike: Strike) {
+        let is_led = world.kind(self.physique.ids()[body]) != BodyKind::Dynamic;
+        if self.react(world, body, strike.impulse) && is_led {
+            self.physique.take_up(&self.def, body, strike, world);
+        }
+    }
+
+    /// Flinches or falls; false if no body may move by the blow.
+    fn react(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
+        assert!(impulse.is_finite(), "an impulse is finite");
+        assert!(body < self.def.ragdoll.bodies.len(), "there is such a body");
+        if self.stands_blow(Blow { body, impulse, state: self.state() }) {
+            return self.flinch(world, body, impulse);
+        }
+        self.go_limp(world);
+        self.events.push(CharacterEvent::Hit { body });
+        self.physique.drives.hit(&self.def.ragdoll, body, impulse.length());
+        true
+    }
+
+    fn stands_blow(&self, blow: Blow) -> bool {
+        self.is_in_world()
+            && self.state() != State::Limp
+            && match self.def.in_world.toughness {
+                Toughness::None => false,
+                Toughness::Impulse(least) => {
+                    let lowness = self.activity.lowness(&self.def, &self.gait.animator);
+                    self.steps() || blow.impulse.length() < blows::felling(least, lowness)
+                }
+                Toughness::Function(fells) => !fells(&self.def, &blow),
+            }
+    }
+
+    /// Lets the limb that was struck give way; false if none may. Of one whose bodies are being brought to where a clip begins all do.
+    pub(super) fn flinch(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
+        let state = self.state();
+        let gives_way = match state {
+            State::GettingUp => false,
+            State::Animated => self.level_of_detail() == Detail::Full,
+            _ => true,
+        };
+        if gives_way && state != State::Preparing {
+            if state == State::Animated {
+                self.take_bodies(world, DriveMode::Keyed);
+                self.activity = Activity::Flinching(Flinch::begun());
+            }
+            if let Activity::Flinching(flinch) = &mut self.activity {
+                blows::give_way(&self.def.ragdoll, body, &mut self.physique.drives);
+                *flinch = Flinch::begun();
+            }
+        }
+        if gives_way {
+            self.physique.drives.hit(&self.def.ragdoll, body, impulse.length());
+        }
+        self.events.push(CharacterEvent::Flinched { body });
+        if gives_way && state != State::Preparing {
+            if self.steps() {
+                blows::tense(&self.def.ragdoll, &mut self.physique.drives);
+                self.shove(world, impulse);
+            }
+            self.drive_bodies(world);
+        }
+        gives_way
+    }
+
+    /// Takes up an impulse that its bodies got, N·s.
+    fn shove(&mut self, world: &mut World, impulse: Vec3) {
+        let Activity::Powered(balance) = &mut self.activity else { return };
+        let on = Balancing {
+            def: &self.def,
+            place: self.figure.place,
+            gait: &self.gait,
+            physique: &self.physique,
+        };
+        if balance.shove(on, impulse, &mut self.scratch, world, &mut self.events) {
+            self.steer(world);
+        }
+    }
+
+    // Powered
+
+    /// Muscles and pins draw all of it to its clips.
+    pub(super) fn power(&mut self, world: &mut World) {
+        self.end_clearing(world);
+        self.take_bodies(world, DriveMode::Powered(Muscle::ALIVE));
+        powered::set_drives(&self.def, &mut self.physique, world);
+        self.become_powered();
+        self.drive_bodies(world);
+    }
+
+    pub(super) fn become_powered(&mut self) {
+        if self.state() != State::Powered {
+            self.activity = Activity::Powered(Balance::default());
+            self.events.push(CharacterEvent::Powered);
+        }
+    }
+
+    // Limp
+
+    /// Lets the bodies take over, at the pose and the speed that the animation has now.
+    pub(super) fn fall(&mut self, world: &mut World) {
+        if self.physique.ragdoll.is_some() {
+            return self.fall_again(world);
+        }
+        self.grips.release_all(self.physique.own(), true, world, &mut self.events);
+        self.become_bodies(world, ContactRule::Push);
+        self.physique.let_linger(&self.figure, world.def().dt(), &mut self.scratch);
+        self.sit_down(world);
+        self.physique.drives.set_all(self.def.falling, 0.0);
+        self.activity = Activity::Limp(Lying::default());
+        self.physique.slacken(&self.def, 0.0, world);
+        self.events.push(CharacterEvent::WentLimp);
+        self.clear(world);
+    }
+
+    /// A body that was about to get up, or that muscles held, is limp again.
+    fn fall_again(&mut self, world: &mut World) {
+        let powered = match self.state() {
+            State::Flinching | State::Powered => true,
+            State::Preparing => false,
+            State::Animated | State::Limp | State::GettingUp => return,
+        };
+        let all: Vec<usize> =
+            (0..self.def.ragdoll.bodies.len()).filter(|&body| self.physique.has(body)).collect();
+        self.slow_led(world, &all);
+        self.physique.let_go(&self.def, world);
+        let stillness = Stillness { touched: !powered, ..Stillness::default() };
+        self.activity = Activity::Limp(Lying { stillness, ..Lying::default() });
+        if powered {
+            self.grips.release_all(self.physique.own(), true, world, &mut self.events);
+            self.physique.let_linger(&self.figure, world.def().dt(), &mut self.scratch);
+            self.physique.physical.rebase(self.def.mapping(), &self.def.rig, &self.figure.pose);
+            self.scratch.posed.clear();
+            self.sit_down(world);
+            self.physique.set_rule(world, ContactRule::Push);
+            self.physique.slacken(&self.def, 0.0, world);
+        }
+        self.events.push(CharacterEvent::WentLimp);
+        self.clear(world);
+    }
+
+    /// Goes on with its way out of a wall for the next step, or lets the bodies fall where the way ends.
+    pub(super) fn go_out(&mut self, world: &mut World) {
+        let Activity::Limp(lying) = &mut self.activity else { return };
+        if !lying.clearing.go_on(self.physique.own(), world) {
+            self.end_clearing(world);
+        }
+    }
+
+    /// Makes bodies that are on their way out of a wall fall from where they are.
+    pub(super) fn end_clearing(&mut self, world: &mut World) {
+        let Activity::Limp(lying) = &mut self.activity else { return };
+        let clearing = core::mem::take(&mut lying.clearing);
+        if !clearing.velocities.is_empty() {
+            clearing.end(self.physique.own(), world);
+            self.physique.set_rule(world, ContactRule::Push);
+        }
+    }
+
+    // Getting up
+
+    /// Gets up, or first brings the body to where it can.
+    pub(super) fn prepare(&mut self, world: &mut World) {
+        let def = self.def.clone();
+        let moves = def.moves();
+        let lies = self.figure.stance(&def, &mut self.scratch);
+        let choice = choose(&moves.get_ups, &moves.landmarks, &lies).filter(|choice| {
+            def.getting_ready == GettingReady::RollOver && !choice.is_near(&def, lies.pelvis)
+        });
+        self.scratch.points = lies.points;
+        let Some(choice) = choice else { return self.get_up_where_free(world) };
+        let rolls = choice.rolls(lies.pelvis);
+        let stillness = self.activity.stillness().copied().unwrap_or_default();
+        self.activity = Activity::Preparing(Preparing::toward(&def, &choice, rolls, stillness));
+        self.events.push(CharacterEvent::Preparing { rolls });
+        prepare::set_drives(&def, rolls, &mut self.physique, world);
+        prepare::draw(&def, &choice, &mut self.physique, &mut self.scratch, world);
+    }
+
+    /// Gives the pose back to the clips where nobody stands or lies on it: it lies until they have gone.
+    pub(super) fn get_up_where_free(&mut self, world: &mut World) {
+        let lies = self.figure.stance(&self.def, &mut self.scratch);
+        let moves = self.def.moves();
+        let place = match choose(&moves.get_ups, &moves.landmarks, &lies) {
+            Some(choice) => choice.pose_similarity.motion,
+            None => moves.landmarks.compare(&moves.upright, &lies).motion,
+        };
+        self.scratch.points = lies.points;
+        let steps = self.activity.stillness().map_or(0, |still| still.steps);
+        let waits = self.is_in_world()
+            && (is_taken(&self.def, world, place.translation)
+                || is_under(&self.def, self.physique.own(), steps, world));
+        let Some(still) = self.activity.stillness_mut() else { return };
+        // Who was on it may have got up in this update, and touches nothing before the next step.
+        if core::mem::replace(&mut still.free, !waits) && !waits {
+            self.get_up(world);
+        }
+    }
+
+    /// Gives the pose back to the clips, by the moment of a get-up clip that is most like it.
+    pub(super) fn get_up(&mut self, world: &mut World) {
+        let def = self.def.clone();
+        let moves = def.moves();
+        let lies = self.figure.stance(&def, &mut self.scratch);
+        let lying = self.scratch.before.clone();
+        let own = self.detail.map(|_| self.physique.own());
+        let lean = ground::slope(world, &lies.points, own);
+        let choice = choose(&moves.get_ups, &moves.landmarks, &lies);
+        let way = match choice {
+            Some(Choice { get_up, start, pose_similarity }) => {
+                self.settle_into(world, pose_similarity.motion, lean, INTO_GET_UP);
+                self.pass(get_up.deepest, INTO_GET_UP);
+                self.feet.pass_to(&def, &lying, pose_similarity.motion, &start.bodies);
+                let once =
+                    TrackDef { start: start.time, loop_mode: LoopMode::Once, ..TrackDef::new(get_up.id) };
+                Way::ByClip(self.gait.animator.play(def.set(), &once))
+            }
+            None => {
+                let upright = moves.landmarks.compare(&moves.upright, &lies).motion;
+                self.settle_into(world, upright, lean, INTO_STANDING);
+                self.pass(moves.deepest, INTO_STANDING);
+                def.play_looped(&mut self.gait.animator, 0.0);
+                Way::Without(INTO_STANDING)
+            }
+        };
+        let clip = choice.map(|choice| choice.get_up.clip);
+        self.events.push(CharacterEvent::GettingUp { clip });
+        self.leave_bodies(world);
+        self.activity = Activity::GettingUp(Rising { way, lean });
+        if self.feet.are_placed() {
+            self.feet.show(&def, State::GettingUp, &self.figure, &mut self.scratch.model);
+        }
+        self.stand_up(world, LYING_MOVER);
+    }
+
+    /// Back to the looped clip.
+    pub(super) fn stand(&mut self, world: &World) {
+        let def = self.def.clone();
+        let moves = def.moves();
+        let stands = self.figure.stance(&def, &mut self.scratch);
+        let from = self.feet.shown_depths(&def, &self.figure, &mut self.scratch.model);
+        let upright = moves.landmarks.compare(&moves.upright, &stands).motion;
+        self.settle_into(world, upright, Vec3::ZERO, INTO_LOOP);
+        self.feet.pass(&def, from, moves.deepest, INTO_LOOP);
+        def.play_looped(&mut self.gait.animator, 0.0);
+        self.be_up();
+    }
+
+    pub(super) fn be_up(&mut self) {
+        self.activity = Activity::Animated;
+        self.events.push(CharacterEvent::Up);
+    }
+
+    /// Begins a passage of so many seconds to what is no deeper than `to`, from the pose that is shown.
+    fn pass(&mut self, to: super::clearance::Depths, seconds: f32) {
+        let from = self.feet.shown_depths(&self.def, &self.figure, &mut self.scratch.model);
+        self.feet.pass(&self.def, from, to, seconds);
+    }
+
+    /// Stands on the ground at `place`, stops what plays on the whole body, and lets the present pose and its motion die
+    /// away within `seconds` in what will be played. Nothing moves in the world yet.
+    fn settle_into(&mut self, world: &World, place: Transform, lean: Vec3, seconds: f32) {
+        let def = self.def.clone();
+        let own = self.detail.map(|_| self.physique.own());
+        let here = self.figure.place;
+        let model = &mut self.scratch.model;
+        local_to_model(&def.rig, &self.figure.pose, &Affine::IDENTITY, model);
+        let pelvis = model[def.ragdoll.bodies[0].joint].translation;
+        let pelvis = def.mapping().world_from_model(here).point(pelvis);
+        let height = ground::below(world, pelvis, ABOVE_PELVIS, own).unwrap_or(here.translation.y);
+        self.figure.reframe(&def, standing(place, lean, pelvis, height));
+        self.gait.climbing = 0.0;
+        let pose = |pose: &[sinew_anim::LocalTransform]| -> Pose { pose.iter().copied().collect() };
+        let (earlier, now) = (pose(&self.figure.earlier.pose), pose(&self.figure.pose));
+        let animator = &mut self.gait.animator;
+        animator.take_over(&earlier, &now, world.def().dt(), seconds);
+        let stopped: Vec<TrackId> =
+            animator.tracks().filter(|track| track.def().layer == 0).map(Track::id).collect();
+        stopped.into_iter().for_each(|track| animator.stop(def.set(), track));
+    }
+
+    // Limbs that are cut off
+
+    /// Takes a limb's bodies and joints from it: those that it has, or new ones of a character without any.
+    pub(super) fn part_with(&mut self, world: &mut World, parts: &[usize]) -> (Vec<BodyId>, Vec<JointId>) {
+        let (bodies, joints) = if self.physique.ragdoll.is_some() {
+            self.slow_led(world, parts);
+            self.physique.cut(&self.def, parts, world)
+        } else {
+            let states = self.carried();
+            self.physique.cut_led(&self.def, parts, states, world)
+        };
+        for &body in &bodies {
+            // It pushes as any body does, and is in nobody's way.
+            let rule = ContactRule::Yields(Yields::default());
+            world.set_contact_rule(sinew_physics::ShapeId { body, shape: 0 }, rule);
+        }
+        self.physique.lose(parts, &bodies);
+        self.physique.part_bodies(&bodies, world);
+        (bodies, joints)
+    }
+
+    /// Goes on without what was cut off.
+    pub(super) fn live_on(&mut self, world: &mut World) {
+        self.scratch.posed.clear();
+        match &mut self.activity {
+            // What lay still may fall.
+            Activity::Limp(lying) => {
+                (lying.stillness.settled, lying.stillness.calm_steps) = (false, 0);
+            }
+            Activity::Preparing(_) => self.fall(world),
+            Activity::Powered(balance) => balance.stumble = None,
+            _ => {}
+        }
+        if self.state() != State::Limp && !self.physique.may_get_up(&self.def) {
+            self.fall(world);
+        }
+        let (wear, bearer) = self.wearing();
+        wear.rehang(bearer, world);
+    }
+
+    /// Springs and garments, and who wears them.
+    pub(super) fn wearing(&mut self) -> (&mut Wear, Bearer<'_>) {
+        let bearer = Bearer {
+            def: &self.def,
+            pose: self.feet.led(&self.figure.pose),
+            place: self.figure.place,
+            physique: &self.physique,
+        };
+        (&mut self.wear, bearer)
+    }
+}

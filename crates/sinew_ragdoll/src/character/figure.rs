@@ -1,0 +1,140 @@
+//! Pose and place of a character: now, a step ago, and as they were shown.
+
+use super::CharacterDef;
+use super::pose_similarity::Stance;
+use sinew_anim::{Animator, LocalTransform, Pose, local_to_model};
+use sinew_math::{Affine, Transform, Vec3};
+use sinew_physics::Velocity;
+
+/// Pose and place of a moment.
+#[derive(Clone, Debug)]
+pub(super) struct Moment {
+    pub pose: Vec<LocalTransform>,
+    pub place: Transform,
+}
+
+/// Pose and place of a character.
+#[derive(Clone, Debug)]
+pub(super) struct Figure {
+    /// As bodies or clips have it, without feet on the ground and what it wears.
+    pub pose: Vec<LocalTransform>,
+    /// World from character.
+    pub place: Transform,
+    /// A step ago.
+    pub earlier: Moment,
+    /// As they were shown at the end of the step before, with feet and what it wears.
+    pub shown: Moment,
+}
+
+impl Figure {
+    pub fn new(pose: Vec<LocalTransform>, place: Transform) -> Self {
+        let moment = Moment { pose: pose.clone(), place };
+        Self { pose, place, earlier: moment.clone(), shown: moment }
+    }
+
+    /// Takes the animator's pose.
+    pub fn take(&mut self, animator: &Animator) {
+        self.pose.clear();
+        self.pose.extend(animator.pose().iter());
+    }
+
+    /// Remembers the present pose as the one before the next.
+    pub fn keep_earlier(&mut self) {
+        core::mem::swap(&mut self.earlier.pose, &mut self.pose);
+        self.earlier.place = self.place;
+        self.pose.clone_from(&self.earlier.pose);
+    }
+
+    /// Has it stand elsewhere with every joint where it is in the world.
+    pub fn reframe(&mut self, def: &CharacterDef, to: Transform) {
+        let mapping = def.mapping();
+        mapping.reframe(&mut self.pose, self.place, to);
+        self.place = to;
+        for moment in [&mut self.earlier, &mut self.shown] {
+            mapping.reframe(&mut moment.pose, moment.place, to);
+            moment.place = to;
+        }
+    }
+
+    /// Brings it elsewhere as it is.
+    pub fn carry(&mut self, to: Transform) {
+        let moved = to * self.place.inverse();
+        self.place = to;
+        self.earlier.place = moved * self.earlier.place;
+        self.shown.place = moved * self.shown.place;
+    }
+
+    /// The present pose in the world. Its points may be given back to the [`Scratch`].
+    pub fn stance(&self, def: &CharacterDef, scratch: &mut Scratch) -> Stance {
+        local_to_model(&def.rig, &self.pose, &Affine::IDENTITY, &mut scratch.model);
+        let points = core::mem::take(&mut scratch.points);
+        let landmarks = &def.moves().landmarks;
+        landmarks.stance(def.mapping(), &scratch.model, self.place, points, &mut scratch.before)
+    }
+
+    /// Pose and place between what was shown last (`alpha` 0) and `now` (1).
+    pub fn between(&self, now: &[LocalTransform], alpha: f32, pose: &mut Vec<LocalTransform>) -> Transform {
+        pose.clear();
+        let (from, to) = (self.shown.place, self.place);
+        if self.shown.pose.len() != now.len() {
+            pose.extend_from_slice(now);
+            return to;
+        }
+        let between = |(a, b): (&LocalTransform, &LocalTransform)| LocalTransform {
+            translation: a.translation * (1.0 - alpha) + b.translation * alpha,
+            rotation: a.rotation.nlerp(b.rotation, alpha),
+            scale: a.scale * (1.0 - alpha) + b.scale * alpha,
+        };
+        pose.extend(self.shown.pose.iter().zip(now).map(between));
+        Transform::new(
+            from.translation * (1.0 - alpha) + to.translation * alpha,
+            from.rotation.nlerp(to.rotation, alpha),
+        )
+    }
+}
+
+/// Buffers that are kept to be used again; but for `posed` they hold nothing from one call to the next.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    /// Bodies that the present pose was made of, where it will be the same as long as they stay; else nothing. Work that is
+    /// saved, not state: the pose is the same without it.
+    pub posed: Vec<Transform>,
+    pub ahead: Option<Animator>,
+    pub pose: Vec<LocalTransform>,
+    pub resting: Pose,
+    pub wanted: Vec<LocalTransform>,
+    pub model: Vec<Affine>,
+    pub frames: Vec<(Transform, f32)>,
+    pub points: Vec<Vec3>,
+    pub before: Vec<Transform>,
+    pub after: Vec<Transform>,
+    pub velocities: Vec<Velocity>,
+}
+
+impl Scratch {
+    /// World poses of the bodies for a pose of a character at `place`.
+    pub fn bodies_of(
+        &mut self,
+        def: &CharacterDef,
+        pose: &[LocalTransform],
+        place: Transform,
+        out: &mut Vec<Transform>,
+    ) {
+        let mapping = def.mapping();
+        if !mapping.bodies_from_pose(pose, place, &mut self.frames, out) {
+            local_to_model(&def.rig, pose, &Affine::IDENTITY, &mut self.model);
+            mapping.bodies_from_model(&self.model, place, out);
+        }
+    }
+
+    /// A copy of an animator, in the place of the last one: it is to be put back into `ahead`.
+    pub fn sent_ahead(&mut self, animator: &Animator) -> Animator {
+        match self.ahead.take() {
+            Some(mut ahead) => {
+                ahead.copy_from(animator);
+                ahead
+            }
+            None => animator.clone(),
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! Way of a character over the ground: its clips, its mover, and what it was told.
+
+use super::activity::Activity;
+use super::figure::Figure;
+use super::{CharacterDef, HitBodies, State, ground};
+use crate::character::tuning::{
+    CLIMB_SPEED, FASTEST_PACE, HIGHEST_STEP, MOST_BESIDE, PACE_RATE, PICKS_UP, PUSHED_ASIDE, STANDS_BELOW,
+    STANDS_IN, STEP_SETTLES, STEP_SLOPE,
+};
+use sinew_anim::{Animator, ClipId, MotionTrack, TrackDef, TrackId, smoothstep};
+use sinew_math::{Rotation, Transform, Vec3, clamp, max, min, trig};
+use sinew_physics::{BodyId, MoverDef, MoverId, World};
+
+/// Clips and mover of a character, and where it is to go.
+#[derive(Clone, Debug)]
+pub(super) struct Gait {
+    pub animator: Animator,
+    /// While it stands in a world.
+    pub mover: Option<MoverId>,
+    /// Velocity that it is to go with, m/s; `None`: as its clips do.
+    pub wish: Option<Vec3>,
+    /// Direction in which it is to look, level, of length 1.
+    pub facing: Option<Vec3>,
+    /// The mover's turn as it was last asked.
+    pub yaw: f32,
+    /// Velocity of the mover, m/s.
+    pub velocity: Vec3,
+    /// Speed over the ground in the last step, m/s.
+    pub speed: f32,
+    /// Speed at which the ground took the character's origin up in the last step, m/s; 0 with a mover.
+    pub climbing: f32,
+    /// Speed at which the looped clip is played, m/s.
+    pub pace: f32,
+    /// Seconds since the mover had ground.
+    pub air: f32,
+    /// Way from its mover to where it is shown: it takes a moment to come down a step, or to where the mover was pushed out, metres.
+    pub beside: Vec3,
+    /// It left the ground for too long or came down too fast.
+    pub falls: bool,
+}
+
+/// Motion of a character in the last update of an animator, in its own space.
+pub(super) fn root_step(def: &CharacterDef, animator: &Animator) -> Transform {
+    let root = def.mapping().character_from_model();
+    let turn = root.to_rigid().rotation;
+    let step = animator.root_motion();
+    Transform::new(root.vector(step.translation), turn * step.rotation * turn.inverse())
+}
+
+impl Gait {
+    pub fn new(animator: Animator) -> Self {
+        Self {
+            animator,
+            mover: None,
+            wish: None,
+            facing: None,
+            yaw: 0.0,
+            velocity: Vec3::ZERO,
+            speed: 0.0,
+            climbing: 0.0,
+            pace: 0.0,
+            air: 0.0,
+            beside: Vec3::ZERO,
+            falls: false,
+        }
+    }
+
+    /// Takes the clips forward by a step, and the figure over the ground with them. `own`: bodies of a character that is in the
+    /// world.
+    pub fn advance(
+        &mut self,
+        def: &CharacterDef,
+        activity: &Activity,
+        figure: &mut Figure,
+        own: Option<&[BodyId]>,
+        world: &World,
+    ) {
+        let dt = world.def().dt();
+        self.keep_pace(def, dt);
+        self.animator.update(def.set(), dt);
+        figure.keep_earlier();
+        figure.take(&self.animator);
+        let step = root_step(def, &self.animator);
+        // Who lies would be swung about by its feet: it turns as it comes to stand.
+        let turns = def.in_world.turn_speed * (1.0 - activity.lowness(def, &self.animator));
+        let from = figure.place;
+        if let Some(to) = self.ride(def, world, from, step, turns) {
+            figure.place = to;
+            self.climbing = 0.0;
+            return;
+        }
+        let mut to = from * step;
+        if let Some(height) = ground::below(world, to.translation, HIGHEST_STEP, own) {
+            to.translation.y += clamp(height - to.translation.y, -CLIMB_SPEED * dt, CLIMB_SPEED * dt);
+        }
+        figure.place = to;
+        let way = to.translation - from.translation;
+        self.speed = Vec3::new(way.x, 0.0, way.z).length() / dt;
+        self.climbing = (to.translation.y - from.translation.y) / dt;
+    }
+
+    /// Place that it comes to within a step, with the mover that stands for it; notes what the mover feels. `turns`: speed at which
+    /// it may turn, rad/s.
+    fn ride(
+        &mut self,
+        def: &CharacterDef,
+        world: &World,
+        from: Transform,
+        step: Transform,
+        turns: f32,
+    ) -> Option<Transform> {
+        let mover = world.mover(self.mover?);
+        let settings = &def.in_world;
+        let dt = world.def().dt();
+        let (feet, velocity) = (mover.position(), mover.velocity());
+        let ground = world.mover_ground(self.mover?);
+        let floor = ground.map_or(Vec3::ZERO, |ground| ground.velocity);
+        let way = feet - mover.interpolated(0.0);
+        let level = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
+        let beyond = way - velocity * dt;
+        // What overlaps it, and a tread in front of it, push it aside within a step.
+        let aside = if ground.is_some() { level(beyond) } else { beyond };
+        let pushed = aside * max(1.0 - PUSHED_ASIDE * dt / max(aside.length(), 1e-6), 0.0);
+        self.beside -= pushed;
+        if ground.is_some() && beyond.y.abs() > STEP_SLOPE * level(way - pushed).length() + 1e-3 {
+            self.beside.y -= beyond.y;
+        }
+        let length = max(self.beside.length(), 1e-6);
+        self.beside *= min(MOST_BESIDE / length, 1.0) * trig::exp(-STEP_SETTLES * dt);
+        let fell = floor.y - self.velocity.y;
+        let landed = ground.is_some() && self.air > 0.0;
+        self.air = if ground.is_some() { 0.0 } else { self.air + dt };
+        self.falls = self.air > settings.air_time || landed && fell > settings.landing_speed;
+        // What falls keeps the velocity with which it came down.
+        if !(self.falls && landed) {
+            self.velocity = velocity;
+        }
+        self.speed = level(velocity - floor).length();
+        let carried = Rotation::from_axis_angle(Vec3::Y, mover.yaw() - self.yaw);
+        self.yaw = mover.yaw();
+        let heading = carried * from.rotation;
+        let rotation = match self.facing {
+            Some(facing) => turned_to(heading, facing, turns * dt),
+            None if self.wish.is_some() => heading,
+            None => heading * step.rotation,
+        };
+        // The mover keeps its skin free, the character stands on its soles.
+        Some(Transform::new(feet + self.beside - Vec3::Y * mover.def().skin, rotation.normalize()))
+    }
+
+    /// Tells the mover where to go in the next step, and lets it grow to its height. `on_feet`: it picks up speed by its own feet.
+    pub fn steer(
+        &mut self,
+        def: &CharacterDef,
+        activity: &Activity,
+        rotation: Rotation,
+        on_feet: bool,
+        world: &mut World,
+    ) {
+        let Some(mover) = self.mover else { return };
+        let walk = match activity.stumble() {
+            Some(stumble) => stumble.velocity,
+            None => self.reachable_walk(def, activity, rotation, on_feet, world),
+        };
+        world.set_mover_walk(mover, if walk.is_finite() { walk } else { Vec3::ZERO });
+        let height = def.in_world.mover.as_ref().map_or(0.0, |mover| mover.height);
+        if world.mover(mover).def().height < height && activity.left_to_rise(def, &self.animator) < 0.5 {
+            world.set_mover_height(mover, height);
+        }
+    }
+
+    /// [`wanted_walk`](Self::wanted_walk), or as near to it as what stands on its own feet gets within a step.
+    fn reachable_walk(
+        &self,
+        def: &CharacterDef,
+        activity: &Activity,
+        rotation: Rotation,
+        on_feet: bool,
+        world: &World,
+    ) -> Vec3 {
+        let dt = world.def().dt();
+        let wish = self.wanted_walk(def, activity.state(), rotation, dt);
+        let ground = self.mover.filter(|_| on_feet).and_then(|mover| world.mover_ground(mover));
+        let Some(ground) = ground else { return wish };
+        let now = (self.velocity - ground.velocity) * Vec3::new(1.0, 0.0, 1.0);
+        let change = wish - now;
+        now + change * min(PICKS_UP * dt / max(change.length(), 1e-6), 1.0)
+    }
+
+    /// Velocity over the ground at which it is to go in a step of `dt` seconds: as it was told, or as its clips go.
+    pub fn wanted_walk(&self, def: &CharacterDef, state: State, rotation: Rotation, dt: f32) -> Vec3 {
+        let step = root_step(def, &self.animator).translation;
+        let wish = self.wish.filter(|_| state != State::GettingUp);
+        wish.unwrap_or(rotation * step / dt * Vec3::new(1.0, 0.0, 1.0))
+    }
+
+    /// Plays the looped clip as fast as the character goes, and lets it stand where it does not.
+    fn keep_pace(&mut self, def: &CharacterDef, dt: f32) {
+        if self.mover.is_none() || self.wish.is_none() {
+            return;
+        }
+        self.pace += (self.speed - self.pace) * -trig::exp_m1(-PACE_RATE * dt);
+        let pace = self.pace;
+        let Some(walk) = self.looped_track(def) else { return };
+        let natural = natural_speed(def);
+        if natural > 0.0 {
+            self.animator.set_speed(walk, clamp(pace / natural, 0.0, FASTEST_PACE));
+        }
+        let Some(idle) = def.motions().idle.map(|idle| def.clip(idle)) else { return };
+        let idle = self.track_of(idle).unwrap_or_else(|| {
+            self.animator.play(def.set(), &TrackDef { weight: 0.0, ..TrackDef::new(idle) })
+        });
+        let wanted = smoothstep(clamp(pace / STANDS_BELOW, 0.0, 1.0));
+        let now = self.animator.track(walk).map_or(wanted, |track| track.def().weight);
+        let share = clamp(wanted, now - dt / STANDS_IN, now + dt / STANDS_IN);
+        self.animator.set_weight(walk, share);
+        self.animator.set_weight(idle, 1.0 - share);
+    }
+
+    /// Has it go as its clips go.
+    pub fn follow_clips(&mut self, def: &CharacterDef) {
+        self.wish = None;
+        if let Some(track) = self.looped_track(def) {
+            self.animator.set_speed(track, 1.0);
+            self.animator.set_weight(track, 1.0);
+        }
+        if let Some(track) = def.motions().idle.and_then(|idle| self.track_of(def.clip(idle))) {
+            self.animator.set_weight(track, 0.0);
+        }
+    }
+
+    fn looped_track(&self, def: &CharacterDef) -> Option<TrackId> {
+        self.track_of(def.clip(def.motions().looped?))
+    }
+
+    fn track_of(&self, clip: ClipId) -> Option<TrackId> {
+        let plays = |track: &&sinew_anim::Track| track.def().clip == clip && track.def().layer == 0;
+        self.animator.tracks().find(plays).map(sinew_anim::Track::id)
+    }
+
+    /// Place that it comes to in `seconds` more, seen from where it stands now: by its mover, or by its clips.
+    pub fn gone_on(
+        &self,
+        def: &CharacterDef,
+        rotation: Rotation,
+        place: Transform,
+        ahead: &Animator,
+        seconds: f32,
+    ) -> Transform {
+        let step = root_step(def, ahead);
+        if self.mover.is_some() {
+            let way = rotation.inverse() * self.velocity * seconds;
+            let keeps = self.wish.is_some() || self.facing.is_some();
+            let turn = if keeps { Rotation::IDENTITY } else { step.rotation };
+            return Transform::new(place.translation + way, place.rotation * turn);
+        }
+        let mut place = place * step;
+        place.translation += Vec3::Y * (self.climbing * seconds);
+        place
+    }
+
+    /// Puts a mover where it stands, at a share of its height.
+    pub fn stand_up(&mut self, def: &CharacterDef, place: Vec3, world: &mut World, share: f32) {
+        let Some(mover) = def.in_world.mover.as_ref().filter(|_| self.mover.is_none()) else { return };
+        let height = max(2.0 * mover.radius, share * mover.height);
+        let position = place + Vec3::Y * mover.skin;
+        let lets_pass = match def.in_world.hit_bodies {
+            HitBodies::Present(yields) => max(yields.max_impulse, mover.lets_pass),
+            HitBodies::Absent => mover.lets_pass,
+        };
+        let mover = MoverDef { position, height, lets_pass, ..mover.clone() };
+        self.mover = Some(world.add_mover(&mover));
+        (self.yaw, self.air, self.pace) = (0.0, 0.0, 0.0);
+        (self.velocity, self.beside, self.falls) = (Vec3::ZERO, Vec3::ZERO, false);
+    }
+
+    /// Takes its mover out: it lies.
+    pub fn sit_down(&mut self, world: &mut World) {
+        if let Some(mover) = self.mover.take().filter(|&mover| world.contains_mover(mover)) {
+            world.remove_mover(mover);
+        }
+    }
+
+    /// Starts over at a place that it was brought to.
+    pub fn teleport(&mut self, place: Vec3, world: &mut World) {
+        (self.air, self.beside, self.velocity) = (0.0, Vec3::ZERO, Vec3::ZERO);
+        if let Some(mover) = self.mover {
+            let skin = world.mover(mover).def().skin;
+            world.set_mover_position(mover, place + Vec3::Y * skin);
+        }
+    }
+}
+
+/// Speed at which the looped clip goes over the ground, m/s.
+fn natural_speed(def: &CharacterDef) -> f32 {
+    let Some(looped) = def.motions().looped else { return 0.0 };
+    let clip = def.set().clip(def.clip(looped));
+    let stride = clip.motion.as_ref().map_or(0.0, MotionTrack::stride);
+    stride * def.ragdoll.unit_scale / max(clip.clip.duration(), 1e-3)
+}
+
+/// A rotation turned about the vertical so that +z comes toward a level direction, by an angle at most.
+fn turned_to(rotation: Rotation, direction: Vec3, most: f32) -> Rotation {
+    let ahead = rotation * Vec3::Z;
+    let angle = trig::atan2(
+        ahead.z * direction.x - ahead.x * direction.z,
+        ahead.x * direction.x + ahead.z * direction.z,
+    );
+    Rotation::from_axis_angle(Vec3::Y, clamp(angle, -most, most)) * rotation
+}

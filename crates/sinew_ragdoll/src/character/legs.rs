@@ -1,0 +1,138 @@
+//! Legs of a humanoid, and the ground that its feet are brought to.
+
+use crate::character::tuning::{BALL_AHEAD, FEET_QUICKNESS, FOOT_HOME, FOOT_RANGE, MOST_TILT};
+use crate::def::RagdollDef;
+use sinew_anim::ik::{FootGround, FootPlacement, TwoBone, place_feet};
+use sinew_anim::{JointIdx, LocalTransform, Rig, local_to_model};
+use sinew_math::{Affine, Vec3, max, min, normalize_or, trig};
+
+/// The legs of a humanoid that stands on them.
+#[derive(Clone, Debug)]
+pub(super) struct Legs {
+    pub pelvis: JointIdx,
+    pub chains: [TwoBone; 2],
+    /// The ball, in the axes of the ankle without scale, metres.
+    pub balls: [Vec3; 2],
+    /// Height of the ankles in the bind pose, metres.
+    pub ankle_height: f32,
+}
+
+impl Legs {
+    /// By the roles of the bodies; `None` without two whole legs that hang on the pelvis. `bind`: in character space, metres.
+    pub fn of(rig: &Rig, def: &RagdollDef, bind: &[Affine]) -> Option<Self> {
+        let joint = |role: &str| def.bodies.iter().find(|body| body.role == role).map(|body| body.joint);
+        let hangs_on = |joint: JointIdx, above: JointIdx| {
+            core::iter::successors(Some(joint), |&i| rig.joints[i].parent).any(|i| i == above)
+        };
+        let pelvis = def.bodies.first()?.joint;
+        let foot = |side: &str| {
+            let part = |name: &str| joint(&format!("{side}{name}"));
+            let leg = TwoBone { upper: part("UpperLeg")?, lower: part("LowerLeg")?, end: part("Foot")? };
+            let is_chain =
+                hangs_on(leg.upper, pelvis) && hangs_on(leg.lower, leg.upper) && hangs_on(leg.end, leg.lower);
+            let place = |joint: JointIdx| bind[joint].translation;
+            let ankle = bind[leg.end].to_rigid();
+            let length =
+                (place(leg.lower) - place(leg.upper)).length() + (place(leg.end) - place(leg.lower)).length();
+            let body = def.bodies.iter().find(|body| body.joint == leg.end)?;
+            let toes = part("Toes").into_iter().chain(body.merged.iter().copied()).map(place);
+            // The foremost of what the foot is made of.
+            let foremost = toes.fold(ankle.translation, |a, b| if b.z > a.z { b } else { a });
+            let usual = ankle.translation + Vec3::Z * (BALL_AHEAD * length);
+            let ball =
+                if foremost.z > ankle.translation.z + 0.5 * BALL_AHEAD * length { foremost } else { usual };
+            is_chain.then(|| (leg, ankle.inverse_point(ball), ankle.translation.y))
+        };
+        let [left, right] = [foot("left")?, foot("right")?];
+        Some(Self {
+            pelvis,
+            chains: [left.0, right.0],
+            balls: [left.1, right.1],
+            ankle_height: max(min(left.2, right.2), 0.0),
+        })
+    }
+
+    /// Brings a pose's feet onto the ground as it is planted on, by the pelvis and the knees; `up` is seen by the character.
+    /// `model` is cleared and filled.
+    pub fn place(
+        &self,
+        rig: &Rig,
+        root: &Affine,
+        up: Vec3,
+        planting: Planting,
+        local: &mut [LocalTransform],
+        model: &mut Vec<Affine>,
+    ) {
+        local_to_model(rig, local, root, model);
+        let settings = FootPlacement {
+            up,
+            forward: Vec3::Z,
+            floor: 0.0,
+            ankle_height: self.ankle_height,
+            free_height: 0.1,
+            max_step: FOOT_RANGE,
+            max_tilt: MOST_TILT,
+        };
+        let normal = |foot: usize| {
+            let ankle = model[self.chains[foot].end].to_rigid();
+            let along = ankle.rotation * self.balls[foot];
+            let along = normalize_or(along - up * along.dot(up), Vec3::ZERO);
+            (up - along * planting.slopes[foot]).normalize()
+        };
+        let grounds = [0, 1].map(|foot| FootGround { height: planting.heights[foot], normal: normal(foot) });
+        let mut grounds = grounds.into_iter();
+        let ground = |_: Vec3| grounds.next();
+        place_feet(rig, self.pelvis, &self.chains, &settings, ground, local, model);
+    }
+}
+
+/// Smoothed ground under each foot, over the floor of the clip, and its rates of change, per second.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Planting {
+    /// Metres.
+    pub heights: [f32; 2],
+    pub rates: [f32; 2],
+    /// From heel to ball: up over along.
+    pub slopes: [f32; 2],
+    pub slope_rates: [f32; 2],
+}
+
+/// Ground under a foot over the floor of its clip: metres, and up over along.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Need {
+    pub height: f32,
+    pub slope: f32,
+}
+
+impl Planting {
+    pub fn is_over(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Follows the ground for `dt` seconds.
+    pub fn follow(&mut self, goals: [Need; 2], dt: f32) {
+        for (foot, goal) in goals.into_iter().enumerate() {
+            follow(&mut self.heights[foot], &mut self.rates[foot], goal.height, dt);
+            follow(&mut self.slopes[foot], &mut self.slope_rates[foot], goal.slope, dt);
+        }
+        let all = [self.heights, self.rates, self.slopes, self.slope_rates];
+        if goals == [Need::default(); 2] && all.as_flattened().iter().all(|x| x.abs() < FOOT_HOME) {
+            *self = Self::default();
+        }
+    }
+
+    /// After so many seconds more at the present rates.
+    pub fn ahead(&self, seconds: f32) -> Self {
+        let at = |x: [f32; 2], rate: [f32; 2]| [0, 1].map(|foot| x[foot] + rate[foot] * seconds);
+        Self { heights: at(self.heights, self.rates), slopes: at(self.slopes, self.slope_rates), ..*self }
+    }
+}
+
+/// `x″ = −ω²(x − g) − 2ω x′` for `dt` seconds, solved exactly.
+fn follow(x: &mut f32, rate: &mut f32, goal: f32, dt: f32) {
+    let decay = trig::exp(-FEET_QUICKNESS * dt);
+    let off = *x - goal;
+    let carried = *rate + FEET_QUICKNESS * off;
+    *x = goal + (off + carried * dt) * decay;
+    *rate = (*rate - FEET_QUICKNESS * carried * dt) * decay;
+}
