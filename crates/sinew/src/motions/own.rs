@@ -8,6 +8,10 @@ use crate::ragdoll::{CharacterDef, Locomotion, MotionSet};
 /// Words of clip names that are walks, standing, and ways to get up, without case, blanks, `-` and `_`.
 const WALK: &str = "walk";
 const IDLE: &str = "idle";
+const FASTER: [&str; 3] = ["jog", "run", "sprint"];
+/// Words of clips that go elsewhere than forward, or do something else besides.
+const NOT_AHEAD: [&str; 11] =
+    ["back", "left", "right", "strafe", "turn", "stop", "start", "jump", "shoot", "attack", "aim"];
 const GET_UP: [&str; 3] = ["getup", "standup", "gettingup"];
 /// Name of the clips that `sinew bake` adds, with or without a number: falls that were simulated before.
 const BAKED: &str = "sinew";
@@ -26,9 +30,10 @@ pub struct OwnMotions {
 /// | motion | clip |
 /// |---|---|
 /// | `looped` | as [`looped_among`] |
+/// | `faster` | of those whose names contain `jog`, `run` or `sprint` one each, the one with the shortest name that runs ahead |
 /// | `idle` | of those whose names contain `idle` the one with the shortest name, unless it is the looped one |
 /// | `get_ups` | those of [`CharacterDef::get_ups_among`] that are neither |
-/// | `events` | footfalls of the looped clip ([`footsteps`]) |
+/// | `events` | footfalls of the looped clip and of faster ones ([`footsteps`]) |
 /// | `locomotion` | by the clip if it gets on; at the speed of its feet if it walks on the spot |
 ///
 /// # Panics
@@ -52,25 +57,59 @@ pub fn own_motions(def: &CharacterDef, analysis: &RigAnalysis, clips: Vec<Clip>)
     }
     let mut motions =
         MotionSet { looped, idle, get_ups, locomotion: Locomotion::ByClip, ..MotionSet::default() };
-    if let Some(clip) = looped {
-        match footsteps(&def.rig, analysis, &clips[clip]) {
+    let is_walk = |clip: usize| plain(&clips[clip].name).contains(WALK);
+    let faster = if looped.is_some_and(is_walk) { faster_among(&clips) } else { Vec::new() };
+    for clip in looped.into_iter().chain(faster) {
+        let is_looped = looped == Some(clip);
+        let found = match footsteps(&def.rig, analysis, &clips[clip]) {
+            Ok(found) if found.events.is_empty() => Err("no foot comes to rest on the ground".to_owned()),
+            Ok(found) => Ok(found),
+            Err(reason) => Err(reason.to_string()),
+        };
+        match found {
             Ok(Footsteps { events, speed }) => {
-                if events.is_empty() {
-                    notes.push(format!(
-                        "{} has no footsteps: no foot comes to rest on the ground",
-                        name(clip)
-                    ));
-                }
-                motions.events = events.into_iter().map(|event| (clip, event)).collect();
-                if speed > 0.0 {
-                    motions.locomotion = Locomotion::Forward { speed };
+                motions.events.extend(events.into_iter().map(|event| (clip, event)));
+                let locomotion = if speed > 0.0 { Locomotion::Forward { speed } } else { Locomotion::ByClip };
+                if is_looped {
+                    motions.locomotion = locomotion;
+                } else {
+                    notes.push(format!("{} is a faster clip", name(clip)));
+                    motions.faster.push((clip, locomotion));
                 }
             }
-            Err(reason) => notes.push(format!("{} has no footsteps: {reason}", name(clip))),
+            Err(reason) if is_looped => notes.push(format!("{} has no footsteps: {reason}", name(clip))),
+            Err(reason) => {
+                notes.push(format!("{} is left out, for nothing keeps it in step: {reason}", name(clip)))
+            }
         }
     }
     motions.clips = clips;
     OwnMotions { motions, notes }
+}
+
+/// Clips that run ahead, one for each word: that with the shortest name.
+fn faster_among(clips: &[Clip]) -> Vec<usize> {
+    let ahead = |clip: &usize| {
+        let name = plain(&clips[*clip].name);
+        !NOT_AHEAD.iter().any(|word| name.contains(word)) && moves(&clips[*clip])
+    };
+    let of_word = |word: &&str| {
+        let called = (0..clips.len()).filter(|&clip| has_word(&clips[clip].name, word));
+        called.filter(ahead).min_by_key(|&clip| clips[clip].name.len())
+    };
+    let mut found: Vec<usize> = FASTER.iter().filter_map(of_word).collect();
+    found.dedup();
+    found
+}
+
+/// True if a word of a name begins with `word`: after a sign that is no letter, or with a capital after a small letter.
+fn has_word(name: &str, word: &str) -> bool {
+    let mut last = ' ';
+    name.char_indices().any(|(at, c)| {
+        let begins = !last.is_alphabetic() || c.is_uppercase() && last.is_lowercase();
+        last = c;
+        begins && name[at..].to_lowercase().starts_with(word)
+    })
 }
 
 /// Index of the clip that a character plays while nothing happens to it: the first that is called a walk and moves (of several the first in

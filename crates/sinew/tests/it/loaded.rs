@@ -61,6 +61,28 @@ fn the_shortest_name_is_the_idle_and_a_held_pose_no_walk() {
 }
 
 #[test]
+fn a_run_is_blended_with_the_walk() {
+    let Mannequin { rig, clips, motions } = mannequin();
+    let run = sinew::mannequin::drills::running().clip;
+    let named = |clip: &Clip, name: &str| Clip { name: name.to_owned(), ..clip.clone() };
+    let back = named(&run, "Run_Back");
+    let all = [back, named(&run, "Running_A"), named(&clips[motions.walk], "Walking_A")];
+    let hero = loaded(&rig, &all);
+    let own = hero.def.motions();
+    assert_eq!(
+        (own.looped, own.faster.as_slice()),
+        (Some(2), &[(1, Locomotion::ByClip)][..]),
+        "{:?}",
+        hero.notes
+    );
+    let sides = |clip: usize| -> Vec<&str> {
+        let of = own.events.iter().filter(|(index, _)| *index == clip);
+        of.map(|(_, event)| event.payload.as_str()).collect()
+    };
+    assert_eq!((sides(2), sides(1)), (vec!["left", "right"], vec!["left", "right"]));
+}
+
+#[test]
 fn a_file_without_a_skin_is_refused_by_name() {
     let rig = Rig { meshes: Vec::new(), ..mannequin().rig };
     let document = read(&rig, &[]);

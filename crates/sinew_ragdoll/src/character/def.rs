@@ -3,7 +3,7 @@
 use super::clearance::Clearance;
 use super::in_world::InWorld;
 use super::legs::Legs;
-use super::moves::{MotionError, Moves};
+use super::moves::{MotionError, Moves, Pace};
 use crate::def::RagdollDef;
 use crate::drive::DriveMode;
 use crate::garments::GarmentRig;
@@ -76,6 +76,10 @@ pub struct MotionSet {
     pub clips: Vec<Clip>,
     /// The clip that loops while the character is animated; `None`: it stands in its rest pose. Default none.
     pub looped: Option<usize>,
+    /// Clips that loop at higher speeds than the looped one (a jog, a run), each with its locomotion. Where
+    /// [`Character::set_move`](super::Character::set_move) moves the character, the two whose speeds are next to its own are blended, in step with
+    /// each other by their first events with the payload `left`. Clips that cover no ground are not played. Default none.
+    pub faster: Vec<(usize, Locomotion)>,
     /// The clip that loops while it stands, where [`Character::set_move`](super::Character::set_move) moves it; `None`: the
     /// looped clip stops. Default none.
     pub idle: Option<usize>,
@@ -94,6 +98,7 @@ impl Default for MotionSet {
         Self {
             clips: Vec::new(),
             looped: None,
+            faster: Vec::new(),
             idle: None,
             get_ups: Vec::new(),
             events: Vec::new(),
@@ -186,7 +191,7 @@ impl CharacterDef {
     /// A clip that cannot be played; the motions are then as they were.
     ///
     /// # Panics
-    /// If `looped` or `get_ups` names a clip that is not there, or a channel moves a joint that the rig does not have.
+    /// If `looped`, `faster` or `get_ups` names a clip that is not there, or a channel moves a joint that the rig does not have.
     pub fn set_motions(&mut self, motions: MotionSet) -> Result<(), MotionError> {
         self.moves = Arc::new(Moves::new(self, &motions)?);
         self.motions = motions;
@@ -272,7 +277,18 @@ impl CharacterDef {
     /// Starts the looped clip, if there is one, `phase` seconds in.
     pub(super) fn play_looped(&self, animator: &mut Animator, phase: f32) -> Option<TrackId> {
         let clip = self.clip(self.motions.looped?);
-        Some(animator.play(self.set(), &TrackDef { start: phase, ..TrackDef::new(clip) }))
+        let sync_group = self.sync_group();
+        Some(animator.play(self.set(), &TrackDef { start: phase, sync_group, ..TrackDef::new(clip) }))
+    }
+
+    /// Clips that it goes by, slowest first: the looped one, then those that are faster.
+    pub(super) fn paces(&self) -> &[Pace] {
+        &self.moves.paces
+    }
+
+    /// Group in which its clips that go are kept in step; none for a single clip.
+    pub(super) fn sync_group(&self) -> Option<u8> {
+        (self.paces().len() > 1).then_some(0)
     }
 
     /// Height by which its looped clip is raised so that its lowest drawn point stands on the floor of the rest pose, metres: 0 where it

@@ -4,10 +4,10 @@ use super::activity::Activity;
 use super::figure::Figure;
 use super::{CharacterDef, HitBodies, State, ground};
 use crate::character::tuning::{
-    CLIMB_SPEED, FASTEST_PACE, HIGHEST_STEP, MOST_BESIDE, PACE_RATE, PICKS_UP, PUSHED_ASIDE, STANDS_BELOW,
-    STANDS_IN, STEP_SETTLES, STEP_SLOPE,
+    CLIMB_SPEED, FASTEST_PACE, HIGHEST_STEP, MOST_BESIDE, MOST_PACES, PACE_RATE, PICKS_UP, PUSHED_ASIDE,
+    STANDS_BELOW, STANDS_IN, STEP_SETTLES, STEP_SLOPE,
 };
-use sinew_anim::{Animator, ClipId, MotionTrack, TrackDef, TrackId, smoothstep};
+use sinew_anim::{Animator, ClipId, TrackDef, TrackId, smoothstep, weights_on_line};
 use sinew_math::{Rotation, Transform, Vec3, clamp, max, min, trig};
 use sinew_physics::{BodyId, MoverDef, MoverId, World};
 
@@ -201,20 +201,46 @@ impl Gait {
         }
         self.pace += (self.speed - self.pace) * -trig::exp_m1(-PACE_RATE * dt);
         let pace = self.pace;
-        let Some(walk) = self.looped_track(def) else { return };
-        let natural = natural_speed(def);
-        if natural > 0.0 {
-            self.animator.set_speed(walk, clamp(pace / natural, 0.0, FASTEST_PACE));
+        if self.looped_track(def).is_none() {
+            return;
         }
-        let Some(idle) = def.motions().idle.map(|idle| def.clip(idle)) else { return };
-        let idle = self.track_of(idle).unwrap_or_else(|| {
-            self.animator.play(def.set(), &TrackDef { weight: 0.0, ..TrackDef::new(idle) })
-        });
-        let wanted = smoothstep(clamp(pace / STANDS_BELOW, 0.0, 1.0));
-        let now = self.animator.track(walk).map_or(wanted, |track| track.def().weight);
-        let share = clamp(wanted, now - dt / STANDS_IN, now + dt / STANDS_IN);
-        self.animator.set_weight(walk, share);
-        self.animator.set_weight(idle, 1.0 - share);
+        let paces = def.paces();
+        let (mut tracks, mut speeds, mut weights) =
+            ([None; MOST_PACES], [0.0; MOST_PACES], [0.0; MOST_PACES]);
+        for (i, own) in paces.iter().enumerate() {
+            let track = self.track_or_silent(def, own.clip, def.sync_group());
+            if own.speed > 0.0 {
+                self.animator.set_speed(track, clamp(pace / own.speed, 0.0, FASTEST_PACE));
+            }
+            (tracks[i], speeds[i]) = (Some(track), own.speed);
+        }
+        let count = paces.len();
+        weights_on_line(&speeds[..count], pace, &mut weights[..count]);
+        let tracks = tracks.into_iter().flatten();
+        let share = match def.motions().idle.map(|idle| def.clip(idle)) {
+            Some(idle) => {
+                let idle = self.track_or_silent(def, idle, None);
+                let wanted = smoothstep(clamp(pace / STANDS_BELOW, 0.0, 1.0));
+                let weight =
+                    |track: TrackId| self.animator.track(track).map_or(0.0, |track| track.def().weight);
+                let now: f32 = tracks.clone().map(weight).sum();
+                let share = clamp(wanted, now - dt / STANDS_IN, now + dt / STANDS_IN);
+                self.animator.set_weight(idle, 1.0 - share);
+                share
+            }
+            None if count == 1 => return,
+            None => 1.0,
+        };
+        for (track, weight) in tracks.zip(weights) {
+            self.animator.set_weight(track, share * weight);
+        }
+    }
+
+    /// The track of a clip; one with no weight is started if there is none.
+    fn track_or_silent(&mut self, def: &CharacterDef, clip: ClipId, sync_group: Option<u8>) -> TrackId {
+        self.track_of(clip).unwrap_or_else(|| {
+            self.animator.play(def.set(), &TrackDef { weight: 0.0, sync_group, ..TrackDef::new(clip) })
+        })
     }
 
     /// Has it go as its clips go.
@@ -224,8 +250,12 @@ impl Gait {
             self.animator.set_speed(track, 1.0);
             self.animator.set_weight(track, 1.0);
         }
-        if let Some(track) = def.motions().idle.and_then(|idle| self.track_of(def.clip(idle))) {
-            self.animator.set_weight(track, 0.0);
+        let idle = def.motions().idle.map(|idle| def.clip(idle));
+        let faster = def.paces().iter().skip(1).map(|pace| pace.clip);
+        for clip in idle.into_iter().chain(faster) {
+            if let Some(track) = self.track_of(clip) {
+                self.animator.set_weight(track, 0.0);
+            }
         }
     }
 
@@ -289,14 +319,6 @@ impl Gait {
             world.set_mover_position(mover, place + Vec3::Y * skin);
         }
     }
-}
-
-/// Speed at which the looped clip goes over the ground, m/s.
-fn natural_speed(def: &CharacterDef) -> f32 {
-    let Some(looped) = def.motions().looped else { return 0.0 };
-    let clip = def.set().clip(def.clip(looped));
-    let stride = clip.motion.as_ref().map_or(0.0, MotionTrack::stride);
-    stride * def.ragdoll.unit_scale / max(clip.clip.duration(), 1e-3)
 }
 
 /// A rotation turned about the vertical so that +z comes toward a level direction, by an angle at most.

@@ -5,15 +5,15 @@ use super::floor::{Raised, moved};
 use super::mirror::Mirror;
 use super::pose_similarity::{Landmarks, Stance};
 use super::{CharacterDef, Locomotion, MotionSet, travel};
-use crate::character::tuning::{MAY_BEGIN, MIRRORED_FRAME, ROOT_FRAME, STARTS_APART};
+use crate::character::tuning::{MAY_BEGIN, MIRRORED_FRAME, MOST_PACES, ROOT_FRAME, STARTS_APART};
 use crate::def::RagdollDef;
 use crate::mapping::Mapping;
 use sinew_anim::take::Take;
 use sinew_anim::{
     AnimatedClip, AnimationSet, BuiltClip, Clip, ClipBuildError, ClipBuildOptions, ClipId, LocalTransform,
-    MotionTrack, Rig, Skeleton, Wrap, local_to_model, rest_pose, sample,
+    Markers, MotionTrack, Rig, Skeleton, Wrap, local_to_model, rest_pose, sample,
 };
-use sinew_math::{Affine, Transform, Vec3};
+use sinew_math::{Affine, Transform, Vec3, max};
 
 /// A clip of a character that cannot be played.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -31,6 +31,8 @@ pub(super) struct Moves {
     pub set: AnimationSet,
     /// In the order of [`MotionSet::clips`].
     pub clips: Vec<ClipId>,
+    /// Clips that it goes by, slowest first; the first is the looped one.
+    pub paces: Vec<Pace>,
     /// Each with its mirror image after it.
     pub get_ups: Vec<GetUp>,
     pub landmarks: Landmarks,
@@ -40,6 +42,14 @@ pub(super) struct Moves {
     pub raised: Raised,
     /// Deepest of the clips that loop, or of the rest pose.
     pub deepest: Depths,
+}
+
+/// A clip that a character goes by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pace {
+    pub clip: ClipId,
+    /// Speed over the ground as it is, m/s; 0: it covers none.
+    pub speed: f32,
 }
 
 /// A way to get up.
@@ -72,7 +82,16 @@ impl Moves {
         let upright = stance(rig, mapping, &landmarks, &rest_pose(rig));
         let raised = Raised::default();
         let deepest = [0.0; PARTS];
-        Self { set, clips: Vec::new(), get_ups: Vec::new(), landmarks, upright, raised, deepest }
+        Self {
+            set,
+            clips: Vec::new(),
+            paces: Vec::new(),
+            get_ups: Vec::new(),
+            landmarks,
+            upright,
+            raised,
+            deepest,
+        }
     }
 
     pub fn new(def: &CharacterDef, motions: &MotionSet) -> Result<Self, MotionError> {
@@ -92,23 +111,27 @@ impl Moves {
             ..motions.clone()
         };
         for (index, clip) in motions.clips.iter().enumerate() {
-            let is_looped = motions.looped == Some(index);
-            let mut played = match (is_looped && motions.locomotion == Locomotion::ByClip)
-                .then(|| travelling(def, clip))
-                .flatten()
-            {
-                Some((still, motion)) => AnimatedClip { motion: Some(motion), ..built(def, &still)? },
-                None => {
-                    let mut played = built(def, &flat(def, clip))?;
-                    if is_looped {
-                        played.motion = way(def, motions.locomotion, played.clip.duration());
+            let locomotion = locomotion_of(motions, index);
+            let mut played =
+                match (locomotion == Some(Locomotion::ByClip)).then(|| travelling(def, clip)).flatten() {
+                    Some((still, motion)) => AnimatedClip { motion: Some(motion), ..built(def, &still)? },
+                    None => {
+                        let mut played = built(def, &flat(def, clip))?;
+                        played.motion = locomotion.and_then(|by| way(def, by, played.clip.duration()));
+                        played
                     }
-                    played
-                }
-            };
+                };
             played.events = events_of(motions, index);
+            if !motions.faster.is_empty() && locomotion.is_some() {
+                let left = played
+                    .events
+                    .iter()
+                    .find(|event| event.payload == LEFT && event.time < played.clip.duration());
+                played.markers = left.map_or_else(Markers::default, |event| Markers::new(vec![event.time]));
+            }
             clips.push(set.add_clip(played));
         }
+        let paces = paces(def, &set, &clips, motions);
         let landmarks = Landmarks::new(&def.ragdoll);
         let mirror = Mirror::new(def);
         let clearance = def.clearance();
@@ -128,20 +151,51 @@ impl Moves {
         }
         let upright = stance(&def.rig, def.mapping(), &landmarks, &first_pose(def, motions));
         let deepest = clearance.deepest(def, &standing(def, motions));
-        Ok(Self { set, clips, get_ups, landmarks, upright, raised, deepest })
+        Ok(Self { set, clips, paces, get_ups, landmarks, upright, raised, deepest })
     }
 }
 
 /// Poses of the clips that loop, or the rest pose.
 fn standing(def: &CharacterDef, motions: &MotionSet) -> Take {
     let mut poses = Take { frame_time: MIRRORED_FRAME, joints: def.rig.joints.len(), poses: Vec::new() };
-    for clip in motions.looped.into_iter().chain(motions.idle) {
+    let faster = motions.faster.iter().map(|&(clip, _)| clip);
+    for clip in motions.looped.into_iter().chain(motions.idle).chain(faster) {
         poses.poses.extend(flat_take(def, &motions.clips[clip], MIRRORED_FRAME).poses);
     }
     if poses.poses.is_empty() {
         poses.poses.extend_from_slice(def.rest());
     }
     poses
+}
+
+/// Payload of the events by which clips are kept in step.
+const LEFT: &str = "left";
+
+/// Way in which that clip covers ground, if the character goes by it.
+fn locomotion_of(motions: &MotionSet, index: usize) -> Option<Locomotion> {
+    let looped = motions.looped.filter(|&clip| clip == index).map(|_| motions.locomotion);
+    looped.or_else(|| motions.faster.iter().find(|(clip, _)| *clip == index).map(|&(_, by)| by))
+}
+
+/// The looped clip and those that are faster, by their speeds. What is no faster than the one before it is left out.
+fn paces(def: &CharacterDef, set: &AnimationSet, clips: &[ClipId], motions: &MotionSet) -> Vec<Pace> {
+    let pace = |index: usize| {
+        let clip = set.clip(clips[index]);
+        let stride = clip.motion.as_ref().map_or(0.0, MotionTrack::stride);
+        let speed = stride * def.ragdoll.unit_scale / max(clip.clip.duration(), 1e-3);
+        Pace { clip: clips[index], speed }
+    };
+    let Some(looped) = motions.looped.map(pace) else { return Vec::new() };
+    let mut paces = vec![looped];
+    let mut faster: Vec<Pace> = motions.faster.iter().map(|&(clip, _)| pace(clip)).collect();
+    faster.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+    faster.retain(|_| looped.speed > 0.0);
+    for pace in faster {
+        if paces.len() < MOST_PACES && paces.last().is_some_and(|slower| pace.speed > slower.speed) {
+            paces.push(pace);
+        }
+    }
+    paces
 }
 
 /// Moments of a clip, in order of time.

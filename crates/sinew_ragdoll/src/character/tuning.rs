@@ -602,6 +602,11 @@ pub(crate) const STANDS_IN: f32 = 0.2;
 /// Larger: starts without weight. Smaller: it answers late. Shown by the tests of `in_world`.
 pub(crate) const PICKS_UP: f32 = 5.0;
 
+/// Most clips that a character goes by, walk and run among them.
+///
+/// Larger: more weights on the stack. Smaller: faster clips are left out. Shown by the tests of `paces`.
+pub(crate) const MOST_PACES: usize = 8;
+
 /// Largest speed of a clip over its own.
 ///
 /// Larger: legs whirl. Smaller: feet slide. Shown by the tests of `in_world`.

@@ -27,6 +27,7 @@ mod lives;
 mod maimed;
 mod mapping;
 mod mesh_garments;
+mod paces;
 mod pops;
 mod quality;
 
