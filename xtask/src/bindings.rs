@@ -148,6 +148,8 @@ pub fn python() -> Result<()> {
         run("mypy", &["--strict", &name], &tests)?;
         run("python", &[&name], &tests)?;
     }
+    let training = source.join("examples/train.py").display().to_string();
+    run("python", &[&training, "1"], &tests)?;
     let notebook = source.join("notebooks/fall.ipynb");
     let mut convert = Command::new(user.join("bin/python"));
     convert.args(["-m", "nbconvert", "--to", "html", "--execute", "--output-dir"]).arg(&folder).arg(notebook);

@@ -53,3 +53,32 @@ def test_the_baseline_stands_where_noise_falls_and_a_push_fells_it():
     calm, pushed = standing(pd_baseline, push=0.0), standing(pd_baseline, push=100.0)
     print(f"still up after 8 s: noise {noise}, baseline {calm}, pushed by up to 100 N·s {pushed}")
     assert (noise, calm) == (0.0, 1.0) and pushed < 0.5
+
+
+def test_gymnasium_makes_it_by_name():
+    from gymnasium.utils.env_checker import check_env
+
+    env = gymnasium.make("sinew/HumanoidStand-v0", render_mode="rgb_array")
+    check_env(env.unwrapped, skip_render_check=True)
+    env.reset(seed=3)
+    picture = env.render()
+    assert picture.shape == (240, 320, 3) and picture.dtype == np.uint8
+    standing = (picture < 180).any(axis=2).any(axis=1)
+    assert 130 < standing.sum() < 240, "it stands upright in the picture"
+    many = gymnasium.make_vec("sinew/HumanoidStand-v0", num_envs=5, vectorization_mode="vector_entry_point")
+    observations, _ = many.reset(seed=3)
+    assert observations.shape[0] == 5 and many.unwrapped.render() is None
+    with pytest.raises(ValueError, match="render_mode"):
+        HumanoidVectorEnv(1, render_mode="human")
+
+
+def test_one_is_the_first_of_many():
+    from sinew.vector_env import HumanoidEnv
+
+    one, many = HumanoidEnv(push=60.0), HumanoidVectorEnv(1, push=60.0)
+    a, _ = one.reset(seed=7)
+    b, _ = many.reset(seed=7)
+    for _ in range(30):
+        a, *_ = one.step(np.zeros(one.action_space.shape, np.float32))
+        b, *_ = many.step(np.zeros(many.action_space.shape, np.float32))
+    assert np.array_equal(a, b[0])

@@ -9,19 +9,13 @@ pub fn main() {
     let mut world = World::new(WorldDef::default());
     let hook = world.add_body(&BodyDef::kinematic(Shape::sphere(0.05)).at(Vec3::Y * 4.0));
     let load = world.add_body(&BodyDef::dynamic(Shape::sphere(0.15)).at(Vec3::new(2.15, 4.0, 0.0)));
-    let def = RopeDef {
-        from: Vec3::Y * 4.0,
-        to: Vec3::new(2.0, 4.0, 0.0),
-        links: 20,
-        mass: 0.2,
-        stiffness: 20_000.0,
-        radius: 0.01,
-    };
+    let def = RopeDef::between(Vec3::Y * 4.0, Vec3::new(2.0, 4.0, 0.0));
     let mut rope = def.build();
     let (first, last) = (rope.first, rope.last);
-    let tie =
-        |particle, body, point| AttachmentDef { particle, target: AttachmentTarget::Body { body, point } };
-    rope.group.attachments = vec![tie(first, hook, Vec3::ZERO), tie(last, load, Vec3::X * -0.15)];
+    rope.group.attachments = vec![
+        AttachmentDef::to_body(first, hook, Vec3::ZERO),
+        AttachmentDef::to_body(last, load, Vec3::X * -0.15),
+    ];
     let rope = world.add_particles(&rope.group);
 
     let mut lowest = f32::INFINITY;

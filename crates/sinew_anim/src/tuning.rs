@@ -27,6 +27,19 @@ pub(crate) const GOES_ON: f32 = 0.1;
 /// cannot be rushed through. Shown by the tests of `animators`.
 pub const MAX_SPEED: f32 = 1_000.0;
 
+// contact/mod.rs
+
+/// Least part of a clip in which a foot is low for a walk on the spot: one in so many frames.
+///
+/// Larger: a dance whose feet slide is taken for a walk. Smaller: a walk with high steps is taken for one that gets nowhere. Shown by the
+/// tests of `retarget` and by `loaded` of `sinew`.
+pub(crate) const WALK_STANDS: usize = 3;
+
+/// The same for a run, which is in the air for most of the time.
+///
+/// Larger: a kick is taken for a run. Smaller: runs of cartoons are taken for jumps. Shown by `loaded` of `sinew`.
+pub(crate) const RUN_STANDS: usize = 8;
+
 // contact/footsteps.rs
 
 /// Time between the frames of a clip that are searched for footfalls, seconds.

@@ -30,7 +30,9 @@ Start here:
   sinew ragdoll doctor character.glb          what is wrong with its ragdoll, and what mends it
   sinew boxes house.glb -o house.json         a world to fall in, from a mesh
   sinew convert walk.bvh --onto character.glb -o walking.glb   captured motion on your character
-  sinew view                                  a window: look at scenes, pull, throw, pause";
+  sinew view                                  a window: look at scenes, pull, throw, pause
+
+A file that is read may be -, which is standard input.";
 
 /// Physics for characters: give it a rigged file, and it falls, collides, is hit, gets up and walks on.
 #[derive(Parser)]

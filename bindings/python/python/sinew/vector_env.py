@@ -1,4 +1,9 @@
-"""A humanoid that is to stay up, as a vector environment of Gymnasium: `pip install sinew[gym]`.
+"""A humanoid that is to stay up, as environments of Gymnasium: `pip install sinew[gym]`.
+
+    env = gymnasium.make("sinew/HumanoidStand-v0", render_mode="rgb_array")
+    many = gymnasium.make_vec("sinew/HumanoidStand-v0", num_envs=64, vectorization_mode="vector_entry_point")
+
+or without their registry:
 
     from sinew.vector_env import HumanoidVectorEnv, pd_baseline
     env = HumanoidVectorEnv(64)
@@ -18,8 +23,9 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 import sinew
+from sinew.picture import draw
 
-__all__ = ["HumanoidVectorEnv", "pd_baseline"]
+__all__ = ["HumanoidEnv", "HumanoidVectorEnv", "pd_baseline", "register_envs"]
 
 Floats = NDArray[np.float32]
 
@@ -52,7 +58,7 @@ class HumanoidVectorEnv(gymnasium.vector.VectorEnv[Floats, Floats, NDArray[Any]]
     one. `push` is the largest impulse, N·s, that hits the chest at a random moment of each second.
     """
 
-    metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 60 // _STEPS, "autoreset_mode": AutoresetMode.NEXT_STEP}
 
     def __init__(
         self,
@@ -62,7 +68,11 @@ class HumanoidVectorEnv(gymnasium.vector.VectorEnv[Floats, Floats, NDArray[Any]]
         seconds: float = 10.0,
         push: float = 40.0,
         threads: int = 0,
+        render_mode: str | None = None,
     ) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode must be None or 'rgb_array', not {render_mode!r}")
+        self.render_mode = render_mode
         self.num_envs = num_envs
         self.ragdoll = sinew.mannequin().build() if ragdoll is None else ragdoll
         self.batch = sinew.BatchWorlds(self.ragdoll, num_envs, threads=threads)
@@ -120,6 +130,13 @@ class HumanoidVectorEnv(gymnasium.vector.VectorEnv[Floats, Floats, NDArray[Any]]
         rewards = np.where(fallen, 0.0, 1.0).astype(np.float32)
         return observed, rewards, fallen, truncated, {}
 
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """A picture (240, 320, 3) of each of them under `rgb_array`, else `None`."""
+        if self.render_mode is None:
+            return None
+        parents, height = self.ragdoll.parents, self.ragdoll.height
+        return tuple(draw(poses, parents, height) for poses in self.batch.poses())
+
     def _pushes(self) -> Floats:
         """Each second, at a random moment, from a random side."""
         hit = self.np_random.random(self.num_envs) < _STEPS / 60
@@ -143,3 +160,42 @@ def pd_baseline(env: HumanoidVectorEnv, observations: Floats) -> Floats:
     """Actions of a plain controller: every joint is drawn to where it stands, by the drives' springs and dampers. It stands for as long as nothing
     pushes it much, and has no idea of catching itself: that is for a learner to find."""
     return np.zeros((len(observations), 3 * env.joints), np.float32)
+
+
+class HumanoidEnv(gymnasium.Env[Floats, Floats]):
+    """One humanoid of a [`HumanoidVectorEnv`], with the same arguments, actions, observations and rewards."""
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 60 // _STEPS}
+
+    def __init__(self, **settings: Any) -> None:
+        self.env = HumanoidVectorEnv(1, **settings)
+        self.render_mode = self.env.render_mode
+        self.observation_space = self.env.single_observation_space
+        self.action_space = self.env.single_action_space
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Floats, dict[str, Any]]:
+        """It stands again; the seed decides the pushes."""
+        super().reset(seed=seed)
+        observations, info = self.env.reset(seed=seed, options=options)
+        return observations[0], info
+
+    def step(self, action: Floats) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
+        """Two steps of 1/60 s."""
+        observations, rewards, terminated, truncated, info = self.env.step(np.asarray(action)[None])
+        return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
+
+    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+        """A picture (240, 320, 3) under `rgb_array`, else `None`."""
+        pictures = self.env.render()
+        return None if pictures is None else pictures[0]
+
+
+def register_envs() -> None:
+    """Tells Gymnasium of the environments; it calls this itself, by the entry point of the wheel."""
+    gymnasium.register(
+        id="HumanoidStand-v0",
+        entry_point="sinew.vector_env:HumanoidEnv",
+        vector_entry_point="sinew.vector_env:HumanoidVectorEnv",
+    )

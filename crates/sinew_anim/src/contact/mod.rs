@@ -9,6 +9,7 @@ use crate::legs::Foot;
 use crate::pose::local_to_model;
 use crate::rig::Rig;
 use crate::roles::Side;
+use crate::tuning::{RUN_STANDS, WALK_STANDS};
 use sinew_math::{Affine, Rotation, Vec3, clamp, max, min, trig};
 
 /// A foot on the ground for a while.
@@ -72,7 +73,9 @@ impl Ground {
         let alike = |step: Vec3| (step - velocity).length() < 0.3 * velocity.length();
         let of_foot = |foot: usize| steps.iter().filter(|&&(k, step)| k == foot && alike(step)).count();
         let (left, right) = (of_foot(0), of_foot(1));
-        let mostly = 2 * (left + right) > steps.len() && 3 * steps.len() > points.len();
+        // Who runs is in the air for most of the time.
+        let least = if velocity.length() > settings.run { RUN_STANDS } else { WALK_STANDS };
+        let mostly = 2 * (left + right) > steps.len() && least * steps.len() > points.len();
         let take_turns = 4 * usize::min(left, right) > left + right;
         let moves = velocity.length() > settings.speed[1] && mostly && take_turns;
         Self { height, velocity: if moves { velocity } else { Vec3::ZERO } }
@@ -132,6 +135,8 @@ pub struct ContactSettings {
     pub speed: [f32; 2],
     /// Highest that it is above the floor, metres.
     pub height: f32,
+    /// Speed over the ground from which a body runs, m/s.
+    pub run: f32,
     /// Shortest time on the ground, and shortest off it, seconds: shorter ones are noise.
     pub shortest: f32,
 }
@@ -141,7 +146,9 @@ impl ContactSettings {
     pub fn for_leg(length: f32) -> Self {
         let size = length / 0.9;
         let time = size.sqrt();
-        Self { speed: [0.3 * time, 0.45 * time], height: 0.05 * size, shortest: 0.07 * time }
+        // Humans begin to run at a Froude number v²/(g l) of 0.5 (Alexander 1989).
+        let run = (0.5 * 9.81 * length).sqrt();
+        Self { speed: [0.3 * time, 0.45 * time], height: 0.05 * size, run, shortest: 0.07 * time }
     }
 }
 

@@ -3,12 +3,13 @@
 use crate::failure::{Failure, Result};
 use crate::input::files::{Outputs, must_end_in};
 use crate::input::picture_file::PictureFile;
+use crate::input::source::load_mesh;
 use crate::render::film::body_models;
 use crate::report::progress::Progress;
 use crate::report::table::{Table, shown};
 use crate::report::{Report, number};
 use serde_json::json;
-use sinew::formats::{TriangleMesh, load_mesh, write_world};
+use sinew::formats::{TriangleMesh, write_world};
 use sinew::math::Vec3;
 use sinew::physics::BodyDef;
 use sinew::physics::cook::{self, CookOptions, Cooked, cook};

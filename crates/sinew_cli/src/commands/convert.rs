@@ -7,6 +7,7 @@ use crate::input::motion::Motion;
 use crate::input::onto::{Carried, carry};
 use crate::input::picture_file::{PictureFile, longest, rate};
 use crate::input::skeleton::{bones_only, frame_rate, lost_meshes, transform};
+use crate::input::source::{load_gltf, name};
 use crate::render::bones::flesh_out;
 use crate::render::show::Show;
 use crate::report::Report;
@@ -18,8 +19,7 @@ use sinew::anim::{Clip, ClipEvent, Rig, RigAnalysis, Take, rest_pose};
 use sinew::formats::bvh::{BvhRows, BvhUnit, RestFrame};
 use sinew::formats::{
     BvhEnds, BvhOptions, BvhWriteOptions, MotionFormat, MotionOptions, NewClip, ReadOptions, Textures,
-    append_clips, events_extras, events_path, load_gltf, no_files, read_motion, write_bvh, write_events,
-    write_motion,
+    append_clips, events_extras, events_path, no_files, read_motion, write_bvh, write_events, write_motion,
 };
 use sinew::math::{EulerOrder, Rotation, Vec3};
 use sinew_picture::RenderSettings;
@@ -328,12 +328,12 @@ impl Convert {
     fn report(&self, clips: &[String], notes: &[String], outputs: &Outputs) -> Report {
         let paths: Vec<String> = outputs.paths().map(|path| path.display().to_string()).collect();
         let json = json!({
-            "file": self.input.display().to_string(),
+            "file": name(&self.input),
             "clips": clips,
             "notes": notes,
             "outputs": paths,
         });
-        let mut text = format!("{}\n", shown(&self.input.display().to_string()));
+        let mut text = format!("{}\n", shown(&name(&self.input)));
         for line in clips {
             text += &format!("  {line}\n");
         }

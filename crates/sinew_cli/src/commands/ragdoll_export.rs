@@ -4,11 +4,12 @@ use crate::failure::{Failure, Result};
 use crate::input::files::{CharacterFile, Outputs, WeightSource, must_end_in, never_over};
 use crate::input::ragdoll_file::{RagdollFile, is_character, read_definition};
 use crate::input::settings_arg::SettingsArg;
+use crate::input::source::{name, read_bytes};
 use crate::report::Report;
 use crate::report::table::{counted, shown};
 use clap::ValueEnum;
 use serde_json::json;
-use sinew::formats::{KhrFile, MjcfText, Textures, read_bytes, write_khr, write_mjcf};
+use sinew::formats::{KhrFile, MjcfText, Textures, write_khr, write_mjcf};
 use sinew::ragdoll::{BuildOptions, RagdollDef};
 use std::path::PathBuf;
 
@@ -74,7 +75,7 @@ impl RagdollExport {
         });
         let mut text = format!(
             "{}: {}, {}\n",
-            shown(&self.file.display().to_string()),
+            shown(&name(&self.file)),
             counted(def.bodies.len(), "body", "bodies"),
             counted(def.joints.len(), "joint", "joints")
         );
@@ -89,7 +90,7 @@ impl RagdollExport {
         if !is_character(&read_bytes(&self.file)?) {
             let what =
                 "khr puts physics into the character's own file: name that, and this one with --ragdoll";
-            return Err(Failure::of_file(self.file.display().to_string(), what));
+            return Err(Failure::of_file(name(&self.file), what));
         }
         let (character, def, mut told) = self.character()?;
         let CharacterFile { name, document, analysis, .. } = &character;

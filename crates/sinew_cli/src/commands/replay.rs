@@ -1,10 +1,10 @@
 //! `sinew replay`: a recording is played again, and held against what was recorded or against another.
 
 use crate::failure::{Failure, Result};
+use crate::input::source::{name, read_bytes};
 use crate::report::Report;
 use crate::report::progress::Progress;
 use serde_json::json;
-use sinew::formats::read_bytes;
 use sinew::math::Transform;
 use sinew_scenes::recording::{Difference, Recording, Replay as Player, compare};
 use std::path::{Path, PathBuf};
@@ -31,14 +31,14 @@ pub struct Replay {
 
 /// Reads a recording.
 fn load(path: &Path) -> Result<Recording> {
-    let name = path.display().to_string();
+    let name = name(path);
     Ok(Recording::read(&read_bytes(path)?).map_err(|error| error.with_file(name))?)
 }
 
 impl Replay {
     /// Plays it.
     pub fn run(&self) -> Result<Report> {
-        let name = self.file.display().to_string();
+        let name = name(&self.file);
         let recording = load(&self.file)?;
         if let Some(other) = &self.diff {
             return self.against(&recording, other);
@@ -86,7 +86,7 @@ impl Replay {
 
     /// The first difference of the recording and another.
     fn against(&self, recording: &Recording, other: &Path) -> Result<Report> {
-        let name = self.file.display().to_string();
+        let name = name(&self.file);
         let others = load(other)?;
         let Some(difference) = compare(recording, &others) else {
             let steps = recording.steps.len();

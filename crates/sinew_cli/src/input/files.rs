@@ -2,13 +2,14 @@
 
 use crate::failure::{Failure, Result};
 use crate::input::kin::units_beside;
+use crate::input::source::{self, load_gltf, load_motion, read_bytes};
 use crate::report::table::shown;
 use sinew::anim::roles::Correction;
 use sinew::anim::weights::lost_weights;
 use sinew::anim::{Hints, JointIdx, Rig, RigAnalysis, analyze_hinted, characters};
 use sinew::formats::{
-    Document, MotionFormat, MotionOptions, ReadOptions, Textures, load_gltf, load_motion, no_files,
-    read_bytes, read_gltf, write_all_atomic, write_motion,
+    Document, MotionFormat, MotionOptions, ReadOptions, Textures, no_files, read_gltf, write_all_atomic,
+    write_motion,
 };
 use sinew::math::Vec3;
 use sinew::ragdoll::build::joint_name;
@@ -40,7 +41,7 @@ pub struct CharacterFile {
 impl CharacterFile {
     /// Reads a file that has to hold a skinned character. An FBX becomes a glTF first, to which clips can be added.
     pub fn load(path: &Path, textures: Textures, weights: WeightSource) -> Result<Self> {
-        let name = path.display().to_string();
+        let name = source::name(path);
         let options = ReadOptions { textures };
         let mut document = if is_fbx(path)? {
             let file = load_motion(path, &MotionOptions::default())?;

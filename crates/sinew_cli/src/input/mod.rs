@@ -9,3 +9,4 @@ pub(crate) mod ragdoll_file;
 pub(crate) mod scene_choice;
 pub(crate) mod settings_arg;
 pub(crate) mod skeleton;
+pub(crate) mod source;

@@ -2,9 +2,10 @@
 
 use crate::failure::Result;
 use crate::input::kin::units_beside;
+use crate::input::source::{load_motion, name};
 use sinew::anim::retarget::stand;
 use sinew::anim::{Clip, Hints, RigAnalysis, analyze_hinted};
-use sinew::formats::{Error, MotionFile, MotionFormat, MotionOptions, load_motion};
+use sinew::formats::{Error, MotionFile, MotionFormat, MotionOptions};
 use std::path::Path;
 
 /// A file with clips: what it holds, and what its joints are.
@@ -21,7 +22,7 @@ impl Motion {
     /// Reads a file and finds out what its joints are.
     pub fn load(path: &Path, options: &MotionOptions<'_>) -> Result<Self> {
         let file = load_motion(path, options).map_err(helped)?;
-        let mut motion = Self::new(path.display().to_string(), file);
+        let mut motion = Self::new(name(path), file);
         motion.look_beside(path);
         Ok(motion)
     }

@@ -3,8 +3,9 @@
 use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
 use crate::input::settings_arg::SettingsArg;
+use crate::input::source::{name, read_bytes};
 use sinew::anim::Garment;
-use sinew::formats::{Textures, read_bytes, read_mjcf, read_ragdoll};
+use sinew::formats::{Textures, read_mjcf, read_ragdoll};
 use sinew::ragdoll::{BuildOptions, RagdollDef, Repair};
 use std::path::Path;
 
@@ -34,7 +35,7 @@ impl RagdollFile {
 
     /// Reads a file of any of the three kinds; of a character the ragdoll is built.
     pub fn load(path: &Path, textures: Textures, settings: &SettingsArg) -> Result<Self> {
-        let name = path.display().to_string();
+        let name = name(path);
         let bytes = read_bytes(path)?;
         match kind_of(&bytes) {
             Kind::Definition => Ok(Self {
@@ -70,7 +71,7 @@ pub fn is_character(bytes: &[u8]) -> bool {
 
 /// A definition for a character, whose joints it finds by their names.
 pub fn read_definition(path: &Path, character: &CharacterFile) -> Result<RagdollDef> {
-    let name = path.display().to_string();
+    let name = name(path);
     let def = read_bytes(path).and_then(|bytes| read_ragdoll(&bytes));
     let def = def.map_err(|error| error.with_file(&name))?;
     def.for_rig(&character.document.rig).map_err(|error| {

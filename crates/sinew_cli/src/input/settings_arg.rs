@@ -2,9 +2,10 @@
 
 use crate::failure::{Failure, Result};
 use crate::input::files::{CharacterFile, WeightSource};
+use crate::input::source::{name, read_bytes};
 use sinew::anim::legs::add_ankles;
 use sinew::anim::{Garment, Hints, RigAnalysis, Role, Springs, UnitGuess, analyze_hinted};
-use sinew::formats::{Textures, read_bytes, read_ragdoll_settings, settings_path};
+use sinew::formats::{Textures, read_ragdoll_settings, settings_path};
 use sinew::math::Vec3;
 use sinew::ragdoll::build::{BuildReport, takes};
 use sinew::ragdoll::quality::Doubt;
@@ -150,7 +151,7 @@ impl SettingsArg {
         let path = &self.path_for(character);
         let mut loaded = LoadedSettings::default();
         if self.settings.is_some() || path.is_file() {
-            loaded.file = path.display().to_string();
+            loaded.file = name(path);
             let read = read_bytes(path).and_then(|bytes| read_ragdoll_settings(&bytes));
             loaded.settings = read.map_err(|error| error.with_file(&loaded.file))?;
         }

@@ -373,3 +373,23 @@ fn what_is_written_is_told_in_one_form() {
     let height = |object: &Value| object["height_m"].as_f64().expect("a height");
     assert!((height(&scaled) / height(&plain) - 2.0).abs() < 1e-4, "{scaled} {plain}");
 }
+
+#[test]
+fn a_file_may_come_from_standard_input() {
+    let folder = Folder::new("stdin");
+    let file = folder.file("man.glb", glb(&mannequin().rig, &mannequin().clips));
+    let piped = |arguments: &[&str]| {
+        let input = std::fs::File::open(&file).expect("it was written just now");
+        Run::of(command(arguments).stdin(input))
+    };
+    let [from_file, from_pipe] =
+        [sinew(&["inspect", &file, "--json"]).json(), piped(&["inspect", "-", "--json"]).json()];
+    assert_eq!(from_file["joints"], from_pipe["joints"]);
+    assert_eq!(from_pipe["file"], "standard input");
+    let [a, b] = [folder.path("a.json"), folder.path("b.json")];
+    assert_eq!(sinew(&["ragdoll", "build", &file, "-o", &a]).code, Some(0));
+    assert_eq!(piped(&["ragdoll", "build", "-", "-o", &b]).code, Some(0));
+    assert_eq!(std::fs::read(a).expect("a ragdoll"), std::fs::read(b).expect("another"));
+    let refused = Run::of(command(&["inspect", "-"]).stdin(std::process::Stdio::null()));
+    assert!(refused.refusal(1).starts_with("error: standard input: "), "{refused:?}");
+}

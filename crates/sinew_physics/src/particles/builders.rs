@@ -82,6 +82,11 @@ impl GroupDef {
     }
 }
 
+/// Number of parts of 0.1 m in a length, metres, within bounds.
+fn parts(length: f32, [least, most]: [u32; 2]) -> u32 {
+    u32::clamp((10.0 * length).round() as u32, least, most)
+}
+
 /// A rope to be made: a row of particles joined by springs that are solved exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -112,6 +117,18 @@ pub struct Rope {
 }
 
 impl RopeDef {
+    /// A rope of 10 mm nylon between two points (world, metres): 0.1 kg and 40 kN of stiffness a metre, a link every 0.1 m, 4 links at
+    /// least and 64 at most.
+    ///
+    /// # Panics
+    /// If the points are not finite, or the same.
+    pub fn between(from: Vec3, to: Vec3) -> Self {
+        let length = (to - from).length();
+        assert!(length > 0.0 && length.is_finite(), "the ends of a rope are finite and apart");
+        let links = parts(length, [4, 64]);
+        Self { from, to, links, mass: 0.1 * length, stiffness: 40_000.0 / length, radius: 0.01 }
+    }
+
     /// A straight rope at its rest length. Its end particles have half the mass of the others. Each spring is damped
     /// at a tenth of its critical damping.
     ///
@@ -154,6 +171,11 @@ pub struct StrandDef {
 }
 
 impl StrandDef {
+    /// A strand along a rope, with a bending stiffness in N·m².
+    pub fn new(rope: RopeDef, bending: f32) -> Self {
+        Self { rope, bending }
+    }
+
     /// A straight strand. To clamp its root, hold its first **two** particles, [`Rope::first`] and the one after: they
     /// give its direction.
     ///
@@ -241,6 +263,30 @@ impl Cloth {
 }
 
 impl ClothDef {
+    /// A sheet of cotton from a corner along two sides (world, metres; at right angles): 0.2 kg/m², cells of 0.1 m, at least 4 and at most 32
+    /// along each side.
+    ///
+    /// # Panics
+    /// If the corner or a side is not finite, or a side has no length.
+    pub fn sheet(corner: Vec3, across: Vec3, down: Vec3) -> Self {
+        let [width, height] = [across, down].map(Vec3::length);
+        let is_whole = corner.is_finite() && width > 0.0 && height > 0.0 && (width * height).is_finite();
+        assert!(is_whole, "the corner and the sides of a sheet are finite, and the sides have a length");
+        Self {
+            corner,
+            across,
+            down,
+            columns: parts(width, [4, 32]),
+            rows: parts(height, [4, 32]),
+            mass: 0.2 * width * height,
+            stretching: 1000.0,
+            shearing: 100.0,
+            bending: 1e-5,
+            damping_ratio: 0.2,
+            radius: 0.01,
+        }
+    }
+
     /// Flat, at its rest lengths. Particles at the edges have half the mass of the others, those in corners a quarter.
     ///
     /// # Panics
@@ -363,6 +409,27 @@ pub struct Blob {
 }
 
 impl BlobDef {
+    /// A soft ball of 162 particles around a centre (world, metres): 100 kg/m³, and filled with air that gives way.
+    ///
+    /// # Panics
+    /// If the centre is not finite, or the radius is not positive and finite.
+    pub fn ball(center: Vec3, radius: f32) -> Self {
+        assert!(
+            center.is_finite() && radius > 0.0 && radius.is_finite(),
+            "a ball has a finite place and radius"
+        );
+        Self {
+            center,
+            radius,
+            subdivisions: 2,
+            mass: 100.0 * 4.0 / 3.0 * core::f32::consts::PI * radius * radius * radius,
+            stiffness: 400.0,
+            damping_ratio: 0.2,
+            bulk_modulus: 2e4,
+            skin: 0.05 * radius,
+        }
+    }
+
     /// A geodesic ball at rest.
     ///
     /// # Panics

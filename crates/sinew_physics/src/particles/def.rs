@@ -149,6 +149,18 @@ pub struct AttachmentDef {
     pub target: AttachmentTarget,
 }
 
+impl AttachmentDef {
+    /// Holds a particle at a point of the world, metres.
+    pub fn to_world(particle: u32, point: Vec3) -> Self {
+        Self { particle, target: AttachmentTarget::World(point) }
+    }
+
+    /// Holds a particle at a point of a body, in the body's space, metres.
+    pub fn to_body(particle: u32, body: BodyId, point: Vec3) -> Self {
+        Self { particle, target: AttachmentTarget::Body { body, point } }
+    }
+}
+
 /// A backstop, a ball fixed to a body that one particle touches and nothing else does: cloth sinks no deeper than that into the drawn body, also where no shape
 /// of a body is. It pushes the body back as a shape of it would, but bears nothing between that and the floor, rubs nothing, and does not bounce.
 #[derive(Clone, Copy, Debug, PartialEq)]

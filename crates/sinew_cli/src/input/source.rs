@@ -1,0 +1,62 @@
+//! Files as arguments name them; `-` is standard input.
+
+use sinew::formats::{
+    Document, Error, MotionFile, MotionOptions, ReadOptions, Result, TriangleMesh, no_files, read_gltf,
+    read_motion,
+};
+use std::io::Read as _;
+use std::path::Path;
+use std::sync::OnceLock;
+
+/// True if a path stands for standard input.
+pub fn is_stdin(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Name of a file in messages.
+pub fn name(path: &Path) -> String {
+    if is_stdin(path) { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// Bytes of standard input, which is read once however often it is asked for.
+fn stdin() -> Result<&'static [u8]> {
+    static BYTES: OnceLock<std::result::Result<Vec<u8>, String>> = OnceLock::new();
+    let read = BYTES.get_or_init(|| {
+        let mut bytes = Vec::new();
+        std::io::stdin().read_to_end(&mut bytes).map(|_| bytes).map_err(|error| error.to_string())
+    });
+    match read {
+        Ok(bytes) => Ok(bytes),
+        Err(what) => Err(Error::unsupported(what.clone(), "").with_file("standard input")),
+    }
+}
+
+/// Bytes of a file.
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
+    if is_stdin(path) { stdin().map(<[u8]>::to_vec) } else { sinew::formats::read_bytes(path) }
+}
+
+/// A character; what lies beside a file is not there beside standard input.
+pub fn load_gltf(path: &Path, options: ReadOptions) -> Result<Document> {
+    if !is_stdin(path) {
+        return sinew::formats::load_gltf(path, options);
+    }
+    read_gltf(stdin()?, options, &mut no_files).map_err(|error| error.with_file(name(path)))
+}
+
+/// A file with clips, likewise.
+pub fn load_motion(path: &Path, options: &MotionOptions<'_>) -> Result<MotionFile> {
+    if !is_stdin(path) {
+        return sinew::formats::load_motion(path, options);
+    }
+    read_motion(stdin()?, options, &mut no_files).map_err(|error| error.with_file(name(path)))
+}
+
+/// A mesh in a GLB or glTF, likewise.
+pub fn load_mesh(path: &Path) -> Result<TriangleMesh> {
+    if !is_stdin(path) {
+        return sinew::formats::load_mesh(path);
+    }
+    let document = load_gltf(path, ReadOptions::default())?;
+    TriangleMesh::from_document(&document).map_err(|error| error.with_file(name(path)))
+}
