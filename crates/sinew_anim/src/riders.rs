@@ -15,7 +15,7 @@ struct Rider {
 }
 
 /// The joints of a rig that move skin of a part of the body without hanging on it: a second bone of the trunk above the hips, halves of a
-/// pelvis, the root of a coat, eyes of a skeleton of their own.
+/// pelvis, the root of a coat, eyes of a skeleton of their own, a hat that is worn beside the skeleton.
 ///
 /// A clip of the file moves them as its author wanted. A motion that comes from another body knows nothing of them:
 /// [`carry`](Self::carry) has them go with their part, as they do where bodies of a ragdoll move it.
@@ -57,7 +57,16 @@ impl Riders {
             let rides = body_above(joint) != Some(carrier) && analysis.roles[joint].is_none();
             (rides && carrier_from_joint.is_finite()).then_some(Rider { joint, carrier, carrier_from_joint })
         };
-        let list = analysis.merge_into.iter().enumerate().filter_map(rider).collect();
+        let mut list: Vec<Rider> = analysis.merge_into.iter().enumerate().filter_map(rider).collect();
+        // What is carried has a body of its own, which no motion knows either where it hangs elsewhere: a hat beside the skeleton.
+        list.extend(analysis.kept.iter().filter(|bone| bone.is_prop).filter_map(|bone| {
+            let carrier = analysis.kept[bone.parent?].joint;
+            let carrier_from_joint =
+                analysis.bind_model[carrier].to_rigid().inverse() * bone.bind_model.to_rigid();
+            let rides = body_above(bone.joint) != Some(carrier) && carrier_from_joint.is_finite();
+            rides.then_some(Rider { joint: bone.joint, carrier, carrier_from_joint })
+        }));
+        list.sort_by_key(|rider| rider.joint);
         Self { list, has_body }
     }
 

@@ -1,10 +1,10 @@
 //! Faults of a ragdoll, or of its bake, that no single figure shows.
 
 use super::Verdict;
-use crate::bake::{BakeInput, Baked};
+use crate::bake::{BakeInput, Baked, bake};
 use crate::character::{CharacterEvent, State};
 use crate::def::RagdollDef;
-use crate::tuning::{FALLEN_OUT, NEVER_STILL, ON_A_SIDE, OTHER_SIZE, STILL_UPRIGHT};
+use crate::tuning::{FALLEN_OUT, NEVER_STILL, ON_A_SIDE, OTHER_SIZE, STILL_UPRIGHT, TOPPLES};
 use sinew_anim::{LocalTransform, Rig, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, min};
 use sinew_physics::{BodyKind, World, WorldDef};
@@ -180,6 +180,22 @@ fn never_still(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
             "it never lies still in {limp:.1} s, seen at {root}; `ragdoll doctor` says which bodies and limits are at odds"
         );
         Fault::new(Verdict::Usable, reason)
+    })
+}
+
+/// The input of a bake with the weakest [push](BakeInput::topple) forward that fells the character, if that stays upright when it goes limp and
+/// there is one.
+///
+/// # Panics
+/// If the bake is not one of the input's.
+pub fn toppled<'a>(input: &BakeInput<'a>, baked: &Baked) -> Option<BakeInput<'a>> {
+    stays_upright(input, baked)?;
+    let speed = (input.world.gravity.length() * input.character.ragdoll.height).sqrt();
+    let forward = input.world_from_character.rotation * Vec3::Z;
+    TOPPLES.into_iter().find_map(|share| {
+        let pushed = BakeInput { topple: forward * (share * speed), ..input.clone() };
+        let falls = stays_upright(&pushed, &bake(&pushed)).is_none();
+        falls.then_some(pushed)
     })
 }
 
