@@ -1,8 +1,10 @@
 //! Joints with skin that hang elsewhere in the rig than on the part of the body that they belong to.
 
-use crate::pose::local_to_model;
+use crate::clip::Clip;
+use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, LocalTransform, Rig};
 use crate::roles::RigAnalysis;
+use crate::{Wrap, sample};
 use sinew_math::{Affine, Transform};
 
 /// A joint, the joint with a body that it goes with, and its place in the axes of that.
@@ -68,6 +70,34 @@ impl Riders {
         }));
         list.sort_by_key(|rider| rider.joint);
         Self { list, has_body }
+    }
+
+    /// The same with the places of riders that a clip moves as that has them at its start: an author who lets a hat follow the head by the clip
+    /// alone may have left it anywhere when the skin was bound.
+    ///
+    /// # Panics
+    /// If the clip or the riders are not of the rig.
+    pub fn as_in(mut self, rig: &Rig, clip: &Clip) -> Self {
+        let (mut pose, mut model) = (rest_pose(rig), Vec::new());
+        sample(clip, rig, 0.0, Wrap::Clamp, &mut pose);
+        local_to_model(rig, &pose, &Affine::IDENTITY, &mut model);
+        let mut bears = self.has_body.clone();
+        let is_rider = |joint: JointIdx| self.list.iter().any(|rider| rider.joint == joint);
+        for joint in (0..rig.joints.len()).rev().filter(|&joint| !is_rider(joint)) {
+            if let Some(parent) = rig.joints[joint].parent.filter(|_| bears[joint]) {
+                bears[parent] = true;
+            }
+        }
+        let moves = |joint: JointIdx| clip.channels.iter().any(|channel| channel.joint == joint);
+        for rider in &mut self.list {
+            let line = core::iter::successors(Some(rider.joint), |&at| rig.joints[at].parent);
+            let mut own = line.take_while(|&at| at == rider.joint || !bears[at]);
+            let held = model[rider.carrier].to_rigid().inverse() * model[rider.joint].to_rigid();
+            if own.any(moves) && held.is_finite() {
+                rider.carrier_from_joint = held;
+            }
+        }
+        self
     }
 
     /// True if every joint hangs on its own part.

@@ -1,10 +1,11 @@
 //! Humans whose names are plain and whose hierarchy or skin leaves something out.
 
 use crate::toy;
+use sinew_anim::riders::Riders;
 use sinew_anim::weights::lost_weights;
 use sinew_anim::{
-    Hints, Joint, LocalTransform, Primitive, Rig, RigAnalysis, RigMesh, Role, Side, Skin, analyze,
-    analyze_hinted, characters,
+    Channel, Clip, Hints, Interpolation, Joint, LocalTransform, Primitive, Property, Rig, RigAnalysis,
+    RigMesh, Role, Side, Skin, analyze, analyze_hinted, characters,
 };
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
@@ -763,7 +764,7 @@ fn a_prop_beside_the_skeleton_rides_on_what_carries_it() {
     let at = |name: &str| sorted.joints.iter().position(|joint| joint.name == name).expect("it is there");
     let found = analyze(&sorted).expect("a skin");
     assert!(found.kept.iter().any(|bone| bone.joint == at("hat") && bone.is_prop), "{:?}", found.notes);
-    let riders = sinew_anim::riders::Riders::of(&sorted, &found);
+    let riders = Riders::of(&sorted, &found);
     let mut pose: Vec<LocalTransform> = sorted.joints.iter().map(|joint| joint.rest).collect();
     pose[at("mixamorig:Hips")].translation += Vec3::new(1.0, -0.5, 0.0);
     pose[at("mixamorig:Spine")].rotation = Rotation::from_axis_angle(Vec3::X, 1.2);
@@ -774,4 +775,39 @@ fn a_prop_beside_the_skeleton_rides_on_what_carries_it() {
     let bound = found.bind_model[hat].translation - found.bind_model[head].translation;
     assert!((way.length() - bound.length()).abs() < 1e-4, "{way}, not as far as {bound}");
     assert!(model[hat].linear.y_axis.y < 0.5, "it leans with the head");
+}
+
+/// A hat that a clip alone brings to the head is on it in a motion of another body, too.
+#[test]
+fn a_hat_that_follows_the_head_by_a_clip_rides_where_the_clip_has_it() {
+    let mut rig = toy::body(mixamo);
+    let head = Vec3::from_array(toy::BODY[part("head")].2);
+    let hat = rig.joints.len();
+    // Bound at the nape, and a little too low.
+    let rest = LocalTransform { translation: head - Vec3::Y * 0.1, ..LocalTransform::default() };
+    rig.joints.push(Joint { name: "hat".into(), parent: None, rest, source: hat });
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * 0.1).to_vec();
+    let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
+    let primitive = Primitive { positions, indices, ..Primitive::default() };
+    rig.meshes.push(RigMesh { name: String::new(), joint: hat, skin: None, primitives: vec![primitive] });
+    let found = analyze(&rig).expect("a skin");
+    let on_head = Channel {
+        joint: hat,
+        property: Property::Translation,
+        interpolation: Interpolation::Linear,
+        times: vec![0.0],
+        values: (head + Vec3::Y * 0.15).to_array().to_vec(),
+    };
+    let clip = Clip { name: "stand".into(), duration: 1.0, channels: vec![on_head] };
+    let height = |riders: &Riders| {
+        let mut pose: Vec<LocalTransform> = rig.joints.iter().map(|joint| joint.rest).collect();
+        pose[part("hips")].translation += Vec3::X;
+        let mut model = Vec::new();
+        riders.carry(&rig, &mut pose, &mut model);
+        model[hat].translation - model[part("head")].translation
+    };
+    let bound = Riders::of(&rig, &found);
+    assert!((height(&bound) + Vec3::Y * 0.1).length() < 1e-4, "{}", height(&bound));
+    let held = bound.as_in(&rig, &clip);
+    assert!((height(&held) - Vec3::Y * 0.15).length() < 1e-4, "{}", height(&held));
 }

@@ -216,7 +216,8 @@ fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let top = (0..start.len()).reduce(|a, b| if start[b].y > start[a].y { b } else { a })?;
     let [begins, ends] = [&start, &end].map(|places| places[top].y - floor);
     let flat = |a: Vec3, b: Vec3| Vec3::new(a.x - b.x, 0.0, a.z - b.z).length();
-    let wide = start.iter().flat_map(|&a| start.iter().map(move |&b| flat(a, b))).fold(0.0, max);
+    // As it stands then: arms that were held out hang down.
+    let wide = end.iter().flat_map(|&a| end.iter().map(move |&b| flat(a, b))).fold(0.0, max);
     let is_still = baked.quality.settled_s.is_some();
     (is_still && begins > wide && ends > STILL_UPRIGHT * begins).then(|| {
         let bone = &def.bodies[top].bone;

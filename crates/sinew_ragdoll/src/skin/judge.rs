@@ -26,6 +26,8 @@ const HEIGHT: f32 = 0.02;
 const SUNK: f32 = 0.06;
 /// Largest height of that point above the floor, as a share of the size: there is no reason but a shape outside the skin.
 const RAISED: f32 = 0.02;
+/// Height from which on it hangs in the air, as a share of the size, and nothing is left to use: a bear on a box as broad as its arms.
+const HANGS: f32 = 0.125;
 /// Neither counts below this, metres.
 const LEAST_OFF: f32 = 0.01;
 /// Longest time in the air after calm, seconds: six steps, in which what fell asleep askew may tip over.
@@ -225,7 +227,8 @@ impl SkinQuality {
             }
             lowest => who.body_or_shape(lowest, self.worst.lowest_joint.as_deref()),
         };
-        Some(who.flaw(FlawKind::OffFloor, said, remedy, self.worst.lowest.as_slice()))
+        let at_most = if height > HANGS * self.size { Verdict::Bad } else { Verdict::Usable };
+        Some(Flaw { at_most, ..who.flaw(FlawKind::OffFloor, said, remedy, self.worst.lowest.as_slice()) })
     }
 
     /// The lowest point of the skin is far from the floor while the character is led by clips: in it, or, standing, above it.
