@@ -450,6 +450,12 @@ pub(crate) const STANDS_OFF: f32 = 0.04;
 /// `skin`.
 pub(crate) const SUNK_RISING: f32 = 0.1;
 
+/// Height of the lowest drawn point over the floor at rest from which on it hangs in the air, as a share of the size, and nothing is left to use.
+///
+/// A bear on a box as broad as its arms hangs by a fifth. Larger: that is usable. Smaller: a big head on a round shape is bad. Shown by the tests of
+/// `skin`.
+pub(crate) const HANGS: f32 = 0.125;
+
 /// Ratio of a figure of the skin to its bar above which nothing is left to use.
 ///
 /// Larger: torsos torn by half a height are usable. Smaller: a coat that drags is bad. Shown by the tests of `skin`.

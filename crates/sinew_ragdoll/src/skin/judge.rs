@@ -6,7 +6,7 @@
 use super::{Phase, SkinQuality, Stage};
 use crate::def::RagdollDef;
 use crate::quality::Verdict;
-use crate::tuning::{GROSS, STANDS_OFF, SUNK_RISING};
+use crate::tuning::{GROSS, HANGS, STANDS_OFF, SUNK_RISING};
 use sinew_math::max;
 
 /// Least share of vertices that are near their body.
@@ -26,8 +26,6 @@ const HEIGHT: f32 = 0.02;
 const SUNK: f32 = 0.06;
 /// Largest height of that point above the floor, as a share of the size: there is no reason but a shape outside the skin.
 const RAISED: f32 = 0.02;
-/// Height from which on it hangs in the air, as a share of the size, and nothing is left to use: a bear on a box as broad as its arms.
-const HANGS: f32 = 0.125;
 /// Neither counts below this, metres.
 const LEAST_OFF: f32 = 0.01;
 /// Longest time in the air after calm, seconds: six steps, in which what fell asleep askew may tip over.
