@@ -1,8 +1,10 @@
 //! Joints with skin that hang elsewhere in the rig than on the part of the body that they belong to.
 
-use crate::pose::local_to_model;
+use crate::clip::Clip;
+use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, LocalTransform, Rig};
 use crate::roles::RigAnalysis;
+use crate::{Wrap, sample};
 use sinew_math::{Affine, Transform};
 
 /// A joint, the joint with a body that it goes with, and its place in the axes of that.
@@ -15,7 +17,7 @@ struct Rider {
 }
 
 /// The joints of a rig that move skin of a part of the body without hanging on it: a second bone of the trunk above the hips, halves of a
-/// pelvis, the root of a coat, eyes of a skeleton of their own.
+/// pelvis, the root of a coat, eyes of a skeleton of their own, a hat that is worn beside the skeleton.
 ///
 /// A clip of the file moves them as its author wanted. A motion that comes from another body knows nothing of them:
 /// [`carry`](Self::carry) has them go with their part, as they do where bodies of a ragdoll move it.
@@ -57,8 +59,45 @@ impl Riders {
             let rides = body_above(joint) != Some(carrier) && analysis.roles[joint].is_none();
             (rides && carrier_from_joint.is_finite()).then_some(Rider { joint, carrier, carrier_from_joint })
         };
-        let list = analysis.merge_into.iter().enumerate().filter_map(rider).collect();
+        let mut list: Vec<Rider> = analysis.merge_into.iter().enumerate().filter_map(rider).collect();
+        // What is carried has a body of its own, which no motion knows either where it hangs elsewhere: a hat beside the skeleton.
+        list.extend(analysis.kept.iter().filter(|bone| bone.is_prop).filter_map(|bone| {
+            let carrier = analysis.kept[bone.parent?].joint;
+            let carrier_from_joint =
+                analysis.bind_model[carrier].to_rigid().inverse() * bone.bind_model.to_rigid();
+            let rides = body_above(bone.joint) != Some(carrier) && carrier_from_joint.is_finite();
+            rides.then_some(Rider { joint: bone.joint, carrier, carrier_from_joint })
+        }));
+        list.sort_by_key(|rider| rider.joint);
         Self { list, has_body }
+    }
+
+    /// The same with the places of riders that a clip moves as that has them at its start: an author who lets a hat follow the head by the clip
+    /// alone may have left it anywhere when the skin was bound.
+    ///
+    /// # Panics
+    /// If the clip or the riders are not of the rig.
+    pub fn as_in(mut self, rig: &Rig, clip: &Clip) -> Self {
+        let (mut pose, mut model) = (rest_pose(rig), Vec::new());
+        sample(clip, rig, 0.0, Wrap::Clamp, &mut pose);
+        local_to_model(rig, &pose, &Affine::IDENTITY, &mut model);
+        let mut bears = self.has_body.clone();
+        let is_rider = |joint: JointIdx| self.list.iter().any(|rider| rider.joint == joint);
+        for joint in (0..rig.joints.len()).rev().filter(|&joint| !is_rider(joint)) {
+            if let Some(parent) = rig.joints[joint].parent.filter(|_| bears[joint]) {
+                bears[parent] = true;
+            }
+        }
+        let moves = |joint: JointIdx| clip.channels.iter().any(|channel| channel.joint == joint);
+        for rider in &mut self.list {
+            let line = core::iter::successors(Some(rider.joint), |&at| rig.joints[at].parent);
+            let mut own = line.take_while(|&at| at == rider.joint || !bears[at]);
+            let held = model[rider.carrier].to_rigid().inverse() * model[rider.joint].to_rigid();
+            if own.any(moves) && held.is_finite() {
+                rider.carrier_from_joint = held;
+            }
+        }
+        self
     }
 
     /// True if every joint hangs on its own part.

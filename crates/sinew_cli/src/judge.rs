@@ -8,7 +8,7 @@ use crate::report::skin_report::{Life, SkinReport};
 use sinew::anim::KeyBound;
 use sinew::math::{Transform, Vec3};
 use sinew::physics::{BodyDef, Shape};
-use sinew::ragdoll::quality::{Doubt, Fault, faults_of_bake, faults_of_ragdoll, judge};
+use sinew::ragdoll::quality::{Doubt, Fault, faults_of_bake, faults_of_ragdoll, judge, toppled};
 use sinew::ragdoll::{BakeInput, DropReport, RagdollDef, SkinQuality, Verdict};
 use std::sync::Arc;
 
@@ -81,5 +81,7 @@ pub fn with_default_life<T>(
         ..BakeInput::new(Arc::new(falls))
     };
     let fall = Fall::simulate(&input, doubt);
+    let pushed = toppled(&input, &fall.baked);
+    let fall = pushed.as_ref().map_or(fall, |pushed| Fall::simulate(pushed, doubt));
     Ok(see(Life { fall: &fall, floor: Some(0.0) }))
 }

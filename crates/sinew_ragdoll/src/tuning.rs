@@ -396,6 +396,12 @@ pub(crate) const NEVER_STILL: f32 = 6.0;
 /// Larger: who kneels or leans is said to have fallen. Smaller: who sits is said to stand. Shown by the tests of `faults`.
 pub(crate) const STILL_UPRIGHT: f32 = 0.8;
 
+/// Velocities of the highest point by which a limp body that stays upright is pushed over, the weakest first, as shares of √(g h), h its height.
+///
+/// A block half as deep as it is tall falls from 0.7 on. Larger: a slender figure flies. Smaller: a broad one stays upright. Shown by the tests of
+/// `faults`.
+pub(crate) const TOPPLES: [f32; 3] = [0.35, 0.7, 1.05];
+
 /// Most that a creature weighs over the cube of its longest side, kg/m³: a human has 14, an elephant 20, a bear 40, a cow 50, a pig 60.
 ///
 /// Larger: a block of 625 kg at 1.75 m is let pass. Smaller: a pig is doubted. Shown by the tests of `faults`.
@@ -443,6 +449,12 @@ pub(crate) const STANDS_OFF: f32 = 0.04;
 /// Larger: hands and knees go far through the floor. Smaller: fingertips that dip in for a moment are blamed. Shown by the tests of
 /// `skin`.
 pub(crate) const SUNK_RISING: f32 = 0.1;
+
+/// Height of the lowest drawn point over the floor at rest from which on it hangs in the air, as a share of the size, and nothing is left to use.
+///
+/// A bear on a box as broad as its arms hangs by a fifth. Larger: that is usable. Smaller: a big head on a round shape is bad. Shown by the tests of
+/// `skin`.
+pub(crate) const HANGS: f32 = 0.125;
 
 /// Ratio of a figure of the skin to its bar above which nothing is left to use.
 ///

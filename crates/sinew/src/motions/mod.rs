@@ -8,7 +8,8 @@ pub use own::{OwnMotions, looped_among, own_motions};
 
 use crate::anim::contact::footsteps;
 use crate::anim::legs::Legs;
-use crate::anim::retarget::{Body, Pace, RetargetError, RetargetOptions, Retargeted, carry_riders, retarget};
+use crate::anim::retarget::{Body, Pace, RetargetError, RetargetOptions, Retargeted, retarget};
+use crate::anim::riders::Riders;
 use crate::anim::{Channel, Clip, ClipEvent, Interpolation, Rig, RigAnalysis, analyze};
 use crate::mannequin::{Mannequin, mannequin};
 use crate::math::{clamp, min};
@@ -72,25 +73,41 @@ const LEFT_OUT: f32 = 0.2;
 /// # Panics
 /// If the analysis is not one of the rig's.
 pub fn builtin_motions(def: &CharacterDef, analysis: &RigAnalysis) -> Result<BuiltinMotions, RetargetError> {
+    carried_over(def, analysis, None)
+}
+
+/// [`builtin_motions`], with what rides on the body where a clip of the character `holds` it.
+fn carried_over(
+    def: &CharacterDef,
+    analysis: &RigAnalysis,
+    holds: Option<&Clip>,
+) -> Result<BuiltinMotions, RetargetError> {
     let rig = &def.rig;
+    let riders = Riders::of(rig, analysis);
+    let riders = holds.map_or(riders.clone(), |clip| riders.as_in(rig, clip));
+    let mut model = Vec::new();
     let Mannequin { rig: actor_rig, clips, motions } = mannequin();
     let actor_analysis = analyze(&actor_rig).expect("the mannequin has a skin");
     let actor = Body { rig: &actor_rig, analysis: &actor_analysis };
     let body = Body { rig, analysis };
     let clearing = Clearing::new(def, analysis);
-    let onto = |clip: &Clip, bends: bool| -> Result<Retargeted, RetargetError> {
+    let mut onto = |clip: &Clip, bends: bool| -> Result<Retargeted, RetargetError> {
         let mut fitted = retarget(actor, clip, body, &options(actor, body))?;
         if let Some(clearing) = &clearing {
             clearing.clear(&mut fitted);
             for frame in 0..if bends { fitted.take.frames() } else { 0 } {
                 def.raise_limbs(fitted.take.pose_mut(frame));
             }
-            carry_riders(body, &mut fitted.take);
         }
+        (0..fitted.take.frames())
+            .for_each(|frame| riders.carry(rig, fitted.take.pose_mut(frame), &mut model));
         Ok(fitted)
     };
-    let cycle = |clip: &Clip| Ok(one_round(onto(&repeated(clip, PLAYED), false)?, clip));
-    let (walks, idles) = (cycle(&clips[motions.walk])?, cycle(&clips[motions.idle])?);
+    let [walks, idles] = [motions.walk, motions.idle].map(|cycle| {
+        let clip = &clips[cycle];
+        onto(&repeated(clip, PLAYED), false).map(|fitted| one_round(fitted, clip))
+    });
+    let (walks, idles) = (walks?, idles?);
     let (supine, prone) =
         (onto(&clips[motions.get_up_supine], true)?, onto(&clips[motions.get_up_prone], true)?);
     let walk = walks.clip(rig, &clips[motions.walk].name);
@@ -147,7 +164,8 @@ pub fn set_motions_with_builtin(
     analysis: &RigAnalysis,
     own: MotionSet,
 ) -> Result<(), BuiltinError> {
-    let builtin = builtin_motions(def, analysis)?;
+    let holds = own.looped.and_then(|looped| own.clips.get(looped));
+    let builtin = carried_over(def, analysis, holds)?;
     let depths = [2, 3].map(|fit| def.deepest_skin(&builtin.fits[fit].take));
     let comes_out = depths.map(|depth| depth <= LEFT_OUT * def.ragdoll.height);
     let is_filled = own.get_ups.is_empty();

@@ -205,7 +205,7 @@ pub fn retarget(
 ///
 /// # Panics
 /// If the take is not one of the character's rig.
-pub fn carry_riders(character: Body<'_>, take: &mut Take) {
+fn carry_riders(character: Body<'_>, take: &mut Take) {
     let riders = Riders::of(character.rig, character.analysis);
     let mut model = Vec::new();
     for frame in 0..take.frames() {

@@ -6,7 +6,7 @@ use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, LocalTransform, Rig, RigMesh};
 use crate::roles::tuning::{BOUND_ALIKE, COINCIDENT, LARGEST_BESIDE};
 use crate::skinning::skin_vertices;
-use sinew_math::{Affine, Vec3, max3, min3};
+use sinew_math::{Affine, Vec3, max, max3, min3};
 use std::collections::BTreeMap;
 
 /// Geometry of a rig in its bind pose, model space, file units.
@@ -254,12 +254,43 @@ pub(crate) fn bind_pose(rig: &Rig) -> Vec<Affine> {
             }
         }
     }
+    let beside = beside_the_bones(rig, &rest, &bound);
     let mut model: Vec<Affine> = Vec::with_capacity(rig.joints.len());
     for (i, joint) in rig.joints.iter().enumerate() {
         let hung = joint.parent.map_or(rest[i], |p| model[p] * joint.rest.to_affine());
-        model.push(bound[i].unwrap_or(hung));
+        model.push(bound[i].or(beside[i]).unwrap_or(hung));
     }
     model
+}
+
+/// Places of nodes with rigid meshes beside the skeleton, in the bind pose: a hat that hangs on no bone is in the file where the head is in the
+/// rest pose, and goes with the joint that is nearest to it there. `None` of all others, and where that joint rests as it was bound.
+fn beside_the_bones(rig: &Rig, rest: &[Affine], bound: &[Option<Affine>]) -> Vec<Option<Affine>> {
+    let mut bears = vec![false; rig.joints.len()];
+    let bones = (0..rig.joints.len()).filter(|&joint| bound[joint].is_some());
+    bones.clone().for_each(|bone| {
+        bears[bone] = true;
+        ancestors(rig, bone).for_each(|above| bears[above] = true);
+    });
+    let mut beside = vec![None; rig.joints.len()];
+    // The node of each such mesh that is highest below those that carry bones; the first mesh of a node says where it is.
+    for mesh in rig.meshes.iter().filter(|mesh| mesh.skin.is_none()) {
+        let line = core::iter::once(mesh.joint).chain(ancestors(rig, mesh.joint));
+        let own: Vec<JointIdx> = line.take_while(|&at| !bears[at]).collect();
+        let on_bone = |top: JointIdx| ancestors(rig, top).any(|above| bound[above].is_some());
+        let Some(&top) = own.last().filter(|&&top| beside[top].is_none() && !on_bone(top)) else { continue };
+        let corners = mesh.primitives.iter().flat_map(|primitive| &primitive.positions);
+        let (sum, count) = corners.fold((Vec3::ZERO, 0.0), |(sum, count), at| (sum + *at, count + 1.0));
+        let middle = rest[mesh.joint].point(sum / max(count, 1.0));
+        let away = |bone: JointIdx| (rest[bone].translation - middle).length();
+        let nearest = bones.clone().reduce(|a, b| if away(b) < away(a) { b } else { a });
+        beside[top] = nearest.and_then(|bone| {
+            let moved = bound[bone]? * rest[bone].inverse();
+            let is_moved = !alike(&moved, &Affine::IDENTITY) && moved.is_finite();
+            is_moved.then(|| moved * rest[top])
+        });
+    }
+    beside
 }
 
 /// Transform of the skinned mesh to model space in its bind pose.

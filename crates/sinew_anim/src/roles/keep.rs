@@ -9,7 +9,7 @@ use crate::roles::tuning::{
     LARGEST_ON_ARMATURE, LARGEST_WORN, LEAST_BODY_SKIN, LEAST_CLAVICLE, LEAST_SPINE_SKIN, VOTERS, WORN_WITHIN,
 };
 use crate::skinning::skin_vertices;
-use sinew_math::{Vec3, max, max3, min3};
+use sinew_math::{Vec3, max, max3, min, min3};
 
 /// Input of the selection.
 pub(super) struct Selection<'a> {
@@ -253,6 +253,8 @@ impl Selection<'_> {
         for joint in waiting {
             owner[joint] = Some(self.nearest(joint, joints, &owner));
         }
+        self.own_hung(&mut owner);
+        self.own_beside(&mut owner);
         // Hair on a head that hangs on no bone.
         for joint in 0..self.rig.joints.len() {
             let parent = self.rig.joints[joint].parent.filter(|&parent| place[parent].is_none());
@@ -289,12 +291,62 @@ impl Selection<'_> {
         within > 0 && is_close && longest < largest * self.bound.size()
     }
 
-    /// True if a node hangs on the one that carries the skeleton.
+    /// True if a node hangs on the one that carries the skeleton, with no bone in between.
     fn hangs_on_armature(&self, joint: JointIdx) -> bool {
+        self.hung_on_armature(joint).is_some()
+    }
+
+    /// The node right below the one that carries the skeleton on which a node hangs, or that node itself; `None` where a bone is in between.
+    /// A mesh may be a node below its object, as it is in files that were converted.
+    fn hung_on_armature(&self, joint: JointIdx) -> Option<JointIdx> {
         let first = self.graph.nodes[self.graph.root].joint;
         let is_bone = |joint: JointIdx| self.rig.skins.iter().any(|skin| skin.joints.contains(&joint));
-        let armature = ancestors(self.rig, first).find(|&above| !is_bone(above));
-        armature.is_some() && self.rig.joints[joint].parent == armature
+        let armature = ancestors(self.rig, first).find(|&above| !is_bone(above))?;
+        let line = core::iter::once(joint).chain(ancestors(self.rig, joint));
+        line.take_while(|&at| !is_bone(at)).find(|&at| self.rig.joints[at].parent == Some(armature))
+    }
+
+    /// Meshes on the armature that touch what is worn there go along: eyes in a head that hangs on no bone.
+    fn own_beside(&self, owner: &mut [Option<usize>]) {
+        let extent = |joint: JointIdx| {
+            let points = self.points_of_meshes(joint);
+            let first = *points.first()?;
+            let bounds = points.iter().fold((first, first), |(lo, hi), &at| (min3(lo, at), max3(hi, at)));
+            self.hung_on_armature(joint).map(|_| bounds)
+        };
+        let hung: Vec<(JointIdx, (Vec3, Vec3))> =
+            (0..self.rig.joints.len()).filter_map(|joint| Some((joint, extent(joint)?))).collect();
+        let longest = |(lo, hi): (Vec3, Vec3)| max((hi - lo).x, max((hi - lo).y, (hi - lo).z));
+        let touch = |a: (Vec3, Vec3), b: (Vec3, Vec3)| {
+            let overlap = min3(a.1, b.1) - max3(a.0, b.0);
+            min(overlap.x, min(overlap.y, overlap.z)) >= -WORN_WITHIN * self.bound.size()
+        };
+        for &(joint, bounds) in &hung {
+            let is_small = longest(bounds) < LARGEST_ON_ARMATURE * self.bound.size();
+            if owner[joint].is_some() || !is_small {
+                continue;
+            }
+            let worn = hung.iter().find(|(other, around)| owner[*other].is_some() && touch(*around, bounds));
+            owner[joint] = worn.and_then(|(other, _)| owner[*other]);
+        }
+        self.own_hung(owner);
+    }
+
+    /// Nodes on the armature go with what is worn below them: an object with the node of its mesh, and with the hair that hangs on it.
+    fn own_hung(&self, owner: &mut [Option<usize>]) {
+        for joint in 0..self.rig.joints.len() {
+            if owner[joint].is_none() || self.bound.area[joint] > 0.0 {
+                continue;
+            }
+            let Some(top) = self.hung_on_armature(joint) else { continue };
+            let line = core::iter::once(joint).chain(ancestors(self.rig, joint));
+            for at in line {
+                owner[at] = owner[at].or(owner[joint]);
+                if at == top {
+                    break;
+                }
+            }
+        }
     }
 
     /// The kept joint, by place, whose skin is nearest to that of a joint, by the votes of its vertices; the first if one of them has none.

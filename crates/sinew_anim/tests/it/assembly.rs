@@ -1,10 +1,11 @@
 //! Humans whose names are plain and whose hierarchy or skin leaves something out.
 
 use crate::toy;
+use sinew_anim::riders::Riders;
 use sinew_anim::weights::lost_weights;
 use sinew_anim::{
-    Hints, Joint, LocalTransform, Primitive, Rig, RigAnalysis, RigMesh, Role, Side, Skin, analyze,
-    analyze_hinted, characters,
+    Channel, Clip, Hints, Interpolation, Joint, LocalTransform, Primitive, Property, Rig, RigAnalysis,
+    RigMesh, Role, Side, Skin, analyze, analyze_hinted, characters,
 };
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
@@ -674,4 +675,139 @@ fn a_figure_that_squats_in_its_rest_pose_and_has_no_root_stands_as_bound() {
     let place = |role: Role| found.bind_model[found.joint_with(role).expect("a joint")].translation;
     let up = (place(Role::Head) - place(Role::Hips)).normalize();
     assert!(up.y > 0.9, "from hips to head it goes along {up}; {:?}", found.notes);
+}
+
+/// As converted files have it: a mesh is a node below its object.
+#[test]
+fn a_head_whose_mesh_is_a_node_below_an_object_on_the_armature_goes_with_its_hair() {
+    let mut rig = toy::body(mixamo);
+    let [head, neck] = ["head", "neck"].map(part);
+    let armature = add_bare(&mut rig, "Armature", None, Vec3::ZERO, Vec3::ZERO);
+    rig.joints[part("hips")].parent = Some(armature);
+    let place = Vec3::from_array(toy::BODY[head].2);
+    let object = add_bare(&mut rig, "Goblin_head", Some(armature), Vec3::ZERO, Vec3::ZERO);
+    let mesh = add_bare(&mut rig, "Sphere", Some(object), Vec3::ZERO, Vec3::ZERO);
+    make_rigid(&mut rig, head, mesh, Vec3::ZERO);
+    let own = rig.meshes.iter_mut().find(|other| other.joint == mesh).expect("just added");
+    let corners = own.primitives[0].positions.iter_mut().enumerate();
+    corners.for_each(|(k, corner)| {
+        *corner = place + (*corner - place) * 6.0 + Vec3::Y * if k == 0 { -0.1 } else { 0.6 };
+    });
+    // Hair hangs on the object, and touches the head alone.
+    let hair = add_bare(&mut rig, "Hair", Some(object), place + Vec3::Y * 0.9, Vec3::ZERO);
+    let strands = add_bare(&mut rig, "Circle", Some(hair), place + Vec3::Y * 0.9, place + Vec3::Y * 0.9);
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * 0.2).to_vec();
+    let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
+    let primitive = Primitive { positions, indices, ..Primitive::default() };
+    rig.meshes.push(RigMesh { name: String::new(), joint: strands, skin: None, primitives: vec![primitive] });
+    // Eyes within the head, far from all skin.
+    let eyes = add_bare(&mut rig, "Goblin_eyes", Some(armature), place + Vec3::Y * 0.5, Vec3::ZERO);
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * 0.05).to_vec();
+    let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
+    let primitive = Primitive { positions, indices, ..Primitive::default() };
+    rig.meshes.push(RigMesh { name: String::new(), joint: eyes, skin: None, primitives: vec![primitive] });
+    let sorted = in_order(&rig);
+    let at = |name: &str| sorted.joints.iter().position(|joint| joint.name == name).expect("it is there");
+    let found = analyze(&sorted).expect("a skin");
+    let body = found.kept.iter().find(|bone| bone.joint == at("Goblin_head")).expect("the object has a body");
+    let carrier = body.parent.map(|parent| found.kept[parent].joint);
+    assert_eq!(carrier, Some(at(&rig.joints[neck].name)), "{:?}", found.notes);
+    for worn in ["Sphere", "Hair", "Circle"] {
+        assert_eq!(found.merge_into[at(worn)], Some(at("Goblin_head")), "{worn}");
+    }
+    let goes = found.merge_into[at("Goblin_eyes")].is_some()
+        || found.kept.iter().any(|b| b.joint == at("Goblin_eyes"));
+    assert!(goes, "the eyes go with the body that carries the head");
+}
+
+/// A hat beside the skeleton of a figure that rests bent is where it sits on the bent head, and was bound there on the upright one.
+#[test]
+fn a_hat_beside_a_figure_that_rests_otherwise_than_it_was_bound_is_on_its_head() {
+    let mut rig = toy::body(mixamo);
+    let place = Vec3::from_array(toy::BODY[part("head")].2);
+    rig.joints[part("neck")].rest.rotation = Rotation::from_axis_angle(Vec3::X, 0.8);
+    let mut model = Vec::new();
+    let rest: Vec<LocalTransform> = rig.joints.iter().map(|joint| joint.rest).collect();
+    sinew_anim::local_to_model(&rig, &rest, &Affine::IDENTITY, &mut model);
+    let on_head = Transform::from_translation(Vec3::Y * 0.2);
+    let hat_place = model[part("head")].to_rigid() * on_head;
+    let hat = rig.joints.len();
+    let rest = LocalTransform {
+        translation: hat_place.translation,
+        rotation: hat_place.rotation,
+        ..LocalTransform::default()
+    };
+    rig.joints.push(Joint { name: "hat".into(), parent: None, rest, source: hat });
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * 0.1).to_vec();
+    let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
+    let primitive = Primitive { positions, indices, ..Primitive::default() };
+    rig.meshes.push(RigMesh { name: String::new(), joint: hat, skin: None, primitives: vec![primitive] });
+    let found = analyze(&rig).expect("a skin");
+    let bound = found.bind_model[hat].translation - found.bind_model[part("head")].translation;
+    assert!((bound - Vec3::Y * 0.2).length() < 1e-3, "bound {bound} above the head at {place}");
+    assert_eq!(found.merge_into[hat], Some(part("head")));
+}
+
+/// A hat beside the skeleton that sticks out so far that it has a body of its own is on the head in a motion of another body, too.
+#[test]
+fn a_prop_beside_the_skeleton_rides_on_what_carries_it() {
+    let mut rig = toy::body(mixamo);
+    let head = Vec3::from_array(toy::BODY[part("head")].2);
+    let armature = add_bare(&mut rig, "Armature", None, Vec3::ZERO, Vec3::ZERO);
+    rig.joints[part("hips")].parent = Some(armature);
+    let hat = add_bare(&mut rig, "hat", Some(armature), head, Vec3::ZERO);
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y * 4.0, Vec3::Z].map(|corner| corner * 0.2).to_vec();
+    let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
+    let primitive = Primitive { positions, indices, ..Primitive::default() };
+    rig.meshes.push(RigMesh { name: String::new(), joint: hat, skin: None, primitives: vec![primitive] });
+    let sorted = in_order(&rig);
+    let at = |name: &str| sorted.joints.iter().position(|joint| joint.name == name).expect("it is there");
+    let found = analyze(&sorted).expect("a skin");
+    assert!(found.kept.iter().any(|bone| bone.joint == at("hat") && bone.is_prop), "{:?}", found.notes);
+    let riders = Riders::of(&sorted, &found);
+    let mut pose: Vec<LocalTransform> = sorted.joints.iter().map(|joint| joint.rest).collect();
+    pose[at("mixamorig:Hips")].translation += Vec3::new(1.0, -0.5, 0.0);
+    pose[at("mixamorig:Spine")].rotation = Rotation::from_axis_angle(Vec3::X, 1.2);
+    let mut model = Vec::new();
+    riders.carry(&sorted, &mut pose, &mut model);
+    let [head, hat] = ["mixamorig:Head", "hat"].map(at);
+    let way = model[hat].translation - model[head].translation;
+    let bound = found.bind_model[hat].translation - found.bind_model[head].translation;
+    assert!((way.length() - bound.length()).abs() < 1e-4, "{way}, not as far as {bound}");
+    assert!(model[hat].linear.y_axis.y < 0.5, "it leans with the head");
+}
+
+/// A hat that a clip alone brings to the head is on it in a motion of another body, too.
+#[test]
+fn a_hat_that_follows_the_head_by_a_clip_rides_where_the_clip_has_it() {
+    let mut rig = toy::body(mixamo);
+    let head = Vec3::from_array(toy::BODY[part("head")].2);
+    let hat = rig.joints.len();
+    // Bound at the nape, and a little too low.
+    let rest = LocalTransform { translation: head - Vec3::Y * 0.1, ..LocalTransform::default() };
+    rig.joints.push(Joint { name: "hat".into(), parent: None, rest, source: hat });
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * 0.1).to_vec();
+    let indices = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2].to_vec();
+    let primitive = Primitive { positions, indices, ..Primitive::default() };
+    rig.meshes.push(RigMesh { name: String::new(), joint: hat, skin: None, primitives: vec![primitive] });
+    let found = analyze(&rig).expect("a skin");
+    let on_head = Channel {
+        joint: hat,
+        property: Property::Translation,
+        interpolation: Interpolation::Linear,
+        times: vec![0.0],
+        values: (head + Vec3::Y * 0.15).to_array().to_vec(),
+    };
+    let clip = Clip { name: "stand".into(), duration: 1.0, channels: vec![on_head] };
+    let height = |riders: &Riders| {
+        let mut pose: Vec<LocalTransform> = rig.joints.iter().map(|joint| joint.rest).collect();
+        pose[part("hips")].translation += Vec3::X;
+        let mut model = Vec::new();
+        riders.carry(&rig, &mut pose, &mut model);
+        model[hat].translation - model[part("head")].translation
+    };
+    let bound = Riders::of(&rig, &found);
+    assert!((height(&bound) + Vec3::Y * 0.1).length() < 1e-4, "{}", height(&bound));
+    let held = bound.as_in(&rig, &clip);
+    assert!((height(&held) - Vec3::Y * 0.15).length() < 1e-4, "{}", height(&held));
 }

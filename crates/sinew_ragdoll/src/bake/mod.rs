@@ -20,8 +20,8 @@ use crate::character::{Character, CharacterDef, CharacterEvent, InWorld, State, 
 use crate::quality::{FallQuality, QualityMeter};
 use sinew_anim::{Clip, KeyBound, KeyError, LocalTransform, Reduced, reduce_keys};
 use sinew_math::hash::hash_bytes;
-use sinew_math::{Affine, Transform, Vec3, Writer, clamp};
-use sinew_physics::{BodyDef, World, WorldDef};
+use sinew_math::{Affine, Transform, Vec3, Writer, clamp, max};
+use sinew_physics::{BodyDef, BodyId, Velocity, World, WorldDef};
 use std::sync::Arc;
 
 /// A push at a moment.
@@ -58,6 +58,9 @@ pub struct BakeInput<'a> {
     pub seconds: f32,
     /// Frames per second of the clip, at least 1.
     pub fps: f32,
+    /// Velocity that its highest point gets besides when it goes limp at [`limp_at`](Self::limp_at), m/s, world axes: the body as a whole turns
+    /// about the ground under it. Default zero. What has a foot broad enough stays upright without it.
+    pub topple: Vec3,
     /// Bound on the distance of any joint of the clip from where the frames have it, metres and radians: keys that are not needed
     /// for that are left out.
     pub key_bound: KeyBound,
@@ -93,6 +96,7 @@ impl<'a> BakeInput<'a> {
             limp_at: None,
             seconds: 10.0,
             fps: 30.0,
+            topple: Vec3::ZERO,
             key_bound: KEY_BOUND,
             name: "sinew",
         }
@@ -219,7 +223,7 @@ fn spawned(input: &BakeInput<'_>, world: &mut World) -> Character {
 /// Intervention in the bake at a moment: the character goes limp, or is hit.
 #[derive(Clone, Copy)]
 enum Push {
-    Limp,
+    Limp { topple: Vec3 },
     Hit { body: usize, impulse: Vec3 },
 }
 
@@ -231,8 +235,12 @@ impl Run {
         }
         let hits =
             input.hits.iter().map(|hit| (hit.time, Push::Hit { body: hit.body, impulse: hit.impulse }));
-        let mut pending: Vec<_> =
-            input.limp_at.map(|time| (time, Push::Limp)).into_iter().chain(hits).collect();
+        let mut pending: Vec<_> = input
+            .limp_at
+            .map(|time| (time, Push::Limp { topple: input.topple }))
+            .into_iter()
+            .chain(hits)
+            .collect();
         // Stable, so that pushes at one moment keep their order.
         pending.sort_by(|a, b| a.0.total_cmp(&b.0));
         pending.reverse();
@@ -287,7 +295,10 @@ impl Run {
             let is_limp = |run: &Self| matches!(run.character.state(), State::Limp | State::Preparing);
             let was_limp = is_limp(self);
             match push {
-                Push::Limp => self.character.go_limp(&mut self.world),
+                Push::Limp { topple } => {
+                    self.character.go_limp(&mut self.world);
+                    self.topple(topple);
+                }
                 Push::Hit { body, impulse } => {
                     let work = self.character.hit(&mut self.world, body, impulse);
                     if is_limp(self) {
@@ -301,6 +312,27 @@ impl Run {
         }
         self.note_events(noted);
         self.ahead = self.character.events().len() - noted;
+    }
+
+    /// Turns a limp body as a whole about the ground under its middle, so that its highest part gets that velocity besides.
+    fn topple(&mut self, velocity: Vec3) {
+        let Some(ragdoll) = self.character.ragdoll().filter(|_| velocity != Vec3::ZERO) else { return };
+        let ids: Vec<BodyId> = ragdoll.own_bodies().map(|(_, id)| id).collect();
+        let center = |world: &World, id: BodyId| world.center_of_mass(id);
+        let middle = ids.iter().fold(Vec3::ZERO, |sum, &id| sum + center(&self.world, id)) / ids.len() as f32;
+        let ground = Vec3::new(middle.x, self.character.world_from_character().translation.y, middle.z);
+        let top = ids.iter().map(|&id| center(&self.world, id).y - ground.y).fold(0.0, max);
+        if top <= 0.0 {
+            return;
+        }
+        let about = Vec3::Y.cross(velocity) / top;
+        let before = self.world.energy().kinetic;
+        for id in ids {
+            let own = self.world.velocity(id);
+            let linear = own.linear + about.cross(center(&self.world, id) - ground);
+            self.world.set_velocity(id, Velocity { linear, angular: own.angular + about });
+        }
+        self.meter.pushed(self.world.energy().kinetic - before);
     }
 
     /// Keeps the character's events from the `first` on.

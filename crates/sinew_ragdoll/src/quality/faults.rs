@@ -1,10 +1,10 @@
 //! Faults of a ragdoll, or of its bake, that no single figure shows.
 
 use super::Verdict;
-use crate::bake::{BakeInput, Baked};
+use crate::bake::{BakeInput, Baked, bake};
 use crate::character::{CharacterEvent, State};
 use crate::def::RagdollDef;
-use crate::tuning::{FALLEN_OUT, NEVER_STILL, ON_A_SIDE, OTHER_SIZE, STILL_UPRIGHT};
+use crate::tuning::{FALLEN_OUT, NEVER_STILL, ON_A_SIDE, OTHER_SIZE, STILL_UPRIGHT, TOPPLES};
 use sinew_anim::{LocalTransform, Rig, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, min};
 use sinew_physics::{BodyKind, World, WorldDef};
@@ -183,6 +183,22 @@ fn never_still(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     })
 }
 
+/// The input of a bake with the weakest [push](BakeInput::topple) forward that fells the character, if that stays upright when it goes limp and
+/// there is one.
+///
+/// # Panics
+/// If the bake is not one of the input's.
+pub fn toppled<'a>(input: &BakeInput<'a>, baked: &Baked) -> Option<BakeInput<'a>> {
+    stays_upright(input, baked)?;
+    let speed = (input.world.gravity.length() * input.character.ragdoll.height).sqrt();
+    let forward = input.world_from_character.rotation * Vec3::Z;
+    TOPPLES.into_iter().find_map(|share| {
+        let pushed = BakeInput { topple: forward * (share * speed), ..input.clone() };
+        let falls = stays_upright(&pushed, &bake(&pushed)).is_none();
+        falls.then_some(pushed)
+    })
+}
+
 /// A body taller than wide whose highest part is, when it lies still, about as high as when it was let go.
 fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let def = &input.character.ragdoll;
@@ -200,7 +216,8 @@ fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let top = (0..start.len()).reduce(|a, b| if start[b].y > start[a].y { b } else { a })?;
     let [begins, ends] = [&start, &end].map(|places| places[top].y - floor);
     let flat = |a: Vec3, b: Vec3| Vec3::new(a.x - b.x, 0.0, a.z - b.z).length();
-    let wide = start.iter().flat_map(|&a| start.iter().map(move |&b| flat(a, b))).fold(0.0, max);
+    // As it stands then: arms that were held out hang down.
+    let wide = end.iter().flat_map(|&a| end.iter().map(move |&b| flat(a, b))).fold(0.0, max);
     let is_still = baked.quality.settled_s.is_some();
     (is_still && begins > wide && ends > STILL_UPRIGHT * begins).then(|| {
         let bone = &def.bodies[top].bone;

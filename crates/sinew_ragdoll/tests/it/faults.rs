@@ -2,7 +2,7 @@
 
 use sinew_anim::analyze;
 use sinew_physics::{BodyDef, Shape};
-use sinew_ragdoll::quality::{Doubt, faults_of_bake, faults_of_ragdoll};
+use sinew_ragdoll::quality::{Doubt, faults_of_bake, faults_of_ragdoll, toppled};
 use sinew_ragdoll::{
     AfterSettling, BakeInput, Baked, BuildOptions, CharacterDef, RagdollDef, State, Verdict, bake, build,
 };
@@ -115,6 +115,31 @@ fn a_tall_body_that_stays_upright_is_told() {
     let found = faults(1e4);
     assert_eq!(found.len(), 1, "{found:?}");
     assert!(found[0].reason.contains("stays upright") && found[0].at_most == Verdict::Usable, "{found:?}");
+}
+
+/// It is pushed over by the weakest push that does it, and who falls by itself by none.
+#[test]
+fn who_stays_upright_is_pushed_over() {
+    let pushed = |rust: f32| {
+        let rig = mannequin().rig;
+        let analysis = analyze(&rig).expect("a skin");
+        let mut ragdoll = built();
+        ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque += rust);
+        let mut character = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+        character.after_settling = AfterSettling::StayDown;
+        let ground = [BodyDef::fixed(Shape::HalfSpace)];
+        let input = BakeInput {
+            bodies: &ground,
+            limp_at: Some(0.0),
+            seconds: 6.0,
+            ..BakeInput::new(Arc::new(character))
+        };
+        toppled(&input, &bake(&input)).map(|pushed| (pushed.topple, faults_of_bake(&pushed, &bake(&pushed))))
+    };
+    assert_eq!(pushed(0.0), None);
+    let (topple, faults) = pushed(1e4).expect("a push fells it");
+    assert!(topple.z > 0.5 && topple.length() < 5.0, "forward, and as weak as may be: {topple}");
+    assert_eq!(faults, [], "and then it lies");
 }
 
 /// A clip that scales the hips, before a get-up that does not.

@@ -124,6 +124,9 @@ fn floating_and_sunk_meshes_are_seen() {
         assert!(skin.rest_height_m.is_some_and(|found| (found - height).abs() < 1e-3), "{height}: {skin:?}");
         let flaws = skin.flaws(&subject.def);
         assert_eq!(kinds(&flaws), expected, "{height}");
+        // Half a metre over the floor nothing is left to use.
+        let is_bad = flaws.iter().any(|flaw| flaw.at_most == Verdict::Bad);
+        assert_eq!(is_bad, height > 0.4, "{height}");
         // Named is the setting that helps, and which way.
         for flaw in flaws {
             let way = if height > 0.0 { "below 1 of" } else { "above 1 of" };

@@ -42,6 +42,8 @@ pub(super) struct Reading {
     pub part: Option<Part>,
     /// True if the name speaks of a wing.
     pub is_wing: bool,
+    /// True if the name is "root" and nothing else: of a rig that calls nothing hips, they are meant where it moves skin.
+    pub is_root: bool,
     /// True if it is an appendix only because the name speaks of a control, such as "IK".
     pub is_control: bool,
 }
@@ -167,6 +169,10 @@ pub(super) fn settle_trunk(
     let hips = (0..readings.len()).find(is_hips).or_else(|| {
         let thighs = [Side::Left, Side::Right].map(|side| with(Part::UpperLeg, Some(side)));
         let [Some(left), Some(right)] = thighs else { return None };
+        // Auto-Rig Pro calls the pelvis root.
+        if let Some(root) = (0..readings.len()).find(|&at| readings[at].is_root && moves_skin(at)) {
+            return Some(root);
+        }
         let top = with(Part::Head, None).or(with(Part::Neck, None))?;
         let fork = up(top).find(|&at| [left, right].into_iter().all(|thigh| up(thigh).any(|i| i == at)))?;
         // Bare, the fork is no pelvis; what it carries toward the head is.
@@ -233,6 +239,7 @@ fn read(tokens: &[Token]) -> (Reading, Option<Sense>) {
             }
         }
     }
+    reading.is_root = words.is_empty() && reading.side.is_none() && reading.key == "root";
     reading.key.push_str(&key(&words));
     reading.is_wing = words.contains(&Word::Wing);
     let is_appendix = words.contains(&Word::Appendix);

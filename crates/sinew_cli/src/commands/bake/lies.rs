@@ -1,11 +1,15 @@
 //! A character that lies in its file.
 
+use crate::judge::LIMP_AT;
 use sinew::anim::{Wrap, local_to_model, rest_pose, sample::sample, skin_vertices};
 use sinew::math::{Affine, Rotation, Transform, Vec3, min};
 use sinew::ragdoll::CharacterDef;
 
 /// Rise of the body's own up along the file's, from which it stands: 45°.
 const STANDS: f32 = 0.7;
+
+/// Number of moments of the looped clip that are looked at, besides its start: ten a second, or so.
+const LOOKS: usize = 5;
 
 /// Place of a character by how its file has it: where it `stands`, or turned and lowered onto the ground there if it lies. `up` is the file's up axis.
 pub fn as_in_file(stands: Transform, character: &CharacterDef, up: Vec3) -> Transform {
@@ -20,22 +24,27 @@ pub fn as_in_file(stands: Transform, character: &CharacterDef, up: Vec3) -> Tran
     Transform::new(stands.translation - Vec3::Y * lowest, stands.rotation * turn)
 }
 
-/// Height of the lowest drawn vertex at the start of the looped clip, or in the rest pose, under a map from model space, metres.
+/// Height of the lowest drawn vertex in the looped clip until the character goes limp by itself, or in the rest pose, under a map from model space,
+/// metres.
 fn lowest_point(character: &CharacterDef, world_from_model: &Affine) -> f32 {
-    let rig = &character.rig;
-    let mut pose = rest_pose(rig);
     let motions = character.motions();
-    if let Some(looped) = motions.looped {
-        sample(&motions.clips[looped], rig, 0.0, Wrap::Clamp, &mut pose);
-    }
-    let mut model = Vec::new();
-    local_to_model(rig, &pose, world_from_model, &mut model);
+    let looped = motions.looped.map(|looped| &motions.clips[looped]);
+    let looks = looped.map_or(0, |_| LOOKS);
+    let times = (0..=looks).map(|look| LIMP_AT * look as f32 / LOOKS as f32);
+    let rig = &character.rig;
+    let (mut pose, mut model) = (rest_pose(rig), Vec::new());
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
     let mut lowest = f32::INFINITY;
-    for (mesh, of_rig) in rig.meshes.iter().enumerate() {
-        for primitive in 0..of_rig.primitives.len() {
-            skin_vertices(rig, mesh, primitive, &model, &mut positions, &mut normals);
-            lowest = positions.iter().fold(lowest, |lowest, at| min(lowest, at.y));
+    for time in times {
+        if let Some(clip) = looped {
+            sample(clip, rig, time, Wrap::Loop, &mut pose);
+        }
+        local_to_model(rig, &pose, world_from_model, &mut model);
+        for (mesh, of_rig) in rig.meshes.iter().enumerate() {
+            for primitive in 0..of_rig.primitives.len() {
+                skin_vertices(rig, mesh, primitive, &model, &mut positions, &mut normals);
+                lowest = positions.iter().fold(lowest, |lowest, at| min(lowest, at.y));
+            }
         }
     }
     if lowest.is_finite() { lowest } else { 0.0 }

@@ -38,7 +38,7 @@ use sinew::formats::{Textures, load_world};
 use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::bake::KEY_BOUND;
-use sinew::ragdoll::quality::Doubt;
+use sinew::ragdoll::quality::{Doubt, toppled};
 use sinew::ragdoll::settings::SpringSource;
 use sinew::ragdoll::{BakeInput, BuildOptions, HitEffect, RagdollDef, drop_test};
 use sinew_picture::Sun;
@@ -109,7 +109,7 @@ pub struct Bake {
     /// Let hits that are too weak to fell it be a flinch: the limb gives way and comes back
     #[arg(long)]
     flinch: bool,
-    /// Go limp at this time, seconds; without any --hit the default is 0.5
+    /// Go limp at this time, seconds; without any --hit the default is 0.5, and who stays upright so is pushed over
     #[arg(long, value_name = "T", value_parser = seconds, allow_negative_numbers = true)]
     limp_at: Option<f32>,
     /// Length of the clip, seconds
@@ -193,7 +193,11 @@ impl Bake {
             name: &name,
             ..BakeInput::new(character)
         };
-        let mut fall = Fall::simulate(&input, doubt.as_ref());
+        let fall = Fall::simulate(&input, doubt.as_ref());
+        let is_default = self.hits.is_empty() && self.limp_at.is_none();
+        let pushed = toppled(&input, &fall.baked).filter(|_| is_default);
+        notes.extend(pushed.as_ref().map(notes::is_pushed));
+        let mut fall = pushed.as_ref().map_or(fall, |pushed| Fall::simulate(pushed, doubt.as_ref()));
         let world = self.world.as_ref().map(|path| path.display().to_string());
         notes.extend(world.as_deref().and_then(|world| notes::stands_at(&place, world)));
         notes.extend(notes::of_bake(&input, &fall.baked.events, &gets_up_by, world.as_deref()));

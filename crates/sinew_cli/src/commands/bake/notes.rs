@@ -39,6 +39,16 @@ pub fn stands_at(place: &Place, world: &str) -> Option<String> {
     })
 }
 
+/// A push that nobody asked for.
+pub fn is_pushed(input: &BakeInput<'_>) -> String {
+    let time = input.limp_at.unwrap_or(0.0);
+    format!(
+        "limp alone it stays upright: it is pushed over at {time} s, its highest point by {:.1} m/s; --limp-at {time} leaves out the push, \
+         --hit says another",
+        input.topple.length()
+    )
+}
+
 /// Motions that are not the file's.
 fn borrows(events: &[(f32, CharacterEvent)], gets_up_by: &GetsUpBy) -> Option<String> {
     let rises = events.iter().any(|(_, event)| matches!(event, CharacterEvent::GettingUp { .. }));
