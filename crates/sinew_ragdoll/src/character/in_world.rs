@@ -229,6 +229,7 @@ impl Character {
             if let Some(presence) = &mut self.presence {
                 presence.bodies.clear();
             }
+            self.keep_own();
         }
         self.sit_down(world);
         self.remove_hit_bodies(world);

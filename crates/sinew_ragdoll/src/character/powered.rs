@@ -186,6 +186,7 @@ impl Character {
             None => {
                 self.undress(world);
                 ragdoll.despawn(world);
+                self.keep_own();
             }
         }
     }

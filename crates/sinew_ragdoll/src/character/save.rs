@@ -6,7 +6,7 @@ use super::grasp::Grasp;
 use super::in_world::Presence;
 use super::memory::{Clearing, Hold, Planting, Preparation, Rising, Stillness};
 use super::stumble::Stumble;
-use super::{Character, Earlier, State};
+use super::{Character, CharacterEvent, Earlier, State};
 use crate::drive::Drives;
 use crate::garments::Worn;
 use crate::ragdoll::Ragdoll;
@@ -29,6 +29,10 @@ const LOST: u8 = 0x10;
 const GRASPS: u8 = 2;
 /// Bit of a state: the way from one pose to another follows at the end.
 const PASSING: u8 = 0x08;
+/// In the place of a state: events that no update has told of come before it.
+const UNTOLD: u8 = 7;
+/// Bytes of such an event.
+const EVENT_BYTES: usize = 17;
 /// All bits of a state.
 const FLAGS: u8 = IN_WORLD | WEARS | DRESSED | LOST | PASSING;
 /// Number of the state of a limp character that is on its way out of a wall, which follows at the end.
@@ -40,15 +44,8 @@ impl Character {
     /// Writes what decides the future, and nothing that its definition holds.
     pub fn save(&self, w: &mut Writer) {
         w.raw(MAGIC);
-        let state = match self.state {
-            State::Animated => 0,
-            State::Limp if self.is_clearing() => CLEARING,
-            State::Limp => 1,
-            State::GettingUp => 2,
-            State::Preparing => 3,
-            State::Flinching => 4,
-            State::Powered => 5,
-        };
+        self.save_untold(w);
+        let state = self.number_of_state();
         let in_world = if self.presence.is_some() { IN_WORLD } else { 0 };
         let wears = if self.def.springs().is_empty() { 0 } else { WEARS };
         let dressed = if self.def.garments().is_empty() { 0 } else { DRESSED };
@@ -109,6 +106,28 @@ impl Character {
         }
     }
 
+    fn number_of_state(&self) -> u8 {
+        match self.state {
+            State::Animated => 0,
+            State::Limp if self.is_clearing() => CLEARING,
+            State::Limp => 1,
+            State::GettingUp => 2,
+            State::Preparing => 3,
+            State::Flinching => 4,
+            State::Powered => 5,
+        }
+    }
+
+    /// Writes what calls have brought about since the last update, if anything.
+    fn save_untold(&self, w: &mut Writer) {
+        let untold = &self.events[self.told..];
+        if !untold.is_empty() {
+            w.u8(UNTOLD);
+            w.count(untold.len());
+            untold.iter().for_each(|event| event.save(w));
+        }
+    }
+
     /// Brings back a saved state of a character of the same definition. Its bodies are those of the world's snapshot
     /// that was saved at the same time.
     ///
@@ -118,7 +137,7 @@ impl Character {
         if r.raw(MAGIC.len())? != MAGIC {
             return Err(ReadError { at: 0, what: "is not a character of this version" });
         }
-        let tag = r.u8()?;
+        let (tag, untold) = load_untold(r)?;
         let state = match tag & !FLAGS {
             0 => State::Animated,
             1 | CLEARING => State::Limp,
@@ -179,8 +198,7 @@ impl Character {
         (self.swing, self.worn) = (swing, worn);
         self.show_loaded(&base);
         self.keep_shown();
-        self.events.clear();
-        self.told = 0;
+        (self.events, self.told) = (untold, 0);
         self.scratch.posed.clear();
         Ok(())
     }
@@ -258,6 +276,16 @@ impl Character {
         }
         Ok(ragdoll)
     }
+}
+
+/// Reads what comes first: a state, and events that no update has told of.
+fn load_untold(r: &mut Reader<'_>) -> Result<(u8, Vec<CharacterEvent>), ReadError> {
+    let tag = r.u8()?;
+    if tag != UNTOLD {
+        return Ok((tag, Vec::new()));
+    }
+    let events = (0..r.count(EVENT_BYTES)?).map(|_| CharacterEvent::load(r)).collect::<Result<_, _>>()?;
+    Ok((r.u8()?, events))
 }
 
 /// Limbs that were cut off or let go.
