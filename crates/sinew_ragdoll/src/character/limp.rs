@@ -129,10 +129,11 @@ impl Character {
         self.pose = pose;
         let (mut animator, mut way) = (self.sent_ahead(), Transform::IDENTITY);
         let laps = laps(&animator);
+        // Velocities are those of the clips, from what they have now: the pose may be bodies', or stepping feet's, and a millimetre beside theirs.
+        let (mut from, mut further) = (Vec::new(), Vec::new());
+        self.bodies_ahead(&mut animator, &mut way, 0.0, &mut from);
         self.bodies_ahead(&mut animator, &mut way, HAND_OVER_TIME, &mut ahead);
-        let mut further = Vec::new();
         self.bodies_ahead(&mut animator, &mut way, HAND_OVER_TIME, &mut further);
-        let mut from = now.clone();
         if self::laps(&animator) != laps {
             // Across a loop's seam poses may jump: what counts is how they go on behind it.
             core::mem::swap(&mut from, &mut further);
