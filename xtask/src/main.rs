@@ -1,4 +1,4 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | web | fuzz`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | web | fuzz | lives | soak`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -13,6 +13,7 @@ mod fuzz;
 mod golden;
 mod new_user;
 mod ragdolls;
+mod searches;
 mod sizes;
 mod spawns;
 mod targets;
@@ -58,6 +59,10 @@ enum Task {
     Web(web::Web),
     /// Bytes from nowhere against the readers, and clips against the runtime
     Fuzz(fuzz::Fuzz),
+    /// Random lives, from where the last run ended
+    Lives(searches::Lives),
+    /// An hour of game, watched from step to step
+    Soak(searches::Soak),
 }
 
 fn main() -> ExitCode {
@@ -81,6 +86,8 @@ fn run() -> anyhow::Result<ExitCode> {
         Task::Ragdolls(ragdolls) => ragdolls.run()?,
         Task::Wild(wild) => wild.run()?,
         Task::Fuzz(fuzz) => fuzz.run()?,
+        Task::Lives(lives) => lives.run()?,
+        Task::Soak(soak) => soak.run()?,
         Task::Web(web) => web.run()?,
         Task::Bench(bench) => return bench.run(),
     }

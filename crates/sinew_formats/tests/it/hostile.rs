@@ -2,7 +2,10 @@
 
 use crate::data::{GLTF, files, shared_data};
 use needs_data::needs_data;
-use sinew_formats::{Error, ReadOptions, Result, Textures, append_clip, load_gltf, no_files, read_gltf};
+use sinew_formats::{
+    Error, MotionOptions, ReadOptions, Result, Textures, append_clip, load_gltf, no_files, read_gltf,
+    read_mjcf, read_motion, read_obj, read_ragdoll, read_world,
+};
 use sinew_math::Random;
 use std::path::Path;
 
@@ -235,4 +238,47 @@ fn mutated_rigs_do_no_harm() {
             }
         }
     }
+}
+
+/// Gives bytes to each reader that they may be meant for.
+fn read_as_whatever(bytes: &[u8], path: &Path) {
+    let folder = path.parent().unwrap();
+    let mut beside = |name: &str| std::fs::read(folder.join(name)).or_else(|_| no_files(name));
+    let told = |error: Option<Error>| error.iter().for_each(assert_one_line);
+    told(read_motion(bytes, &MotionOptions::default(), &mut beside).err());
+    match path.extension().and_then(|e| e.to_str()) {
+        Some("obj") => told(read_obj(bytes).err()),
+        Some("xml") => told(read_mjcf(bytes).err()),
+        Some("json") => {
+            told(read_ragdoll(bytes).err());
+            told(read_world(bytes).err());
+        }
+        _ => {}
+    }
+}
+
+/// Every file that is not too long, cut at every 64th byte: an error or a shorter file, never a panic. Files up to 256 KiB when `SINEW_FULL` is set.
+#[test]
+fn files_that_were_cut_do_no_harm() {
+    const EXTENSIONS: [&str; 10] = ["glb", "gltf", "vrm", "vrma", "bvh", "fbx", "obj", "xml", "json", "txt"];
+    let longest = if std::env::var_os("SINEW_FULL").is_some() { 256 << 10 } else { 6 << 10 };
+    let seeds = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds")).to_path_buf();
+    let (mut whole, mut cut) = (0, 0);
+    for path in [seeds, shared_data()]
+        .iter()
+        .filter(|folder| folder.is_dir())
+        .flat_map(|folder| files(folder, &EXTENSIONS))
+    {
+        if std::fs::metadata(&path).is_ok_and(|data| data.len() > longest) {
+            continue;
+        }
+        let bytes = std::fs::read(&path).unwrap();
+        for end in (0..bytes.len()).step_by(64) {
+            read_as_whatever(&bytes[..end], &path);
+            cut += 1;
+        }
+        whole += 1;
+    }
+    println!("{whole} files, {cut} cuts");
+    assert!(whole >= 8, "{whole} files");
 }

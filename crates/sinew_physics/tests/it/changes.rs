@@ -38,6 +38,25 @@ fn reborn(world: &World) -> World {
     other
 }
 
+/// Random lives found it: the leaf of the shape that went was that of the body's first again, of which it had none.
+#[test]
+fn a_body_of_a_used_index_loses_its_last_shape() {
+    let mut world = world();
+    floor(&mut world);
+    let shape_of = |body| ShapeId { body, shape: 0 };
+    let first = world.add_body(&sphere_body(0.4, Vec3::Y));
+    world.remove_shape(shape_of(first), MassUpdate::Keep);
+    world.add_body(&BodyDef { kind: BodyKind::Kinematic, ..sphere_body(0.4, Vec3::X) });
+    world.remove_body(first);
+    let second = world.add_body(&sphere_body(0.2, Vec3::Y * 2.0));
+    world.remove_body(second);
+    let third = BodyDef { kind: BodyKind::Kinematic, linear_velocity: Vec3::Y, ..sphere_body(0.4, Vec3::Y) };
+    let third = world.add_body(&third);
+    run(&mut world, 2);
+    world.remove_shape(shape_of(third), MassUpdate::Keep);
+    run(&mut world, 2);
+}
+
 #[test]
 fn damping_and_gravity_scale_are_those_of_the_definition() {
     let def = BodyDef {

@@ -43,6 +43,7 @@ mod serde;
 mod sleep;
 #[path = "../../../sinew_geometry/tests/it/solids.rs"]
 mod solids;
+mod spinning;
 mod stacks;
 mod strands;
 mod strangers;

@@ -1,6 +1,7 @@
 //! A world with names for what is in it, so that the same deeds can be done to several.
 
 use crate::code::{self, Code, rusty};
+use crate::extension::Extension;
 use crate::functions;
 use crate::numbers::Numbers;
 use core::fmt::Write;
@@ -40,6 +41,8 @@ pub struct Actor {
     /// A twin that the deed at hand asks for.
     pub wanted: Option<Twin>,
     pub threads: Option<Threads>,
+    /// What lives beside the world.
+    pub more: Extension,
     /// Name of the deed at hand, and how many things it has named.
     deed: u64,
     named: u64,
@@ -115,6 +118,7 @@ impl Actor {
             lines: None,
             wanted: None,
             threads,
+            more: Extension::new(),
             deed: 0,
             named: 0,
         }
@@ -134,6 +138,7 @@ impl Actor {
             movers: self.movers.clone(),
             forces: self.forces.clone(),
             objects: self.objects.clone(),
+            more: self.more.twin(kind),
             ..Self::new(world, self.floor, None)
         }
     }
@@ -146,7 +151,7 @@ impl Actor {
     }
 
     /// A name for what was made.
-    fn name(&mut self) -> u64 {
+    pub fn name(&mut self) -> u64 {
         self.named += 1;
         self.deed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(self.named)
     }
@@ -167,7 +172,7 @@ impl Actor {
     }
 
     /// Gives what the last line makes a name in the program.
-    fn let_be(&mut self, id: &dyn core::fmt::Debug) {
+    pub fn let_be(&mut self, id: &dyn core::fmt::Debug) {
         if let Some(last) = self.lines.as_mut().and_then(|lines| lines.last_mut()) {
             *last = format!("let {} = {last}", rusty(&format!("{id:?}")));
         }
@@ -295,6 +300,7 @@ impl Actor {
     }
 
     pub fn step(&mut self) {
+        self.more.before_step(&mut self.world);
         self.line("world.step();".to_owned());
         match &self.threads {
             Some(threads) => {
@@ -310,6 +316,7 @@ impl Actor {
                 self.count("step");
             }
         }
+        self.more.after_step(&mut self.world);
     }
 }
 
@@ -346,7 +353,7 @@ pub fn reload(world: &mut World) {
 }
 
 /// The thing whose name the key likes best: the same one whatever others there are.
-fn pick<T: Copy>(all: &Names<T>, key: u64, is: impl Fn(T) -> bool) -> Option<T> {
+pub fn pick<T: Copy>(all: &[(u64, T)], key: u64, is: impl Fn(T) -> bool) -> Option<T> {
     let rank = |name: u64| {
         let mixed = (name ^ key).wrapping_mul(0xff51_afd7_ed55_8ccd);
         (mixed ^ mixed >> 33).wrapping_mul(0xc4ce_b9fe_1a85_ec53)

@@ -1,6 +1,7 @@
 //! A life: a world's settings and what is done to it before which step, from a seed.
 
 use crate::deeds::{self, Deed, MAKERS};
+use crate::extension;
 use crate::numbers::{Numbers, Taste, Temper};
 use sinew_math::Vec3;
 use sinew_physics::*;
@@ -35,6 +36,9 @@ pub struct Life {
     pub steps: u32,
 }
 
+/// Deeds whose works keep energy from being held against a world, and share of lives that do without them.
+const STIRRING: [&str; 5] = ["add_force", "set_force", "add_field", "add_particles", "add_object"];
+const PLAIN: f32 = 0.3;
 /// Steps after the last deed, in which a life is only looked at.
 const QUIET: u32 = 50;
 
@@ -46,7 +50,7 @@ impl Life {
         let temper = if n.chance(0.25) { Temper::Wild } else { Temper::Calm };
         let ground =
             n.one_of(&[Ground::HalfSpace, Ground::HalfSpace, Ground::Box, Ground::Boxes, Ground::Mesh]);
-        let busy = 20 + n.index(80) as u32;
+        let busy = extension::BUSY.start + n.index(extension::BUSY.len()) as u32;
         let mut life = Self {
             taste,
             temper,
@@ -56,11 +60,20 @@ impl Life {
             steps: busy + QUIET,
         };
         let all = deeds::all();
-        let makers: Vec<&'static Deed> =
-            MAKERS.iter().filter_map(|name| all.iter().copied().find(|deed| deed.name == *name)).collect();
+        let makers: Vec<&'static Deed> = MAKERS
+            .iter()
+            .chain(extension::MAKERS)
+            .filter_map(|name| all.iter().copied().find(|deed| deed.name == *name))
+            .collect();
+        let plain = Numbers::new(!seed, Taste::Any, Temper::Calm).chance(PLAIN);
+        let mut push = |step, number, deed: &'static Deed| {
+            if !(plain && STIRRING.contains(&deed.name)) {
+                life.acts.push(Act { step, number, deed });
+            }
+        };
         for _ in 0..4 + n.index(16) {
             let deed = n.one_of(&makers);
-            life.acts.push(Act { step: 0, number: n.bits(), deed });
+            push(0, n.bits(), deed);
         }
         let total: u32 = all.iter().map(|deed| deed.weight).sum();
         let rate = n.one_of(&[0.1, 0.3, 0.8]);
@@ -73,7 +86,7 @@ impl Life {
                     left = left.saturating_sub(deed.weight);
                     is_it
                 });
-                life.acts.push(Act { step, number: n.bits(), deed: deed.expect("weights sum up") });
+                push(step, n.bits(), deed.expect("weights sum up"));
             }
         }
         life

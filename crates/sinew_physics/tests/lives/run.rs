@@ -138,6 +138,7 @@ impl Run<'_> {
             self.watch.disturb();
         }
         if self.actors[0].world.step_count() != steps {
+            self.actors.iter_mut().for_each(|actor| actor.more.after_step(&mut actor.world));
             self.compare()?;
         }
         match self.actors[0].wanted.take() {
@@ -190,7 +191,7 @@ impl Run<'_> {
         }
         let plant = self.plant;
         let seen = |velocity| plant.map_or(velocity, |plant| plant.seen(is_due, velocity));
-        self.watch.look(self.life, &self.actors[0], seen)?;
+        self.watch.look(self.life, &mut self.actors[0], seen)?;
         // The watch asks for both.
         ["events", "work"].into_iter().for_each(|name| self.actors[0].count(name));
         let events = self.actors[0].world.events().clone();
@@ -203,6 +204,10 @@ impl Run<'_> {
                     "{name}: other events, {}",
                     unlike(actor.world.events(), &events)
                 )));
+            }
+            let (first, other) = (self.actors[0].more.events(), actor.more.events());
+            if other != first {
+                return Err(Fault::Differs(format!("{name}: tells {other} for {first}")));
             }
         }
         self.same_state()
@@ -221,6 +226,9 @@ impl Run<'_> {
                 });
                 return Err(Fault::Differs(format!("{name}: another state, of {body:?}")));
             }
+            if actor.more.state() != self.actors[0].more.state() {
+                return Err(Fault::Differs(format!("{name}: another state beside the world")));
+            }
         }
         Ok(())
     }
@@ -229,6 +237,7 @@ impl Run<'_> {
     fn empty(&mut self) -> Result<(), Fault> {
         for actor in &mut self.actors {
             actor.begin(1);
+            actor.more.empty(&mut actor.world);
             for id in actor.world.group_ids().collect::<Vec<_>>() {
                 call!(actor.remove_particles(id));
             }

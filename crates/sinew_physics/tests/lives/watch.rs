@@ -17,6 +17,8 @@ pub enum Fault {
     /// Bodies that are told to touch, far apart; or events that never end.
     Touch(String),
     Below(String),
+    /// A limb that flies, or a joint that gapes.
+    Limb(String),
     /// With the rise as a share of what is allowed.
     Energy(f32, String),
     /// Another world that should be the same.
@@ -49,8 +51,8 @@ pub struct Watch {
     sensed_shapes: BTreeSet<ShapePair>,
     /// Steps for which a pair has been far apart.
     apart: BTreeMap<BodyPair, u32>,
-    /// Steps for which a body has been below the floor.
-    below: BTreeMap<BodyId, u32>,
+    /// Steps for which a body has been below the floor and has not risen, and its height.
+    below: BTreeMap<BodyId, (u32, f32)>,
     /// Steps since the last deed that changes something.
     quiet: u32,
     energy: Option<Energy>,
@@ -75,6 +77,8 @@ const LATE: u32 = 3;
 /// Depth of a whole body below the floor, metres, and steps for which it may be pressed there.
 const DEPTH: f32 = 0.05;
 const PRESSED: u32 = 60;
+/// Rise within a step of what is on its way out of the floor, metres.
+const RISES: f32 = 1e-3;
 
 fn fault<T>(fault: impl Fn(String) -> Fault, text: String) -> Result<T, Fault> {
     Err(fault(text))
@@ -112,16 +116,17 @@ impl Watch {
     pub fn look(
         &mut self,
         life: &Life,
-        actor: &Actor,
+        actor: &mut Actor,
         seen: impl Fn(Velocity) -> Velocity,
     ) -> Result<(), Fault> {
         self.quiet += 1;
         finite(&actor.world, seen)?;
         self.events(actor.world.events())?;
         self.stale(actor)?;
+        actor.more.look(&actor.world, life.temper, self.quiet)?;
         if life.temper == Temper::Calm {
             self.floor(life, actor)?;
-            self.energy(&actor.world)?;
+            self.energy(actor)?;
         }
         Ok(())
     }
@@ -179,11 +184,12 @@ impl Watch {
                 let (center, top) = (world.center_of_mass(id), world.bounds(id).max.y);
                 let is_below = top < -DEPTH && center.x.abs() < reach && center.z.abs() < reach;
                 if is_below {
-                    let steps = self.below.get(&id).copied().unwrap_or(0) + 1;
+                    let (steps, height) = self.below.get(&id).copied().unwrap_or((0, center.y));
+                    let steps = if center.y > height + RISES { 0 } else { steps + 1 };
                     if steps > PRESSED {
                         return fault(Fault::Below, format!("{id:?} is at {center} below the floor"));
                     }
-                    below.insert(id, steps);
+                    below.insert(id, (steps, center.y));
                 }
             }
         }
@@ -192,10 +198,11 @@ impl Watch {
     }
 
     /// Energy rises by no more than what comes in.
-    fn energy(&mut self, world: &World) -> Result<(), Fault> {
+    fn energy(&mut self, actor: &Actor) -> Result<(), Fault> {
+        let world = &actor.world;
         let now = world.energy();
         let Some(before) = self.energy.replace(now) else { return Ok(()) };
-        if self.quiet < SETTLED || !is_passive(world) || is_torn(world) {
+        if self.quiet < SETTLED || actor.more.drives() || !is_passive(world) || is_torn(world) {
             return Ok(());
         }
         let mass: f32 = world.body_ids().map(|id| world.mass(id).mass).sum();

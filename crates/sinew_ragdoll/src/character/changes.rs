@@ -81,6 +81,7 @@ impl Character {
             self.physique.drives.release(world, &ragdoll);
             ragdoll.despawn(world);
             self.physique.hit.clear();
+            self.physique.keep_own();
         }
         self.sit_down(world);
         self.physique.remove_hit(world);

@@ -1,6 +1,7 @@
 //! States of a character, and what it tells of.
 
 use sinew_anim::FiredEvent;
+use sinew_math::{ReadError, Reader, Writer};
 use sinew_physics::BodyId;
 
 /// State of a character: what decides its pose.
@@ -100,6 +101,60 @@ pub enum CharacterEvent {
     Up,
 }
 
+impl CharacterEvent {
+    /// Writes one that a call brought about and no update has told of: those of clips are told by the update that they come in.
+    pub(super) fn save(&self, w: &mut Writer) {
+        let (tag, numbers): (u8, [u64; 2]) = match *self {
+            Self::Hit { body } => (0, [body as u64, 0]),
+            Self::Struck { body, impulse } => (1, [body as u64, u64::from(impulse.to_bits())]),
+            Self::Flinched { body } => (2, [body as u64, 0]),
+            Self::Recovered => (3, [0; 2]),
+            Self::Powered => (4, [0; 2]),
+            Self::Contact { body, other, begins } => (5 + u8::from(begins), [body as u64, other.to_bits()]),
+            Self::LetGo { body, held } => (7, [body as u64, held.to_bits()]),
+            Self::Stumbled => (8, [0; 2]),
+            Self::Caught { steps } => (9, [u64::from(steps), 0]),
+            Self::Detached { body } => (10, [body as u64, 0]),
+            Self::WentLimp => (11, [0; 2]),
+            Self::Touched => (12, [0; 2]),
+            Self::Settled { since } => (13, [u64::from(since.to_bits()), 0]),
+            Self::NeverSettled => (14, [0; 2]),
+            Self::Preparing { rolls } => (15, [u64::from(rolls), 0]),
+            Self::GettingUp { clip } => (16, [clip.map_or(0, |clip| clip as u64 + 1), 0]),
+            Self::Up => (17, [0; 2]),
+            Self::Clip(_) => unreachable!("an update tells of it"),
+        };
+        w.u8(tag);
+        numbers.into_iter().for_each(|number| w.u64(number));
+    }
+
+    /// Reads what [`save`](Self::save) wrote.
+    pub(super) fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let (tag, first, second) = (r.u8()?, r.u64()?, r.u64()?);
+        let (body, id) = (first as usize, BodyId::from_bits(second));
+        Ok(match tag {
+            0 => Self::Hit { body },
+            1 => Self::Struck { body, impulse: f32::from_bits(second as u32) },
+            2 => Self::Flinched { body },
+            3 => Self::Recovered,
+            4 => Self::Powered,
+            5 | 6 => Self::Contact { body, other: id, begins: tag == 6 },
+            7 => Self::LetGo { body, held: id },
+            8 => Self::Stumbled,
+            9 => Self::Caught { steps: first as u32 },
+            10 => Self::Detached { body },
+            11 => Self::WentLimp,
+            12 => Self::Touched,
+            13 => Self::Settled { since: f32::from_bits(first as u32) },
+            14 => Self::NeverSettled,
+            15 => Self::Preparing { rolls: first != 0 },
+            16 => Self::GettingUp { clip: first.checked_sub(1).map(|clip| clip as usize) },
+            17 => Self::Up,
+            _ => return Err(r.error("tells of an unknown event")),
+        })
+    }
+}
+
 /// Events of a character that were not told yet, and those of its last update.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Events {
@@ -116,6 +171,11 @@ impl Events {
     /// Forgets what was there at the end of the last update.
     pub fn begin(&mut self) {
         self.list.drain(..self.told);
+    }
+
+    /// Events that calls brought about since the last update.
+    pub fn untold(&self) -> &[CharacterEvent] {
+        &self.list[self.told..]
     }
 
     /// Ends an update.

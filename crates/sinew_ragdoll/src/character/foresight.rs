@@ -60,10 +60,11 @@ impl Foresight<'_> {
         scratch.bodies_of(self.def, &self.figure.pose, Transform::IDENTITY, &mut now);
         let (mut animator, mut way) = (scratch.sent_ahead(&self.gait.animator), Transform::IDENTITY);
         let laps = laps(&animator);
+        // Velocities are those of the clips, from what they have now: the pose may be that of bodies or of stepping feet, which is not quite theirs.
+        let (mut from, mut further) = (Vec::new(), Vec::new());
+        self.bodies(&mut animator, &mut way, 0.0, scratch, &mut from);
         self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut ahead);
-        let mut further = Vec::new();
         self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut further);
-        let mut from = now.clone();
         if self::laps(&animator) != laps {
             // Across a loop's seam poses may jump: what counts is how they go on behind it.
             core::mem::swap(&mut from, &mut further);

@@ -13,7 +13,7 @@ use super::limp::{Clearing, Lying, Stillness};
 use super::physique::Physique;
 use super::prepare::Preparing;
 use super::stumble::{Balance, Stumble};
-use super::{Character, CharacterDef};
+use super::{Character, CharacterDef, CharacterEvent};
 use crate::garments::Worn;
 use crate::ragdoll::Ragdoll;
 use crate::springs::SpringSwing;
@@ -25,6 +25,8 @@ use sinew_physics::{BodyId, JointId, MoverId, Velocity};
 const MAGIC: &[u8; 8] = b"sinew-c\x07";
 /// Bit of what is held: a grip that pulls follows.
 const GRASPS: u8 = 2;
+/// Bytes of an event that no update has told of.
+const EVENT_BYTES: usize = 17;
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
 /// Why bytes are refused that do not fit the definition.
@@ -55,6 +57,9 @@ impl Character {
         if !self.def.garments().is_empty() {
             self.wear.garments.save(w);
         }
+        let untold = self.events.untold();
+        w.count(untold.len());
+        untold.iter().for_each(|event| event.save(w));
     }
 
     /// Brings back a saved state of a character of the same definition. Its bodies are those of the world's snapshot
@@ -85,6 +90,8 @@ impl Character {
         loaded.wear.springs =
             if springs.is_empty() { SpringSwing::new() } else { SpringSwing::load(springs, r)? };
         loaded.wear.garments = if garments.is_empty() { Worn::default() } else { Worn::load(garments, r)? };
+        let count = r.count(EVENT_BYTES)?;
+        let untold = (0..count).map(|_| CharacterEvent::load(r)).collect::<Result<Vec<_>, _>>()?;
         let has_bodies = !matches!(loaded.activity, Activity::Animated | Activity::GettingUp(_));
         let is_based = loaded.physique.physical.base().len() == joints;
         let fits = [pose.len(), earlier.pose.len()] == [joints; 2]
@@ -95,6 +102,7 @@ impl Character {
         }
         (loaded.figure.place, loaded.figure.pose, loaded.figure.earlier) = (place, pose, earlier);
         loaded.show_loaded();
+        loaded.events.list = untold;
         *self = loaded;
         Ok(())
     }

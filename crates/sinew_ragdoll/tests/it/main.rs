@@ -24,7 +24,6 @@ mod hand_over;
 mod in_world;
 mod learned;
 mod lives;
-mod maimed;
 mod mapping;
 mod mesh_garments;
 mod paces;

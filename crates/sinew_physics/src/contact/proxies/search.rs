@@ -1,5 +1,6 @@
 //! Queries of the trees: pairs that may meet, and shapes near a box, along a line or around a point.
 
+use super::layer::Home;
 use super::{Leaf, Owner, Proxies, grown, is_bounded};
 use crate::arena::Arena;
 use crate::body::Body;
@@ -66,7 +67,8 @@ impl Proxies {
         }
         for &leaf in &self.pending {
             let owner = self.layer(leaf.moves()).owners[leaf.at()];
-            let is_there = self.home(owner.body).is_some_and(|home| home.leaf(owner.shape) == leaf);
+            let is_at = |home: Home| owner.shape < home.count && home.leaf(owner.shape) == leaf;
+            let is_there = self.home(owner.body).is_some_and(is_at);
             if is_there && bodies.try_at(owner.body).is_some() {
                 self.neighbors(bodies, owner, leaf, &mut visit);
             }

@@ -13,7 +13,7 @@ use crate::slices::for_each_mut;
 use crate::solver::body::SolverBody;
 use crate::solver::contact_rows::{Placed, found_anew, margin, weights};
 use crate::solver::contacts::classes::Class;
-use crate::solver::tuning::{REFRESH_TURN_LANES, REFRESH_TURN_RIM};
+use crate::solver::tuning::{REFRESH_TURN_LANES, REFRESH_TURN_LED, REFRESH_TURN_RIM};
 use crate::solver::view::View;
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::lanes::WIDTH;
@@ -98,8 +98,12 @@ impl Contacts {
 
     /// Lists what turns fast for the first time.
     fn find_fast(&mut self, substep: &Substep<'_>) {
-        for (turned, body) in self.turned[..substep.moving].iter_mut().zip(0..) {
-            *turned += substep.turn(body);
+        for (turned, body) in self.turned.iter_mut().zip(0..) {
+            let turn = substep.turn(body);
+            // What is led and turns slowly, as limbs of clips do, is seen well enough from the step's beginning.
+            if (body as usize) < substep.moving || turn >= REFRESH_TURN_LED {
+                *turned += turn;
+            }
         }
         if !self.turned.iter().any(|&turned| turned >= REFRESH_TURN_LANES) {
             return;

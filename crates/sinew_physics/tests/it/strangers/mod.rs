@@ -1,11 +1,11 @@
 //! Worlds of strangers: a snapshot that is loaded into a world that never knew the one it was taken of has the same future, on another number of
 //! threads too, whatever the world holds and whatever is done to it.
 //!
-//! Worlds of 10 to 300 bodies of all kinds lie, sleep, are pushed, joined, sensed and changed; each is saved at random moments and goes on
+//! Worlds of 10 to 300 bodies (500 in a long run) of all kinds lie, sleep, are pushed, joined, sensed and changed; each is saved at random moments and goes on
 //! beside the worlds that loaded it, which do to themselves what it does. Snapshots and events are equal after each step.
 //!
 //! A few worlds, or 300 when `SINEW_FULL` is set. `SINEW_WORLDS=17..18 cargo test --release -p sinew_physics --test it -- --nocapture strangers`
-//! runs the seeds of the range and tells how far it is.
+//! runs the seeds of the range and tells how far it is. `cargo xtask lives --of strangers` goes on from seed to seed, each world for 600 steps.
 
 mod deeds;
 mod populate;
@@ -14,9 +14,17 @@ use crate::random_worlds::asked_seeds;
 use sinew_math::{Random, Reader, Writer};
 use sinew_physics::stage::NoProfiler;
 use sinew_physics::{Events, Serial, Threads, World, WorldDef};
+use std::io::Write;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
-/// Steps of each world.
+/// Steps of each world, and of those of a long run.
 const STEPS: usize = 300;
+const MORE_STEPS: usize = 600;
+/// Most bodies of each, and of those of a long run.
+const MOST: usize = 300;
+const MORE: usize = 500;
 /// Moments at which each is saved.
 const MOMENTS: usize = 5;
 
@@ -56,12 +64,12 @@ fn moved_on(world: &mut World, seed: u64, step: usize, threads: Option<&Threads>
 }
 
 /// Runs the world of a seed beside those that load it.
-fn meet_strangers(seed: u64) {
+fn meet_strangers(seed: u64, steps: usize, most: usize) {
     let mut random = Random::new(seed);
-    let mut world = populate::world(&mut random);
-    let moments: Vec<usize> = (0..MOMENTS).map(|_| random.index(STEPS - 20)).collect();
+    let mut world = populate::world(&mut random, most);
+    let moments: Vec<usize> = (0..MOMENTS).map(|_| random.index(steps - 20)).collect();
     let mut strangers: Vec<Stranger> = Vec::new();
-    for step in 0..STEPS {
+    for step in 0..steps {
         for _ in moments.iter().filter(|&&moment| moment == step) {
             strangers.push(Stranger::of(&world, step, 1 + strangers.len() % 2));
         }
@@ -83,11 +91,40 @@ fn seeds() -> core::ops::Range<u64> {
 
 #[test]
 fn strangers_have_the_same_future() {
+    if let Ok(minutes) = std::env::var("SINEW_MINUTES") {
+        return for_minutes(minutes.parse().expect("SINEW_MINUTES is a number"));
+    }
     let told = asked_seeds().is_some();
     for seed in seeds() {
-        meet_strangers(seed);
+        meet_strangers(seed, STEPS, MOST);
         if told && (seed + 1).is_multiple_of(20) {
             eprintln!("strangers: {} hold", seed + 1);
         }
     }
+}
+
+/// Runs worlds from the first seed of `SINEW_LIVES` on for some time, on all cores, and adds a line to the file of `SINEW_LOG`.
+fn for_minutes(minutes: f32) {
+    let first = std::env::var("SINEW_LIVES").ok().and_then(|seeds| seeds.split_once("..")?.0.parse().ok());
+    let first: u64 = first.expect("SINEW_LIVES begins with a seed");
+    let (next, start) = (AtomicU64::new(first), Instant::now());
+    let failed = Mutex::new(Vec::new());
+    let worker = || {
+        while start.elapsed().as_secs_f32() < 60.0 * minutes {
+            let seed = next.fetch_add(1, Ordering::Relaxed);
+            if std::panic::catch_unwind(|| meet_strangers(seed, MORE_STEPS, MORE)).is_err() {
+                failed.lock().expect("nobody panics with it").push(seed);
+            }
+        }
+    };
+    let workers = std::thread::available_parallelism().map_or(1, core::num::NonZero::get);
+    std::thread::scope(|scope| (0..workers).for_each(|_| _ = scope.spawn(worker)));
+    let (end, failed) = (next.into_inner(), failed.into_inner().expect("nobody panics with it"));
+    if let Some(path) = std::env::var_os("SINEW_LOG") {
+        let file = std::fs::OpenOptions::new().create(true).append(true).open(path);
+        let mut file = file.expect("the log can be opened");
+        writeln!(file, "seeds {first}..{end}, {MORE_STEPS} steps, failed: {failed:?}")
+            .expect("the log can be written");
+    }
+    assert!(failed.is_empty(), "worlds {failed:?} part");
 }

@@ -195,8 +195,8 @@ fn field(random: &mut Random) -> FieldDef {
     FieldDef { region, ..FieldDef::new(kind) }
 }
 
-/// A world of 10 to 300 bodies.
-pub fn world(random: &mut Random) -> World {
+/// A world of 10 to `most` bodies.
+pub fn world(random: &mut Random, most: usize) -> World {
     let mut def = WorldDef::default();
     if random.unit() < 0.1 {
         def.sleeping = Sleeping::Off;
@@ -206,7 +206,7 @@ pub fn world(random: &mut Random) -> World {
     }
     let mut world = World::new(def);
     deeds::register(&mut world);
-    let count = if random.unit() < 0.5 { 10 + random.index(50) } else { 60 + random.index(240) };
+    let count = if random.unit() < 0.5 { 10 + random.index(50) } else { 60 + random.index(most - 60) };
     let width = (count as f32).sqrt() * 0.3;
     ground(&mut world, random, width);
     let walled = if random.unit() < 0.6 { random.index(count) } else { 0 };

@@ -8,6 +8,7 @@ mod questions;
 mod time;
 
 use crate::actor::Actor;
+use crate::extension;
 use crate::numbers::Numbers;
 
 /// Operation on a world, drawn at random; does nothing if the world has no object that it applies to.
@@ -30,19 +31,10 @@ impl Deed {
 
 /// All deeds.
 pub fn all() -> Vec<&'static Deed> {
-    [bodies::ALL, joints::ALL, others::ALL, questions::ALL, time::ALL].concat_refs()
+    let of_the_world = [bodies::ALL, joints::ALL, others::ALL, questions::ALL, time::ALL];
+    of_the_world.iter().chain(extension::DEEDS).copied().flatten().collect()
 }
 
 /// Deeds that make a world to live in.
 pub const MAKERS: &[&str] =
     &["add_body", "add_body", "wall", "add_joint", "chain", "add_particles", "add_mover", "add_field"];
-
-trait Concat {
-    fn concat_refs(&self) -> Vec<&'static Deed>;
-}
-
-impl Concat for [&'static [Deed]; 5] {
-    fn concat_refs(&self) -> Vec<&'static Deed> {
-        self.iter().flat_map(|deeds| deeds.iter()).collect()
-    }
-}

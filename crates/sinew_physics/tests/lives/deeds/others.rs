@@ -245,6 +245,9 @@ fn push_particle(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let id = a.group(n)?;
     let count = a.world.particles(id).positions().len();
     let (particle, by) = (n.index(count) as u32, n.vector(1.0));
+    if a.world.particles(id).velocities()[particle as usize].length() > 1e30 {
+        return None;
+    }
     let by = if by.length() < 1e6 { by } else { Vec3::Y };
     let pin = a
         .world

@@ -12,7 +12,7 @@ use crate::framework::setting::{Setting, Setup};
 use crate::parts::{cuboid, fixed, floor};
 use sinew::anim::local_to_model;
 use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer, min};
-use sinew::physics::{BodyId, World};
+use sinew::physics::{BodyDef, BodyId, World};
 use sinew::ragdoll::{Character, CharacterDef, GroundContact, Preset, State};
 use std::sync::Arc;
 use watch::{Watch, Watched};
@@ -27,6 +27,7 @@ pub(in crate::scenes) const BRAWL: Scene = Scene {
         Setting::whole("crates", 12, (0, 200), "number of crates"),
         Setting::number("hits", 4.0, (0.0, 60.0), "blows each second, of 5 to 90 N·s"),
         Setting::whole("powered", 0, (0, 1), "1: muscles hold those who stand, 0: their clips lead them"),
+        Setting::whole("tiles", 0, (0, 1), "1: the floor is of boxes of 1 m, 0: one half-space"),
         Setting::whole("seed", 1, (0, 10_000), "number that decides places, ways and blows"),
     ],
     build: brawl,
@@ -48,7 +49,7 @@ const STAIRS: (usize, f32, f32, f32) = (4, 0.18, 0.32, 1.0);
 
 fn brawl(setup: &Setup<'_>) -> Instance {
     let mut world = setup.world();
-    let mut stands = vec![world.add_body(&floor())];
+    let mut stands: Vec<BodyId> = ground(setup).iter().map(|def| world.add_body(def)).collect();
     stands.extend(walls_and_stairs().into_iter().map(|(half, at)| world.add_body(&fixed(cuboid(half, at)))));
     let mut random = Random::new(setup.whole("seed") as u64);
     for index in 0..setup.whole("crates") {
@@ -78,6 +79,17 @@ fn brawl(setup: &Setup<'_>) -> Instance {
     let mut script = Brawl { def, fighters, hits, powered, due: 0.0, seed: random.bits(), watch };
     script.fighters.iter_mut().for_each(Fighter::show);
     Instance::new(world, script)
+}
+
+/// Ground on which all stand.
+fn ground(setup: &Setup<'_>) -> Vec<BodyDef> {
+    if setup.whole("tiles") == 0 {
+        return vec![floor()];
+    }
+    let half = ROOM as i32 + 1;
+    let side = || (-half..half).map(|at| at as f32 + 0.5);
+    let tile = |x, z| fixed(cuboid(Vec3::splat(0.5), Vec3::new(x, -0.5, z)));
+    side().flat_map(|x| side().map(move |z| tile(x, z))).collect()
 }
 
 /// Boxes by half extents and middle.

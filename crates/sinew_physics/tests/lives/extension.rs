@@ -1,0 +1,61 @@
+//! What lives beside a world, with deeds of its own: here nothing. The lives of the ragdoll crate run by the same files and have
+//! characters in this place.
+
+use crate::actor::Twin;
+use crate::deeds::Deed;
+use crate::numbers::Temper;
+use crate::watch::Fault;
+use core::ops::Range;
+use sinew_physics::World;
+
+/// Types whose public methods the lives call.
+pub const CALLED: &[&str] = &["World"];
+/// Deeds beside those to the world, and names of those that begin a life.
+pub const DEEDS: &[&[Deed]] = &[];
+pub const MAKERS: &[&str] = &[];
+/// Steps in which deeds are done.
+pub const BUSY: Range<u32> = 20..100;
+
+/// What lives beside a world.
+pub struct Extension;
+
+impl Extension {
+    pub fn new() -> Self {
+        Self
+    }
+
+    /// The same beside a copy of the world.
+    pub fn twin(&self, _: Twin) -> Self {
+        Self
+    }
+
+    pub fn before_step(&mut self, _: &mut World) {}
+
+    pub fn after_step(&mut self, _: &mut World) {}
+
+    /// Bytes of its state.
+    pub fn state(&self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    /// What it tells of a step.
+    pub fn events(&self) -> String {
+        String::new()
+    }
+
+    /// True if it gives energy that nobody counts.
+    pub fn drives(&self) -> bool {
+        false
+    }
+
+    /// Looks at it after a step; `quiet`: steps since the last deed.
+    ///
+    /// # Errors
+    /// If something is as it must not be.
+    pub fn look(&mut self, _: &World, _: Temper, _quiet: u32) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    /// Takes all of it out of the world.
+    pub fn empty(&mut self, _: &mut World) {}
+}

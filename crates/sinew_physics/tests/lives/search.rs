@@ -1,0 +1,184 @@
+//! Runs many lives beside each other, and tells of those that fail.
+
+use crate::life::Life;
+use crate::run::{self, Outcome, run};
+use crate::{interface, shrink};
+use core::ops::Range;
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// Time of a full run.
+const LONG: Duration = Duration::from_secs(600);
+/// Seeds from which on lives are run for calls that are in none of those that were asked for.
+const RARE: u64 = 1 << 32;
+/// Time after which a life is told to be slow.
+const SLOW: Duration = Duration::from_secs(2);
+/// Lives after which those who wait are told how far it is.
+const PROGRESS: u64 = 500;
+
+/// What a run of the tests looks at.
+struct Asked {
+    /// Seeds, or numbers of those that are listed.
+    seeds: Range<u64>,
+    listed: &'static [u64],
+    time: Duration,
+}
+
+impl Asked {
+    /// Seeds from one to before another (`SINEW_LIVES=17..1000`), those from one on for some time (`SINEW_LIVES=17.. SINEW_MINUTES=20`), all for ten
+    /// minutes (`SINEW_FULL`), or else some.
+    fn of(some: &'static [u64]) -> Self {
+        let minutes = std::env::var("SINEW_MINUTES").ok();
+        let minutes = minutes.map(|minutes| minutes.parse::<f32>().expect("SINEW_MINUTES is a number"));
+        let time = minutes.map(|minutes| Duration::from_secs_f32(60.0 * minutes));
+        if let Ok(range) = std::env::var("SINEW_LIVES") {
+            let (lo, hi) = range.split_once("..").expect("SINEW_LIVES is lo..hi or lo..");
+            let hi = if hi.is_empty() { u64::MAX } else { hi.parse().expect("a seed") };
+            let seeds = lo.parse().expect("a seed")..hi;
+            return Self { seeds, listed: &[], time: time.unwrap_or(Duration::MAX) };
+        }
+        match (std::env::var_os("SINEW_FULL"), time) {
+            (None, None) => Self { seeds: 0..some.len() as u64, listed: some, time: Duration::MAX },
+            (_, time) => Self { seeds: 0..u64::MAX, listed: &[], time: time.unwrap_or(LONG) },
+        }
+    }
+
+    /// Seed of a number, if it is one of those.
+    fn seed(&self, number: u64) -> Option<u64> {
+        let listed = self.listed.get(number as usize).copied();
+        self.seeds.contains(&number).then(|| listed.unwrap_or(number))
+    }
+}
+
+/// A failure made short, as text.
+fn told(seed: u64, outcome: &Outcome) -> String {
+    let failure = outcome.result.as_ref().expect_err("a failure");
+    let (least, failure) = shrink::shrunk(&Life::of(seed), failure);
+    let lines = run(&least, None, true).program.unwrap_or_default();
+    let acts = least.acts.len();
+    let program = run::program(&least, &lines);
+    format!("life {seed} ({acts} deeds left): {failure:?}\n{program}")
+}
+
+/// Figures of many lives.
+#[derive(Default)]
+struct Sum {
+    lives: u64,
+    deeds: u64,
+    calls: BTreeMap<&'static str, u64>,
+    rise: f32,
+    failed: Vec<(u64, String)>,
+    /// First seed that was not looked at.
+    next: u64,
+}
+
+/// Runs lives until their seeds or their time are over.
+fn all(asked: &Asked, workers: usize) -> Sum {
+    let (next, start) = (AtomicU64::new(asked.seeds.start), Instant::now());
+    let worker = || {
+        let mut sum = Sum::default();
+        loop {
+            if start.elapsed() > asked.time {
+                return sum;
+            }
+            let Some(seed) = asked.seed(next.fetch_add(1, Ordering::Relaxed)) else { return sum };
+            let began = Instant::now();
+            let outcome = run(&Life::of(seed), None, false);
+            if began.elapsed() > SLOW {
+                eprintln!("life {seed} takes {:.1} s", began.elapsed().as_secs_f32());
+            }
+            sum.lives += 1;
+            sum.deeds += outcome.deeds;
+            sum.rise = sinew_math::max(sum.rise, outcome.rise);
+            for (name, count) in &outcome.calls {
+                *sum.calls.entry(name).or_insert(0) += count;
+            }
+            if let Err(failure) = &outcome.result {
+                eprintln!("life {seed} fails: {failure:?}");
+                sum.failed.push((seed, format!("{failure:?}")));
+            }
+            if (seed + 1).is_multiple_of(PROGRESS) {
+                eprintln!("lives: at {}, {:.0} s", seed + 1, start.elapsed().as_secs_f32());
+            }
+        }
+    };
+    let mut total = Sum::default();
+    let sums: Vec<Sum> = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(worker)).collect();
+        workers.into_iter().map(|worker| worker.join().expect("a worker ends")).collect()
+    });
+    for sum in sums {
+        total.lives += sum.lives;
+        total.deeds += sum.deeds;
+        total.rise = sinew_math::max(total.rise, sum.rise);
+        sum.calls.into_iter().for_each(|(name, count)| *total.calls.entry(name).or_insert(0) += count);
+        total.failed.extend(sum.failed);
+    }
+    total.failed.sort();
+    total.next = u64::min(next.load(Ordering::Relaxed), asked.seeds.end);
+    total
+}
+
+/// Lives that run beside each other.
+pub fn workers() -> usize {
+    std::env::var("SINEW_WORKERS")
+        .ok()
+        .and_then(|count| count.parse().ok())
+        .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, core::num::NonZero::get))
+}
+
+/// Looks at lives; those that fail are told of, the first of them as a short program.
+///
+/// # Panics
+/// If one fails, or if at least as many as `some` leave a call out.
+pub fn search(some: &'static [u64]) {
+    let asked = Asked::of(some);
+    let mut sum = all(&asked, workers());
+    let calls: u64 = sum.calls.values().sum();
+    let Sum { lives, deeds, rise, failed, next, .. } = &sum;
+    eprintln!(
+        "{lives} lives, {deeds} deeds, {calls} calls, {} fail; energy rose by {rise} of what may be; next seed {next}",
+        failed.len()
+    );
+    log(&format!(
+        "seeds {}..{next}, {lives} lives, {deeds} deeds, {calls} calls, failed: {failed:?}",
+        asked.seeds.start
+    ));
+    if let Some((seed, _)) = sum.failed.first() {
+        let outcome = run(&Life::of(*seed), None, false);
+        panic!("{} of {lives} lives fail: {failed:?}\n{}", failed.len(), told(*seed, &outcome));
+    }
+    if sum.lives >= some.len() as u64 {
+        // Rare calls are in few lives: some more are run for them.
+        for seed in RARE..RARE + 4 * some.len() as u64 {
+            if interface::has_all(&sum.calls) {
+                break;
+            }
+            for (name, count) in run(&Life::of(seed), None, false).calls {
+                *sum.calls.entry(name).or_insert(0) += count;
+            }
+        }
+        interface::expect_all(&sum.calls);
+    }
+}
+
+/// Adds a line to the file of `SINEW_LOG`, if it is set.
+fn log(line: &str) {
+    if let Some(path) = std::env::var_os("SINEW_LOG") {
+        let file = std::fs::OpenOptions::new().create(true).append(true).open(path);
+        writeln!(file.expect("the log can be opened"), "{line}").expect("the log can be written");
+    }
+}
+
+/// Makes the failures among the lives that are asked for short, and prints them.
+pub fn shorten(some: &'static [u64]) {
+    let asked = Asked::of(some);
+    for seed in asked.seeds.clone().filter_map(|number| asked.seed(number)) {
+        let outcome = run(&Life::of(seed), None, false);
+        if outcome.result.is_err() {
+            println!("{}", told(seed, &outcome));
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Searches for failures that go on from run to run, and an hour of game.
+
+use crate::command;
+use anyhow::{Context, Result, bail};
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Minutes after which a search notes how far it is, and tells of what it found.
+const CHUNK: f64 = 5.0;
+
+/// `cargo xtask lives`: random lives of worlds, or of characters in them, from the seed at which the last run ended.
+///
+/// Each chunk of five minutes adds a line to a file outside the repository: seeds, lives, calls, failures. It ends at the first chunk with a failure, which it
+/// prints as a short program.
+#[derive(clap::Args)]
+#[command(after_help = "Example: cargo xtask lives --of characters --minutes 60")]
+pub struct Lives {
+    /// What lives
+    #[arg(long, value_enum, default_value_t = Of::Worlds)]
+    of: Of,
+    /// Seed to begin at; by default where the last run ended
+    #[arg(long, value_name = "SEED")]
+    from: Option<u64>,
+    /// How long
+    #[arg(long, value_name = "M", default_value_t = 20.0)]
+    minutes: f64,
+    /// Folder that keeps how far each search is; by default that of the user's state
+    #[arg(long, value_name = "DIR")]
+    progress: Option<PathBuf>,
+}
+
+/// What a search makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Of {
+    /// Worlds, by all calls of theirs
+    Worlds,
+    /// Worlds with characters in them, by all calls of both
+    Characters,
+    /// Worlds of up to 500 bodies, loaded into fresh ones at five moments each
+    Strangers,
+}
+
+impl Of {
+    /// Name of its file, package, test target and test.
+    fn test(self) -> (&'static str, [&'static str; 3]) {
+        match self {
+            Self::Worlds => ("lives", ["sinew_physics", "lives", "lives_hold"]),
+            Self::Characters => ("characters", ["sinew_ragdoll", "lives", "lives_hold"]),
+            Self::Strangers => ("strangers", ["sinew_physics", "it", "strangers_have_the_same_future"]),
+        }
+    }
+}
+
+impl Lives {
+    /// # Errors
+    /// If a life fails, or the folder cannot be written.
+    pub fn run(&self) -> Result<()> {
+        let folder = self.progress.clone().map_or_else(folder_of_state, Ok)?;
+        fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+        let (name, [package, target, test]) = self.of.test();
+        let log = folder.join(format!("{name}.log"));
+        let (start, time) = (Instant::now(), Duration::from_secs_f64(60.0 * self.minutes));
+        let mut from = self.from;
+        while start.elapsed() < time {
+            let left = (time - start.elapsed()).as_secs_f64() / 60.0;
+            let first = from.take().map_or_else(|| next_seed(&log), Ok)?;
+            let mut run =
+                command::cargo(&["test", "--release", "--package", package, "--test", target, "--"]);
+            run.args(["--nocapture", test]).env("SINEW_LIVES", format!("{first}.."));
+            run.env("SINEW_MINUTES", f64::min(left, CHUNK).to_string()).env("SINEW_LOG", &log);
+            let outcome = command::run(&mut run);
+            eprintln!("{}: {}", log.display(), last_line(&log)?);
+            outcome?;
+        }
+        Ok(())
+    }
+}
+
+/// The folder in which programs of this user keep their state.
+fn folder_of_state() -> Result<PathBuf> {
+    let home = || env::var_os("HOME").map(|home| PathBuf::from(home).join(".local/state"));
+    let state = env::var_os("XDG_STATE_HOME").map(PathBuf::from).or_else(home);
+    Ok(state.context("neither XDG_STATE_HOME nor HOME is set: use --progress")?.join("sinew"))
+}
+
+fn last_line(log: &Path) -> Result<String> {
+    if !log.exists() {
+        return Ok(String::new());
+    }
+    let text = fs::read_to_string(log).with_context(|| log.display().to_string())?;
+    Ok(text.lines().last().unwrap_or_default().to_owned())
+}
+
+/// Seed after those of the last line, which begins with `seeds a..b`; 0 without one.
+fn next_seed(log: &Path) -> Result<u64> {
+    let line = last_line(log)?;
+    if line.is_empty() {
+        return Ok(0);
+    }
+    let end = line
+        .strip_prefix("seeds ")
+        .and_then(|rest| rest.split([',', ' ']).next()?.split_once("..")?.1.parse().ok());
+    end.with_context(|| format!("{}: its last line begins with no seeds: {line}", log.display()))
+}
+
+/// `cargo xtask soak`: an hour of game, watched from step to step.
+#[derive(clap::Args)]
+#[command(after_help = "Example: cargo xtask soak --hours 0.5 --part brawl")]
+pub struct Soak {
+    /// Hours of game, shared among the parts
+    #[arg(long, value_name = "H", default_value_t = 1.0)]
+    hours: f64,
+    /// Only this part; repeatable
+    #[arg(long = "part", value_name = "NAME")]
+    parts: Vec<String>,
+}
+
+impl Soak {
+    /// # Errors
+    /// If something is lost, opens, flies or grows.
+    pub fn run(&self) -> Result<()> {
+        if !(self.hours > 0.0 && self.hours.is_finite()) {
+            bail!("--hours is a positive number, not {}", self.hours);
+        }
+        let mut run =
+            command::cargo(&["run", "--release", "--package", "sinew_scenes", "--example", "soak", "--"]);
+        command::run(run.arg(self.hours.to_string()).args(&self.parts))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_goes_on_where_it_ended() {
+        let log = env::temp_dir().join(format!("sinew-search-{}.log", std::process::id()));
+        assert_eq!(next_seed(&log).expect("no log is a beginning"), 0);
+        fs::write(&log, "seeds 0..60, 60 lives\nseeds 60..1790, 1730 lives\n").expect("a file");
+        assert_eq!(next_seed(&log).expect("it has lines"), 1790);
+        fs::write(&log, "nothing\n").expect("a file");
+        assert!(next_seed(&log).is_err());
+        fs::remove_file(&log).expect("it is there");
+    }
+}
