@@ -216,8 +216,11 @@ fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let top = (0..start.len()).reduce(|a, b| if start[b].y > start[a].y { b } else { a })?;
     let [begins, ends] = [&start, &end].map(|places| places[top].y - floor);
     let flat = |a: Vec3, b: Vec3| Vec3::new(a.x - b.x, 0.0, a.z - b.z).length();
-    // As it stands then: arms that were held out hang down.
-    let wide = end.iter().flat_map(|&a| end.iter().map(move |&b| flat(a, b))).fold(0.0, max);
+    // By what it stands on: how far it holds out its arms is no matter. Where nothing is low, by all of it.
+    let is_low = |at: &&Vec3| at.y - floor < 0.5 * begins;
+    let low: Vec<Vec3> = end.iter().filter(is_low).copied().collect();
+    let stance = if low.is_empty() { &end } else { &low };
+    let wide = stance.iter().flat_map(|&a| stance.iter().map(move |&b| flat(a, b))).fold(0.0, max);
     let is_still = baked.quality.settled_s.is_some();
     (is_still && begins > wide && ends > STILL_UPRIGHT * begins).then(|| {
         let bone = &def.bodies[top].bone;
