@@ -28,9 +28,9 @@ mod tuning;
 pub use bake::{BakeHit, BakeInput, Baked, HitEffect, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
 pub use character::{
-    AfterSettling, Blow, Character, CharacterDef, CharacterEvent, Detail, Distances, GettingReady, Grab,
-    GrabPoint, Grip, GroundContact, HitBodies, InWorld, Limb, Locomotion, MotionError, MotionSet, Opening,
-    Part, Preset, State, Toughness,
+    AfterSettling, Blow, Character, CharacterDef, CharacterEvent, Detail, Distances, FootPlanting,
+    GettingReady, Grab, GrabPoint, Grip, GroundContact, HitBodies, InWorld, Limb, Locomotion, MotionError,
+    MotionSet, Opening, Part, Preset, State, Toughness,
 };
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 pub use doctor::{Repair, cure, doctor};

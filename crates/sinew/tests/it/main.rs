@@ -37,6 +37,8 @@ mod shooter;
 mod snapshots;
 #[path = "../../examples/stack.rs"]
 mod stack;
+#[path = "../../examples/stairs.rs"]
+mod stairs;
 #[path = "../../examples/threads.rs"]
 mod threads;
 #[path = "../../examples/wind.rs"]
@@ -67,6 +69,11 @@ fn the_questions_are_answered() {
 #[test]
 fn the_player_walks_rides_and_jumps() {
     player::main();
+}
+
+#[test]
+fn the_walker_goes_up_stairs_and_down_a_ramp() {
+    stairs::main();
 }
 
 #[test]

@@ -10,8 +10,8 @@ use super::prepare::Preparing;
 use super::stumble::{Balance, Balancing};
 use super::wear::{Bearer, Wear};
 use super::{
-    Blow, Character, CharacterEvent, Detail, GettingReady, HitBodies, State, Toughness, blows, ground,
-    powered, prepare,
+    Blow, Character, CharacterEvent, Detail, FootPlanting, GettingReady, HitBodies, State, Toughness, blows,
+    ground, powered, prepare,
 };
 use crate::character::tuning::{ABOVE_PELVIS, INTO_GET_UP, INTO_LOOP, INTO_STANDING, LYING_MOVER};
 use crate::drive::{DriveMode, Muscle};
@@ -23,6 +23,13 @@ use sinew_physics::{BodyId, BodyKind, ContactRule, JointId, World, Yields};
 impl Character {
     pub(super) fn is_in_world(&self) -> bool {
         self.detail.is_some()
+    }
+
+    /// True if its feet follow the ground as it goes.
+    pub(super) fn follows_ground(&self) -> bool {
+        self.def.in_world.foot_planting == FootPlanting::OnGround
+            && self.def.in_world.hit_bodies != HitBodies::Absent
+            && self.detail.is_some_and(|detail| detail > Detail::Frozen)
     }
 
     pub(super) fn is_frozen(&self) -> bool {
@@ -140,11 +147,12 @@ impl Character {
 
     /// Brings the bodies into the hands of physics, with joints between them.
     fn become_bodies(&mut self, world: &mut World, rule: ContactRule) {
-        if self.feet.are_placed() {
+        if !self.feet.pose.is_empty() {
             self.figure.pose.clone_from(&self.feet.pose);
+            self.feet.pose.clear();
         }
         let states = self.carried();
-        (self.feet.planting, self.feet.passage) = Default::default();
+        self.feet.passage = Default::default();
         self.physique.physical.rebase(self.def.mapping(), &self.def.rig, &self.figure.pose);
         self.scratch.posed.clear();
         self.physique.wake(&self.def, &states, rule, world);
@@ -302,6 +310,7 @@ impl Character {
         }
         self.grips.release_all(self.physique.own(), true, world, &mut self.events);
         self.become_bodies(world, ContactRule::Push);
+        self.feet.leave();
         self.physique.let_linger(&self.figure, world.def().dt(), &mut self.scratch);
         self.sit_down(world);
         self.physique.drives.set_all(self.def.falling, 0.0);
@@ -324,6 +333,7 @@ impl Character {
         self.physique.let_go(&self.def, world);
         let stillness = Stillness { touched: !powered, ..Stillness::default() };
         self.activity = Activity::Limp(Lying { stillness, ..Lying::default() });
+        self.feet.leave();
         if powered {
             self.grips.release_all(self.physique.own(), true, world, &mut self.events);
             self.physique.let_linger(&self.figure, world.def().dt(), &mut self.scratch);

@@ -7,7 +7,8 @@
 use super::activity::Activity;
 use super::clearance::{Depths, FEET, PARTS, Passage, larger};
 use super::figure::Figure;
-use super::legs::{Legs, Need, Planting};
+use super::legs::{Legs, Need, Planting, Tilts};
+use super::tread::Treads;
 use super::{CharacterDef, GroundContact, State, ground};
 use crate::character::tuning::{
     FOOT_EDGE, FOOT_FLOOR, FOOT_RANGE, FOOT_SEARCH, FOOT_SHARE, PLANTED_SOONER, WALKS_FROM,
@@ -24,9 +25,11 @@ pub(super) type Depth = (Depths, [Transform; 2]);
 pub(super) struct Feet {
     /// Ground under its feet where it is not the floor of its clips.
     pub planting: Planting,
+    /// Feet of one who goes; `None` of one who gets up, lies, or is as its clips have it.
+    pub treads: Option<Treads>,
     /// Way from one pose to another on which it is kept out of the floor.
     pub passage: Passage,
-    /// The pose with the feet planted and out of the floor, while that is another.
+    /// The pose of clips with the feet planted and out of the floor, while that is another; else empty.
     pub pose: Vec<LocalTransform>,
 }
 
@@ -39,6 +42,10 @@ pub(super) struct Stand<'a> {
     pub figure: &'a Figure,
     /// Speed over the ground, m/s.
     pub speed: f32,
+    /// Seconds since it had ground.
+    pub air: f32,
+    /// Its feet follow the ground as it goes.
+    pub follows: bool,
     /// Its bodies, if it is in the world.
     pub own: Option<&'a [BodyId]>,
 }
@@ -46,12 +53,17 @@ pub(super) struct Stand<'a> {
 impl Feet {
     /// True while what is shown is not quite the clips' pose.
     pub fn are_placed(&self) -> bool {
-        !self.planting.is_over() || self.is_passing()
+        !self.planting.is_over() || self.is_passing() || self.are_astray()
+    }
+
+    /// True while a foot is beside where the clips have it.
+    fn are_astray(&self) -> bool {
+        self.treads.iter().flat_map(|treads| treads.feet).any(|tread| tread.offset != Vec3::ZERO)
     }
 
     /// The pose that clips or bodies lead to, with feet on the ground and nothing deep in the floor.
     pub fn led<'a>(&'a self, pose: &'a [LocalTransform]) -> &'a [LocalTransform] {
-        if self.are_placed() { &self.pose } else { pose }
+        if self.pose.is_empty() { pose } else { &self.pose }
     }
 
     /// Puts the feet of a character that gets up, or has and still stands there, on the ground under them. Of one that goes on
@@ -59,13 +71,25 @@ impl Feet {
     pub fn plant(&mut self, stand: &Stand<'_>, world: &World, model: &mut Vec<Affine>) {
         self.go_on_passing(stand.activity.state(), world.def().dt());
         self.follow_ground(stand, world, model);
-        if self.are_placed() {
-            self.show(stand.def, stand.activity.state(), stand.figure, model);
+        let state = stand.activity.state();
+        if self.are_placed() && matches!(state, State::Animated | State::GettingUp) {
+            self.show(stand.def, state, stand.figure, model);
+        } else {
+            self.pose.clear();
         }
+    }
+
+    /// Forgets the ground: bodies take over.
+    pub fn leave(&mut self) {
+        *self = Self::default();
     }
 
     fn follow_ground(&mut self, stand: &Stand<'_>, world: &World, model: &mut Vec<Affine>) {
         let Some(legs) = stand.def.legs() else { return };
+        if stand.follows && !matches!(stand.activity, Activity::GettingUp(_)) {
+            return self.tread(stand, legs, world, model);
+        }
+        self.treads = None;
         let share = match stand.activity {
             Activity::GettingUp(rising) => {
                 smoothstep(PLANTED_SOONER * (1.0 - rising.left(stand.def, stand.animator)))
@@ -92,7 +116,7 @@ impl Feet {
         self.pose = pose;
     }
 
-    /// Brings a pose of the clips to where the feet are planted after `later` seconds more.
+    /// Brings a pose of the clips to where the feet are planted after `later` seconds more, of a character that will be at `place`.
     pub fn place(
         &self,
         def: &CharacterDef,
@@ -101,10 +125,21 @@ impl Feet {
         pose: &mut [LocalTransform],
         model: &mut Vec<Affine>,
     ) {
-        let planting = self.planting.ahead(later);
-        let Some(legs) = def.legs().filter(|_| !planting.is_over()) else { return };
-        let up = place.rotation.inverse() * Vec3::Y;
-        legs.place(&def.rig, &def.mapping().character_from_model(), up, planting, pose, model);
+        let planting = self.planting_at(place, later);
+        let Some(legs) = def.legs().filter(|_| self.treads.is_some() || !planting.is_over()) else { return };
+        let (root, up) = (def.mapping().character_from_model(), place.rotation.inverse() * Vec3::Y);
+        local_to_model(&def.rig, pose, &root, model);
+        let mut offsets = self.offsets(later);
+        if self.treads.is_some() {
+            for (foot, offset) in offsets.iter_mut().enumerate() {
+                *offset += place.rotation * legs.lean(foot, planting.slopes[foot], model);
+            }
+        }
+        if !planting.is_over() {
+            let tilts = if self.treads.is_some() { Tilts::Always } else { Tilts::OnTheFloor };
+            legs.place(&def.rig, &root, (up, tilts), planting, pose, model);
+        }
+        self.bring_home(def, offsets, place, pose, model);
     }
 
     /// Depths of the pose that is shown, and its ankles.

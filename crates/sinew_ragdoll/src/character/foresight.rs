@@ -42,7 +42,7 @@ impl Foresight<'_> {
         let mut pose = core::mem::take(&mut scratch.pose);
         pose.clear();
         pose.extend(ahead.pose().iter());
-        self.feet.place(def, here, seconds, &mut pose, &mut scratch.model);
+        self.feet.place(def, here * *place, seconds, &mut pose, &mut scratch.model);
         self.feet.clear_floor(def, self.state, here, seconds, &mut pose, &mut scratch.model);
         if let Some(stumble) = self.stumble {
             stumble.hold_feet(def, here, *place, seconds, &mut pose, &mut scratch.model);
@@ -57,7 +57,8 @@ impl Foresight<'_> {
         let (mut now, mut ahead) =
             (core::mem::take(&mut scratch.before), core::mem::take(&mut scratch.after));
         // Seen by the character: far from the world's origin small ways drown in rounding.
-        scratch.bodies_of(self.def, &self.figure.pose, Transform::IDENTITY, &mut now);
+        let pose = self.feet.led(&self.figure.pose);
+        scratch.bodies_of(self.def, pose, Transform::IDENTITY, &mut now);
         let (mut animator, mut way) = (scratch.sent_ahead(&self.gait.animator), Transform::IDENTITY);
         let laps = laps(&animator);
         // Velocities are those of the clips, from what they have now: the pose may be that of bodies or of stepping feet, which is not quite theirs.

@@ -4,8 +4,8 @@ use super::activity::Activity;
 use super::figure::Figure;
 use super::{CharacterDef, HitBodies, State, ground};
 use crate::character::tuning::{
-    CLIMB_SPEED, FASTEST_PACE, HIGHEST_STEP, MOST_BESIDE, MOST_PACES, PACE_RATE, PICKS_UP, PUSHED_ASIDE,
-    STANDS_BELOW, STANDS_IN, STEP_SETTLES, STEP_SLOPE,
+    CLIMB_SPEED, FASTEST_PACE, HIGHEST_STEP, MOST_BESIDE, MOST_PACES, PACE_RATE, PICKS_UP, POWERED_TURNS,
+    PUSHED_ASIDE, STANDS_BELOW, STANDS_IN, STEP_SETTLES, STEP_SLOPE,
 };
 use sinew_anim::{Animator, ClipId, TrackDef, TrackId, smoothstep, weights_on_line};
 use sinew_math::{Rotation, Transform, Vec3, clamp, max, min, trig};
@@ -82,7 +82,8 @@ impl Gait {
         figure.take(&self.animator);
         let step = root_step(def, &self.animator);
         // Who lies would be swung about by its feet: it turns as it comes to stand.
-        let turns = def.in_world.turn_speed * (1.0 - activity.lowness(def, &self.animator));
+        let most = if activity.state() == State::Powered { POWERED_TURNS } else { f32::INFINITY };
+        let turns = min(def.in_world.turn_speed, most) * (1.0 - activity.lowness(def, &self.animator));
         let from = figure.place;
         if let Some(to) = self.ride(def, world, from, step, turns) {
             figure.place = to;

@@ -8,16 +8,21 @@ use sinew_physics::{BodyHit, BodyId, BodyKinds, ContactRule, QueryFilter, ShapeI
 /// Height of what bears under a point, sought from `above` metres over it: of the static world for a character that is not in
 /// it (`own` is `None`), else of whatever is there but its own bodies, those of others that their clips move, and limbs that were cut off.
 pub(super) fn below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId]>) -> Option<f32> {
+    found_below(world, point, above, own).map(|hit| hit.point.y)
+}
+
+/// [`below`], with what bears.
+pub(super) fn found_below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId]>) -> Option<BodyHit> {
     let ray = Ray { origin: point + Vec3::Y * above, direction: Vec3::Y * -(above + GROUND_DEPTH) };
     let hit = match own {
         None => world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&ray)?,
         Some(own) => bearer(world, &ray, own)?,
     };
     // A ray that starts inside says nothing about the height.
-    hit.start.is_none().then_some(hit.point.y)
+    hit.start.is_none().then_some(hit)
 }
 
-fn bearer(world: &World, ray: &Ray, own: &[BodyId]) -> Option<BodyHit> {
+pub(super) fn bearer(world: &World, ray: &Ray, own: &[BodyId]) -> Option<BodyHit> {
     let bears = |body: BodyId, shape: u32| {
         !matches!(world.contact_rule(ShapeId { body, shape }), ContactRule::Ghost | ContactRule::Yields(_))
     };

@@ -51,6 +51,16 @@ impl PartialEq for Toughness {
     }
 }
 
+/// Feet of a character that goes and stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FootPlanting {
+    /// On the ground under them: on stairs, slopes, edges and what moves; a foot that is down stays where it is. What is lighter than a twentieth of the
+    /// character, and limbs of others, are no ground. For humanoids in a world, with [hit bodies](InWorld::hit_bodies). Default.
+    OnGround,
+    /// As the clips have them, but for a character that got up and still stands there.
+    AsClips,
+}
+
 /// The share of a world that characters of a kind have while their clips move them, and the blows and falls that they stand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InWorld {
@@ -59,7 +69,7 @@ pub struct InWorld {
     /// Mover that stands for it, by size, mass and filter; `position` does nothing. `None`: nothing stops or carries it, and
     /// it goes where its clips take it over the static world. Default: as tall and heavy as the character.
     pub mover: Option<MoverDef>,
-    /// Speed at which it turns to where it is to face, rad/s. Default 8.
+    /// Speed at which it turns to where it is to face, rad/s; powered at most at 3.5. Default 8.
     pub turn_speed: f32,
     /// Speed of a jump, m/s. Default 3.5, which is 0.6 m.
     pub jump_speed: f32,
@@ -67,6 +77,8 @@ pub struct InWorld {
     pub air_time: f32,
     /// Speed toward the ground with which a landing fells it, m/s. Default 7, a fall from 2.5 m.
     pub landing_speed: f32,
+    /// Feet while it goes and stands. Default on the ground.
+    pub foot_planting: FootPlanting,
     /// Rule by which blows fell it or let it flinch.
     pub toughness: Toughness,
     /// Steps in a row with which it tries, powered, to catch itself from a push: a powered character that may step is felled by losing its
@@ -103,6 +115,7 @@ impl InWorld {
             jump_speed: 3.5,
             air_time: 1.2,
             landing_speed: 7.0,
+            foot_planting: FootPlanting::OnGround,
             toughness: Toughness::Impulse(FELLING_SPEED * mass),
             most_steps: 4,
             feels: 3.0,

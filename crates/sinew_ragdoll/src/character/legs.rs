@@ -13,6 +13,10 @@ pub(super) struct Legs {
     pub chains: [TwoBone; 2],
     /// The ball, in the axes of the ankle without scale, metres.
     pub balls: [Vec3; 2],
+    /// On the sole below the ankle, below the ball, and at the tip of the toes, likewise.
+    pub soles: [[Vec3; 3]; 2],
+    /// Length of a foot behind the ankle, metres.
+    pub heel: f32,
     /// Height of the ankles in the bind pose, metres.
     pub ankle_height: f32,
 }
@@ -41,15 +45,35 @@ impl Legs {
             let usual = ankle.translation + Vec3::Z * (BALL_AHEAD * length);
             let ball =
                 if foremost.z > ankle.translation.z + 0.5 * BALL_AHEAD * length { foremost } else { usual };
-            is_chain.then(|| (leg, ankle.inverse_point(ball), ankle.translation.y))
+            let on_floor = |point: Vec3| ankle.inverse_point(Vec3::new(point.x, 0.0, point.z));
+            let of_foot =
+                def.bodies.iter().filter(|body| body.joint == leg.end || Some(body.joint) == part("Toes"));
+            let bounds = of_foot.map(|body| body.shape.aabb(&body.character_from_body));
+            let (back, front) = bounds.fold((ankle.translation.z, ball.z), |(back, front), bounds| {
+                (min(back, bounds.min.z), max(front, bounds.max.z))
+            });
+            let tip = Vec3::new(ball.x, 0.0, front);
+            let sole = [on_floor(ankle.translation), on_floor(ball), on_floor(tip)];
+            let heel = ankle.translation.z - back;
+            is_chain.then(|| (leg, ankle.inverse_point(ball), ankle.translation.y, sole, heel))
         };
         let [left, right] = [foot("left")?, foot("right")?];
         Some(Self {
             pelvis,
             chains: [left.0, right.0],
             balls: [left.1, right.1],
+            soles: [left.3, right.3],
+            heel: max(left.4, right.4),
             ankle_height: max(min(left.2, right.2), 0.0),
         })
+    }
+
+    /// Level way of an ankle on a slope, which goes up along the normal of that and not along the vertical; `model` is in the space of the
+    /// character.
+    pub fn lean(&self, foot: usize, slope: f32, model: &[Affine]) -> Vec3 {
+        let ankle = model[self.chains[foot].end].to_rigid();
+        let ahead = normalize_or(ankle.rotation * self.balls[foot] * Vec3::new(1.0, 0.0, 1.0), Vec3::ZERO);
+        ahead * (slope / (1.0 + slope * slope).sqrt() * (self.ankle_height - ankle.translation.y))
     }
 
     /// Brings a pose's feet onto the ground as it is planted on, by the pelvis and the knees; `up` is seen by the character.
@@ -58,7 +82,7 @@ impl Legs {
         &self,
         rig: &Rig,
         root: &Affine,
-        up: Vec3,
+        (up, tilts): (Vec3, Tilts),
         planting: Planting,
         local: &mut [LocalTransform],
         model: &mut Vec<Affine>,
@@ -69,8 +93,14 @@ impl Legs {
             forward: Vec3::Z,
             floor: 0.0,
             ankle_height: self.ankle_height,
-            free_height: 0.1,
-            max_step: FOOT_RANGE,
+            free_height: match tilts {
+                Tilts::OnTheFloor => 0.1,
+                Tilts::Always => f32::MAX,
+            },
+            max_step: match tilts {
+                Tilts::OnTheFloor => FOOT_RANGE,
+                Tilts::Always => f32::MAX,
+            },
             max_tilt: MOST_TILT,
         };
         let normal = |foot: usize| {
@@ -84,6 +114,15 @@ impl Legs {
         let ground = |_: Vec3| grounds.next();
         place_feet(rig, self.pelvis, &self.chains, &settings, ground, local, model);
     }
+}
+
+/// Feet that tilt with a slope.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Tilts {
+    /// On the floor only.
+    OnTheFloor,
+    /// In the air as well.
+    Always,
 }
 
 /// Smoothed ground under each foot, over the floor of the clip, and its rates of change, per second.
@@ -112,13 +151,27 @@ impl Planting {
     /// Follows the ground for `dt` seconds.
     pub fn follow(&mut self, goals: [Need; 2], dt: f32) {
         for (foot, goal) in goals.into_iter().enumerate() {
-            follow(&mut self.heights[foot], &mut self.rates[foot], goal.height, dt);
-            follow(&mut self.slopes[foot], &mut self.slope_rates[foot], goal.slope, dt);
+            self.follow_foot(foot, goal, FEET_QUICKNESS, dt);
         }
         let all = [self.heights, self.rates, self.slopes, self.slope_rates];
         if goals == [Need::default(); 2] && all.as_flattened().iter().all(|x| x.abs() < FOOT_HOME) {
             *self = Self::default();
         }
+    }
+
+    /// Ends what is left of a foot that is back on the floor of its clip.
+    pub fn come_to_rest(&mut self, foot: usize, goal: Need) {
+        let all = [self.heights[foot], self.rates[foot], self.slopes[foot], self.slope_rates[foot]];
+        if goal == Need::default() && all.iter().all(|x| x.abs() < FOOT_HOME) {
+            (self.heights[foot], self.rates[foot]) = (0.0, 0.0);
+            (self.slopes[foot], self.slope_rates[foot]) = (0.0, 0.0);
+        }
+    }
+
+    /// Follows the ground under one foot.
+    pub fn follow_foot(&mut self, foot: usize, goal: Need, quickness: f32, dt: f32) {
+        follow(&mut self.heights[foot], &mut self.rates[foot], goal.height, quickness, dt);
+        follow(&mut self.slopes[foot], &mut self.slope_rates[foot], goal.slope, quickness, dt);
     }
 
     /// After so many seconds more at the present rates.
@@ -129,10 +182,10 @@ impl Planting {
 }
 
 /// `x″ = −ω²(x − g) − 2ω x′` for `dt` seconds, solved exactly.
-fn follow(x: &mut f32, rate: &mut f32, goal: f32, dt: f32) {
-    let decay = trig::exp(-FEET_QUICKNESS * dt);
+fn follow(x: &mut f32, rate: &mut f32, goal: f32, quickness: f32, dt: f32) {
+    let decay = trig::exp(-quickness * dt);
     let off = *x - goal;
-    let carried = *rate + FEET_QUICKNESS * off;
+    let carried = *rate + quickness * off;
     *x = goal + (off + carried * dt) * decay;
-    *rate = (*rate - FEET_QUICKNESS * carried * dt) * decay;
+    *rate = (*rate - quickness * carried * dt) * decay;
 }

@@ -64,6 +64,7 @@ mod show;
 mod size;
 mod stumble;
 mod travel;
+mod tread;
 mod tuning;
 mod wear;
 
@@ -77,7 +78,7 @@ pub use event::{CharacterEvent, State};
 pub use grab_point::GrabPoint;
 pub use grasp::Grab;
 pub use hold::Grip;
-pub use in_world::{Blow, HitBodies, InWorld, Toughness};
+pub use in_world::{Blow, FootPlanting, HitBodies, InWorld, Toughness};
 pub use limb::Limb;
 pub use moves::MotionError;
 pub use powered::{Part, Preset};
@@ -216,6 +217,8 @@ impl Character {
             animator: &self.gait.animator,
             figure: &self.figure,
             speed: self.gait.speed,
+            air: self.gait.air,
+            follows: self.follows_ground(),
             own: self.detail.map(|_| self.physique.hit.as_slice()),
         };
         self.feet.plant(&stand, world, &mut self.scratch.model);
@@ -264,6 +267,7 @@ impl Character {
     /// A step while clips and physics share the bodies.
     fn go_powered(&mut self, world: &mut World) {
         self.advance(world);
+        self.plant(world);
         let in_vain = self.keep_balance(world);
         let def = &self.def;
         let mut resting = core::mem::take(&mut self.scratch.pose);

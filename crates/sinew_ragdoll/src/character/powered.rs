@@ -8,7 +8,7 @@ use crate::character::tuning::{
 };
 use crate::drive::{DriveMode, Muscle, Pin};
 use sinew_anim::Animator;
-use sinew_math::Transform;
+use sinew_math::{Rotation, Transform, Vec3};
 use sinew_physics::World;
 
 /// Ways to move all of a character.
@@ -66,7 +66,8 @@ pub(super) fn set_drives(def: &CharacterDef, physique: &mut Physique, world: &Wo
     }
 }
 
-/// True if the pelvis has got too far from where its clips want it for the feet to hold it.
+/// True if the pelvis has got too far from where its clips want it for the feet to hold it, or leans too far; how far it is turned about the
+/// vertical says nothing of that: it lags behind who turns on the spot.
 pub(super) fn is_toppled(
     def: &CharacterDef,
     animator: &Animator,
@@ -84,5 +85,6 @@ pub(super) fn is_toppled(
     (scratch.wanted, scratch.before) = (wanted, bodies);
     let now = world.transform(physique.limp().bodies[0]);
     let away = (now.translation - pelvis.translation).length();
-    away > FALLS_BEYOND * def.ragdoll.height || now.rotation.angle_to(pelvis.rotation) > FALLS_TURNED
+    let leaning = Rotation::from_arc(Vec3::Y, now.rotation * pelvis.rotation.inverse() * Vec3::Y);
+    away > FALLS_BEYOND * def.ragdoll.height || leaning.to_scaled_axis().length() > FALLS_TURNED
 }

@@ -13,7 +13,8 @@ use super::limp::{Clearing, Lying, Stillness};
 use super::physique::Physique;
 use super::prepare::Preparing;
 use super::stumble::{Balance, Stumble};
-use super::{Character, CharacterDef, CharacterEvent};
+use super::tread::{Tread, Treads};
+use super::{Character, CharacterDef, CharacterEvent, State};
 use crate::garments::Worn;
 use crate::ragdoll::Ragdoll;
 use crate::springs::SpringSwing;
@@ -45,6 +46,10 @@ impl Character {
         save_pose(w, &self.figure.earlier.pose);
         let Planting { heights, rates, slopes, slope_rates } = self.feet.planting;
         [heights, rates, slopes, slope_rates].as_flattened().iter().for_each(|&x| w.f32(x));
+        w.bool(self.feet.treads.is_some());
+        if let Some(treads) = &self.feet.treads {
+            treads.save(w);
+        }
         w.bool(self.feet.is_passing());
         if self.feet.is_passing() {
             self.feet.passage.save(w);
@@ -83,6 +88,7 @@ impl Character {
         let mut pair = || Ok([r.f32()?, r.f32()?]);
         loaded.feet.planting =
             Planting { heights: pair()?, rates: pair()?, slopes: pair()?, slope_rates: pair()? };
+        loaded.feet.treads = if r.bool()? { Some(Treads::load(r)?) } else { None };
         loaded.feet.passage = if r.bool()? { Passage::load(r)? } else { Passage::default() };
         loaded.physique = load_physique(&def, r)?;
         loaded.grips = Grips::load(r, count)?;
@@ -109,8 +115,9 @@ impl Character {
 
     /// The pose with feet and what it wears, as it was shown when it was saved.
     fn show_loaded(&mut self) {
-        if self.feet.are_placed() {
-            let state = self.activity.state();
+        let state = self.activity.state();
+        self.feet.pose.clear();
+        if self.feet.are_placed() && matches!(state, State::Animated | State::GettingUp) {
             self.feet.show(&self.def, state, &self.figure, &mut self.scratch.model);
         }
         let pose = self.feet.led(&self.figure.pose);
@@ -210,6 +217,26 @@ fn load_detail(r: &mut Reader<'_>) -> Result<Option<Detail>, ReadError> {
         u8::MAX => None,
         _ => return Err(r.error("unknown detail of a character")),
     })
+}
+
+impl Treads {
+    fn save(&self, w: &mut Writer) {
+        for Tread { offset, home, slip, points, ground, floor, stands } in self.feet {
+            [offset, home, slip, points[0], points[1], floor].into_iter().for_each(|v| w.vec3(v));
+            w.f32(ground);
+            w.bool(stands);
+        }
+        w.f32(self.level);
+    }
+
+    fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut foot = || -> Result<Tread, ReadError> {
+            let (offset, home, slip) = (r.vec3()?, r.vec3()?, r.vec3()?);
+            let (points, floor) = ([r.vec3()?, r.vec3()?], r.vec3()?);
+            Ok(Tread { offset, home, slip, points, floor, ground: r.f32()?, stands: r.bool()? })
+        };
+        Ok(Self { feet: [foot()?, foot()?], level: r.f32()? })
+    }
 }
 
 impl Stillness {

@@ -121,6 +121,93 @@ pub(crate) const FOOT_EDGE: f32 = 0.6;
 /// Larger: broken ankles. Smaller: feet in steep ground. Shown by the tests of `slopes`.
 pub(crate) const MOST_TILT: f32 = 0.6;
 
+/// Fastest turn about the vertical of a powered character, rad/s: what its muscles and pins follow. A person turns round on the spot within a second.
+///
+/// Larger: it twists and falls over its own legs. Smaller: it turns like a ship. Shown by the scene `brawl`.
+pub(crate) const POWERED_TURNS: f32 = 3.5;
+
+/// Natural frequency with which a foot of one who goes follows edges, critically damped, rad/s: within the half of a swing in which it sees them.
+///
+/// Larger: feet jerk over edges. Smaller: they float when they come down. Shown by the tests of `feet`.
+pub(crate) const TREAD_QUICKNESS: f32 = 25.0;
+
+/// Time by which a foot in the air looks ahead at its speed, seconds: it comes down there, for it slows down evenly in the second half of its
+/// swing.
+///
+/// Larger: it is raised for the step after. Smaller: it sees edges late. Shown by the tests of `feet`.
+pub(crate) const LOOKS_AHEAD: f32 = 0.12;
+
+/// Height of its lower end over the floor of the clip from which on a foot looks ahead, and on which more it does so fully, over the height of
+/// the body: one that is about to come down does not get far any more.
+///
+/// Larger: edges are seen late. Smaller: it comes down on the step after. Shown by the tests of `feet`.
+pub(crate) const LANDS: [f32; 2] = [0.006, 0.017];
+
+/// Part along up of the normal of a surface below which it is a wall for toes.
+///
+/// Larger: they draw back from slopes. Smaller: they go into steep ones. Shown by the tests of `feet`.
+pub(crate) const STEEPEST_TREAD: f32 = 0.5;
+
+/// Height over the ground at which what is before a foot counts as a wall, metres.
+///
+/// Larger: toes in low kerbs. Smaller: they draw back from slopes. Shown by the tests of `feet`.
+pub(crate) const TOES_OVER: f32 = 0.06;
+
+/// Distance that toes and heel keep from a wall where a foot comes down, metres: shapes of feet are a little smaller than what is drawn.
+///
+/// Larger: feet come down beside their clips. Smaller: toes in walls. Shown by the tests of `feet`.
+pub(crate) const TOES_CLEAR: f32 = 0.02;
+
+/// Farthest that ground may be down for a foot of one who goes, over the height of the body: a mover is up a stair by its radius before the foot.
+///
+/// Larger: legs reach into holes. Smaller: feet hang over steps. Shown by the tests of `feet`.
+pub(crate) const TREAD_RANGE: f32 = 0.34;
+
+/// Height of its lower end over the floor of the clip below which a foot stands, over the height of the body.
+///
+/// Larger: feet stick in a swing. Smaller: they slide. Shown by the tests of `feet`.
+pub(crate) const STANCE_HEIGHT: f32 = 0.015;
+
+/// Speed over the ground of a clip's foot below which it stands, m/s.
+///
+/// Larger: feet stick in a swing. Smaller: they slide where a clip does. Shown by the tests of `feet`.
+pub(crate) const STANCE_SPEED: f32 = 0.8;
+
+/// Rate at which a foot in the air comes back to where its clip has it, 1/s.
+///
+/// Larger: it flicks. Smaller: it comes down beside. Shown by the tests of `feet`.
+pub(crate) const RELEASES: f32 = 12.0;
+
+/// Way of a foot beside where its clip has it that is not made up for, metres: the speed of a mover follows that of clips by a step.
+///
+/// Larger: feet slide. Smaller: legs tremble. Shown by the tests of `feet`.
+pub(crate) const SMALL_WAY: f32 = 4e-3;
+
+/// Least mass of a dynamic body that is ground, over that of the character.
+///
+/// Larger: feet go through crates. Smaller: they step onto what they would kick. Shown by the tests of `in_world`.
+pub(crate) const LEAST_TREAD: f32 = 0.05;
+
+/// Farthest that a foot stands from where its clip has it, over the height of the body.
+///
+/// Larger: twisted legs. Smaller: feet slide. Shown by the tests of `feet`.
+pub(crate) const MOST_ASTRAY: f32 = 0.07;
+
+/// Depth of a sole in the ground from which on it is raised at once, metres.
+///
+/// Larger: it sinks in. Smaller: it jerks over noise. Shown by the tests of `feet`.
+pub(crate) const SOLE_SINKS: f32 = 0.01;
+
+/// Speed at which a sole comes out of the ground, m/s.
+///
+/// Larger: it jerks over edges that it saw late. Smaller: it goes through them. Shown by the tests of `feet`.
+pub(crate) const RISES: f32 = 5.0;
+
+/// Time without ground after which feet stand no longer, seconds.
+///
+/// Larger: feet hang on to the ground in a jump. Smaller: they let go at each kerb. Shown by the tests of `feet`.
+pub(crate) const OFF_GROUND: f32 = 0.1;
+
 /// Height above a foot from which the ground is sought, metres.
 ///
 /// Larger: a table over it is its ground. Smaller: steps are seen late. Shown by the tests of `slopes`.

@@ -17,6 +17,7 @@ mod doctor;
 mod drive;
 mod falls;
 mod faults;
+mod feet;
 mod filter;
 mod garments;
 mod grab;

