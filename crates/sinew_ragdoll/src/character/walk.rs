@@ -81,6 +81,12 @@ impl Character {
         self.scratch.posed.clear();
         self.swing.carry(self.def.springs(), moved);
         self.worn.carry(world, moved);
+        // Pins are fixed to the world: they would pull it back.
+        match (self.state, &self.ragdoll) {
+            (State::Flinching | State::Powered, _) => self.drive_bodies(world),
+            (State::Preparing, Some(ragdoll)) => self.drives.release(world, ragdoll),
+            _ => {}
+        }
         let Some(presence) = &mut self.presence else { return };
         presence.before.iter_mut().for_each(|pose| *pose = moved * *pose);
         (presence.air, presence.beside, presence.velocity) = (0.0, Vec3::ZERO, Vec3::ZERO);
