@@ -18,6 +18,7 @@ pub enum Fault {
     Touch(String),
     Below(String),
     /// A limb that flies, or a joint that gapes.
+    #[allow(dead_code, reason = "worlds without characters have none")]
     Limb(String),
     /// With the rise as a share of what is allowed.
     Energy(f32, String),

@@ -72,8 +72,15 @@ impl Character {
         self.wear.garments.carry(world, moved);
         self.physique.before.iter_mut().for_each(|pose| *pose = moved * *pose);
         self.gait.teleport(world_from_character.translation, world);
+        self.feet.treads = None;
         if let Activity::Powered(balance) = &mut self.activity {
             balance.stumble = None;
+        }
+        // Pins are fixed to the world: they would pull it back.
+        match (self.activity.state(), &self.physique.ragdoll) {
+            (State::Flinching | State::Powered, _) => self.drive_bodies(world),
+            (State::Preparing, Some(ragdoll)) => self.physique.drives.release(world, ragdoll),
+            _ => {}
         }
     }
 

@@ -1,12 +1,13 @@
 //! Drives of a ragdoll: against closed forms, balances of force, momentum and energy, and themselves at other rates.
 
-use crate::actor::{floor, walker};
+use crate::actor::{floor, shared, walker};
+use crate::in_world::{level, run};
 use sinew_math::{Random, Reader, Rotation, Sym3, Transform, Vec3, Writer, max};
 use sinew_physics::{BodyDef, JointKind, MassProperties, Shape, Sleeping, Velocity, World, WorldDef};
 use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
 use sinew_ragdoll::{
-    BodySettings, BodyState, DriveMode, Drives, FallQuality, Muscle, Pin, QualityMeter, Ragdoll,
-    RagdollBodyDef, RagdollDef, RagdollJointDef,
+    BodySettings, BodyState, Character, DriveMode, Drives, FallQuality, Muscle, Part, Pin, Preset,
+    QualityMeter, Ragdoll, RagdollBodyDef, RagdollDef, RagdollJointDef,
 };
 
 const G: f32 = 9.81;
@@ -589,4 +590,25 @@ fn whatever_is_asked_of_drives_nothing_explodes() {
         }
     }
     assert!(opened <= 1, "{opened} joints opened");
+}
+
+/// Random lives found it: pins that were to bring a body to its old place threw all of it at 38 m/s.
+#[test]
+fn who_is_powered_and_teleported_is_not_flung() {
+    let def = shared(walker());
+    for steps in [0, 2, 60] {
+        let mut world = level();
+        let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+        character.set_drive(&mut world, Part::From("rightUpperLeg"), DriveMode::Keyed, 0.0);
+        character.set_preset(&mut world, Preset::Powered);
+        run(&mut world, &mut character, steps);
+        character.teleport(&mut world, Transform::from_translation(Vec3::new(1.0, 0.0, 0.5)));
+        for step in 0..30 {
+            run(&mut world, &mut character, 1);
+            for &body in character.bodies() {
+                let speed = world.velocity(body).linear.length();
+                assert!(speed < 6.0, "{steps}, {step}: {speed} m/s");
+            }
+        }
+    }
 }

@@ -318,6 +318,7 @@ fn ask_character(a: &mut Actor, n: &mut Numbers) -> Option<()> {
         "Character::skin_palette",
         "Character::def",
         "Character::events",
+        "Character::update",
     ]);
     calls.into_iter().for_each(|call| a.count(call));
     a.said += &said;
@@ -374,6 +375,7 @@ fn push_part(a: &mut Actor, n: &mut Numbers) -> Option<()> {
 /// What the world lets a game do to a body that is a character's.
 fn change_part(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let body = part(a, n)?;
+    a.more.is_meddled_with = true;
     match n.index(4) {
         0 => {
             let kind = n.one_of(&[BodyKind::Dynamic, BodyKind::Kinematic, BodyKind::Static]);

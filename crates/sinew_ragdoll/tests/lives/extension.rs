@@ -32,8 +32,8 @@ const RISES: f32 = 1e-3;
 const WIDTH: f32 = 6.0;
 /// Steps after a deed from which on limbs are looked at.
 const SETTLED: u32 = 20;
-/// Speed that no limb has then, m/s, and gap that no joint has, metres.
-const FAST: f32 = 30.0;
+/// Speed that no limb has then, m/s: slabs that nothing stops press them out at up to 35; and gap that no joint has, metres.
+const FAST: f32 = 60.0;
 const GAP: f32 = 0.02;
 
 /// Kinds of characters: bare, with hair of springs, in a skirt of cloth.
@@ -65,6 +65,8 @@ pub struct Extension {
     pub limbs: Vec<(u64, usize, Limb)>,
     pub points: Vec<(u64, GrabPoint)>,
     pub born: u32,
+    /// The game has taken bodies of characters out of their hands: what these do then is its own fault.
+    pub is_meddled_with: bool,
     /// Steps for which a body has been below the floor and has not risen, and its height.
     below: BTreeMap<BodyId, (u32, f32)>,
 }
@@ -99,7 +101,14 @@ impl Extension {
             |&(name, _): &(u64, GrabPoint)| (name, GrabPoint::load(&mut r).expect("a saved point is valid"));
         let points = self.points.iter().map(point).collect();
         r.finish().expect("there is no more");
-        Self { cast, limbs, points, born: self.born, below: BTreeMap::new() }
+        Self {
+            cast,
+            limbs,
+            points,
+            below: BTreeMap::new(),
+            born: self.born,
+            is_meddled_with: self.is_meddled_with,
+        }
     }
 
     pub fn before_step(&mut self, world: &mut World) {
@@ -146,7 +155,7 @@ impl Extension {
         }
         if temper == Temper::Calm {
             self.floor(world)?;
-            if quiet >= SETTLED {
+            if quiet >= SETTLED && !self.is_meddled_with {
                 self.limbs(world)?;
             }
         }

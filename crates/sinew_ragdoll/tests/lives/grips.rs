@@ -16,12 +16,12 @@ pub const ALL: &[Deed] = &[
     Deed::new("release", 4, release),
     Deed::new("detach", 4, detach),
     Deed::new("take", 5, take),
+    Deed::new("ask_point", 2, ask_point),
     Deed::new("move_point", 5, move_point),
     Deed::new("release_point", 3, release_point),
-    Deed::new("ask_point", 2, ask_point),
+    Deed::new("ask_limb", 3, ask_limb),
     Deed::new("detach_limb", 2, detach_limb),
     Deed::new("despawn_limb", 2, despawn_limb),
-    Deed::new("ask_limb", 3, ask_limb),
 ];
 
 /// A body of the world or of somebody.
