@@ -142,7 +142,7 @@ impl Feet {
         offsets: [Vec3; 2],
         now: Transform,
         pose: &mut [LocalTransform],
-        model: &mut Vec<Affine>,
+        model: &mut [Affine],
     ) {
         let Some(legs) = def.legs() else { return };
         if offsets.iter().all(|offset| offset.length_squared() < 1e-8) {
