@@ -23,7 +23,7 @@ fn build(world: &mut World) {
 /// Height of the ground there, metres.
 fn ground(z: f32) -> f32 {
     let stairs = 0.17 * (((z - 1.0) / 0.3).floor() + 1.0).clamp(0.0, 8.0);
-    let ramp = 1.36 - (z - 5.1) * 15.0_f32.to_radians().tan();
+    let ramp = 1.36 - (z - 5.1) * 0.268; // tan 15°
     if z < 5.1 { stairs } else { ramp.max(0.0) }
 }
 
