@@ -148,6 +148,7 @@ pub fn python() -> Result<()> {
         run("mypy", &["--strict", &name], &tests)?;
         run("python", &[&name], &tests)?;
     }
+    command::run(Command::new("python3").arg(source.join("api_page.py")).arg("--check"))?;
     let training = source.join("examples/train.py").display().to_string();
     run("python", &[&training, "1"], &tests)?;
     let notebook = source.join("notebooks/fall.ipynb");
