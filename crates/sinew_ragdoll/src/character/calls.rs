@@ -388,7 +388,7 @@ impl Character {
 
     /// Has one of its bodies (by role or bone) take hold of a body of the world: another's limb, a crate. It holds the point of its surface that is nearest
     /// to the hand, where that is, so that nothing snaps, and draws what is not yet at the hand there at [`speed`](Grab::speed); what is held turns freely about the point. From then on it drags and lifts with
-    /// [`max_force`](Grab::max_force), and lets go where that does not do: [`CharacterEvent::LetGo`](super::CharacterEvent::LetGo). [`release`](Self::release) lets go
+    /// [`max_force`](Grab::max_force), and lets go where that does not do: [`CharacterEvent::LetGo`]. [`release`](Self::release) lets go
     /// at once. What is held passes through the character's own bodies, and through movers.
     ///
     /// Forces must move one of the two: a hand that clips lead drags what is limp or powered. Who is held stays limp, and does not get up.

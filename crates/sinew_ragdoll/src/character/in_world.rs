@@ -86,7 +86,7 @@ pub struct InWorld {
     /// Default 4.
     pub most_steps: u32,
     /// Impulse from which it feels what strikes its bodies by itself, N·s; infinite: it feels only what it is told of by
-    /// [`Character::hit`]. Default 3.
+    /// [`Character::hit`](super::Character::hit). Default 3.
     pub feels: f32,
     /// True: [`CharacterEvent::Contact`](super::CharacterEvent::Contact) tells which of its bodies begin and stop to touch something. Default false: in crowds that
     /// is much to look through.
