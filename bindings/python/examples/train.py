@@ -4,6 +4,9 @@ import sys
 
 import gymnasium
 import numpy as np
+import sinew.vector_env
+
+gymnasium.register_envs(sinew.vector_env)  # Its import has told of them.
 
 WORLDS, STEP, NOISE = 64, 0.02, 0.03
 ROUNDS = int(sys.argv[1]) if len(sys.argv) > 1 else 20

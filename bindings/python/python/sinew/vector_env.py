@@ -1,5 +1,8 @@
 """A humanoid that is to stay up, as environments of Gymnasium: `pip install sinew[gym]`.
 
+    import gymnasium
+    import sinew.vector_env  # Gymnasium knows its environments from here on.
+
     env = gymnasium.make("sinew/HumanoidStand-v0", render_mode="rgb_array")
     many = gymnasium.make_vec("sinew/HumanoidStand-v0", num_envs=64, vectorization_mode="vector_entry_point")
 
@@ -25,7 +28,7 @@ from numpy.typing import NDArray
 import sinew
 from sinew.picture import draw
 
-__all__ = ["HumanoidEnv", "HumanoidVectorEnv", "pd_baseline", "register_envs"]
+__all__ = ["HumanoidEnv", "HumanoidVectorEnv", "pd_baseline"]
 
 Floats = NDArray[np.float32]
 
@@ -192,10 +195,8 @@ class HumanoidEnv(gymnasium.Env[Floats, Floats]):
         return None if pictures is None else pictures[0]
 
 
-def register_envs() -> None:
-    """Tells Gymnasium of the environments; it calls this itself, by the entry point of the wheel."""
-    gymnasium.register(
-        id="HumanoidStand-v0",
-        entry_point="sinew.vector_env:HumanoidEnv",
-        vector_entry_point="sinew.vector_env:HumanoidVectorEnv",
-    )
+gymnasium.register(
+    id="sinew/HumanoidStand-v0",
+    entry_point="sinew.vector_env:HumanoidEnv",
+    vector_entry_point="sinew.vector_env:HumanoidVectorEnv",
+)
