@@ -1,4 +1,7 @@
-"""Learning to stay up under pushes, with numpy alone: augmented random search (Mania et al. 2018) on a linear policy."""
+"""The loop of learning to stay up under pushes, with numpy alone: augmented random search (Mania et al. 2018) on a linear policy.
+
+It is not tuned: 20 rounds do not make it better than standing still.
+"""
 
 import sys
 

@@ -189,7 +189,7 @@ class HumanoidEnv(gymnasium.Env[Floats, Floats]):
         observations, rewards, terminated, truncated, info = self.env.step(np.asarray(action)[None])
         return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> NDArray[np.uint8] | None:
         """A picture (240, 320, 3) under `rgb_array`, else `None`."""
         pictures = self.env.render()
         return None if pictures is None else pictures[0]
