@@ -51,7 +51,7 @@ pub(crate) fn led(kinds: &mut LedKinds, def: &Arc<CharacterDef>) -> Arc<Characte
     let outside = Clip { name: "Bevy".to_owned(), duration: 1.0, channels: Vec::new() };
     let (looped, clips) = (Some(own.clips.len()), [own.clips, vec![outside]].concat());
     let (locomotion, opening) = (Locomotion::InPlace, Opening::Looped);
-    let motions = MotionSet { clips, looped, idle: None, locomotion, opening, ..own };
+    let motions = MotionSet { clips, looped, faster: Vec::new(), idle: None, locomotion, opening, ..own };
     led.set_motions(motions).expect("a clip without channels beside those that it plays already");
     let led = Arc::new(led);
     kinds.push((Arc::downgrade(def), Arc::downgrade(&led)));

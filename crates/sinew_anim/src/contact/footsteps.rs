@@ -62,6 +62,10 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     let points = sole_points(rig, &root, &feet, &take);
     let mut settings = ContactSettings::for_leg(feet[0].length);
     let ground = Ground::under(&take, &points, &settings);
+    if ground.velocity.length() > settings.run {
+        // Feet of a run touch the ground half as long as those of a walk.
+        settings.shortest *= 0.5;
+    }
     let points = ground.seen_from(&take, points);
     let pace = pace(&take, &points);
     settings.speed = settings.speed.map(|speed| speed + STEP_SLIDE * pace);
