@@ -1,4 +1,4 @@
-//! What spins fast strikes what flies through its disc, and nothing from where it has been.
+//! Fast spinning rods: they hit balls that fly through their disc, and hit nothing where they were before.
 
 use sinew_math::{Random, Rotation, Transform, Vec3, clamp};
 use sinew_physics::*;

@@ -41,7 +41,7 @@ pub struct Actor {
     /// A twin that the deed at hand asks for.
     pub wanted: Option<Twin>,
     pub threads: Option<Threads>,
-    /// What lives beside the world.
+    /// Objects that are kept beside the world, such as characters.
     pub more: Extension,
     /// Name of the deed at hand, and how many things it has named.
     deed: u64,

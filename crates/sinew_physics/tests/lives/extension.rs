@@ -1,4 +1,4 @@
-//! What lives beside a world, with deeds of its own: here nothing. The lives of the ragdoll crate run by the same files and have
+//! Objects kept beside a world, with deeds of their own: here none. The lives of the ragdoll crate run by the same files and have
 //! characters in this place.
 
 use crate::actor::Twin;
@@ -16,7 +16,7 @@ pub const MAKERS: &[&str] = &[];
 /// Steps in which deeds are done.
 pub const BUSY: Range<u32> = 20..100;
 
-/// What lives beside a world.
+/// Objects kept beside a world.
 pub struct Extension;
 
 impl Extension {
@@ -38,7 +38,7 @@ impl Extension {
         Vec::new()
     }
 
-    /// What it tells of a step.
+    /// Events of the last step.
     pub fn events(&self) -> String {
         String::new()
     }

@@ -18,7 +18,7 @@ const SLOW: Duration = Duration::from_secs(2);
 /// Lives after which those who wait are told how far it is.
 const PROGRESS: u64 = 500;
 
-/// What a run of the tests looks at.
+/// Lives that a test run covers.
 struct Asked {
     /// Seeds, or numbers of those that are listed.
     seeds: Range<u64>,
@@ -129,7 +129,7 @@ pub fn workers() -> usize {
         .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, core::num::NonZero::get))
 }
 
-/// Looks at lives; those that fail are told of, the first of them as a short program.
+/// Runs lives and reports those that fail, the first of them as a short program.
 ///
 /// # Panics
 /// If one fails, or if at least as many as `some` leave a call out.

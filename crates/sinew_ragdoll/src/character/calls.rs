@@ -177,7 +177,7 @@ impl Character {
     }
 
     /// Events of the last [`update`](Self::update) and since the one before it ended, in order, and what calls have brought about
-    /// since. Who reads it after each update, and only then, is told of everything exactly once.
+    /// since. Poll once after each update to receive every event exactly once.
     pub fn events(&self) -> &[CharacterEvent] {
         &self.events.list
     }

@@ -1,4 +1,4 @@
-//! Way of a character over the ground: its clips, its mover, and what it was told.
+//! Locomotion of a character: its clips, its mover, and the velocity and heading that were asked for.
 
 use super::activity::Activity;
 use super::figure::Figure;

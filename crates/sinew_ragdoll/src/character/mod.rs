@@ -51,7 +51,6 @@ mod in_world;
 mod legs;
 mod limb;
 mod limp;
-
 mod mirror;
 mod moves;
 mod physique;

@@ -18,7 +18,7 @@ pub(super) struct Wear {
     pub pose: Vec<LocalTransform>,
 }
 
-/// Who wears it.
+/// Character that wears springs and garments.
 #[derive(Clone, Copy)]
 pub(super) struct Bearer<'a> {
     pub def: &'a CharacterDef,

@@ -134,8 +134,8 @@ fn dragging(
     (world, hero, victim, joint)
 }
 
-/// How a limb that is dragged over the ground catches and turns is chaotic, and so is the peak of a force: of all starts together, eleven in twelve keep
-/// to the bars, and none is beyond twice that.
+/// Eleven of twelve starts keep to the bars, and none exceeds them twice over: a limb dragged over the ground catches and turns chaotically,
+/// and so does the peak of the force.
 #[test]
 fn a_walker_drags_who_is_limp() {
     let def = shared(walker());

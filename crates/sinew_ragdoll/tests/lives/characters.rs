@@ -372,7 +372,7 @@ fn push_part(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
-/// What the world lets a game do to a body that is a character's.
+/// Calls of the world that a game may make on a character's body.
 fn change_part(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let body = part(a, n)?;
     a.more.is_meddled_with = true;

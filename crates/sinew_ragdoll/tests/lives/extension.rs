@@ -58,7 +58,7 @@ pub struct Member {
     pub character: Character,
 }
 
-/// What lives beside a world.
+/// Characters, limbs and grips kept beside a world.
 #[derive(Clone, Default)]
 pub struct Extension {
     pub cast: Vec<Member>,
@@ -128,7 +128,7 @@ impl Extension {
         w.into_bytes()
     }
 
-    /// What it tells of a step.
+    /// Events of the last step.
     pub fn events(&self) -> String {
         let told = self.cast.iter().filter(|member| !member.character.events().is_empty());
         told.map(|member| format!("{} {:?} ", member.number, member.character.events())).collect()
