@@ -45,6 +45,7 @@ impl StepTimes {
             "mean": all.iter().sum::<f64>() / all.len() as f64,
             "last_third": quantile(&all[all.len() * 2 / 3..], 0.5),
             "best": quantile(all, 0.0),
+            "worst": quantile(all, 1.0),
         })
     }
 }
@@ -102,6 +103,7 @@ mod tests {
         let report = times.to_json();
         assert_eq!(report["last_third"], 1.0);
         assert_eq!(report["best"], 1.0);
+        assert_eq!(report["worst"], 9.0);
         assert_eq!(report["mean"], 6.5);
         assert_eq!(times.median(), 9.0);
     }

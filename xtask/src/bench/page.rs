@@ -51,14 +51,14 @@ Written by `cargo xtask bench`; do not edit.
 ";
 
 const GLANCE: &str =
-    "Processor time of the median step of so many in milliseconds, then the figure that tells whether it is the time of the
-same work.
+    "Processor time of the mean step in milliseconds (the whole run over its steps: the crash counts, and so does sleep), then the
+figure that tells whether it is the time of the same work.
 ";
 
 const LEGEND: &str = "*gap*: largest distance between the two anchors of a joint after any step · *stretch*: all gaps of a chain over its length ·
 *depth*: deepest overlap of two bodies · *shift*: how far a body of a stack at rest has moved ·
 *asleep at step*: the one after which nothing moves any more, – if something always does · *speed*: the fastest peer's
-time over Sinew's, above 1 is faster · † the joints came apart: the time is that of another scene.
+mean step over Sinew's, above 1 is faster · *p99*: the same of the 99th percentile · † the joints came apart: the time is that of another scene.
 ";
 
 const HOLD: &str = "What must hold with default settings, and what others do with theirs: the worst after any step of the run.
@@ -83,8 +83,8 @@ takes 8⅓ of its default steps for it. Depths of MuJoCo are those that it finds
 
 const SPECIFICATION: &str = "Factors against the fastest peer of this run.\n";
 
-const SCENES: &str = "Times in milliseconds per step: the median step (in brackets: of the best round), the 99th percentile, the median of the
-last third of the run, when piles have settled. *Sinew's speed* is the engine's median over Sinew's. Memory in MiB is the
+const SCENES: &str = "Times in milliseconds per step: the mean step (in brackets: of the best round), the 99th percentile, the slowest step, the median
+step, the median of the last third of the run, when piles have settled. *Sinew's speed* is the engine's mean over Sinew's. Memory in MiB is the
 peak above what the process had before the scene. *depth* is looked at after every tenth step, everything else after every
 step. *energy gained* is the most the world ever had above its start, *energy lost* what is missing at the end. Figures that
 are 0 for all are left out.
@@ -156,20 +156,24 @@ pub fn figures_alone(results: &Results) -> Table {
 
 fn times_and_figures(scenes: &[&SceneResult]) -> Table {
     let engines = columns(scenes);
-    let mut table = heading(&["scene", "figure", "steps"], &engines, &["speed"]);
+    let mut table = heading(&["scene", "figure", "steps"], &engines, &["speed", "p99"]);
     for scene in scenes {
         let figure = headline(&scene.name);
         let time = |name: &String| {
             let Some(engine) = of(scene, name) else { return NONE.to_owned() };
             let Some(times) = engine.times() else { return absence(engine) };
-            format!("{} · {}{}", rounded(times.median), cell(figure, engine), mark(engine))
+            format!("{} · {}{}", rounded(times.mean), cell(figure, engine), mark(engine))
         };
-        let speed = scene.speed().map_or(NONE.to_owned(), |speed| format!("{}×", rounded(speed)));
+        let speeds = [scene.speed(), scene.p99_speed()].map(factor);
         let steps = scene.size("steps").map_or(NONE.to_owned(), |steps| steps.to_string());
         let before = [scene.name.clone(), figure.heading.to_owned(), steps];
-        table.row(before.into_iter().chain(engines.iter().map(time)).chain([speed]));
+        table.row(before.into_iter().chain(engines.iter().map(time)).chain(speeds));
     }
     table
+}
+
+fn factor(speed: Option<f64>) -> String {
+    speed.map_or(NONE.to_owned(), |speed| format!("{}×", rounded(speed)))
 }
 
 /// Why there is no figure.
@@ -226,7 +230,7 @@ fn details(scene: &SceneResult) -> String {
     let sizes = sizes.filter_map(|key| Some((scene.size(key).filter(|&size| size > 0)?, key)));
     let sizes: Vec<String> = sizes.map(|(size, key)| format!("{size} {key}")).collect();
     let figures = telling(scene);
-    let times = ["engine", "median (best)", "Sinew's speed", "p99", "last third", "MiB"];
+    let times = ["engine", "mean (best)", "Sinew's speed", "p99", "worst", "median", "last third", "MiB"];
     let mut table = Table::new(1, times.into_iter().chain(figures.iter().map(|figure| figure.heading)));
     for engine in &scene.engines {
         let Some(times) = time_cells(scene, engine) else { continue };
@@ -238,13 +242,15 @@ fn details(scene: &SceneResult) -> String {
     format!("{}: {}. Measured at {}.\n\n{table}{absent}", scene.about, sizes.join(", "), scene.revision)
 }
 
-fn time_cells(scene: &SceneResult, engine: &EngineResult) -> Option<[String; 6]> {
+fn time_cells(scene: &SceneResult, engine: &EngineResult) -> Option<[String; 8]> {
     let times = engine.times()?;
     Some([
         format!("{}{}", title(&engine.name), mark(engine)),
-        format!("{} ({})", rounded(times.median), rounded(times.best)),
-        scene.speed_against(engine).map_or(NONE.to_owned(), |speed| format!("{}×", rounded(speed))),
+        format!("{} ({})", rounded(times.mean), rounded(times.best)),
+        factor(scene.speed_against(engine)),
         rounded(times.p99),
+        times.worst.map_or(NONE.to_owned(), rounded),
+        rounded(times.median),
         rounded(times.last_third),
         engine.memory().map_or(NONE.to_owned(), rounded),
     ])

@@ -40,8 +40,10 @@ pub enum Bar {
 /// Where the factor of a [`Speed`] comes from.
 #[derive(Clone, Copy)]
 pub enum Measure {
-    /// A scene: the fastest peer's time over ours.
+    /// A scene: the fastest peer's mean step over ours.
     Peers(&'static str),
+    /// The same of the 99th percentile.
+    PeersP99(&'static str),
     /// A scene as for `Peers`, but a peer whose joints came apart does not count; with none left there is no bar.
     PeersTogether(&'static str),
     /// A scene as for `Peers`, but a peer whose figure exceeds a bound does not count, and ours that does falls short.
@@ -67,9 +69,9 @@ const fn factor(work: &'static str, must: f64, goal: f64, measure: Measure) -> S
     Speed { work, bar: Bar::Factor { must, goal, measure } }
 }
 
-/// Of joints in a row.
+/// A chain that holds.
 const fn together(work: &'static str, scene: &'static str) -> Speed {
-    factor(work, 1.0, 2.0, Measure::PeersTogether(scene))
+    factor(work, 0.8, 1.5, Measure::PeersTogether(scene))
 }
 
 const fn elsewhere(work: &'static str, must: &'static str, goal: &'static str, why: &'static str) -> Speed {
@@ -79,14 +81,20 @@ const fn elsewhere(work: &'static str, must: &'static str, goal: &'static str, w
 /// Section 5 of the specification, and the speed of animation that was asked for beside it.
 pub const SPEEDS: &[Speed] = &[
     factor("ragdoll pile", 1.0, 1.5, Measure::Peers("ragdoll_pile")),
+    factor("ragdoll pile, 99th percentile", 0.6, 1.0, Measure::PeersP99("ragdoll_pile")),
     factor("pile of our own ragdolls", 1.0, 1.5, Measure::Peers("crowd_pile")),
+    factor("pile of our own ragdolls, 99th percentile", 0.6, 1.0, Measure::PeersP99("crowd_pile")),
     factor("rain of ragdolls", 1.0, 1.5, Measure::Peers("rain")),
-    factor("box pyramid", 1.2, 2.0, Measure::Peers("box_pyramid")),
-    factor("box pile", 1.2, 2.0, Measure::Peers("box_rain")),
-    factor("wall of boxes", 1.2, 2.0, Measure::Peers("large_pyramid")),
-    factor("10,000 boxes in one heap", 0.8, 1.3, Measure::Peers("boxes_10000")),
+    factor("rain of ragdolls, 99th percentile", 0.6, 1.0, Measure::PeersP99("rain")),
+    factor("ragdolls until asleep", 1.0, 1.5, Measure::Peers("ragdolls")),
+    factor("wave pile until asleep", 1.0, 1.5, Measure::Peers("wave_pile")),
+    factor("mesh drop until asleep", 1.0, 1.5, Measure::Peers("mesh_drop")),
+    factor("box pyramid", 1.3, 2.0, Measure::Peers("box_pyramid")),
+    factor("box pile", 1.0, 2.0, Measure::Peers("box_rain")),
+    factor("wall of boxes", 1.3, 2.0, Measure::Peers("large_pyramid")),
+    factor("10,000 boxes in one heap", 1.0, 1.5, Measure::Peers("boxes_10000")),
     together("chains of 100 links", "chain_100_links"),
-    together("hanging rope", "hanging_rope"),
+    factor("hanging rope", 1.2, 1.5, Measure::PeersTogether("hanging_rope")),
     together("heavy rope", "heavy_rope"),
     together("swinging chain, 1,000 kg", "chain_swing_1000"),
     together("swinging chain, 1,000 kg, links of 0.5 m", "chain_swing_1000_half"),
@@ -94,38 +102,38 @@ pub const SPEEDS: &[Speed] = &[
     together("swinging chain, 100 kg", "chain_swing_100"),
     together("hanging chain, 100 kg", "chain_hang_100"),
     together("hanging chain, 1,000 kg", "chain_hang_1000"),
-    factor("joint grid", 0.5, 1.2, Measure::Peers("joint_grid")),
-    factor("net", 0.5, 1.2, Measure::Peers("net")),
-    factor("a humanoid lying awake, against MuJoCo", 1.0, 3.0, Measure::Peers("humanoid_lying")),
-    factor("10 humanoids in a heap, against MuJoCo", 1.0, 3.0, Measure::Peers("humanoid_pile_10")),
-    factor("100 humanoids in a heap, against MuJoCo", 1.0, 3.0, Measure::Peers("humanoid_pile_100")),
-    factor(CLOTH_RACE, 1.2, 3.0, Measure::PeersWithin("cloth", &CLOTH, CLOTH_STRETCH)),
+    factor("joint grid", 1.0, 2.0, Measure::Peers("joint_grid")),
+    factor("net", 1.0, 2.0, Measure::Peers("net")),
+    factor("a humanoid lying awake, against MuJoCo", 5.0, 10.0, Measure::Peers("humanoid_lying")),
+    factor("10 humanoids in a heap, against MuJoCo", 5.0, 10.0, Measure::Peers("humanoid_pile_10")),
+    factor("100 humanoids in a heap, against MuJoCo", 5.0, 10.0, Measure::Peers("humanoid_pile_100")),
+    factor(CLOTH_RACE, 2.4, 3.0, Measure::PeersWithin("cloth", &CLOTH, CLOTH_STRETCH)),
     elsewhere(
         "separating axes of two boxes: share of the limit",
-        "≥ 0.3",
         "≥ 0.6",
+        "≥ 0.8",
         "`cargo xtask bench --kernels` measures it",
     ),
     elsewhere(
         "point in box, springs: share of the limit",
-        "≥ 0.4",
-        "≥ 0.7",
+        "≥ 0.66 and 0.4",
+        "≥ 0.8",
         "`cargo xtask bench --kernels` measures it",
     ),
-    factor("rays against 10,000 boxes", 1.2, 3.0, Measure::Peers("rays")),
+    factor("rays against 10,000 boxes", 2.0, 3.0, Measure::Peers("rays")),
     factor("sample and blend two clips of 50 joints", 1.5, 1.5, Measure::Peers("crowd")),
     elsewhere("heap allocations per step", "0", "0", "a test counts them: `a_warm_step_allocates_nothing`"),
     factor("rig file of 6,000 vertices to ragdoll, against 100 ms", 1.0, 10.0, Measure::Build),
     factor(
         "a limp character, from release until it sleeps, against real time: median of all rigs",
-        400.0,
-        1000.0,
+        300.0,
+        550.0,
         LIMP[0],
     ),
-    factor("the same, the slowest humanoid", 400.0, 1000.0, LIMP[1]),
-    factor("the same, the demo's whole bake beside it", 250.0, 1000.0, Measure::Bake),
-    factor("two threads on two free cores: box pile", 1.6, 1.8, Measure::Threads("box_rain")),
-    factor("two threads on two free cores: ragdoll pile", 1.6, 1.8, Measure::Threads("ragdoll_pile")),
+    factor("the same, the slowest humanoid", 200.0, 550.0, LIMP[1]),
+    factor("the same, the demo's whole bake beside it", 400.0, 550.0, Measure::Bake),
+    factor("two threads on two free cores: box pile", 1.5, 1.8, Measure::Threads("box_rain")),
+    factor("two threads on two free cores: ragdoll pile", 1.5, 1.8, Measure::Threads("ragdoll_pile")),
 ];
 
 impl Speed {
@@ -152,6 +160,7 @@ impl Measure {
             Self::Build => results.build,
             Self::Threads(scene) => results.threads.get(scene).copied(),
             Self::Peers(scene) => raced(results, scene)?.0.speed(),
+            Self::PeersP99(scene) => raced(results, scene)?.0.p99_speed(),
             Self::PeersTogether(scene) => Some(speed_together(raced(results, scene)?.0)?),
             Self::PeersWithin(scene, figure, most) => {
                 Some(speed_within(raced(results, scene)?.0, figure, most)?)
@@ -367,7 +376,7 @@ mod tests {
         let (missed, _) = shortfalls(&cloth("failed"));
         assert_eq!(
             missed,
-            ["cloth, against those that stretch by 3.1 % at most: does not come to its end, must be ≥ 1.2×"]
+            ["cloth, against those that stretch by 3.1 % at most: does not come to its end, must be ≥ 2.4×"]
         );
     }
 

@@ -46,12 +46,16 @@ pub struct EngineResult {
 /// Processor time of a step, milliseconds: of each statistic over the steps of a round, the median over the rounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
-    /// Median step.
-    pub median: f64,
+    /// Mean step: the time of the whole run over its steps, with the crash and with the sleep.
+    pub mean: f64,
     /// The same in the best round.
     pub best: f64,
+    /// Median step.
+    pub median: f64,
     /// 99th percentile.
     pub p99: f64,
+    /// Slowest step; older results lack it.
+    pub worst: Option<f64>,
     /// Median of the last third of the steps.
     pub last_third: f64,
 }
@@ -156,14 +160,28 @@ impl SceneResult {
         self.engines.iter().filter(|engine| !engine.is_sinew())
     }
 
-    /// Sinew's speed: the median time of an engine over ours, if both ran.
+    /// Sinew's speed: the mean step of an engine over ours, if both ran.
     pub fn speed_against(&self, engine: &EngineResult) -> Option<f64> {
-        Some(engine.times()?.median / self.sinew()?.times()?.median)
+        self.ratio_against(engine, |times| times.mean)
     }
 
-    /// The same, against the fastest peer.
+    /// The same of the 99th percentile.
+    pub fn p99_speed_against(&self, engine: &EngineResult) -> Option<f64> {
+        self.ratio_against(engine, |times| times.p99)
+    }
+
+    fn ratio_against(&self, engine: &EngineResult, of: impl Fn(Times) -> f64) -> Option<f64> {
+        Some(of(engine.times()?) / of(self.sinew()?.times()?))
+    }
+
+    /// Sinew's speed against the fastest peer, by the mean step.
     pub fn speed(&self) -> Option<f64> {
         self.peers().filter_map(|peer| self.speed_against(peer)).min_by(f64::total_cmp)
+    }
+
+    /// The same by the 99th percentile, against the peer whose is least.
+    pub fn p99_speed(&self) -> Option<f64> {
+        self.peers().filter_map(|peer| self.p99_speed_against(peer)).min_by(f64::total_cmp)
     }
 
     /// A number that is the same for all engines, such as `bodies`.
@@ -199,9 +217,11 @@ impl EngineResult {
         };
         let median = |key: &str| over_rounds(key).map(|values| values[values.len() / 2]);
         Some(Times {
+            mean: median("mean")?,
+            best: over_rounds("mean")?[0],
             median: median("median")?,
-            best: over_rounds("median")?[0],
             p99: median("p99")?,
+            worst: median("worst"),
             last_third: median("last_third")?,
         })
     }
@@ -234,17 +254,17 @@ impl EngineResult {
 pub mod tests {
     use super::*;
 
-    /// An engine with a round for each of these median times.
-    pub fn engine(name: &str, medians: &[f64], quality: &Value) -> EngineResult {
-        let report = |&median: &f64| {
+    /// An engine with a round for each of these mean times.
+    pub fn engine(name: &str, means: &[f64], quality: &Value) -> EngineResult {
+        let report = |&mean: &f64| {
             json!({
                 "engine": name, "version": "1", "flags": "-O3", "settings": "defaults",
                 "steps": 100, "bodies": 10, "joints": 5, "peak_rss_mib": 2.5,
-                "cpu_ms": { "median": median, "p99": 2.0 * median, "last_third": median },
+                "cpu_ms": { "mean": mean, "median": 0.5 * mean, "p99": 2.0 * mean, "last_third": mean },
                 "quality": quality,
             })
         };
-        EngineResult { name: name.into(), reports: medians.iter().map(report).collect() }
+        EngineResult { name: name.into(), reports: means.iter().map(report).collect() }
     }
 
     /// A scene of these engines.
@@ -255,7 +275,7 @@ pub mod tests {
     #[test]
     fn times_are_medians_over_the_rounds() {
         let times = engine("sinew", &[3.0, 1.0, 2.0], &Value::Null).times().expect("it ran");
-        assert_eq!(times, Times { median: 2.0, best: 1.0, p99: 4.0, last_third: 2.0 });
+        assert_eq!(times, Times { mean: 2.0, best: 1.0, median: 1.0, p99: 4.0, worst: None, last_third: 2.0 });
         let failed = EngineResult { name: "x".into(), reports: vec![json!({ "failed": "stopped" })] };
         assert_eq!((failed.times(), failed.why_not()), (None, Some("stopped")));
     }
@@ -278,7 +298,7 @@ pub mod tests {
         let ours = engine("sinew", &[2.0], &Value::Null);
         let peers = [engine("rapier", &[3.0], &Value::Null), engine("jolt", &[4.0], &Value::Null)];
         let pile = scene("pile", [vec![ours.clone()], peers.into()].concat());
-        assert_eq!(pile.speed(), Some(1.5));
+        assert_eq!((pile.speed(), pile.p99_speed()), (Some(1.5), Some(1.5)));
         assert_eq!(scene("pile", vec![ours]).speed(), None);
     }
 
