@@ -88,7 +88,7 @@ impl EulerOrder {
     }
 }
 
-/// Whether the axes of the second and third rotation move with the rotations before them.
+/// Motion of the second and third axis: with the rotations before them, or fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EulerAxes {
     /// Moved by them: *intrinsic* angles, those of nested rings. The axes are the body's.
@@ -102,7 +102,7 @@ pub enum EulerAxes {
 pub struct EulerConvention {
     /// Axes of the rotations.
     pub order: EulerOrder,
-    /// Whether these axes move with the rotations.
+    /// Motion of these axes: with the rotations, or fixed.
     pub axes: EulerAxes,
 }
 

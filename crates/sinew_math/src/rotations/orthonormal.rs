@@ -44,11 +44,11 @@ pub struct Orthonormalized {
     pub rotation: Rotation,
     /// `‖M − R‖`, Frobenius: size of the correction. Infinite for a matrix that is not finite.
     pub residual: f32,
-    /// Whether the result is unique.
+    /// Uniqueness of the result.
     pub answer: Uniqueness,
 }
 
-/// Whether a result is unique.
+/// Uniqueness of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Uniqueness {
     /// There is only one nearest rotation.
