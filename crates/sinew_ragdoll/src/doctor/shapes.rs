@@ -1,4 +1,4 @@
-//! Shapes: which overlap, which are out of proportion, which may meet.
+//! Checks of shapes: overlaps, proportions, and collision pairs.
 
 use super::exam::Exam;
 use super::geometry::{depth, depth_at, longest};
@@ -30,7 +30,7 @@ pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// Overlap that is let be, metres.
+/// Tolerated overlap, metres.
 pub(super) fn tolerated(exam: &Exam<'_>) -> f32 {
     max(TOLERATED, 0.002 * exam.size) * 1.02
 }
@@ -50,7 +50,7 @@ fn out_of_size(exam: &Exam<'_>, body: usize) -> Option<Finding> {
         return Some(exam.finding(Code::TinyShape, &[body], evidence));
     }
     let most = longest_allowed(exam);
-    // A spear may be longer than who carries it.
+    // A spear may be longer than its carrier.
     (long > most && !exam.bones.list[body].is_prop).then(|| {
         let evidence = format!(
             "{} is {:.2} m long, {:.0} % of a height of {:.2} m",
@@ -88,7 +88,7 @@ fn overlap(exam: &Exam<'_>, (a, b): (usize, usize)) -> Option<Finding> {
     })
 }
 
-/// All pairs of the free ends of limbs with the trunk are left out, though they do not overlap.
+/// All pairs of limb ends with the trunk are disabled, although they do not overlap.
 fn no_self_collision(exam: &Exam<'_>) -> Option<Finding> {
     let pairs = limbs_and_trunk(exam);
     let is_disabled = |&(a, b): &(usize, usize)| {
