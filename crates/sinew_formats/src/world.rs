@@ -43,7 +43,7 @@
 //! `height_field` has `columns` and `rows` of vertices, `spacing` `[x, z]`, `heights`, row after row, and `holes`, cells by
 //! `column + row × (columns − 1)`. Both are surfaces without a mass of their own. Also a
 //! `position` and `rotation` in the body's frame, a `density` (kg/m³, default 1000), a `material` and a `filter`
-//! `{ "layers", "mask", "group" }`. With `"sensor": true` it reports whom it meets and does not push. `contacts` is `"push"`
+//! `{ "layers", "mask", "group" }`. With `"sensor": true` it reports overlaps and does not push. `contacts` is `"push"`
 //! (default), `"ghost"`, or `{ "one_way": { "direction", "tolerance" } }`.
 //!
 //! A **material** is the name of an entry of `materials`, or such an entry itself: `friction` (default 0.6),

@@ -174,7 +174,7 @@ pub(crate) const AS_HIGH: f32 = 0.02;
 
 /// Lowest hips of a figure with a large head, as a share of its height.
 ///
-/// Larger: dolls have no legs. Smaller: feet are legs. Shown by the tests of `roles`.
+/// Larger: the legs of dolls are not recognised. Smaller: feet count as legs. Shown by the tests of `roles`.
 pub(crate) const LOWEST_HIP: f32 = 0.1;
 
 /// Largest distance of the inner end of a limb from the midline, as a share of that of its next joint.

@@ -43,7 +43,7 @@ pub fn seconds(text: &str) -> Result<f32, String> {
     }
 }
 
-/// A length that a movie may have: of a clip of so many seconds.
+/// A length that a movie may have: of a clip of this many seconds.
 pub fn longest(seconds: f32) -> f32 {
     if seconds < LONGEST { seconds } else { LONGEST }
 }

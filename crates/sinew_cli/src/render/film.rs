@@ -51,7 +51,7 @@ pub enum View {
 }
 
 impl Film<'_> {
-    /// The bytes of a picture file of so many pixels across and down.
+    /// The bytes of a picture file of this many pixels across and down.
     pub fn shoot(self, format: PictureFormat, [width, height]: [u32; 2]) -> Result<Vec<u8>, EncodeError> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let settings = RenderSettings { width, height, threads, ..RenderSettings::default() };

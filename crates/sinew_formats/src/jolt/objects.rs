@@ -20,7 +20,7 @@ const DEEPEST: usize = 16;
 /// Type of a member.
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
-    /// Numbers on a line, so many.
+    /// Numbers on a line, this many.
     Numbers(usize),
     /// A number or a truth value.
     Word,

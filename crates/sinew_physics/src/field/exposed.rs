@@ -23,7 +23,7 @@ pub(super) struct Panel {
 
 /// Calls `visit` with panels whose projected areas add up to the shape's in every direction. A box: its faces at 2×2
 /// Gauss points each, so that spin is also damped. A ball: its disk. A capsule: its disk and the strip of its cylinder
-/// that faces `stream` (m/s, world); a tapered one likewise. A cylinder and a cone: their ends, and the part of the
+/// that faces `stream` (m/s, world); a tapered one in the same way. A cylinder and a cone: their ends, and the part of the
 /// side that faces the stream. A hull: its faces in triangles at three points each. Half-spaces, meshes and height
 /// fields have none.
 pub(super) fn exposed(shape: &Shape, at: &Transform, stream: Vec3, mut visit: impl FnMut(Panel)) {

@@ -22,7 +22,7 @@ pub(crate) struct JointGeometry {
 /// The joint's frames in the world, and the arms of its anchors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointPose {
-    /// World arm from A's centre of mass to its anchor, likewise B.
+    /// World arm from A's centre of mass to its anchor, and the same for B.
     pub arm_a: Vec3,
     pub arm_b: Vec3,
     /// Anchor of B less anchor of A, world, metres.

@@ -21,7 +21,7 @@ pub(crate) struct AddedMass {
 }
 
 impl AddedMass {
-    /// As a body of so many kg shows it that was pushed by an impulse and gained a velocity.
+    /// From the velocity that a body of `mass` kg gained by an impulse.
     pub fn of(mass: f32, pushed: Vec3, gained: Vec3) -> Self {
         let own = gained * mass;
         let momentum = pushed - own;

@@ -56,7 +56,7 @@ pub(super) struct SelfCollision {
 enum Turn {
     /// It has no known support.
     Loose,
-    /// In the order.
+    /// It is in the solving order.
     Listed,
     /// Its pairs are solved.
     Done,

@@ -21,15 +21,15 @@
 //! assert!(!world.query().accept(|body, _| body != ball).any(&ContainsPoint(Vec3::Y * 2.0)));
 //! ```
 //!
-//! # What can be asked
+//! # Queries
 //!
-//! | question | asks for | answers, in this order |
+//! | query | finds | answers, in this order |
 //! |---|---|---|
-//! | [`Ray`](crate::ray::Ray) | what is on a stretch of a line | [`BodyHit`], by fraction |
-//! | [`ShapeCast`] | what a shape meets that is moved | [`BodyHit`], by fraction |
-//! | [`OverlapWith`] | what a shape has a point in common with | [`ShapeId`], by body and shape |
-//! | [`PenetrationOf`] | how deep a shape is in those, and the way out of each | [`BodyPenetration`], the deepest first |
-//! | [`ContainsPoint`] | what holds a point | [`ShapeId`], by body and shape |
+//! | [`Ray`](crate::ray::Ray) | shapes on a segment | [`BodyHit`], by fraction |
+//! | [`ShapeCast`] | shapes that a moving shape hits | [`BodyHit`], by fraction |
+//! | [`OverlapWith`] | shapes that share a point with a shape | [`ShapeId`], by body and shape |
+//! | [`PenetrationOf`] | its depth in each of these, and the way out | [`BodyPenetration`], the deepest first |
+//! | [`ContainsPoint`] | shapes that contain a point | [`ShapeId`], by body and shape |
 //! | [`NearestTo`] | surfaces within a distance of a point | [`BodySurface`], the nearest first |
 //! | [`NearestToShape`] | surfaces within a distance of a shape | [`BodySurface`], the nearest first |
 //!
@@ -45,11 +45,11 @@
 //!
 //! | | apart at the start | touching | inside |
 //! |---|---|---|---|
-//! | [`Ray`](crate::ray::Ray), [`ShapeCast`] | hit where they meet, if they do | hit at fraction 0, wherever the way leads | likewise |
-//! | their [`normal`](BodyHit::normal) | out of the shape | opposite to the way; if it has no length, the way out | likewise |
-//! | their [`start`](BodyHit::start) | `None` | depth 0 | how deep, and the shortest way out |
+//! | [`Ray`](crate::ray::Ray), [`ShapeCast`] | hit at the first contact, if any | hit at fraction 0, in any direction | same as touching |
+//! | their [`normal`](BodyHit::normal) | outward | opposite to the sweep; for zero length, the way out | same as touching |
+//! | their [`start`](BodyHit::start) | `None` | depth 0 | depth, and the shortest way out |
 //! | [`OverlapWith`], [`ContainsPoint`] | no answer | an answer | an answer |
-//! | [`PenetrationOf`] | no answer | depth 0 | how deep, and the shortest way out |
+//! | [`PenetrationOf`] | no answer | depth 0 | depth, and the shortest way out |
 //! | [`NearestTo`], [`NearestToShape`] | distance above 0 | 0 | below 0 |
 //!
 //! A ray that leaves a shape does not hit it again; one without length hits the shapes that contain its start.

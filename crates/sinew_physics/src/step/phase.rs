@@ -25,7 +25,7 @@ impl Phase {
             .chain(core::iter::once(Self::Store))
     }
 
-    /// Phases of so many substeps of an island, in order, after [`Prepare`](Self::Prepare) and before [`Store`](Self::Store).
+    /// Phases of this many substeps of an island, after [`Prepare`](Self::Prepare) and before [`Store`](Self::Store).
     pub fn of_substeps(substeps: u32) -> impl Iterator<Item = Self> {
         (0..substeps).flat_map(|substep| [Self::Move(substep), Self::Relax(substep)])
     }

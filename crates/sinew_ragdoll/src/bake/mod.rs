@@ -211,7 +211,7 @@ fn spawned(input: &BakeInput<'_>, world: &mut World) -> Character {
         return Character::new(input.character.clone(), input.world_from_character, input.phase);
     }
     let mut def = CharacterDef::clone(&input.character);
-    // It follows its clips and feels only what it is told.
+    // It follows its clips and reacts only to requested hits.
     def.in_world = InWorld { mover: None, feels: f32::INFINITY, ..def.in_world };
     if falls {
         def.in_world.toughness = Toughness::None;

@@ -102,7 +102,7 @@ impl Doubt {
     }
 }
 
-/// The figures of a fall that is like this one, of a body so many times as large.
+/// The figures of the same fall scaled to a body `size` times as large.
 fn at_size(quality: FallQuality, size: f32) -> FallQuality {
     let time = |seconds: Option<f32>| seconds.map(|seconds| seconds * size.sqrt());
     FallQuality {

@@ -32,7 +32,7 @@ impl ClipFile {
         &self.path
     }
 
-    /// Its bytes, and what they cannot hold, a sentence each.
+    /// Its bytes, and notes on what the format cannot represent, one sentence each.
     pub fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<(Vec<u8>, Vec<String>)> {
         let written = match self.format {
             ClipFormat::Copy => append_clip(

@@ -49,7 +49,7 @@ pub fn is_pushed(input: &BakeInput<'_>) -> String {
     )
 }
 
-/// Motions that are not the file's.
+/// Note on motions that do not come from the file.
 fn borrows(events: &[(f32, CharacterEvent)], gets_up_by: &GetsUpBy) -> Option<String> {
     let rises = events.iter().any(|(_, event)| matches!(event, CharacterEvent::GettingUp { .. }));
     (rises && *gets_up_by == GetsUpBy::Builtin).then(|| {

@@ -96,7 +96,7 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// The next so many bytes.
+    /// The next this many bytes.
     fn take(&mut self, count: usize) -> Result<&'a [u8], &'static str> {
         let (taken, rest) = self.rest.split_at_checked(count).ok_or("it is cut off")?;
         self.rest = rest;
