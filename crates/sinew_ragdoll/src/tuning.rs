@@ -264,7 +264,7 @@ pub(crate) const SQUARE: f32 = 0.26;
 
 /// Cosine of the angle, 143°, above which two neighbours of a particle count as opposite, a ratio.
 ///
-/// Larger: resists folds at corners that are none. Smaller: uneven meshes do not resist bending. Shown by the tests of
+/// Larger: resists folds at false corners. Smaller: uneven meshes do not resist bending. Shown by the tests of
 /// `mesh_garments`.
 pub(crate) const STRAIGHT: f32 = -0.8;
 
@@ -431,7 +431,7 @@ pub(crate) const CREATURE_BUILD: f32 = 80.0;
 /// Larger: accepts a hog. Smaller: doubts a hen. Shown by the tests of `faults`.
 pub(crate) const ROUND: f32 = 20.0;
 
-/// Most that a character grows or shrinks between its clip and a get-up, times.
+/// Largest factor by which a character grows or shrinks between its clip and a get-up.
 ///
 /// Larger: accepts a giant that becomes a child for a second. Smaller: faults clips that stretch a figure a little.
 /// Shown by the tests of `faults`.

@@ -25,7 +25,7 @@ pub struct WorldDef {
     pub sleeping: Sleeping,
     /// Thresholds of motion below which an island is at rest.
     pub sleep_thresholds: SleepThresholds,
-    /// Most that a body moves, m/s: it is held to it when forces act, before joints and contacts. Default 4,000.
+    /// Largest speed of a body, m/s: enforced when forces act, before joints and contacts. Default 4,000.
     pub max_speed: f32,
     /// Largest rotation of a body per substep, radians. Beyond a quarter turn (the default, 377 rad/s at 1/60 s and 4
     /// substeps) rows linearised at the substep's start are meaningless; a top may spin faster.

@@ -400,7 +400,7 @@ impl Body {
         0.5 * self.mass * self.velocity.linear.length_squared() + 0.5 * (w * self.inertia).dot(w)
     }
 
-    /// Most that a point of it moves at, roughly, m/s.
+    /// Approximate largest speed of a point of it, m/s.
     pub fn fastest_point(&self) -> f32 {
         self.velocity.linear.length() + self.velocity.angular.length() * self.reach()
     }

@@ -24,7 +24,7 @@ pub(crate) struct NearPair {
     /// Guaranteed remaining gap, metres: the last computed gap, or that of their bounds, minus their largest relative
     /// motion since. Only while they have no contact.
     pub left: f32,
-    /// The axis that parted them then.
+    /// The axis that separated them then.
     axis: PackedAxis,
     /// Their filters let them collide.
     pub meets: bool,

@@ -211,7 +211,7 @@ impl Joint {
         locked_count(&self.kind) + if driven { open_directions(self.kind).count() } else { 0 }
     }
 
-    /// True if nothing of it holds or stops: all that it has is springs, motors and friction in all six directions.
+    /// True if it has no locked direction and no stop: only springs, motors and friction in all six directions.
     pub fn leaves_all_free(&self) -> bool {
         self.kind == JointKind::SixDof(SixDof::FREE)
     }

@@ -10,7 +10,7 @@ pub(super) struct Crowd {
     order: Vec<(f32, u32)>,
     /// Largest half extent of a mover along the axis, metres.
     widest: f32,
-    /// Most that one has moved along the axis since, metres.
+    /// Largest motion of one along the axis since, metres.
     drift: f32,
 }
 

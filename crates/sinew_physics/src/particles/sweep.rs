@@ -8,7 +8,7 @@ use sinew_math::{Vec3, max, max3, min3};
 /// Contact of a swept ball with a shape, in the shape's frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meeting {
-    /// Share of the way before, 0..=1.
+    /// Share of the path before contact, 0..=1.
     pub fraction: f32,
     /// Centre of the ball.
     pub at: Vec3,

@@ -406,7 +406,7 @@ pub(crate) const SUNK: f32 = 5e-3;
 
 /// Largest distance of a joint from the mirror image of its counterpart in the bind pose, as a share of the body's height.
 ///
-/// Larger: mirrored clips look askew. Smaller: there are none. Shown by the tests of `character`.
+/// Larger: mirrored clips look askew. Smaller: no clip is mirrored. Shown by the tests of `character`.
 pub(crate) const MIRROR_TOLERANCE: f32 = 0.03;
 
 /// Distance from its rest place beyond which a joint counts as translated, as a share of its distance from its parent.

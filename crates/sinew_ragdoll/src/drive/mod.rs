@@ -147,7 +147,7 @@ impl Drives {
         Self::with_torques(def, torque_caps(def))
     }
 
-    /// All limp. `torques`: most that the muscles of the joint between a body and its parent can do, N·m, body by body; that
+    /// All limp. `torques`: largest muscle torque of the joint between a body and its parent, N·m, body by body; that
     /// of the first means nothing.
     ///
     /// # Panics

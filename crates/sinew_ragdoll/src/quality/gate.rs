@@ -59,7 +59,7 @@ pub enum Bar {
 }
 
 impl Bar {
-    /// All of them.
+    /// All falls.
     pub const ALL: [Self; 3] = [Self::Finite, Self::EnergyGain, Self::JointGap];
 
     /// The figure's key in reports.
@@ -71,7 +71,7 @@ impl Bar {
         }
     }
 
-    /// The figure, and whether it is on the right side of the bar; a figure that is no number is not.
+    /// The figure, and whether it meets the bar; NaN does not.
     fn of(self, quality: &FallQuality) -> (f32, Side) {
         let (value, holds) = match self {
             Self::Finite => (quality.nan as f32, quality.nan == 0),

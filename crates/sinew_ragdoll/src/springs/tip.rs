@@ -183,7 +183,8 @@ impl<'a> Held<'a> {
     }
 }
 
-/// Way of a free tip in the share `rho` of a tick, as shares of its way in the tick before and of what pushes it in a tick.
+/// Displacement of a free tip in the share `rho` of a tick, as shares of its displacement in the previous tick and of
+/// the push per tick.
 fn flight(drag: f32, rho: f32) -> [f32; 2] {
     let keeps = 1.0 - drag;
     if rho == 1.0 {
