@@ -235,7 +235,8 @@ pub(crate) const PROP_BEYOND: f32 = 0.05;
 
 /// Least share of a prop's vertices that protrude, 0 to 1.
 ///
-/// Larger: misses a shield held close. Smaller: a belt counts as a prop. Shown by the tests of `rig_variants` of the ragdolls.
+/// Larger: misses a shield held close. Smaller: a belt counts as a prop. Shown by the tests of `rig_variants` of the
+/// ragdolls.
 pub(crate) const PROP_SHARE: f32 = 0.1;
 
 /// Confidence of a prop, 0 to 1.
