@@ -15,11 +15,11 @@ pub struct LearnedHinge {
     pub axis: Vec3,
     /// Angle about it, radians from [`LearnedLimit::center`].
     pub range: Range,
-    /// Angle by which the joint turns about other axes all the same, radians.
+    /// Remaining rotation about other axes, radians.
     pub off_axis: f32,
 }
 
-/// Limit that a joint kept in all takes but for a few frames.
+/// Limit that a joint kept in nearly all frames of all takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LearnedLimit {
     /// The joint.
@@ -30,9 +30,9 @@ pub struct LearnedLimit {
     pub frame: Rotation,
     /// Half-angles of the ellipse: swing about y, swing about z, radians.
     pub swing: [f32; 2],
-    /// Turn about the bone, radians from the centre.
+    /// Rotation about the bone, radians from the centre.
     pub twist: Range,
-    /// Set for joints that turn about one axis.
+    /// Set for joints that rotate about one axis.
     pub hinge: Option<LearnedHinge>,
     /// Frames learned from.
     pub samples: usize,
@@ -45,8 +45,8 @@ impl LearnedLimit {
         (self.frame.inverse() * own * self.frame).normalize()
     }
 
-    /// The nearest local rotation within the limit: swing drawn in toward the centre, twist cut off. For a hinge, the turn
-    /// about its axis alone.
+    /// The nearest local rotation within the limit: swing moved toward the centre, twist clamped. For a hinge, the
+    /// rotation about its axis alone.
     pub fn project(&self, local: Rotation) -> Rotation {
         if let Some(hinge) = self.hinge {
             let angle = (self.center.inverse() * local).twist_angle(hinge.axis);
@@ -71,11 +71,11 @@ impl LearnedLimit {
     }
 }
 
-/// Limits of every joint of a rig that turns at all, from what it does in `takes`, any number of frames each; one frame in two
-/// hundred may be beyond. Angles are radians, of local rotations; in the order of the joints, those without a limit left out.
+/// Limits of every rotating joint of a rig, from its motion in `takes`, any number of frames each; one frame in two
+/// hundred may be outside. Angles are radians, of local rotations; sorted by joint, without joints that have no limit.
 ///
 /// # Panics
-/// If a take is not one of the rig's.
+/// If a take does not fit the rig.
 pub fn learn_limits(rig: &Rig, takes: &[&Take]) -> Vec<LearnedLimit> {
     assert!(takes.iter().all(|take| take.joints == rig.joints.len()), "takes of this rig");
     let learn = |joint: JointIdx| {
@@ -88,7 +88,7 @@ pub fn learn_limits(rig: &Rig, takes: &[&Take]) -> Vec<LearnedLimit> {
     (0..rig.joints.len()).filter_map(learn).collect()
 }
 
-/// Direction of a joint's bone in its own axes: to the child that is farthest; x if there is none.
+/// Direction of a joint's bone in its own axes: to the furthest child; x if there is none.
 fn bone(rig: &Rig, joint: JointIdx) -> Vec3 {
     let children = rig.joints.iter().filter(|child| child.parent == Some(joint));
     let farthest = children
@@ -97,8 +97,8 @@ fn bone(rig: &Rig, joint: JointIdx) -> Vec3 {
     farthest.and_then(direction).unwrap_or(Vec3::X)
 }
 
-/// The limit of one joint from its rotations, any number: those of a joint of the rig, or of any other two frames that turn
-/// against each other. `bone` is unit, in the joint's own axes. `None` if it does not turn.
+/// The limit of one joint from any number of its rotations, or of any two frames that rotate against each other. `bone`
+/// is unit, in the joint's own axes. `None` if it does not rotate.
 pub fn learn_limit(joint: JointIdx, bone: Vec3, turns: &[Rotation]) -> Option<LearnedLimit> {
     let mean = mean(turns)?;
     let across = any_orthonormal(bone);
@@ -113,7 +113,7 @@ pub fn learn_limit(joint: JointIdx, bone: Vec3, turns: &[Rotation]) -> Option<Le
         hinge: None,
         samples: turns.len(),
     };
-    // The mean is where the joint is most of the time; the middle of its range is found from there.
+    // The mean is where the joint mostly is; the middle of its range is found from there.
     limit.hinge = hinge(turns, mean);
     if let Some(hinge) = &mut limit.hinge {
         let middle = hinge.range.center();
@@ -148,7 +148,7 @@ impl LearnedLimit {
         }
     }
 
-    /// Turns the frame about the bone so that y and z are the main axes of the swing.
+    /// Rotates the frame about the bone so that y and z are the main axes of the swing.
     fn turn_to_main_axes(&mut self, turns: &[Rotation]) {
         let (mut yy, mut zz, mut yz) = (0.0, 0.0, 0.0);
         for [_, y, z] in self.angles(turns) {
@@ -177,10 +177,10 @@ impl LearnedLimit {
     }
 }
 
-/// The range that holds [`COVERAGE`] of all numbers, but for the lowest and highest of them.
+/// The range of the central [`COVERAGE`] of all numbers.
 ///
 /// # Panics
-/// If there are none.
+/// If there are no numbers.
 pub fn covered(mut numbers: Vec<f32>) -> Range {
     numbers.sort_by(f32::total_cmp);
     let tail = 0.5 * (1.0 - COVERAGE);
@@ -191,7 +191,7 @@ fn at_share(count: usize, share: f32) -> usize {
     ((count - 1) as f32 * share).round() as usize
 }
 
-/// The rotation in the midst of others: that from which the turns to all of them add up to nothing (Karcher mean).
+/// The mean of rotations: the rotations from it to all sum to zero (Karcher mean).
 fn mean(turns: &[Rotation]) -> Option<Rotation> {
     let mut mean = *turns.first()?;
     for _ in 0..8 {
@@ -201,7 +201,7 @@ fn mean(turns: &[Rotation]) -> Option<Rotation> {
     Some(mean)
 }
 
-/// The one axis that a joint turns about, if there is one: the main axis of its turns from their mean. The range is from
+/// The single axis of a joint, if there is one: the main axis of its rotations from their mean. The range is from
 /// there.
 fn hinge(turns: &[Rotation], mean: Rotation) -> Option<LearnedHinge> {
     let own: Vec<Rotation> = turns.iter().map(|&turn| (mean.inverse() * turn).normalize()).collect();

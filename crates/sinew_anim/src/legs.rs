@@ -1,4 +1,4 @@
-//! Legs that a body stands on, with pelvis and soles, and the joints that a rig hangs elsewhere.
+//! Legs with pelvis and soles, and joints that anatomy places elsewhere in the hierarchy.
 
 use crate::ik::{TwoBone, set_rotation, shift};
 use crate::rig::{Joint, JointIdx, LocalTransform, Rig};
@@ -6,19 +6,19 @@ use crate::roles::{Basis, Bound, HUMANOID_ROLES, RigAnalysis, Role, RoleGuess, S
 use crate::tuning::{ANKLE_HEIGHT, BALL_AHEAD, MADE_UP};
 use sinew_math::{Affine, Rotation, Vec3};
 
-/// A leg and the two points of the sole that it stands on.
+/// A leg with two sole points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foot {
     /// Whose.
     pub side: Side,
     /// Hip, knee and ankle.
     pub leg: TwoBone,
-    /// Under the ankle, and under the ball (where the toes begin): from the ankle in the axes of its joint without scale,
-    /// metres.
+    /// Under the ankle, and under the ball (where the toes begin): from the ankle in the axes of its joint without
+    /// scale, metres.
     pub sole: [Vec3; 2],
     /// From hip to knee to ankle to the floor, metres.
     pub length: f32,
-    /// From the axes of the ankle's joint to the body's own, as it stands.
+    /// From the axes of the ankle's joint to the body's own, in the standing pose.
     pub stance: Rotation,
     /// Forward in the axes of the thigh's joint: where a straight knee bends to. Unit.
     pub forward: Vec3,
@@ -65,11 +65,12 @@ pub struct Legs {
     pub pelvis: JointIdx,
     /// Left, right.
     pub feet: [Foot; 2],
-    /// Joints that anatomy hangs on others than the rig does. Rigs baked from inverse kinematics leave feet beside the body.
+    /// Joints with another parent in anatomy than in the rig. Rigs baked from inverse kinematics parent feet to the
+    /// root.
     strays: Vec<Stray>,
 }
 
-/// A joint, what carries it by anatomy, and where it sits in the axes of that, file units.
+/// A joint, its anatomical parent, and its position in that one's axes, file units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Stray {
     joint: JointIdx,
@@ -78,11 +79,10 @@ struct Stray {
 }
 
 impl Legs {
-    /// The legs of a humanoid as they stand in its bind pose; `None` without hips, or where a side lacks thigh, shank or
-    /// foot.
+    /// The legs of a humanoid in its bind pose; `None` without hips, or if a side lacks thigh, shank or foot.
     ///
     /// # Panics
-    /// If the analysis is not one of the rig's.
+    /// If the analysis does not fit the rig.
     pub fn of(rig: &Rig, analysis: &RigAnalysis) -> Option<Self> {
         assert_eq!(analysis.bind_model.len(), rig.joints.len(), "an analysis of this rig");
         let pelvis = analysis.joint_with(Role::Hips)?;
@@ -90,8 +90,7 @@ impl Legs {
         Some(Self { pelvis, feet, strays: strays(rig, analysis) })
     }
 
-    /// Puts the joints that the rig hangs elsewhere where anatomy has them; rotations stay. To be called when what carries
-    /// them has moved.
+    /// Moves strayed joints to their anatomical place, keeping rotations. Call it after their anatomical parents moved.
     pub fn gather(&self, rig: &Rig, local: &mut [LocalTransform], model: &mut [Affine]) {
         for stray in &self.strays {
             let by = model[stray.carrier].point(stray.at) - model[stray.joint].translation;
@@ -99,13 +98,13 @@ impl Legs {
         }
     }
 
-    /// Shifts the whole body, in the axes of the model pose.
+    /// Moves the whole body, in the axes of the model pose.
     pub fn carry(&self, rig: &Rig, by: Vec3, local: &mut [LocalTransform], model: &mut [Affine]) {
         shift(rig, self.pelvis, by, local, model);
         self.gather(rig, local, model);
     }
 
-    /// Gives a foot back a rotation that moving its leg has changed.
+    /// Restores a foot's rotation after its leg moved.
     pub fn plant(
         &self,
         rig: &Rig,
@@ -129,17 +128,18 @@ fn strays(rig: &Rig, analysis: &RigAnalysis) -> Vec<Stray> {
         let at = analysis.bind_model[carrier].inverse().point(analysis.bind_model[joint].translation);
         (!hangs(joint, carrier) && at.is_finite()).then_some(Stray { joint, carrier, at })
     };
-    // Parents come first, so that what a stray carries follows it.
+    // Parents come first, so that descendants of a stray follow it.
     HUMANOID_ROLES.into_iter().filter_map(stray).collect()
 }
 
-/// Gives a humanoid whose legs end with the shank joints for its ankles, so that motions with feet fit it: low-poly figures have none.
+/// Adds ankle joints to a humanoid whose legs end with the shank, so that motions with feet fit low-poly figures.
 ///
-/// Each is a new joint at the end of the rig, without skin, below the shank, in the middle of the lowest skin that the shank moves. Its
-/// [`Joint::source`] lies beyond the nodes of any file. The analysis knows it as a foot. Returns the number of joints added: 0 where thigh or shank is missing, too.
+/// Each is a new joint at the end of the rig, without skin, a child of the shank, in the middle of the shank's lowest
+/// skin. Its [`Joint::source`] is beyond the file's nodes. The analysis treats it as a foot. Returns the number of
+/// joints added: 0 if thigh or shank is missing.
 ///
 /// # Panics
-/// If the analysis is not one of the rig's.
+/// If the analysis does not fit the rig.
 pub fn add_ankles(rig: &mut Rig, analysis: &mut RigAnalysis) -> usize {
     assert_eq!(analysis.bind_model.len(), rig.joints.len(), "an analysis of this rig");
     let before = rig.joints.len();

@@ -1,7 +1,7 @@
 //! Animation as plain data and stateless jobs: rig, clips, poses, roles, captured motion.
 //!
-//! Nothing here knows physics, files or a renderer. Rotations are [`sinew_math::Rotation`], times are seconds, lengths
-//! are **file units** until [`roles`] has told how many metres one is.
+//! This crate knows no physics, files or renderer. Rotations are [`sinew_math::Rotation`], times are seconds, lengths
+//! are **file units** until [`roles`] gives metres per unit.
 #![forbid(unsafe_code)]
 
 pub mod animator;

@@ -1,4 +1,4 @@
-//! Joints with skin that hang elsewhere in the rig than on the part of the body that they belong to.
+//! Riders: skinned joints outside the body part that they belong to.
 
 use crate::clip::Clip;
 use crate::pose::{local_to_model, rest_pose};
@@ -7,7 +7,7 @@ use crate::roles::RigAnalysis;
 use crate::{Wrap, sample};
 use sinew_math::{Affine, Transform};
 
-/// A joint, the joint with a body that it goes with, and its place in the axes of that.
+/// A joint, the body joint that it follows, and its transform relative to that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Rider {
     joint: JointIdx,
@@ -16,11 +16,11 @@ struct Rider {
     carrier_from_joint: Transform,
 }
 
-/// The joints of a rig that move skin of a part of the body without hanging on it: a second bone of the trunk above the hips, halves of a
-/// pelvis, the root of a coat, eyes of a skeleton of their own, a hat that is worn beside the skeleton.
+/// The joints of a rig that move skin of a part of the body without being below it: a second bone of the trunk above
+/// the hips, halves of a pelvis, the root of a coat, eyes with their own skeleton, a hat beside the skeleton.
 ///
-/// A clip of the file moves them as its author wanted. A motion that comes from another body knows nothing of them:
-/// [`carry`](Self::carry) has them go with their part, as they do where bodies of a ragdoll move it.
+/// The file's clips move them as authored. Motions from other bodies do not know them: [`carry`](Self::carry) moves
+/// them with their part, as a ragdoll does.
 ///
 /// ```
 /// use sinew_anim::{LocalTransform, Rig, RigAnalysis, riders::Riders};
@@ -42,7 +42,7 @@ impl Riders {
     /// The riders of a rig.
     ///
     /// # Panics
-    /// If the analysis is not one of the rig's.
+    /// If the analysis does not fit the rig.
     pub fn of(rig: &Rig, analysis: &RigAnalysis) -> Self {
         assert_eq!(analysis.bind_model.len(), rig.joints.len(), "an analysis of this rig");
         let mut has_body = vec![false; rig.joints.len()];
@@ -55,12 +55,12 @@ impl Riders {
             let carrier = (*carrier)?;
             let [from, to] = [carrier, joint].map(|at| analysis.bind_model[at].to_rigid());
             let carrier_from_joint = from.inverse() * to;
-            // Feet beside the body have a role: whatever makes the motion places them.
+            // Feet beside the body have a role: the motion places them.
             let rides = body_above(joint) != Some(carrier) && analysis.roles[joint].is_none();
             (rides && carrier_from_joint.is_finite()).then_some(Rider { joint, carrier, carrier_from_joint })
         };
         let mut list: Vec<Rider> = analysis.merge_into.iter().enumerate().filter_map(rider).collect();
-        // What is carried has a body of its own, which no motion knows either where it hangs elsewhere: a hat beside the skeleton.
+        // Props have their own bodies, which no motion places if they hang elsewhere: a hat beside the skeleton.
         list.extend(analysis.kept.iter().filter(|bone| bone.is_prop).filter_map(|bone| {
             let carrier = analysis.kept[bone.parent?].joint;
             let carrier_from_joint =
@@ -72,8 +72,8 @@ impl Riders {
         Self { list, has_body }
     }
 
-    /// The same with the places of riders that a clip moves as that has them at its start: an author who lets a hat follow the head by the clip
-    /// alone may have left it anywhere when the skin was bound.
+    /// The same with the transforms that a clip gives at its start: an author who moves a hat by the clip alone may
+    /// have left it anywhere in the bind pose.
     ///
     /// # Panics
     /// If the clip or the riders are not of the rig.
@@ -105,11 +105,11 @@ impl Riders {
         self.list.is_empty()
     }
 
-    /// Puts the riders where their parts of the body are, as in the bind pose; joints with bodies stay where they are in model space. Lengths
-    /// and scales of bones stay as they are. `model` is memory.
+    /// Moves the riders with their body parts, as in the bind pose; joints with bodies keep their model transform.
+    /// Lengths and scales of bones stay. `model` is a buffer.
     ///
     /// # Panics
-    /// If the pose is not one of the rig.
+    /// If the pose does not fit the rig.
     pub fn carry(&self, rig: &Rig, local: &mut [LocalTransform], model: &mut Vec<Affine>) {
         if self.is_empty() {
             return;

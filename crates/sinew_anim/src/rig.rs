@@ -36,11 +36,11 @@ impl LocalTransform {
 pub struct Joint {
     /// Name in the file, or `""`.
     pub name: String,
-    /// Parent; always of a smaller index. `None` for a root.
+    /// Parent, always of a smaller index. `None` for a root.
     pub parent: Option<JointIdx>,
     /// Rest pose of the file (the node's own transform).
     pub rest: LocalTransform,
-    /// Index of the node in the file it came from (glTF node index): where a baked clip's channels point.
+    /// Index of the node in the source file (glTF node index), the target of a baked clip's channels.
     pub source: usize,
 }
 
@@ -55,7 +55,7 @@ pub struct Skin {
     pub inverse_bind: Vec<Affine>,
 }
 
-/// Part of a mesh with one look. All vertex arrays have the length of `positions` or are empty.
+/// Part of a mesh with one material. All vertex arrays have the length of `positions` or are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Primitive {
     /// Mesh space, file units.
@@ -104,7 +104,7 @@ pub struct TextureImage {
     pub rgba: Vec<u8>,
 }
 
-/// A character as plain data: every node of its scene, parents before children, with what hangs on them.
+/// A character as plain data: every node of its scene, parents before children, with meshes and skins.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rig {
     /// All nodes of the scene, parent before child.
@@ -113,18 +113,18 @@ pub struct Rig {
     pub skins: Vec<Skin>,
     /// Meshes.
     pub meshes: Vec<RigMesh>,
-    /// Decoded base colour textures; empty where pictures were not asked for.
+    /// Decoded base colour textures; empty if pictures were not requested.
     pub textures: Vec<TextureImage>,
     /// Roles that the file itself states (VRM humanoid): VRM 1 bone name and joint.
     pub stated_roles: Vec<(String, JointIdx)>,
     /// Springs that the file itself states (VRM).
     pub springs: Springs,
-    /// Meshes that were made sheets of cloth ([`lay_sheet`](crate::garments::lay_sheet)); of no file.
+    /// Meshes converted to cloth ([`lay_sheet`](crate::garments::lay_sheet)); not from a file.
     pub sheets: Vec<MeshSheet>,
 }
 
 impl Rig {
-    /// True for each joint that is a particle of a [sheet](Self::sheets): no bone of the file.
+    /// True for each joint that is a particle of a [sheet](Self::sheets).
     pub fn is_of_sheet(&self) -> Vec<bool> {
         let mut is_of_sheet = vec![false; self.joints.len()];
         self.sheets.iter().flat_map(|sheet| &sheet.joints).for_each(|&joint| is_of_sheet[joint] = true);

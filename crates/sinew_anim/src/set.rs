@@ -1,4 +1,4 @@
-//! Data that the characters of one rig share: clips with what belongs to them, and masks.
+//! Data that the characters of one rig share: clips and masks.
 
 use crate::built::{BuiltClip, Fill};
 use crate::clip::root_motion::MotionTrack;
@@ -15,16 +15,16 @@ pub struct ClipId(pub(crate) u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MaskId(pub(crate) u32);
 
-/// A clip and what belongs to it.
+/// A clip with its metadata.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AnimatedClip {
-    /// The poses. One that was built with [`Fill::Identity`] is added to others, with [`Fill::Rest`] blended with them.
+    /// The poses. A clip built with [`Fill::Identity`] is additive, with [`Fill::Rest`] blended.
     pub clip: BuiltClip,
     /// Events of the clip, in any order.
     pub events: Vec<ClipEvent>,
     /// Markers that keep it in phase with other clips.
     pub markers: Markers,
-    /// Motion of its character, if that was taken out of the poses.
+    /// Motion of its character, if it was extracted from the poses.
     pub motion: Option<MotionTrack>,
 }
 
@@ -40,7 +40,7 @@ impl AnimatedClip {
     }
 }
 
-/// Clips and masks of one rig. Animators refer to them by id; nothing is ever removed.
+/// Clips and masks of one rig. Animators refer to them by id; they are never removed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AnimationSet {
     skeleton: Skeleton,
@@ -109,10 +109,10 @@ impl AnimationSet {
         (0..self.clips.len() as u32).map(ClipId)
     }
 
-    /// Name, payload and policy of what an animator of this set has fired.
+    /// Name, payload and policy of an event that an animator of this set fired.
     ///
     /// # Panics
-    /// If it was fired by an animator of another set, and is not in this one.
+    /// If an animator of another set fired it and it is not in this one.
     pub fn event(&self, fired: &FiredEvent) -> &ClipEvent {
         &self.clip(fired.clip).events[fired.event]
     }
@@ -125,7 +125,7 @@ impl AnimationSet {
         ((id as usize) < self.masks.len()).then_some(MaskId(id))
     }
 
-    /// Tells sets apart that animators cannot be moved between.
+    /// Distinguishes sets between which animators cannot be moved.
     pub(crate) fn fingerprint(&self) -> u64 {
         let mut hasher = StableHasher::default();
         for number in [self.skeleton.len(), self.masks.len(), self.clips.len()] {

@@ -1,4 +1,4 @@
-//! Weights of a skin: loose vertices, which no bone moves, and skins whose weights were lost.
+//! Skin weights: vertices without a bone, and skins whose weights were lost.
 
 use crate::rig::{JointIdx, Primitive, Rig, RigMesh};
 use crate::roles::bind_pose;
@@ -7,10 +7,10 @@ use crate::tuning::{FEWEST_OF_A_SKELETON, MOST_COMPARED, NEAREST_FALLOFF};
 use sinew_math::{Affine, Vec3, clamp};
 use std::collections::BTreeMap;
 
-/// Name of the bone on which Blender's glTF exporter hangs vertices without weights.
+/// Name of the bone to which Blender's glTF exporter weights unweighted vertices.
 const NEUTRAL_BONE: &str = "neutral_bone";
 
-/// Part of a rig's skin whose weights were replaced, or are to be.
+/// Part of a rig's skin whose weights are replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SkinPart {
     /// Index into [`Rig::meshes`].
@@ -21,13 +21,14 @@ pub struct SkinPart {
     pub vertices: Vec<usize>,
 }
 
-/// Gives vertices that no bone moves the weights of the skin nearest to them in the bind pose.
+/// Gives unweighted vertices the weights of the nearest skin in the bind pose.
 ///
-/// Loose are the vertices of `without`, whose weights the file does not state, and all that hang on nothing but `neutral_bone`, as Blender
-/// exports vertices without weights. A piece of the mesh (vertices that triangles join) of which every vertex is loose moves as one, with the joint that moves the
-/// nearest skin most: a hat with the head. Weights come from a vertex whose joints all belong to the mesh's own skin; where there is none, vertices stay as they are.
+/// Loose vertices are those of `without`, whose weights the file does not state, and those weighted to nothing but
+/// `neutral_bone`, as Blender exports them. A connected piece of the mesh of which every vertex is loose moves as one,
+/// with the joint that moves the nearest skin most: a hat with the head. Weights come from a vertex whose joints all
+/// belong to the mesh's own skin; without one, vertices stay as they are.
 ///
-/// Returns the parts that changed, by mesh and primitive. Of very large meshes not every vertex is compared.
+/// Returns the changed parts, by mesh and primitive. For very large meshes not every vertex is compared.
 ///
 /// # Panics
 /// If the rig's indices or those of `without` are out of range.
@@ -105,7 +106,7 @@ fn influences(primitive: &Primitive, vertex: usize) -> impl Iterator<Item = (usi
     slots.zip(primitive.weights[vertex]).filter(|&(_, weight)| weight > 0.0)
 }
 
-/// A vertex whose weights others may take.
+/// A vertex whose weights others may copy.
 struct Donor {
     /// Model space in the bind pose, file units.
     at: Vec3,
@@ -154,7 +155,7 @@ fn nearest<'d>(donors: &[&'d Donor], stride: usize, at: Vec3) -> (&'d Donor, f32
     all.min_by(|a, b| a.1.total_cmp(&b.1)).expect("there are donors")
 }
 
-/// Number of each vertex's piece: the least vertex that triangles join it with. Vertices in one place are joined.
+/// Number of each vertex's piece: the least vertex connected to it by triangles. Vertices in one place are connected.
 fn pieces(primitive: &Primitive) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..primitive.positions.len()).collect();
     let root = |parent: &mut Vec<usize>, mut at: usize| {
@@ -179,8 +180,8 @@ fn pieces(primitive: &Primitive) -> Vec<usize> {
     (0..parent.len()).map(|vertex| root(&mut parent, vertex)).collect()
 }
 
-/// The only joint that moves skin, of a rig whose skins name several: its vertex weights were lost, and it would move as one piece. `None` where
-/// more than one moves skin, or where meshes without a skin hang on bones, as on a machine.
+/// The only skinned joint of a rig whose skins name several: its vertex weights were lost, and it would move as one
+/// piece. `None` if more than one moves skin, or if rigid meshes hang on bones, as on a machine.
 ///
 /// # Panics
 /// If the rig's indices are out of range.
@@ -212,13 +213,14 @@ pub fn lost_weights(rig: &Rig) -> Option<JointIdx> {
     mover
 }
 
-/// Gives every vertex of every skin new weights by its nearness to the bones in the bind pose: for a rig whose own weights were [lost](lost_weights).
+/// Gives every vertex of every skin new weights by its distance from the bones in the bind pose, for a rig whose own
+/// weights were [lost](lost_weights).
 ///
-/// A bone runs from a joint of the skin to each of its children in the skin; a joint without children is a point. A vertex hangs on
-/// the nearest bone and those that meet it, by the inverse fourth power of the distance, so that an arm at the side does not pull at the trunk. A root that carries a single chain is
-/// no bone: it stands on the ground between the feet.
+/// A bone runs from a joint of the skin to each of its children in the skin; a childless joint is a point. A vertex is
+/// weighted to the nearest bone and those that meet it, by the inverse fourth power of the distance, so that an arm at
+/// the side does not pull the trunk. A root with a single chain is no bone: it stands on the ground between the feet.
 ///
-/// Returns the parts that changed, all vertices of each.
+/// Returns the changed parts, all vertices of each.
 ///
 /// # Panics
 /// If the rig's indices are out of range.

@@ -1,4 +1,4 @@
-//! Shapes that hold data beside sizes: hulls, meshes and height fields, as bytes and by the hash of their content.
+//! Shapes with data (hulls, meshes, height fields) as bytes and by content hash.
 
 use crate::hull::Hull;
 use crate::shape::Shape;
@@ -6,7 +6,7 @@ use crate::triangles::{HeightField, Mesh};
 use sinew_math::{ReadError, Reader, Writer};
 use std::sync::Arc;
 
-/// Kind of a shape that holds data beside its sizes.
+/// Kind of a shape with data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DataKind {
     /// Convex hull of points.
@@ -45,7 +45,7 @@ impl core::fmt::Display for DataKind {
 }
 
 impl Shape {
-    /// Hash of the data of a shape that holds some, the same on every machine; `None` of those that are sizes only.
+    /// Hash of a shape's data, the same on every machine; `None` for shapes without data.
     pub fn content_hash(&self) -> Option<u64> {
         match self {
             Self::Mesh(mesh) => Some(mesh.content_hash()),
@@ -55,7 +55,7 @@ impl Shape {
         }
     }
 
-    /// Kind of its data; `None` of those that are sizes only.
+    /// Kind of its data; `None` for shapes without data.
     pub fn data_kind(&self) -> Option<DataKind> {
         match self {
             Self::Hull(_) => Some(DataKind::Hull),

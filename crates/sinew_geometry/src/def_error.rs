@@ -1,14 +1,14 @@
-//! Refusal of a definition whose numbers make no sense.
+//! Rejection of a definition with invalid numbers.
 
-/// Refusal of a definition, a shape or a setting: the first of its numbers that makes no sense, and why. Its text is one line in lower case
-/// without a full stop.
+/// Rejection of a definition, a shape or a setting: the first invalid number and the reason. Its text is one line in
+/// lower case without a full stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DefError {
     what: &'static str,
 }
 
 impl DefError {
-    /// From what is wrong, in lower case: "a radius must be positive and finite".
+    /// From the reason, in lower case: "a radius must be positive and finite".
     pub const fn new(what: &'static str) -> Self {
         Self { what }
     }

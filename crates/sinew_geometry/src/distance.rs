@@ -1,4 +1,4 @@
-//! Signed distance from a point to a shape: what particles collide with, and what decides whether a point is inside.
+//! Signed distance from a point to a shape; particles collide by it, and it decides containment.
 
 use crate::boxes::{SurfacePoint, box_distance};
 use crate::revolved::{TaperedCapsule, TruncatedCone};
@@ -6,10 +6,10 @@ use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, clamp, normalize_or};
 
 impl Shape {
-    /// Distance from `point` (world) to the surface, metres, negative inside, and the unit outward normal (world)
-    /// at the closest point of the surface. Exact for every shape. Meshes and height fields are surfaces, which may be
-    /// open: negative is behind the triangle that is closest, however far. Where several points are closest (the middle of
-    /// a box, the axis of a capsule), one of them, always the same.
+    /// Distance from `point` (world) to the surface, metres, negative inside, and the unit outward normal (world) at
+    /// the closest point of the surface. Exact for every shape. Meshes and height fields are surfaces, which may be
+    /// open: negative is behind the closest triangle, at any distance. If several points are closest (the middle of a
+    /// box, the axis of a capsule), always the same one.
     pub fn signed_distance(&self, world_from_shape: &Transform, point: Vec3) -> (f32, Vec3) {
         let (distance, normal) = self.local_distance(world_from_shape.inverse_point(point));
         (distance, world_from_shape.rotation * normal)
@@ -50,12 +50,12 @@ impl Shape {
     }
 }
 
-/// Behind a surface by more than its radius and this, a particle is on the other side of it, metres.
+/// Distance beyond its radius at which a particle behind a surface counts as being on the other side, metres.
 const BEHIND: f32 = 0.01;
 
 impl Shape {
-    /// As [`local_distance`](Self::local_distance), for a ball of this radius: a surface is not there for what is well behind
-    /// it, and what is farther away than `reach` need only be told as being so.
+    /// Like [`local_distance`](Self::local_distance), for a ball of this radius: a surface is ignored for points well
+    /// behind it, and distances above `reach` need not be exact.
     pub fn ball_distance(&self, p: Vec3, radius: f32, reach: f32) -> (f32, Vec3) {
         let Some(surface) = self.surface() else { return self.local_distance(p) };
         let Some(closest) = surface.closest(p, reach) else { return (reach, Vec3::Y) };

@@ -1,4 +1,4 @@
-//! Mass, centre of mass and inertia of shapes, in closed form; of hulls as they were made.
+//! Mass, centre of mass and inertia of shapes, in closed form; hulls store theirs.
 
 use crate::revolved::{self, TaperedCapsule, TruncatedCone};
 use crate::shape::{MassProperties, Shape};
@@ -80,7 +80,7 @@ fn capsule_inertia(half_height: f32, radius: f32, density: f32) -> Vec3 {
 }
 
 impl MassProperties {
-    /// Sum of two things taken as one; both in the same frame (parallel axis theorem).
+    /// Combined properties of two objects in the same frame (parallel axis theorem).
     #[must_use]
     pub fn combine(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
@@ -97,7 +97,7 @@ impl MassProperties {
         }
     }
 
-    /// The same thing seen from another frame.
+    /// The same properties in another frame.
     #[must_use]
     pub fn transformed(&self, frame_from_this: &Transform) -> Self {
         Self {
@@ -107,7 +107,7 @@ impl MassProperties {
         }
     }
 
-    /// The same distribution of mass with another total (kg, ≥ 0). Without mass there is no distribution: a point.
+    /// The same distribution with another total mass (kg, ≥ 0). Without mass it becomes a point.
     #[must_use]
     pub fn scaled_to(&self, mass: f32) -> Self {
         let factor = if self.mass > 0.0 { mass / self.mass } else { 0.0 };

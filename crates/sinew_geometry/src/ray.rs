@@ -11,7 +11,7 @@ use sinew_math::{Transform, Vec3, abs3, max, normalize_or};
 pub struct Ray {
     /// Start, metres.
     pub origin: Vec3,
-    /// Way to the end, metres; its length is the ray's, so it need not be 1.
+    /// Displacement to the end, metres; its length is the ray's, so it need not be 1.
     pub direction: Vec3,
 }
 
@@ -36,9 +36,9 @@ impl Ray {
     }
 }
 
-/// The square of what is longer may overflow.
+/// The square of a longer vector may overflow.
 const LONG: f32 = 1e15;
-/// 2⁻⁹⁶: what longer rays are multiplied by, without rounding.
+/// 2⁻⁹⁶: factor for longer rays, exact.
 const SHORTENED: f32 = f32::from_bits((127 - 96) << 23);
 
 /// First point of a ray in a shape.
@@ -53,14 +53,14 @@ pub struct RayHit {
 }
 
 impl Shape {
-    /// The first point of the ray that lies in the shape, or `None` if there is none, or a number is not finite.
+    /// The first point of the ray inside the shape; `None` if there is none, or a number is not finite.
     ///
-    /// A ray that starts inside (or on the surface) hits at fraction 0, with a normal opposite to its direction; if
-    /// its direction is zero too, with the outward normal of the closest surface. So it is for every shape. A ray
-    /// that leaves the shape from outside its surface never hits.
+    /// A ray that starts inside or on the surface hits at fraction 0, with a normal opposite to its direction; if its
+    /// direction is zero, with the outward normal of the closest surface. This holds for every shape. A ray that starts
+    /// outside and points away never hits.
     ///
-    /// Meshes and height fields are surfaces that may be open: nothing is inside of them. They are hit from the outside of
-    /// their triangles alone, with the triangle's normal, and let pass what comes from behind.
+    /// Meshes and height fields are surfaces that may be open and have no inside. Rays hit their triangles from the
+    /// front only, with the triangle's normal.
     pub fn cast_ray(&self, world_from_shape: &Transform, ray: &Ray) -> Option<RayHit> {
         self.cast_half_line(world_from_shape, ray).filter(|hit| hit.fraction <= 1.0)
     }
@@ -128,8 +128,7 @@ impl Shape {
     }
 }
 
-/// Beyond a face by more than this, metres, a point needs no exact distance to be known as outside: rounding takes none of
-/// that for inside.
+/// A point further beyond a face than this, metres, is outside without an exact distance.
 pub const CLEARLY_OUTSIDE: f32 = 1e-6;
 
 /// The surface of a union is entered where the first of its parts is.
@@ -142,8 +141,8 @@ fn enter_box(half: Vec3, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
     slabs.is_entered().then(|| (slabs.enter, Vec3::from_array(slabs.normal().to_array())))
 }
 
-/// By the line's closest point to the centre: the usual quadratic loses the ball's radius beside a long way
-/// (Haines et al., "Precision improvements for ray/sphere intersection", Ray Tracing Gems 2019).
+/// By the line's closest point to the centre: the usual quadratic loses the ball's radius over a long distance (Haines
+/// et al., "Precision improvements for ray/sphere intersection", Ray Tracing Gems 2019).
 fn enter_ball(center: Vec3, radius: f32, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
     let length_squared = direction.dot(direction);
     if length_squared <= f32::MIN_POSITIVE {
@@ -153,7 +152,7 @@ fn enter_ball(center: Vec3, radius: f32, origin: Vec3, direction: Vec3) -> Optio
     let middle = -offset.dot(direction) / length_squared;
     let closest = offset + direction * middle;
     let depth = radius * radius - closest.dot(closest);
-    // Written so that NaN, of squares that overflow, fails.
+    // Written so that NaN, from squares that overflow, fails.
     if !(depth >= 0.0 && middle >= 0.0) {
         return None;
     }

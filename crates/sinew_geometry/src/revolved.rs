@@ -16,7 +16,7 @@ pub struct TruncatedCone {
     pub top: f32,
 }
 
-/// Hull of two balls on the y axis, neither of which holds the other; metres.
+/// Hull of two balls on the y axis, neither inside the other; metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaperedCapsule {
     /// Half the distance of the balls' centres, metres.
@@ -40,7 +40,7 @@ fn from_profile(v: Vec2, p: Vec3) -> Vec3 {
 }
 
 impl TruncatedCone {
-    /// Cylinder: both ends alike.
+    /// Cylinder: equal ends.
     pub fn cylinder(half_height: f32, radius: f32) -> Self {
         Self { half_height, bottom: radius, top: radius }
     }
@@ -76,7 +76,7 @@ impl TruncatedCone {
         let along = high - low;
         let t = clamp((q - low).dot(along) / along.dot(along), 0.0, 1.0);
         if beyond_side > 0.0 && t > 0.0 && t < 1.0 {
-            // Right beside the side its own normal is exact, however near the point is.
+            // Close to the side its own normal is exact at any distance.
             return (beyond_side, from_profile(side, p));
         }
         let candidates =
@@ -92,8 +92,8 @@ impl TruncatedCone {
         }
     }
 
-    /// First point of a half-line from outside that lies in the solid: fraction of `direction` (≥ 0) and unit normal. In `f64`: the quadratic of a cone loses a small radius
-    /// beside a long way.
+    /// First point of a half-line from outside that lies in the solid: fraction of `direction` (≥ 0) and unit normal.
+    /// In `f64`: the quadratic of a cone loses a small radius over a long distance.
     pub fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         let [ox, oy, oz] = origin.to_array().map(f64::from);
         let [dx, dy, dz] = direction.to_array().map(f64::from);
@@ -114,7 +114,7 @@ impl TruncatedCone {
         if first > last || first == f64::INFINITY {
             return None;
         }
-        // Beyond the side by f = ρ² − r², a quadratic of the way from there.
+        // Excess beyond the side, f = ρ² − r², is quadratic along the line.
         let [x, y, z] = [ox + dx * first, oy + dy * first, oz + dz * first];
         let (radius, growth) = (mean + slope * y, slope * dy);
         let c = x * x + z * z - radius * radius;
@@ -125,8 +125,8 @@ impl TruncatedCone {
         let a = dx * dx + dz * dz - growth * growth;
         let half_b = x * dx + z * dz - radius * growth;
         let root = half_b * half_b - a * c;
-        // The first root after the start, in the form that does not subtract what is nearly equal; there is none where the
-        // line does not come closer to the side than it is.
+        // The first root after the start, in the form without cancellation; none if the line does not come closer to
+        // the side.
         let steep = root.sqrt() - half_b;
         if root < 0.0 || steep <= 0.0 {
             return None;
@@ -140,7 +140,7 @@ impl TruncatedCone {
         Some(((first + t) as f32, from_profile(self.side_normal(), at)))
     }
 
-    /// The slices it is made of.
+    /// The slices it consists of.
     pub fn slices(&self) -> [Slice; 1] {
         let h = f64::from(self.half_height);
         let mean = 0.5 * (f64::from(self.bottom) + f64::from(self.top));
@@ -158,7 +158,7 @@ impl TaperedCapsule {
     /// Unit, out of the side, in the half-plane through the axis.
     pub fn side_normal(&self) -> Vec2 {
         let sin = (self.bottom - self.top) / (2.0 * self.half_height);
-        // Of the product, not of the square: near 1 that keeps more.
+        // From the product, not the square, which loses precision near 1.
         Vec2::new(max((1.0 - sin) * (1.0 + sin), 0.0).sqrt(), sin)
     }
 
@@ -180,7 +180,7 @@ impl TaperedCapsule {
     /// Signed distance and outward normal at the closest surface.
     pub fn distance(&self, p: Vec3) -> (f32, Vec3) {
         let (q, n) = (to_profile(p), self.side_normal());
-        // Where the side's normal through the point comes from the axis; times the cosine, which may be 0.
+        // Height at which the side's normal through the point meets the axis; times the cosine, which may be 0.
         let foot = q.y * n.x - q.x * n.y;
         let reach = self.half_height * n.x;
         if foot.abs() < reach {
@@ -195,7 +195,7 @@ impl TaperedCapsule {
         (length - radius, normal)
     }
 
-    /// The slices it is made of.
+    /// The slices it consists of.
     pub fn slices(&self) -> [Slice; 3] {
         let (h, bottom, top) = (f64::from(self.half_height), f64::from(self.bottom), f64::from(self.top));
         let sin = (bottom - top) / (2.0 * h);
@@ -218,7 +218,7 @@ impl TaperedCapsule {
     }
 }
 
-/// A solid of revolution from one height to another whose radius at height y is the root of `a + b y + c y²`: parts of balls,
+/// A solid of revolution between two heights whose radius at height y is the root of `a + b y + c y²`: parts of balls,
 /// cylinders and cones.
 #[derive(Clone, Copy, Debug)]
 pub struct Slice {
@@ -260,12 +260,12 @@ impl Slice {
     }
 }
 
-/// Volume of slices that lie one on the other, m³.
+/// Volume of stacked slices, m³.
 pub fn volume(slices: &[Slice]) -> f32 {
     (slices.iter().map(|slice| slice.integrals()[0]).sum::<f64>() * f64::from(PI)) as f32
 }
 
-/// Mass properties of slices that lie one on the other, at `density` (kg/m³), in their frame.
+/// Mass properties of stacked slices at `density` (kg/m³), in their frame.
 ///
 /// A disk of radius r and of mass m has `½ m r²` about the axis and `¼ m r²` about a diameter.
 pub fn mass_properties(slices: &[Slice], density: f32) -> MassProperties {

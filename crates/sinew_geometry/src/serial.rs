@@ -1,4 +1,4 @@
-//! Shapes with data, to and from formats of serde: what they were made of, from which they are made anew.
+//! Shapes with data in serde formats: their source data, from which they are rebuilt.
 
 use crate::hull::Hull;
 use crate::triangles::{HeightField, HeightFieldDef, Mesh};

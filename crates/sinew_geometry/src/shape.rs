@@ -7,7 +7,7 @@ use crate::triangles::{HeightField, Mesh, MeshError, Surface};
 use sinew_math::{Sym3, Vec3, abs3, max, max3, min};
 use std::sync::Arc;
 
-/// A shape in its own frame. All sizes are metres and positive. Convex, but for meshes and height fields.
+/// A shape in its own frame. All sizes are metres and positive. Convex, except meshes and height fields.
 #[doc(alias = "collider")]
 #[doc(alias = "SharedShape")]
 #[derive(Clone, Debug, PartialEq)]
@@ -30,8 +30,8 @@ pub enum Shape {
         /// Radius.
         radius: f32,
     },
-    /// The hull of two balls on the y axis: one around −`half_height`, one around `half_height`. Neither may hold
-    /// the other: the radii differ by less than the distance of the centres.
+    /// The hull of two balls on the y axis, around −`half_height` and `half_height`. Neither may contain the other: the
+    /// radii differ by less than the distance of the centres.
     TaperedCapsule {
         /// Half the distance of the balls' centres.
         half_height: f32,
@@ -64,7 +64,7 @@ pub enum Shape {
     HeightField(#[cfg_attr(feature = "serde", serde(with = "crate::serial::height_field"))] Arc<HeightField>),
 }
 
-/// Short ways to write the kinds down. None checks its sizes: [`Shape::check`] does, and so does a world that is given one.
+/// Short constructors. None checks its sizes; [`Shape::check`] and `World` do.
 impl Shape {
     /// Box around the origin, by half of each side, metres.
     #[doc(alias = "box")]
@@ -105,7 +105,7 @@ impl Shape {
     /// Mesh of triangles: vertices (metres) and three of their indices for each triangle, counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// If a number is not finite or an index names no vertex: see [`Mesh::new`].
+    /// If a number is not finite or an index is out of range: see [`Mesh::new`].
     #[doc(alias = "trimesh")]
     pub fn mesh(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
         Mesh::new(vertices, triangles).map(|mesh| Self::Mesh(Arc::new(mesh)))
@@ -113,11 +113,11 @@ impl Shape {
 }
 
 impl Shape {
-    /// Checks that its sizes are finite and positive (a capsule's half height may be 0), and make a shape of its kind; the
-    /// phrase says what is wrong.
+    /// Checks that its sizes are finite and positive (a capsule's half height may be 0) and form a shape of its kind;
+    /// returns the reason otherwise.
     ///
     /// # Errors
-    /// What is wrong, in lower case.
+    /// The reason, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         // Written so that NaN fails.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
@@ -152,9 +152,8 @@ impl Shape {
         }
     }
 
-    /// Radius of the largest ball inside, metres: half the width where the shape is thinnest. Of a cone somewhat less, of a
-    /// hull that around its centre. Infinite for a half-space, a mesh and a height field: nothing is thin about what they
-    /// keep out.
+    /// Radius of the largest inscribed ball, metres: half the least width. For a cone slightly less, for a hull that
+    /// around its centre. Infinite for half-spaces, meshes and height fields.
     #[inline]
     pub fn inner_radius(&self) -> f32 {
         match *self {
@@ -162,7 +161,7 @@ impl Shape {
             Self::Sphere { radius } | Self::Capsule { radius, .. } => radius,
             Self::TaperedCapsule { radius_bottom, radius_top, .. } => max(radius_bottom, radius_top),
             Self::Cylinder { half_height, radius } => min(half_height, radius),
-            // Of the triangle that turns into the cone: twice its area over its girth.
+            // For the generating triangle of a cone: twice its area over its perimeter.
             Self::Cone { half_height, radius } => {
                 let slant = (radius * radius + 4.0 * half_height * half_height).sqrt();
                 2.0 * half_height * (radius / (radius + slant))
@@ -198,8 +197,8 @@ impl Shape {
         !matches!(self, Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_))
     }
 
-    /// Width where the shape is thinnest, metres: what slop and speculative distance scale with. Infinite for a
-    /// half-space, a mesh and a height field.
+    /// Least width of the shape, metres; slop and speculative distance scale with it. Infinite for half-spaces, meshes
+    /// and height fields.
     #[inline]
     pub fn smallest_extent(&self) -> f32 {
         2.0 * self.inner_radius()
@@ -217,14 +216,14 @@ fn reach(bounds: &Aabb) -> f32 {
 pub struct MassProperties {
     /// kg.
     pub mass: f32,
-    /// Centre of mass in the frame at hand, metres.
+    /// Centre of mass in the given frame, metres.
     pub center: Vec3,
-    /// Inertia about the centre of mass, in the axes of the frame at hand, kg·m².
+    /// Inertia about the centre of mass, in the axes of the given frame, kg·m².
     pub inertia: Sym3,
 }
 
 impl Shape {
-    /// Its surface, if it is made of triangles.
+    /// Its surface, if it consists of triangles.
     #[inline]
     pub fn surface(&self) -> Option<Surface<'_>> {
         match self {

@@ -4,13 +4,13 @@ use sinew_math::lanes::{Real, Vector3};
 
 /// A line and the three slabs that a box is the intersection of, in the box's frame.
 pub struct Slabs<R: Real> {
-    /// Fraction at which it has come into all slabs that it does not run along.
+    /// Fraction at which the line has entered all slabs that it does not run along.
     pub enter: R,
     /// Fraction at which it leaves the first of them.
     leave: R,
     /// True if it runs along a slab, outside of it.
     beside: R::Mask,
-    /// Fraction at which it comes into each, and from which side.
+    /// Fraction at which it enters each slab, and from which side.
     each: [(R, R); 3],
 }
 
@@ -37,13 +37,13 @@ impl<R: Real> Slabs<R> {
         slabs
     }
 
-    /// True if the line comes into the box, at its start or later.
+    /// True if the line enters the box, at its start or later.
     #[inline(always)]
     pub fn is_entered(&self) -> R::Mask {
         R::le(self.enter, self.leave) & R::ge(self.enter, R::splat(0.0)) & !self.beside
     }
 
-    /// Out of the face where it is entered, unit, in the box's frame; of several the first.
+    /// Out of the entry face, unit, in the box's frame; of several the first.
     #[inline(always)]
     pub fn normal(&self) -> Vector3<R> {
         let zero = R::splat(0.0);

@@ -1,9 +1,9 @@
-//! Bytes out and in, little-endian, for snapshots. The reader never panics and never allocates more than the bytes
-//! that are there can fill.
+//! Little-endian writer and reader for snapshots. The reader never panics and never allocates more than the remaining
+//! bytes can fill.
 
 use crate::{Rotation, Sym3, Transform, Vec3};
 
-/// Error of reading: what was wrong with the bytes, and where.
+/// Read error: what is wrong with the bytes, and at which offset.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError {
     /// Offset of the byte at which reading failed.
@@ -31,20 +31,20 @@ impl Writer {
     pub fn new() -> Self {
         Self::default()
     }
-    /// Empty, but with the memory of `bytes` (whose content is dropped), so that a warm snapshot need not allocate.
+    /// Writer that reuses the memory of `bytes` (its content is dropped), so that a warm snapshot need not allocate.
     pub fn reuse(mut bytes: Vec<u8>) -> Self {
         bytes.clear();
         Self { bytes }
     }
-    /// Bytes that were written so far.
+    /// Bytes written so far.
     pub fn as_bytes(&self) -> &[u8] {
         &self.bytes
     }
-    /// Bytes that were written.
+    /// Returns the written bytes.
     pub fn into_bytes(self) -> Vec<u8> {
         self.bytes
     }
-    /// Bytes as they are, without a length.
+    /// Appends bytes as they are, without a length.
     pub fn raw(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
     }
@@ -52,7 +52,7 @@ impl Writer {
     pub fn u8(&mut self, v: u8) {
         self.bytes.push(v);
     }
-    /// Truth value as one byte, 0 or 1.
+    /// Writes a boolean as one byte, 0 or 1.
     pub fn bool(&mut self, v: bool) {
         self.u8(u8::from(v));
     }
@@ -64,7 +64,7 @@ impl Writer {
     pub fn u64(&mut self, v: u64) {
         self.raw(&v.to_le_bytes());
     }
-    /// The bits of a number, NaN payload and sign of zero included.
+    /// Writes the bits of a number, including NaN payload and sign of zero.
     pub fn f32(&mut self, v: f32) {
         self.u32(v.to_bits());
     }
@@ -74,7 +74,7 @@ impl Writer {
         self.f32(v.y);
         self.f32(v.z);
     }
-    /// x, y, z, w.
+    /// Writes x, y, z, w.
     pub fn rotation(&mut self, r: Rotation) {
         self.vec3(r.vector());
         self.f32(r.w);
@@ -89,14 +89,14 @@ impl Writer {
         self.vec3(s.diagonal);
         self.vec3(s.off);
     }
-    /// A count of items that follow.
+    /// Writes the number of items that follow.
     ///
     /// # Panics
     /// If the count does not fit 32 bits.
     pub fn count(&mut self, n: usize) {
         self.u32(u32::try_from(n).expect("a snapshot holds at most 2^32 items of a kind"));
     }
-    /// Byte count, then what `write` writes: who reads it can neither read too much nor leave something.
+    /// Writes a byte count, then what `write` writes, so that a reader cannot read too much or too little.
     ///
     /// # Panics
     /// If it is 4 GiB or more.
@@ -107,7 +107,7 @@ impl Writer {
         let count = u32::try_from(self.bytes.len() - at - 4).expect("a block holds less than 4 GiB");
         self.bytes[at..at + 4].copy_from_slice(&count.to_le_bytes());
     }
-    /// Byte count, then the text as UTF-8.
+    /// Writes a byte count, then the text as UTF-8.
     pub fn text(&mut self, s: &str) {
         self.count(s.len());
         self.raw(s.as_bytes());
@@ -122,7 +122,7 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// From the first byte of `bytes`.
+    /// Reader that starts at the first byte of `bytes`.
     pub fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0 }
     }
@@ -130,15 +130,15 @@ impl<'a> Reader<'a> {
     pub fn position(&self) -> usize {
         self.at
     }
-    /// Bytes that are left.
+    /// Number of bytes left.
     pub fn remaining(&self) -> usize {
         self.bytes.len() - self.at
     }
-    /// An error at the current place.
+    /// Error at the current offset.
     pub fn error(&self, what: &'static str) -> ReadError {
         ReadError { at: self.at, what }
     }
-    /// The next `n` bytes.
+    /// Reads the next `n` bytes.
     pub fn raw(&mut self, n: usize) -> Result<&'a [u8], ReadError> {
         if n > self.remaining() {
             return Err(self.error("ends too early"));
@@ -156,7 +156,7 @@ impl<'a> Reader<'a> {
     pub fn u8(&mut self) -> Result<u8, ReadError> {
         Ok(self.array::<1>()?[0])
     }
-    /// A truth value; any byte but 0 and 1 is an error.
+    /// Reads a boolean; any byte but 0 and 1 is an error.
     pub fn bool(&mut self) -> Result<bool, ReadError> {
         match self.u8()? {
             0 => Ok(false),
@@ -172,7 +172,7 @@ impl<'a> Reader<'a> {
     pub fn u64(&mut self) -> Result<u64, ReadError> {
         Ok(u64::from_le_bytes(self.array()?))
     }
-    /// A number, bit for bit.
+    /// Reads a number, bit for bit.
     pub fn f32(&mut self) -> Result<f32, ReadError> {
         Ok(f32::from_bits(self.u32()?))
     }
@@ -180,7 +180,7 @@ impl<'a> Reader<'a> {
     pub fn vec3(&mut self) -> Result<Vec3, ReadError> {
         Ok(Vec3::new(self.f32()?, self.f32()?, self.f32()?))
     }
-    /// x, y, z, w.
+    /// Reads x, y, z, w.
     pub fn rotation(&mut self) -> Result<Rotation, ReadError> {
         let v = self.vec3()?;
         Ok(Rotation::from_xyzw(v.x, v.y, v.z, self.f32()?))
@@ -193,7 +193,7 @@ impl<'a> Reader<'a> {
     pub fn sym3(&mut self) -> Result<Sym3, ReadError> {
         Ok(Sym3 { diagonal: self.vec3()?, off: self.vec3()? })
     }
-    /// A count of items of at least `item_bytes` bytes each: refused if the bytes that are left cannot hold them.
+    /// Reads a count of items of at least `item_bytes` bytes each; fails if the remaining bytes cannot hold them.
     pub fn count(&mut self, item_bytes: usize) -> Result<usize, ReadError> {
         let at = self.at;
         let n = self.u32()? as usize;
@@ -202,14 +202,14 @@ impl<'a> Reader<'a> {
         }
         Ok(n)
     }
-    /// Reads what [`Writer::block`] wrote, by itself; offsets of errors remain those in the whole.
+    /// Reads a block written by [`Writer::block`]; error offsets remain relative to the whole input.
     pub fn block(&mut self) -> Result<Self, ReadError> {
         let n = self.count(1)?;
         let start = self.at;
         self.raw(n)?;
         Ok(Self { bytes: &self.bytes[..self.at], at: start })
     }
-    /// Text with its byte count.
+    /// Reads text with its byte count.
     pub fn text(&mut self) -> Result<&'a str, ReadError> {
         let n = self.count(1)?;
         let at = self.at;

@@ -1,4 +1,4 @@
-//! Runs kernels on the widest registers that the processor has; the bits of the results are the same on all of them.
+//! Runs kernels on the widest registers of the processor, with the same bits on each.
 //!
 //! ```
 //! use sinew_math::dispatch::{self, Kernel};
@@ -30,31 +30,31 @@ pub trait Kernel {
     /// Result of the loop.
     type Output;
 
-    /// Runs it with `L` for eight lanes. To be marked `#[inline(always)]`, as all that it calls:
+    /// Runs the kernel with `L` as its eight lanes. Implementations and everything they call need `#[inline(always)]`:
     /// see [`lanes`](crate::lanes).
     fn run<L: Lanes>(self) -> Self::Output;
 }
 
-/// Registers of a processor for eight lanes.
+/// Register set that holds eight lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Level {
-    /// Eight times one.
+    /// Eight scalars.
     Scalar,
-    /// Two registers of SSE2: every x86-64.
+    /// Two SSE2 registers: every x86-64.
     Sse2,
-    /// One register of AVX: x86-64 since about 2013, if the operating system keeps its registers.
+    /// One AVX register: x86-64 since about 2013, if the operating system saves it.
     Avx2,
-    /// Two registers of NEON: every aarch64.
+    /// Two NEON registers: every aarch64.
     Neon,
-    /// Two registers of WebAssembly, in builds with `-C target-feature=+simd128`.
+    /// Two WebAssembly registers, in builds with `-C target-feature=+simd128`.
     Simd128,
 }
 
 impl Level {
-    /// All there are, the widest of each processor last.
+    /// All levels, the widest of each architecture last.
     pub const ALL: [Self; 5] = [Self::Scalar, Self::Sse2, Self::Avx2, Self::Neon, Self::Simd128];
 
-    /// True if this processor, and this build, has it.
+    /// True if this processor and this build support it.
     #[inline]
     pub fn is_available(self) -> bool {
         match self {
@@ -69,20 +69,20 @@ impl Level {
         }
     }
 
-    /// Levels that this processor has: for tests, which hold them against each other.
+    /// Levels that this processor supports, for tests that compare them.
     pub fn available() -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(|level| level.is_available())
     }
 
-    /// Level that [`run`] takes.
+    /// Level that [`run`] uses.
     #[inline]
     pub fn best() -> Self {
         Self::ALL.into_iter().rfind(|level| level.is_available()).unwrap_or(Self::Scalar)
     }
 }
 
-/// The widest registers that every processor of a build has. With debug assertions those of SSE2 do not count: few processors have no
-/// AVX2, and kernels for SSE2 would be half of the machine code of a development build.
+/// The widest level that every processor of this build supports. Debug builds skip SSE2: few processors lack AVX2, and
+/// SSE2 kernels would be half of the machine code of a development build.
 #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 type Base = crate::lanes::sse2::Sse2;
 #[cfg(target_arch = "aarch64")]
@@ -96,7 +96,7 @@ type Base = crate::lanes::simd128::Simd128;
 )))]
 type Base = Scalar;
 
-/// Runs a kernel on the widest registers there are. It is compiled for no narrower ones than a processor of this build may have.
+/// Runs a kernel on the widest available registers. Levels narrower than this build's minimum are not compiled.
 #[inline]
 pub fn run<K: Kernel>(kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]
@@ -107,7 +107,7 @@ pub fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Base>()
 }
 
-/// Runs a kernel on the registers of `level`, for tests and measurements.
+/// Runs a kernel at a given level, for tests and measurements.
 ///
 /// # Panics
 /// If they are not [available](Level::is_available).

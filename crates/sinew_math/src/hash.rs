@@ -7,8 +7,8 @@ pub fn hash_bytes(bytes: &[u8]) -> u64 {
     hasher.finish()
 }
 
-/// Streaming hash over bytes: eight at a time are mixed into the state by a folded 64×64→128-bit product.
-/// How the bytes are split over calls does not matter. Not for adversaries.
+/// Streaming hash: eight bytes at a time are mixed into the state by a folded 64×64→128-bit product. Splitting the
+/// input differently gives the same hash. It does not resist adversaries.
 #[derive(Clone, Debug)]
 pub struct StableHasher {
     state: u64,

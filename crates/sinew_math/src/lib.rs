@@ -4,11 +4,12 @@
 //! IEEE-exact everywhere. Everything whose bits differ between targets in `glam` or in std (quaternion algebra,
 //! trigonometry, `min`/`max` with NaN) lives here instead. See `docs/adr/0006-glam-and-bits.md`.
 //!
-//! **Conventions.** Right-handed axes, +Y up, SI units, radians. Vectors are columns: `m * v` and `r * v` turn a vector,
-//! `a * b` applies `b` first, and the columns of a rotation matrix are where the axes go. `world_from_body` names what turns
-//! a vector of the body's axes into one of the world's. A positive turn is counter-clockwise for who looks against its axis.
+//! **Conventions.** Right-handed axes, +Y up, SI units, radians. Vectors are columns: `m * v` and `r * v` rotate a
+//! vector, `a * b` applies `b` first, and the columns of a rotation matrix are the images of the axes.
+//! `world_from_body` maps vectors from body axes to world axes. A positive rotation is counter-clockwise when seen
+//! against its axis.
 //!
-//! **How to write a turn down:**
+//! **Ways to write a rotation:**
 //!
 //! | as | type | good for | look out for |
 //! |---|---|---|---|
@@ -60,7 +61,7 @@ pub fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// `x` limited to `lo..=hi`; NaN gives `lo`, so that a poisoned number cannot spread.
+/// `x` limited to `lo..=hi`; NaN gives `lo`, so that NaN cannot spread.
 #[inline(always)]
 pub fn clamp(x: f32, lo: f32, hi: f32) -> f32 {
     min(max(x, lo), hi)
@@ -91,18 +92,18 @@ pub fn normalize_or(v: Vec3, fallback: Vec3) -> Vec3 {
     if length > 1e-12 && length < f32::INFINITY { v / length } else { fallback }
 }
 
-/// `v` at length 1, however long or short it is; `None` if it is zero or not finite.
+/// `v` at length 1, for any length; `None` if it is zero or not finite.
 #[inline]
 pub fn direction(v: Vec3) -> Option<Vec3> {
     let a = abs3(v);
     let largest = max(a.x, max(a.y, a.z));
-    // Divided by the largest first: the squares neither overflow nor vanish.
+    // Divides by the largest component first, so that squares neither overflow nor vanish.
     let scaled = v / largest;
     (largest > 0.0 && v.is_finite()).then(|| scaled / scaled.length())
 }
 
-/// A unit vector at right angles to the unit vector `n`, continuous but for one jump
-/// (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017).
+/// A unit vector perpendicular to the unit vector `n`, continuous except for one jump (Duff et al., "Building an
+/// Orthonormal Basis, Revisited", JCGT 2017).
 #[inline]
 pub fn any_orthonormal(n: Vec3) -> Vec3 {
     let sign = if n.z >= 0.0 { 1.0 } else { -1.0 };

@@ -1,4 +1,4 @@
-//! Joint limits as plain data, and how far a rotation is beyond them.
+//! Joint limits as plain data, and the distance of a rotation from them.
 
 use crate::{Rotation, Vec3, trig};
 
@@ -56,10 +56,10 @@ pub struct SwingTwistLimit {
     pub twist: Range,
 }
 
-/// One limit that is near or past its stop.
+/// One limit near or past its stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitState {
-    /// Room left, radians; negative when violated.
+    /// Distance to the stop, radians; negative when violated.
     pub slack: f32,
     /// Gradient of `slack` in frame A's axes: `slack` grows at the rate `axis · ω`, ω the angular velocity of B relative
     /// to A. Of length 1 for small swings, longer for large ones.
@@ -82,12 +82,12 @@ impl SwingTwistLimit {
         1.0 / crate::max((ya * ya + zb * zb).sqrt(), 1e-6)
     }
 
-    /// State of the swing cone for the joint rotation `a⁻¹ b`. Room is the distance to the ellipse in the plane of the
-    /// swing's scaled axis, to first order; its gradient is exact at the stop.
+    /// State of the swing cone for the joint rotation `a⁻¹ b`. The slack is the distance to the ellipse in the plane of
+    /// the swing's scaled axis, to first order; its gradient is exact at the stop.
     ///
-    /// With swing angle φ about unit `u`, `n` the ellipse's outward normal and `τ` the tangent at right angles to `u`:
-    /// `φ̇ = ω·u`, and the axis itself turns at `−ω·(u × x_b)/sin φ`, since a swung body that spins about the axis of A
-    /// carries its swing round to another side of the cone.
+    /// With swing angle φ about unit `u`, the ellipse's outward normal `n` and the tangent `τ` perpendicular to `u`:
+    /// `φ̇ = ω·u`, and the axis itself turns at `−ω·(u × x_b)/sin φ`, because a swung body that spins about the axis of
+    /// A moves to another side of the cone.
     pub fn swing_state(&self, joint: Rotation) -> LimitState {
         self.state_of_swing(joint.swing_twist(Vec3::X).0)
     }
@@ -132,7 +132,7 @@ impl SwingTwistLimit {
         (slack[0] < reach || slack[1] < reach).then(|| twist_states(slack, swing))
     }
 
-    /// Room below and above the twist, radians.
+    /// Distance to the lower and the upper twist stop, radians.
     fn slack_of_twist(&self, twist: Rotation) -> [f32; 2] {
         // Measured from the middle of the range and wrapped, so that ranges near ±π have no jump inside.
         let middle = self.twist.center();
@@ -151,15 +151,15 @@ impl SwingTwistLimit {
     }
 }
 
-/// States of the twist stops with so much slack. The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b); the divisor is held off 0 near a
-/// swing of half a turn.
+/// States of the twist stops within `slack`. The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b); the divisor is bounded away
+/// from 0 near a swing of half a turn.
 fn twist_states([below, above]: [f32; 2], swing: Rotation) -> [LimitState; 2] {
     let x_b = swing * Vec3::X;
     let axis = (Vec3::X + x_b) / crate::max(1.0 + x_b.x, 0.05);
     [LimitState { slack: below, axis }, LimitState { slack: above, axis: -axis }]
 }
 
-/// Place of a swing in the cone of its limit.
+/// Position of a swing in the cone of its limit.
 struct PlaceInCone {
     /// Sine and cosine of half its angle.
     half: f32,
@@ -167,7 +167,7 @@ struct PlaceInCone {
     angle: f32,
     /// Unit axis of the swing, at right angles to x.
     u: Vec3,
-    /// Outward normal of the cone's ellipse where the swing meets it.
+    /// Outward normal of the cone's ellipse in the direction of the swing.
     normal: Vec3,
     slack: f32,
 }
@@ -176,7 +176,7 @@ impl PlaceInCone {
     fn state(&self) -> LimitState {
         let Self { half, angle, u, normal, .. } = *self;
         let tangent = Vec3::new(0.0, -u.z, u.y);
-        // φ/sin φ is held off its pole at half a turn.
+        // Bounds φ/sin φ near half a turn.
         let (sin, cos) = (2.0 * half * self.cos, 1.0 - 2.0 * half * half);
         let turning = if angle > 1e-4 { angle / crate::max(sin, 0.1) } else { 1.0 };
         let x_b = Vec3::new(cos, sin * u.z, -sin * u.y);
@@ -185,7 +185,7 @@ impl PlaceInCone {
     }
 }
 
-/// `angle` radians brought into −π..=π.
+/// `angle` wrapped into −π..=π, radians.
 pub fn wrap(angle: f32) -> f32 {
     const TURN: f32 = 2.0 * core::f32::consts::PI;
     if angle > core::f32::consts::PI {
@@ -229,7 +229,7 @@ mod tests {
             let w = random.direction();
             let swing = limit.swing_state(joint);
             let (axis, _) = SwingTwistLimit::angles(joint);
-            // The normal jumps where the sides of the cone meet, and the distance is exact at the stop alone.
+            // The normal jumps where the sides of the cone meet, and the distance is exact at the stop only.
             if swing.slack.abs() < 0.02 && axis.y.abs() > 0.05 && axis.z.abs() > 0.05 {
                 let measured = rate(|q| limit.swing_state(q).slack, joint, w);
                 assert!((measured - swing.axis.dot(w)).abs() < 0.06, "{measured} for {}", swing.axis.dot(w));

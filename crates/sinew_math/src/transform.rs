@@ -5,7 +5,7 @@ use core::ops::Mul;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Transform {
-    /// Translation: the place to which the origin goes, metres.
+    /// Translation: image of the origin, metres.
     pub translation: Vec3,
     /// Rotation of the axes.
     pub rotation: Rotation,
@@ -15,7 +15,7 @@ impl Transform {
     /// No motion.
     pub const IDENTITY: Self = Self { translation: Vec3::ZERO, rotation: Rotation::IDENTITY };
 
-    /// From its two parts.
+    /// From rotation and translation.
     #[inline(always)]
     pub const fn new(translation: Vec3, rotation: Rotation) -> Self {
         Self { translation, rotation }
@@ -27,7 +27,7 @@ impl Transform {
         Self { translation, rotation: Rotation::IDENTITY }
     }
 
-    /// The motion that undoes this one.
+    /// The inverse motion.
     #[inline]
     pub fn inverse(self) -> Self {
         let rotation = self.rotation.inverse();
@@ -40,7 +40,7 @@ impl Transform {
         self.rotation * p + self.translation
     }
 
-    /// Point that the motion takes to `p`: `self.inverse().point(p)`.
+    /// Point that the motion maps to `p`: `self.inverse().point(p)`.
     #[inline]
     pub fn inverse_point(self, p: Vec3) -> Vec3 {
         self.rotation.inverse() * (p - self.translation)
@@ -74,7 +74,7 @@ impl Mul<Vec3> for Transform {
 pub struct Affine {
     /// The linear part, column vectors.
     pub linear: Mat3,
-    /// Translation: the place to which the origin goes.
+    /// Translation: image of the origin.
     pub translation: Vec3,
 }
 

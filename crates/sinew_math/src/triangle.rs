@@ -1,20 +1,20 @@
-//! Triangles: the point of one that is nearest to a place.
+//! Closest point of a triangle.
 
 use glam::Vec3;
 
-/// Part of a triangle that a point of it is on, and where there.
+/// Feature of a triangle that a point lies on, with its coordinates there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Nearest {
     /// Corner 0, 1 or 2.
     Corner(usize),
-    /// Edge 0 (from corner 0 to 1), 1 (from 1 to 2) or 2 (from 0 to 2), and the share of the way along it.
+    /// Edge 0 (from corner 0 to 1), 1 (from 1 to 2) or 2 (from 0 to 2), and the parameter along it.
     Edge(usize, f32),
-    /// Shares of corners 1 and 2; the rest is that of corner 0.
+    /// Weights of corners 1 and 2; corner 0 has the rest.
     Face(f32, f32),
 }
 
 impl Nearest {
-    /// Shares of the three corners, which sum to 1.
+    /// Weights of the three corners, which sum to 1.
     pub fn shares(self) -> [f32; 3] {
         match self {
             Self::Corner(0) => [1.0, 0.0, 0.0],
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
     use crate::{Random, max, min};
 
-    /// No point of the triangle that is tried is nearer than the one that is found.
+    /// No sampled point of the triangle is nearer than the computed one.
     #[test]
     fn none_is_nearer() {
         let mut random = Random::new(3);

@@ -1,4 +1,4 @@
-//! Numbers that may be infinite, for formats that have no infinity: as none. Named in `serde(with)` of fields.
+//! Serialises infinite numbers as none, for formats without infinity. Used in `serde(with)` of fields.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 

@@ -1,4 +1,4 @@
-//! A ragdoll as plain data, in metres and kilograms: what `ragdoll build` writes and a game loads.
+//! A ragdoll as plain data, in metres and kilograms, written by `ragdoll build` and loaded by games.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -18,7 +18,7 @@ use sinew_physics::{JointKind, MassProperties, Shape};
 /// One body of a ragdoll.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RagdollBodyDef {
-    /// Name of the rig joint that carries it, or `joint N` where the file gives none.
+    /// Name of the rig joint that carries it, or `joint N` if the file gives none.
     pub bone: String,
     /// Index of that joint in the rig.
     pub joint: usize,
@@ -61,7 +61,7 @@ pub struct RagdollDef {
     pub bodies: Vec<RagdollBodyDef>,
     /// Joints.
     pub joints: Vec<RagdollJointDef>,
-    /// Pairs of bodies that do not collide (beside jointed ones).
+    /// Pairs of bodies that do not collide (besides jointed ones).
     pub disabled_pairs: Vec<(usize, usize)>,
     /// Rig joints that no body carries, by name.
     pub dropped_bones: Vec<String>,
@@ -71,7 +71,7 @@ pub struct RagdollDef {
     pub height: f32,
     /// Metres per file unit.
     pub unit_scale: f32,
-    /// The file's axis that points up, as read off the skeleton: unit, along an axis.
+    /// The file's up axis, derived from the skeleton: unit, along an axis.
     pub up_axis: Vec3,
     /// Rotation from model space (file) to character space (+Y up, facing +Z).
     pub character_from_model: Transform,

@@ -1,4 +1,4 @@
-//! Time of tracks, and what they pass.
+//! Advances the time of tracks and collects the events they pass.
 
 use super::fire::{TrackCrossing, leader};
 use super::{Animator, EndAction, Slot, Track};
@@ -9,11 +9,11 @@ use crate::playback::sync::match_place;
 use crate::set::{AnimatedClip, AnimationSet};
 use sinew_math::Transform;
 
-/// Shortest time that is played again and again, seconds: a shorter one stands still, else an update would have no end. Between poses from
-/// outside, a shorter one makes no velocity.
+/// Shortest clip or span that is looped, seconds: a shorter one stands still, because an update over it would not end.
+/// Poses from outside that are closer together give no velocity.
 pub(super) const SHORTEST: f64 = 1e-4;
 
-/// Part of an update in which a track goes on without a break.
+/// Part of an update in which a track plays without a break.
 #[derive(Clone, Copy)]
 struct Stretch {
     /// Seconds since the update began.
@@ -47,8 +47,8 @@ impl Animator {
         self.events.sort_by(|a, b| a.seconds.total_cmp(&b.seconds).then(order(a).cmp(&order(b))));
     }
 
-    /// Laps per second of a group: the mean of its tracks', weighted so that the blended stride of clips that carry their
-    /// character makes up the blended speed: `Σ w s r / Σ w s` with the stride `s` of a lap and its rate `r`.
+    /// Laps per second of a group: the mean of its tracks, weighted so that the blended stride of travelling clips
+    /// gives the blended speed: `Σ w s r / Σ w s` with the stride `s` of a lap and its rate `r`.
     fn group_rate(&self, set: &AnimationSet, group: u8, leader: usize) -> f64 {
         let of_group = |slot: &&Slot| slot.track.def.sync_group == Some(group) && !slot.track.is_paused;
         let rate = |track: &Track| f64::from(track.def.speed) / track.playhead.length();
@@ -65,7 +65,7 @@ impl Animator {
         if total > 0.0 { sum / total } else { rate(&self.slots[leader].track) }
     }
 
-    /// The leader goes at the group's rate, the others to its phase.
+    /// The leader plays at the group's rate, the others follow its phase.
     fn advance_group(&mut self, set: &AnimationSet, group: u8, leader: usize, seconds: f64) {
         let speed = self.group_rate(set, group, leader) * self.slots[leader].track.playhead.length();
         let mut ahead = self.slots[leader].track.playhead;
@@ -112,7 +112,7 @@ impl Animator {
         }
     }
 
-    /// Ramps go on; tracks whose ramp or clip ends within the update do what they are to do then.
+    /// Advances ramps; tracks whose ramp or clip ends within the update perform their end action.
     fn end_what_ends(&mut self, set: &AnimationSet, seconds: f64) {
         self.room.ended.clear();
         for (i, slot) in self.slots.iter_mut().enumerate() {
@@ -149,7 +149,7 @@ impl Animator {
     }
 }
 
-/// Seconds until a track's time stands still for good.
+/// Seconds until a track's time stops for good.
 fn stops_after(track: &Track) -> f64 {
     match track.ramp {
         Some(ramp) if matches!(ramp.then, EndAction::Stop | EndAction::Pause) => ramp.left(),
@@ -157,8 +157,8 @@ fn stops_after(track: &Track) -> f64 {
     }
 }
 
-/// A track that follows nobody: up to the end of its ramp, and on from there if it begins again; and from the end of its
-/// clip if that is to be played again.
+/// Advances a track without a leader: to the end of its ramp, and on if it restarts; to the end of its clip, and on if
+/// it repeats.
 fn advance_alone(
     set: &AnimationSet,
     slot: &mut Slot,
@@ -194,7 +194,7 @@ fn go_on(
     run(set, slot, i, stretch, crossings);
 }
 
-/// Seconds until a clip that is played once, again and again, begins again.
+/// Seconds until a repeated clip starts again.
 fn to_end(track: &Track) -> Option<f64> {
     let (playhead, speed) = (&track.playhead, f64::from(track.def.speed));
     let begins_again =
@@ -217,7 +217,7 @@ fn run(set: &AnimationSet, slot: &mut Slot, i: usize, stretch: Stretch, out: &mu
     }
 }
 
-/// A moment of an update, without what rounding may have put outside of it.
+/// A moment clamped to the update, against rounding.
 fn within(moment: f64, seconds: f64) -> f64 {
     let inside = if moment > 0.0 { moment } else { 0.0 };
     if inside < seconds { inside } else { seconds }
@@ -238,7 +238,7 @@ fn moved(clip: &AnimatedClip, mode: LoopMode, from: Place, to: Place, length: f6
     clip.motion.as_ref().map_or(Transform::IDENTITY, |motion| motion.between(from, to, mode, length))
 }
 
-/// Fires what a track that stops would have passed in the rest of its lap and is to be fired all the same.
+/// Fires the `on_interrupt` events in the rest of a stopped track's lap.
 pub(super) fn interrupt(set: &AnimationSet, track: &Track, seconds: f64, out: &mut Vec<FiredEvent>) {
     let clip = track.def.clip;
     let (playhead, is_backward) = (&track.playhead, track.def.speed < 0.0);

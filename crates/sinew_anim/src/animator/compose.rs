@@ -8,7 +8,7 @@ use crate::set::AnimationSet;
 use core::cmp::Ordering;
 use sinew_math::{Rotation, Transform, Vec3};
 
-/// Motion of a track's root in this update, and its weight in the whole.
+/// Motion of a track's root in this update, and its weight in the mean.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WeightedMotion {
     weight: f32,
@@ -18,14 +18,14 @@ pub(super) struct WeightedMotion {
 }
 
 impl WeightedMotion {
-    /// As poses are ordered: by weight, and then by content, so that the order of tracks does not matter to the bit.
+    /// Sorted like poses: by weight, then by content, so that the order of tracks does not change the bits.
     fn order(&self, other: &Self) -> Ordering {
         let numbers = |m: &Self| [m.way.x, m.way.y, m.way.z, m.turn.x, m.turn.y, m.turn.z].map(f32::to_bits);
         other.weight.total_cmp(&self.weight).then_with(|| numbers(self).cmp(&numbers(other)))
     }
 }
 
-/// An empty list with the memory of another: nothing is in it whose life would matter.
+/// An empty list that reuses another's memory.
 fn recycled<'a>(layers: Vec<BlendLayer<'_>>) -> Vec<BlendLayer<'a>> {
     layers.into_iter().map_while(|_| None).collect()
 }
@@ -36,7 +36,7 @@ enum Kind {
     Difference,
 }
 
-/// Tracks of a layer that are blended with each other.
+/// Tracks of a layer that are blended together.
 fn layers_of<'a>(
     slots: &'a [Slot],
     set: &'a AnimationSet,
@@ -53,7 +53,7 @@ fn layers_of<'a>(
 }
 
 impl Animator {
-    /// The pose of all tracks as they are, without what transitions leave.
+    /// The pose of all tracks, before transitions are added.
     pub(super) fn compose(&mut self, set: &AnimationSet, pose: &mut Pose) {
         for slot in self.slots.iter_mut().filter(|slot| slot.track.def.weight > 0.0) {
             let (clip, time) = (slot.track.def.clip, slot.track.playhead.clip_time());
@@ -95,8 +95,8 @@ impl Animator {
         room.layers = recycled(layers);
     }
 
-    /// Blends a layer with crossfades: the tracks that they lead away from, then each that leads on, in the order in which
-    /// they began.
+    /// Blends a layer with crossfades: the tracks that they lead away from, then each target track in the order of its
+    /// start.
     fn crossfade_layer(&mut self, set: &AnimationSet, layer: u8, pose: &mut Pose) {
         let room = &mut self.room;
         room.below.copy_from(if layer == 0 { set.skeleton().rest() } else { pose });
@@ -108,7 +108,7 @@ impl Animator {
         room.layers = recycled(layers);
         for slot in self.slots.iter_mut().filter(|slot| slot.is_crossfaded && slot.track.def.layer == layer) {
             let def = &slot.track.def;
-            // A pose that has no weight yet has not been sampled.
+            // A pose without weight has not been sampled.
             if def.weight > 0.0 {
                 let mask = def.mask.map(|mask| set.mask(mask));
                 slot.crossfade.mix(&slot.pose, def.weight, mask, &mut room.weights, pose);
@@ -117,7 +117,7 @@ impl Animator {
         crossfade::fill(&room.below, if layer == 0 { FILL_BELOW } else { 1.0 }, &room.weights, pose);
     }
 
-    /// Makes a crossfaded track one like others, once all that its crossfade led away from is gone.
+    /// Turns a crossfaded track into an ordinary one once everything it replaces is gone.
     pub(super) fn settle_crossfades(&mut self, set: &AnimationSet) {
         for i in 0..self.slots.len() {
             let layer = self.slots[i].track.def.layer;
@@ -133,8 +133,8 @@ impl Animator {
         }
     }
 
-    /// The pose after an update of `seconds`. `begins` is the time of a transition that begins with it: then `room.start`
-    /// holds where the new motion was before the update.
+    /// The pose after an update of `seconds`. `begins` is the time of a transition that starts with it: then
+    /// `room.start` holds the new motion before the update.
     pub(super) fn finish_pose(&mut self, set: &AnimationSet, seconds: f32, begins: Option<f32>) {
         let mut now = core::mem::take(&mut self.room.now);
         self.compose(set, &mut now);
@@ -152,8 +152,8 @@ impl Animator {
         self.room.now = now;
     }
 
-    /// The mean step of the root in an update of `seconds`, and what a transition leaves of the old one's speed; one that
-    /// begins with the update has a time of its own.
+    /// The mean step of the root in an update of `seconds`, plus what a transition leaves of the old speed; a
+    /// transition that starts with the update has its own time.
     pub(super) fn move_root(&mut self, seconds: f32, begins: Option<f32>) {
         let (mut way, mut turn) = self.mean_motion();
         if seconds > 0.0 {
@@ -169,7 +169,7 @@ impl Animator {
         self.root_motion = Transform::new(way, Rotation::from_scaled_axis(turn));
     }
 
-    /// Way and turn (scaled axis) of the tracks of layer 0.
+    /// Translation and rotation (scaled axis) of the tracks of layer 0.
     fn mean_motion(&mut self) -> (Vec3, Vec3) {
         let motions = &mut self.room.motions;
         motions.clear();

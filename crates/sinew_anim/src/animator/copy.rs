@@ -1,10 +1,10 @@
-//! An animator that becomes another, in the memory that it has.
+//! Copies an animator into existing memory.
 
 use super::{Animator, Slot};
 
 impl Animator {
-    /// Becomes what another animator of the same set is, so that it can be sent ahead of it. Unlike `clone`, it allocates
-    /// nothing once warm.
+    /// Becomes a copy of another animator of the same set, for looking ahead. Unlike `clone`, it does not allocate once
+    /// warm.
     ///
     /// # Panics
     /// If their rigs have different numbers of joints.
@@ -30,7 +30,7 @@ impl Animator {
         }
         self.events.clone_from(&other.events);
         self.root_motion = other.root_motion;
-        // Room holds nothing in between.
+        // The buffer holds nothing between updates.
     }
 }
 

@@ -1,25 +1,25 @@
-//! From one motion to another while both play, without a swing where their poses are far apart.
+//! Crossfades between two playing motions, also for distant poses.
 //!
-//! A mean of two rotations is undone where they are opposite, and no choice of hemispheres keeps it from jumping there. What
-//! a crossfade has and a blend has not is time: which way round the new pose is from the old one is settled where it
-//! begins, by the shorter way, and from then on it is followed wherever the two go. The joint turns about one axis at the
-//! speed of the easing (Shoemake, "Animating rotation with quaternion curves", 1985), so that its acceleration is at most
-//! `6 |x₀|/t₁²` by the distance and `3 |v₀|/t₁` by the speed at which the two part.
+//! The mean of two opposite rotations is undefined, and every choice of hemispheres jumps there. A crossfade has
+//! memory, unlike a blend: the direction from the old pose to the new one is chosen at the start, by the shorter way,
+//! and followed from then on. The joint turns about one axis at the speed of the easing (Shoemake, "Animating rotation
+//! with quaternion curves", 1985), so its acceleration is at most `6 |x₀|/t₁²` by the distance plus `3 |v₀|/t₁` by the
+//! relative speed.
 
 use crate::playback::inertial::logarithm;
 use crate::pose::{Mask, Pose};
 use crate::rig::LocalTransform;
 use sinew_math::{ReadError, Reader, Rotation, Vec3, Writer};
 
-/// Rotations from a track's pose to that of what played before it, joint by joint.
+/// Rotations from a track's pose to the pose that it replaces, joint by joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Crossfade {
-    /// From the track's pose to the other one, each as close to that of the update before as its sign allows; none before
+    /// From the track's pose to the other one, each with the sign closest to that of the update before; empty before
     /// both have been seen.
     turns: Vec<Rotation>,
 }
 
-/// Weights of what is shown so far, joint by joint.
+/// Weights of the pose so far, joint by joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Weights(Vec<f32>);
 
@@ -43,17 +43,17 @@ impl Weights {
 }
 
 impl Crossfade {
-    /// Becomes another, in the memory that it has.
+    /// Becomes a copy of another, in its own memory.
     pub fn copy_from(&mut self, other: &Self) {
         self.turns.clone_from(&other.turns);
     }
 
-    /// For a track that is used again.
+    /// Resets it for reuse by another track.
     pub fn clear(&mut self) {
         self.turns.clear();
     }
 
-    /// Takes `shown`, of these weights, toward a track's pose by the share that its own weight has in the sum.
+    /// Moves `shown`, which has these weights, toward a track's pose by the share of the track's weight in the sum.
     pub fn mix(
         &mut self,
         to: &Pose,
@@ -99,7 +99,7 @@ impl Crossfade {
     }
 }
 
-/// From `a` to `b` by a share, to the bit at its ends; `turn` leads from `b` to `a`.
+/// From `a` to `b` by a share, exact at both ends; `turn` leads from `b` to `a`.
 fn toward(a: &LocalTransform, b: &LocalTransform, turn: Rotation, share: f32) -> LocalTransform {
     if share >= 1.0 || a == b {
         return *b;
@@ -113,7 +113,7 @@ fn toward(a: &LocalTransform, b: &LocalTransform, turn: Rotation, share: f32) ->
     }
 }
 
-/// Lets another pose show through where the sum of weights is less than `full`, on its hemisphere, as blends do.
+/// Blends in another pose where the sum of weights is below `full`, on its hemisphere.
 pub(super) fn fill(from: &Pose, full: f32, weights: &Weights, shown: &mut Pose) {
     for joint in 0..shown.len() {
         let missing = weights.missing(joint, full);

@@ -13,7 +13,7 @@ use sinew_math::{Rotation, min};
 pub(super) struct Fed {
     pub clip: ClipId,
     pub now: Pose,
-    /// The one before, the same to begin with.
+    /// The pose before; equal to the first one at the start.
     pub before: Pose,
     /// Seconds between the two.
     pub seconds: f32,
@@ -24,15 +24,16 @@ pub(super) struct Fed {
 }
 
 impl Animator {
-    /// Gives a clip a pose from outside, from the next update on: tracks of it then have that pose, whatever its channels say. For
-    /// another engine's animation, or hands that are tracked: with a clip that has no channels, and a call before each update.
+    /// Sets a clip's pose from outside, from the next update on: its tracks then show that pose, whatever its channels
+    /// say. For another engine's animation or hand tracking: use a clip without channels, and call this before each
+    /// update.
     ///
-    /// Events and root motion stay those of the clip. Where an update comes without a new pose, as in an animator that is
-    /// sent ahead, joints go on as they went between the last two, for 0.1 s at most. One clip at a time has such a pose. Allocates
-    /// with the first call alone.
+    /// Events and root motion remain those of the clip. In an update without a new pose, as in an animator that looks
+    /// ahead, joints continue at their last velocity for at most 0.1 s. Only one clip at a time can have such a pose.
+    /// Allocates in the first call only.
     ///
     /// # Panics
-    /// If the clip is not of the set, or the pose has another number of joints.
+    /// If the clip is not in the set, or the pose has another number of joints.
     pub fn feed(&mut self, set: &AnimationSet, clip: ClipId, pose: &Pose) {
         assert!(set.has_clip(clip.0).is_some(), "a clip of the set");
         assert_eq!(pose.len(), set.skeleton().len(), "a pose of the same rig");
@@ -82,7 +83,7 @@ impl Fed {
     }
 }
 
-/// Place of a joint that goes on for `share` of the way between two of its places.
+/// Extrapolates a joint by `share` of its last displacement.
 fn onward(before: &LocalTransform, now: &LocalTransform, share: f32) -> LocalTransform {
     let turn = (now.rotation * before.rotation.inverse()).to_scaled_axis();
     LocalTransform {

@@ -1,4 +1,4 @@
-//! From what tracks have passed to events, by their policies.
+//! Turns passed events into fired ones, by their policies.
 
 use super::{Animator, Slot, Track};
 use crate::event::{FiredBy, FiredEvent};
@@ -6,14 +6,14 @@ use crate::playback::playhead::Place;
 use crate::playback::sync::Phase;
 use crate::set::{AnimatedClip, AnimationSet, ClipId};
 
-/// A track has passed an event; whether it is fired depends on the others.
+/// An event passed by a track; whether it fires depends on the others.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TrackCrossing {
     pub slot: usize,
     pub event: usize,
-    /// Place of the event, in the track's laps.
+    /// Position of the event, in the track's laps.
     pub place: Place,
-    /// Since the update began.
+    /// Seconds since the update began.
     pub seconds: f64,
     pub is_backward: bool,
 }
@@ -22,7 +22,7 @@ pub(super) struct TrackCrossing {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LastFired {
     pub group: u8,
-    /// Whose event it was, and which: by its name others are known to be the same.
+    /// The clip and event; the name identifies the same event in other clips.
     pub clip: ClipId,
     pub event: usize,
     /// Number of the marker that it was next to, through all laps.
@@ -30,7 +30,7 @@ pub(super) struct LastFired {
     pub is_backward: bool,
 }
 
-/// Place of an event: the marker next to it, through all laps, and how far behind that, as a share of the way to the next.
+/// Position of an event: its nearest marker over all laps, and the distance from it as a share of the way to the next.
 #[derive(Clone, Copy)]
 struct Beside {
     marker: i64,
@@ -48,11 +48,11 @@ impl Beside {
     }
 }
 
-/// Two moments of an update that are as far apart, seconds, are one: those of a group's tracks are rounded.
+/// Two moments of an update at most this far apart, seconds, count as one: those of a group's tracks are rounded.
 const MOMENT: f64 = 1e-9;
 
 impl Animator {
-    /// Turns what was passed into events.
+    /// Turns passed events into fired ones.
     pub(super) fn fire(&mut self, set: &AnimationSet) {
         let slots = &self.slots;
         let is_there = |group: u8| slots.iter().any(|slot| slot.track.def.sync_group == Some(group));
@@ -86,9 +86,9 @@ impl Animator {
         }
     }
 
-    /// True if an event that the group's clips have in common is fired now: where its leader passes it, or passes no more,
-    /// since another led when it did. Each is beside one marker in every clip, and fired once each time that the group
-    /// comes by that; where markers do not tell events of one name apart, it is the leader's own.
+    /// True if an event that the group's clips share fires now: when its leader passes it, or when the leader no longer
+    /// will, because another track led at that time. Each belongs to one marker in every clip and fires once per
+    /// passage of the group; if markers do not distinguish events of one name, the leader's own fires.
     fn is_first_of_group(&mut self, set: &AnimationSet, crossing: &TrackCrossing) -> bool {
         let track = &self.slots[crossing.slot].track;
         let Some(group) = track.def.sync_group else { return true };
@@ -123,8 +123,8 @@ impl Animator {
     }
 }
 
-/// Offset from a marker of the event of a clip that has the same name and is beside the same one; `None` if there is none, or
-/// more than one, or the clips have other numbers of markers.
+/// Offset from its marker of a clip's event with the same name at the same marker; `None` if there is none, or more
+/// than one, or the clips have different numbers of markers.
 fn same_event(set: &AnimationSet, event: (ClipId, usize), of: ClipId, marker: i64) -> Option<f64> {
     let name = &set.clip(event.0).events[event.1].name;
     let (clip, count) = (set.clip(of), set.clip(of).markers.times().len());
@@ -139,7 +139,7 @@ fn same_event(set: &AnimationSet, event: (ClipId, usize), of: ClipId, marker: i6
     beside.next().is_none().then_some(only.offset)
 }
 
-/// The heaviest track of the group of one that has passed an event, of those whose clips have an event of that name.
+/// The heaviest track, in the group of one that passed an event, whose clip has an event of that name.
 fn leader_of(set: &AnimationSet, slots: &[Slot], crossing: &TrackCrossing) -> Option<usize> {
     let track = &slots[crossing.slot].track;
     let name = &set.clip(track.def.clip).events[crossing.event].name;

@@ -30,43 +30,42 @@ use track::{Ramp, check_speed, check_weight};
 /// Transition from one motion to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transition {
-    /// Both play for a while, one becoming lighter, the other heavier. Each joint turns from the old pose to the new one about
-    /// one axis by the share of their weights, the way round that is shorter where the crossfade begins, and the same way
-    /// for as long as it lasts, wherever the two go.
+    /// Both motions play for a while with opposite ramps. Each joint turns from the old pose to the new one about one
+    /// axis by the share of their weights. The shorter way at the start of the crossfade is kept until its end.
     Crossfade {
         /// Duration, seconds, 0 or above.
         seconds: f32,
         /// Easing of the weights over that time.
         easing: Easing,
     },
-    /// The new one plays alone at once; what the old one was beyond it dies away (see [`Inertia`]).
+    /// The new motion plays alone at once; the difference to the old one decays (see [`Inertia`]).
     Inertial {
-        /// Longest duration, seconds, 0 or above; joints that come toward the new motion by themselves take less.
+        /// Longest duration, seconds, 0 or above; joints that already move toward the new motion take less.
         seconds: f32,
     },
 }
 
 /// Plays clips of an [`AnimationSet`] on one character.
 ///
-/// An animator is plain data: which tracks there are, where they are, and the last two poses. It is given the set with
-/// each call, the same one always. `update` takes time forward; pose, events and root motion are read afterwards. It
-/// allocates nothing once it has had as many tracks and events.
+/// An animator is plain data: its tracks, their times, and the last two poses. Every call gets the same set. `update`
+/// advances time; then read pose, events and root motion. It does not allocate once it has seen as many tracks and
+/// events.
 #[derive(Clone, Debug)]
 pub struct Animator {
     slots: Vec<Slot>,
     next_id: u64,
     /// Events of tracks that were stopped between updates.
     interrupted: Vec<FiredEvent>,
-    /// Last event fired of each sync group and name of an event.
+    /// Last event fired, by sync group and event name.
     last_fired: Vec<LastFired>,
-    /// Seconds of an inertial transition that begins with the next update.
+    /// Seconds of an inertial transition that starts with the next update.
     awaits_transition: Option<f32>,
     inertia: Inertia,
     root_inertia: RootInertia,
-    /// Velocity of the root in the last update that took time.
+    /// Velocity of the root in the last update with a positive duration.
     root_velocity: RootVelocity,
     pose: Pose,
-    /// The pose of the update before, and how long ago that was; 0 if there was none.
+    /// The pose of the previous update, and its age; 0 if there was none.
     previous: Pose,
     previous_seconds: f32,
     has_pose: bool,
@@ -77,7 +76,7 @@ pub struct Animator {
     room: Room,
 }
 
-/// A track, and what it is sampled with.
+/// A track with its sampling state.
 #[derive(Clone, Debug)]
 struct Slot {
     track: Track,
@@ -85,24 +84,23 @@ struct Slot {
     pose: Pose,
     /// Motion of the track's root in this update.
     motion: Transform,
-    /// True if it came by a crossfade and what it takes the place of is still there: then it is not blended with the others
-    /// of its layer, but follows them.
+    /// True if a crossfade started it and what it replaces still plays: then it is applied on top of the layer's blend.
     is_crossfaded: bool,
     crossfade: Crossfade,
 }
 
-/// Memory that is kept from update to update, and holds nothing in between.
+/// Buffers kept between updates, empty in between.
 #[derive(Clone, Debug)]
 struct Room {
     blender: Blender,
     cover: Blender,
-    /// Leaves nothing to other poses: for what a crossfade leads away from.
+    /// Blend options without a rest-pose share, for tracks that a crossfade leads away from.
     pure: Blender,
     weights: Weights,
     layers: Vec<BlendLayer<'static>>,
-    /// The layers below the one that is blended.
+    /// The blend of the layers below.
     below: Pose,
-    /// Pose before the update of the motion that a transition leads to.
+    /// Pose of the new motion before the update, for a transition.
     start: Pose,
     now: Pose,
     crossings: Vec<TrackCrossing>,
@@ -155,14 +153,14 @@ impl Animator {
         &self.pose
     }
 
-    /// Events passed in the last update, by time; at one time in the order of the tracks.
+    /// Events passed in the last update, by time; simultaneous ones in the order of the tracks.
     pub fn events(&self) -> &[FiredEvent] {
         &self.events
     }
 
-    /// Motion of the root in the last update, seen from where it was before: the mean of the tracks of layer 0 with the
-    /// weights that they have after it; model space, file units. Tracks without motion count as standing. Through an inertial
-    /// transition its speed changes as smoothly as the joints' do.
+    /// Motion of the root in the last update, in its previous frame: the mean of the tracks of layer 0 with their
+    /// weights after it; model space, file units. Tracks without motion count as standing. During an inertial
+    /// transition its speed changes as smoothly as the joints'.
     pub fn root_motion(&self) -> Transform {
         self.root_motion
     }
@@ -172,7 +170,7 @@ impl Animator {
         self.slots.iter().map(|slot| &slot.track)
     }
 
-    /// A track; `None` once it has been removed.
+    /// A track; `None` after its removal.
     pub fn track(&self, id: TrackId) -> Option<&Track> {
         self.tracks().find(|track| track.id == id)
     }
@@ -202,7 +200,7 @@ impl Animator {
         id
     }
 
-    /// Starts a track in the place of all others of its layer that are blended, not added.
+    /// Starts a track that replaces all blended (not additive) tracks of its layer.
     ///
     /// # Panics
     /// As [`play`](Self::play), and if the transition's time is negative or not finite.
@@ -237,8 +235,8 @@ impl Animator {
         }
     }
 
-    /// Removes a track at once. Its events with [`on_interrupt`](crate::EventPolicy::on_interrupt) that were still to come
-    /// in its lap are fired by the next update. Without effect once it has been removed.
+    /// Removes a track at once. The next update fires its remaining [`on_interrupt`](crate::EventPolicy::on_interrupt)
+    /// events of the lap. No effect after its removal.
     pub fn stop(&mut self, set: &AnimationSet, id: TrackId) {
         if let Some(i) = self.slots.iter().position(|slot| slot.track.id == id) {
             self.remove(set, i);
@@ -251,8 +249,8 @@ impl Animator {
         self.room.spare.push(slot.emptied());
     }
 
-    /// Takes a track's weight to another one in `seconds`, and does `then` at its end: the book's timed transition. Takes the
-    /// place of a ramp that is under way. Without effect once the track has been removed.
+    /// Ramps a track's weight to another value in `seconds`, then does `then`: the book's timed transition. Replaces a
+    /// running ramp. No effect after the track's removal.
     ///
     /// # Panics
     /// If `weight` or `seconds` is negative or not finite.
@@ -262,7 +260,7 @@ impl Animator {
         }
     }
 
-    /// Gives a track another weight at once, and ends its ramp. Without effect once it has been removed.
+    /// Sets a track's weight at once and ends its ramp. No effect after its removal.
     ///
     /// # Panics
     /// If `weight` is negative or not finite.
@@ -273,7 +271,7 @@ impl Animator {
         }
     }
 
-    /// Gives a track another speed, clip seconds per second. Without effect once it has been removed.
+    /// Sets a track's speed, clip seconds per second. No effect after its removal.
     ///
     /// # Panics
     /// If `speed` is not finite, or beyond [`MAX_SPEED`](crate::MAX_SPEED).
@@ -284,15 +282,15 @@ impl Animator {
         }
     }
 
-    /// Lets a track's time stand still, or go on. Without effect once it has been removed.
+    /// Pauses or resumes a track. No effect after its removal.
     pub fn set_paused(&mut self, id: TrackId, is_paused: bool) {
         if let Some(track) = self.track_mut(id) {
             track.is_paused = is_paused;
         }
     }
 
-    /// Puts a track at `time`, clip seconds; no events are fired for what lies between, and one exactly there is still to
-    /// come. Of a sync group the others follow if it leads. Without effect once it has been removed.
+    /// Moves a track to `time`, clip seconds, without firing events in between; one exactly there is still to come. The
+    /// leader of a sync group takes the others along. No effect after its removal.
     ///
     /// # Panics
     /// If `time` is not finite.
@@ -308,9 +306,9 @@ impl Animator {
         self.slots.iter_mut().map(|slot| &mut slot.track).find(|track| track.id == id)
     }
 
-    /// Takes two poses of a motion that was not its own, such as that of bodies, as the last that it had; what that motion is
-    /// beyond the tracks then dies away within `transition` seconds from the next update on (see [`Inertia`]). The poses are
-    /// of the set's rig, `earlier` is `seconds` before `now`; 0: there is none, and the motion counts as standing. The root
+    /// Takes two poses from outside, such as those of bodies, as its last motion; the difference to the tracks then
+    /// decays within `transition` seconds from the next update on (see [`Inertia`]). The poses are of the set's rig,
+    /// `earlier` is `seconds` before `now`; 0 means that there is none, and the motion counts as standing. The root
     /// counts as standing, too.
     ///
     /// # Panics
@@ -328,11 +326,10 @@ impl Animator {
         self.awaits_transition = Some(transition);
     }
 
-    /// Takes time forward by `seconds`, 0 or above.
+    /// Advances time by `seconds`, 0 or above.
     ///
-    /// Everything of the tracks is as it would be after any number of shorter updates: what ends within this one ends in
-    /// its midst, and an event's weight is that of its own moment. Only who leads a sync group, and at what speed that goes,
-    /// is decided once an update.
+    /// The result equals any number of shorter updates: what ends within this one ends at its exact time, and an event
+    /// has the weight of its own moment. Only the leader of a sync group and its speed are chosen once per update.
     ///
     /// # Panics
     /// If `seconds` is negative or not finite.
@@ -341,7 +338,7 @@ impl Animator {
         self.events.clear();
         self.events.append(&mut self.interrupted);
         if seconds == 0.0 && self.awaits_transition.is_some() {
-            // Neither motion has gone on: the pose stays until one does.
+            // Neither motion has advanced: the pose stays until one does.
             self.root_motion = Transform::IDENTITY;
             return;
         }
@@ -357,10 +354,10 @@ impl Animator {
         self.finish_pose(set, seconds, begins);
     }
 
-    /// [`update`](Self::update), and then `on_event` for each event, in order.
+    /// Calls [`update`](Self::update), then `on_event` for each event, in order.
     ///
     /// # Panics
-    /// As [`update`](Self::update), and where `on_event` does.
+    /// As [`update`](Self::update), and if `on_event` panics.
     pub fn update_with(
         &mut self,
         set: &AnimationSet,
@@ -384,7 +381,7 @@ impl Slot {
         }
     }
 
-    /// For another track: its memory alone.
+    /// Memory for reuse by another track.
     fn emptied(mut self) -> Self {
         self.crossfade.clear();
         Self { motion: Transform::IDENTITY, is_crossfaded: false, ..self }

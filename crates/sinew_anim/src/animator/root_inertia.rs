@@ -11,9 +11,9 @@ pub(super) struct RootVelocity {
     pub angular: Vec3,
 }
 
-/// Excess of the old root's velocity over the new one's, which dies away as the pose's offsets do:
-/// `x₀ (1 − 10 τ³ + 15 τ⁴ − 6 τ⁵)`, the quintic of [`Decay`](crate::Decay) without a velocity of its own. It goes half as
-/// far as if it lasted.
+/// Excess of the old root's velocity over the new one's. It decays like the pose's offsets,
+/// `x₀ (1 − 10 τ³ + 15 τ⁴ − 6 τ⁵)`, the quintic of [`Decay`](crate::Decay) without initial velocity, and covers half of
+/// the distance of a constant excess.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct RootInertia {
     offset: RootVelocity,
@@ -27,7 +27,7 @@ impl RootInertia {
         Self { offset, seconds, elapsed: 0.0 }
     }
 
-    /// Lets time pass, and gives the way and the turn (scaled axis) that the offset makes in it.
+    /// Advances time and returns translation and rotation (scaled axis) of the offset in it.
     pub fn advance(&mut self, seconds: f32) -> (Vec3, Vec3) {
         let before = self.lasted();
         self.elapsed += seconds;
@@ -35,7 +35,7 @@ impl RootInertia {
         (self.offset.linear * time, self.offset.angular * time)
     }
 
-    /// Seconds for which the whole offset would have to last to go as far: its integral.
+    /// Integral of the decay, seconds: the time for which the full offset would cover the same distance.
     fn lasted(&self) -> f32 {
         if self.seconds <= 0.0 {
             return 0.0;

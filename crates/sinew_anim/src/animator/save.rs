@@ -14,15 +14,15 @@ use crate::rig::LocalTransform;
 use crate::set::{AnimationSet, ClipId};
 use sinew_math::{ReadError, Reader, Writer};
 
-/// First bytes: what it is, and the version of what follows.
+/// Magic bytes and format version.
 const HEADER: &[u8; 8] = b"SNWANIM\x02";
 
-/// Farthest that tracks of a sync group are apart, laps: one that was paused catches up in one update, and fires what it
+/// Largest distance of tracks in a sync group, laps: one that was paused catches up in one update, and fires what it
 /// passes.
 const FARTHEST: u64 = 10_000;
 
 impl Animator {
-    /// Writes all that decides the future. What the last update fired, and its root motion, are not part of that.
+    /// Writes everything that decides the future; the events and root motion of the last update are not included.
     pub fn save(&self, set: &AnimationSet, out: &mut Writer) {
         out.raw(HEADER);
         out.u64(set.fingerprint());
@@ -50,10 +50,10 @@ impl Animator {
         }
     }
 
-    /// Reads what [`save`](Self::save) wrote, for the same set; goes on with the same bits.
+    /// Reads what [`save`](Self::save) wrote, for the same set; continues with the same bits.
     ///
     /// # Errors
-    /// Where the bytes are of another set, end too early, or hold what no animator can: never a panic, whatever they are.
+    /// If the bytes are of another set, end too early, or hold an impossible state. Never panics.
     pub fn load(set: &AnimationSet, bytes: &mut Reader<'_>) -> Result<Self, ReadError> {
         if bytes.raw(HEADER.len())? != HEADER {
             return Err(bytes.error("not the state of an animator, or of another version"));

@@ -4,17 +4,17 @@ use crate::set::{ClipId, MaskId};
 use crate::tuning::MAX_SPEED;
 use sinew_math::clamp;
 
-/// A track of an [`Animator`](super::Animator); none has the id of one before it.
+/// A track of an [`Animator`](super::Animator); ids are never reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TrackId(pub(crate) u64);
 
 impl TrackId {
-    /// As a number, for who saves an animator and what refers to it.
+    /// As a number, for saving an animator and its users.
     pub fn to_bits(self) -> u64 {
         self.0
     }
 
-    /// From that number; of an animator that has no such track, it is the id of none.
+    /// From that number; it names no track of an animator that does not have it.
     pub fn from_bits(bits: u64) -> Self {
         Self(bits)
     }
@@ -23,14 +23,14 @@ impl TrackId {
 /// Action of a track at the end of a ramp, or of a clip that plays once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EndAction {
-    /// It goes on: with its new weight, or holding its last pose.
+    /// Continues: with its new weight, or holding its last pose.
     #[default]
     Hold,
     /// It is removed.
     Stop,
-    /// Its time stands still.
+    /// Pauses.
     Pause,
-    /// It begins again at [`TrackDef::start`]. A track of a sync group has the group's time and goes on with it.
+    /// Starts again at [`TrackDef::start`]. A track of a sync group keeps the group's time.
     Restart,
 }
 
@@ -39,7 +39,7 @@ pub enum EndAction {
 pub enum Easing {
     /// At constant speed.
     Linear,
-    /// `3x² − 2x³`: without a jump of speed at either end.
+    /// `3x² − 2x³`: no jump of speed at either end.
     #[default]
     Smooth,
     /// `x²`: slow at first.
@@ -49,7 +49,7 @@ pub enum Easing {
 }
 
 impl Easing {
-    /// Share of the way at share `x` of the time; both 0 to 1.
+    /// Eased share at share `x` of the time; both 0 to 1.
     pub fn at(self, x: f32) -> f32 {
         let x = clamp(x, 0.0, 1.0);
         match self {
@@ -61,7 +61,7 @@ impl Easing {
     }
 }
 
-/// Definition of a track: the clip that is played, and the way it is played.
+/// Definition of a track: its clip and how it is played.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackDef {
     /// The clip that is played.
@@ -76,12 +76,12 @@ pub struct TrackDef {
     pub loop_mode: LoopMode,
     /// Action at the end of a clip that plays once.
     pub at_end: EndAction,
-    /// Layer 0 is blended with the rest pose; the tracks of each further one cover those below as far as their weights,
-    /// times their masks, add up to 1.
+    /// Layer 0 is blended with the rest pose; tracks of higher layers cover those below, as far as the sum of their
+    /// weights times masks reaches 1.
     pub layer: u8,
     /// Mask of the joints that it moves; all of them by default.
     pub mask: Option<MaskId>,
-    /// Tracks of one group are kept in phase by the markers of their clips: they loop.
+    /// Tracks of one group are kept in phase by the markers of their clips; they loop.
     pub sync_group: Option<u8>,
 }
 
@@ -122,7 +122,7 @@ pub(super) fn check_weight(weight: f32) {
     assert!(weight >= 0.0 && weight.is_finite(), "a weight is 0 or above, not {weight}");
 }
 
-/// A weight on its way.
+/// A weight ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ramp {
     pub from: f32,
@@ -146,7 +146,7 @@ impl Ramp {
     }
 }
 
-/// A track as it is now.
+/// Current state of a track.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Track {
     pub(super) id: TrackId,
@@ -162,22 +162,22 @@ impl Track {
         self.id
     }
 
-    /// The track's definition, with weight and speed as they are now.
+    /// The track's definition with its current weight and speed.
     pub fn def(&self) -> &TrackDef {
         &self.def
     }
 
-    /// The track's place in its clip.
+    /// Position of the track in its clip.
     pub fn playhead(&self) -> &Playhead {
         &self.playhead
     }
 
-    /// True if its time stands still.
+    /// True if it is paused.
     pub fn is_paused(&self) -> bool {
         self.is_paused
     }
 
-    /// True if its weight is on its way to another.
+    /// True if its weight is ramping.
     pub fn is_ramping(&self) -> bool {
         self.ramp.is_some()
     }

@@ -16,7 +16,7 @@ pub enum Fill {
     /// The rig's rest pose: for clips that are shown or blended.
     #[default]
     Rest,
-    /// No change: for differences, see [`Clip::difference_from`].
+    /// No change, for additive clips: see [`Clip::difference_from`].
     Identity,
 }
 
@@ -25,9 +25,10 @@ pub enum Fill {
 pub struct ClipBuildOptions {
     /// Content where the clip has no channel.
     pub fill: Fill,
-    /// By how much straight lines may be off arcs and splines, radians; more keys are put where they would be by more.
+    /// Largest error of straight lines against arcs and splines, radians; more keys are inserted where it would be
+    /// exceeded.
     pub rotation_tolerance: f32,
-    /// The same for translations and scales, as a share of the diagonal of the box that a channel moves in.
+    /// The same for translations and scales, as a share of the diagonal of the channel's bounding box.
     pub relative_tolerance: f32,
 }
 
@@ -114,13 +115,13 @@ pub enum ClipBuildError {
 impl BuiltClip {
     /// Quantises a clip for a rig.
     ///
-    /// Rotations keep 47 bits (the three smallest numbers of the quaternion), translations and scales 48, in the bounds of
-    /// their own channel. Splines and wide arcs get keys between those of the clip; a step becomes two keys at neighbouring
-    /// times, so that it is as sharp as in the clip. Of two channels that move the same, the later counts, as in
-    /// [`sample`](crate::clip::sample::sample()). A channel that moves nothing takes no keys.
+    /// Rotations keep 47 bits (the three smallest numbers of the quaternion), translations and scales 48, in the bounds
+    /// of their own channel. Splines and wide arcs get extra keys; a step becomes two keys at neighbouring times. If
+    /// two channels move the same property, the later one counts, as in [`sample`](crate::clip::sample::sample()). A
+    /// constant channel takes no keys.
     ///
     /// # Errors
-    /// Channel and key at which the clip breaks what [`Clip`] promises; see [`ClipBuildError`].
+    /// If the clip violates what [`Clip`] promises, with channel and key; see [`ClipBuildError`].
     pub fn build(clip: &Clip, rig: &Rig, options: &ClipBuildOptions) -> Result<Self, ClipBuildError> {
         check(clip, rig)?;
         let mut base = match options.fill {
@@ -197,7 +198,7 @@ impl BuiltClip {
         let bounds = |b: &Bounds| [b.low[0], b.low[1], b.low[2], b.step[0], b.step[1], b.step[2]];
         self.translations.hash(&mut hasher, bounds);
         self.scales.hash(&mut hasher, bounds);
-        // 0 is the cursor's that has seen no clip.
+        // 0 is the hash of a cursor without a clip.
         hasher.finish() | 1
     }
 }
@@ -271,7 +272,7 @@ fn bound_of(channel: &Channel, options: &ClipBuildOptions) -> ClipError {
     let diagonal = 65_535.0 * Vec3::from_array(bounds.step).length();
     let curved = channel.interpolation == Interpolation::CubicSpline;
     let lines = if curved { options.relative_tolerance * diagonal } else { 0.0 };
-    // Half a step on each axis, and a few roundings of numbers of the value's size.
+    // Half a step on each axis, plus a few roundings of numbers of the value's size.
     let error = 0.5 * Vec3::from_array(bounds.step).length() + lines + 1e-6 * size;
     match channel.property {
         Property::Translation => ClipError { translation: error, ..ClipError::default() },
@@ -279,7 +280,7 @@ fn bound_of(channel: &Channel, options: &ClipBuildOptions) -> ClipError {
     }
 }
 
-/// Checks that the clip keeps what [`Clip`] and [`Channel`] promise.
+/// Checks the promises of [`Clip`] and [`Channel`].
 fn check(clip: &Clip, rig: &Rig) -> Result<(), ClipBuildError> {
     let joints = rig.joints.len();
     if joints == 0 {

@@ -16,7 +16,7 @@ pub(super) trait Code<const N: usize>: Copy {
     fn decode(&self, packed: [u16; 3]) -> [f32; N];
 }
 
-/// Three numbers between bounds of their own, 16 bits each.
+/// Three numbers within their own bounds, 16 bits each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Bounds {
     pub low: [f32; 3],
@@ -51,9 +51,9 @@ impl Code<3> for Bounds {
     }
 }
 
-/// A unit quaternion without its largest number, which follows from the other three: those are at most √½, and have
-/// 15 bits each, 0 among their values. Of the three bits left, two name the largest number, one is its sign, so that
-/// keys of a track can stay on one hemisphere.
+/// A unit quaternion without its largest number, which follows from the other three: those are at most √½, and have 15
+/// bits each, with 0 exact. Of the three remaining bits, two name the largest number and one is its sign, so that keys
+/// of a track stay on one hemisphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct SmallestThree;
 
@@ -64,8 +64,8 @@ const STEP: f32 = core::f32::consts::FRAC_1_SQRT_2 / HALF;
 /// The bit above the fifteen.
 const FLAG: u16 = 0x8000;
 
-/// Largest angle, radians, between a unit quaternion and what is left of it: each of the three numbers is off by half a
-/// step at most, the fourth by three times that at most, since it is the largest; an angle is twice the chord.
+/// Largest angle, radians, between a unit quaternion and its quantized form: each of the three numbers is off by at
+/// most half a step, the fourth by three times that, since it is the largest; an angle is twice the chord.
 pub(super) const ROTATION_BOUND: f32 = 1.51e-4;
 
 impl SmallestThree {
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
     use sinew_math::{Random, trig};
 
-    /// Angle between rotations, radians, in `f64`: `angle_to` itself is off by more than is asked for.
+    /// Angle between rotations, radians, in `f64`: the error of `angle_to` itself exceeds the tolerance.
     fn angle(a: Rotation, b: Rotation) -> f64 {
         let pairs =
             [(a.x, b.x), (a.y, b.y), (a.z, b.z), (a.w, b.w)].map(|(a, b)| (f64::from(a), f64::from(b)));
@@ -119,7 +119,7 @@ mod tests {
         let mut worst: f64 = 0.0;
         for i in 0..200_000 {
             let half = f32::from(i % 3 == 0);
-            // Every third near where all four numbers are equal, the worst place.
+            // Every third one near equal numbers, the worst case.
             let q = random.rotation();
             let q = Rotation::from_xyzw(q.x, q.y + half, q.z + half, q.w + half).normalize();
             let [x, y, z, w] = SmallestThree.decode(SmallestThree::encode(q));

@@ -1,4 +1,4 @@
-//! Sampling: the two keys around a time, in memory from the last sample, and what lies between them.
+//! Sampling with cached keys around the time.
 
 use super::code::{Code, Key};
 use super::{BuiltClip, TrackBlock, Tracks};
@@ -7,12 +7,12 @@ use sinew_math::clamp;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
-/// No key yet: what would follow it is beyond all keys.
+/// No key yet; every key follows it.
 const UNSET: u32 = u32::MAX / 2;
-/// The left key is the one before the first, so that the first follows it.
+/// The left key is before the first, so that the first follows it.
 const BEFORE: u32 = u32::MAX;
 
-/// Earlier than any time, or later with the other sign; finite, so that a share of it can be taken.
+/// Earlier than any time, or later with the other sign; finite, so that shares of it are finite.
 const FOREVER: f32 = 1e30;
 
 /// The two keys around a time, of eight tracks side by side.
@@ -30,7 +30,7 @@ struct Span<const N: usize> {
 }
 
 impl<const N: usize> Span<N> {
-    /// Holds at no time, so that it is filled first.
+    /// Contains no time, so that it is filled first.
     fn unset() -> Self {
         let nothing = [[0.0; WIDTH]; N];
         Self {
@@ -45,9 +45,8 @@ impl<const N: usize> Span<N> {
 
 /// Playback state of a character in a clip: the keys around its last time, unpacked.
 ///
-/// A cursor is a cache. One made stale by another clip or a jump costs time, never a wrong pose: the same time gives the
-/// same bits whatever was sampled before. It takes 360 bytes for each eight animated rotations, and 296 for translations
-/// and scales.
+/// A cursor is a cache. A stale one, after another clip or a jump, costs time but never changes the pose. It takes 360
+/// bytes per eight animated rotations, and 296 per eight translations or scales.
 #[derive(Clone, Debug, Default)]
 pub struct Cursor {
     fingerprint: u64,
@@ -57,12 +56,12 @@ pub struct Cursor {
 }
 
 impl Cursor {
-    /// For no clip yet.
+    /// Cursor without a clip.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Becomes another, in the memory that it has.
+    /// Becomes a copy of another, in its own memory.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.fingerprint = other.fingerprint;
         self.rotations.clone_from(&other.rotations);
@@ -86,13 +85,13 @@ fn unset<const N: usize>(spans: &mut Vec<Span<N>>, len: usize) {
 }
 
 impl BuiltClip {
-    /// Local transforms of all joints at `time`, seconds, limited to the clip's length (see
-    /// [`Wrap`](crate::Wrap) and [`Playhead`](crate::Playhead) for times beyond it); NaN is 0. Within
-    /// [`error_bound`](Self::error_bound) of what [`sample`](crate::clip::sample::sample()) gives for the raw clip. Between keys, numbers
-    /// go in a straight line, and rotations are brought to length 1 (`nlerp`; keys are close enough for that).
+    /// Local transforms of all joints at `time`, seconds, limited to the clip's length (see [`Wrap`](crate::Wrap) and
+    /// [`Playhead`](crate::Playhead) for times beyond it); NaN is 0. Within [`error_bound`](Self::error_bound) of
+    /// [`sample`](crate::clip::sample::sample()) for the raw clip. Values between keys are linear; rotations are
+    /// normalised (`nlerp`; keys are close enough for that).
     ///
-    /// `cursor` may come from anywhere; it saves the search for keys where time moves by small steps, forward or
-    /// backward, and allocates where it has not seen as large a clip.
+    /// Any `cursor` works; it saves the key search when time moves by small steps, forward or backward, and allocates
+    /// for a clip larger than any before.
     ///
     /// # Panics
     /// If `out` is not as long as [`joints`](Self::joints).
@@ -134,7 +133,7 @@ impl Kernel for Sample<'_> {
     }
 }
 
-/// Brings the keys of a block to `time`; how far that is from the left one to the right one, 0 to 1.
+/// Moves a block's keys to `time`; returns the position between left and right key, 0 to 1.
 #[inline(always)]
 fn advance<L: Lanes, C: Code<N>, const N: usize>(
     clip: &BuiltClip,
@@ -176,7 +175,7 @@ fn store_between<L: Lanes>(span: &Span<3>, share: L, row: usize, block: &mut Blo
     z.store(&mut block.0[row + 2]);
 }
 
-/// Puts the keys around `time` into one lane: most often the one on the right goes to the left, and the next one follows.
+/// Loads the keys around `time` into one lane: mostly the right key becomes the left one, and the next one follows.
 fn refill<C: Code<N>, const N: usize>(
     clip: &BuiltClip,
     all: &Tracks<C>,
@@ -186,7 +185,7 @@ fn refill<C: Code<N>, const N: usize>(
     span: &mut Span<N>,
     lane: usize,
 ) {
-    // So that the compiler knows.
+    // Tells the compiler the bound.
     let lane = lane % WIDTH;
     let track = &tracks.tracks[lane];
     let keys = &all.keys[track.first as usize..][..track.count as usize];
@@ -206,7 +205,7 @@ fn refill<C: Code<N>, const N: usize>(
     search(clip, keys, (tracks, row), time, span, lane);
 }
 
-/// Finds the keys around `time`, wherever the lane was.
+/// Finds the keys around `time` from scratch.
 #[cold]
 fn search<C: Code<N>, const N: usize>(
     clip: &BuiltClip,

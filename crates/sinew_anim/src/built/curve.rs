@@ -1,4 +1,4 @@
-//! Keys of a channel such that straight lines between them are near enough.
+//! Keys of a channel such that straight lines between them are accurate enough.
 
 use super::build::ClipBuildOptions;
 use super::error::angle_between;
@@ -12,7 +12,7 @@ pub(super) struct Curve {
     pub values: Vec<[f32; 4]>,
 }
 
-/// Pieces of a piece: 2^10 of what was one.
+/// Deepest subdivision: 2^10 parts.
 const DEEPEST: u32 = 10;
 
 impl Curve {
@@ -49,7 +49,7 @@ impl Curve {
         curve
     }
 
-    /// True if it stays where it begins, but for rounding.
+    /// True if it is constant except for rounding.
     pub fn is_constant(&self) -> bool {
         let first = self.values[0];
         let size = first.iter().fold(0.0, |size, x| max(size, x.abs()));
@@ -94,8 +94,8 @@ fn straight(channel: &Channel, time: f32) -> [f32; 4] {
     value
 }
 
-/// Equal parts of a turn at constant speed, such that `nlerp` is off by `tolerance` radians at most in each: for turns up
-/// to a sixth of a circle that is 0.0037 times the cube of the turn's angle, from the series of both.
+/// Number of equal parts of a turn at constant speed such that `nlerp` is off by at most `tolerance` radians in each:
+/// for turns up to a sixth of a circle the error is 0.0037 times the cube of the angle, from the series of both.
 fn split_turn(channel: &Channel, from: f32, to: f32, tolerance: f32, times: &mut Vec<f32>) {
     let ends = [from, to].map(|time| rotation(straight(channel, time)));
     let angle = angle_between(ends[0], ends[1]);
@@ -120,7 +120,7 @@ fn split_cubic(channel: &Channel, from: f32, to: f32, tolerance: f32, depth: u32
     }
 }
 
-/// Looks at seven places, and keeps half of the tolerance for what is between those.
+/// Checks seven positions, and keeps half of the tolerance for the rest.
 fn is_straight(channel: &Channel, from: f32, to: f32, tolerance: f32) -> bool {
     let (a, b) = (straight(channel, from), straight(channel, to));
     (1..8).all(|i| {

@@ -17,7 +17,7 @@ pub struct ClipError {
 }
 
 impl ClipError {
-    /// The larger of each.
+    /// The component-wise maximum.
     pub fn merged(self, other: Self) -> Self {
         Self {
             rotation: max(self.rotation, other.rotation),
@@ -26,7 +26,7 @@ impl ClipError {
         }
     }
 
-    /// True if each is no larger than in `bound`.
+    /// True if no component exceeds `bound`.
     pub fn is_within(self, bound: Self) -> bool {
         self.rotation <= bound.rotation && self.translation <= bound.translation && self.scale <= bound.scale
     }
@@ -40,7 +40,7 @@ impl ClipError {
     }
 }
 
-/// Angle between two rotations, radians; unlike `Rotation::angle_to` exact for small ones, which here are all.
+/// Angle between two rotations, radians; unlike `Rotation::angle_to` exact for small angles.
 pub(super) fn angle_between(a: Rotation, b: Rotation) -> f32 {
     let difference = a.inverse() * b;
     let (sin, cos) = (difference.vector().length(), difference.w.abs());
@@ -48,9 +48,8 @@ pub(super) fn angle_between(a: Rotation, b: Rotation) -> f32 {
 }
 
 impl BuiltClip {
-    /// Largest difference from the poses of the clip that this one was built from, measured at each time of a key and at
-    /// `between` times between each two. `rig` is the one that it was built with; for a clip that fills with identities its
-    /// rest pose is that.
+    /// Largest difference from the poses of the source clip, measured at each key time and at `between` times between
+    /// each two. `rig` is the one used to build it; for a clip that fills with identities its rest pose is that.
     ///
     /// # Panics
     /// If the rig has another number of joints, or `raw` is not fit to be sampled (see [`sample`](crate::clip::sample::sample())).

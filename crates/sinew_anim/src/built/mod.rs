@@ -1,8 +1,8 @@
-//! Clips as they are played: quantised, and read with a cursor.
+//! Clips for playback: quantized, and read with a cursor.
 //!
-//! A key has 8 bytes: an index into the clip's table of times, and a value of 48 bits. What does not move has no key. A
-//! [`BuiltClip`] is made once, by [`BuiltClip::build`], and then only read; each character that plays it has a
-//! [`Cursor`] of its own. Why it is laid out like that: `docs/adr/0016-built-clips.md`.
+//! A key has 8 bytes: an index into the clip's time table and a value of 48 bits. Constant tracks have no keys. A
+//! [`BuiltClip`] is built once by [`BuiltClip::build`] and then only read; each character has its own [`Cursor`].
+//! Design: `docs/adr/0016-built-clips.md`.
 
 mod build;
 mod code;
@@ -25,21 +25,21 @@ pub struct BuiltClip {
     duration: f32,
     /// All times of keys, seconds, increasing.
     times: Vec<f32>,
-    /// Pose of all that is not animated: constant tracks, and the rest pose where there is no track.
+    /// Pose of everything that is not animated: constant tracks, and the rest pose elsewhere.
     base: Pose,
     rotations: Tracks<SmallestThree>,
     translations: Tracks<Bounds>,
     scales: Tracks<Bounds>,
     fill: Fill,
     bound: ClipError,
-    /// Hash of all that decides a pose, so that a cursor knows its clip.
+    /// Hash of everything that decides a pose, so that a cursor recognises its clip.
     fingerprint: u64,
 }
 
 /// The animated tracks of one property.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Tracks<C> {
-    /// Track after track, each in order of time.
+    /// Keys, track by track, in order of time.
     keys: Vec<Key>,
     /// Blocks of the pose in which at least one joint is animated.
     blocks: Vec<TrackBlock<C>>,
@@ -81,7 +81,7 @@ impl BuiltClip {
         self.rotations.keys.len() + self.translations.keys.len() + self.scales.keys.len()
     }
 
-    /// Bytes of keys, times, the pose of what rests, and what says which keys are whose.
+    /// Size of keys, times, base pose and track table, bytes.
     pub fn bytes(&self) -> usize {
         let tables = self.rotations.blocks.len() * size_of::<TrackBlock<SmallestThree>>()
             + (self.translations.blocks.len() + self.scales.blocks.len()) * size_of::<TrackBlock<Bounds>>();
@@ -94,12 +94,12 @@ impl BuiltClip {
         self.bound
     }
 
-    /// Content where the clip had no channel: tells whether the clip is shown, or added.
+    /// Value for joints without a channel: tells whether the clip is blended or added.
     pub fn fill(&self) -> Fill {
         self.fill
     }
 
-    /// A number that clips with other poses do not share, but for chance.
+    /// A number that differs between clips with different poses.
     pub fn fingerprint(&self) -> u64 {
         self.fingerprint
     }

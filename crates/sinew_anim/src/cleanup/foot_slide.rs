@@ -1,4 +1,4 @@
-//! Feet held where they stand.
+//! Removes foot sliding.
 
 use super::smooth_above;
 use crate::clip::take::Take;
@@ -19,20 +19,20 @@ pub struct FootSlideReport {
     pub slide: [FootSlide; 2],
     /// Most that an ankle was shifted, metres.
     pub shifted: f32,
-    /// Most that the pelvis was lowered so that the legs reach, metres.
+    /// Largest lowering of the pelvis so that the legs reach, metres.
     pub lowered: f32,
-    /// Farthest that an ankle stays from where it should be, metres.
+    /// Largest remaining distance of an ankle from its goal, metres.
     pub miss: f32,
 }
 
-/// Holds the ball of each foot on one spot of the floor through each of its contacts, by inverse kinematics of the legs;
-/// between contacts the correction blends over. Feet keep their rotations, no sole goes below the floor, and the pelvis is
-/// lowered where a leg is too short.
+/// Holds the ball of each foot on one spot of the floor through each of its contacts, by inverse kinematics of the
+/// legs; between contacts the correction blends over. Feet keep their rotations, no sole goes below the floor, and the
+/// pelvis is lowered if a leg is too short.
 ///
-/// Lengths are metres in the space that `root` maps the rig's to, y up, `ground` is what there is to stand on there.
+/// Lengths are metres in the space of `root`, y up; `ground` is the floor in that space.
 ///
 /// # Panics
-/// If the take is not one of the rig's.
+/// If the take does not fit the rig.
 pub fn remove_foot_slide(
     rig: &Rig,
     root: &Affine,
@@ -73,7 +73,7 @@ pub fn remove_foot_slide(
     report
 }
 
-/// Shift that a foot needs to stay where it stands, frame by frame, metres.
+/// Shift of a foot to its contact spot, frame by frame, metres.
 fn shifts_of(
     take: &Take,
     foot: &Foot,
@@ -105,8 +105,8 @@ fn shifts_of(
     shifts
 }
 
-/// Vertical shift of a ball that is `below` the floor (negative: over it), metres: all the way to it from up to a sixtieth of
-/// the leg, nothing at three times as much. A foot that is about to leave is not pressed down again.
+/// Vertical shift of a ball that is `below` the floor (negative: above it), metres: all the way to it within a sixtieth
+/// of the leg, none from three times that distance. A foot that is about to leave is not pressed down again.
 fn down_to(below: f32, leg: f32) -> f32 {
     let near = leg / 60.0;
     below * (1.0 - smoothstep((-below - near) / (2.0 * near)))
@@ -123,8 +123,8 @@ fn blend_over(shifts: &mut [Vec3], from: Option<usize>, to: usize) {
     }
 }
 
-/// Distance that the pelvis has to go down for a foot to reach its ankle's goal, metres; 0 where it does, or where that would
-/// not help.
+/// Distance by which the pelvis must be lowered for a foot to reach its ankle's goal, metres; 0 if it reaches, or if
+/// that would not help.
 fn pelvis_need(model: &[Affine], foot: &Foot, shift: Vec3) -> f32 {
     let [hip, knee, ankle] =
         [foot.leg.upper, foot.leg.lower, foot.leg.end].map(|joint| model[joint].translation);

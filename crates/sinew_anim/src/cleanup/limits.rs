@@ -1,4 +1,4 @@
-//! Joints brought back into their limits.
+//! Rotates joints back into their limits.
 
 use crate::clip::take::Take;
 use crate::learned_limits::LearnedLimit;
@@ -12,11 +12,12 @@ pub struct JointExcess {
     pub joint: JointIdx,
     /// In how many frames.
     pub frames: usize,
-    /// By how much at most, radians.
+    /// Largest excess, radians.
     pub largest: f32,
 }
 
-/// Turns every joint that is beyond its limit to the nearest rotation within. Joints that never were are not in the report.
+/// Rotates every joint beyond its limit to the nearest rotation within. Joints that never exceeded it are not in the
+/// report.
 ///
 /// # Panics
 /// If a limit is of a joint that the take has not.

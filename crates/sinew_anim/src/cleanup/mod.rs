@@ -1,6 +1,6 @@
-//! Mending what capture got wrong. Every job works on a [`Take`](crate::Take), in place, all frames and joints of it, and tells
-//! what it did; none has a memory. Rotations are local, radians; lengths of joints are in the unit of the rig, those of feet
-//! and floors in metres of the space that a `root` maps the rig's to, y up.
+//! Repairs of motion capture. Every function changes a [`Take`](crate::Take) in place, all frames and joints, and
+//! returns a report; none keeps state. Rotations are local, radians; joint lengths are in the unit of the rig, those of
+//! feet and floors in metres of the space of `root`, y up.
 //!
 //! In good order: [`despike`], [`smooth`], [`project_limits`], [`remove_penetration`], [`remove_foot_slide`].
 
@@ -18,7 +18,7 @@ pub use spikes::{Spike, SpikeSettings, despike};
 
 use sinew_math::max;
 
-/// A curve nowhere below `least` and without its corners: the greatest value within `reach` frames, averaged over as many.
+/// A smoothed curve nowhere below `least`: the maximum within `reach` frames, averaged over as many.
 fn smooth_above(least: &[f32], reach: usize) -> Vec<f32> {
     let around = |i: usize, of: &[f32]| i.saturating_sub(reach)..(i + reach + 1).min(of.len());
     let tops: Vec<f32> =

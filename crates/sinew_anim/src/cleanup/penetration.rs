@@ -1,4 +1,4 @@
-//! Bodies lifted out of the floor.
+//! Lifts a body out of the floor.
 
 use super::smooth_above;
 use crate::clip::take::Take;
@@ -15,15 +15,15 @@ pub struct PenetrationReport {
     pub frames: usize,
     /// Largest depth below the floor, metres.
     pub deepest: f32,
-    /// Most that the body was raised, metres: no less than `deepest`.
+    /// Largest lift, metres: at least `deepest`.
     pub raised: f32,
 }
 
-/// Raises the whole body where a sole, or a joint that hangs on the pelvis, is below `floor` (metres, in the space that
-/// `root` maps the rig's to, y up), smoothly over `blend` seconds before and after.
+/// Raises the whole body where a sole, or a joint below the pelvis, is below `floor` (metres, in the space of `root`, y
+/// up), smoothly over `blend` seconds before and after.
 ///
 /// # Panics
-/// If the take is not one of the rig's.
+/// If the take does not fit the rig.
 pub fn remove_penetration(
     rig: &Rig,
     root: &Affine,
@@ -44,11 +44,11 @@ pub fn remove_penetration(
     raise(rig, root, legs, &depth, blend, take)
 }
 
-/// Raises the whole body by at least so much in each frame (metres, in the space that `root` maps the rig's to, y up; 0 and
-/// more), smoothly over `blend` seconds before and after.
+/// Raises the whole body by at least the given amount in each frame (metres, in the space of `root`, y up; 0 or more),
+/// smoothly over `blend` seconds before and after.
 ///
 /// # Panics
-/// If the take is not one of the rig's, or there is not one number for each frame.
+/// If the take does not fit the rig, or the number of amounts is not that of the frames.
 pub fn raise(
     rig: &Rig,
     root: &Affine,
@@ -71,7 +71,7 @@ pub fn raise(
     }
 }
 
-/// A joint and all that hang on it.
+/// A joint and all its descendants.
 fn below(rig: &Rig, top: JointIdx) -> Vec<JointIdx> {
     let mut hangs = vec![false; rig.joints.len()];
     hangs[top] = true;

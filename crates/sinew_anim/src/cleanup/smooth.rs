@@ -1,4 +1,4 @@
-//! Trembling taken out.
+//! Removes trembling.
 
 use crate::clip::take::Take;
 use crate::rig::LocalTransform;
@@ -15,9 +15,9 @@ pub struct SmoothReport {
     pub largest_shift: f32,
 }
 
-/// Mean over time with the weights of a bell of standard deviation `sigma` seconds, cut at three of them; no delay, since
-/// it looks both ways. What is periodic at frequency f keeps `exp(−2 (π f σ)²)` of its size: at 20 ms a tenth is lost at
-/// 3.7 Hz and nine tenths at 17 Hz. Nothing happens where `sigma` is less than a fifth of a frame.
+/// Gaussian mean over time with standard deviation `sigma` seconds, cut at three of them; no delay, since it is
+/// symmetric. A periodic motion at frequency f keeps `exp(−2 (π f σ)²)` of its amplitude: at 20 ms a tenth is lost at
+/// 3.7 Hz and nine tenths at 17 Hz. No effect if `sigma` is below a fifth of a frame.
 pub fn smooth(take: &mut Take, sigma: f32) -> SmoothReport {
     let mut report = SmoothReport::default();
     let frames = f64::from(sigma) / take.frame_time;

@@ -7,7 +7,7 @@ use sinew_math::max;
 /// Thresholds for a spike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpikeSettings {
-    /// Least turn away and back, radians.
+    /// Least turn of a spike, away and back, radians.
     pub least_turn: f32,
     /// Least shift away and back, units of the rig.
     pub least_shift: f32,
@@ -24,7 +24,7 @@ impl Default for SpikeSettings {
     }
 }
 
-/// A spike that was cut off.
+/// A removed spike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spike {
     /// Whose.
@@ -39,8 +39,8 @@ pub struct Spike {
     pub shift: f32,
 }
 
-/// Cuts off spikes: where a joint leaves its path by a step far larger than those around, and comes back within a few
-/// frames, these are filled in evenly. Spikes at the very first or last frame have no other side, and stay.
+/// Removes spikes: where a joint jumps by a step far larger than those around and returns within a few frames, these
+/// are interpolated. Spikes at the first or last frame have only one side, and stay.
 pub fn despike(take: &mut Take, settings: &SpikeSettings) -> Vec<Spike> {
     let mut found = Vec::new();
     let longest = take.frames_in(settings.longest).max(1);
@@ -71,7 +71,7 @@ fn step(a: LocalTransform, b: LocalTransform) -> [f32; 2] {
     [a.rotation.angle_to(b.rotation), (a.translation - b.translation).length()]
 }
 
-/// Upper quartile of the steps, turn and shift: what the joint does when it is not jumping.
+/// Upper quartile of the steps, rotation and translation: normal motion of the joint.
 fn usual_steps(track: &[LocalTransform]) -> [f32; 2] {
     [0, 1].map(|which| {
         let mut steps: Vec<f32> = track.windows(2).map(|pair| step(pair[0], pair[1])[which]).collect();
@@ -80,8 +80,8 @@ fn usual_steps(track: &[LocalTransform]) -> [f32; 2] {
     })
 }
 
-/// Turn and shift of the joint between frames `before` and `after` (radians, units of the rig), and `after`, if both ways are
-/// jumps and there is little between the two ends.
+/// Rotation and translation of the joint between frames `before` and `after` (radians, units of the rig), and `after`,
+/// if both steps are jumps and the two ends are close.
 fn spike_between(
     track: &[LocalTransform],
     before: usize,

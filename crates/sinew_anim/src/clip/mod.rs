@@ -64,9 +64,10 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// The clip as differences from `reference`, for additive layers: rotations become `reference⁻¹ · key`, translations
-    /// `key − reference`, scales `key ÷ reference`, each by the reference of its joint, parent's axes. Interpolations and
-    /// tangents keep their meaning. Build it with [`Fill::Identity`](crate::Fill): joints without a channel do not change.
+    /// The clip as differences from `reference`, for additive layers: rotations become `reference⁻¹ · key`,
+    /// translations `key − reference`, scales `key ÷ reference`, each by the reference of its joint, parent's axes.
+    /// Interpolations and tangents keep their meaning. Build it with [`Fill::Identity`](crate::Fill), so that joints
+    /// without a channel do not change.
     ///
     /// # Panics
     /// If a channel's joint is not in `reference`, or a scale of the reference is 0 where a channel scales.
@@ -77,7 +78,7 @@ impl Clip {
             let width = channel.property.width();
             let is_cubic = channel.interpolation == Interpolation::CubicSpline;
             for (i, number) in channel.values.chunks_exact_mut(width).enumerate() {
-                // Tangents are differences already: what is subtracted from all values is not in them.
+                // Tangents are differences already; subtracting a constant does not change them.
                 let is_tangent = is_cubic && i % 3 != 1;
                 match (channel.property, number) {
                     (Property::Rotation, [x, y, z, w]) => {

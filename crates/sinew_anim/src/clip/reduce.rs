@@ -1,9 +1,9 @@
-//! Clips with no more keys than a bound on the error asks for.
+//! Removes keys within a bound on the error.
 //!
-//! Keys stay where they are and say what they said; those that the straight line between their neighbours tells as well are
-//! left out. How far a joint is off adds up along the chain above it, so each channel gets a share of the bound, smaller the
-//! farther its joint reaches; then the error is measured in the whole pose, at all times of keys, and the shares are
-//! corrected until the bound is used up and kept.
+//! Remaining keys keep time and value; keys that the straight line between their neighbours reproduces are dropped. A
+//! joint's error adds up along the chain above it, so each channel gets a share of the bound, smaller the further its
+//! joint reaches; then the error is measured in the whole pose at all key times, and the shares are adjusted until the
+//! bound is used up but kept.
 
 use crate::clip::sample::{channel_at, write_property};
 use crate::clip::{Channel, Clip, Interpolation, Property};
@@ -15,14 +15,14 @@ use sinew_math::{Affine, Rotation, Vec3, clamp, max, min};
 /// Bound of the difference between a clip with fewer keys and the original, in the space that [`reduce_keys`] measures in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeyBound {
-    /// Distance of a joint's origin from where it was, units of that space. 0 keeps every key.
+    /// Distance of a joint's origin from the original, units of that space. 0 keeps every key.
     pub distance: f32,
     /// Angle of a joint's rotation from the original one, radians. 0 keeps every key.
     pub angle: f32,
 }
 
 impl KeyBound {
-    /// Every key stays.
+    /// Keeps every key.
     pub const ALL_KEYS: Self = Self { distance: 0.0, angle: 0.0 };
 }
 
@@ -45,7 +45,7 @@ impl KeyError {
 /// A clip with fewer keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduced {
-    /// The clip; what has one key does not move.
+    /// The reduced clip; constant channels have one key.
     pub clip: Clip,
     /// The largest error of any joint at any time that the clip had a key at.
     pub error: KeyError,
@@ -56,9 +56,8 @@ pub struct Reduced {
 /// Rounds of choosing and measuring, and the share of the bound that is good enough to stop at.
 const ROUNDS: usize = 4;
 
-/// Leaves out the keys of linear channels that are not needed for joints to stay within `bound` in model space, times
-/// `root`: the root's unit is the bound's. Other channels keep their keys. The clip lasts as long as before. Its values are
-/// finite.
+/// Drops keys of linear channels such that joints stay within `bound` in model space, times `root`: the root's unit is
+/// the bound's. Other channels keep their keys. The duration stays. All values are finite.
 ///
 /// # Panics
 /// As [`sample`](crate::clip::sample::sample()), and if the bound is negative or not finite.
@@ -100,16 +99,16 @@ fn count(clip: &Clip) -> usize {
     clip.channels.iter().map(|channel| channel.times.len()).sum()
 }
 
-/// True if two channels move the same: then what one does depends on the other, and no key is left out.
+/// True if two channels move the same property: then they depend on each other, and no key is dropped.
 fn moves_twice(rig: &Rig, clip: &Clip) -> bool {
     let mut moved = vec![[false; 3]; rig.joints.len()];
     clip.channels.iter().any(|c| core::mem::replace(&mut moved[c.joint][c.property as usize], true))
 }
 
-/// A clip, and what is needed to choose its keys and to measure what that did.
+/// A clip with the data to choose its keys and to measure the error.
 struct Meter<'a> {
     rig: &'a Rig,
-    /// The same motion: of equal keys one after the other only the first and the last.
+    /// The same motion without repeated keys: of equal consecutive keys only the first and last remain.
     clip: Clip,
     root: &'a Affine,
     /// All times of keys.
@@ -118,8 +117,8 @@ struct Meter<'a> {
     /// before.
     model: Vec<Affine>,
     moved: Vec<bool>,
-    /// Per joint: how far it is to the farthest that hangs on it at any time, and how much longer a length of its
-    /// parent's axes is in the space of the bound.
+    /// Per joint: the largest distance of a descendant at any time, and the scale from its parent's axes to the space
+    /// of the bound.
     reach: Vec<f32>,
     scale: Vec<f32>,
 }
@@ -165,7 +164,7 @@ impl<'a> Meter<'a> {
         meter
     }
 
-    /// The clip with the keys that channels need which may use up `share` of the bound each.
+    /// The clip with the keys that each channel needs if it may use up `share` of the bound.
     fn thinned(&self, bound: KeyBound, share: f32) -> Clip {
         let channels = Vec::with_capacity(self.clip.channels.len());
         let mut clip = Clip { name: self.clip.name.clone(), duration: self.clip.duration, channels };
@@ -173,7 +172,7 @@ impl<'a> Meter<'a> {
             let tolerance = share * self.tolerance(channel.property, channel.joint, bound);
             clip.channels.push(thinned(channel, tolerance));
         }
-        // The end of the last channel is that of the clip, for those who tell its length from its keys.
+        // The last channel's end is the clip's, for readers that derive the length from keys.
         let lasts = |channel: &Channel| channel.times.last().is_some_and(|&time| time >= self.clip.duration);
         if !clip.channels.iter().any(lasts)
             && let Some(index) = self.clip.channels.iter().position(lasts)
@@ -185,11 +184,11 @@ impl<'a> Meter<'a> {
         clip
     }
 
-    /// Error of a channel's value that uses up the bound alone: its own units, or radians.
+    /// Error of a channel's value that uses up the bound by itself: its own units, or radians.
     fn tolerance(&self, property: Property, joint: JointIdx, bound: KeyBound) -> f32 {
         match property {
             Property::Translation => bound.distance / max(self.scale[joint], 1e-12),
-            // A scale that is off by as much moves what hangs on the joint as far as a turn would.
+            // A scale error moves descendants as far as a rotation error of the same size.
             Property::Rotation | Property::Scale => {
                 min(bound.angle, bound.distance / max(self.reach[joint], 1e-12))
             }
@@ -214,15 +213,15 @@ impl<'a> Meter<'a> {
     }
 }
 
-/// Poses of a clip at ever later times. What does not move from one to the next costs next to nothing.
+/// Poses of a clip at ascending times. Parts that do not change cost almost nothing.
 struct Poses {
-    /// Per channel: its last key not after the time, and until when its value stays.
+    /// Per channel: its last key not after the time, and the time until which its value is constant.
     keys: Vec<usize>,
     stays: Vec<f32>,
     is_first: bool,
     local: Vec<LocalTransform>,
     model: Vec<Affine>,
-    /// True for each joint that is elsewhere than at the last time.
+    /// True for each joint that moved since the last time.
     moved: Vec<bool>,
 }
 
@@ -233,7 +232,7 @@ impl Poses {
         Self { keys, stays, is_first: true, local: rest_pose(rig), model, moved }
     }
 
-    /// As [`sample`](crate::clip::sample::sample()); values at keys are taken as they are, so that most cost nothing.
+    /// Like [`sample`](crate::clip::sample::sample()); values at keys are copied, so that most cost nothing.
     fn sample(&mut self, rig: &Rig, clip: &Clip, root: &Affine, time: f32) {
         self.moved.fill(core::mem::take(&mut self.is_first));
         for (i, channel) in clip.channels.iter().enumerate() {
@@ -259,8 +258,8 @@ impl Poses {
     }
 }
 
-/// Value of a channel at `time`, `key` the last not after it, and until when it stays: a time before now where it moves. At
-/// keys it is taken as it is.
+/// Value of a channel at `time`, with `key` the last one not after it, and the time until which it is constant (a time
+/// before now if it moves). At keys the value is copied.
 fn value_and_end(channel: &Channel, key: usize, time: f32) -> ([f32; 4], f32) {
     if channel.interpolation != Interpolation::Linear {
         return (channel_at(channel, time), f32::NEG_INFINITY);
@@ -283,8 +282,8 @@ fn longest_squared(map: &Affine) -> f32 {
     [m.x_axis, m.y_axis, m.z_axis].into_iter().map(Vec3::length_squared).fold(0.0, max)
 }
 
-/// Square of the angle between two maps, as far as they turn, for small angles: of a turn by `a`, the squares of what
-/// its three unit axes move by sum up to `8 sin²(a/2)`.
+/// Square of the angle between two maps, for small angles: for a rotation by `a`, the squared displacements of its
+/// three unit axes sum to `8 sin²(a/2)`.
 fn turned_squared(a: &Affine, b: &Affine) -> f32 {
     let (a, b) = (&a.linear, &b.linear);
     let axes = [(a.x_axis, b.x_axis), (a.y_axis, b.y_axis), (a.z_axis, b.z_axis)];
@@ -296,7 +295,7 @@ fn turned_squared(a: &Affine, b: &Affine) -> f32 {
     0.5 * axes.into_iter().map(moved).sum::<f32>()
 }
 
-/// A linear channel without keys that are equal to both their neighbours.
+/// A linear channel without keys that equal both neighbours.
 fn without_repeats(channel: &Channel) -> Channel {
     if channel.interpolation != Interpolation::Linear {
         return channel.clone();
@@ -311,7 +310,7 @@ fn without_repeats(channel: &Channel) -> Channel {
     with_keys(channel, &kept)
 }
 
-/// A channel without the keys that lines between the others tell within `tolerance`.
+/// A channel without the keys that lines between the others reproduce within `tolerance`.
 fn thinned(channel: &Channel, tolerance: f32) -> Channel {
     if channel.interpolation != Interpolation::Linear || channel.times.len() < 2 {
         return channel.clone();
@@ -330,7 +329,7 @@ fn thinned(channel: &Channel, tolerance: f32) -> Channel {
     with_keys(channel, &kept)
 }
 
-/// A channel with those of its keys only. Rotations take the short way from one to the next.
+/// A channel with a subset of its keys. Rotations take the short way from one to the next.
 fn with_keys(channel: &Channel, kept: &[usize]) -> Channel {
     let mut values = Vec::with_capacity(kept.len() * channel.property.width());
     let mut last = None;
@@ -387,14 +386,14 @@ impl Line {
     }
 }
 
-/// A channel whose keys may be off by so much, squared.
+/// A channel with the squared tolerance of its keys.
 struct Fit<'a> {
     channel: &'a Channel,
     squared: f32,
 }
 
 impl Fit<'_> {
-    /// The last key to which a line from `from` can go: by ever wider steps until one is too wide, and back by halves.
+    /// The last key that a line from `from` can reach: by growing steps until one fails, then by bisection.
     fn farthest(&self, from: usize, last: usize) -> usize {
         let (mut good, mut step) = (from + 1, 2);
         let mut bad = loop {
@@ -414,7 +413,7 @@ impl Fit<'_> {
         good
     }
 
-    /// True if all keys between two are near the line between these. The middle is where most are not.
+    /// True if all keys between two are near the line between these. Starts in the middle, where most errors are.
     fn holds(&self, from: usize, to: usize) -> bool {
         let line = Line::between(self.channel, from, to);
         let holds = |key: usize| self.holds_at(key, line.at(self.channel.times[key]));
@@ -422,7 +421,7 @@ impl Fit<'_> {
         holds(middle) && (from + 1..middle).all(holds) && (middle + 1..to).all(holds)
     }
 
-    /// True if a key is near a value: by its own units, or by radians, for small angles.
+    /// True if a key is near a value: in its own units, or radians, for small angles.
     fn holds_at(&self, key: usize, value: [f32; 4]) -> bool {
         let own = self.channel.value(key);
         let squared = |sign: f32| {
@@ -432,7 +431,7 @@ impl Fit<'_> {
             })
         };
         match self.channel.property {
-            // A quaternion goes half as far as what it turns, and means the same with all signs turned.
+            // A quaternion differs by half of the angle, and −q is the same rotation.
             Property::Rotation => 4.0 * min(squared(1.0), squared(-1.0)) <= self.squared,
             Property::Translation | Property::Scale => squared(1.0) <= self.squared,
         }

@@ -1,4 +1,4 @@
-//! Root motion: the path along which a clip carries its character, taken out of the pose, so that it can move what the game moves.
+//! Root motion: extracts the path of a character from a clip, so that the game can move it.
 
 use crate::clip::sample::{SampleCache, Wrap, sample_cached};
 use crate::clip::{Channel, Clip, Interpolation, Property};
@@ -7,33 +7,33 @@ use crate::rig::{JointIdx, LocalTransform, Rig};
 use crate::tuning::ROOT_SAMPLING;
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
-/// Part of a motion along an axis that is taken out of the pose.
+/// Component of a motion that is extracted along an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AxisExtraction {
-    /// Nothing: it stays in the pose.
+    /// None: it stays in the pose.
     #[default]
     None,
-    /// The straight way from the first pose to the last; what sways about that stays in the pose.
+    /// The straight line from the first pose to the last; oscillation about it stays in the pose.
     Linear,
-    /// All of it.
+    /// Everything.
     Full,
 }
 
-/// Choice of the motion that is taken out of a clip.
+/// Selection of the extracted motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RootMotionOptions {
-    /// The joint that carries the body: hips, or whatever is above them.
+    /// The joint that carries the body: the hips, or a joint above them.
     pub joint: JointIdx,
     /// Along x, y, z of model space.
     pub axes: [AxisExtraction; 3],
-    /// Turns about `up`.
+    /// Rotation about `up`.
     pub turn: AxisExtraction,
     /// Unit vector, model space.
     pub up: Vec3,
 }
 
 impl RootMotionOptions {
-    /// Over the ground and about y: all of x, z and the turn, nothing of y.
+    /// Over the ground and about y: all of x, z and the rotation, nothing of y.
     pub fn on_ground(joint: JointIdx) -> Self {
         let (none, full) = (AxisExtraction::None, AxisExtraction::Full);
         Self { joint, axes: [full, none, full], turn: full, up: Vec3::Y }
@@ -51,13 +51,12 @@ pub struct MotionTrack {
     up: Vec3,
 }
 
-/// Takes the motion of a joint out of a clip: the clip that stays on its place, and the motion that was in it. Put
-/// together they are the clip again: `motion · pose` in model space, to within the rounding and what lies between two
-/// samples 1/60 s apart. The clip that stays ends where it starts wherever the motion took all or the straight part.
+/// Extracts the motion of a joint from a clip: returns the clip in place, and the motion. Together they are the
+/// original: `motion · pose` in model space, within rounding and the interpolation between samples 1/60 s apart. The
+/// clip in place ends where it starts in every component that was extracted wholly or straight.
 ///
-/// Model space is that of the file, its unit too; times are seconds. The joint's channels of translation and rotation are
-/// replaced. `clip` and `rig` are such as
-/// [`BuiltClip::build`](crate::BuiltClip::build) takes.
+/// Model space and unit are the file's; times are seconds. The joint's channels of translation and rotation are
+/// replaced. `clip` and `rig` must satisfy [`BuiltClip::build`](crate::BuiltClip::build).
 ///
 /// # Panics
 /// If the joint is not in the rig, or the clip is not fit to be sampled (see [`sample`](crate::clip::sample::sample())).
@@ -93,7 +92,7 @@ struct Keys {
     rotations: Vec<f32>,
 }
 
-/// The joint at a time, and what it hangs on, in model space.
+/// The joint at a time, and its parent, in model space.
 struct ChainPose {
     local: LocalTransform,
     parent: Affine,
@@ -126,8 +125,8 @@ fn chain_poses(clip: &Clip, rig: &Rig, joint: JointIdx, times: &[f32]) -> Vec<Ch
 }
 
 impl MotionTrack {
-    /// Straight on for `duration` seconds: what carries a clip that was made on the spot. `velocity` is in file units per
-    /// second, model space, `up` a unit vector there.
+    /// Straight motion for `duration` seconds, for a clip made on the spot. `velocity` is in file units per second,
+    /// model space, `up` a unit vector there.
     ///
     /// # Panics
     /// If `duration` is negative or not finite.
@@ -140,10 +139,12 @@ impl MotionTrack {
         Self { times: vec![0.0, duration], positions, turns: vec![0.0; 2], up }
     }
 
-    /// Through places (file units, model space) and turns (radians about `up`) at increasing times; straight on in between.
+    /// Motion through positions (file units, model space) and rotations (radians about `up`) at ascending times; linear
+    /// in between.
     ///
     /// # Panics
-    /// If there is no time, not one place and one turn for each, a number is not finite, or times do not increase.
+    /// If there is no time, the numbers of positions and rotations differ from it, a number is not finite, or times do
+    /// not ascend.
     pub fn through(times: Vec<f32>, positions: Vec<Vec3>, turns: Vec<f32>, up: Vec3) -> Self {
         let count = times.len();
         assert!(
@@ -169,7 +170,7 @@ impl MotionTrack {
         take(options.turn, times, &mut turns);
         let place = |pose: &ChainPose| pose.parent.point(pose.local.translation);
         let start = place(&poses[0]);
-        // The joint stays where it was first, seen from what carries it.
+        // Keeps the joint where it was first, relative to its parent.
         let carried = |(pose, &turn): (&ChainPose, &f32)| {
             place(pose) - Rotation::from_axis_angle(options.up, turn) * start
         };
@@ -188,7 +189,7 @@ impl MotionTrack {
         Transform::new(self.positions[i], Rotation::from_axis_angle(self.up, self.turns[i]))
     }
 
-    /// Place of the character at `time`, clip seconds, limited to the clip; the identity at its start.
+    /// Position of the character at `time`, clip seconds, limited to the clip; the identity at its start.
     pub fn at(&self, time: f32) -> Transform {
         let right = self.times.partition_point(|&t| t <= time);
         if right == 0 || right == self.times.len() {
@@ -206,13 +207,13 @@ impl MotionTrack {
         self.at(0.0).inverse() * self.sample(self.times.len() - 1)
     }
 
-    /// Length of a lap over the ground, file units: what is left of the way without its part along up.
+    /// Distance of a lap over the ground, file units, without its component along up.
     pub fn stride(&self) -> f32 {
         let way = self.lap().translation;
         (way - self.up * self.up.dot(way)).length()
     }
 
-    /// Motion between two places, seen from the first.
+    /// Motion between two positions, relative to the first.
     pub(crate) fn between(&self, from: Place, to: Place, mode: LoopMode, length: f64) -> Transform {
         let at = |place: Place| {
             let is_way_back = mode == LoopMode::PingPong && place.lap.rem_euclid(2) == 1;
@@ -223,7 +224,7 @@ impl MotionTrack {
     }
 }
 
-/// `t` as many times as `n` says, the other way round for less than 0.
+/// `t` repeated `n` times, inverted for negative `n`.
 fn power(t: Transform, n: i64) -> Transform {
     let (mut square, mut rest) = (if n < 0 { t.inverse() } else { t }, n.unsigned_abs());
     let mut product = Transform::IDENTITY;
@@ -237,13 +238,13 @@ fn power(t: Transform, n: i64) -> Transform {
     product
 }
 
-/// The angle that is the same as `angle`, and nearest to `last`.
+/// The angle equivalent to `angle` that is nearest to `last`.
 fn unwrapped(angle: f32, last: f32) -> f32 {
     const TURN: f32 = core::f32::consts::TAU;
     angle + TURN * ((last - angle) / TURN + 0.5).floor()
 }
 
-/// Replaces the path `way` by the part of it that a mode takes, from its first number on.
+/// Replaces the path `way` by the component that a mode extracts, from its first number on.
 fn take(mode: AxisExtraction, times: &[f32], way: &mut [f32]) {
     let first = way[0];
     let last = way[way.len() - 1] - first;

@@ -31,17 +31,17 @@ impl Wrap {
     }
 }
 
-/// Key at which each channel of a clip was last read, so that playing forward need not search.
+/// Key at which each channel was last read, so that playing forward needs no search.
 ///
-/// A cache made stale by another clip or a jump costs time, never a wrong pose.
+/// A stale cache, after another clip or a jump, costs time but never changes the pose.
 #[derive(Clone, Debug, Default)]
 pub struct SampleCache {
     keys: Vec<usize>,
 }
 
-/// The pose of `clip` at `time` (seconds, any value, see [`Wrap`]): one local transform per joint of the rig into `out`, file
-/// units. Joints and properties without a channel take the
-/// rig's rest pose, and so does a value that is not finite. A time before a channel's first key takes that key.
+/// The pose of `clip` at `time` (seconds, any value, see [`Wrap`]): one local transform per joint of the rig into
+/// `out`, file units. Joints and properties without a channel, and values that are not finite, take the rig's rest
+/// pose. A time before a channel's first key takes that key.
 ///
 /// # Panics
 /// If `out` is not as long as the rig has joints, a channel's joint is not in the rig, or a channel has fewer values
@@ -96,13 +96,13 @@ pub(crate) fn write_property(target: &mut LocalTransform, property: Property, [x
     }
 }
 
-/// Value of a channel at `time`, seconds, as the file's interpolation has it. The fourth number is 0 but for rotations,
-/// and those are of length 1 only where keys and interpolation leave them so.
+/// Value of a channel at `time`, seconds, by the file's interpolation. The fourth number is 0 except for rotations,
+/// which have length 1 only as far as keys and interpolation keep it.
 pub(crate) fn channel_at(channel: &Channel, time: f32) -> [f32; 4] {
     channel_value(channel, last_key_at(&channel.times, time, 0), time)
 }
 
-/// Value of a channel at `time`, `key` the last key not after it. The fourth number is 0 but for rotations.
+/// Value of a channel at `time`, `key` the last key not after it. The fourth number is 0 except for rotations.
 fn channel_value(channel: &Channel, key: usize, time: f32) -> [f32; 4] {
     let next = key + 1;
     let inside = next < channel.times.len() && time >= channel.times[key];

@@ -1,23 +1,23 @@
-//! A motion as one pose a frame, as a camera takes it: what capture delivers and clean-up works on.
+//! A motion as one pose a frame, for capture and clean-up.
 
 use crate::clip::sample::{SampleCache, Wrap, sample_cached};
 use crate::clip::{Channel, Clip, Interpolation, Property};
 use crate::rig::{JointIdx, LocalTransform, Rig};
 use sinew_math::Rotation;
 
-/// Poses of one rig, equally far apart in time.
+/// Poses of one rig at equal time steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Take {
     /// Seconds from frame to frame, above 0.
     pub frame_time: f64,
     /// Joints of the rig, at least 1.
     pub joints: usize,
-    /// Frame after frame, each of `joints` local transforms.
+    /// Frame by frame, each of `joints` local transforms.
     pub poses: Vec<LocalTransform>,
 }
 
 impl Take {
-    /// Most frames of a take: hours. What a file claims to last is not to be believed beyond it.
+    /// Most frames of a take (hours), a bound on what a file may claim.
     pub const MOST_FRAMES: usize = 1 << 20;
 
     /// A clip sampled every `frame_time` seconds, from its start to its end: the last frame is the whole one nearest to
@@ -64,7 +64,7 @@ impl Take {
     /// The pose of a frame.
     ///
     /// # Panics
-    /// If there is no such frame.
+    /// If the frame is out of range.
     pub fn pose(&self, frame: usize) -> &[LocalTransform] {
         &self.poses[frame * self.joints..(frame + 1) * self.joints]
     }
@@ -72,7 +72,7 @@ impl Take {
     /// The pose of a frame, to change.
     ///
     /// # Panics
-    /// If there is no such frame.
+    /// If the frame is out of range.
     pub fn pose_mut(&mut self, frame: usize) -> &mut [LocalTransform] {
         &mut self.poses[frame * self.joints..(frame + 1) * self.joints]
     }
@@ -82,10 +82,10 @@ impl Take {
         self.poses.iter().skip(joint).step_by(self.joints).copied()
     }
 
-    /// The take as a clip with a key a frame. Joints that stay at rest get no channel, those that stay elsewhere one key.
+    /// The take as a clip with a key a frame. Joints in the rest pose get no channel, constant others one key.
     ///
     /// # Panics
-    /// If the take is not one of the rig's.
+    /// If the take does not fit the rig.
     pub fn to_clip(&self, rig: &Rig, name: &str) -> Clip {
         assert_eq!(self.joints, rig.joints.len(), "a take of this rig");
         let times: Vec<f32> = (0..self.frames()).map(|frame| self.time(frame)).collect();
@@ -129,7 +129,7 @@ fn numbers(local: LocalTransform, property: Property) -> Vec<f32> {
     }
 }
 
-/// Number of keys that say what these values say: all, one where they do not change, none where they are those of rest.
+/// Number of keys needed: all, one for constant values, none for rest values.
 fn keys_needed(values: &[f32], rest: &[f32]) -> Option<usize> {
     let first = &values[..rest.len()];
     let alike = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-6 * (1.0 + b.abs()));

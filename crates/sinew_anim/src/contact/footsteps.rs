@@ -1,4 +1,4 @@
-//! Footsteps found in a clip.
+//! Finds footsteps in a clip.
 
 use super::{ContactSettings, FootContact, Ground, contacts, flatten_soles, sole_points};
 use crate::clip::Clip;
@@ -13,10 +13,10 @@ use sinew_math::{Vec3, min};
 /// Footsteps of a clip, and the speed at which it walks on the spot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Footsteps {
-    /// An event `footstep` with the payload `left` or `right` at each footfall, by time. A foot that is on the ground when
-    /// the clip begins has no footfall there, unless the clip is a loop.
+    /// An event `footstep` with the payload `left` or `right` at each footfall, by time. A foot that is on the ground
+    /// at the start has no footfall there, unless the clip loops.
     pub events: Vec<ClipEvent>,
-    /// Speed at which the ground passes under feet that walk on the spot, m/s; 0 for a clip that gets on or stands.
+    /// Speed of the ground under feet that walk on the spot, m/s; 0 for a clip that travels or stands.
     pub speed: f32,
 }
 
@@ -34,14 +34,15 @@ pub enum NoFootsteps {
     TooLong,
 }
 
-/// Finds the footfalls of a clip: moments at which the ball of a foot comes to rest on the ground. A clip whose last pose is its
-/// first is taken as a loop. A walk on the spot is recognised by feet that take turns at moving back at one speed.
+/// Finds the footfalls of a clip: moments at which the ball of a foot comes to rest on the ground. A clip whose last
+/// pose is its first counts as a loop. A walk on the spot is recognised by feet that alternately move back at one
+/// speed.
 ///
 /// # Errors
 /// A character without the legs of a human, or a clip that is too long.
 ///
 /// # Panics
-/// If the analysis or the clip is not one of the rig's.
+/// If the analysis or the clip does not fit the rig.
 pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Footsteps, NoFootsteps> {
     if !analysis.humanoid {
         return Err(NoFootsteps::NotHumanoid);
@@ -54,7 +55,7 @@ pub fn footsteps(rig: &Rig, analysis: &RigAnalysis, clip: &Clip) -> Result<Foots
     let lap = take.duration() as f32;
     let repeats = is_loop(&take, feet[0].length / analysis.unit_scale);
     if repeats {
-        // Twice in a row, so that a step at the seam is whole; the lap that counts lies in the middle.
+        // Twice in a row, so that a step at the seam is whole; the evaluated lap is in the middle.
         take.poses.extend_from_within(take.joints..);
     }
     let root = analysis.character_from_file();
@@ -91,7 +92,7 @@ fn pace(take: &Take, points: &[[[Vec3; 2]; 2]]) -> f32 {
     if time > 0.0 { (way - Vec3::Y * way.y).length() / time } else { 0.0 }
 }
 
-/// True if the last pose is the first one again, on the same spot. `leg` is a leg's length in file units.
+/// True if the last pose equals the first one, on the same spot. `leg` is a leg's length in file units.
 fn is_loop(take: &Take, leg: f32) -> bool {
     let last = take.frames() - 1;
     let before = take.pose(last.saturating_sub(LAST_FRAMES));

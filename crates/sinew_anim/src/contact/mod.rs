@@ -19,15 +19,15 @@ pub struct FootContact {
     pub foot: Side,
     /// Seconds from the start of the take: the footfall.
     pub start: f32,
-    /// Seconds: when it leaves the ground again.
+    /// End of the contact, seconds.
     pub end: f32,
 }
 
-/// Heels and balls of both feet, frame by frame, in the space that `root` maps the rig's to, metres: left then right foot,
-/// heel then ball; one entry per frame of the take.
+/// Heels and balls of both feet, frame by frame, in the space of `root`, metres: left then right foot, heel then ball;
+/// one entry per frame of the take.
 ///
 /// # Panics
-/// If the take is not one of the rig's.
+/// If the take does not fit the rig.
 pub fn sole_points(rig: &Rig, root: &Affine, feet: &[Foot; 2], take: &Take) -> Vec<[[Vec3; 2]; 2]> {
     let mut model = Vec::new();
     let points = |frame| {
@@ -37,8 +37,8 @@ pub fn sole_points(rig: &Rig, root: &Affine, feet: &[Foot; 2], take: &Take) -> V
     (0..take.frames()).map(points).collect()
 }
 
-/// Height of the floor under a motion: that which the lowest point of both feet is at or above in nine frames of ten.
-/// A jump does not fool it, nor a few frames of noise. `points` are those of [`sole_points`], metres, y up; 0 of none.
+/// Height of the floor under a motion: the lowest point of both feet is at or above it in nine frames of ten, which
+/// ignores jumps and noise. `points` are those of [`sole_points`], metres, y up; 0 for none.
 pub fn floor_under(points: &[[[Vec3; 2]; 2]]) -> f32 {
     tenth(points.iter().map(lowest).collect())
 }
@@ -53,8 +53,8 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// The ground under a motion, told by its feet. It moves if both feet take turns at being low for much of the time, and
-    /// then mostly move at one speed. `points` are those of [`sole_points`] of the take, y up, one entry per frame.
+    /// The ground under a motion, derived from its feet. It moves if both feet are alternately low for much of the time
+    /// and then mostly move at one speed. `points` are those of [`sole_points`] of the take, y up, one entry per frame.
     pub fn under(take: &Take, points: &[[[Vec3; 2]; 2]], settings: &ContactSettings) -> Self {
         let height = floor_under(points);
         let lower_step = |frame: usize| {
@@ -73,7 +73,7 @@ impl Ground {
         let alike = |step: Vec3| (step - velocity).length() < 0.3 * velocity.length();
         let of_foot = |foot: usize| steps.iter().filter(|&&(k, step)| k == foot && alike(step)).count();
         let (left, right) = (of_foot(0), of_foot(1));
-        // Who runs is in the air for most of the time.
+        // A runner is in the air for most of the time.
         let least = if velocity.length() > settings.run { RUN_STANDS } else { WALK_STANDS };
         let mostly = 2 * (left + right) > steps.len() && least * steps.len() > points.len();
         let take_turns = 4 * usize::min(left, right) > left + right;
@@ -81,7 +81,7 @@ impl Ground {
         Self { height, velocity: if moves { velocity } else { Vec3::ZERO } }
     }
 
-    /// Points as seen from the ground, metres: on it, a foot that stands is at rest. `points` are those of [`sole_points`],
+    /// Points relative to the ground, metres: a standing foot is at rest there. `points` are those of [`sole_points`],
     /// one entry per frame.
     pub fn seen_from(&self, take: &Take, mut points: Vec<[[Vec3; 2]; 2]>) -> Vec<[[Vec3; 2]; 2]> {
         for (frame, feet) in points.iter_mut().enumerate() {
@@ -92,10 +92,10 @@ impl Ground {
     }
 }
 
-/// Tilt of each sole while it stands, radians, positive for toes up, and the feet with soles that lie flat then.
+/// Tilt of each sole while it stands, radians, positive for toes up, and the feet with soles flattened by it.
 ///
-/// A reference pose hardly says how a shoe was worn: the heights that heel and ball keep to while they are on the ground
-/// do. Tilts over 0.2 rad are those of a body that stands on its toes, and left.
+/// A reference pose hardly tells how a shoe was worn; the heights of heel and ball on the ground do. Tilts over 0.2 rad
+/// belong to a body on its toes and are ignored.
 pub fn flatten_soles(feet: &[Foot; 2], points: &[[[Vec3; 2]; 2]]) -> ([f32; 2], [Foot; 2]) {
     let (mut tilts, mut flat) = ([0.0; 2], *feet);
     for k in 0..2 {
@@ -112,7 +112,7 @@ pub fn flatten_soles(feet: &[Foot; 2], points: &[[[Vec3; 2]; 2]]) -> ([f32; 2], 
     (tilts, flat)
 }
 
-/// A turn of the toes up, in a body's own axes.
+/// A rotation of the toes up, in a body's own axes.
 pub(crate) fn toes_up(angle: f32) -> Rotation {
     Rotation::from_axis_angle(Vec3::NEG_X, angle)
 }
@@ -128,10 +128,10 @@ pub fn lowest(points: &[[Vec3; 2]; 2]) -> f32 {
     points.as_flattened().iter().map(|point| point.y).fold(f32::INFINITY, min)
 }
 
-/// When a foot stands.
+/// Decides when a foot stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSettings {
-    /// Least and most speed of the ball of a foot, m/s: it lands below the first and leaves above the second.
+    /// Speed thresholds of the ball of a foot, m/s: it lands below the first and leaves above the second.
     pub speed: [f32; 2],
     /// Highest that it is above the floor, metres.
     pub height: f32,
@@ -152,9 +152,9 @@ impl ContactSettings {
     }
 }
 
-/// When each foot stands, told by height and speed of its ball. `points` are those of [`sole_points`], as
-/// [seen from the ground](Ground::seen_from) where that moves, one entry per frame; `floor` is its height, metres. Times are
-/// seconds from the start of the take. In order of start; left before right.
+/// Contacts of each foot, by height and speed of its ball. `points` are those of [`sole_points`],
+/// [relative to the ground](Ground::seen_from) if that moves, one entry per frame; `floor` is its height, metres. Times
+/// are seconds from the start of the take. Sorted by start; left before right.
 pub fn contacts(
     take: &Take,
     feet: &[Foot; 2],
@@ -204,7 +204,7 @@ fn speed(take: &Take, points: &[Vec3], frame: usize) -> f32 {
 /// Slide of the feet while they stand.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FootSlide {
-    /// Mean speed over the ground, m/s: way slid over time stood.
+    /// Mean speed over the ground, m/s: distance slid over time stood.
     pub mean: f32,
     /// Farthest that a foot gets in one contact from where it landed, metres.
     pub farthest: f32,
@@ -212,8 +212,8 @@ pub struct FootSlide {
     pub time: f32,
 }
 
-/// Slide of the balls of the feet over the ground (x and z, metres) during `contacts` (seconds of the take). `points` are
-/// those of [`sole_points`], as [seen from the ground](Ground::seen_from) where that moves, one entry per frame.
+/// Slide of the balls of the feet over the ground (x and z, metres) during `contacts` (seconds of the take). `points`
+/// are those of [`sole_points`], [relative to the ground](Ground::seen_from) if that moves, one entry per frame.
 pub fn foot_slide(
     take: &Take,
     feet: &[Foot; 2],

@@ -16,14 +16,14 @@ pub struct Footstep {
     pub foot: u32,
     /// When, seconds on the user's clock.
     pub time: f64,
-    /// Who saw it first.
+    /// Source of the first report.
     pub source: FootstepSource,
 }
 
-/// Makes one list of steps out of a clip's footsteps and of physical contacts: what both see is one step.
+/// Merges a clip's footsteps and physical contacts into one list of steps.
 ///
-/// Of one foot, whatever comes within the window after a step is that step again: the contact that belongs to an event, the
-/// event that belongs to a contact, and a foot that bounces.
+/// Everything within the window after a step of the same foot is that step: the contact of an event, the event of a
+/// contact, and a bouncing foot.
 #[derive(Clone, Debug)]
 pub struct FootstepMerger {
     window: f64,
@@ -32,7 +32,7 @@ pub struct FootstepMerger {
 }
 
 impl FootstepMerger {
-    /// `window` in seconds: longer than clip and physics are apart, shorter than a step; 0.15 suits most.
+    /// `window` in seconds: longer than the delay between clip and physics, shorter than a step; 0.15 suits most.
     ///
     /// # Panics
     /// If `window` is negative or not finite.
@@ -41,14 +41,14 @@ impl FootstepMerger {
         Self { window, last: VecDeque::new() }
     }
 
-    /// Adds to `steps` those of an update, by time, each once. `clip` and `contacts` are `(foot, time)`, in any order, and no
-    /// earlier than those of the updates before; `NaN` counts for nothing.
+    /// Adds the steps of an update to `steps`, by time, each once. `clip` and `contacts` are `(foot, time)`, in any
+    /// order, not earlier than those of previous updates; `NaN` is ignored.
     pub fn merge(&mut self, clip: &[(u32, f64)], contacts: &[(u32, f64)], steps: &mut Vec<Footstep>) {
         let first = steps.len();
         let with = |source| move |&(foot, time): &(u32, f64)| Footstep { foot, time, source };
         steps.extend(clip.iter().map(with(FootstepSource::Clip)));
         steps.extend(contacts.iter().map(with(FootstepSource::Contact)));
-        // Of a clip's step and a contact at one moment the clip's stays.
+        // For a clip's step and a contact at the same time the clip's is kept.
         steps[first..].sort_unstable_by(|a, b| {
             let rank = |step: &Footstep| (step.foot, step.source == FootstepSource::Contact);
             a.time.total_cmp(&b.time).then(rank(a).cmp(&rank(b)))

@@ -1,4 +1,4 @@
-//! Callbacks: names on a clip's timeline, and what came by in an update.
+//! Callbacks: named events on a clip's timeline, and those passed in an update.
 
 mod footsteps;
 
@@ -10,26 +10,25 @@ use crate::set::ClipId;
 /// Rule for which of several tracks that pass an event at the same phase may fire it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FiredBy {
-    /// Each that passes it.
+    /// Every track that passes it.
     #[default]
     Every,
-    /// The heaviest track of its sync group, and any track that has none.
+    /// The heaviest track of its sync group, and every track without a group.
     Leader,
-    /// Once for all tracks of its sync group whose clips have an event of that name beside the same marker: one footstep for
-    /// walk and run together. The heaviest of them fires it, at its own moment; another one where that had passed it before
-    /// it became the heaviest.
+    /// Once for all tracks of its sync group whose clips have an event of that name at the same marker: one footstep
+    /// for walk and run together. The heaviest of them fires it, at its own moment; another one does if that had passed
+    /// it before it became the heaviest.
     OnePerGroup,
 }
 
-/// When an event that is passed becomes one that is fired.
+/// Conditions under which a passed event fires.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EventPolicy {
     /// The least weight of the track at the moment of the event, 0 to 1; ½ by default.
     pub min_weight: f32,
-    /// Who fires it.
+    /// Tracks that may fire it.
     pub fired_by: FiredBy,
-    /// True if it is fired, whatever the weight, when its track is stopped before it in the lap: for what has to be put
-    /// right at the end of a motion.
+    /// True if it fires, at any weight, when its track stops before it in the lap: for clean-up at the end of a motion.
     pub on_interrupt: bool,
 }
 
@@ -46,7 +45,7 @@ pub struct ClipEvent {
     pub time: f32,
     /// Name of what happens; several events may have one name.
     pub name: String,
-    /// Whatever the user needs to know of it, or `""`.
+    /// Data for the user, or `""`.
     pub payload: String,
     /// When it is fired.
     pub policy: EventPolicy,
@@ -59,7 +58,7 @@ impl ClipEvent {
     }
 }
 
-/// An event that came by in an update. Name and payload: [`AnimationSet::event`](crate::AnimationSet::event).
+/// An event of an update. Name and payload: [`AnimationSet::event`](crate::AnimationSet::event).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiredEvent {
     /// When, seconds from the start of the update, 0 to its length.
@@ -70,10 +69,10 @@ pub struct FiredEvent {
     pub event: usize,
     /// The track that passed it.
     pub track: TrackId,
-    /// The track's weight at that moment, before other tracks are taken into account.
+    /// The track's weight at that moment, before other tracks are considered.
     pub weight: f32,
     /// The track's lap (see [`Playhead::lap`](crate::Playhead::lap)).
     pub lap: i64,
-    /// True if it was not passed, but its track stopped before it.
+    /// True if its track stopped before it.
     pub is_interrupted: bool,
 }

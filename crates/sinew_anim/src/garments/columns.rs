@@ -6,13 +6,14 @@ use crate::tuning::{HEM_SHARE, RING_GAP};
 use sinew_math::{Affine, Vec3, max};
 
 impl GarmentColumn {
-    /// The chain from a joint down: where it forks, the longest way; joints of [sheets](Rig::sheets) are not of it. If the skin of the last joint reaches on beyond it, the hem is where that ends.
+    /// The chain from a joint down, along the longest branch; joints of [sheets](Rig::sheets) are not part of it. If
+    /// the skin of the last joint reaches beyond it, the hem is at the end of that skin.
     ///
     /// # Panics
-    /// If there is no such joint.
+    /// If the joint does not exist.
     pub fn below(rig: &Rig, top: JointIdx) -> Self {
         let is_cloth = rig.is_of_sheet();
-        // Joints stand before their children.
+        // Joints come before their children.
         let mut longest = vec![(0, None); rig.joints.len()];
         for joint in (0..rig.joints.len()).rev() {
             if let Some(parent) = rig.joints[joint].parent.filter(|_| !is_cloth[joint]) {
@@ -30,7 +31,7 @@ impl GarmentColumn {
     }
 }
 
-/// Place in the last joint's space up to which its skin goes on, straight on from the bone above it; zero if that is not far.
+/// End of the last joint's skin in its own space, straight on from the bone above; zero if it is close.
 fn tip(rig: &Rig, joints: &[JointIdx]) -> Vec3 {
     let [.., above, last] = joints else { return Vec3::ZERO };
     let rest = &rig.joints[*last].rest;
@@ -48,7 +49,7 @@ fn tip(rig: &Rig, joints: &[JointIdx]) -> Vec3 {
     if reach > HEM_SHARE * length * scale { way * (reach / scale) } else { Vec3::ZERO }
 }
 
-/// Vertices that a joint moves more than all others do together, in the joint's space.
+/// Vertices that a joint moves more than all others together, in the joint's space.
 fn skin_of(rig: &Rig, joint: JointIdx) -> impl Iterator<Item = Vec3> {
     let skinned = rig.meshes.iter().filter_map(|mesh| Some((mesh, &rig.skins[mesh.skin?])));
     skinned.flat_map(move |(mesh, skin)| {
@@ -65,7 +66,7 @@ fn skin_of(rig: &Rig, joint: JointIdx) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// Mean place of each column's joints in the rest pose, file units.
+/// Mean position of each column's joints in the rest pose, file units.
 fn middles(rig: &Rig, columns: &[GarmentColumn]) -> Vec<Vec3> {
     let mut places: Vec<Affine> = Vec::with_capacity(rig.joints.len());
     for joint in &rig.joints {
@@ -79,7 +80,7 @@ fn middles(rig: &Rig, columns: &[GarmentColumn]) -> Vec<Vec3> {
     columns.iter().map(middle).collect()
 }
 
-/// Columns in the order in which they lie side by side: from the one that is farthest from their middle, each time on to the nearest.
+/// Columns sorted side by side: starting with the one furthest from their middle, then always the nearest.
 pub fn side_by_side(rig: &Rig, columns: &[GarmentColumn]) -> Vec<GarmentColumn> {
     let places = middles(rig, columns);
     let middle = places.iter().copied().sum::<Vec3>() / max(places.len() as f32, 1.0);
@@ -101,7 +102,7 @@ pub fn side_by_side(rig: &Rig, columns: &[GarmentColumn]) -> Vec<GarmentColumn> 
     order.into_iter().map(|at| columns[at].clone()).collect()
 }
 
-/// True if columns that lie side by side stand in a ring, as a skirt's do: the last is about as near to the first as others are to their neighbours.
+/// True if columns form a ring, as in a skirt: the last is about as near to the first as neighbours are.
 pub fn is_ring(rig: &Rig, columns: &[GarmentColumn]) -> bool {
     let places = middles(rig, columns);
     let [first, .., last] = places.as_slice() else { return false };

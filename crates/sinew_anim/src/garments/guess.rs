@@ -4,15 +4,15 @@ use super::{Garment, GarmentColumn, is_ring, side_by_side};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::words;
 
-/// Words of names for each kind of garment, lower case.
+/// Words for each kind of garment, lower case.
 const KINDS: [(&str, &[&str]); 3] = [
     ("cape", &["cape", "cloak", "mantle", "robe", "マント"]),
     ("skirt", &["skirt", "dress", "kilt", "スカート"]),
     ("coat", &["coat", "jacket", "コート"]),
 ];
 
-/// Garments by the names of joints: capes, skirts and coats that have at least two chains side by side. One chain alone is no cloth; it may swing as a
-/// spring ([`guess_springs`](crate::guess_springs)).
+/// Garments by joint names: capes, skirts and coats with at least two chains side by side. One chain alone is no cloth;
+/// it may swing as a spring ([`guess_springs`](crate::guess_springs)).
 pub fn guess_garments(rig: &Rig) -> Vec<Garment> {
     let kind_of: Vec<Option<usize>> = rig.joints.iter().map(|joint| kind(&joint.name)).collect();
     let garment = |(kind, (name, _)): (usize, &(&str, &[&str]))| {
@@ -26,7 +26,7 @@ pub fn guess_garments(rig: &Rig) -> Vec<Garment> {
     KINDS.iter().enumerate().map(garment).filter(|garment| garment.columns.len() > 1).collect()
 }
 
-/// Joints that chains of a kind start at: the highest of it, and where several hang on one of it, those.
+/// Start joints of a kind's chains: the highest of the kind, or its children if there are several.
 fn tops(rig: &Rig, of_kind: impl Fn(JointIdx) -> bool) -> Vec<JointIdx> {
     let mut children = vec![0; rig.joints.len()];
     for parent in
@@ -47,7 +47,7 @@ fn tops(rig: &Rig, of_kind: impl Fn(JointIdx) -> bool) -> Vec<JointIdx> {
     tops
 }
 
-/// Index of the kind that a name tells; joints that move others are of none.
+/// Index of the kind that a name tells; none for control joints.
 fn kind(name: &str) -> Option<usize> {
     let words = words(name);
     if words.iter().any(|word| matches!(word.as_str(), "ik" | "ctrl" | "control" | "target")) {

@@ -2,10 +2,11 @@
 
 use crate::rig::JointIdx;
 
-/// Sheet of cloth that a mesh of a rig became ([`lay_sheet`](super::lay_sheet)). Its particles are joints, each a child of the joint that moved its vertex most.
+/// Sheet of cloth made from a mesh of a rig ([`lay_sheet`](super::lay_sheet)). Its particles are joints, each a child
+/// of the joint that moved its vertex most.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshSheet {
-    /// Name of the mesh or material that it was made of.
+    /// Name of the source mesh or material.
     pub name: String,
     /// Index into [`Rig::meshes`](crate::Rig::meshes).
     pub mesh: usize,
@@ -17,12 +18,14 @@ pub struct MeshSheet {
     pub held: Vec<bool>,
     /// Triangles of particles.
     pub faces: Vec<[u32; 3]>,
-    /// Pairs of particles that are beside each other, each once, the smaller first.
+    /// Pairs of neighbouring particles, each once, the smaller first.
     pub links: Vec<[u32; 2]>,
-    /// Area of the mesh about each particle as it was bound, m²: what hangs together has all of its area, however far it was reduced.
+    /// Area of the mesh around each particle in the bind pose, m²; the areas of a connected piece sum to its whole
+    /// area.
     pub areas: Vec<f32>,
-    /// Places of vertices of the mesh, those that are in one place counted once.
+    /// Unique vertex positions of the mesh.
     pub vertices: usize,
-    /// Longest edge of the mesh as it was bound, metres: where it is longer than the spacing, particles lie between its vertices, and what is drawn is flat there.
+    /// Longest edge of the mesh in the bind pose, metres: if it exceeds the spacing, particles lie between vertices,
+    /// and the drawn mesh is flat there.
     pub longest_edge: f32,
 }

@@ -1,8 +1,8 @@
-//! Garments of a rig: capes, skirts and coats that hang on chains of joints, as they are stated ([`Garment::on_chains`]) or as
-//! they are guessed from names ([`guess_garments`]), and meshes that are cloth themselves ([`lay_sheet`]).
+//! Garments of a rig: capes, skirts and coats on chains of joints, stated ([`Garment::on_chains`]) or guessed from
+//! names ([`guess_garments`]), and meshes used as cloth ([`lay_sheet`]).
 //!
-//! Plain data: `sinew_ragdoll::garments` makes cloth of them. Where springs are light and each chain swings by itself, a garment
-//! is **one sheet**: its chains are sewn together side by side, and it bears on bodies and is borne by them.
+//! Plain data: `sinew_ragdoll::garments` simulates them. Unlike springs, whose chains swing separately, a garment is
+//! **one sheet**: its chains are sewn together side by side, and forces with bodies act both ways.
 //!
 //! ```
 //! use sinew_anim::{Garment, Joint, LocalTransform, Rig};
@@ -47,7 +47,7 @@ use sinew_math::Vec3;
 pub struct Garment {
     /// Name of it for people, or `""`.
     pub name: String,
-    /// Chains of joints that it hangs on, side by side; no joint is in two. None if it is a sheet.
+    /// Its chains of joints, side by side; no joint is in two. Empty for a sheet.
     pub columns: Vec<GarmentColumn>,
     /// Mesh that it is, if not chains.
     pub sheet: Option<MeshSheet>,
@@ -55,10 +55,10 @@ pub struct Garment {
     pub closed: bool,
     /// Mass of a square metre of it, kg. Default 0.4: wool.
     pub area_density: f32,
-    /// Distance that its middle keeps from bodies, metres. Default 0.015.
+    /// Distance of its mid-surface from bodies, metres. Default 0.015.
     pub radius: f32,
-    /// Most distance between particles of it that are beside each other, metres: a limb of radius `R` does not come between four of them if its square is
-    /// below `2 (2 R radius + radius²)`. Default 0.05, which holds for shins.
+    /// Largest distance between neighbouring particles, metres: a limb of radius `R` does not pass between four of them
+    /// if its square is below `2 (2 R radius + radius²)`. Default 0.05, which stops shins.
     pub spacing: f32,
     /// Stiffness of a square of it against being pulled along a thread, N/m. Default 2000.
     pub stretching: f32,
@@ -66,26 +66,26 @@ pub struct Garment {
     pub shearing: f32,
     /// Bending stiffness per width, N·m, ≥ 0. Default 1e-4.
     pub bending: f32,
-    /// Share of its critical damping that each spring has, ≥ 0. Default 0.2.
+    /// Damping ratio of each spring, ≥ 0. Default 0.2.
     pub damping_ratio: f32,
-    /// Drag of still air in proportion to velocity, 1/s, ≥ 0. Default 0.5.
+    /// Drag of still air, 1/s, ≥ 0. Default 0.5.
     pub drag: f32,
     /// Friction on bodies, ≥ 0. Default 0.3.
     pub friction: f32,
-    /// True if the wearer's own arms do not pass through it; `None`: if what holds it is above the pelvis. Arms that swing by a skirt would catch it against the
-    /// thigh in every step.
+    /// False if the wearer's own arms pass through it; `None`: true only if it is held above the pelvis. Arms that
+    /// swing by a skirt would catch it against the thigh in every step.
     pub meets_arms: Option<bool>,
-    /// Distance that its folds keep from each other, metres, ≥ 0. Default 0: they pass through each other.
+    /// Distance of folds from each other, metres, ≥ 0. Default 0: they pass through each other.
     pub thickness: f32,
-    /// Depth up to which it sinks into the body that it lies on, beside the body's shapes. Default `None`: as deep as these let it.
+    /// Limit of sinking into the body where shapes do not stop it. Default `None`: no limit.
     pub backstop: Option<Backstop>,
 }
 
-/// Backstop of a garment: each particle of it stays out of a ball behind its place at rest, which is fixed to the part of the body that is nearest to it there.
-/// So cloth does not sink into what is drawn where no shape of a body is.
+/// Backstop of a garment: each particle stays out of a ball behind its rest place, fixed to the nearest body part. It
+/// keeps cloth out of drawn parts that no shape covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Backstop {
-    /// Depth below its place at rest up to which a particle comes, inward along the garment's normal, metres, ≥ 0. Default 0.
+    /// Depth below its rest place that a particle may reach, inward along the garment's normal, metres, ≥ 0. Default 0.
     pub distance: f32,
     /// Radius of the ball, metres, positive. Default 0.2: a wall to the trunk, and no wider than a stride for a thigh.
     pub radius: f32,
@@ -125,15 +125,16 @@ impl Default for Garment {
 pub struct GarmentColumn {
     /// Joints from the seam to the hem, each the parent of the next.
     pub joints: Vec<JointIdx>,
-    /// Place of the hem in the last joint's own space, file units; zero: the last joint is at the hem, and does not turn.
+    /// Position of the hem in the last joint's own space, file units; zero: the last joint is at the hem and does not
+    /// turn.
     pub tip: Vec3,
 }
 
 impl Garment {
-    /// A garment on the chains that start at these joints, side by side; closed if they stand in a ring.
+    /// A garment on the chains that start at these joints, side by side; closed if they form a ring.
     ///
     /// # Panics
-    /// If there is no such joint.
+    /// If a joint does not exist.
     pub fn on_chains(rig: &Rig, tops: &[JointIdx]) -> Self {
         let columns: Vec<GarmentColumn> = tops.iter().map(|&top| GarmentColumn::below(rig, top)).collect();
         Self { closed: is_ring(rig, &columns), columns, ..Self::default() }

@@ -1,24 +1,24 @@
-//! Ways along edges.
+//! Shortest paths along edges.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Length of the way along edges from each of some vertices to the nearest start, and which that is.
+/// Path length along edges from each vertex to the nearest start, and that start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ways {
-    /// Infinite where no way leads from any.
+    /// Infinite if no path exists.
     pub length: Vec<f32>,
-    /// Index of the start; `usize::MAX` where no way leads from any.
+    /// Index of the start; `usize::MAX` if no path exists.
     pub from: Vec<usize>,
 }
 
 impl Ways {
-    /// Ways from nowhere, for so many vertices.
+    /// No starts yet, for so many vertices.
     pub fn new(count: usize) -> Self {
         Self { length: vec![f32::INFINITY; count], from: vec![usize::MAX; count] }
     }
 
-    /// Begins at more vertices (Dijkstra); `beside` has those beside each, with the length of the edge there (≥ 0).
+    /// Adds starts (Dijkstra); `beside` has the neighbours of each vertex, with edge lengths (≥ 0).
     pub fn add(&mut self, beside: &[Vec<(usize, f32)>], starts: impl IntoIterator<Item = usize>) {
         let mut open = BinaryHeap::new();
         for start in starts {

@@ -1,4 +1,4 @@
-//! Feet on ground that is not the flat floor an animation was made for.
+//! Feet on ground other than the animation's flat floor.
 
 use super::two_bone::{Pole, TwoBone, TwoBoneGoal, two_bone_ik};
 use super::{set_rotation, shift};
@@ -26,11 +26,11 @@ pub struct FootPlacement {
     pub floor: f32,
     /// Height of the ankles above that floor when a foot is flat on it.
     pub ankle_height: f32,
-    /// Height above that at which a foot is free of the ground and keeps its tilt, above 0.
+    /// Height above the floor at which a foot is free and keeps its tilt, above 0.
     pub free_height: f32,
-    /// Most that a foot goes up or down, and the pelvis down.
+    /// Largest vertical shift of a foot, and of the pelvis downward.
     pub max_step: f32,
-    /// Most that a foot tilts to lie on the ground.
+    /// Largest tilt of a foot to match the ground.
     pub max_tilt: f32,
 }
 
@@ -54,10 +54,10 @@ pub struct PlacedFeet {
     pub feet: [PlacedFoot; 2],
 }
 
-/// Puts both feet on the ground: raises or lowers the pelvis with the lower of the two, bends the knees, and tilts the
-/// feet that stand. `ground` is asked once for each leg, with the place of its ankle in the space of `model`, and tells what is
-/// below; `None` where there is nothing to stand on: that foot stays. `local` and `model` have one entry per joint and are both
-/// brought up to date. Nothing is kept from frame to frame: on ground with edges, smooth the heights that `ground` tells.
+/// Places both feet on the ground: moves the pelvis with the lower foot, bends the knees, and tilts standing feet.
+/// `ground` is called once per leg with the position of its ankle in the space of `model` and returns the ground below;
+/// `None` leaves that foot. `local` and `model` have one entry per joint and are both updated. No state is kept: on
+/// ground with edges, smooth the heights that `ground` returns.
 ///
 /// # Panics
 /// If the slices are not as long as the rig has joints, or a joint is not in it.
@@ -92,9 +92,9 @@ pub fn place_feet(
     placed
 }
 
-/// Brings both ankles to where they are wanted, by place and turn in the space of `model` (up: +Y, forward: +Z), and lowers the pelvis as far
-/// as a leg is too short for that, by `most` at most. Gives how far it was lowered. `local` and `model` have one entry per joint
-/// and are both brought up to date.
+/// Moves both ankles to goals, by position and rotation in the space of `model` (up: +Y, forward: +Z), and lowers the
+/// pelvis by at most `most` if a leg is too short. Returns the lowering. `local` and `model` have one entry per joint
+/// and are both updated.
 ///
 /// # Panics
 /// If the slices are not as long as the rig has joints, or a joint is not in it.
@@ -121,7 +121,7 @@ pub fn hold_feet(
     -lift
 }
 
-/// Most that a pelvis may go up before its leg is too short for a place of the ankle; negative: it has to go down by that.
+/// Largest rise of the pelvis with which its leg still reaches the ankle's goal; negative: it must be lowered.
 fn highest_pelvis(model: &[Affine], leg: &TwoBone, target: Vec3, up: Vec3) -> f32 {
     let place = |joint: JointIdx| model[joint].translation;
     let long = (place(leg.lower) - place(leg.upper)).length() + (place(leg.end) - place(leg.lower)).length();

@@ -1,4 +1,4 @@
-//! A head or an eye turned toward what it looks at, as far as a neck goes.
+//! Turns a head or an eye toward a target, within limits.
 
 use super::turn;
 use crate::rig::{JointIdx, LocalTransform, Rig};
@@ -9,18 +9,18 @@ use sinew_math::{Affine, Rotation, Vec3, any_orthonormal, clamp, direction, max}
 pub struct LookAt {
     /// The joint that turns, about its origin.
     pub joint: JointIdx,
-    /// Direction in which it looks, in the joint's own axes, any length.
+    /// Looking direction, in the joint's own axes, any length.
     pub forward: Vec3,
-    /// Up, in the axes of the space, any length: what yaw turns about.
+    /// Up, in the axes of the space, any length: the yaw axis.
     pub up: Vec3,
-    /// Target that it looks at: a place in the space, its unit.
+    /// Target position in the space, its unit.
     pub target: Vec3,
     /// Farthest yaw from the pose, radians, 0..=π.
     pub max_yaw: f32,
-    /// Farthest pitch from the pose, radians, 0..=π. Together with yaw: an ellipse.
+    /// Largest pitch from the pose, radians, 0..=π. Together with yaw: an ellipse.
     pub max_pitch: f32,
-    /// Weight of the goal, 0..=1: the share of the way to it that is gone. Several joints (chest, neck, head) share a look by
-    /// weights of their own.
+    /// Weight of the goal, 0..=1: the share of the rotation that is applied. Several joints (chest, neck, head) share a
+    /// look by their weights.
     pub weight: f32,
 }
 
@@ -29,11 +29,12 @@ pub struct LookAt {
 pub struct Look {
     /// Angle by which the joint turned, radians.
     pub turned: f32,
-    /// Angle by which it still looks past the target, radians.
+    /// Remaining angle to the target, radians.
     pub left: f32,
 }
 
-/// Turns a joint toward a target. `local` and `model` have one entry per joint and are both brought up to date. A target at the joint itself or not finite, and a `forward` of no length, turn nothing.
+/// Turns a joint toward a target. `local` and `model` have one entry per joint and are both updated. A target at the
+/// joint itself or not finite, or a zero `forward`, has no effect.
 ///
 /// # Panics
 /// If the slices are not as long as the rig has joints, or the joint is not in it.

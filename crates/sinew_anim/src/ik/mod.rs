@@ -1,10 +1,9 @@
-//! Inverse kinematics: joints turned so that a hand, a foot or the eyes get where they should.
+//! Inverse kinematics: rotates joints so that a hand, a foot or the eyes reach a goal.
 //!
-//! The jobs work on two slices of one pose, **local** (each joint relative to its parent, file units) and **model** (each
-//! joint to the space), as long as the rig has joints, which have to belong together
-//! ([`local_to_model`](crate::local_to_model)) and still do afterwards. Targets, directions and heights are in the space of
-//! the model slice and its unit: the file's, or the character's where that was its root. Angles are radians. Nothing is
-//! allocated.
+//! The functions work on two slices of one pose, **local** (each joint relative to its parent, file units) and
+//! **model** (each joint in the space), as long as the rig has joints. They must correspond
+//! ([`local_to_model`](crate::local_to_model)) and still do afterwards. Targets, directions and heights are in the
+//! space of the model slice and its unit. Angles are radians. Nothing is allocated.
 
 mod foot;
 mod look_at;
@@ -19,11 +18,11 @@ use sinew_math::{Affine, Rotation, Vec3};
 
 /// The map that the local transform of a joint is relative to.
 fn parent_model(rig: &Rig, joint: JointIdx, local: &[LocalTransform], model: &[Affine]) -> Affine {
-    // A root's parent is the space itself, which is what its own two transforms differ by.
+    // A root's parent is the space itself, the difference of its two transforms.
     rig.joints[joint].parent.map_or_else(|| model[joint] * local[joint].to_affine().inverse(), |p| model[p])
 }
 
-/// Brings the model pose up to date from `joint` on. Parents come first, so one pass will do.
+/// Updates the model pose from `joint` on; parents come first, so one pass suffices.
 fn update_from(rig: &Rig, joint: JointIdx, parent: &Affine, local: &[LocalTransform], model: &mut [Affine]) {
     model[joint] = *parent * local[joint].to_affine();
     for i in joint + 1..model.len() {
@@ -33,7 +32,7 @@ fn update_from(rig: &Rig, joint: JointIdx, parent: &Affine, local: &[LocalTransf
     }
 }
 
-/// Gives a joint the rotation `wanted` in model space; what hangs on it goes along.
+/// Sets a joint's rotation to `wanted` in model space, with all its descendants.
 pub(crate) fn set_rotation(
     rig: &Rig,
     joint: JointIdx,
@@ -46,13 +45,13 @@ pub(crate) fn set_rotation(
     update_from(rig, joint, &parent, local, model);
 }
 
-/// Turns a joint about its origin, model axes; what hangs on it goes along.
+/// Rotates a joint about its origin, model axes, with all its descendants.
 fn turn(rig: &Rig, joint: JointIdx, turn: Rotation, local: &mut [LocalTransform], model: &mut [Affine]) {
     let rotation = model[joint].to_rigid().rotation;
     set_rotation(rig, joint, turn * rotation, local, model);
 }
 
-/// Shifts a joint, model axes; what hangs on it goes along.
+/// Moves a joint, model axes, with all its descendants.
 pub(crate) fn shift(
     rig: &Rig,
     joint: JointIdx,

@@ -1,4 +1,4 @@
-//! A limb of two bones whose end is brought to a target: by the law of cosines, in one step.
+//! Two-bone IK by the law of cosines, in one step.
 
 use super::{parent_model, turn, update_from};
 use crate::pose::smoothstep;
@@ -7,18 +7,18 @@ use sinew_math::{
     Affine, Mat3, Rotation, Vec3, any_orthonormal, clamp, direction, max, min, normalize_or, trig,
 };
 
-/// The joints of a limb, from the trunk outward. Others may lie between them; they go along.
+/// The joints of a limb, from the trunk outward. Joints between them move along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TwoBone {
-    /// Joint at which the first bone begins: hip, shoulder.
+    /// Start of the first bone: hip, shoulder.
     pub upper: JointIdx,
-    /// Joint at which the second bone begins: knee, elbow.
+    /// Start of the second bone: knee, elbow.
     pub lower: JointIdx,
     /// Joint at which the second bone ends: ankle, wrist.
     pub end: JointIdx,
 }
 
-/// To which side the middle joint goes. The target fixes it but for a turn about the line from the first joint.
+/// Side to which the middle joint bends. The target leaves only this rotation free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pole {
     /// The side on which it is. A limb that is straight bends toward this direction, any length.
@@ -30,34 +30,34 @@ pub enum Pole {
 /// Goal for the end of a limb: lengths in the unit of the model pose, directions in its space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoBoneGoal {
-    /// Place of the end joint.
+    /// Target position of the end joint.
     pub target: Vec3,
     /// Side of the middle joint.
     pub pole: Pole,
     /// Share of the limb's length, 0..=0.5, over which it slows down before it is straight, so that the knee does not
     /// snap. 0: none.
     pub softness: f32,
-    /// Largest factor by which the bones may grow to reach the target, at least 1. 1: not at all.
+    /// Largest stretch factor of the bones, at least 1. 1: none.
     pub stretch: f32,
-    /// Weight of the goal, 0..=1: the share of the way to it that is gone.
+    /// Weight of the goal, 0..=1: the share of the motion that is applied.
     pub weight: f32,
 }
 
 impl TwoBoneGoal {
-    /// All the way to `target`, not soft, without stretch.
+    /// Full weight, not soft, without stretch.
     pub fn at(target: Vec3, pole: Pole) -> Self {
         Self { target, pole, softness: 0.0, stretch: 1.0, weight: 1.0 }
     }
 }
 
-/// Turns and stretch that bring the end of a limb to its goal.
+/// Rotations and stretch that bring the end of a limb to its goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoBoneSolution {
-    /// Turn of the first bone about the first joint, in the axes of the space.
+    /// Rotation of the first bone about the first joint, in the axes of the space.
     pub upper: Rotation,
-    /// Turn of the second bone in the axes of the space, from how it was before (not on top of `upper`).
+    /// Rotation of the second bone in the axes of the space, from its old orientation (not on top of `upper`).
     pub lower: Rotation,
-    /// Factor by which both bones grow, at least 1.
+    /// Stretch factor of both bones, at least 1.
     pub stretch: f32,
     /// Distance of the end from the target, at full weight. Infinite for a target that is not finite.
     pub miss: f32,
@@ -68,11 +68,12 @@ impl TwoBoneSolution {
         Self { upper: Rotation::IDENTITY, lower: Rotation::IDENTITY, stretch: 1.0, miss: f32::INFINITY };
 }
 
-/// Bends a limb, given by the places of its three joints in any one space and unit, so that its end reaches the goal; one that is too far or too
-/// near is reached for in its direction. Bones of no length and targets that are not finite turn nothing they need not.
+/// Bends a limb, given by its three joint positions in any space and unit, so that its end reaches the goal, or points
+/// toward it if it is out of reach. Zero-length bones and targets that are not finite cause no rotation.
 ///
-/// With bones a and b and the distance d, the middle joint is `(a² − b² + d²) / 2d` along the way and as far to the side
-/// as Pythagoras leaves. Turns are taken from frames of bone and plane, so that a knee bends about its own axis.
+/// With bones a and b and the distance d, the middle joint is `(a² − b² + d²) / 2d` along the line to the target,
+/// offset sideways by Pythagoras. Rotations are taken from frames of bone and plane, so that a knee bends about its own
+/// axis.
 pub fn solve_two_bone(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -> TwoBoneSolution {
     let way = goal.target - root;
     let (Some(first), Some(second)) = (direction(middle - root), direction(end - middle)) else {
@@ -120,8 +121,8 @@ fn aim_one_bone(root: Vec3, middle: Vec3, end: Vec3, goal: &TwoBoneGoal) -> TwoB
     TwoBoneSolution { upper, lower, stretch: 1.0, miss }
 }
 
-/// Distance that a limb of length `full` goes for a target `far` away: equal up to `softness` before the end, then
-/// nearing `full` without ever getting there. Once differentiable.
+/// Distance that a limb of length `full` reaches for a target `far` away: equal up to `softness` before the end, then
+/// approaching `full`. Once differentiable.
 fn soft_reach(far: f32, full: f32, softness: f32) -> f32 {
     let slow = clamp(softness, 0.0, 0.5) * full;
     let hard = full - slow;
@@ -131,10 +132,11 @@ fn soft_reach(far: f32, full: f32, softness: f32) -> f32 {
     hard + slow * (1.0 - trig::exp((hard - far) / slow))
 }
 
-/// Normals of the planes in which the limb is bent now and shall be bent: `normal × way` points to the middle joint's
-/// side. Of a limb that is nearly straight the bend is noise: there the pole's plane takes over, step by step.
+/// Normals of the current and the wanted bending plane: `normal × way` points to the middle joint's side. A nearly
+/// straight limb has no reliable bend; the pole's plane takes over gradually.
 fn planes(root: Vec3, middle: Vec3, end: Vec3, along: Vec3, pole: Pole) -> (Vec3, Vec3) {
-    /// Sines of the angle between first bone and way: below the first a limb is straight, above the second it is bent.
+    /// Sines of the angle between first bone and target line: below the first a limb is straight, above the second it
+    /// is bent.
     const BENT: [f32; 2] = [0.002, 0.08];
     let old_way = normalize_or(end - root, normalize_or(middle - root, along));
     let (Pole::Keep(side) | Pole::Toward(side)) = pole;
@@ -154,9 +156,9 @@ fn planes(root: Vec3, middle: Vec3, end: Vec3, along: Vec3, pole: Pole) -> (Vec3
     (from, to)
 }
 
-/// Brings the end of a limb to a goal. The joint at the end keeps its rotation relative to the second bone. `local` and
-/// `model` have one entry per joint and are both brought up to date; the goal is in the space of `model`. What is returned is
-/// the turn at full weight, whatever the goal's.
+/// Brings the end of a limb to a goal. The end joint keeps its rotation relative to the second bone. `local` and
+/// `model` have one entry per joint and are both updated; the goal is in the space of `model`. Returns the rotation at
+/// full weight.
 ///
 /// # Panics
 /// If the slices are not as long as the rig has joints, or a joint is not in it.
@@ -177,7 +179,7 @@ pub fn two_bone_ik(
     let part = |turned: Rotation| Rotation::IDENTITY.slerp(turned, weight);
     let (upper, lower) = (part(solution.upper), part(solution.lower));
     turn(rig, limb.upper, upper, local, model);
-    // The first turn has carried the second bone along.
+    // The first rotation has moved the second bone.
     turn(rig, limb.lower, lower * upper.inverse(), local, model);
     let stretch = 1.0 + (solution.stretch - 1.0) * weight;
     if stretch > 1.0 {

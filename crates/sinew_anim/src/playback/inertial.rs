@@ -1,16 +1,15 @@
-//! Transitions without a second clip: what the old motion was beyond the new one dies away.
+//! Inertial transitions: the difference between the old and the new motion decays.
 //!
-//! Bollo, "Inertialization: high-performance animation transitions in Gears of War", GDC 2018. There, an offset is an axis
-//! and an angle, and of its velocity only the part along the axis counts; here the part at right angles to it dies away by
-//! the same curve, and where the offset is nearly nothing it may swing through, so that no joint's velocity jumps.
+//! Bollo, "Inertialization: high-performance animation transitions in Gears of War", GDC 2018. There an offset is an
+//! axis and an angle, and only the velocity along the axis counts. Here the perpendicular velocity decays by the same
+//! curve, and nearly zero offsets may overshoot, so that no joint's velocity jumps.
 
 use crate::pose::Pose;
 use crate::rig::LocalTransform;
 use crate::tuning::SHORTEST_DECAY;
 use sinew_math::{ReadError, Reader, Rotation, Vec3, Writer, max, min, trig};
 
-/// An offset that dies away within a time, from a velocity of its own, and arrives with neither velocity nor
-/// acceleration.
+/// An offset that decays within a time, from an initial velocity, to zero velocity and acceleration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Decay {
     /// Offset at the start, any unit.
@@ -20,8 +19,7 @@ pub struct Decay {
 }
 
 impl Decay {
-    /// Time that it takes along the offset when it may take `seconds`: shorter, down to a third, where it comes back so fast
-    /// that it would overshoot.
+    /// Time to decay, at most `seconds`: shorter, down to a third, if a fast return would overshoot.
     pub fn shortened(&self, seconds: f32) -> f32 {
         let size = self.offset.length();
         if size > 0.0 { shortened(size, self.offset.dot(self.velocity) / size, seconds) } else { seconds }
@@ -42,16 +40,16 @@ impl Decay {
     }
 }
 
-/// `t₁ = min(t₁, −5 x₀/v₀)` where the offset shrinks: with more time it would change its sign. But where hardly any offset
-/// is left, that would stop a limb within a frame: there it keeps its time, and swings through.
+/// `t₁ = min(t₁, −5 x₀/v₀)` if the offset shrinks; more time would change its sign. For a tiny offset that would stop a
+/// limb within a frame, so it keeps its time and overshoots.
 fn shortened(x0: f32, v0: f32, t1: f32) -> f32 {
     let without_overshoot = if v0 < 0.0 { -5.0 * x0 / v0 } else { t1 };
     if without_overshoot < SHORTEST_DECAY * t1 { t1 } else { min(t1, without_overshoot) }
 }
 
 /// `A t⁵ + B t⁴ + C t³ + a₀/2 t² + v₀ t + x₀` with value, velocity and acceleration 0 at `t₁`, and
-/// `a₀ = max(0, (−8 v₀ t₁ − 20 x₀)/t₁²)`, which keeps it from changing its sign; 0 where it is to swing through.
-/// The acceleration is at most `6 x₀/t₁² + 4 |v₀|/t₁`.
+/// `a₀ = max(0, (−8 v₀ t₁ − 20 x₀)/t₁²)`, which prevents a change of sign; 0 for overshoot. The acceleration is at most
+/// `6 x₀/t₁² + 4 |v₀|/t₁`.
 fn quintic(x0: f32, v0: f32, t1: f32, time: f32) -> f32 {
     if t1.is_nan() || t1 <= 0.0 || time >= t1 {
         return 0.0;
@@ -87,21 +85,21 @@ struct JointDecay {
 pub struct Motion<'a> {
     /// The pose now.
     pub now: &'a Pose,
-    /// Another pose of the same rig: `seconds` earlier of the motion that ends, `seconds` later of the one that begins.
+    /// Another pose of the same rig: `seconds` earlier for the old motion, `seconds` later for the new one.
     pub other: &'a Pose,
-    /// Above 0, or else there is no velocity.
+    /// Above 0; otherwise there is no velocity.
     pub seconds: f32,
 }
 
 impl Inertia {
-    /// Becomes another; allocates where it has not seen as many joints.
+    /// Becomes a copy of another; allocates for more joints than before.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.joints.clone_from(&other.joints);
         (self.seconds, self.elapsed) = (other.seconds, other.elapsed);
     }
 
-    /// Takes what `from` (its pose now, and one earlier) is beyond `to` (its pose now, and one later), to die away within
-    /// `seconds`. All four poses have the same length. Allocates where it has not seen as many joints.
+    /// Takes the difference of `from` (its pose now, and one earlier) to `to` (its pose now, and one later), to decay
+    /// within `seconds`. All four poses have the same length. Allocates for more joints than before.
     ///
     /// # Panics
     /// If the poses differ in length, or `seconds` is negative or not finite.
@@ -130,7 +128,7 @@ impl Inertia {
         self.joints.clear();
     }
 
-    /// Lets `seconds` pass, and adds what is left to a pose of the new motion.
+    /// Advances by `seconds` and adds the remaining offset to a pose of the new motion.
     ///
     /// # Panics
     /// If `pose` has another length than those it was started with, and something is left.
@@ -164,7 +162,7 @@ impl Inertia {
     /// Reads what [`save`](Self::save) wrote, for a rig of `joints`.
     ///
     /// # Errors
-    /// Where the bytes end too early, or hold what cannot be.
+    /// If the bytes end too early, or hold an impossible state.
     pub fn load(bytes: &mut Reader<'_>, joints: usize) -> Result<Self, ReadError> {
         let (seconds, elapsed) = (bytes.f32()?, bytes.f32()?);
         if !(seconds >= 0.0 && seconds.is_finite() && elapsed >= 0.0 && elapsed.is_finite()) {
@@ -220,8 +218,8 @@ impl JointDecay {
     }
 }
 
-/// The offset is the logarithm of `from · to⁻¹`; its velocity is the difference to that logarithm a moment earlier, when
-/// `to`, had it been there, was as far behind as it will be ahead.
+/// The offset is the logarithm of `from · to⁻¹`; its velocity is the difference to that logarithm a moment earlier,
+/// with `to` extrapolated back by as much as it will move ahead.
 fn turn(from: (Rotation, Rotation, f32), to: (Rotation, Rotation, f32)) -> Decay {
     let now = (from.1 * to.0.inverse()).positive();
     let offset = logarithm(now);
@@ -236,8 +234,8 @@ fn turn(from: (Rotation, Rotation, f32), to: (Rotation, Rotation, f32)) -> Decay
     Decay { offset, velocity: (offset - logarithm(before)) * moment }
 }
 
-/// Axis times angle, up to a whole turn: two rotations whose quaternions are close have close logarithms, at half a turn
-/// too, where [`Rotation::to_scaled_axis`] jumps.
+/// Axis times angle, up to a full turn: close quaternions have close logarithms, also at half a turn, where
+/// [`Rotation::to_scaled_axis`] jumps.
 pub(crate) fn logarithm(q: Rotation) -> Vec3 {
     let v = q.vector();
     let sin = v.length();

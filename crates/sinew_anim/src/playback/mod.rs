@@ -1,4 +1,4 @@
-//! Parts of playback: time within a clip, phase, transitions by inertia, weights of blend spaces.
+//! Playback: time within a clip, phase, inertial transitions, blend space weights.
 
 pub mod blend_space;
 pub mod inertial;

@@ -1,6 +1,6 @@
-//! Place of a track in a clip, and the moments that it passes on its way.
+//! Position of a track in a clip, and the moments that it passes.
 
-/// Laps from time 0, either way, from which a saved playhead may go on: beyond, seconds would have lost their digits.
+/// Largest lap number, in either direction, of a saved playhead: beyond it seconds lose precision.
 const MOST_LAPS: u64 = 1 << 53;
 
 /// Continuation after the end of a clip.
@@ -9,22 +9,22 @@ pub enum LoopMode {
     /// The start: its end and its start are one moment.
     #[default]
     Loop,
-    /// The way back, and then the clip again.
+    /// Backward, then forward again.
     PingPong,
     /// Nothing: the last pose holds, and played backward the first.
     Once,
 }
 
-/// A place in a clip: whole laps, and time within one.
+/// A position in a clip: whole laps, and time within one.
 ///
-/// The two are apart so that time does not lose digits in a long run, and so that what has been passed can be told by
-/// comparing places, whatever the steps in between were. A lap is once through the clip, there or back.
+/// They are separate so that time keeps precision in a long run, and passed moments are found by comparing positions,
+/// whatever the steps in between. A lap is once through the clip, in either direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Playhead {
     mode: LoopMode,
     length: f64,
     at: Place,
-    /// Nothing has been passed yet: an event that lies exactly here is still to come.
+    /// Nothing has been passed yet: an event exactly here is still to come.
     is_fresh: bool,
 }
 
@@ -36,8 +36,8 @@ pub(crate) struct Place {
 }
 
 impl Playhead {
-    /// At `start`, clip seconds: beyond the clip's ends in a later or an earlier lap, or limited to it where it plays once.
-    /// A clip of no length, a pose, plays once.
+    /// At `start`, clip seconds: beyond the clip's ends in another lap, or clamped if it plays once. A clip without
+    /// length, a pose, plays once.
     ///
     /// # Panics
     /// If `length` is negative, or a number is not finite.
@@ -77,7 +77,7 @@ impl Playhead {
         self.length
     }
 
-    /// As it was when it was at `place`; `None` if that is no place of it.
+    /// The playhead when it was at `place`; `None` if it cannot have been there.
     pub(crate) fn restored(mode: LoopMode, length: f32, at: Place, is_fresh: bool) -> Option<Self> {
         let mode = if length > 0.0 { mode } else { LoopMode::Once };
         let length = f64::from(length);
@@ -90,7 +90,7 @@ impl Playhead {
         is_inside.then_some(Self { mode, length, at, is_fresh })
     }
 
-    /// Goes to `time`, clip seconds as in [`new`](Self::new), and passes nothing on its way: it is a new start.
+    /// Jumps to `time`, clip seconds as in [`new`](Self::new), and passes nothing on its way.
     ///
     /// # Panics
     /// If `time` is not finite.
@@ -100,7 +100,7 @@ impl Playhead {
         self.is_fresh = true;
     }
 
-    /// Goes on by `seconds` of the clip, backward if negative.
+    /// Advances by `seconds` of the clip, backward if negative.
     ///
     /// # Panics
     /// If `seconds` is not finite.
@@ -116,7 +116,7 @@ impl Playhead {
         passage
     }
 
-    /// True if it has come to an end, in the direction of `speed`, from which there is no way on.
+    /// True if it has reached the end in the direction of `speed` and stays there.
     pub fn is_at_end(&self, speed: f64) -> bool {
         let end = if speed < 0.0 { 0.0 } else { self.length };
         self.mode == LoopMode::Once && speed != 0.0 && self.at.time == end
@@ -130,7 +130,7 @@ impl Playhead {
         }
         let laps = (time / self.length).floor();
         let rest = time - laps * self.length;
-        // The quotient is rounded: what is left may lie just outside.
+        // The quotient is rounded, so the remainder may lie just outside.
         let (laps, rest) = if rest < 0.0 {
             (laps - 1.0, rest + self.length)
         } else if rest >= self.length {
@@ -156,43 +156,43 @@ impl Playhead {
     }
 }
 
-/// From one place to another: forward over all after the first up to the second, backward over all before the first
-/// down to the second.
+/// From one position to another: forward it passes everything after the first up to the second, backward everything
+/// before the first down to the second.
 ///
-/// So what is passed over several steps is what is passed over one from the first place to the last.
+/// So several steps pass what one step from the first position to the last does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
-    /// As it was before.
+    /// The position before.
     playhead: Playhead,
     to: Place,
     is_backward: bool,
 }
 
-/// A moment of a clip passed once.
+/// A passed moment of a clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     pub(crate) place: Place,
-    /// Distance from where the passage began, clip seconds, negative backward.
+    /// Distance from the start of the passage, clip seconds, negative backward.
     pub distance: f64,
 }
 
 impl Crossing {
-    /// The lap in which it was passed.
+    /// Lap in which it was passed.
     pub fn lap(&self) -> i64 {
         self.place.lap
     }
 }
 
-/// Moment of a clip that recurs: its place in each period, and the number of laps of a period.
+/// Recurring moment of a clip: its place in each period, and the number of laps per period.
 #[derive(Clone, Copy)]
 struct Recurring {
     at: Place,
-    /// 0: it does not come again.
+    /// 0: it does not recur.
     period: i64,
 }
 
 impl Recurring {
-    /// Number of the last time that it is not after `place`, or before it.
+    /// Number of its last occurrence at or before `place`, or before it.
     fn last(&self, place: Place, counts: impl Fn(f64, f64) -> bool) -> i64 {
         let laps = place.lap.saturating_sub(self.at.lap);
         let (number, rest) = if self.period == 0 {
@@ -209,8 +209,8 @@ impl Recurring {
 }
 
 impl Passage {
-    /// Each time that the moment `time` of the clip, 0 to its length, was passed, in order. At the first step after a
-    /// start or a seek, a moment exactly there is passed too.
+    /// Every passage of the moment `time` of the clip, 0 to its length, in order. The first step after a start or a
+    /// seek passes a moment exactly there too.
     pub fn crossings(self, time: f32) -> impl Iterator<Item = Crossing> {
         self.recurring(f64::from(time)).into_iter().flatten().flat_map(move |moment| self.of(moment))
     }

@@ -1,22 +1,22 @@
-//! Phases: what two clips of different lengths have in common.
+//! Phases: match loops of different lengths.
 
 use crate::playback::playhead::{Place, Playhead};
 
-/// Moments of a looped clip that match those of other clips one by one: left foot down, right foot down. Between two of
-/// them, time is stretched.
+/// Moments of a looped clip that match those of other clips one by one: left foot down, right foot down. Time is
+/// stretched between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Markers {
     times: Vec<f32>,
 }
 
 impl Default for Markers {
-    /// The start alone: whole laps match.
+    /// The start only: whole laps match.
     fn default() -> Self {
         Self { times: vec![0.0] }
     }
 }
 
-/// Phase of a looped clip between its markers: how many it has passed in all, and the share of the way to the next.
+/// Phase of a looped clip between its markers: number of passed markers, and the share of the way to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
     /// Number of the last marker, counted through all laps.
@@ -29,7 +29,7 @@ impl Markers {
     /// At `times`, clip seconds.
     ///
     /// # Panics
-    /// If there are none, or they are not strictly increasing from 0 or later.
+    /// If there are no markers, or they are not strictly increasing from 0 or later.
     pub fn new(times: Vec<f32>) -> Self {
         assert!(times.first().is_some_and(|&first| first >= 0.0), "markers start at 0 or later");
         assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "markers are in order");
@@ -52,7 +52,7 @@ impl Markers {
         index.div_euclid(self.len()) as f64 * length + f64::from(self.times[marker as usize])
     }
 
-    /// Phase at a place of a loop of `length` seconds.
+    /// Phase at a position of a loop of `length` seconds.
     pub(crate) fn phase(&self, place: Place, length: f64) -> Phase {
         let passed = self.times.partition_point(|&time| f64::from(time) <= place.time) as i64 - 1;
         let (start, end) = (self.time(passed, length), self.time(passed + 1, length));
@@ -61,7 +61,7 @@ impl Markers {
         Phase { marker, share: if share < 1.0 { share } else { 1.0_f64.next_down() } }
     }
 
-    /// Place in a loop of `length` seconds at a phase.
+    /// Position in a loop of `length` seconds at a phase.
     pub(crate) fn place(&self, phase: Phase, length: f64) -> Place {
         let (lap, marker) = (phase.marker.div_euclid(self.len()), phase.marker.rem_euclid(self.len()));
         let (start, end) = (self.time(marker, length), self.time(marker + 1, length));
@@ -71,13 +71,13 @@ impl Markers {
     }
 }
 
-/// Brings a follower to the phase of its leader.
+/// Moves a follower to the phase of its leader.
 pub(crate) fn follow(leader: &Playhead, markers: &Markers, follower: &Playhead, own: &Markers) -> Place {
     match_place(leader.place(), leader.length(), markers, follower.length(), own)
 }
 
-/// The place in a loop of `to_length` seconds that has the phase of a place in another. Clips with other numbers of markers
-/// match by whole laps.
+/// The position in a loop of `to_length` seconds with the phase of a position in another. Clips with different numbers
+/// of markers match by whole laps.
 pub(crate) fn match_place(
     place: Place,
     length: f64,

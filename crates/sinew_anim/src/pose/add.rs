@@ -7,7 +7,7 @@ use super::soa::ROWS;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Block, Lanes, Vector3};
 
-/// Adds layers to a pose, as [`Blender::add`](super::Blender::add) says.
+/// Adds layers to a pose, as documented at [`Blender::add`](super::Blender::add).
 pub(super) struct Add<'a, 'b> {
     pub layers: &'a [BlendLayer<'b>],
     pub order: &'a [usize],

@@ -9,7 +9,7 @@ use core::cmp::Ordering;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Block, Blocks, LaneMask, Lanes, Vector3, WIDTH};
 
-/// A share per joint, 0 to 1: which part of the body a pose is for.
+/// A share per joint, 0 to 1: the part of the body that a pose affects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mask {
     blocks: Vec<Block<1>>,
@@ -38,7 +38,7 @@ impl Mask {
     /// Share of `joint`.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If the number of shares is not that of the joints.
     pub fn get(&self, joint: usize) -> f32 {
         assert!(joint < self.joints, "joint {joint} of {}", self.joints);
         self.blocks[joint / WIDTH].get(joint % WIDTH)[0]
@@ -94,8 +94,8 @@ impl<'a> BlendLayer<'a> {
         }
     }
 
-    /// Heaviest first. Equal weights are told apart by what they weigh: layers that are equal in everything may change
-    /// places, since nothing can tell them apart afterwards either.
+    /// Heaviest first. Equal weights are ordered by content; layers that are equal in both may change places without
+    /// effect.
     fn order(&self, other: &Self) -> Ordering {
         let pose = || {
             if core::ptr::eq(self.pose, other.pose) { Ordering::Equal } else { self.pose.order(other.pose) }
@@ -112,26 +112,26 @@ impl<'a> BlendLayer<'a> {
 /// Definition of the mean of several rotations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RotationMean {
-    /// Sum of the quaternions on the hemisphere of the rest pose, brought to length 1.
+    /// Sum of the quaternions on the hemisphere of the rest pose, normalised.
     #[default]
     Sum,
-    /// The rotation with the least weighted sum of squared chords to all (Markley et al., "Averaging quaternions", 2007):
-    /// the eigenvector of `Σ w q qᵀ` with the largest eigenvalue. No hemisphere has a part in it.
+    /// The rotation with the least weighted sum of squared chords to all (Markley et al., "Averaging quaternions",
+    /// 2007): the eigenvector of `Σ w q qᵀ` with the largest eigenvalue. It does not depend on hemispheres.
     Exact,
 }
 
 /// Options of a blend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BlendOptions {
-    /// Below this sum of weights at a joint the rest pose makes up for what is missing, ≥ 0. With 0, the default, the only
-    /// track of a character shows in full at the least weight, and jumps to the rest pose when that becomes 0; with 0.1 it
-    /// takes the last tenth of its ramp for the way there.
+    /// Sum of weights at a joint below which the rest pose fills up, ≥ 0. With 0, the default, a single track shows in
+    /// full at the least weight, and jumps to the rest pose when that becomes 0; with 0.1 the last tenth of its ramp
+    /// leads there.
     pub fill_below: f32,
     /// Definition of the mean of rotations.
     pub mean: RotationMean,
 }
 
-/// Blends poses; owns nothing but the room in which it sorts them.
+/// Blends poses; owns a buffer for sorting them.
 #[derive(Clone, Debug, Default)]
 pub struct Blender {
     options: BlendOptions,
@@ -147,15 +147,14 @@ impl Blender {
         Self { options, order: Vec::new() }
     }
 
-    /// Weighted mean of any number of poses, joint by joint: `out` and `rest` have one local transform per joint, and so
-    /// have all layers and masks.
+    /// Weighted mean of any number of poses, joint by joint: `out`, `rest`, all layers and masks have one entry per
+    /// joint.
     ///
-    /// The result does not depend on the order of the layers, to the bit: they are added in the order of their weights,
-    /// and those of equal weight in the order of what they hold. It is computed as the heaviest pose plus the weighted
-    /// differences from it, so that a pose blended with itself is that pose, to the bit. Where the weights add up to zero,
-    /// or rotations cancel, the rest pose stands in, to the bit.
+    /// The result does not depend on the order of the layers, to the bit: they are added by weight, then by content. It
+    /// is the heaviest pose plus weighted differences, so that a pose blended with itself is that pose, to the bit. If
+    /// the weights sum to zero, or rotations cancel, the result is the rest pose, to the bit.
     ///
-    /// Allocates nothing once it has seen as many layers.
+    /// Does not allocate once it has seen as many layers.
     ///
     /// # Panics
     /// If lengths differ.
@@ -173,13 +172,13 @@ impl Blender {
 }
 
 impl Blender {
-    /// Adds differences to a pose, joint by joint, each times its weight and mask: layers hold what
-    /// [`Clip::difference_from`](crate::Clip::difference_from) gives. A rotation becomes `pose · difference` (the difference
-    /// happens in the joint's own axes), a translation the sum, a scale the product.
+    /// Adds differences to a pose, joint by joint, each times its weight and mask: layers come from
+    /// [`Clip::difference_from`](crate::Clip::difference_from). A rotation becomes `pose · difference` (in the joint's
+    /// own axes), a translation the sum, a scale the product.
     ///
-    /// Several differences at a joint are put together as one before that, by a sum in the order of [`blend`](Self::blend):
-    /// so their order does not matter, to the bit, and nothing jumps where two weights become equal. Of rotations that sum is
-    /// `1 + Σ w (difference − 1)`, brought to length 1.
+    /// Several differences at a joint are first summed in the order of [`blend`](Self::blend), so their order does not
+    /// matter, to the bit, and nothing jumps where two weights become equal. For rotations the sum is
+    /// `1 + Σ w (difference − 1)`, normalised.
     ///
     /// # Panics
     /// If lengths differ.
@@ -190,7 +189,7 @@ impl Blender {
         }
     }
 
-    /// Checks lengths, and brings the layers that have weight in their order.
+    /// Checks lengths and sorts the layers that have weight.
     fn sort(&mut self, layers: &[BlendLayer<'_>], joints: usize) {
         for layer in layers {
             assert_eq!(layer.pose.len(), joints, "all poses are of one rig");
@@ -223,7 +222,7 @@ impl Kernel for Blend<'_, '_> {
             let mut mean = self.mean::<L>(index, shares);
             if self.mean == RotationMean::Exact {
                 let rotation = self.exact_rotation::<L>(index, fill, mean.rotation);
-                // Where all are the same, the mean is already it, to the bit.
+                // If all are equal, the mean is exactly that pose.
                 mean.rotation = Quaternions::select(mean.unanimous, mean.rotation, rotation);
             }
             mean.store(&self.rest[index], L::gt(total, L::splat(0.0)), &mut self.out[index]);
@@ -231,7 +230,7 @@ impl Kernel for Blend<'_, '_> {
     }
 }
 
-/// Factors that turn weights into shares that add up to 1.
+/// Factors that scale weights to a sum of 1.
 #[derive(Clone, Copy)]
 struct Shares<L> {
     /// Weight of the rest pose.
@@ -264,7 +263,7 @@ impl Blend<'_, '_> {
         mean.finish(rest)
     }
 
-    /// Markley's mean, `start` where that cannot be told: the matrix is squared four times, which is sixteen steps of a
+    /// Markley's mean, or `start` if it is undefined: the matrix is squared four times, which equals sixteen steps of a
     /// power iteration.
     #[inline(always)]
     fn exact_rotation<L: Lanes>(&self, index: usize, fill: L, start: Quaternions<L>) -> Quaternions<L> {
@@ -318,7 +317,7 @@ impl<L: Lanes> Mean<L> {
         self.unanimous = L::eq(change.dot(change), zero);
         let sum = self.heaviest.rotation.plus(change);
         let square = sum.dot(sum);
-        // Opposite rotations leave nothing to normalise.
+        // Opposite rotations cancel; nothing is left to normalise.
         let mean =
             Quaternions::select(L::gt(square, L::splat(1e-8)), sum.unit(square), Quaternions::load(rest));
         self.rotation = Quaternions::select(self.unanimous, self.rotation, mean);

@@ -1,4 +1,4 @@
-//! Each kernel gives the same bits on all registers that this processor has.
+//! Every kernel gives the same bits on all registers of this processor.
 
 use super::add::Add;
 use super::blend::{Blend, BlendLayer, Mask, RotationMean};
@@ -19,7 +19,7 @@ fn pose(random: &mut Random) -> Pose {
     (0..JOINTS).map(local).collect()
 }
 
-/// Asserts that `run` changes a pose that begins as `start`, and leaves the same in it on each level.
+/// Asserts that `run` changes a pose that starts as `start`, with the same result on each level.
 fn same_on_all(start: &Pose, run: impl Fn(Level, &mut Pose)) {
     let result = |level| {
         let mut out = start.clone();

@@ -1,7 +1,7 @@
 //! Poses as slices: local to model space, velocities from two poses, blends.
 //!
-//! A pose is one [`LocalTransform`] per joint of a rig, a model pose one [`Affine`] per joint. The jobs here own
-//! nothing: buffers belong to the caller and keep their memory from frame to frame.
+//! A pose is one [`LocalTransform`] per joint of a rig, a model pose one [`Affine`] per joint. Buffers belong to the
+//! caller and keep their memory from frame to frame.
 
 mod add;
 mod blend;
@@ -29,8 +29,8 @@ pub fn rest_pose(rig: &Rig) -> Vec<LocalTransform> {
 
 /// Model-space transform of every joint: `root` times the chain of local transforms down to the joint.
 ///
-/// `root` maps the file's scene to wherever the caller wants it, the identity for the file's own space. `model` is
-/// cleared and filled, one entry per joint.
+/// `root` maps the file's scene to the caller's space, the identity for the file's own. `model` is cleared and filled,
+/// one entry per joint.
 ///
 /// # Panics
 /// If `local` is not as long as the rig has joints.
@@ -52,8 +52,8 @@ pub struct JointVelocity {
     pub angular: Vec3,
 }
 
-/// Mean velocity of every joint's rigid frame between two model poses `dt` seconds apart; zero where `dt` is not
-/// positive. Exact for motion at constant velocity that turns less than half a turn in `dt`. Both poses have one entry per
+/// Mean velocity of every joint's rigid frame between two model poses `dt` seconds apart; zero if `dt` is not positive.
+/// Exact for motion at constant velocity that rotates less than half a turn in `dt`. Both poses have one entry per
 /// joint, in one space and unit; `out` is cleared and filled with as many.
 ///
 /// # Panics
@@ -73,7 +73,7 @@ pub fn joint_velocities(before: &[Affine], after: &[Affine], dt: f32, out: &mut 
     }));
 }
 
-/// A pose and how much of it goes into a blend.
+/// A pose and its weight in a blend.
 #[derive(Clone, Copy, Debug)]
 pub struct WeightedPose<'a> {
     /// One local transform per joint.
@@ -83,12 +83,12 @@ pub struct WeightedPose<'a> {
 }
 
 /// Weighted mean of any number of poses; the order of the layers does not matter beyond rounding. All poses, `rest` and
-/// `out` have one local transform per joint of one rig, file units; what `out` held before has no part in it. [`Blender`]
-/// does the same on eight joints at once, in an order of its own, to the bit.
+/// `out` have one local transform per joint of one rig, file units; `out` is overwritten. [`Blender`] does the same on
+/// eight joints at once, in a canonical order, to the bit.
 ///
 /// Rotations are summed on the hemisphere of the **rest pose** and normalised once: pairwise spherical blends would
-/// depend on the order, and alignment to the first layer on which layer is first. Where the weights add up to zero,
-/// or a joint's rotations cancel, the rest pose stands in.
+/// depend on the order, and alignment to the first layer on which layer is first. If the weights sum to zero, or a
+/// joint's rotations cancel, the result is the rest pose.
 ///
 /// # Panics
 /// If a pose, `rest` or `out` differ in length.
@@ -118,9 +118,9 @@ pub fn blend(rest: &[LocalTransform], layers: &[WeightedPose<'_>], out: &mut [Lo
     }
 }
 
-/// Blend of two poses: `from` at `t` = 0, `to` at `t` = 1, `t` limited to 0..=1. See [`blend`], also for the lengths of the
-/// slices: with [`smoothstep`] of the time for `t` it suits poses less than about 120° apart; for any others
-/// [`Transition::Crossfade`](crate::Transition::Crossfade) remembers which way round it goes.
+/// Blend of two poses: `from` at `t` = 0, `to` at `t` = 1, `t` limited to 0..=1. See [`blend`], also for the lengths of
+/// the slices: with [`smoothstep`] of the time for `t` it suits poses less than about 120° apart;
+/// [`Transition::Crossfade`](crate::Transition::Crossfade) handles any others.
 ///
 /// # Panics
 /// If the slices differ in length.

@@ -9,7 +9,7 @@ use sinew_math::{Affine, Mat3, Vec3};
 /// Columns of a 4×4 matrix whose last row is 0 0 0 1.
 pub(super) type Columns = [[f32; 4]; 4];
 
-/// Parts of a [`Rig`] that the runtime needs: the parents of the joints, and the rest pose.
+/// Parts of a [`Rig`] for run time: parents and the rest pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skeleton {
     /// Parent + 1, 0 for a root.
@@ -21,7 +21,7 @@ impl Skeleton {
     /// Skeleton of a rig.
     ///
     /// # Panics
-    /// If a joint's parent does not come before it, against what [`Rig`] promises.
+    /// If a joint's parent does not come before it.
     pub fn new(rig: &Rig) -> Self {
         let parent = |(joint, parent): (usize, Option<usize>)| {
             assert!(parent.is_none_or(|parent| parent < joint), "joint {joint} comes before its parent");
@@ -49,14 +49,14 @@ impl Skeleton {
     /// Parent of `joint`, `None` for a root.
     ///
     /// # Panics
-    /// If there are not so many joints.
+    /// If the joint is out of range.
     pub fn parent(&self, joint: usize) -> Option<usize> {
         (self.parents[joint] as usize).checked_sub(1)
     }
 
     /// Model-space transform of every joint: `root` times the chain of local transforms down to the joint, with the
-    /// bits of [`local_to_model`](super::local_to_model). `root` maps the file's scene to wherever the caller wants it.
-    /// `model` is made as long as the skeleton; it allocates the first time only.
+    /// bits of [`local_to_model`](super::local_to_model). `root` maps the file's scene to the caller's space. `model`
+    /// is resized to the skeleton; it allocates the first time only.
     ///
     /// # Panics
     /// If `local` is not as long as the skeleton.
@@ -89,7 +89,7 @@ impl ModelPose {
     /// Transform of `joint`: file units.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If the joint is out of range.
     pub fn get(&self, joint: usize) -> Affine {
         let [x, y, z, w] = self.joints[joint + 1].map(|[x, y, z, _]| Vec3::new(x, y, z));
         Affine { linear: Mat3::from_cols(x, y, z), translation: w }
@@ -100,7 +100,7 @@ impl ModelPose {
         self.joints.get(1..).unwrap_or_default()
     }
 
-    /// The joints one after the other.
+    /// The joints in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Affine> {
         (0..self.len()).map(|joint| self.get(joint))
     }
@@ -180,7 +180,7 @@ fn product(parent: &Columns, own: &[[f32; 3]; 4]) -> Columns {
     ]
 }
 
-/// Four numbers at once, the last of them 0: so that the compiler takes one register for a column.
+/// Four numbers, the last of them 0, so that the compiler uses one register per column.
 #[inline(always)]
 fn image([x, y, z, _]: &Columns, v: &[f32; 3]) -> [f32; 4] {
     [

@@ -3,7 +3,7 @@
 use super::soa::{ROTATION, ROWS};
 use sinew_math::lanes::{Block, Lanes, Vector3};
 
-/// A quaternion in each lane. Sums are taken in the order in which `Rotation` takes them.
+/// A quaternion per lane. Sums use the order of `Rotation`.
 #[derive(Clone, Copy)]
 pub(crate) struct Quaternions<L> {
     pub v: Vector3<L>,

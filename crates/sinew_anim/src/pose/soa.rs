@@ -12,10 +12,10 @@ pub(crate) const ROTATION: usize = 3;
 /// First row of the scale.
 pub(crate) const SCALE: usize = 7;
 
-/// Local transforms of a rig's joints, eight side by side: what sampling writes and blending reads.
+/// Local transforms of a rig's joints, eight side by side, for sampling and blending.
 ///
-/// Spaces and units are those of [`LocalTransform`]: each joint relative to its parent, file units, rotations of
-/// length 1. Block `i` holds joints `8 i` to `8 i + 7`; what is left of the last block are identities.
+/// Spaces and units are those of [`LocalTransform`]: each joint relative to its parent, file units, rotations of length
+/// 1. Block `i` holds joints `8 i` to `8 i + 7`; the last block is padded with identities.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
     blocks: Vec<Block<ROWS>>,
@@ -47,7 +47,7 @@ impl Pose {
     /// Local transform of `joint`.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If the joint is out of range.
     pub fn get(&self, joint: usize) -> LocalTransform {
         assert!(joint < self.joints, "joint {joint} of {}", self.joints);
         let [tx, ty, tz, x, y, z, w, sx, sy, sz] = self.blocks[joint / WIDTH].get(joint % WIDTH);
@@ -61,18 +61,18 @@ impl Pose {
     /// Sets the local transform of `joint`.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If the joint is out of range.
     pub fn set(&mut self, joint: usize, local: &LocalTransform) {
         assert!(joint < self.joints, "joint {joint} of {}", self.joints);
         self.blocks[joint / WIDTH].set(joint % WIDTH, record(local));
     }
 
-    /// The joints one after the other.
+    /// The joints in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = LocalTransform> {
         (0..self.joints).map(|joint| self.get(joint))
     }
 
-    /// Takes the numbers of a pose of the same length; allocates nothing.
+    /// Copies a pose of the same length; allocates nothing.
     ///
     /// # Panics
     /// If the poses differ in length.
@@ -89,8 +89,7 @@ impl Pose {
         &mut self.blocks
     }
 
-    /// An order of all poses that has nothing to do with what they look like: of those alike to the bit, and of no
-    /// others, neither comes first.
+    /// A total order of poses by bits; only poses equal to the bit compare equal.
     pub(crate) fn order(&self, other: &Self) -> Ordering {
         fn bits(pose: &Pose) -> impl Iterator<Item = u32> {
             pose.blocks.iter().flat_map(|block| block.0.as_flattened()).map(|number| number.to_bits())

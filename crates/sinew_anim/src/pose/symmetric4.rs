@@ -3,7 +3,7 @@
 use super::quaternions::Quaternions;
 use sinew_math::lanes::{Lanes, Vector3};
 
-/// A symmetric 4×4 matrix in each lane: rows of the upper triangle.
+/// A symmetric 4×4 matrix per lane: rows of the upper triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Symmetric4<L> {
     xx: L,
@@ -54,7 +54,7 @@ impl<L: Lanes> Symmetric4<L> {
         }
     }
 
-    /// With the trace 1: what is squared neither overflows nor vanishes.
+    /// Scaled to trace 1, so that squares neither overflow nor vanish.
     #[inline(always)]
     pub(super) fn normalized(self) -> Self {
         let s = L::splat(1.0) / (self.xx + self.yy + (self.zz + self.ww));

@@ -12,7 +12,7 @@ pub(super) struct Pair {
     pub from: JointIdx,
     /// The character's.
     pub to: JointIdx,
-    /// Rotation that follows the actor's to give the character's, each in its body's axes.
+    /// Rotation after the actor's that gives the character's, each in its body's axes.
     pub correction: Rotation,
 }
 
@@ -20,7 +20,7 @@ pub(super) struct Pair {
 pub(super) struct Alignment {
     /// By the character's joint.
     pub pairs: Vec<Pair>,
-    /// Roles of the character alone.
+    /// Roles that only the character has.
     pub unmatched: Vec<Role>,
 }
 
@@ -55,7 +55,7 @@ impl<'a> Stance<'a> {
         parts.into_iter().filter_map(|role| Some((role, self.joint(role)?))).collect()
     }
 
-    /// Left and up, as the hip joints and the trunk lie.
+    /// Left and up, from the hip joints and the trunk.
     fn trunk(&self) -> Option<(Vec3, Vec3)> {
         let left = self.way(Role::UpperLeg(Side::Right), Role::UpperLeg(Side::Left))?;
         let top = [Role::Neck, Role::Head].into_iter().find_map(|role| self.place(role))?;
@@ -73,7 +73,7 @@ impl Alignment {
         for side in [Side::Left, Side::Right] {
             let [leg, arm] = limb_roles(side);
             turns.extend(leg_turns(&from, &to, trunk, leg));
-            // Clavicles are drawn in many ways; they only take over how the trunk turns.
+            // Clavicles vary between rigs, so they only follow the trunk.
             turns.extend(chain_turns(&from, &to, trunk, [arm[1], arm[2], arm[3]]));
         }
         let turn_of = |role: Role| turns.iter().find(|(r, _)| *r == role).map_or(trunk, |&(_, turn)| turn);
@@ -92,7 +92,7 @@ impl Alignment {
                 (_, None) => {}
             }
         }
-        // Spines differ in number: the tops correspond, and what lies below in proportion.
+        // Spines differ in length: their tops correspond, the rest in proportion.
         let (below, above) = (from.spine(), to.spine());
         for (k, &(role, joint)) in above.iter().enumerate() {
             match ((k + 1) * below.len()).div_ceil(above.len()).checked_sub(1) {
@@ -105,8 +105,8 @@ impl Alignment {
     }
 }
 
-/// The turn that brings the actor's reference trunk onto the character's. Of two that stand upright only the lines through
-/// the hip joints are matched: how far a spine leans is a matter of how the rig was drawn.
+/// The rotation from the actor's reference trunk to the character's. If both stand upright only the lines through the
+/// hip joints are matched: a spine's lean depends on the rig.
 fn trunk_turn(from: &Stance<'_>, to: &Stance<'_>) -> Rotation {
     let Some(((left, up), (new_left, new_up))) = from.trunk().zip(to.trunk()) else {
         return Rotation::IDENTITY;
@@ -118,8 +118,8 @@ fn trunk_turn(from: &Stance<'_>, to: &Stance<'_>) -> Rotation {
     Rotation::from_mat3_lossy(&(frame(new_left, new_up) * frame(left, up).transpose()))
 }
 
-/// Turns that bring the two bones of a limb onto those of the other body, each on top of the one before; the third joint
-/// goes along.
+/// Rotations that align the two bones of a limb with those of the other body, each on top of the one before; the third
+/// joint follows.
 fn chain_turns(
     from: &Stance<'_>,
     to: &Stance<'_>,

@@ -1,9 +1,9 @@
 //! An actor's motion on a character of another size and build.
 //!
-//! Joints are matched by [roles](crate::roles). Each takes the actor's rotation, corrected by how the two bodies differ in
-//! their reference poses, so that thighs and arms point where the actor's point; the pelvis moves as much as the legs are
-//! longer; the feet are held where the actor's stand. All of it happens in the two bodies' own axes and in metres, so files
-//! may differ in up, facing and unit.
+//! Joints are matched by [roles](crate::roles). Each takes the actor's rotation, corrected by the difference of the
+//! reference poses, so that thighs and arms point where the actor's point; the pelvis moves in proportion to leg
+//! length; the feet are held where the actor's stand. Everything is computed in the bodies' own axes and metres, so
+//! files may differ in up, facing and unit.
 
 mod align;
 mod reference;
@@ -26,19 +26,19 @@ use crate::tuning::{FLOOR_TIME, FOOT_HOLD};
 use align::Alignment;
 use sinew_math::{Affine, Rotation, Vec3, max};
 
-/// A body: what it is made of and what that means.
+/// A body: its rig and analysis.
 #[derive(Clone, Copy, Debug)]
 pub struct Body<'a> {
     /// Joints.
     pub rig: &'a Rig,
-    /// Their roles; its bind pose is the reference pose of the body. See [`stand`] for a skeleton without skin.
+    /// Its roles; the bind pose is the reference pose. See [`stand`] for a skeleton without skin.
     pub analysis: &'a RigAnalysis,
 }
 
 /// Duration of the motion of a larger body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Pace {
-    /// As long as the actor's.
+    /// Same duration as the actor's.
     #[default]
     Actor,
     /// Longer by the square root of the ratio of leg lengths (Froude: like walks at equal v²/(g l)): giants seem large.
@@ -50,7 +50,7 @@ pub enum Pace {
 /// Treatment of the feet at the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Feet {
-    /// They are held where the actor's stand, and lie flat on the floor while those do.
+    /// Feet are held where the actor's stand, and lie flat on the floor meanwhile.
     #[default]
     Locked,
     /// They go where the rotations carry them, and are tilted as the actor's.
@@ -62,12 +62,11 @@ pub enum Feet {
 pub struct RetargetOptions {
     /// Seconds from frame to frame of the result, above 0. Default 1/60.
     pub frame_time: f64,
-    /// Default: as long as the actor's.
+    /// Default: the actor's duration.
     pub pace: Pace,
     /// Default: locked.
     pub feet: Feet,
-    /// Height of the floor the actor stands on, metres along its up axis from the origin of its file. Default: found
-    /// from the feet.
+    /// Height of the actor's floor, metres along its up axis from the origin of its file. Default: found from the feet.
     pub floor: Option<f32>,
 }
 
@@ -94,12 +93,12 @@ pub enum RetargetError {
     TooLong(usize),
 }
 
-/// A motion on its new body, and how it fits.
+/// A retargeted motion, and its quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Retargeted {
     /// One pose a frame.
     pub take: Take,
-    /// When the feet stand, seconds of the new motion.
+    /// Foot contacts, seconds of the new motion.
     pub contacts: Vec<FootContact>,
     /// Roles that both bodies have: actor's joint, character's joint.
     pub pairs: Vec<(Role, JointIdx, JointIdx)>,
@@ -109,11 +108,11 @@ pub struct Retargeted {
     pub scale: f32,
     /// Duration over that of the actor's motion.
     pub pace: f32,
-    /// Ground that the character stands on, in its own axes, metres: moving under a motion on the spot.
+    /// Ground of the character, in its own axes, metres: it moves under a motion on the spot.
     pub ground: Ground,
     /// Foot slide of the actor, over the same contacts, for comparison.
     pub actor_slide: FootSlide,
-    /// Foot slide of the character before and after its feet were held; without holding, both as they are.
+    /// Foot slide of the character before and after holding; equal without holding.
     pub feet: FootSlideReport,
 }
 
@@ -128,8 +127,8 @@ impl Retargeted {
 }
 
 /// Carries `clip`, a motion of `actor`, over to `character`: one pose of the character's rig every
-/// [`frame_time`](RetargetOptions::frame_time) seconds, local transforms in its file's units; lengths that are told of are
-/// metres by the unit scales of the two analyses. A job to be done once for a clip, not each frame: it allocates.
+/// [`frame_time`](RetargetOptions::frame_time) seconds, local transforms in its file's units; reported lengths are
+/// metres by the unit scales of the two analyses. Run it once per clip, not each frame: it allocates.
 ///
 /// ```
 /// use sinew_anim::retarget::{Body, RetargetOptions, retarget, stand};
@@ -146,8 +145,8 @@ impl Retargeted {
 /// ```
 ///
 /// # Errors
-/// A body without the roles of a humanoid, without hips or with less than two whole legs; numbers that are not above 0; a
-/// clip that is too long.
+/// A body without the roles of a humanoid, without hips or with less than two whole legs; numbers that are not above 0;
+/// a clip that is too long.
 ///
 /// # Panics
 /// As [`sample`](crate::clip::sample::sample()).
@@ -201,10 +200,10 @@ pub fn retarget(
     })
 }
 
-/// Puts joints that ride on a part of the body without hanging on it where that part is, in every frame.
+/// Moves riders to their body part in every frame.
 ///
 /// # Panics
-/// If the take is not one of the character's rig.
+/// If the take does not fit the character's rig.
 fn carry_riders(character: Body<'_>, take: &mut Take) {
     let riders = Riders::of(character.rig, character.analysis);
     let mut model = Vec::new();
@@ -217,7 +216,7 @@ fn check(number: f32, what: &'static str) -> Result<(), RetargetError> {
     if number > 0.0 && number.is_finite() { Ok(()) } else { Err(RetargetError::NotPositive(what)) }
 }
 
-/// All that does not change from frame to frame.
+/// Data that does not change from frame to frame.
 struct Transfer<'a> {
     actor: Body<'a>,
     character: Body<'a>,
@@ -238,7 +237,7 @@ struct Transfer<'a> {
 struct Steps {
     ground: Ground,
     contacts: Vec<FootContact>,
-    /// Frame by frame the height of the lowest sole over the ground, metres; 0 while a foot stands.
+    /// Per frame the height of the lowest sole over the ground, metres; 0 while a foot stands.
     heights: Vec<f32>,
     slide: FootSlide,
 }
@@ -273,7 +272,7 @@ impl<'a> Transfer<'a> {
         })
     }
 
-    /// Takes the actor's feet to be flat as they stand in the motion, and the character's with them.
+    /// Assumes that the actor's standing feet are flat in the motion, and the character's with them.
     fn flatten_soles(&mut self, source: &Take) {
         let points = sole_points(self.actor.rig, &self.actor_root, &self.actor_feet, source);
         let (tilts, flat) = flatten_soles(&self.actor_feet, &points);
@@ -286,7 +285,7 @@ impl<'a> Transfer<'a> {
         }
     }
 
-    /// Finds out what the actor stands on, and when.
+    /// Finds the actor's ground and foot contacts.
     fn watch(&self, source: &Take, floor: Option<f32>) -> Steps {
         let feet = &self.actor_feet;
         let points = sole_points(self.actor.rig, &self.actor_root, feet, source);
@@ -304,7 +303,7 @@ impl<'a> Transfer<'a> {
         Steps { ground, slide: foot_slide(source, feet, &points, &contacts), contacts, heights }
     }
 
-    /// Holds the character's feet in its contacts, or only tells how they slide.
+    /// Holds the character's feet in its contacts, or only measures their slide.
     fn stand(
         &self,
         feet: Feet,
@@ -321,8 +320,8 @@ impl<'a> Transfer<'a> {
         FootSlideReport { slide: [slide; 2], ..FootSlideReport::default() }
     }
 
-    /// Rotations and the way of the pelvis, then the height of the whole body so that its lowest sole, while near the floor,
-    /// is as high over it as the actor's.
+    /// Rotations and the path of the pelvis, then the height of the body so that its lowest sole, near the floor, is as
+    /// high as the actor's.
     fn carry(&self, source: &Take, steps: &Steps, frame_time: f64) -> Take {
         let rig = self.character.rig;
         let mut take = Take { frame_time, joints: rig.joints.len(), poses: Vec::new() };
@@ -335,7 +334,7 @@ impl<'a> Transfer<'a> {
             let target = self.hips_target(&from, &to, steps.ground.height);
             self.legs.carry(rig, target - to[self.legs.pelvis].translation, &mut pose, &mut to);
             let low = lowest(&self.legs.feet.each_ref().map(|foot| foot.points(&to)));
-            // A body that lies or leaps with its feet up is where its pelvis is.
+            // A body that lies, or leaps with its feet up, follows its pelvis.
             let leg = self.legs.feet[0].length;
             let height = self.scale * steps.heights[frame];
             let near = 1.0 - smoothstep((height - 0.1 * leg) / (0.2 * leg));
@@ -350,7 +349,7 @@ impl<'a> Transfer<'a> {
         take
     }
 
-    /// Every matched joint gets its counterpart's rotation, corrected; the others go along.
+    /// Every matched joint gets its counterpart's corrected rotation; the others follow.
     fn turn_joints(&self, from: &[Affine], pose: &mut [crate::rig::LocalTransform], to: &mut Vec<Affine>) {
         to.clear();
         let mut pairs = self.alignment.pairs.iter().peekable();

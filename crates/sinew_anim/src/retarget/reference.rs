@@ -1,4 +1,4 @@
-//! A pose of an actor that tells the body from the motion.
+//! Chooses an actor's reference pose.
 
 use crate::clip::Clip;
 use crate::clip::sample::{Wrap, sample};
@@ -15,16 +15,16 @@ pub enum Reference {
     Stated,
     /// The rig's rest pose.
     Rest,
-    /// The clip, at that time (seconds): the rig's rest pose is none that a body can stand in.
+    /// The clip at that time (seconds): the rig's rest pose is not a standing pose.
     Clip(f32),
 }
 
-/// Frames of a clip that are looked at.
+/// Frames of a clip that are examined.
 const LOOKS: usize = 24;
 
-/// Analyses a skeleton without skin in the pose in which it stands best: the one stated (if any), else the rig's rest pose,
-/// else the most upright frame of the clip. Many capture files have a rest pose that is no pose at all, or one that stands along another
-/// axis than the body does in the clip: then a frame of the clip is taken.
+/// Analyses a skeleton without skin in its best standing pose: the stated one (if any), else the rig's rest pose, else
+/// the most upright frame of the clip. The rest pose of many capture files is no pose, or stands along another axis
+/// than the clip; then a frame of the clip is used.
 ///
 /// # Errors
 /// [`NoSkin`] if no bone has a length.
@@ -50,7 +50,7 @@ pub fn stand(
     let mut best: Option<(f32, RigAnalysis, Reference)> = None;
     for (pose, reference) in at_rest.chain(in_clip) {
         let analysis = analyze_skeleton(rig, &pose)?;
-        // A pose along another axis than the clip's comes behind all others.
+        // Poses along another axis than the clip's come last.
         let is_other = moves_along.is_some_and(|up| up.dot(analysis.up_axis) < 0.5);
         let upright = if is_other { f32::NEG_INFINITY } else { uprightness(&analysis) };
         if best.as_ref().is_none_or(|(most, ..)| upright > *most) {
@@ -63,7 +63,7 @@ pub fn stand(
     best.map(|(_, analysis, reference)| (analysis, reference)).ok_or(NoSkin)
 }
 
-/// Axis along which the body stands in most of some poses; `None` where there is none.
+/// Up axis of most of some standing poses; `None` if none stands.
 fn up_in_clip(rig: &Rig, poses: impl Iterator<Item = Vec<LocalTransform>>) -> Option<Vec3> {
     let mut standing: Vec<Vec3> = Vec::new();
     for pose in poses {
@@ -76,7 +76,7 @@ fn up_in_clip(rig: &Rig, poses: impl Iterator<Item = Vec<LocalTransform>>) -> Op
     standing.iter().max_by_key(alike).filter(|up| 2 * alike(up) > LOOKS).copied()
 }
 
-/// Uprightness of a body: the least cosine of trunk, thighs and shanks with the vertical; −1 for what is no humanoid.
+/// Uprightness: the least cosine of trunk, thighs and shanks with the vertical; −1 for other bodies.
 fn uprightness(analysis: &RigAnalysis) -> f32 {
     let place = |role: Role| analysis.joint_with(role).map(|joint| analysis.bind_model[joint].translation);
     let up = analysis.up_axis;

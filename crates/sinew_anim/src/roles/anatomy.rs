@@ -1,4 +1,4 @@
-//! From evidence to roles: stated by the file, else seen in the geometry, else named, else generic.
+//! Combines evidence into roles: stated by the file, else by geometry, else by names, else generic.
 
 use super::assembly::{Carriers, bare_limbs, sides_agree};
 use super::axes::{feet_lead, left_by_name, possible_ups, snap};
@@ -31,11 +31,11 @@ pub(super) struct Anatomy {
     /// Unit, model space, at right angles to `up`.
     pub left: Vec3,
     pub notes: Vec<String>,
-    /// Longest stride in the clips, seconds, and from where its legs begin down to the floor, file units.
+    /// Longest stride in the clips, seconds, and the height of the leg's start over the floor, file units.
     stride: Option<(f32, f32)>,
 }
 
-/// Graph, symmetry and names of a rig, as far as the names can be trusted.
+/// Graph, symmetry and trusted names of a rig.
 pub(super) struct Scene<'a> {
     rig: &'a Rig,
     bound: &'a Bound,
@@ -47,7 +47,7 @@ pub(super) struct Scene<'a> {
 }
 
 impl Anatomy {
-    /// Errs if no joint moves skin, or on what is `known` and cannot be.
+    /// Fails if no joint moves skin, or if `known` is impossible.
     pub fn of(
         rig: &Rig,
         bound: &Bound,
@@ -76,7 +76,7 @@ impl Anatomy {
     }
 }
 
-/// Roles and directions before they are put together with the graph.
+/// Roles and directions before they are combined with the graph.
 pub(super) struct Draft {
     pub roles: Vec<Option<RoleGuess>>,
     pub humanoid: bool,
@@ -120,7 +120,7 @@ impl<'a> Scene<'a> {
             (readings[joint].part, readings[joint].side) = (part_of(role), role.side());
         }
         if !matches!(trust, Trust::Nothing { .. }) {
-            // A control that moves skin which nothing above it moves is a part of the body, whatever its name.
+            // A control whose skin no joint above it moves is a body part, whatever its name.
             let fair = CONTROL_SKIN * bound.area.iter().sum::<f32>();
             let is_bone = |joint: JointIdx| {
                 let carries = |ancestor: JointIdx| bound.area[ancestor] > 0.0;
@@ -143,14 +143,14 @@ impl<'a> Scene<'a> {
         Some((Self { rig, bound, hints, graph, symmetry, readings }, notes))
     }
 
-    /// By what the file states, else by shape, else by names, else generic.
+    /// By the file, else by shape, else by names, else generic.
     fn draft(&self, notes: &mut Vec<String>) -> Draft {
         if let Some(stated) = self.stated_draft() {
             notes.push("roles are those that the file states".into());
             return stated;
         }
         let human = |up: Vec3| self.recognise(up).filter(|found| !self.is_beast(found));
-        // The file's own up first: a body may look like a human lying, too.
+        // Tries the file's own up first: some bodies look like a lying human, too.
         let ups = self.hints.up.into_iter().filter(|up| up.dot(self.symmetry.lateral).abs() < 0.5);
         let found = ups.chain(possible_ups(self.symmetry.lateral)).find_map(|up| Some((up, human(up)?)));
         if let Some((up, humanoid)) = found {
@@ -172,7 +172,7 @@ impl<'a> Scene<'a> {
         (self.bound.model[joint].translation.dot(lateral) - self.symmetry.centre) * left.dot(lateral)
     }
 
-    /// A human of the roles that are known, and others by their names; errs with those that are missing for one.
+    /// A human from the known roles and names; fails with the missing ones.
     pub fn known_draft(&self, known: &[(Role, JointIdx)]) -> Result<Draft, Vec<Role>> {
         let mut all = known.to_vec();
         for (joint, reading) in self.readings.iter().enumerate() {
@@ -211,7 +211,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Swing of the limb that ends at a node against its mirror image, and the node that begins it; `None` of what has no image.
+    /// Swing of the limb that ends at a node against its mirror image, and the limb's first node; `None` without an
+    /// image.
     fn swing(&self, up: Vec3, end: usize) -> Option<(Swing, usize)> {
         let other = self.symmetry.other(end)?;
         let mut line: Vec<usize> =
@@ -229,7 +230,7 @@ impl<'a> Scene<'a> {
         Some((self.hints.gait.swing(&pair), begin))
     }
 
-    /// Ends of limbs that come near the floor, one of each pair.
+    /// Ends of limbs near the floor, one of each pair.
     fn low_ends(&self, up: Vec3) -> impl Iterator<Item = usize> + '_ {
         let stance = Stance::new(self.bound, up);
         (0..self.graph.nodes.len()).filter(move |&end| {
@@ -239,7 +240,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Longest stride of what swings in turns near the floor, seconds, with the height above the floor at which it begins, file units.
+    /// Longest stride of alternately swinging limbs near the floor, seconds, with the height of the limb's start, file
+    /// units.
     fn stride(&self, up: Vec3) -> Option<(f32, f32)> {
         if self.hints.gait.is_empty() {
             return None;
@@ -252,8 +254,8 @@ impl<'a> Scene<'a> {
         Some((swing.stride, stance.level(self.graph.nodes[begin].position) * stance.height))
     }
 
-    /// Direction in which limbs that swing in turns near the floor walk: their mean correlation of height and speed along `forward`, by how
-    /// far they swing.
+    /// Walking direction of alternately swinging limbs near the floor: their mean correlation of height and speed along
+    /// `forward`, weighted by swing.
     fn walks_toward(&self, up: Vec3) -> f32 {
         let swings = self.low_ends(up).filter_map(|end| self.swing(up, end));
         let (sum, weight) = swings.fold((0.0, 0.0), |(sum, weight), (swing, _)| {
@@ -262,7 +264,8 @@ impl<'a> Scene<'a> {
         if weight > 0.0 { sum / weight } else { 0.0 }
     }
 
-    /// True if what looks like arms is named as wings, or a head as a tail, or if arms are named, as what looks like legs, as a limb of a body on four legs.
+    /// True if names contradict the shape: arms named as wings, a head as a tail, or arms and legs as limbs of a
+    /// quadruped.
     fn is_beast(&self, found: &Humanoid) -> bool {
         let arms = found.arms.chain.iter().flatten().map(|&node| self.graph.nodes[node].joint);
         if arms.into_iter().any(|joint| self.readings[joint].is_wing) {
@@ -279,8 +282,8 @@ impl<'a> Scene<'a> {
         is_named(&found.arms) && is_named(&found.legs)
     }
 
-    /// Left by names, unless several signs of the shape together speak against them; else by the feet, else by which way they walk, else by
-    /// the elbows, else so that the body faces the file's +Z.
+    /// Left by names, unless several signs of the shape contradict them; else by the feet, else by the walking
+    /// direction, else by the elbows, else so that the body faces the file's +Z.
     fn left(&self, up: Vec3, ankles: &[Vec3], arms: Option<&Limb>, notes: &mut Vec<String>) -> Vec3 {
         let lateral = self.symmetry.lateral;
         let forward = lateral.cross(up);
@@ -296,7 +299,7 @@ impl<'a> Scene<'a> {
         let steps = if named == 0.0 && feet != 0.0 { 0.0 } else { self.walks_toward(up) };
         let walk = if steps.abs() > STEP_CORRELATION { steps.signum() } else { 0.0 };
         if named != 0.0 {
-            // The feet point the other way than the names say. A heel, a claw or a boot may do that by itself.
+            // The feet contradict the names. A heel, a claw or a boot may cause that by itself.
             let shape = [feet, walk, bent, self.toes_lead(up, forward)];
             let against: f32 = shape.into_iter().map(|sign| -named * sign).sum();
             if against <= 0.0 {
@@ -326,7 +329,7 @@ impl<'a> Scene<'a> {
         lateral * if forward.dot(ahead) < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// Sign of the way from the feet to the toes, as they are named, along `forward`; 0 where the names or the places do not tell.
+    /// Sign of the direction from feet to toes, as named, along `forward`; 0 if unclear.
     fn toes_lead(&self, up: Vec3, forward: Vec3) -> f32 {
         let height = Stance::new(self.bound, up).height;
         let place = |part: Part, side: Side| {
@@ -367,7 +370,7 @@ impl<'a> Scene<'a> {
         Draft { roles, humanoid: true, up, left }
     }
 
-    /// Gives limbs the joints that are named for them, where the names tell all long bones of both sides apart: a cuff or a clavicle that
+    /// Uses the named joints of limbs if the names distinguish all long bones of both sides: a cuff or a clavicle that
     /// looks like an upper arm is none.
     fn correct_limbs(&self, draft: &mut Draft) {
         let mut named: Vec<(Role, JointIdx)> = Vec::new();
@@ -399,7 +402,8 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The joints of a chain of the trunk, and among them and right above those without skin that are named as its part.
+    /// The joints of a chain of the trunk, and those without skin among and directly above them that are named as its
+    /// part.
     fn with_bare(&self, chain: &[usize], part: Part) -> Vec<JointIdx> {
         let mut joints: Vec<JointIdx> = chain.iter().map(|&node| self.graph.nodes[node].joint).collect();
         let (Some(&first), Some(&last)) = (joints.first(), joints.last()) else { return joints };
@@ -421,7 +425,7 @@ impl<'a> Scene<'a> {
         joints
     }
 
-    /// Position of the ankle: the foot's node, or the end of the shank where the foot moves no skin of its own.
+    /// Position of the ankle: the foot's node, or the end of the shank if the foot moves no skin of its own.
     fn ankle(&self, chain: &[usize], split: Split) -> Vec3 {
         let node = chain[split.2.unwrap_or(split.1)];
         let joint = self.graph.nodes[node].joint;
@@ -431,8 +435,8 @@ impl<'a> Scene<'a> {
         self.bound.model[end.unwrap_or(joint)].translation
     }
 
-    /// Parts that the shape does not show, by name: feet without skin beside the body in the rig, hands of arms whose two
-    /// sides are posed differently, a neck without skin.
+    /// Parts that the shape does not show, by name: feet without skin beside the body, hands of arms posed differently
+    /// on the two sides, a neck without skin.
     fn add_named(&self, roles: &mut [Option<RoleGuess>]) {
         let mut add = |role: Role, part: Part, on: Role| {
             let has = |role: Role| roles.iter().position(|r| r.is_some_and(|guess| guess.role == role));
@@ -443,7 +447,7 @@ impl<'a> Scene<'a> {
                     if side.is_some() { reading.side == side } else { self.on_side_of(joint, on) };
                 reading.part == Some(part) && roles[joint].is_none() && (part == Part::Neck || same_side)
             };
-            // Of several the one in line with what it hangs on: controls have the names of bones, too.
+            // Of several, the one in line with its parent: controls have the names of bones, too.
             let is_above =
                 |above: JointIdx, joint: JointIdx| ancestors(self.rig, joint).any(|at| at == above);
             let all: Vec<JointIdx> = (0..roles.len()).filter(named).collect();
@@ -466,14 +470,14 @@ impl<'a> Scene<'a> {
         side(joint) * side(other) > 0.0
     }
 
-    /// Roles that the file states, if they make a body.
+    /// Roles that the file states, if they form a body.
     fn stated_draft(&self) -> Option<Draft> {
         let stated = self.rig.stated_roles.iter();
         let known = stated.filter_map(|(name, joint)| Some((Role::from_name(name)?, *joint)));
         self.draft_of(known.filter(|&(_, joint)| joint < self.rig.joints.len()).collect(), Basis::Stated)
     }
 
-    /// Roles that trusted names tell, if they make a body and the hands do not walk on the floor.
+    /// Roles by trusted names, if they form a body and the hands do not walk on the floor.
     fn named_draft(&self) -> Option<Draft> {
         if self.readings.iter().any(|reading| reading.part == Some(Part::Beast)) {
             return None;
@@ -530,7 +534,7 @@ impl<'a> Scene<'a> {
         (count > 0.0).then(|| sum / count)
     }
 
-    /// True if the legs point away from the head: those of a beast that is named like a human hang across its trunk.
+    /// True if the legs point away from the head: quadrupeds named like humans have legs across the trunk.
     fn stands(&self, draft: &Draft) -> bool {
         let place = |role: Role| {
             let joint = draft.roles.iter().position(|r| r.is_some_and(|guess| guess.role == role));
@@ -546,7 +550,8 @@ impl<'a> Scene<'a> {
         [Side::Left, Side::Right].into_iter().filter_map(along).all(|down| down < -0.5)
     }
 
-    /// True if the trunk lies and arms and legs hang down from it, by the file's own up: a beast whose limbs are named as a human's.
+    /// True if the trunk is horizontal and arms and legs hang down from it, by the file's own up: a quadruped with
+    /// human names.
     fn is_on_all_fours(&self, draft: &Draft) -> bool {
         let Some(up) = self.hints.up else { return false };
         let rise = |from: Role, to: Role| {
@@ -613,11 +618,12 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Belief in the names of a rig, by what those of mirrored pairs have in common.
+/// Trust in the names of a rig, by what mirrored pairs have in common.
 enum Trust {
-    /// Names mirror each other.
+    /// Names are mirrored.
     All,
-    /// Both of a pair have one name, but for numbers ("Leg.1", "Leg.2"): words of the midline and of what is no part of the body count.
+    /// Both of a pair have one name except for numbers ("Leg.1", "Leg.2"): only words of the midline and of appendices
+    /// count.
     Words,
     /// Names do not match: so many of all pairs do.
     Nothing { agreeing: usize, pairs: usize },
@@ -652,7 +658,7 @@ impl Trust {
             .then(|| format!("names of only {agreeing} of {pairs} mirrored pairs match: names are ignored"))
     }
 
-    /// Drops what is not believed.
+    /// Drops untrusted names.
     fn forget(&self, readings: &mut [Reading]) {
         use Part::{Appendix, Beast, Head, Neck, Spine, Tail};
         let keeps = |reading: &Reading| match self {
@@ -669,7 +675,7 @@ impl Trust {
     }
 }
 
-/// True if nearly every part with a side is named on the other, too: for a bind pose in which no mirror finds its image.
+/// True if nearly every part with a side is named on both sides: for a bind pose without mirror symmetry.
 fn sides_pair_up(readings: &[Reading]) -> bool {
     let mut sides: Vec<(&str, Side)> = readings
         .iter()
@@ -682,7 +688,7 @@ fn sides_pair_up(readings: &[Reading]) -> bool {
     all >= 8 && 10 * paired >= 9 * all
 }
 
-/// At most three places in a chain, evenly spread, the first among them.
+/// At most three evenly spread places in a chain, including the first.
 fn thirds(length: usize) -> impl Iterator<Item = usize> {
     let count = length.min(3);
     (0..count).map(move |k| k * length / count)
@@ -708,7 +714,7 @@ fn leg_roles(legs: &Limb, k: usize, side: Side) -> Vec<(usize, Role)> {
     roles
 }
 
-/// Evidence for a role seen in the geometry.
+/// Geometric evidence for a role.
 fn basis(role: Role, reading: &Reading) -> Basis {
     let Some(part) = reading.part else { return Basis::Shape };
     // Rigify and CesiumMan count the pelvis among the spine.
@@ -737,7 +743,7 @@ fn part_of(role: Role) -> Option<Part> {
     })
 }
 
-/// The humanoid role that a part and a side make; the spine needs its place in the chain and is not told here.
+/// The humanoid role of a part and a side; the spine also needs its place in the chain.
 fn role_of(part: Part, side: Option<Side>) -> Option<Role> {
     let fits = |role: &Role| part_of(*role) == Some(part) && role.side() == side;
     super::role::HUMANOID_ROLES.into_iter().filter(|_| part != Part::Spine).find(fits)

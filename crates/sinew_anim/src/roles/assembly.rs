@@ -1,7 +1,7 @@
-//! Bodies put together by names, where the hierarchy or the skin of a rig leaves a part out.
+//! Completes bodies by names if the hierarchy or the skin of a rig leaves a part out.
 //!
-//! Exports of deform bones only make thighs, shoulders and upper arms roots of their own, low-poly characters have limb bones that
-//! move no skin, and a pose without a mirror hides what the names say plainly.
+//! Exports of deform bones only make thighs, shoulders and upper arms roots; low-poly characters have limb bones
+//! without skin; and an asymmetric pose hides what the names say.
 
 use super::bind::Bound;
 use super::graph::ancestors;
@@ -13,9 +13,10 @@ use sinew_math::{Vec3, direction};
 
 const LONG: [Part; 4] = [Part::UpperArm, Part::LowerArm, Part::UpperLeg, Part::LowerLeg];
 
-/// Long bones of limbs that move no skin and carry a part of the same limb that does, or whose twin moves some: of each part of a side the one nearest to it.
+/// Limb bones without skin that carry a skinned part of the same limb, or whose twin has skin: the nearest for each
+/// part of a side.
 ///
-/// The name and the hierarchy say that such a bone is the joint, wherever its skin went.
+/// The name and the hierarchy confirm such a bone, even without skin.
 pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<JointIdx> {
     let moves = |joint: JointIdx| bound.area[joint] > 0.0;
     let has_skin = |part: Part, side: Option<Side>| {
@@ -52,14 +53,14 @@ pub(super) fn bare_limbs(rig: &Rig, bound: &Bound, readings: &[Reading]) -> Vec<
     found.into_iter().map(|(_, _, joint)| joint).collect()
 }
 
-/// Place of a part in its limb, from the trunk outward; `None` of what is no part of a limb.
+/// Position of a part in its limb, from the trunk outward; `None` for other parts.
 fn below(part: Part) -> Option<(usize, usize)> {
     use Part::{Clavicle, Foot, Hand, LowerArm, LowerLeg, Toes, UpperArm, UpperLeg};
     let limbs = [[Clavicle, UpperArm, LowerArm, Hand], [UpperLeg, LowerLeg, Foot, Toes]];
     limbs.iter().enumerate().find_map(|(limb, parts)| Some((limb, parts.iter().position(|p| *p == part)?)))
 }
 
-/// True if the first part lies nearer to the trunk in the same limb.
+/// True if the first part is nearer to the trunk in the same limb.
 fn is_of_one_limb(inner: Part, outer: Part) -> bool {
     match (below(inner), below(outer)) {
         (Some((a, i)), Some((b, k))) => a == b && i < k,
@@ -67,7 +68,7 @@ fn is_of_one_limb(inner: Part, outer: Part) -> bool {
     }
 }
 
-/// Joints by the part of the body that they are named for, to find what carries what. Only names of a human tell.
+/// Joints by the human part of their name, to find parents by name.
 pub(super) struct Carriers<'a> {
     readings: &'a [Reading],
     is_human: bool,
@@ -94,10 +95,10 @@ impl<'a> Carriers<'a> {
         };
         let mut spine: Vec<JointIdx> = named(Part::Spine).collect();
         let mut chest = None;
-        // From the hips upward, as far as the arms.
+        // From the hips upward to the arms.
         if let Some(low) = named(Part::Hips).next().map(place).or_else(|| mean(Part::UpperLeg)) {
             spine.sort_by(|&a, &b| (place(a) - low).length().total_cmp(&(place(b) - low).length()));
-            // Where nothing is called neck or head, the spine goes on to the crown.
+            // Without a neck or head by name, the spine continues to the crown.
             let has_top = [Part::Neck, Part::Head].into_iter().any(|part| named(part).next().is_some());
             if let Some(arms) = mean(Part::UpperArm).filter(|_| !has_top) {
                 let below = |&&joint: &&JointIdx| {
@@ -110,7 +111,7 @@ impl<'a> Carriers<'a> {
         Self { readings, is_human: sides_agree(readings, bound), spine, chest, is_part }
     }
 
-    /// The joint that carries a joint by their names; `None` where the names do not tell.
+    /// The parent of a joint by name; `None` if names do not tell.
     pub fn of_joint(&self, joint: JointIdx) -> Option<JointIdx> {
         use Part::{
             Clavicle, Foot, Hand, Head, Hips, LowerArm, LowerLeg, Neck, Spine, Toes, UpperArm, UpperLeg,
@@ -149,9 +150,9 @@ impl<'a> Carriers<'a> {
     }
 }
 
-/// True if names tell left from right in one direction: nearly all of several pairs, arms and legs among them.
+/// True if names consistently distinguish left and right for several pairs, arms and legs among them.
 ///
-/// This asks for no mirror: a pose may bend one side otherwise than the other.
+/// Does not need a mirror: the two sides may be posed differently.
 pub(super) fn sides_agree(readings: &[Reading], bound: &Bound) -> bool {
     let mut ways: Vec<(Part, Vec3)> = Vec::new();
     for part in [Part::UpperArm, Part::LowerArm, Part::Hand, Part::UpperLeg, Part::LowerLeg, Part::Foot] {

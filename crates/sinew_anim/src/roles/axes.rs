@@ -1,4 +1,4 @@
-//! Up and forward, read off the body instead of the file.
+//! Up and forward, derived from the body instead of the file.
 
 use super::bind::Bound;
 use super::graph::Graph;
@@ -14,7 +14,7 @@ pub(super) fn snap(direction: Vec3) -> Vec3 {
     axes.into_iter().reduce(|a, b| if b.dot(direction) > a.dot(direction) { b } else { a }).unwrap_or(Vec3::Y)
 }
 
-/// The four model axes at right angles to `lateral`: the file's own up first, then those of other programs.
+/// The four model axes perpendicular to `lateral`: the file's own up first, then those of other programs.
 pub(super) fn possible_ups(lateral: Vec3) -> impl Iterator<Item = Vec3> {
     [Vec3::Y, Vec3::Z, -Vec3::Y, -Vec3::Z, Vec3::X, -Vec3::X]
         .into_iter()
@@ -26,7 +26,7 @@ pub(super) fn character_from_model(left: Vec3, up: Vec3) -> Rotation {
     Rotation::from_mat3(&Mat3::from_cols(left, up, left.cross(up)).transpose())
 }
 
-/// Distance by which the feet stick out along `forward` in front of their ankles, in heights of the body, all feet together.
+/// Distance by which the feet extend along `forward` beyond their ankles, in body heights, summed over all feet.
 pub(super) fn feet_lead(bound: &Bound, stance: &Stance, forward: Vec3, ankles: &[Vec3]) -> f32 {
     let flat = |v: Vec3| v - stance.up * v.dot(stance.up);
     let lead = |&ankle: &Vec3| {
@@ -43,7 +43,7 @@ pub(super) fn feet_lead(bound: &Bound, stance: &Stance, forward: Vec3, ankles: &
     ankles.iter().map(lead).sum()
 }
 
-/// Direction of the left side by name: the sign along [`Symmetry::lateral`], 0 when the names say nothing.
+/// Direction of the left side by name: the sign along [`Symmetry::lateral`], 0 if unknown.
 pub(super) fn left_by_name(graph: &Graph, symmetry: &Symmetry, readings: &[Reading]) -> f32 {
     let vote = |i: usize| match readings[i].side {
         Some(Side::Left) => symmetry.side(graph, i),

@@ -1,4 +1,4 @@
-//! The bind pose: where joints and skin were when the skin was made.
+//! The bind pose of joints and skin.
 
 use super::graph::ancestors;
 use super::names::{Part, read_names};
@@ -19,7 +19,7 @@ pub(crate) struct Bound {
     pub vertices: Vec<Vec3>,
     /// Per vertex the joint that moves it most; of a skeleton without skin the joint itself.
     pub movers: Vec<JointIdx>,
-    /// Number of sides of the skin's triangles that run from one joint's vertices to another's, the smaller joint first.
+    /// Number of triangle edges that run from one joint's vertices to another's, the smaller joint first.
     pub links: BTreeMap<(JointIdx, JointIdx), u32>,
     /// Least corner of the skin.
     pub lo: Vec3,
@@ -28,7 +28,7 @@ pub(crate) struct Bound {
 }
 
 impl Bound {
-    /// `None` when no finite vertex of the rig is bound to a joint.
+    /// `None` if no finite vertex of the rig is bound to a joint.
     pub fn of(rig: &Rig) -> Option<Self> {
         let model = bind_pose(rig);
         let mut bound = Self {
@@ -52,8 +52,8 @@ impl Bound {
         Some(bound)
     }
 
-    /// Counts meshes without a skin as the skin of the joint that carries them, if that is named as a part of the body, or carries both
-    /// legs, and moves none: low-poly characters are put together of such parts.
+    /// Counts rigid meshes as the skin of their joint if that is named as a body part, or carries both legs, and has no
+    /// skin: low-poly characters consist of such parts.
     fn add_rigid_parts(&mut self, rig: &Rig) {
         let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
         let parents: Vec<Option<JointIdx>> = rig.joints.iter().map(|joint| joint.parent).collect();
@@ -96,8 +96,8 @@ impl Bound {
         (self.lo, self.hi) = (min3(self.lo, position), max3(self.hi, position));
     }
 
-    /// The same of a skeleton without skin: bones weigh by their length, and joints stand in for vertices. `None` when
-    /// no bone has a finite length.
+    /// The same for a skeleton without skin: bones weigh by their length, and joints act as vertices. `None` if no bone
+    /// has a finite length.
     pub fn of_bones(rig: &Rig, pose: &[LocalTransform]) -> Option<Self> {
         let mut model = Vec::new();
         local_to_model(rig, pose, &Affine::IDENTITY, &mut model);
@@ -118,8 +118,8 @@ impl Bound {
         for &at in &bound.vertices {
             (bound.lo, bound.hi) = (min3(bound.lo, at), max3(bound.hi, at));
         }
-        // A joint right on its parent (the lab of CMU has eleven) is no place of its own, and two that grow out of one spot
-        // (clavicles, hips) would each be its own mirror image: what they carry grows out of the parent.
+        // A joint exactly on its parent (CMU's skeletons have eleven) is no place of its own, and two at one spot
+        // (clavicles, hips) would each be their own mirror image: their children belong to the parent.
         let near = COINCIDENT * bound.size();
         let twins = twins(rig, &bound.model, near);
         let mut place: Vec<usize> = (0..rig.joints.len()).collect();
@@ -138,7 +138,7 @@ impl Bound {
         let has_bones = bound.area.iter().any(|&a| a > 0.0);
         let is_named_end = |&i: &usize| is_end[i] && place[i] == i && !rig.joints[i].name.is_empty();
         for i in (0..rig.joints.len()).filter(is_named_end).filter(|&i| !is_beside[i]) {
-            // A hand or a head of which the file does not say how long it is.
+            // A hand or a head whose length the file does not give.
             bound.area[i] = 0.06 * bound.size();
         }
         has_bones.then_some(bound)
@@ -186,7 +186,7 @@ impl Bound {
     }
 }
 
-/// True for each joint of a tree that is no skeleton where another is: cameras with their targets and lamps, which may stand anywhere.
+/// True for each joint of a tree that is not part of the skeleton: cameras with targets, lamps.
 fn beside_the_skeleton(rig: &Rig) -> Vec<bool> {
     let mut root: Vec<usize> = (0..rig.joints.len()).collect();
     let mut size = vec![0; rig.joints.len()];
@@ -198,7 +198,7 @@ fn beside_the_skeleton(rig: &Rig) -> Vec<bool> {
     root.into_iter().map(|root| LARGEST_BESIDE * size[root] < largest).collect()
 }
 
-/// True for each joint that has a sibling in its place, of the other side by name, or both without a name.
+/// True for each joint with a sibling in the same place, of the other side by name, or both without a name.
 fn twins(rig: &Rig, model: &[Affine], tolerance: f32) -> Vec<bool> {
     let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
     let readings = read_names(&names, &[]);
@@ -221,7 +221,7 @@ fn twins(rig: &Rig, model: &[Affine], tolerance: f32) -> Vec<bool> {
     found
 }
 
-/// A third of the area of every triangle around a vertex; equal shares where there is no area at all.
+/// A third of the area of every triangle around a vertex; equal shares if there is no area at all.
 fn vertex_areas(positions: &[Vec3], indices: &[u32]) -> Vec<f32> {
     let mut share = vec![0.0; positions.len()];
     for corners in indices.chunks_exact(3) {
@@ -234,13 +234,13 @@ fn vertex_areas(positions: &[Vec3], indices: &[u32]) -> Vec<f32> {
     if share.iter().any(|&s| s > 0.0) { share } else { vec![1.0; positions.len()] }
 }
 
-/// Model-space transform of every joint in the bind pose. Joints that no skin names hang off their parents as in the
-/// rest pose.
+/// Model-space transform of every joint in the bind pose. Joints outside all skins follow their parents as in the rest
+/// pose.
 pub(crate) fn bind_pose(rig: &Rig) -> Vec<Affine> {
     let mut rest = Vec::new();
     local_to_model(rig, &rest_pose(rig), &Affine::IDENTITY, &mut rest);
     let mut bound: Vec<Option<Affine>> = vec![None; rig.joints.len()];
-    // The skin with the most vertices says where its joints were; smaller ones (a sword) only add what it lacks.
+    // The skin with the most vertices defines its joints; smaller ones (a sword) only add missing ones.
     let mut meshes: Vec<&RigMesh> = rig.meshes.iter().filter(|mesh| mesh.skin.is_some()).collect();
     let vertices = |mesh: &RigMesh| mesh.primitives.iter().map(|p| p.positions.len()).sum::<usize>();
     meshes.sort_by_key(|mesh| core::cmp::Reverse(vertices(mesh)));
@@ -263,8 +263,8 @@ pub(crate) fn bind_pose(rig: &Rig) -> Vec<Affine> {
     model
 }
 
-/// Places of nodes with rigid meshes beside the skeleton, in the bind pose: a hat that hangs on no bone is in the file where the head is in the
-/// rest pose, and goes with the joint that is nearest to it there. `None` of all others, and where that joint rests as it was bound.
+/// Positions of rigid mesh nodes beside the skeleton in the bind pose: a hat without a bone is placed relative to the
+/// rest pose, and follows the nearest joint. `None` for all others, and if that joint rests as it was bound.
 fn beside_the_bones(rig: &Rig, rest: &[Affine], bound: &[Option<Affine>]) -> Vec<Option<Affine>> {
     let mut bears = vec![false; rig.joints.len()];
     let bones = (0..rig.joints.len()).filter(|&joint| bound[joint].is_some());
@@ -273,7 +273,7 @@ fn beside_the_bones(rig: &Rig, rest: &[Affine], bound: &[Option<Affine>]) -> Vec
         ancestors(rig, bone).for_each(|above| bears[above] = true);
     });
     let mut beside = vec![None; rig.joints.len()];
-    // The node of each such mesh that is highest below those that carry bones; the first mesh of a node says where it is.
+    // For each such mesh the highest node below those that carry bones; its first mesh gives the position.
     for mesh in rig.meshes.iter().filter(|mesh| mesh.skin.is_none()) {
         let line = core::iter::once(mesh.joint).chain(ancestors(rig, mesh.joint));
         let own: Vec<JointIdx> = line.take_while(|&at| !bears[at]).collect();
@@ -295,10 +295,9 @@ fn beside_the_bones(rig: &Rig, rest: &[Affine], bound: &[Option<Affine>]) -> Vec
 
 /// Transform of the skinned mesh to model space in its bind pose.
 ///
-/// In a rest pose equal to the bind pose, every joint says the same (joint × inverse bind). Where the rest pose is
-/// some other pose the joints disagree; then the mesh's own node counts if any joint confirms it, else the joint that carries
-/// most of those that move skin and is bound in their scale: the root of the skeleton, which hardly any pose moves. Joints that move no skin have no
-/// vote: a control may be bound anywhere.
+/// If the rest pose equals the bind pose, every joint agrees (joint × inverse bind). Otherwise the mesh's own node is
+/// used if any joint confirms it, else the skinned joint that carries most others bound in their scale: the root of the
+/// skeleton, which poses hardly move. Joints without skin are ignored: a control may be bound anywhere.
 fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     let skin = &rig.skins[mesh.skin.expect("only skinned meshes are asked for")];
     let mut moves = vec![false; skin.joints.len()];
@@ -335,7 +334,7 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
         let joint = skin.joints[slot];
         (carried[joint], core::cmp::Reverse(ancestors(rig, joint).count()))
     };
-    // A handle above the body may be bound in another scale than what it carries: it says nothing of where the skin was.
+    // A handle above the body may be bound in another scale, so it says nothing.
     let size = |place: &Affine| place.linear.x_axis.length();
     let mut sizes: Vec<f32> = said.iter().map(size).collect();
     sizes.sort_by(f32::total_cmp);
@@ -344,14 +343,14 @@ fn model_from_mesh(rig: &Rig, mesh: &RigMesh, rest: &[Affine]) -> Affine {
     let root = slots
         .filter(|&slot| place(slot).is_finite() && is_alike(&place(slot)))
         .reduce(|a, b| if carries(b) > carries(a) { b } else { a });
-    // A joint that carries less than half is a limb of its own, which the pose may have turned anywhere: what is turned most like all others says it.
+    // A joint that carries less than half is a limb, which may have any rotation: the most common rotation decides.
     match root {
         Some(root) if 2 * carries(root).0 as usize >= said.len() => place(root),
         _ => most_alike(&said, is_alike).unwrap_or(*majority),
     }
 }
 
-/// The transform whose axes are turned most like those of all others, of those that pass.
+/// Transform whose axes agree most with all others, of the allowed ones.
 fn most_alike(all: &[Affine], passes: impl Fn(&Affine) -> bool) -> Option<Affine> {
     let axes =
         |place: &Affine| [place.linear.x_axis, place.linear.y_axis, place.linear.z_axis].map(Vec3::normalize);

@@ -8,9 +8,9 @@ use sinew_math::{Affine, Vec3, max, max3, min, min3};
 
 /// The characters of a rig, each by its meshes (indices into [`Rig::meshes`]), in the order of their first mesh.
 ///
-/// A character is a skeleton that stands beside the others. One that lies within another, or is small beside it, belongs to
-/// that: eyes, a hat, clothes whose bones are where those of the body are. Who is as large and has bones elsewhere is a character, wherever
-/// it stands. Empty without skins.
+/// A character is a skeleton beside the others. One within another, or small beside it, belongs to that: eyes, a hat,
+/// clothes with bones at the body's. A skeleton of similar size with bones elsewhere is a character. Empty without
+/// skins.
 ///
 /// # Panics
 /// If the rig's indices are out of range.
@@ -45,7 +45,7 @@ pub fn characters(rig: &Rig) -> Vec<Vec<usize>> {
     characters
 }
 
-/// True if most bones of a skeleton of more than a few are where some of another's are, which is of that size.
+/// True if most bones of a skeleton coincide with those of another of similar size.
 fn shares_bones(rig: &Rig, bind: &[Affine], main: &[usize], other: &[usize], size: f32) -> bool {
     let places = |meshes: &[usize]| -> Vec<Vec3> {
         let skins = meshes.iter().filter_map(|&m| rig.meshes[m].skin);
@@ -69,8 +69,8 @@ impl Extent {
         max(sides.x, max(sides.y, sides.z))
     }
 
-    /// True if it lies within the other for the most part, or is small beside it and no farther away than it is large: who is as large and
-    /// stands beside or on the other is a character.
+    /// True if it lies mostly within the other, or is small and near it; a skeleton of similar size beside the other is
+    /// a character.
     fn belongs_to(&self, main: &Self) -> bool {
         let common = min3(self.hi, main.hi) - max3(self.lo, main.lo);
         let share = |k: usize| {
@@ -98,16 +98,16 @@ fn extent(rig: &Rig, bind: &[Affine], meshes: &[usize]) -> Option<Extent> {
     extent
 }
 
-/// The skeletons of a rig, each by its meshes (indices into [`Rig::meshes`]), in the order of their first mesh: skins whose joints
-/// are of one tree of bones, or whose trees begin on one node that is no root of the scene, with the meshes without a skin that hang on
-/// it. Meshes without a skin that hang on none are in no skeleton. Empty without skins.
+/// The skeletons of a rig, each by its meshes (indices into [`Rig::meshes`]), in the order of their first mesh: skins
+/// whose joints share a tree of bones, or whose trees start at one node that is no root of the scene, with the rigid
+/// meshes below them. Rigid meshes elsewhere are in no skeleton. Empty without skins.
 ///
 /// # Panics
 /// If the rig's indices are out of range.
 fn skeletons(rig: &Rig) -> Vec<Vec<usize>> {
     let mut is_bone = vec![false; rig.joints.len()];
     rig.skins.iter().flat_map(|skin| &skin.joints).for_each(|&joint| is_bone[joint] = true);
-    // What a joint is known by: the node that carries the highest bone above it, or that bone if the node is a root of the scene.
+    // Key of a joint: the node that carries the highest bone above it, or that bone if the node is a root of the scene.
     let stem = |joint: JointIdx| {
         let line = core::iter::successors(Some(joint), |&at| rig.joints[at].parent);
         let top = line.filter(|&at| is_bone[at]).last()?;
@@ -129,7 +129,7 @@ fn skeletons(rig: &Rig) -> Vec<Vec<usize>> {
     for (m, mesh) in rig.meshes.iter().enumerate() {
         let Some(skin) = mesh.skin else { continue };
         let (mut own, mut meshes) = (stems[skin].clone(), vec![m]);
-        // Whatever has a stem in common becomes one.
+        // Trees with a common stem are merged.
         let mut apart = Vec::new();
         for (stems, others) in groups {
             if stems.iter().any(|stem| own.contains(stem)) {
@@ -154,8 +154,8 @@ fn skeletons(rig: &Rig) -> Vec<Vec<usize>> {
     skeletons
 }
 
-/// Joints that move skin of the largest skeleton, of a rig whose skeletons are taken for one character: those of the others are carried by
-/// its bodies. `None` where there is only one.
+/// Joints that move skin of the largest skeleton, if a rig has several that count as one character: the others follow
+/// its bodies. `None` if there is only one.
 pub(super) fn main_skeleton(rig: &Rig, area: &[f32]) -> Option<Vec<bool>> {
     let skeletons = skeletons(rig);
     if skeletons.len() < 2 {

@@ -1,4 +1,4 @@
-//! Corrections of an analysis by who knows the rig.
+//! Corrections of an analysis by the user.
 
 use super::anatomy::{Draft, Scene};
 use super::role::{HUMANOID_ROLES, Role};
@@ -6,30 +6,29 @@ use super::{Basis, NoSkin, RoleGuess};
 use crate::rig::{JointIdx, Primitive, Rig};
 use std::borrow::Cow;
 
-/// Roles that are known, and joints that are no part of the body. The default corrects nothing.
+/// Known roles, and joints that are not part of the body. The default corrects nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Correction {
-    /// Joints that have these roles, whatever shape and names say; who had one of them before has none, or that of the joint
-    /// which it changes places with.
+    /// Joints with these roles, whatever shape and names say; the previous joint of a role loses it, or swaps roles.
     pub roles: Vec<(Role, JointIdx)>,
-    /// Joints that are no part of the body, with all that hangs below them: they go along with what carries them, and
-    /// their skin is not looked at.
+    /// Joints that are not part of the body, with everything below them: they follow their parent, and their skin is
+    /// ignored.
     pub ignored: Vec<JointIdx>,
 }
 
 /// Why a correction cannot be followed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CorrectionError {
-    /// There is nothing to correct.
+    /// True if there is nothing to correct.
     #[error(transparent)]
     NoSkin(#[from] NoSkin),
     /// No joint that moves skin is left.
     #[error("nothing that moves skin is left")]
     NothingLeft,
-    /// A role, or a joint, stands twice among those that are known.
+    /// A role, or a joint, is given twice.
     #[error("`{}` is said twice: a role has one bone, and a bone one role", .0.name())]
     Twice(Role),
-    /// A role of a human for a rig that is not read as one, and these are missing to make it one.
+    /// A human role for a rig that is not read as human; these roles are missing.
     #[error(
         "`{}` is a role of a human, and the rig is not read as one: give {} too, and both sides have to be where a \
          human's are",
@@ -39,10 +38,10 @@ pub enum CorrectionError {
     NotHuman {
         /// The role that was given.
         role: Role,
-        /// Others that a human has; empty if all are there, but not where a human has them.
+        /// Missing roles of a human; empty if all are there but in impossible places.
         missing: Vec<Role>,
     },
-    /// The joint moves no skin, and parts of a creature do.
+    /// The joint moves no skin, but creature parts do.
     #[error("it moves no skin: it cannot be `{}`", .0.name())]
     NoPart(Role),
 }
@@ -52,7 +51,7 @@ fn listed(roles: &[Role]) -> String {
     if names.is_empty() { "the other roles".to_owned() } else { names.join(", ") }
 }
 
-/// Without these nobody is a human.
+/// Required for a human.
 pub(super) fn needed() -> impl Iterator<Item = Role> {
     let is_needed = |role: &Role| {
         matches!(
@@ -74,7 +73,7 @@ impl Correction {
         self.roles.is_empty() && self.ignored.is_empty()
     }
 
-    /// The rig without the skin, the meshes and the names of joints that are ignored; joints stay where they are.
+    /// The rig without the skin, meshes and joint names that are ignored; joints stay where they are.
     ///
     /// # Panics
     /// If a joint, or an index of the rig, is out of range.
@@ -88,7 +87,7 @@ impl Correction {
             is_ignored[joint] |= rig.joints[joint].parent.is_some_and(|parent| is_ignored[parent]);
         }
         let mut seen = rig.clone();
-        // What is no part of the body has no name of one.
+        // Ignored joints have no body names.
         let ignored = seen.joints.iter_mut().zip(&is_ignored).filter(|(_, is_ignored)| **is_ignored);
         ignored.for_each(|(joint, _)| joint.name.clear());
         for mesh in &mut seen.meshes {
@@ -106,7 +105,7 @@ impl Correction {
     }
 }
 
-/// Takes out the vertices that ignored joints move for the most part, with their triangles; others no longer hang on these.
+/// Removes vertices that ignored joints mostly move, with their triangles; other vertices lose these weights.
 fn strip(primitive: &mut Primitive, is_ignored: &[bool]) {
     if primitive.joints.is_empty() {
         return;
@@ -143,7 +142,7 @@ fn strip(primitive: &mut Primitive, is_ignored: &[bool]) {
     }
 }
 
-/// Keeps what belongs to vertices that stay; lists that are shorter, or empty, are left out of it.
+/// Keeps the data of remaining vertices; shorter or empty lists stay out of it.
 fn retain<T>(list: &mut Vec<T>, stays: &[bool]) {
     let mut vertex = 0;
     list.retain(|_| {
@@ -152,7 +151,7 @@ fn retain<T>(list: &mut Vec<T>, stays: &[bool]) {
     });
 }
 
-/// A draft with the roles that are known.
+/// A draft with the known roles.
 pub(super) fn corrected(
     scene: &Scene<'_>,
     mut draft: Draft,
@@ -190,7 +189,7 @@ pub(super) fn corrected(
     Ok(draft)
 }
 
-/// True if every known joint of a side stands on the other side of the body.
+/// True if every known joint of a side is on the other side of the body.
 fn is_seen_mirrored(scene: &Scene<'_>, draft: &Draft, known: &[(Role, JointIdx)]) -> bool {
     let mut sided = known.iter().filter(|(role, _)| role.side().is_some()).peekable();
     sided.peek().is_some()
@@ -200,7 +199,7 @@ fn is_seen_mirrored(scene: &Scene<'_>, draft: &Draft, known: &[(Role, JointIdx)]
         })
 }
 
-/// Gives a role to a joint. Parts of a creature change places, for each of them has one; so do the two sides of a human.
+/// Assigns a role to a joint. Creature parts swap, since each has one; so do the two sides of a human.
 fn assign(draft: &mut Draft, role: Role, joint: JointIdx) -> Result<(), CorrectionError> {
     let holds = |guess: &Option<RoleGuess>| guess.is_some_and(|guess| guess.role == role);
     let holder = draft.roles.iter().position(holds);

@@ -1,4 +1,4 @@
-//! Generic roles for whatever is not a human shape.
+//! Generic roles for shapes other than human.
 
 use super::axes::possible_ups;
 use super::bind::Bound;
@@ -10,7 +10,8 @@ use super::symmetry::Symmetry;
 use sinew_math::Vec3;
 
 /// A role per node: the midline chain with the most skin is the trunk, the first other midline chain the tail, every
-/// other chain a limb. Where names speak of a head or a tail (`parts`, per node), the trunk leads to the one and not to the other.
+/// other chain a limb. If names tell a head or a tail (`parts`, per node), the trunk leads to the head and not to the
+/// tail.
 pub(super) fn generic_roles(
     graph: &Graph,
     symmetry: &Symmetry,
@@ -19,13 +20,14 @@ pub(super) fn generic_roles(
 ) -> Vec<Role> {
     let mut roles: Vec<Option<Role>> = vec![None; graph.nodes.len()];
     let [to_head, to_tail] = [Part::Head, Part::Tail].map(|part| leads_to(graph, parts, part));
-    // Of the ways on, one to what is wanted first, then those that do not lead to what is not, then that with the most skin.
+    // Of several continuations: one toward the wanted part, then those not toward the unwanted, then the one with the
+    // most skin.
     let better = |a: usize, b: usize, wanted: &[bool], unwanted: Option<&[bool]>| {
         let rank = |i: usize| (wanted[i], unwanted.is_none_or(|unwanted| !unwanted[i]));
         let skin = |i: usize| graph.nodes[i].subtree_area;
         if rank(b) > rank(a) || rank(b) == rank(a) && skin(b) > skin(a) { b } else { a }
     };
-    // A chain that bends aside without branching still goes on.
+    // A chain that bends aside without branching still continues.
     let midline = |from: usize, roles: &[Option<Role>], wanted: &[bool], unwanted: Option<&[bool]>| {
         let children = &graph.nodes[from].children;
         let goes_on = |i: &usize| roles[*i].is_none() && (children.len() == 1 || symmetry.on_midline(*i));
@@ -50,7 +52,7 @@ pub(super) fn generic_roles(
         if in_limb[node] {
             continue;
         }
-        // Parents come first, so a node without a role begins a chain; its side branches begin others.
+        // Parents come first, so a node without a role starts a chain; its side branches start others.
         begins.push(node);
         along(graph, node).for_each(|part| in_limb[part] = true);
     }
@@ -74,8 +76,8 @@ fn leads_to(graph: &Graph, parts: &[Option<Part>], part: Part) -> Vec<bool> {
     leads
 }
 
-/// Sorts limbs by where they begin and how far they reach, not by their order in the file: those near the root first, of a
-/// mirrored pair the left one. Both of a pair count as their mean, so that no rounding puts a third between them.
+/// Sorts limbs by where they begin and how far they reach, independent of the file order: those near the root first, of
+/// a mirrored pair the left one. A pair uses its mean, so that rounding puts no third limb between them.
 fn number(graph: &Graph, symmetry: &Symmetry, left: Vec3, begins: &mut [usize]) {
     let mean = |node: usize, of: &dyn Fn(usize) -> f32| of(node) + of(symmetry.other(node).unwrap_or(node));
     let key = |node: usize| {
@@ -100,7 +102,7 @@ fn longest(graph: &Graph, node: usize) -> Option<usize> {
     graph.nodes[node].children.iter().copied().reduce(|a, b| if way(b) > way(a) { b } else { a })
 }
 
-/// The direction opposite to which most mirrored chains end low; the file's own up (+Y) when nothing tells.
+/// The direction opposite to which most mirrored chains end; the file's own up (+Y) if nothing tells.
 pub(super) fn up_by_feet(graph: &Graph, bound: &Bound, symmetry: &Symmetry) -> Vec3 {
     let feet: Vec<Vec3> = (0..graph.nodes.len())
         .filter(|&i| graph.nodes[i].children.is_empty() && symmetry.other(i).is_some())

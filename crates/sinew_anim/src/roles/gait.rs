@@ -1,4 +1,4 @@
-//! Limbs in motion: which of them swing in turns, as legs do, which way they step, and how long a stride takes.
+//! Gait: limbs that swing alternately, their stepping direction and stride time.
 
 use crate::clip::Clip;
 use crate::clip::sample::{SampleCache, Wrap, sample_cached};
@@ -8,14 +8,14 @@ use crate::roles::tuning::{GAIT_RATE, IN_TURNS, LEAST_SWING, SHORTEST_WALK, SWIN
 use sinew_math::{Affine, Vec3, clamp, max};
 use std::sync::Arc;
 
-/// Most clips that are looked at: walks and runs by name first.
+/// Most clips that are examined: walks and runs by name first.
 const MOST_CLIPS: usize = 12;
-/// Least and most poses of a clip that are looked at.
+/// Least and most poses of a clip that are examined.
 const FRAMES: [f32; 2] = [16.0, 96.0];
 /// Words of clips in which legs walk.
 const WALKS: [&str; 8] = ["walk", "run", "jog", "trot", "gallop", "sprint", "march", "move"];
 
-/// Poses of a rig in its clips, from which legs are told by their swing. The default shows nothing.
+/// Poses of a rig in its clips, from which legs are recognised by their swing. The default is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gait {
     takes: Arc<Vec<Poses>>,
@@ -30,19 +30,20 @@ struct Poses {
     frames: Vec<Vec<Affine>>,
 }
 
-/// Two limbs of a pair, as they swing in turns.
+/// Alternating swing of a pair of limbs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Swing {
-    /// Half the way between the two ends, ahead and back, root mean square, file units; 0 where they swing together or not at all.
+    /// Half the distance between the two ends, ahead and back, root mean square, file units; 0 if they swing together
+    /// or not at all.
     pub reach: f32,
-    /// Longest time from step to step of one of them, seconds; 0 if no clip has a whole one.
+    /// Longest time from step to step of one limb, seconds; 0 if no clip has a whole one.
     pub stride: f32,
-    /// Correlation of the ends' height with their speed ahead, -1..=1: what walks goes ahead through the air and back on the
-    /// ground.
+    /// Correlation of the ends' height with their forward speed, -1..=1: a walking foot moves ahead in the air and back
+    /// on the ground.
     pub ahead: f32,
 }
 
-/// A pair of limbs of which the swing is asked.
+/// A pair of limbs to examine.
 pub(super) struct Pair {
     /// The joint that carries both, and its bind pose.
     pub carrier: JointIdx,
@@ -55,7 +56,7 @@ pub(super) struct Pair {
     pub height: f32,
 }
 
-/// Ways of two ends through a clip as their carrier sees them, each without its mean.
+/// Paths of two ends through a clip relative to their carrier, each without its mean.
 struct Ways {
     ahead: [Vec<f32>; 2],
     lift: [Vec<f32>; 2],
@@ -73,7 +74,7 @@ impl Gait {
             let name = clip.name.to_lowercase();
             WALKS.iter().any(|word| name.contains(word))
         };
-        // Stable: those of a kind stay in their order.
+        // Stable: clips of a kind keep their order.
         wanted.sort_by_key(|clip| !walks(clip));
         wanted.truncate(MOST_CLIPS);
         if rig.joints.is_empty() {
@@ -82,12 +83,13 @@ impl Gait {
         Self { takes: Arc::new(wanted.into_iter().map(|clip| Poses::of(rig, clip)).collect()) }
     }
 
-    /// True where there is no clip to look at.
+    /// True if there is no clip.
     pub(super) fn is_empty(&self) -> bool {
         self.takes.is_empty()
     }
 
-    /// Swing of a pair in turns: the widest of all clips, with the longest stride, and the way ahead by all of them.
+    /// Alternating swing of a pair: the widest of all clips, with the longest stride, and the direction over all of
+    /// them.
     pub(super) fn swing(&self, pair: &Pair) -> Swing {
         let mut swing = Swing { reach: 0.0, stride: 0.0, ahead: 0.0 };
         let (mut up_and_on, mut lifts, mut speeds) = (0.0, 0.0, 0.0);
@@ -124,11 +126,11 @@ impl Poses {
         Self { frame_time, frames: (0..count).map(pose).collect() }
     }
 
-    /// `None` where a pose is not finite.
+    /// `None` if a pose is not finite.
     fn ways(&self, pair: &Pair) -> Option<Ways> {
         let mut ways = Ways { ahead: Default::default(), lift: Default::default() };
         for model in &self.frames {
-            // As if the carrier stood as it is bound: turns of the whole body move no leg.
+            // Relative to the carrier's bind pose, so that rotations of the whole body move no leg.
             let steady = pair.bind * model[pair.carrier].inverse();
             for (side, &end) in pair.ends.iter().enumerate() {
                 let at = steady.point(model[end].translation);
@@ -148,12 +150,12 @@ impl Poses {
 }
 
 impl Ways {
-    /// Half of how far the first end is ahead of the other, frame by frame.
+    /// Half of the lead of the first end over the other, frame by frame.
     fn apart(&self) -> impl Iterator<Item = f32> + '_ {
         self.ahead[0].iter().zip(&self.ahead[1]).map(|(a, b)| 0.5 * (a - b))
     }
 
-    /// Swing in turns, root mean square; 0 where both go together, or one alone.
+    /// Alternating swing, root mean square; 0 if both move together, or only one does.
     fn reach(&self) -> f32 {
         let squared = |way: &[f32]| way.iter().map(|at| at * at).sum::<f32>();
         let [left, right] = self.ahead.each_ref().map(|way| squared(way));
@@ -164,9 +166,9 @@ impl Ways {
         if alike && apart > IN_TURNS * together { (apart / self.ahead[0].len() as f32).sqrt() } else { 0.0 }
     }
 
-    /// Frames from step to step, the clip taken as one that goes round; 0 if there is no whole one.
+    /// Frames from step to step, for a clip treated as a loop; 0 if there is no whole step.
     fn stride(&self, reach: f32) -> f32 {
-        // Past the middle by a part of the swing, or it trembles there.
+        // Past the middle by a share of the swing, so that trembling there does not count.
         let sides = self.apart().filter(|d| d.abs() > 0.3 * reach).map(|d| d > 0.0);
         let sides: Vec<bool> = sides.collect();
         let next = sides.iter().cycle().skip(1);
@@ -174,7 +176,7 @@ impl Ways {
         if turns < 2 { 0.0 } else { 2.0 * self.ahead[0].len() as f32 / turns as f32 }
     }
 
-    /// Sums over both ends: of height times speed ahead, of height squared, of speed squared.
+    /// Sums over both ends: height times forward speed, squared height, squared speed.
     fn steps(&self) -> [f32; 3] {
         let mut sums = [0.0; 3];
         for (ahead, lift) in self.ahead.iter().zip(&self.lift) {

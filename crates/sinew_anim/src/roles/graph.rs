@@ -1,4 +1,4 @@
-//! The tree of joints that move skin, with strays put back where they belong.
+//! The tree of skinned joints, with strays attached where they belong.
 
 use super::bind::Bound;
 use crate::rig::{JointIdx, Rig};
@@ -16,7 +16,7 @@ pub(super) struct Node {
     pub area: f32,
     /// Skin area that it and all below it move.
     pub subtree_area: f32,
-    /// Length of the longest way down from it.
+    /// Length of the longest path down from it.
     pub reach: f32,
 }
 
@@ -29,13 +29,13 @@ pub(super) struct Graph {
     pub root: usize,
     /// Parents before children.
     pub order: Vec<usize>,
-    /// Nodes whose parent the rig does not give: found by geometry.
+    /// Nodes whose parent was found by geometry.
     pub adopted: Vec<usize>,
 }
 
 impl Graph {
-    /// The tree over the joints that `is_part` names; `None` if there is none. `carrier` names the joint that carries a joint by its
-    /// name, for joints that the rig hangs on nothing of the tree.
+    /// The tree over the joints in `is_part`; `None` if there is none. `carrier` names the parent by name of joints
+    /// that the rig attaches to nothing in the tree.
     pub fn of(
         rig: &Rig,
         bound: &Bound,
@@ -72,7 +72,7 @@ impl Graph {
         Some(graph)
     }
 
-    /// Hangs trees on the node that carries them by their names.
+    /// Attaches trees to the parent that their names tell.
     fn hang_named(&mut self, carrier: impl Fn(JointIdx) -> Option<usize>) {
         let roots: Vec<usize> = (0..self.nodes.len()).filter(|&i| self.nodes[i].parent.is_none()).collect();
         for root in roots {
@@ -86,7 +86,7 @@ impl Graph {
         }
     }
 
-    /// Makes one tree of several: the one with the most skin stays, the others are adopted, large ones first.
+    /// Merges several trees: the one with the most skin stays, the others are attached, large ones first.
     fn join(&mut self, rig: &Rig, bound: &Bound, node_of: &[Option<usize>]) -> Option<()> {
         let mut roots: Vec<usize> =
             (0..self.nodes.len()).filter(|&i| self.nodes[i].parent.is_none()).collect();
@@ -116,8 +116,8 @@ impl Graph {
         Some(())
     }
 
-    /// Takes from `strays` the parts of the trunk, which have no twin on the other side and whose skin runs into it, and gives the
-    /// nodes of the trunk with them. Where the root of a body moves no skin, hips and back are trees of their own.
+    /// Removes from `strays` the parts of the trunk, which have no twin and whose skin runs into it, and returns the
+    /// nodes of the trunk with them. If the root of a body has no skin, hips and back are separate trees.
     fn grow_trunk(&mut self, strays: &mut Vec<usize>, bound: &Bound) -> Vec<usize> {
         let all = strays.clone();
         loop {
@@ -136,8 +136,8 @@ impl Graph {
         }
     }
 
-    /// True for trees of as many joints and about as much skin that begin as far from the root but not in one place: a left and
-    /// a right.
+    /// True for trees with as many joints and about as much skin that start as far from the root but in another place:
+    /// a left and a right.
     fn are_twins(&self, a: usize, b: usize, bound: &Bound) -> bool {
         let [of_a, of_b] = [a, b].map(|tree| self.subtree(tree));
         let area = |tree: &[usize]| tree.iter().map(|&node| self.nodes[node].area).sum::<f32>();
@@ -151,8 +151,8 @@ impl Graph {
             && self.distance(a, b) > near
     }
 
-    /// Feet that hang on the root, as those led by inverse kinematics do, and sit right at the end of a leg, or whose skin runs
-    /// into it, go with the leg.
+    /// Feet parented to the root, as for IK, that are at the end of a leg, or whose skin runs into it, are attached to
+    /// the leg.
     fn hang_feet(&mut self, ends: &[(usize, Vec3)], bound: &Bound) {
         let size = bound.size();
         let mut moved_by = vec![None; bound.model.len()];
@@ -174,11 +174,11 @@ impl Graph {
             let at_end =
                 |&&(node, at): &&(usize, Vec3)| is_leg(node) && (at - start).length() < FOOT_AT_END * size;
             let grown = || self.grows_into(foot, 0..self.nodes.len(), bound).filter(|&leg| is_leg(leg));
-            // Of parts that are rigid no skin runs into another: the nearest begins where the foot does, and each foot has a leg of its own.
+            // Rigid parts have no common skin: the nearest leg is chosen, and each foot has its own.
             let touching = || {
                 let leg = touched.iter().find(|(child, _)| *child == foot).map(|&(_, leg)| leg)?;
                 let is_own = touched.iter().filter(|(_, other)| *other == leg).count() == 1;
-                // Two antennae on one root carry nothing of each other.
+                // Two antennae on one root do not carry each other.
                 let is_limb = is_leg(leg) && self.nodes[leg].parent != Some(self.root);
                 (is_own && is_limb).then_some(leg)
             };
@@ -194,7 +194,8 @@ impl Graph {
         }
     }
 
-    /// The node of another tree whose skin is nearest to where a tree begins, if that touches it; `moved_by` has the node of each joint.
+    /// The node of another tree whose skin is nearest to a tree's start, if it touches; `moved_by` has the node of each
+    /// joint.
     fn touched_by(&self, tree: usize, moved_by: &[Option<usize>], bound: &Bound) -> Option<usize> {
         let (own, start) = (self.subtree(tree), self.nodes[tree].position);
         let skin = bound.vertices.iter().zip(&bound.movers);
@@ -206,9 +207,9 @@ impl Graph {
         (distance < FOOT_AT_SKIN * bound.size()).then_some(node)
     }
 
-    /// Place where a stray tree belongs. Rigs baked from inverse kinematics leave the feet beside the body: such a short stray belongs
-    /// to the leaf that its skin runs into, or at whose end it starts, or that is much nearer than the root, or whose skin it
-    /// starts at. All others belong to what of the `trunk` their skin runs into, or begins at. What finds nothing hangs on the root.
+    /// Parent of a stray tree. Rigs baked from IK parent feet to the root: such a short stray belongs to the leaf that
+    /// its skin runs into, at whose end it starts, that is much nearer than the root, or whose skin it starts at. All
+    /// others belong to the node of `trunk` that their skin runs into, or starts at; else to the root.
     fn place_for(&self, stray: usize, trunk: &[usize], ends: &[(usize, Vec3)], bound: &Bound) -> usize {
         let (size, start) = (bound.size(), self.nodes[stray].position);
         let body = self.subtree(self.root);
@@ -224,7 +225,7 @@ impl Graph {
             let grown = self.grows_into(stray, trunk.iter().copied(), bound).or(end.map(|(_, node)| node));
             return grown.or(nearest(&mut self.skin_of(trunk, bound)).and_then(at_skin)).unwrap_or(self.root);
         }
-        // No foot stands on another foot: what was adopted itself adopts nothing.
+        // No foot stands on another foot: attached trees take no others.
         let is_leaf = |i: &usize| {
             let is_end = self.nodes[*i].children.iter().all(|child| self.adopted.contains(child));
             is_end && self.nodes[*i].parent.is_some() && !self.adopted.contains(i)
@@ -238,7 +239,7 @@ impl Graph {
         if let Some((_, node)) = end {
             return node;
         }
-        // A leg of two joints begins at the trunk.
+        // A leg of two joints starts at the trunk.
         let at_trunk = || nearest(&mut self.skin_of(trunk, bound)).and_then(at_skin);
         if let Some(part) = self.grows_into(stray, trunk.iter().copied(), bound).or_else(at_trunk) {
             return part;
@@ -266,8 +267,8 @@ impl Graph {
         })
     }
 
-    /// The one of some nodes with the most skin in common with a tree that is not among them, of two the nearer; `None` if they
-    /// touch nowhere.
+    /// The one of some nodes with the most skin in common with a tree outside them; of equals the nearer; `None` if
+    /// they touch nowhere.
     fn grows_into(&self, tree: usize, among: impl Iterator<Item = usize>, bound: &Bound) -> Option<usize> {
         let own = self.subtree(tree);
         let links = |node: usize| -> u32 {

@@ -1,5 +1,5 @@
-//! A human shape in a tree of joints, by geometry alone: mirrored chains that reach the floor are legs, the mirrored
-//! chains highest on the trunk and widest are arms, the unpaired chain above them ends in the head.
+//! Finds a human shape in a tree of joints by geometry alone: mirrored chains to the floor are legs, the highest and
+//! widest mirrored chains on the trunk are arms, the unpaired chain above them ends in the head.
 
 use super::bind::Bound;
 use super::graph::Graph;
@@ -34,7 +34,7 @@ impl Stance {
     }
 }
 
-/// Places in a chain of (upper, lower, hand or foot); the last may be missing.
+/// Indices in a chain of (upper, lower, hand or foot); the last may be missing.
 pub(super) type Split = (usize, usize, Option<usize>);
 
 /// An arm or a leg with its mirror image. Index 0 is the side toward [`Symmetry::lateral`].
@@ -65,7 +65,7 @@ pub(super) struct Evidence<'a> {
     pub stance: &'a Stance,
     /// Readings per node; all empty when the names cannot be trusted.
     pub readings: &'a [Reading],
-    /// Swing in the clips of the limb that ends at a node in turns with its image: [`Swing::reach`](super::gait::Swing::reach).
+    /// Alternating swing in the clips of the limb that ends at a node: [`Swing::reach`](super::gait::Swing::reach).
     pub swing: &'a dyn Fn(usize) -> f32,
 }
 
@@ -78,7 +78,7 @@ impl Evidence<'_> {
         self.readings[node].part
     }
 
-    /// The human shape that stands upright in this stance, if there is one.
+    /// The human shape that stands upright in this orientation, if there is one.
     pub fn recognise(&self) -> Option<Humanoid> {
         let mut limbs = self.limbs();
         let legs = self.take_legs(&mut limbs)?;
@@ -88,7 +88,7 @@ impl Evidence<'_> {
         let mut spine: Vec<usize> = self.graph.up_from(chest).take_while(|&i| i != pelvis).collect();
         spine.reverse();
         let (mut neck, head) = self.neck_and_head(chest, &arms, pelvis)?;
-        // Arms may hang off what is called the neck.
+        // Arms may be parented to the neck.
         let trunk = spine.iter().position(|&i| self.part(i) == Some(Part::Neck)).unwrap_or(spine.len());
         neck.splice(..0, spine.drain(trunk..));
         let limb = |chain: [Vec<usize>; 2], wanted: [Part; 3]| {
@@ -106,7 +106,7 @@ impl Evidence<'_> {
         self.stands(&found).then_some(found)
     }
 
-    /// Arms without a hand where fingers grow out of the forearm, and nothing is called a hand.
+    /// Arms without a hand if fingers grow out of the forearm and nothing is named a hand.
     fn without_fingers(&self, arms: Limb) -> Limb {
         let (upper, lower, hand) = arms.split;
         let is_hand = |&hand: &usize| {
@@ -123,8 +123,8 @@ impl Evidence<'_> {
         Limb { split: (upper, lower, hand), ..arms }
     }
 
-    /// Distance of both elbows together behind the line from shoulder to hand, against `forward`, in heights of the body: no
-    /// elbow bends the other way.
+    /// Distance of both elbows together behind the line from shoulder to hand, against `forward`, in body heights:
+    /// elbows only bend that way.
     pub fn elbows_behind(&self, arms: &Limb, forward: Vec3) -> f32 {
         let (upper, lower, hand) = arms.split;
         let behind = |chain: &Vec<usize>| {
@@ -150,7 +150,7 @@ impl Evidence<'_> {
 
     /// All mirrored chains that grow out of the midline.
     fn limbs(&self) -> Vec<[Vec<usize>; 2]> {
-        // A clavicle may begin on the midline: its side is that of all that hangs on it.
+        // A clavicle may start on the midline: its side is that of its descendants.
         let middles = self.graph.middles();
         let starts = |&i: &usize| {
             let parent_on_midline = self.graph.nodes[i].parent.is_some_and(|p| self.symmetry.on_midline(p));
@@ -183,8 +183,8 @@ impl Evidence<'_> {
         [chain, mirrored]
     }
 
-    /// True if the end of a chain is a forearm out of which fingers grow: all begin in one place away from it, or farther away
-    /// than a palm is long.
+    /// True if a chain ends in a forearm with fingers: all start in one place away from it, or further away than a palm
+    /// is long.
     fn ends_at_wrist(&self, chain: &[usize], fingers: &[usize]) -> bool {
         let [.., before, forearm] = chain else { return false };
         let away = |&finger: &usize| self.graph.distance(*forearm, finger);
@@ -194,8 +194,8 @@ impl Evidence<'_> {
         apart < AT_WRIST * farthest || nearest > LONGEST_PALM * self.graph.distance(*before, *forearm)
     }
 
-    /// The pair of chains of at least two joints that reach the floor, and swing in turns where any of them does: the one with the
-    /// most skin. What hangs down beside the legs swings less than half as far.
+    /// The pair of chains of at least two joints that reach the floor, and swing alternately if any do: the one with
+    /// the most skin. Other hanging parts swing less than half as far.
     fn take_legs(&self, limbs: &mut Vec<[Vec<usize>; 2]>) -> Option<[Vec<usize>; 2]> {
         let reaches_floor = |chain: &[usize]| {
             let lowest = chain.iter().map(|&i| self.level(i)).fold(f32::INFINITY, min);
@@ -205,7 +205,7 @@ impl Evidence<'_> {
         };
         let low: Vec<usize> = (0..limbs.len()).filter(|&i| reaches_floor(&limbs[i][0])).collect();
         let swing = |i: usize| match limbs[i][0].last() {
-            // Of one pair there is nothing to choose.
+            // A single pair needs no choice.
             Some(&end) if low.len() > 1 => (self.swing)(end),
             _ => 0.0,
         };
@@ -219,7 +219,7 @@ impl Evidence<'_> {
         Some(limbs.swap_remove(best.1))
     }
 
-    /// The pair of chains of at least two joints that spreads widest among those above the legs and off the floor.
+    /// The widest pair of chains of at least two joints above the legs and off the floor.
     fn take_arms(&self, limbs: &[[Vec<usize>; 2]], legs: &[Vec<usize>; 2]) -> Option<[Vec<usize>; 2]> {
         let hip = self.level(legs[0][0]);
         let width = |chain: &[usize]| chain.iter().map(|&i| self.symmetry.side(self.graph, i)).fold(0.0, max);
@@ -227,7 +227,7 @@ impl Evidence<'_> {
             let lowest = chain.iter().map(|&i| self.level(i)).fold(f32::INFINITY, min);
             chain.len() > 1 && self.level(chain[0]) > hip + 0.1 && lowest > min(0.22, hip + 0.02)
         };
-        // Ears grow out of where the trunk ends.
+        // Ears grow out of the end of the trunk.
         let goes_on = |chain: &[usize]| {
             let attachment = self.graph.nodes[chain[0]].parent;
             attachment.is_some_and(|at| {
@@ -246,9 +246,8 @@ impl Evidence<'_> {
         self.graph.nodes[limb[0][0]].parent.expect("limbs grow out of the midline")
     }
 
-    /// The midline joint at the height of the hips. Thighs may hang off some other joint of the trunk, so the
-    /// joints from the root to the chest compete: by name, else the lowest of those near the hips that moves a fair
-    /// share of skin.
+    /// The midline joint at the height of the hips. Thighs may be parented to another joint of the trunk, so the joints
+    /// from the root to the chest compete: by name, else the lowest of those near the hips with a fair share of skin.
     fn pelvis(&self, legs: &[Vec<usize>; 2], arms: &[Vec<usize>; 2]) -> usize {
         let hip = self.level(legs[0][0]);
         let mut trunk: Vec<usize> = self.graph.up_from(self.attachment(arms)).collect();
@@ -263,8 +262,8 @@ impl Evidence<'_> {
         }
         let most = near.iter().map(|&i| self.graph.nodes[i].area).fold(0.0, max);
         let fair = near.iter().copied().filter(|&i| self.graph.nodes[i].area >= 0.2 * most);
-        // Of one that goes down to the next the lower one: the other leads the body, as a handle does. So does, of two that are as
-        // high, the one that moves less than half as much.
+        // Of two in a chain the lower one: the other is a handle for the body. Of two at one height, the one that moves
+        // less than half as much skin is a handle too.
         let leads = |handle: usize, body: usize| {
             let (above, areas) =
                 (self.level(handle) - self.level(body), [handle, body].map(|i| self.graph.nodes[i].area));
@@ -306,7 +305,8 @@ impl Evidence<'_> {
         Some((chain, head))
     }
 
-    /// True for a limb whose first joint lies on the midline and its second does not: the inner end of a clavicle, or of a hip.
+    /// True for a limb whose first joint lies on the midline and its second does not: the inner end of a clavicle or a
+    /// hip.
     fn begins_inside(&self, chain: &[usize]) -> bool {
         let side = |place: usize| self.symmetry.side(self.graph, chain[place]).abs();
         chain.len() > 2 && side(0) < INNER_END * side(1)
@@ -334,9 +334,9 @@ impl Evidence<'_> {
         }
     }
 
-    /// In a chain of four and more: the two consecutive stretches whose lengths are most like those of an upper arm
-    /// and a forearm, or a thigh and a shank (0.9 : 1), that cover at least half of the way. A joint with hardly any
-    /// bone after it (a clavicle's end, a wrist before the hand) begins neither.
+    /// In a chain of four or more: the two consecutive segments whose lengths are most like those of an upper arm and a
+    /// forearm, or a thigh and a shank (0.9 : 1), that cover at least half of the length. A joint with hardly any bone
+    /// after it (a clavicle's end, a wrist before the hand) begins neither.
     fn split_by_length(&self, chain: &[usize]) -> Split {
         let mut way = vec![0.0];
         for pair in chain.windows(2) {

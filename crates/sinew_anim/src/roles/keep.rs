@@ -1,4 +1,4 @@
-//! Selection of the joints that become bodies, what they take with them, and what they hang on.
+//! Chooses the joints that become bodies, their merged joints, and their parents.
 
 use super::bind::Bound;
 use super::graph::{Graph, ancestors};
@@ -21,7 +21,7 @@ pub(super) struct Selection<'a> {
     pub roles: &'a [Option<RoleGuess>],
     /// From floor to crown, file units.
     pub height: f32,
-    /// Per joint what carries it, by geometry where the rig's own parent does not.
+    /// Parent of each joint, by geometry if the rig's own is not suitable.
     pub carrier: Vec<Option<JointIdx>>,
 }
 
@@ -31,8 +31,8 @@ pub(super) struct Kept {
     pub merge_into: Vec<Option<JointIdx>>,
 }
 
-/// Carrier of each joint: the rig's parent; for strays what they were adopted by; for a stray without skin the bone
-/// at whose end it sits; for what sits at a wrist beside the hand, the hand.
+/// Parent of each joint: the rig's; for strays the attached one; for a stray without skin the bone at whose end it is;
+/// for joints at a wrist beside the hand, the hand.
 pub(super) fn carriers(
     rig: &Rig,
     bound: &Bound,
@@ -85,7 +85,7 @@ pub(super) fn carriers(
 }
 
 impl Selection<'_> {
-    /// Bodies of a humanoid: one per role, less toes, tiny clavicles, and what has too little skin.
+    /// Bodies of a humanoid: one per role, without toes, tiny clavicles, and parts with too little skin.
     pub fn humanoid(&self) -> Kept {
         let mut joints: Vec<JointIdx> = Vec::new();
         for role in super::role::HUMANOID_ROLES {
@@ -106,7 +106,7 @@ impl Selection<'_> {
     pub fn creature(&self) -> Kept {
         let total: f32 = self.bound.area.iter().sum();
         let nodes = &self.graph.nodes;
-        // From the tips inward, so that a toe too small goes with its foot and counts there.
+        // From the tips inward, so that a small toe merges into its foot and counts there.
         let mut area: Vec<f32> = nodes.iter().map(|node| node.area).collect();
         for &i in self.graph.order.iter().rev() {
             let Some(parent) = nodes[i].parent else { continue };
@@ -117,13 +117,13 @@ impl Selection<'_> {
         let fair = |&&i: &&usize| i == self.graph.root || area[i] >= LEAST_BODY_SKIN * total;
         let mut joints: Vec<JointIdx> =
             self.graph.order.iter().filter(fair).map(|&i| nodes[i].joint).collect();
-        // In the order of their roles, which is that of the body and not of the file: trunk, tail, then limbs, of which none
-        // hangs on one of a higher number.
+        // Sorted by roles, independent of the file: trunk, tail, then limbs, of which none hangs on one with a higher
+        // number.
         joints.sort_by_key(|&joint| match self.role(joint) {
             Role::LimbSegment { limb, segment } => (2, limb, segment),
             Role::TailSegment(segment) => (1, 0, segment),
             Role::SpineSegment(segment) => (0, 0, segment),
-            // No creature has others.
+            // Creatures have no others.
             _ => (3, 0, 0),
         });
         self.parents_first(&mut joints);
@@ -131,10 +131,10 @@ impl Selection<'_> {
         self.bones(&joints, |joint| place[self.carried_by(joint, |i| place[i].is_some())?])
     }
 
-    /// Roles that a person gave may put a part before what carries it: it comes right after that. Others stay in order.
+    /// User-given roles may put a part before its parent: it is moved right after that. Others stay in order.
     fn parents_first(&self, joints: &mut Vec<JointIdx>) {
         let mut sorted: Vec<JointIdx> = Vec::with_capacity(joints.len());
-        // The root first: whatever nothing carries hangs on it.
+        // The root first: everything without a parent hangs on it.
         let root = self.graph.nodes[self.graph.root].joint;
         let root = joints.iter().position(|&joint| joint == root).map(|at| joints.remove(at));
         sorted.extend(root);
@@ -146,7 +146,7 @@ impl Selection<'_> {
         *joints = sorted;
     }
 
-    /// Per joint its place among the kept ones.
+    /// Per joint its index among the kept ones.
     fn places(&self, kept: &[JointIdx]) -> Vec<Option<usize>> {
         let mut place = vec![None; self.rig.joints.len()];
         kept.iter().enumerate().for_each(|(i, &joint)| place[joint] = Some(i));
@@ -161,7 +161,7 @@ impl Selection<'_> {
         self.roles.iter().position(|guess| guess.as_ref().is_some_and(|guess| guess.role == role))
     }
 
-    /// The nearest carrier that passes. Adoption cannot make a circle, but the walk is bounded all the same.
+    /// The nearest suitable parent. Attachment cannot form a cycle, but the walk is bounded anyway.
     fn carried_by(&self, joint: JointIdx, wanted: impl Fn(JointIdx) -> bool) -> Option<JointIdx> {
         let chain = core::iter::successors(self.carrier[joint], |&i| self.carrier[i]);
         chain.take(self.rig.joints.len()).find(|&i| wanted(i))
@@ -177,7 +177,7 @@ impl Selection<'_> {
         });
     }
 
-    /// Parts of the spine with hardly any skin are joined with the part above, which then turns at the lower joint.
+    /// Parts of the spine with hardly any skin are merged with the part above, which then rotates at the lower joint.
     fn join_thin_spine(&self, joints: &mut Vec<JointIdx>) {
         let total: f32 = self.bound.area.iter().sum();
         let spine = [Role::Spine, Role::Chest, Role::UpperChest];
@@ -218,7 +218,7 @@ impl Selection<'_> {
         on_arms / max(all, 1.0)
     }
 
-    /// Removes joints that would have no skin even with what they take along; the root stays.
+    /// Removes joints without skin, including that of merged ones; the root stays.
     fn drop_bare(&self, joints: &mut Vec<JointIdx>) {
         loop {
             let place = self.places(joints);
@@ -230,7 +230,7 @@ impl Selection<'_> {
                     area[bone] += self.bound.area[joint];
                 }
             }
-            // A limb's bone without skin still is the joint that its lower part turns about.
+            // A limb's bone without skin is still the pivot of its lower part.
             let is_limb = |joint: JointIdx| self.graph.nodes.iter().any(|node| node.joint == joint);
             let is_bare = |&i: &usize| area[i] <= 0.0 && !is_limb(joints[i]);
             let Some(bare) = (1..joints.len()).find(is_bare) else { return };
@@ -238,8 +238,8 @@ impl Selection<'_> {
         }
     }
 
-    /// Per joint the kept one, by place, that it goes with: what carries it, else what its skin runs into, else the nearest. Joints without
-    /// skin and without a carrier keep their own motion.
+    /// Per joint the kept index that it follows: its parent, else the one its skin runs into, else the nearest. Joints
+    /// without skin and parent keep their own motion.
     fn owners(&self, joints: &[JointIdx], place: &[Option<usize>]) -> Vec<Option<usize>> {
         let mut owner = place.to_vec();
         let mut waiting: Vec<JointIdx> = Vec::new();
@@ -250,7 +250,8 @@ impl Selection<'_> {
                 None => {}
             }
         }
-        // The firmest bond first: a finger goes with the hand through the finger before it. Of bonds as firm the shorter one.
+        // The strongest bond first: a finger follows the hand through the finger before it. Of equal bonds the shorter
+        // one.
         loop {
             let mut best: Option<(u32, f32, usize, usize)> = None;
             for (at, &joint) in waiting.iter().enumerate() {
@@ -278,7 +279,7 @@ impl Selection<'_> {
         }
         self.own_hung(&mut owner);
         self.own_beside(&mut owner);
-        // Hair on a head that hangs on no bone.
+        // Hair on a head without a bone.
         for joint in 0..self.rig.joints.len() {
             let parent = self.rig.joints[joint].parent.filter(|&parent| place[parent].is_none());
             owner[joint] = owner[joint].or_else(|| owner[parent?]);
@@ -286,9 +287,8 @@ impl Selection<'_> {
         owner
     }
 
-    /// True if a node that hangs on no bone carries a mesh that is smaller than the body and lies within it or close to it: a hat, eyes or a
-    /// pack that nobody parented. It is enough that it touches the body where it hangs on the node that carries the skeleton: a head that was parented
-    /// to the armature and to none of its bones.
+    /// True if a node without a bone carries a mesh smaller than the body and within or close to it: a hat, eyes or a
+    /// pack without a parent. On the node of the skeleton touching the body suffices: a head parented to the armature.
     fn is_worn(&self, joint: JointIdx) -> bool {
         let (mut positions, mut normals) = (Vec::new(), Vec::new());
         let margin = Vec3::splat(WORN_WITHIN * self.bound.size());
@@ -314,13 +314,13 @@ impl Selection<'_> {
         within > 0 && is_close && longest < largest * self.bound.size()
     }
 
-    /// True if a node hangs on the one that carries the skeleton, with no bone in between.
+    /// True if a node hangs on the skeleton's node without a bone in between.
     fn hangs_on_armature(&self, joint: JointIdx) -> bool {
         self.hung_on_armature(joint).is_some()
     }
 
-    /// The node right below the one that carries the skeleton on which a node hangs, or that node itself; `None` where a bone is in between.
-    /// A mesh may be a node below its object, as it is in files that were converted.
+    /// The node directly below the skeleton's node above a node, or that node itself; `None` if a bone is in between.
+    /// In converted files a mesh may be a node below its object.
     fn hung_on_armature(&self, joint: JointIdx) -> Option<JointIdx> {
         let first = self.graph.nodes[self.graph.root].joint;
         let is_bone = |joint: JointIdx| self.rig.skins.iter().any(|skin| skin.joints.contains(&joint));
@@ -329,7 +329,7 @@ impl Selection<'_> {
         line.take_while(|&at| !is_bone(at)).find(|&at| self.rig.joints[at].parent == Some(armature))
     }
 
-    /// Meshes on the armature that touch what is worn there go along: eyes in a head that hangs on no bone.
+    /// Meshes on the armature that touch worn parts follow them: eyes in a head without a bone.
     fn own_beside(&self, owner: &mut [Option<usize>]) {
         let extent = |joint: JointIdx| {
             let points = self.points_of_meshes(joint);
@@ -355,7 +355,7 @@ impl Selection<'_> {
         self.own_hung(owner);
     }
 
-    /// Nodes on the armature go with what is worn below them: an object with the node of its mesh, and with the hair that hangs on it.
+    /// Nodes on the armature follow the worn parts below them: an object with its mesh node and its hair.
     fn own_hung(&self, owner: &mut [Option<usize>]) {
         for joint in 0..self.rig.joints.len() {
             if owner[joint].is_none() || self.bound.area[joint] > 0.0 {
@@ -372,7 +372,8 @@ impl Selection<'_> {
         }
     }
 
-    /// The kept joint, by place, whose skin is nearest to that of a joint, by the votes of its vertices; the first if one of them has none.
+    /// The kept index whose skin is nearest to a joint's skin, by the votes of its vertices; the first if one of them
+    /// has none.
     fn nearest(&self, joint: JointIdx, joints: &[JointIdx], owner: &[Option<usize>]) -> usize {
         let own = self.bound.vertices.iter().zip(&self.bound.movers).filter(|(_, mover)| **mover == joint);
         let mut points: Vec<Vec3> = own.map(|(vertex, _)| *vertex).collect();
@@ -393,7 +394,7 @@ impl Selection<'_> {
         (0..votes.len()).reduce(|a, b| if votes[b] > votes[a] { b } else { a }).unwrap_or(0)
     }
 
-    /// Mesh and primitive of what moves with a node as a whole: meshes without a skin, and parts of others that have no weights.
+    /// Mesh and primitive of rigid parts of a node: unskinned meshes, and unweighted parts of others.
     fn rigid_parts(&self, joint: JointIdx) -> impl Iterator<Item = (usize, usize)> + '_ {
         let own = self.rig.meshes.iter().enumerate().filter(move |(_, mesh)| mesh.joint == joint);
         own.flat_map(|(m, mesh)| {
@@ -421,7 +422,7 @@ impl Selection<'_> {
                 joint,
                 role: guess.role,
                 confidence: guess.confidence,
-                // All but the first hang on something; on the first where nothing nearer is kept.
+                // All but the first have a parent; the first if nothing nearer is kept.
                 parent: parent(joint).or((i > 0).then_some(0)),
                 merged: Vec::new(),
                 bind_model: self.bound.model[joint],

@@ -1,11 +1,10 @@
 //! Analysis of the joints of a rig: roles, axes, units, and which joints deserve a body.
 //!
-//! Roles that the file states (VRM) come first; then geometry (mirrored chains of the bind pose) decides and names
-//! only bear witness: they settle how a limb is divided, raise the confidence where they agree and lower it where
-//! they don't. Names whose left and right do not mirror each other are not listened to at all. Where the shape shows no
-//! human (a bind pose without a mirror, feet beside the body), names alone decide, if what they name stands like one.
-//! Names are read by their words, not by a list of names. Clips, where they are known ([`Hints`]), tell legs from whatever
-//! else hangs down: legs swing in turns.
+//! Roles stated by the file (VRM) come first; then geometry (mirrored chains of the bind pose) decides and names
+//! support it: they settle how a limb is divided, and raise or lower the confidence. Names whose left and right are not
+//! mirrored are ignored. If the shape shows no human (an asymmetric bind pose, feet beside the body), names alone
+//! decide, if their parts stand like one. Names are read by words, not from a list of names. Clips ([`Hints`]) tell
+//! legs from other hanging parts: legs swing alternately.
 
 mod anatomy;
 mod assembly;
@@ -62,17 +61,17 @@ impl RoleGuess {
 /// Evidence that a role rests on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Basis {
-    /// The file, or whoever corrects it, says so.
+    /// Stated by the file or by a correction.
     Stated,
     /// Shape and name agree.
     ShapeAndName,
-    /// The shape alone: the name says nothing.
+    /// The shape alone; the name says nothing.
     Shape,
-    /// The shape, while the name says something else.
+    /// The shape, against its name.
     ShapeAgainstName,
-    /// The name alone: the shape does not show it.
+    /// The name alone; the shape does not show it.
     Name,
-    /// The place in a body that is no human's.
+    /// The place in a creature's body.
     Place,
 }
 
@@ -103,20 +102,20 @@ impl Basis {
 /// A joint that deserves a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeptBone {
-    /// The joint, whose origin is where the body turns against its parent.
+    /// The joint, whose origin is the pivot against the parent body.
     pub joint: JointIdx,
     /// Its role.
     pub role: Role,
     /// 0..=1.
     pub confidence: f32,
-    /// Index into [`RigAnalysis::kept`], smaller than the bone's own; `None` for the first. Anatomy, not the rig's
-    /// hierarchy: a shank carries the foot even where the rig hangs it elsewhere.
+    /// Index into [`RigAnalysis::kept`], smaller than the bone's own; `None` for the first. By anatomy, not the rig's
+    /// hierarchy: a shank carries the foot even if the rig parents it elsewhere.
     pub parent: Option<usize>,
-    /// Other joints that move with this body and whose skin is its skin.
+    /// Other joints that move with this body and share its skin.
     pub merged: Vec<JointIdx>,
     /// Transform in the bind pose, model space, file units.
     pub bind_model: Affine,
-    /// True if it is carried, as a sword or a cape without a skin is, and no part of the body: it is held fast.
+    /// True for props (a sword, a rigid cape): held fast, not part of the body.
     pub is_prop: bool,
 }
 
@@ -127,8 +126,8 @@ pub struct RigAnalysis {
     pub unit_scale: f32,
     /// Unit vector, model space.
     pub up_axis: Vec3,
-    /// Rotation to the character's axes: +Y up, +Z the way it faces, so that its left is on +X. A model point in file
-    /// units is at `character_from_model.point(point * unit_scale)`, metres. The translation is zero.
+    /// Rotation to the character's axes: +Y up, +Z forward, left on +X. A model point in file units is at
+    /// `character_from_model.point(point * unit_scale)`, metres. The translation is zero.
     pub character_from_model: Transform,
     /// Height of the lowest skin in the bind pose, metres, character axes.
     pub floor: f32,
@@ -140,32 +139,32 @@ pub struct RigAnalysis {
     pub roles: Vec<Option<RoleGuess>>,
     /// Joints that deserve a body, parents before children, the pelvis (or a creature's root) first.
     pub kept: Vec<KeptBone>,
-    /// Per joint the kept joint that it follows; `None` for kept joints, for what lies above them in the rig, and
-    /// for joints without skin that hang on no body (IK targets).
+    /// Per joint the kept joint that it follows; `None` for kept joints, for those above them in the rig, and for
+    /// joints without skin outside of every body (IK targets).
     pub merge_into: Vec<Option<JointIdx>>,
     /// Transform of every joint in the bind pose, model space, file units: from the inverse bind matrices, and from
     /// the rest pose for joints that no skin names.
     pub bind_model: Vec<Affine>,
-    /// Joints of the skins that are not kept.
+    /// Skin joints that are not kept.
     pub dropped: Vec<JointIdx>,
-    /// Length that a unit of the file was taken to have, and why; `None` where it was given.
+    /// Assumed length of a file unit with its reason; `None` if given.
     pub unit_guess: Option<UnitGuess>,
-    /// Other assumptions, a sentence each.
+    /// Other assumptions, one sentence each.
     pub notes: Vec<String>,
-    /// Evidence from around the rig that was taken into account.
+    /// Evidence from around the rig that was used.
     pub hints: Hints,
 }
 
-/// Length that a unit of a file was taken to have.
+/// Assumed length of a file unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnitGuess {
     /// The unit, the reason and the alternatives, a sentence.
     pub note: String,
-    /// True for a human in metres, whom no other unit would make one.
+    /// True for a human in metres that no other unit would fit.
     pub is_sure: bool,
-    /// True if there is only one unit in which the body is of a size that bodies have.
+    /// True if only one unit gives a plausible size.
     pub is_only: bool,
-    /// True if no unit of files makes the body of a size that bodies have: it was scaled to a likely one.
+    /// True if no file unit gives a plausible size: the body was scaled to a likely one.
     pub is_scaled: bool,
 }
 
@@ -188,7 +187,7 @@ impl RigAnalysis {
 }
 
 impl RigAnalysis {
-    /// The same analysis with another length of the file's unit: of a giant, say, whom no unit makes a human.
+    /// The same analysis with another file unit, for instance for a giant.
     ///
     /// # Panics
     /// If `unit_scale` (metres) is not above 0 and finite.
@@ -201,12 +200,12 @@ impl RigAnalysis {
     }
 }
 
-/// The rig has no skin, so there is no body to understand.
+/// The rig has no skin, so there is no body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no skin: nothing to build a ragdoll from")]
 pub struct NoSkin;
 
-/// Roles, axes, unit and bodies of a rig. Never refuses a shape: what is not human gets generic roles.
+/// Roles, axes, unit and bodies of a rig. Every shape is accepted: other shapes than human get generic roles.
 ///
 /// # Errors
 /// [`NoSkin`] if no vertex is bound to a joint.
@@ -228,7 +227,7 @@ pub fn analyze_hinted(rig: &Rig, hints: &Hints) -> Result<RigAnalysis, NoSkin> {
     plain(analyze_bound(rig, Bound::of(rig).ok_or(NoSkin)?, &[], hints))
 }
 
-/// [`analyze_hinted`] with what a person knows: see [`Correction`].
+/// [`analyze_hinted`] with the user's corrections: see [`Correction`].
 ///
 /// # Errors
 /// [`CorrectionError`]: no skin, none left, or roles that the rig cannot have.
@@ -245,7 +244,7 @@ pub fn analyze_corrected(
         return Err(if correction.ignored.is_empty() { NoSkin.into() } else { CorrectionError::NothingLeft });
     };
     let mut analysis = analyze_bound(&seen, bound, &correction.roles, hints)?;
-    // What is ignored still goes along, with the root where nothing of the body carries it.
+    // Ignored joints still follow the body, with the root if nothing carries them.
     let mut moves_skin: Vec<JointIdx> = rig.skins.iter().flat_map(|skin| skin.joints.clone()).collect();
     moves_skin.sort_unstable();
     moves_skin.dedup();
@@ -264,14 +263,14 @@ pub fn analyze_corrected(
     Ok(analysis)
 }
 
-/// Without a correction there is nothing else to err in.
+/// Without a correction nothing else can fail.
 fn plain(analyzed: Result<RigAnalysis, CorrectionError>) -> Result<RigAnalysis, NoSkin> {
     analyzed.map_err(|_| NoSkin)
 }
 
-/// Roles, axes and unit of a skeleton without skin, as motion capture files have it, standing in `pose`: best with straight
-/// legs and the arms away from the body. Joints at the ends of chains that have no name only tell where a bone ends.
-/// The "bind pose" of the result is `pose`, heights are those of the joints, and bodies are measured by bones' lengths.
+/// Roles, axes and unit of a skeleton without skin, as in motion capture, standing in `pose`: best with straight legs
+/// and the arms away from the body. Unnamed joints at the ends of chains only mark bone ends. The "bind pose" of the
+/// result is `pose`, heights are those of the joints, and bodies are measured by bone lengths.
 ///
 /// # Errors
 /// [`NoSkin`] if no bone has a length.

@@ -122,7 +122,7 @@ impl Role {
         }
     }
 
-    /// The role of that name; `None` for a name that [`name`](Self::name) does not give.
+    /// The role of that name; `None` for a name that [`name`](Self::name) does not return.
     pub fn from_name(name: &str) -> Option<Self> {
         if let Some(role) = HUMANOID_ROLES.into_iter().find(|role| role.name() == name) {
             return Some(role);
@@ -178,7 +178,7 @@ impl Role {
         }
     }
 
-    /// The roles that may carry this one, nearest first: anatomy, whatever the rig's own hierarchy says.
+    /// The roles that may carry this one, nearest first, by anatomy.
     pub(crate) fn anatomical_parents(self) -> &'static [Role] {
         use Role::{Chest, Hips, Neck, Spine, UpperChest};
         const TRUNK: &[Role] = &[UpperChest, Chest, Spine, Hips];

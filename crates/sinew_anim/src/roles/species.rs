@@ -5,7 +5,7 @@ use crate::rig::Rig;
 
 /// Longest side of a grown animal, metres: of most from nose to tail, of birds and insects that fly across the wings.
 ///
-/// Round figures of field guides; insects are of the size that games draw them, a cat's at most.
+/// Round figures from field guides; insects have the size that games draw, at most a cat's.
 const LENGTHS: &[(&str, f32)] = &[
     ("ant beetle bug fly mosquito ladybug", 0.3),
     ("bee wasp hornet butterfly dragonfly moth", 0.35),
@@ -29,11 +29,11 @@ const LENGTHS: &[(&str, f32)] = &[
     ("trex tyrannosaurus apatosaurus brontosaurus diplodocus whale", 13.0),
 ];
 
-/// Words of humans, by which a body is measured like one whose joints show no human.
+/// Words of humans, by which a body is measured like one even if its joints show no human.
 const HUMANS: &str = "archer bandit boy chef cowboy doctor farmer girl guard hero heroine human knight mage man ninja npc \
     officer paladin people person pirate player policeman ranger samurai soldier villager warrior witch wizard woman zombie";
 
-/// Machines are of any size, whatever animal they look like.
+/// Machines have any size, whatever animal they resemble.
 const MACHINES: &str = "bot robot mech mecha drone toy plush statue";
 
 /// Kind of body that names of a file speak of.
@@ -45,7 +45,7 @@ pub(super) enum Species {
     Animal(&'static str, f32),
 }
 
-/// The kind of body that names of a file speak of: an animal before a human, for there are men of snow and wolves.
+/// The kind of body that file names tell: an animal before a human (snowman, wolfman).
 pub(super) fn named<'a>(rig: &'a Rig, file: &'a str) -> Option<Species> {
     let is_root = |joint: &&crate::rig::Joint| joint.parent.is_none();
     let names = core::iter::once(file)

@@ -1,18 +1,18 @@
-//! Mirror symmetry of the bind pose: which joint is whose mirror image.
+//! Mirror symmetry of the bind pose.
 
 use super::graph::Graph;
 use crate::roles::tuning::MIRROR_TOLERANCE;
 use sinew_math::{Vec3, min};
 
-/// A mirror plane and what it pairs.
+/// A mirror plane and its pairs.
 pub(super) struct Symmetry {
     /// Unit normal of the plane.
     pub lateral: Vec3,
-    /// Place of the plane along `lateral`, file units.
+    /// Position of the plane along `lateral`, file units.
     pub centre: f32,
-    /// Per node its mirror image: itself on the midline, `None` where there is none.
+    /// Per node its mirror image: itself on the midline, `None` without one.
     pub partner: Vec<Option<usize>>,
-    /// Nodes with a partner on the other side, less half of those without any.
+    /// Nodes with a partner on the other side, minus half of those without.
     score: f32,
 }
 
@@ -37,14 +37,14 @@ impl Symmetry {
         symmetry
     }
 
-    /// From the root down: the image of a joint is sought among the children of its parent's image, those that fit best first. Of
-    /// several in one place, as fingers that all begin at the wrist, it is the one whose whole subtree lies nearest to the
-    /// image of the joint's own.
+    /// From the root down: the image of a joint is sought among the children of its parent's image, the best fit first.
+    /// Of several in one place, as fingers at the wrist, the one whose whole subtree is nearest to the mirrored
+    /// subtree.
     fn pair_up(&mut self, graph: &Graph, tolerance: f32) {
         let middles = graph.middles();
         let mirrored = |p: Vec3| p - self.lateral * (2.0 * (p.dot(self.lateral) - self.centre));
-        // Down a limb that is posed a little otherwise than its twin differences add up: each bone by itself counts, too. Not so on
-        // the midline, where a bone up and one down would be twins in a plane that is none.
+        // Down a limb posed differently from its twin, differences add up, so each bone by itself counts, too. Not on
+        // the midline, where a bone up and one down would be twins in a wrong plane.
         let lengths = |nodes: [usize; 2], parents: [usize; 2]| {
             (graph.distance(parents[0], nodes[0]) - graph.distance(parents[1], nodes[1])).abs()
         };
@@ -57,7 +57,7 @@ impl Symmetry {
             if parents[0] == parents[1] {
                 away
             } else if is_chain {
-                // A chain without branches goes on as its twin does, however it is bent.
+                // An unbranched chain continues like its twin, however it is bent.
                 min(min(away, of_bone), lengths(nodes, parents))
             } else {
                 min(away, of_bone)
@@ -91,7 +91,7 @@ impl Symmetry {
         self.side_of(graph.nodes[node].position)
     }
 
-    /// Signed distance of a place from the plane.
+    /// Signed distance of a position from the plane.
     pub fn side_of(&self, place: Vec3) -> f32 {
         place.dot(self.lateral) - self.centre
     }

@@ -1,141 +1,147 @@
-//! Constants of behaviour of what tells who is what in a rig: numbers that an engineer would turn.
+//! Tunable constants for the recognition of joints.
 //!
-//! Each says its unit and space, what a larger and a smaller one does, and the tests
-//! (`crates/sinew_anim/tests/it`) where that is to be seen; consequences without a figure are judgement, not measured.
+//! Each has its unit, the effect of a larger and a smaller value, and the tests (`crates/sinew_anim/tests/it`) that
+//! show it; effects without a figure are estimates.
 
 // roles/anatomy.rs
 
 /// Share of all skin from which a joint named as a control counts as a bone, 0 to 1.
 ///
-/// It need not be enough for a body: a hoof too small for one must still go with its leg. Larger: hoofs stay behind. Smaller: stray
-/// weights make bones of controls. Shown by the tests of `wild`.
+/// Less than a body needs: a hoof too small for one must still follow its leg. Larger: hoofs stay behind. Smaller:
+/// stray weights make bones of controls. Shown by the tests of `wild`.
 pub(crate) const CONTROL_SKIN: f32 = 5e-4;
 
-/// Least lead of both feet together, in heights of the body, that tells forward against what left and right are named.
+/// Least lead of both feet together, in body heights, that decides forward against the names of left and right.
 ///
-/// Half of what a human's have. Larger: swapped names turn figures round. Smaller: toes that hardly lead do. Shown by the tests of
-/// `hints`.
+/// Half of a human's lead. Larger: swapped names turn figures round. Smaller: slightly leading toes do. Shown by the
+/// tests of `hints`.
 pub(crate) const FEET_AGAINST_NAMES: f32 = 0.04;
 
-/// Least lead of both feet together, in heights of the body, that tells forward where nothing else does.
+/// Least lead of both feet together, in body heights, that decides forward if nothing else does.
 ///
 /// Larger: small feet have no front. Smaller: noise has one. Shown by the tests of `hints`.
 pub(crate) const LEAST_FOOT: f32 = 0.005;
 
-/// Fall of a limb from its first joint to its last, as a share of the distance, from which it hangs; a trunk that rises by less lies.
+/// Fall of a limb from its first joint to its last, as a share of the distance, from which it counts as hanging; a
+/// trunk that rises by less is horizontal.
 ///
-/// Larger: beasts whose limbs are named as a human's stand up like one. Smaller: a human that bends over is none. Shown by the tests of `assembly`.
+/// Larger: quadrupeds with human names count as humans. Smaller: a bent human does not. Shown by the tests of
+/// `assembly`.
 pub(crate) const HANGING: f32 = 0.6;
 
-/// Least distance of both elbows together behind the arms, in heights of the body, to tell more than feet that hardly do.
+/// Least distance of both elbows together behind the arms, in body heights, to outweigh unclear feet.
 ///
 /// Larger: T-poses without feet have no front. Smaller: straight arms decide by noise. Shown by the tests of `hints`.
 pub(crate) const ELBOWS_BEHIND: f32 = 0.03;
 
-/// Least correlation of the feet's height with their speed, 0 to 1, that tells which way they walk.
+/// Least correlation of the feet's height with their speed, 0 to 1, that decides the walking direction.
 ///
-/// Larger: shuffling walks tell nothing. Smaller: dances do. Shown by the tests of `hints`.
+/// Larger: shuffling walks decide nothing. Smaller: dances decide. Shown by the tests of `hints`.
 pub(crate) const STEP_CORRELATION: f32 = 0.25;
 
 // roles/assembly.rs
 
-/// Least number of pairs of limb bones whose names tell left from right in one direction, to believe them without a mirror.
+/// Least number of limb pairs with consistent left and right names to trust them without a mirror.
 ///
 /// Larger: low-poly figures with few bones are not believed. Smaller: two names by chance are. Shown by the tests of `assembly`.
 pub(crate) const LEAST_NAMED_PAIRS: usize = 3;
 
-/// Least cosine of the angle between a pair's way from right to left and the mean of all pairs'.
+/// Least cosine between a pair's right-to-left direction and the mean of all pairs.
 ///
 /// Larger: legs in a stride are not believed. Smaller: names that are shuffled are. Shown by the tests of `assembly`.
 pub(crate) const NAMED_ALIKE: f32 = 0.3;
 
 // roles/bind.rs
 
-/// Distance of two joints in one place, as a share of the body's size.
+/// Distance of two joints that counts as one place, as a share of the body's size.
 ///
 /// Larger: fingertips coincide. Smaller: helpers of an exporter count as bones. Shown by the tests of `rigs`.
 pub(crate) const COINCIDENT: f32 = 1e-3;
 
-/// Number of times that the largest tree of a capture has more joints than another, from which the other is no part of the skeleton.
+/// Ratio of joints between the largest tree of a capture and another above which the other is no part of the skeleton.
 ///
-/// Larger: cameras with targets count as parts of the body. Smaller: limbs that are roots of their own are left out. Shown by the tests of `roles`.
+/// Larger: cameras with targets count as body parts. Smaller: limbs that are roots are left out. Shown by the tests of
+/// `roles`.
 pub(crate) const LARGEST_BESIDE: usize = 8;
 
 /// Largest difference of the scale in which a joint is bound from that of most joints, as a share.
 ///
-/// Larger: handles of exporters say in which scale the skin was bound. Smaller: bones that a pose stretches say nothing. Shown by the
-/// tests of `assembly`.
+/// Larger: exporter handles decide the scale of the bind pose. Smaller: stretched bones are ignored. Shown by the tests
+/// of `assembly`.
 pub(crate) const BOUND_ALIKE: f32 = 0.1;
 
 // roles/characters.rs
 
-/// Least share of a skeleton's box, along each axis, that lies within another's, to belong to it.
+/// Least share of a skeleton's box, along each axis, inside another's, to belong to it.
 ///
-/// Larger: clothes that stick out are characters. Smaller: who stands close together is one. Shown by the tests of `assembly`.
+/// Larger: protruding clothes are characters. Smaller: characters that stand close together are merged. Shown by the
+/// tests of `assembly`.
 pub(crate) const LIES_WITHIN: f32 = 0.5;
 
 /// Largest side of a skeleton that belongs to one beside it, as a share of that one's.
 ///
-/// Larger: a dog is part of its master. Smaller: a hat is a character. Shown by the tests of `assembly`.
+/// Larger: a dog belongs to its owner. Smaller: a hat is a character. Shown by the tests of `assembly`.
 pub(crate) const SMALL_BESIDE: f32 = 0.25;
 
-/// Least size of a skeleton within another's box that may be a character of its own, as a share of that one's.
+/// Least size of a skeleton within another's box that may be its own character, as a share of that one's.
 ///
-/// Larger: whom another surrounds is part of it. Smaller: a wig is a character. Shown by the tests of `assembly`.
+/// Larger: surrounded characters are merged. Smaller: a wig is a character. Shown by the tests of `assembly`.
 pub(crate) const LARGE_WITHIN: f32 = 0.4;
 
-/// Fewest bones of a character that stands within another's box.
+/// Fewest bones of a character within another's box.
 ///
-/// Larger: a bird on a shoulder is part of it. Smaller: a coat with bones of its own is a character. Shown by the tests of `assembly`.
+/// Larger: a bird on a shoulder is merged. Smaller: a coat with its own bones is a character. Shown by the tests of
+/// `assembly`.
 pub(crate) const BONES_OF_A_CHARACTER: usize = 8;
 
 /// Farthest that bones of clothes are from those of the body, as a share of its size.
 ///
-/// Larger: who stands in another is its clothes. Smaller: clothes that were fitted are characters. Shown by the tests of `assembly`.
+/// Larger: a character inside another counts as its clothes. Smaller: fitted clothes are characters. Shown by the tests
+/// of `assembly`.
 pub(crate) const SAME_BONE: f32 = 0.02;
 
 // roles/gait.rs
 
-/// Poses a second at which a clip is looked at for its gait, 1/s.
+/// Poses a second sampled from a clip for its gait, 1/s.
 ///
 /// Larger: slower. Smaller: a run's swing falls between them. Shown by the tests of `hints`.
 pub(crate) const GAIT_RATE: f32 = 24.0;
 
 /// Least length of a clip of walking, seconds.
 ///
-/// Larger: short cycles are not seen. Smaller: poses count as clips. Shown by the tests of `hints`.
+/// Larger: short cycles are missed. Smaller: poses count as clips. Shown by the tests of `hints`.
 pub(crate) const SHORTEST_WALK: f32 = 0.2;
 
-/// Least variance of the swing of one leg against the other over that of the swing together, a ratio.
+/// Least ratio of the variance of alternating swing to that of common swing.
 ///
 /// Larger: a walk with a sway has no legs. Smaller: hops have. Shown by the tests of `hints`.
 pub(crate) const IN_TURNS: f32 = 4.0;
 
 /// Largest ratio of the variances of two limbs that swing as a pair.
 ///
-/// Larger: one arm that strikes is a pair of legs. Smaller: a limp is none. Shown by the tests of `hints`.
+/// Larger: one striking arm counts as a pair of legs. Smaller: a limp does not. Shown by the tests of `hints`.
 pub(crate) const SWINGS_ALIKE: f32 = 3.0;
 
 /// Least swing of legs, root mean square, as a share of the body's height.
 ///
-/// Larger: short steps are none. Smaller: breathing is one. Shown by the tests of `hints`.
+/// Larger: short steps are ignored. Smaller: breathing counts. Shown by the tests of `hints`.
 pub(crate) const LEAST_SWING: f32 = 0.03;
 
 // roles/graph.rs
 
-/// Farthest that a foot beside the body begins from the skin of the leaf to which it belongs, as a share of the skin's size.
+/// Largest distance of a foot beside the body from the skin of its leaf, as a share of the skin's size.
 ///
-/// Larger: a foot goes to the wrong leg. Smaller: it stays alone. Shown by the tests of `wild`.
+/// Larger: a foot is attached to the wrong leg. Smaller: it stays alone. Shown by the tests of `wild`.
 pub(crate) const FOOT_AT_SKIN: f32 = 0.06;
 
-/// Farthest that a foot which hangs on the root is from the end of its leg, as a share of the skin's size.
+/// Largest distance of a foot parented to the root from the end of its leg, as a share of the skin's size.
 ///
-/// Larger: targets of IK are feet. Smaller: feet with a gap stay behind. Shown by the tests of `wild`.
+/// Larger: IK targets count as feet. Smaller: feet with a gap stay behind. Shown by the tests of `wild`.
 pub(crate) const FOOT_AT_END: f32 = 0.01;
 
 /// Largest difference of the distances of twins from the root, as a share of the skin's size.
 ///
-/// Larger: any two are twins. Smaller: rigs that were not mirrored exactly have none. Shown by the tests of `creatures`.
+/// Larger: any two are twins. Smaller: slightly asymmetric rigs have none. Shown by the tests of `creatures`.
 pub(crate) const TWIN_PLACE: f32 = 0.025;
 
 /// Least area of skin that a twin moves, as a share of the other's.
@@ -145,13 +151,13 @@ pub(crate) const TWIN_AREA: f32 = 0.6;
 
 // roles/humanoid.rs
 
-/// Least distance along a forearm of the nearer of two joints, as a share of the other's, that makes them fingers.
+/// Least distance along a forearm of the nearer of two joints, as a share of the other's, for fingers.
 ///
-/// Larger: a thumb that begins early is none. Smaller: a twist bone is one. Shown by the tests of `roles`.
+/// Larger: a thumb that begins early is none. Smaller: a twist bone is a finger. Shown by the tests of `roles`.
 pub(crate) const FORKED: f32 = 0.8;
 
-/// Largest spread of the fingers' beginnings, as a share of their distance from the joint that carries them, that makes that place
-/// the wrist.
+/// Largest spread of the fingers' starts, as a share of their distance from the parent, for which that place is the
+/// wrist.
 ///
 /// Larger: palms are lost. Smaller: fingers hang on the forearm. Shown by the tests of `roles`.
 pub(crate) const AT_WRIST: f32 = 0.15;
@@ -171,10 +177,10 @@ pub(crate) const AS_HIGH: f32 = 0.02;
 /// Larger: dolls have no legs. Smaller: feet are legs. Shown by the tests of `roles`.
 pub(crate) const LOWEST_HIP: f32 = 0.1;
 
-/// Farthest that the inner end of a limb lies from the midline, as a share of where its next joint lies.
+/// Largest distance of the inner end of a limb from the midline, as a share of that of its next joint.
 ///
-/// Larger: thighs and upper arms close to the midline count as hips and clavicles. Smaller: inner ends that lie a little aside count as
-/// thighs. Shown by the tests of `assembly`.
+/// Larger: thighs and upper arms close to the midline count as hips and clavicles. Smaller: inner ends slightly aside
+/// count as thighs. Shown by the tests of `assembly`.
 pub(crate) const INNER_END: f32 = 0.1;
 
 // roles/keep.rs
@@ -184,63 +190,65 @@ pub(crate) const INNER_END: f32 = 0.1;
 /// Larger: ends of tails and legs go stiff. Smaller: ears and claws are bodies. Shown by the tests of `creatures`.
 pub(crate) const LEAST_BODY_SKIN: f32 = 0.004;
 
-/// Least share of all skin for a part of the spine of its own, 0 to 1.
+/// Least share of all skin for a separate part of the spine, 0 to 1.
 ///
-/// Larger: snakes go stiff. Smaller: short vertebrae make weak joints. Shown by the tests of `creatures`.
+/// Larger: snakes become stiff. Smaller: short vertebrae make weak joints. Shown by the tests of `creatures`.
 pub(crate) const LEAST_SPINE_SKIN: f32 = 0.02;
 
 /// Shortest clavicle that is a body, as a share of the height.
 ///
-/// Larger: shoulders do not give. Smaller: bodies that nothing collides with. Shown by the tests of `roles`.
+/// Larger: shoulders are rigid. Smaller: bodies that nothing collides with. Shown by the tests of `roles`.
 pub(crate) const LEAST_CLAVICLE: f32 = 0.05;
 
-/// Distance around the box of the skin within which a mesh that hangs on no bone is worn, as a share of the skin's size.
+/// Distance around the skin's box within which a mesh without a bone counts as worn, as a share of the skin's size.
 ///
-/// Larger: a table beside a figure goes along. Smaller: a pack on its back stays behind. Shown by the tests of `assembly`.
+/// Larger: a table beside a figure follows it. Smaller: a backpack stays behind. Shown by the tests of `assembly`.
 pub(crate) const WORN_WITHIN: f32 = 0.08;
 
 /// Longest side of such a mesh, as a share of the skin's size.
 ///
-/// Larger: the ground on which a figure stands goes along. Smaller: a rifle stays behind. Shown by the tests of `assembly`.
+/// Larger: the ground under a figure follows it. Smaller: a rifle stays behind. Shown by the tests of `assembly`.
 pub(crate) const LARGEST_WORN: f32 = 0.9;
 
-/// Longest side of a mesh that hangs on the node of the skeleton and touches the body, as a share of the skin's size.
+/// Longest side of a mesh on the skeleton's node that touches the body, as a share of the skin's size.
 ///
-/// Larger: a stage under a figure goes along. Smaller: a goblin's head stays in the air. Shown by the tests of `assembly`.
+/// Larger: a stage under a figure follows it. Smaller: a goblin's head stays in the air. Shown by the tests of
+/// `assembly`.
 pub(crate) const LARGEST_ON_ARMATURE: f32 = 1.2;
 
-/// Vertices that vote on the body that carries a part without a bone, at most.
+/// Most vertices that vote on the body of a part without a bone.
 ///
-/// Larger: slower, of scenes with many parts. Smaller: one eye on a fringe of hair decides. Shown by the tests of `assembly`.
+/// Larger: slower for scenes with many parts. Smaller: single vertices decide. Shown by the tests of `assembly`.
 pub(crate) const VOTERS: usize = 48;
 
 // roles/props.rs
 
-/// Least longest side of a prop with a body of its own, as a share of the skin's.
+/// Least longest side of a prop with its own body, as a share of the skin's.
 ///
 /// Larger: swords stick in the floor. Smaller: buttons have bodies. Shown by the tests of `rig_variants` of the ragdolls.
 pub(crate) const LEAST_PROP: f32 = 0.1;
 
-/// Least distance outside the box of its carrier's skin at which a vertex sticks out, as a share of the skin's size.
+/// Least distance outside the box of its carrier's skin at which a vertex protrudes, as a share of the skin's size.
 ///
 /// Larger: hats are part of the head. Smaller: collars are props. Shown by the tests of `rig_variants` of the ragdolls.
 pub(crate) const PROP_BEYOND: f32 = 0.05;
 
-/// Least share of a prop's vertices that stick out, 0 to 1.
+/// Least share of a prop's vertices that protrude, 0 to 1.
 ///
-/// Larger: a shield held near is none. Smaller: a belt is one. Shown by the tests of `rig_variants` of the ragdolls.
+/// Larger: a shield held close is none. Smaller: a belt is one. Shown by the tests of `rig_variants` of the ragdolls.
 pub(crate) const PROP_SHARE: f32 = 0.1;
 
-/// Confidence that a thing which sticks out is carried, 0 to 1.
+/// Confidence of a prop, 0 to 1.
 ///
-/// It is said and decides nothing. No scene shows it.
+/// It is reported and decides nothing. No scene shows it.
 pub(crate) const PROP_CONFIDENCE: f32 = 0.5;
 
 // roles/symmetry.rs
 
 /// Farthest that a joint may be from its mirror image, as a share of the size of the skin.
 ///
-/// Larger: planes are found where there are none. Smaller: sculpted figures have none. Shown by the tests of `creatures`.
+/// Larger: planes are found where there are none. Smaller: sculpted figures have none. Shown by the tests of
+/// `creatures`.
 pub(crate) const MIRROR_TOLERANCE: f32 = 0.025;
 
 // roles/units.rs
@@ -250,16 +258,16 @@ pub(crate) const MIRROR_TOLERANCE: f32 = 0.025;
 /// Larger: giants of a program that writes metres are believed. Smaller: its habit counts for nothing. Shown by the tests of `hints`.
 pub(crate) const UNIT_BY_EXPORTER: f32 = 1.0;
 
-/// Weight of a unit that all files beside it have, in the measure of [`UNIT_BY_EXPORTER`].
+/// Weight of a unit that all neighbouring files have, in the measure of [`UNIT_BY_EXPORTER`].
 ///
-/// Larger: one bad file of a kit follows the others. Smaller: files of one kit come out in different sizes. Shown by the tests of
-/// `hints`.
+/// Larger: one bad file of a kit follows the others. Smaller: files of one kit get different sizes. Shown by the tests
+/// of `hints`.
 pub(crate) const UNIT_BY_KIN: f32 = 2.0;
 
 /// Height of a human as a share of the free height under a door, 0 to 1.
 ///
-/// Doors of 2.05 m are for 1.75 m. Larger or smaller: figures that a door tells the size of grow or shrink with it. Shown by the
-/// tests of `hints`.
+/// Doors of 2.05 m suit 1.75 m. Larger or smaller: figures sized by a door grow or shrink with it. Shown by the tests
+/// of `hints`.
 pub(crate) const UNDER_DOOR: f32 = 0.85;
 
 /// Speed of strides in square roots of gravity and the length of the legs, between a walk's 3.6 and a run's 2.3 strides.
@@ -267,17 +275,17 @@ pub(crate) const UNDER_DOOR: f32 = 0.85;
 /// Larger or smaller: figures without other hints shrink or grow by its square. Shown by the tests of `hints`.
 pub(crate) const STRIDE_SPEED: f32 = 3.0;
 
-/// Height that the head of a grown human tells at least, metres.
+/// Least height that the head of an adult implies, metres.
 ///
 /// Larger: short adults are children. Smaller: dolls are adults. Shown by the tests of `hints`.
 pub(crate) const GROWN_BY_HEAD: f32 = 1.3;
 
-/// Least height of a human whom files beside it, low doors or its steps tell to be small, metres.
+/// Least height of a human that files, doors or steps show to be small, metres.
 ///
-/// Larger: dolls are scaled to men. Smaller: files in a unit that nobody uses are believed. Shown by the tests of `hints`.
+/// Larger: dolls are scaled to adults. Smaller: unusual units are accepted. Shown by the tests of `hints`.
 pub(crate) const SHORTEST: f32 = 0.5;
 
-/// Largest ratio of the length of legs to that which their stride tells, either way, for the stride to bear a height out.
+/// Largest ratio, either way, of leg length to that implied by the stride, for the stride to confirm a height.
 ///
-/// Larger: any walk bears out any height. Smaller: hurried walks bear out none. Shown by the tests of `hints`.
+/// Larger: any walk confirms any height. Smaller: hurried walks confirm none. Shown by the tests of `hints`.
 pub(crate) const STEPS_ALIKE: f32 = 1.5;

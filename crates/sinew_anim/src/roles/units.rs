@@ -1,4 +1,4 @@
-//! The length of a file's unit, read off the body and what is known around it.
+//! The length of a file's unit, from the body and its surroundings.
 
 use super::species::Species;
 use super::{Hints, UnitGuess};
@@ -15,9 +15,9 @@ pub(super) struct Measured {
     pub height: f32,
     /// Longest side of the skin's box, file units.
     pub size: f32,
-    /// From where the head turns to its crown, share of the height; `None` without a head.
+    /// From the head joint to the crown, share of the height; `None` without a head.
     pub head: Option<f32>,
-    /// Time of a stride, seconds, and from where the legs begin that take it down to the floor, file units.
+    /// Stride time, seconds, and the height of the legs' start over the floor, file units.
     pub stride: Option<(f32, f32)>,
     /// Kind of body that the names in the file speak of.
     pub species: Option<Species>,
@@ -34,13 +34,12 @@ impl Measured {
 struct Unit {
     metres: f32,
     name: &'static str,
-    /// Rarity of the unit against centimetres, as a natural logarithm of sizes: of two units, one that makes the body `e` times
-    /// farther from its usual size is as likely as one that is rarer by 1.
+    /// Rarity of the unit against centimetres, as a natural logarithm of sizes: a unit that makes the body `e` times
+    /// further from its usual size is as likely as one that is rarer by 1.
     rarity: f32,
 }
 
-/// Units that files are in. The last two are what is left of metres and centimetres where a program converts a file that was
-/// converted already.
+/// Units of files. The last two result from converting metres or centimetres twice.
 const UNITS: [Unit; 7] = [
     Unit { metres: 1.0, name: "metres", rarity: 0.0 },
     Unit { metres: 0.01, name: "centimetres", rarity: 0.0 },
@@ -71,9 +70,9 @@ const EXPORTERS: [(&str, f32); 16] = [
     ("source engine", 0.0254),
 ];
 
-/// From where a human's head turns to its crown, metres, whatever the human's height.
+/// From a human's head joint to the crown, metres, nearly independent of height.
 const HEAD: f32 = 0.23;
-/// Heights that a head may tell, metres.
+/// Heights that a head may imply, metres.
 const BY_HEAD: [f32; 2] = [0.7, 1.8];
 
 /// Acceleration of free fall, m/s².
@@ -82,16 +81,16 @@ const GRAVITY: f32 = 9.81;
 /// Sizes of a kind of body, metres.
 #[derive(Clone)]
 struct Sizes {
-    /// The body, and what is measured of it, for a sentence.
+    /// The body and its measure, for a sentence.
     words: [&'static str; 2],
     fits: core::ops::Range<f32>,
-    /// In centimetres, those that leave no doubt.
+    /// In centimetres, the certain ones.
     surely: core::ops::Range<f32>,
     /// Size of most, metres.
     usual: f32,
     /// Narrowness of the spread of sizes against those of creatures.
     focus: f32,
-    /// Size that is taken where no unit fits, metres.
+    /// Size if no unit fits, metres.
     assumed: f32,
 }
 
@@ -128,16 +127,16 @@ impl Sizes {
         }
     }
 
-    /// Lets small humans be in a unit in which files beside theirs are, under low doors, and with legs that step as fast as short ones.
+    /// Accepts a small human if neighbouring files use its unit, doors are low, or its steps are fast.
     ///
-    /// A large head or the habit of an exporter is not enough: figures with large heads are drawn in the size of grown ones, and rigs that
-    /// were scaled by some factor are common. Nor is a stride by itself, for who has the head of a grown one only is in a hurry.
+    /// A large head or an exporter's habit is not enough: figures with large heads are drawn at adult size, and scaled
+    /// rigs are common. A stride alone is not either: an adult may only be in a hurry.
     fn with_small(mut self, witnesses: &Witnesses, metres: f32) -> Self {
         let steps = |(leg, by_stride): (f32, f32)| {
             let leg = leg * metres;
             leg < STEPS_ALIKE * by_stride && by_stride < STEPS_ALIKE * leg
         };
-        // Files in metres are beside everything, and say nothing of one that was scaled.
+        // Files in metres occur everywhere and say nothing about a scaled one.
         let is_kin = metres != 1.0 && witnesses.kin.is_some_and(|kin| (metres / kin - 1.0).abs() < 0.05);
         if witnesses.has_low_door || is_kin || witnesses.has_large_head && witnesses.legs.is_some_and(steps) {
             self.fits.start = SHORTEST;
@@ -149,18 +148,18 @@ impl Sizes {
 /// Sizes of an animal as shares of that of a grown one.
 const GROWN: core::ops::Range<f32> = 0.6..1.5;
 
-/// Evidence of a unit beside the size of the body, and the words for it.
+/// Evidence for a unit beside the body's size, and its wording.
 struct Witnesses {
     /// Length of legs in file units, and in metres by the time of their stride.
     legs: Option<(f32, f32)>,
-    /// Units that its exporter writes and that files beside it have, metres.
+    /// Units of its exporter and of neighbouring files, metres.
     exporter: Option<f32>,
     kin: Option<f32>,
     /// Usual size of such a body, metres.
     usual: f32,
     /// True if doors of its world are for small humans.
     has_low_door: bool,
-    /// True if the head tells a small human.
+    /// True if the head implies a small human.
     has_large_head: bool,
     words: String,
 }
@@ -210,20 +209,20 @@ fn unit_of(metres: f32) -> Option<&'static Unit> {
     UNITS.iter().find(|unit| (metres / unit.metres - 1.0).abs() < 0.05)
 }
 
-/// The unit that most of some files have, of more than one; `None` where there is none.
+/// The unit of most of several files; `None` if there is none.
 fn common(kin: &[f32]) -> Option<f32> {
     let alike = |metres: f32| kin.iter().filter(|other| (*other / metres - 1.0).abs() < 0.05).count();
     kin.iter().copied().find(|&metres| alike(metres) > 1 && 2 * alike(metres) > kin.len())
 }
 
-/// Metres per file unit, why, and what else it may be.
+/// Metres per file unit, the reason, and alternatives.
 ///
-/// A humanoid between 0.9 m and 3 m is taken at its word (from 0.5 m on if its legs step as short ones do), as is a creature whose longest
-/// side is 0.1 m to 10 m, and an animal that the file names at 0.6 to 1.5 times the size of a grown one; in centimetres from 0.9 m and
-/// 0.3 m on. Else, of centimetres, inches, decimetres, millimetres and units that were converted twice, the likeliest that
-/// makes it so is taken: near the usual size, which the head and the doors of the world tell, not rare, with legs that step as those
-/// of their length do, and what its exporter writes and the files beside it have. Much of such evidence weighs against its word,
-/// too. If no unit fits, a humanoid is assumed to be 1.75 m, a creature as long as its stride makes it, else 1 m.
+/// A humanoid between 0.9 m and 3 m is accepted as it is (from 0.5 m on if its legs step as short ones do), and so is a
+/// creature whose longest side is 0.1 m to 10 m, and an animal that the file names at 0.6 to 1.5 times its adult size;
+/// in centimetres from 0.9 m and 0.3 m on. Otherwise the most likely unit among centimetres, inches, decimetres,
+/// millimetres and twice converted ones is taken: near the usual size (by head and doors), not rare, with matching
+/// strides, as its exporter and neighbouring files use. Strong evidence of that kind overrides an accepted size. If no
+/// unit fits, a humanoid is 1.75 m, a creature as long as its stride implies, else 1 m.
 pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
     let (measure, sizes) = (if body.is_human() { body.height } else { body.size }, Sizes::of(body));
     let across = sizes.words[1];
@@ -250,7 +249,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
         );
         return (scale, UnitGuess { note, is_sure: false, is_only: false, is_scaled: true });
     }
-    // Stable: of units as likely the one that stands first.
+    // Stable: of equally likely units the first.
     let by_size = |unit: &Unit| match unit.metres {
         1.0 => 0.0,
         0.01 if sizes.surely.contains(&(measure * 0.01)) => 0.0,
@@ -261,7 +260,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
     let unit = fitting.remove(0);
     let others: Vec<String> =
         fitting.iter().map(|unit| format!("{} ({:.2} m)", unit.name, measure * unit.metres)).collect();
-    // Small humans that something around them would bear out leave a doubt.
+    // Small humans that their surroundings would confirm leave a doubt.
     let small = SHORTEST..sizes.fits.start;
     let may_be_small = |unit: &&Unit| body.humanoid && small.contains(&(measure * unit.metres));
     let small =
@@ -274,7 +273,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
         .collect();
     let is_only = others.is_empty();
     let is_sure = is_only && body.humanoid && unit.metres == 1.0;
-    // Where there is no choice there are no witnesses.
+    // Without a choice there is no evidence to weigh.
     let (others, words) = if is_only {
         ("no other unit makes it so".to_owned(), "")
     } else {
@@ -287,7 +286,7 @@ pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
     (unit.metres, UnitGuess { note, is_sure, is_only, is_scaled: false })
 }
 
-/// Size of a body that fits no unit, metres, and what it goes by.
+/// Size of a body that fits no unit, metres, and its reason.
 fn assumed(body: &Measured, sizes: &Sizes, witnesses: &Witnesses) -> (f32, &'static str) {
     match witnesses.legs {
         Some((leg, metres)) if !body.humanoid && body.species.is_none() => {

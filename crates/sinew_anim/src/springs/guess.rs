@@ -1,4 +1,4 @@
-//! Springs where the file states none: by the names of joints.
+//! Springs guessed from joint names.
 
 use super::{LimitKind, SpringBone, SpringChain, SpringLimit, SpringLink, Springs};
 use crate::garments::guess_garments;
@@ -7,21 +7,22 @@ use crate::roles::words;
 use crate::tuning::SPRING_RADIUS;
 use sinew_math::{Rotation, Vec3};
 
-/// Kind of thing that swings, and how.
+/// Kind of swinging part, with its settings.
 struct Material {
     /// Words of names, lower case.
     words: &'static [&'static str],
-    /// Stiffness over the mean length of the chain's bones, 1/s: the rate at which a light spring closes on its rest pose.
+    /// Stiffness over the mean length of the chain's bones, 1/s: the rate at which a light spring approaches its rest
+    /// pose.
     rate: f32,
     /// Gravity over stiffness.
     sag: f32,
     drag: f32,
-    /// Most turn of a bone from its rest pose, radians.
+    /// Largest rotation of a bone from its rest pose, radians.
     cone: f32,
 }
 
-/// Kinds, the first whose word a name has. Rates are those of avatars drawn for VRM (stiffness about 1 m/s on bones of 6 to 10 cm);
-/// what is drawn standing free of gravity, such as ears, sags not at all.
+/// Kinds; the first whose word a name has. Rates are those of avatars drawn for VRM (stiffness about 1 m/s on bones of
+/// 6 to 10 cm); parts drawn as if free of gravity, such as ears, do not sag.
 const MATERIALS: [Material; 6] = [
     Material {
         words: &[
@@ -69,9 +70,10 @@ const MATERIALS: [Material; 6] = [
     },
 ];
 
-/// Springs by the names of joints: hair, ears, tails, skirts, coats and capes, ribbons and straps, breasts, for files that state none.
-/// `up` is the file's axis that points up, unit. Chains run along children of one kind; a joint without a child ends one and does not
-/// swing, for nobody knows how long it is (joints of [sheets](Rig::sheets) are no children). They meet the body of the character. Strands of skirts, coats and capes that lie side by side are linked.
+/// Springs by joint names: hair, ears, tails, skirts, coats and capes, ribbons and straps, breasts, for files that
+/// state none. `up` is the file's up axis, unit. Chains follow children of one kind; a childless joint ends one and
+/// does not swing, since its length is unknown (joints of [sheets](Rig::sheets) are no children). They collide with the
+/// character's body. Neighbouring strands of skirts, coats and capes are linked.
 pub fn guess_springs(rig: &Rig, up: Vec3) -> Springs {
     let material: Vec<Option<usize>> = rig.joints.iter().map(|joint| material_of(&joint.name)).collect();
     let is_cloth = rig.is_of_sheet();
@@ -136,7 +138,7 @@ fn chain(name: &str, bones: &[(JointIdx, Vec3)], material: &Material, up: Vec3) 
     }
 }
 
-/// Index of the first kind whose word the name has; joints that only mark an end or move others are of none.
+/// Index of the first kind whose word the name has; none for end markers and controls.
 fn material_of(name: &str) -> Option<usize> {
     let words = words(name);
     if words.iter().any(|word| matches!(word.as_str(), "end" | "ik" | "ctrl" | "control" | "target" | "nub"))
@@ -159,7 +161,7 @@ mod tests {
         assert_eq!(of("skirt_front_1"), Some("skirt"));
         assert_eq!(of("breast.R"), Some("breast"));
         assert_eq!(of("リボン_左"), Some("ribbon"));
-        // What only has the letters, and what is no more than a mark.
+        // Names that only contain the letters, and mere markers.
         for name in ["LeftForeArm", "Rear_Leg", "Ear4.L_end", "mixamorig:Head", "tailor", "IK_hair"] {
             assert_eq!(of(name), None, "{name}");
         }

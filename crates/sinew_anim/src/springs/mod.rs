@@ -1,9 +1,9 @@
-//! Springs of a rig: hair, tails, ears, straps, skirts, as the file states them (`VRMC_springBone`, VRM 0's secondary
-//! animation) or as they are guessed from names ([`guess_springs`]).
+//! Springs of a rig: hair, tails, ears, straps, skirts, stated by the file (`VRMC_springBone`, VRM 0's secondary
+//! animation) or guessed from names ([`guess_springs`]).
 //!
-//! Plain data: `sinew_ragdoll::springs` moves them. The laws, units and names are those of
-//! [VRMC_springBone 1.0](https://github.com/vrm-c/vrm-specification/tree/master/specification/VRMC_springBone-1.0),
-//! so that a file's numbers come through unchanged.
+//! Plain data: `sinew_ragdoll::springs` simulates them. Laws, units and names follow
+//! [VRMC_springBone 1.0](https://github.com/vrm-c/vrm-specification/tree/master/specification/VRMC_springBone-1.0), so
+//! that a file's numbers are used unchanged.
 
 mod guess;
 
@@ -17,7 +17,7 @@ use sinew_math::{Rotation, Vec3};
 /// Springs of a character. Default: none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Springs {
-    /// Chains, each of bones that swing one below the other.
+    /// Chains of swinging bones.
     pub chains: Vec<SpringChain>,
     /// Colliders that chains refer to by index.
     pub colliders: Vec<SpringCollider>,
@@ -25,26 +25,27 @@ pub struct Springs {
     pub links: Vec<SpringLink>,
 }
 
-/// Link that keeps the tips of two bones at their distance in the bind pose: strands of a skirt hold together.
+/// Link that keeps the tips of two bones at their distance in the bind pose, so that strands of a skirt stay together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringLink {
-    /// Joints of the bones, of chains. One that does not swing has no link.
+    /// Joints of the bones, both in chains. Joints that do not swing have no link.
     pub joints: [JointIdx; 2],
-    /// Share of what the distance is off by that a sixtieth of a second takes back at a time, 0..=1.
+    /// Share of the distance error corrected per 1/60 s, 0..=1.
     pub share: f32,
-    /// False: it keeps them from going farther apart alone, as cloth does. True: from coming nearer, too.
+    /// False: it only keeps them from moving further apart, as cloth does. True: also from coming nearer.
     pub holds_apart: bool,
 }
 
 impl Default for SpringLink {
-    /// Half of what it is off by at a time, against going farther apart alone; between no two joints.
+    /// Half of the error at a time, only against moving apart; between no two joints.
     fn default() -> Self {
         Self { joints: [0; 2], share: SPRING_LINK_SHARE, holds_apart: false }
     }
 }
 
 impl SpringLink {
-    /// Links like this one between strands that lie side by side, each joint with that beside it as far down; `closed`: and between the last and the first.
+    /// Links like this one between neighbouring strands, joint by joint; `closed` also links the last strand to the
+    /// first.
     pub fn across(self, strands: &[GarmentColumn], closed: bool) -> Vec<Self> {
         let last = if closed && strands.len() > 2 { Some([strands.len() - 1, 0]) } else { None };
         let pairs = (1..strands.len()).map(|k| [k - 1, k]).chain(last);
@@ -70,42 +71,42 @@ impl Springs {
     }
 }
 
-/// Chain of bones that swing, and what they come up against.
+/// Chain of swinging bones with its colliders.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SpringChain {
     /// Name in the file, or `""`.
     pub name: String,
     /// Bones, from the root to the tip; no joint is in two chains.
     pub bones: Vec<SpringBone>,
-    /// Joint in whose space inertia is felt; `None`: the world. It is above the chain.
+    /// Joint in whose space inertia acts; `None`: the world. It is above the chain.
     pub center: Option<JointIdx>,
     /// Indices into [`Springs::colliders`].
     pub colliders: Vec<usize>,
-    /// True: the bodies of the character's own ragdoll are colliders, too. Default false, for a file names what is to collide.
+    /// True: the character's own ragdoll bodies are colliders too. Default false, because a file names its colliders.
     pub hits_body: bool,
 }
 
 /// Bone that swings about its joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringBone {
-    /// Joint that turns.
+    /// Joint that rotates.
     pub joint: JointIdx,
-    /// Place of the bone's tip in the joint's own space, file units. Zero: it does not swing.
+    /// Tip of the bone in the joint's own space, file units. Zero: it does not swing.
     pub tail: Vec3,
-    /// Speed toward the rest pose that the spring gives the tip, file units a second, ≥ 0.
+    /// Speed of the tip toward the rest pose by the spring, file units a second, ≥ 0.
     pub stiffness: f32,
-    /// Speed that gravity gives the tip, file units a second, the file's axes.
+    /// Speed of the tip by gravity, file units a second, the file's axes.
     pub gravity: Vec3,
-    /// Share of the tip's motion that a sixtieth of a second takes, 0..=1.
+    /// Share of the tip's motion lost in 1/60 s, 0..=1.
     pub drag: f32,
     /// Radius of the tip against colliders, file units, ≥ 0.
     pub radius: f32,
-    /// Limit of its turn from the rest pose.
+    /// Limit of its rotation from the rest pose.
     pub limit: Option<SpringLimit>,
 }
 
 impl Default for SpringBone {
-    /// Defaults of VRMC_springBone: stiffness 1, drag 0.5, neither gravity nor radius nor limit; joint 0, and no length.
+    /// Defaults of VRMC_springBone: stiffness 1, drag 0.5, no gravity, radius or limit; joint 0, and no length.
     fn default() -> Self {
         Self {
             joint: 0,
@@ -121,13 +122,13 @@ impl Default for SpringBone {
 
 /// Limit of the direction of a bone (`VRMC_springBone_limit`).
 ///
-/// Directions are seen in a frame whose +Y is the bone at rest: the joint's axes, turned the shortest way so that +Y comes
-/// to lie along the bone, then by [`rotation`](Self::rotation).
+/// Directions are in a frame whose +Y is the bone at rest: the joint's axes, rotated the shortest way so that +Y lies
+/// along the bone, then by [`rotation`](Self::rotation).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringLimit {
-    /// Shape of what is allowed.
+    /// Shape of the allowed region.
     pub kind: LimitKind,
-    /// Turn of the frame, in the frame.
+    /// Rotation of the frame, in the frame.
     pub rotation: Rotation,
 }
 
@@ -139,21 +140,21 @@ pub enum LimitKind {
         /// 0..=π.
         angle: f32,
     },
-    /// In the plane at right angles to X, within this angle of +Y.
+    /// Within this angle of +Y in the plane perpendicular to X.
     Hinge {
         /// 0..=π.
         angle: f32,
     },
-    /// Within a turn about X, and an elevation out of the plane at right angles to X.
+    /// Within a rotation about X, and an elevation out of the plane perpendicular to X.
     Spherical {
-        /// Most turn about X, 0..=π.
+        /// Largest rotation about X, 0..=π.
         phi: f32,
         /// Most elevation, 0..=π/2.
         theta: f32,
     },
 }
 
-/// Shape that tips of springs are kept out of, or in.
+/// Shape that keeps tips out, or in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringCollider {
     /// Joint that carries it.
@@ -178,14 +179,14 @@ pub enum ColliderShape {
     Capsule {
         /// Middle of the cap at one end.
         offset: Vec3,
-        /// Middle of the cap at the other.
+        /// Centre of the cap at the other end.
         tail: Vec3,
         /// ≥ 0.
         radius: f32,
         /// Side on which tips stay.
         keeps: Side,
     },
-    /// A plane without end; tips stay on the side that its normal points to.
+    /// An infinite plane; tips stay on the side of its normal.
     Plane {
         /// Point of it.
         offset: Vec3,
@@ -197,7 +198,7 @@ pub enum ColliderShape {
 /// Side of a collider's surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
-    /// Out of it. Default.
+    /// Outside. Default.
     #[default]
     Outside,
     /// Within it.

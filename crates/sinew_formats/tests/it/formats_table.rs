@@ -1,4 +1,4 @@
-//! The table of everything in ../shared/data that moves, in docs/formats.md: made here, and held against the file.
+//! Table of every moving file of the test data, compared with `tests/data/moving_files.txt`.
 
 use crate::data::{GLTF, files, shared_data};
 use needs_data::needs_data;
@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/formats.md");
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/moving_files.txt");
 const START: &str = "<!-- made by `cargo test -p sinew_formats formats_table`, with UPDATE_EXPECT=1 -->\n";
 const END: &str = "<!-- end of what is made -->\n";
 
@@ -209,6 +209,6 @@ fn formats_table_is_up_to_date() {
     if std::env::var_os("UPDATE_EXPECT").is_some() {
         std::fs::write(PAGE, wanted).unwrap();
     } else if page != wanted {
-        panic!("docs/formats.md is out of date: run the test with UPDATE_EXPECT=1");
+        panic!("{PAGE} is out of date: run the test with UPDATE_EXPECT=1");
     }
 }

@@ -1,10 +1,10 @@
-//! Axis-aligned boxes: what pairs are sought with.
+//! Axis-aligned boxes, used to search for pairs.
 
 use super::expect_half_extents;
 use sinew_math::{Vec3, max3, min3};
 
-/// Bounds of a half-space reach this far from the origin, metres: finite, so that sums and differences stay finite,
-/// and beyond any world.
+/// Half-space bounds reach this far from the origin, metres: finite, so that sums and differences stay finite, and
+/// beyond any world.
 pub const HALF_SPACE_REACH: f32 = 1.0e9;
 
 /// Axis-aligned box, metres.
@@ -42,20 +42,20 @@ impl Aabb {
         Self::reaching(center, half_extents)
     }
 
-    /// [`around`](Self::around) for what the world works out: a number that has gone wrong must get as far as the check
-    /// of the bodies, not panic.
+    /// [`around`](Self::around) for computed values: a number that is not finite must reach the check of the bodies
+    /// instead of causing a panic.
     #[inline]
     pub fn reaching(center: Vec3, half_extents: Vec3) -> Self {
         Self { min: center - half_extents, max: center + half_extents }
     }
 
-    /// True if the other one is inside.
+    /// True if the other box is inside this one.
     #[inline]
     pub fn contains(&self, other: &Self) -> bool {
         self.merge(other) == *self
     }
 
-    /// The smallest box around both.
+    /// The smallest box that contains both.
     #[must_use]
     #[inline]
     pub fn merge(&self, other: &Self) -> Self {

@@ -1,4 +1,4 @@
-//! Questions to a box of either kind.
+//! Queries of boxes of either kind.
 
 use super::{Aabb, Obb, Penetration, PlacedBox, SurfacePoint};
 use crate::boxes::distance_beyond;
@@ -9,13 +9,13 @@ use sinew_math::{Rotation, Sym3, Transform, Vec3, max3, min3};
 
 /// A box: [`Aabb`], [`Obb`] or [`PlacedBox`]. Points, distances and directions are in the space that the box stands in.
 ///
-/// Every answer is computed from [`placed`](Self::placed), in an order of operations that its documentation gives, so that
-/// code for many boxes at once can give the same bits.
+/// Every result is computed from [`placed`](Self::placed), in the documented order of operations, so that batch code
+/// can give the same bits.
 pub trait Cuboid {
-    /// The box with its axes worked out.
+    /// The box with its axes computed.
     fn placed(&self) -> PlacedBox;
 
-    /// True if the point is in the box or on its surface: `|(p − c)·aₖ| ≤ hₖ` along each axis, without any tolerance.
+    /// True if the point is in the box or on its surface: `|(p − c)·aₖ| ≤ hₖ` along each axis, without tolerance.
     fn contains_point(&self, point: Vec3) -> bool {
         self.placed().holds(point)
     }
@@ -30,7 +30,7 @@ pub trait Cuboid {
         self.placed().nearest_surface(point)
     }
 
-    /// The point of the solid box that is closest; the given one itself, but for rounding, if it is inside.
+    /// The closest point of the solid box; except for rounding the point itself if it is inside.
     fn closest_point(&self, point: Vec3) -> Vec3 {
         self.placed().closest(point)
     }
@@ -71,14 +71,14 @@ pub trait Cuboid {
         8.0 * h.x * h.y * h.z
     }
 
-    /// Square metres; of a rectangle both sides.
+    /// Surface, square metres; both sides of a rectangle.
     fn surface_area(&self) -> f32 {
         let h = self.placed().half;
         8.0 * (h.x * h.y + h.y * h.z + h.z * h.x)
     }
 
-    /// Inertia about the centre of a solid box of that mass (kg, ≥ 0), in the axes of the space it stands in, kg·m².
-    /// Boxes without volume have one too.
+    /// Inertia about the centre of a solid box of that mass (kg, ≥ 0), in the axes of its space, kg·m². Boxes without
+    /// volume have one too.
     ///
     /// # Panics
     /// If the mass is negative or not finite.
@@ -89,7 +89,7 @@ pub trait Cuboid {
         Sym3::outer(x) * d.x + Sym3::outer(y) * d.y + Sym3::outer(z) * d.z
     }
 
-    /// Mass, centre and inertia of a solid box at `density` kg/m³, in the space it stands in.
+    /// Mass, centre and inertia of a solid box at `density` kg/m³, in its space.
     ///
     /// # Panics
     /// If the density is negative or not finite.
@@ -112,8 +112,8 @@ impl Cuboid for Obb {
     }
 }
 
-/// Points are held against the corners themselves. Overlaps with other kinds, and rays, go by the centre, which is rounded to
-/// `f32` as any position is.
+/// Points are compared with the corners themselves. Overlaps with other kinds, and rays, use the centre, which is
+/// rounded to `f32`.
 impl Cuboid for Aabb {
     fn placed(&self) -> PlacedBox {
         PlacedBox::new(self.half_extents(), &Transform::new(self.center(), Rotation::IDENTITY))

@@ -73,7 +73,7 @@ impl<A: Cuboid> Overlap<Capsule> for A {
             return None;
         }
         let (distance, normal) = match gap {
-            // Between points that all but coincide there is no direction.
+            // Nearly coincident points define no direction.
             Some(gap) if gap.distance > NOISE * (placed.half.length() + gap.on_core.length()) => {
                 (gap.distance, (gap.on_core - gap.on_box) / gap.distance)
             }
@@ -109,7 +109,7 @@ impl Penetration {
     }
 }
 
-/// Share of the lengths at hand below which a direction between two points is taken as rounding.
+/// Relative length below which a direction between two points counts as rounding.
 const NOISE: f32 = 1e-4;
 /// A capsule's core in the box's frame.
 fn core_in(placed: &PlacedBox, capsule: &Capsule) -> Segment {

@@ -4,11 +4,11 @@
 use super::PlacedBox;
 use sinew_math::lanes::{Real, Vector3};
 
-/// Share of the lengths at hand by which boxes may be apart and still count as touching: several roundings.
+/// Relative distance at which boxes that are apart still count as touching: several roundings.
 const TOUCH: f32 = 5e-7;
 
-/// Two boxes in the frame of the first. They are apart if the offset of their centres is longer than their half widths
-/// together along one of 15 directions.
+/// Two boxes in the frame of the first. They are apart if the offset of their centres exceeds their summed half widths
+/// along one of 15 directions.
 ///
 /// With `Rᵢⱼ = aᵢ·bⱼ`, `t` the offset in A's axes, `|t|₁` the sum of its magnitudes and
 /// `slack = TOUCH × (|t|₁ + (|ha|₁ + |hb|₁))`, indices modulo 3, sums from the left, they overlap if for all `i`, `j`
@@ -17,7 +17,7 @@ const TOUCH: f32 = 5e-7;
 /// - edges, with `i1 = i + 1`, `i2 = i + 2`, `j1 = j + 1`, `j2 = j + 2`:
 ///   `|tᵢ₂Rᵢ₁ⱼ − tᵢ₁Rᵢ₂ⱼ| ≤ ((haᵢ₁|Rᵢ₂ⱼ| + haᵢ₂|Rᵢ₁ⱼ|) + (hbⱼ₁|Rᵢⱼ₂| + hbⱼ₂|Rᵢⱼ₁|)) + slack`
 ///
-/// Both sides of the last kind vanish as edges become parallel; the slack keeps rounding from parting boxes there.
+/// Both sides of the last kind vanish as edges become parallel; the slack keeps rounding from separating boxes there.
 pub(super) struct FifteenAxes<R> {
     half_a: [R; 3],
     half_b: [R; 3],
@@ -30,13 +30,13 @@ pub(super) struct FifteenAxes<R> {
 }
 
 impl FifteenAxes<f32> {
-    /// Two boxes alone.
+    /// Two single boxes.
     pub fn of(a: &PlacedBox, b: &PlacedBox) -> Self {
         let parts = |of: &PlacedBox| (of.center.into(), of.axes.map(Into::into), of.half.into());
         Self::new(parts(a), parts(b))
     }
 
-    /// True if no axis parts them.
+    /// True if no axis separates them.
     pub fn overlap(&self) -> bool {
         self.faces() && self.edges()
     }
@@ -65,7 +65,7 @@ impl<R: Real> FifteenAxes<R> {
         }
     }
 
-    /// True if the axes of the faces leave no gap.
+    /// True if no face axis has a gap.
     #[inline(always)]
     pub fn faces(&self) -> R::Mask {
         self.face_of_a::<0>()
@@ -76,7 +76,7 @@ impl<R: Real> FifteenAxes<R> {
             & self.face_of_b::<2>()
     }
 
-    /// True if what is at right angles to an edge of each leaves no gap.
+    /// True if no cross product of edges has a gap.
     #[inline(always)]
     pub fn edges(&self) -> R::Mask {
         self.pair::<0, 0>()

@@ -6,7 +6,7 @@ use sinew_math::{
 };
 
 impl Aabb {
-    /// The smallest one around points; `None` if there are none or a number is not finite.
+    /// The smallest box around points; `None` if there are none or a number is not finite.
     pub fn from_points(points: &[Vec3]) -> Option<Self> {
         if points.is_empty() || !points.iter().all(|p| p.is_finite()) {
             return None;
@@ -18,28 +18,29 @@ impl Aabb {
 }
 
 impl Obb {
-    /// Around points, along the principal axes of their covariance (Gottschalk, Lin & Manocha 1996), longest spread first:
-    /// quick, and good for points that fill a volume evenly. Takes time in proportion to their number.
+    /// Box around points along the principal axes of their covariance (Gottschalk, Lin & Manocha 1996), longest spread
+    /// first. It takes linear time and suits points that fill a volume evenly.
     ///
-    /// Every point is in the box by [`Cuboid::contains_point`]. Of points that all are in one plane, on one line or in one
-    /// place, the other half extents are 0 but for rounding. `None` if there are none or a number is not finite.
+    /// Every point is in the box by [`Cuboid::contains_point`]. Half extents are 0, except for rounding, where the
+    /// points lie in one plane, on one line or in one place. `None` if there are none or a number is not finite.
     pub fn from_points_pca(points: &[Vec3]) -> Option<Self> {
         let cloud = Cloud::new(points)?;
         Some(around(points, principal_axes(&cloud.points)))
     }
 
-    /// Around points, with as little volume as a search finds; of flat points with as little area. For cooking, not for
-    /// every step: some milliseconds.
+    /// Box around points with the least volume that a search finds, or area for flat points. For cooking, not for every
+    /// step: it takes some milliseconds.
     ///
-    /// The least box has two adjacent faces that each lie on an edge of the convex hull (O'Rourke 1985). Tried are all boxes
-    /// with an axis along the normal of a facet or across two edges, of the hull of up to 52 extreme points with up to 64
-    /// edges, each turned about this axis as fits best. The best eight, the box of
-    /// [`from_points_pca`](Self::from_points_pca) and the one along the axes are then turned about each of their axes in
-    /// turn while that helps. So it is the least box itself where that has a face on a facet or two opposite edges in two
-    /// opposite faces (boxes, prisms, a regular tetrahedron); it is never larger than the other two. Of 10,000
-    /// random clouds of 4 to 63 points it was 6 % above the least that random turns found at worst, and on average below it.
+    /// The least box has two adjacent faces that each lie on an edge of the convex hull (O'Rourke 1985). The search
+    /// tries all boxes with an axis along the normal of a facet or across two edges, of the hull of up to 52 extreme
+    /// points with up to 64 edges, each with the best rotation about this axis. The best eight, the box of
+    /// [`from_points_pca`](Self::from_points_pca) and the axis-aligned one are then rotated about each of their axes
+    /// while that helps. So the result is the least box if that has a face on a facet or two opposite edges in two
+    /// opposite faces (boxes, prisms, a regular tetrahedron), and it is never larger than the other two. Over 10,000
+    /// random clouds of 4 to 63 points it was at most 6 % above the least volume found by random rotations, and below
+    /// it on average.
     ///
-    /// What is guaranteed of points and of degenerate input is as for [`from_points_pca`](Self::from_points_pca).
+    /// Guarantees for points and degenerate input are those of [`from_points_pca`](Self::from_points_pca).
     pub fn from_points(points: &[Vec3]) -> Option<Self> {
         let cloud = Cloud::new(points)?;
         let extreme = cloud.extreme_points();
@@ -52,9 +53,9 @@ impl Obb {
         Some(around(points, best.axes))
     }
 
-    /// A box around two: with the least volume among those along the axes of either, or along the principal axes of their
-    /// corners, each turned about its axes while that helps. One that holds the other is the answer itself. Holds all
-    /// corners but for rounding.
+    /// Box around two boxes: the one with the least volume along the axes of either, or along the principal axes of
+    /// their corners, each rotated about its axes while that helps. If one box contains the other, it is the result.
+    /// Contains all corners except for rounding.
     #[must_use]
     pub fn merge(&self, other: &Self) -> Self {
         let corners: [Vec3; 16] = core::array::from_fn(|k| [self, other][k / 8].corners()[k % 8]);
@@ -70,18 +71,18 @@ impl Obb {
     }
 }
 
-/// Turns about each axis that [`Cloud::improved`] makes at most.
+/// Largest number of rounds about each axis in [`Cloud::improved`].
 const ROUNDS: usize = 12;
 /// Hulls of more points are searched by their extreme ones: the most that [`DIRECTIONS`] can find along two frames.
 const MOST_POINTS: usize = 52;
 /// The cheapest boxes of the search that are improved.
 const MOST_STARTS: usize = 8;
-/// The longest edges of a hull that are crossed with each other.
+/// Largest number of the longest hull edges whose pairs are tried.
 const MOST_EDGES: usize = 64;
-/// Share of the cloud's size by which a point may be beyond the plane of a facet.
+/// Relative distance by which a point may be beyond the plane of a facet.
 const FLAT: f32 = 1e-5;
 
-/// Normals of the faces, edges and corners of a cube, one of each opposite two.
+/// Normals of the faces, edges and corners of a cube, one per opposite pair.
 const DIRECTIONS: [Vec3; 13] = [
     Vec3::new(1.0, 0.0, 0.0),
     Vec3::new(0.0, 1.0, 0.0),
@@ -105,7 +106,7 @@ struct Cloud {
     size: f32,
 }
 
-/// An orientation and what a box with it costs.
+/// An orientation and the cost of its box.
 #[derive(Clone, Copy)]
 struct Candidate {
     axes: [Vec3; 3],
@@ -127,15 +128,15 @@ impl Cloud {
         Some(Self { points, size: (bounds.max - bounds.min).length() })
     }
 
-    /// Volume of the box of these sides. Each is lengthened a little, so that flat boxes are compared by their area and
-    /// thin ones by their length.
+    /// Volume of a box with these sides. Each side is lengthened a little, so that flat boxes are compared by area and
+    /// thin ones by length.
     fn cost(&self, sides: [f32; 3]) -> f32 {
         let [a, b, c] = sides.map(|side| side + FLAT * self.size);
         a * b * c
     }
 
-    /// The points that are furthest along [`DIRECTIONS`], in the axes at hand and along the principal ones; all of them if
-    /// they are few.
+    /// The points furthest along [`DIRECTIONS`], in the given axes and in the principal ones; all of them if they are
+    /// few.
     fn extreme_points(&self) -> Self {
         if self.points.len() <= MOST_POINTS {
             return Self { points: self.points.clone(), size: self.size };
@@ -161,8 +162,8 @@ impl Cloud {
         Self { points: chosen.into_iter().map(|k| self.points[k]).collect(), size: self.size }
     }
 
-    /// Unit directions along which an axis of the least box may lie: normals of facets of the hull, and directions across
-    /// two of its edges. Of points on a line, one across it; of one point, none.
+    /// Unit directions that an axis of the least box may have: facet normals of the hull, and cross products of two of
+    /// its edges. For points on a line, one perpendicular to it; for one point, none.
     fn axes_of_hull(&self) -> Vec<Vec3> {
         let (mut axes, mut edges) = (Vec::new(), Vec::new());
         for i in 0..self.points.len() {
@@ -218,8 +219,8 @@ impl Cloud {
         Some(normal)
     }
 
-    /// The cheapest box with an axis along the unit vector `axis`: the rectangle of least area around the points seen along
-    /// it has a side on an edge of their convex hull (Freeman & Shapira 1975).
+    /// The cheapest box with an axis along the unit vector `axis`: the rectangle of least area around the projected
+    /// points has a side on an edge of their convex hull (Freeman & Shapira 1975).
     fn best_about(&self, axis: Vec3) -> Candidate {
         let u = any_orthonormal(axis);
         let v = axis.cross(u);
@@ -237,7 +238,7 @@ impl Cloud {
         (1..hull.len()).map(of_side).fold(of_side(0), Candidate::cheaper)
     }
 
-    /// Turned about each axis in turn while that makes the box cheaper.
+    /// Rotates about each axis in turn while that makes the box cheaper.
     fn improved(&self, axes: [Vec3; 3]) -> Candidate {
         let sides = axes.map(|axis| extent(self.points.iter().map(|p| p.dot(axis))));
         let mut best = Candidate { axes, cost: self.cost(sides) };
@@ -276,7 +277,7 @@ fn flat_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
         }
         hull.push(p);
         if k + 1 == points.len() {
-            // The lower half is done: the way back does not take it apart.
+            // The lower half is finished; the way back does not remove it.
             least = hull.len();
         }
     }
@@ -309,7 +310,7 @@ fn around(points: &[Vec3], [x, y, _]: [Vec3; 3]) -> Obb {
         (min3(lo, q), max3(hi, q))
     });
     placed.center = placed.point((lo + hi) * 0.5);
-    // Again from the centre as it was rounded, by the very formula that tells whether a point is inside.
+    // Recomputed from the rounded centre, by the formula that decides containment.
     let half_extents = points.iter().fold(Vec3::ZERO, |half, &p| max3(half, abs3(placed.local_point(p))));
     Obb { center: placed.center, rotation, half_extents }
 }

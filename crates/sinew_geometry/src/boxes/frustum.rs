@@ -7,11 +7,11 @@ use sinew_math::{Transform, Vec2, Vec3, trig};
 /// A pyramid of sight without its tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frustum {
-    /// Frame of the eye: it looks along −z of this frame, x is to its right, y up.
+    /// Frame of the camera: it looks along −z, x is right, y up.
     pub world_from_eye: Transform,
-    /// Half the width and half the height of what it sees at a distance of 1 m, metres: tangents of half the angles of view.
+    /// Half width and half height of the view at a distance of 1 m, metres: tangents of half the field of view.
     pub slopes: Vec2,
-    /// Nothing nearer than this is seen, metres along the line of sight, above 0.
+    /// Near plane, metres along the line of sight, above 0.
     pub near: f32,
     /// Nor anything farther, metres.
     pub far: f32,
@@ -20,11 +20,11 @@ pub struct Frustum {
 /// Position of something relative to a [`Frustum`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
-    /// All of it is in sight.
+    /// The whole box is visible.
     Inside,
-    /// Some of it is, or so little is missing that this was not told.
+    /// A part is visible, or the test could not decide.
     Intersects,
-    /// None of it is.
+    /// No part is visible.
     Outside,
 }
 
@@ -43,8 +43,8 @@ impl Frustum {
         Self { world_from_eye, slopes: Vec2::new(slope * aspect, slope), near, far }
     }
 
-    /// The segment under a place in the picture, from the near plane to the far one: x from −1 at its left edge to 1 at its
-    /// right, y from −1 below to 1 above. For picking.
+    /// The segment under a position in the picture, from the near plane to the far one: x from −1 at the left edge to 1
+    /// at the right, y from −1 at the bottom to 1 at the top. For picking.
     pub fn ray(&self, screen: Vec2) -> Ray {
         let sight = Vec3::new(screen.x * self.slopes.x, screen.y * self.slopes.y, -1.0);
         Ray::between(
@@ -62,9 +62,9 @@ impl Frustum {
         })
     }
 
-    /// Position of a box relative to it, by the box's extent across each plane (Assarsson & Möller 2000), and the other way round by the
-    /// frustum's corners over each face. Never `Outside` though something is seen, nor `Inside` though something is not,
-    /// but for rounding; a box that is just past an edge may be said to intersect.
+    /// Position of a box relative to the frustum, by the box's extent across each plane (Assarsson & Möller 2000), and
+    /// by the frustum's corners over each face of the box. Never `Outside` if a part is visible, nor `Inside` if a part
+    /// is not, except for rounding; a box just past an edge may be reported as intersecting.
     pub fn sees(&self, cuboid: &impl Cuboid) -> Visibility {
         let placed = cuboid.placed();
         match self.across_planes(placed.center, |normal| placed.half_width(normal)) {
@@ -73,7 +73,7 @@ impl Frustum {
         }
     }
 
-    /// As [`sees`](Self::sees) for a ball.
+    /// [`sees`](Self::sees) for a ball.
     pub fn sees_sphere(&self, sphere: &Sphere) -> Visibility {
         self.across_planes(sphere.center, |_| sphere.radius)
     }
@@ -109,7 +109,7 @@ impl Frustum {
         ]
     }
 
-    /// True if all corners are beyond one face of a box.
+    /// True if all corners are beyond one face of the box.
     fn is_beyond_a_face(&self, placed: &PlacedBox) -> bool {
         let corners = self.corners().map(|p| placed.local_point(p));
         let beyond = |k: usize, side: f32| corners.iter().all(|q| q[k] * side > placed.half[k]);
@@ -117,7 +117,7 @@ impl Frustum {
     }
 }
 
-/// The box that a segment meets first, by its index, and where: what is under a place in the picture, with
+/// The first box that a segment hits, by index, and the hit point: the object under a position in the picture, with
 /// [`Frustum::ray`]. The first in the slice wins a tie.
 pub fn pick<B: Cuboid>(boxes: &[B], ray: &Ray) -> Option<(usize, RayHit)> {
     let hits = boxes.iter().enumerate().filter_map(|(index, cuboid)| Some((index, cuboid.cast_ray(ray)?)));

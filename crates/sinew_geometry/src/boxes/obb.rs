@@ -11,7 +11,7 @@ use sinew_math::{Rotation, Transform, Vec3};
 pub struct Obb {
     /// Its middle, metres.
     pub center: Vec3,
-    /// From the box's axes to those of the space it stands in.
+    /// Rotation from the box's axes to those of its space.
     pub rotation: Rotation,
     /// Half of its sides along its own axes, metres, ≥ 0.
     pub half_extents: Vec3,
@@ -41,7 +41,7 @@ impl Obb {
         Transform::new(self.center, self.rotation)
     }
 
-    /// The smallest box along the axes that holds it, but for rounding: half extents `|R| h` (Arvo, "Transforming
+    /// The smallest axis-aligned box around it, except for rounding: half extents `|R| h` (Arvo, "Transforming
     /// axis-aligned bounding boxes", Graphics Gems 1990).
     pub fn bounds(&self) -> Aabb {
         Shape::Box { half_extents: self.half_extents }.aabb(&self.to_transform())

@@ -1,4 +1,4 @@
-//! Overlap of boxes with each other, with balls and capsules: the trait, and axis-aligned boxes by intervals.
+//! Overlap of boxes with boxes, balls and capsules: the trait, and axis-aligned boxes by intervals.
 
 use super::aabb::Aabb;
 use super::point::Penetration;
@@ -50,14 +50,14 @@ fn expect_radius(radius: f32) {
     assert!((0.0..f32::INFINITY).contains(&radius), "a radius is finite and not negative");
 }
 
-/// Overlap of two convex things of which at least one is a box. What touches overlaps; so does what contains the other.
-/// The order does not matter but for rounding: the other one gives the opposite direction.
+/// Overlap of two convex shapes of which at least one is a box. Touching and containing count as overlap. The order
+/// does not matter except for rounding: swapped arguments give the opposite direction.
 pub trait Overlap<Other> {
     /// True if they have a point in common.
     fn overlaps(&self, other: &Other) -> bool;
 
-    /// Way that `other` has to move so that they only touch, with its depth: the shortest of all such ways.
-    /// `Some` exactly where [`overlaps`](Self::overlaps) is true.
+    /// Shortest displacement of `other` after which they only touch, with its depth. `Some` exactly if
+    /// [`overlaps`](Self::overlaps) is true.
     fn penetration(&self, other: &Other) -> Option<Penetration>;
 }
 

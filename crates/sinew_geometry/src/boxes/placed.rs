@@ -1,8 +1,8 @@
-//! A box with its axes worked out: coordinates, corners, widths.
+//! A box with its axes computed: coordinates, corners, widths.
 
 use sinew_math::{Transform, Vec3, max3, min, min3};
 
-/// A box with its axes worked out: for many questions to the same box.
+/// A box with its axes computed, for many queries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedBox {
     /// Its middle, metres.

@@ -8,19 +8,19 @@ use sinew_math::{Vec3, abs3, max3};
 pub struct SurfacePoint {
     /// On the surface, metres.
     pub point: Vec3,
-    /// Unit, out of the box: from the surface to a point outside, through the nearest face from inside.
+    /// Unit, out of the box: from the surface to an outside point, through the nearest face for an inside one.
     pub normal: Vec3,
     /// From the surface to the point along the normal, metres: negative inside.
     pub distance: f32,
 }
 
-/// Depth of something in a box, and its shortest way out.
+/// Penetration depth in a box, and the shortest way out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penetration {
-    /// Metres, ≥ 0; 0 for what only touches.
+    /// Metres, ≥ 0; 0 if they only touch.
     pub depth: f32,
-    /// Unit, from the one that is asked to the other: moved by `direction * depth`, the other one only touches it. Where
-    /// several ways are as short, one of them, always the same.
+    /// Unit, from the queried box to the other shape: moved by `direction * depth`, the other one only touches. If
+    /// several ways are equally short, always the same one.
     pub direction: Vec3,
 }
 
@@ -31,8 +31,8 @@ impl PlacedBox {
         q.x.abs() <= self.half.x && q.y.abs() <= self.half.y && q.z.abs() <= self.half.z
     }
 
-    /// Outside: the point clamped to the box is closest (Ericson, "Real-Time Collision Detection", 2005, §5.1.3), and the
-    /// normal points from there. Inside: the way through the nearest face; the lowest axis among equals.
+    /// Outside: the point clamped to the box is closest (Ericson, "Real-Time Collision Detection", 2005, §5.1.3), and
+    /// the normal points from there. Inside: through the nearest face; the lowest axis among equals.
     pub(super) fn nearest_surface(&self, p: Vec3) -> SurfacePoint {
         let (distance, normal) = box_distance(self.half, self.local_point(p));
         let normal = self.vector(normal);
@@ -45,15 +45,15 @@ pub(crate) fn box_distance(half: Vec3, p: Vec3) -> (f32, Vec3) {
     distance_beyond(abs3(p) - half, p)
 }
 
-/// Signed distance to a box and its outward normal, from how far a point is beyond the nearer face along each axis, and a
-/// vector whose signs tell on which side that face is.
+/// Signed distance to a box and its outward normal, from the excess beyond the nearer face along each axis, and a
+/// vector whose signs select the faces.
 pub(crate) fn distance_beyond(beyond: Vec3, p: Vec3) -> (f32, Vec3) {
     let outside = max3(beyond, Vec3::ZERO);
     let distance = outside.length();
     if distance > 0.0 {
         let toward =
             Vec3::new(with_sign(outside.x, p.x), with_sign(outside.y, p.y), with_sign(outside.z, p.z));
-        // Squares of tiny distances vanish: measure them again at a larger scale.
+        // Squares of tiny distances underflow: measure them again at a larger scale.
         return if distance > 1e-12 { (distance, toward / distance) } else { (0.0, face_normal(beyond, p)) };
     }
     let axis = nearest_face(beyond);

@@ -1,4 +1,4 @@
-//! Segments: what is closest to what, and how they lie to a box.
+//! Segments: closest points, and their position relative to a box.
 
 use super::placed::sign;
 use sinew_math::{Vec3, clamp, max, max3, min, min3};
@@ -65,10 +65,10 @@ pub(crate) fn gap(half: Vec3, core: &Segment) -> Option<Gap> {
     (squared > 0.0).then(|| Gap { on_core, on_box, distance: squared.sqrt() })
 }
 
-/// Parameter of the segment's point that is closest to the box, 0..=1; an end where ends are as close as what lies between.
+/// Parameter of the segment's closest point to the box, 0..=1; an end if the ends are as close as the interior.
 ///
-/// The square of the distance is convex along the segment, and its slope made of straight pieces that meet where the segment
-/// crosses a face's plane: the two crossings between which it changes sign hold the place where it is nothing.
+/// The squared distance is convex along the segment with a piecewise linear slope whose breaks are the crossings of
+/// face planes: the two breaks between which the slope changes sign enclose its zero.
 fn closest_to_box(half: Vec3, core: &Segment) -> f32 {
     let (from, step) = (core.ends[0], core.ends[1] - core.ends[0]);
     let outside = |t: f32| {
@@ -107,7 +107,7 @@ fn closest_to_box(half: Vec3, core: &Segment) -> f32 {
     if length > 0.0 { clamp(along / length, low, high) } else { low }
 }
 
-/// Points of a box and a segment that are closest, or deepest in each other, in the box's frame.
+/// Closest or deepest points of a box and a segment, in the box's frame.
 pub(crate) struct Meeting {
     /// Unit, out of the box.
     pub normal: Vec3,
@@ -127,7 +127,7 @@ fn edge(half: Vec3, axis: usize, positive: [bool; 2]) -> Segment {
     Segment { ends: [from, to] }
 }
 
-/// The face over which the way out of the box is shortest, and the signed distance along its normal.
+/// The face with the shortest way out of the box, and the signed distance along its normal.
 pub(crate) fn best_face(half: Vec3, core: &Segment) -> (f32, Meeting) {
     let mut best = (f32::NEG_INFINITY, 0, 1.0);
     for axis in 0..3 {
@@ -146,8 +146,8 @@ pub(crate) fn best_face(half: Vec3, core: &Segment) -> (f32, Meeting) {
     (gap, Meeting { normal, on_box: on_core - normal * gap, on_core })
 }
 
-/// As [`best_face`], over the directions across the segment and an edge; `None` if the segment is parallel to all edges,
-/// that is at a sine of at most `parallel_sine`.
+/// Like [`best_face`], over the cross products of the segment and an edge; `None` if the segment is parallel to all
+/// edges (sine at most `parallel_sine`).
 pub(crate) fn best_edge(half: Vec3, core: &Segment, parallel_sine: f32) -> Option<(f32, Meeting)> {
     let along = core.ends[1] - core.ends[0];
     let mut best: Option<(f32, usize, Vec3)> = None;
@@ -172,7 +172,7 @@ pub(crate) fn best_edge(half: Vec3, core: &Segment, parallel_sine: f32) -> Optio
     Some((gap, Meeting { normal, on_box: edge.at(t), on_core: core.at(s) }))
 }
 
-/// Narrows the stretch of the segment to what lies within `half` of the middle along `axis`; false if nothing does.
+/// Clips the segment to within `half` of the middle along `axis`; false if nothing is left.
 pub(crate) fn cut(segment: &Segment, axis: usize, half: f32, stretch: &mut (f32, f32)) -> bool {
     let from = segment.ends[0][axis];
     let step = segment.ends[1][axis] - from;

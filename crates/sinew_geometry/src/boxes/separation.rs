@@ -6,7 +6,7 @@ use super::fifteen::FifteenAxes;
 use super::placed::{PlacedBox, sign};
 use sinew_math::{Vec3, max};
 
-/// Edges whose sine is below this are parallel: what their direction would add to the faces' is rounding.
+/// Edges with a smaller sine are parallel: their direction adds only rounding to the faces'.
 pub(super) const PARALLEL_SINE: f32 = 1e-5;
 
 /// A candidate normal from A to B and the gap along it.
@@ -28,7 +28,7 @@ pub enum AxisOf {
     Edges(usize, usize),
 }
 
-/// Relative attitude of two boxes: what their axes share.
+/// Relative orientation of two boxes.
 pub(crate) struct Crossed<'a> {
     a: &'a PlacedBox,
     b: &'a PlacedBox,
@@ -37,7 +37,7 @@ pub(crate) struct Crossed<'a> {
     cosine: [[f32; 3]; 3],
 }
 
-/// Share of two boxes' size by which the quick estimate of a gap across two edges may be off, times their sine.
+/// Relative error of the quick estimate of a gap across two edges, times their sine.
 const ESTIMATE: f32 = 1e-4;
 
 impl<'a> Crossed<'a> {
@@ -64,8 +64,8 @@ impl<'a> Crossed<'a> {
         better(better(axis(0), axis(1)), axis(2))
     }
 
-    /// The direction across an edge of each that separates best, if that is by more than `enough` (m); else `None`, or one that
-    /// does not. All of the directions are left out whose edges are parallel, that is at a sine below `parallel_sine`.
+    /// The best cross product of edges, if it separates by more than `enough` (m); else `None`, or one that does not.
+    /// Parallel edges (sine below `parallel_sine`) are skipped.
     pub fn best_edges(&self, parallel_sine: f32, enough: f32) -> Option<Axis> {
         let mut best: Option<Axis> = None;
         for (k, may_part) in self.edges_that_may_part(enough).into_iter().enumerate() {
@@ -80,8 +80,8 @@ impl<'a> Crossed<'a> {
         best
     }
 
-    /// Pairs of edges among the nine, the side of B changing fastest, that may part by more than `enough` (m): by the gap
-    /// times the sine, as in [`FifteenAxes`].
+    /// Pairs of edges among the nine, the axis of B changing fastest, that may separate by more than `enough` (m): by
+    /// the gap times the sine, as in [`FifteenAxes`].
     fn edges_that_may_part(&self, enough: f32) -> [bool; 9] {
         let t = self.a.local_vector(self.offset).to_array();
         let (ha, hb) = (self.a.half.to_array(), self.b.half.to_array());
@@ -104,10 +104,10 @@ impl<'a> Crossed<'a> {
     }
 }
 
-/// The two axes after each.
+/// The next two axes after each.
 const AFTER: [(usize, usize); 3] = [(1, 2), (2, 0), (0, 1)];
 
-/// The one that separates better, of equals the first.
+/// The one that separates better; the first among equals.
 fn better(first: Axis, second: Axis) -> Axis {
     if second.separation > first.separation { second } else { first }
 }
@@ -117,8 +117,8 @@ fn width(half: Vec3, cosines: [f32; 3]) -> f32 {
     half.x * cosines[0].abs() + half.y * cosines[1].abs() + half.z * cosines[2].abs()
 }
 
-/// Face `k` of a box whose centre is `along` before that of the other, which is half as wide as `width`; `toward_b` is −1 if it
-/// is one of B.
+/// Face `k` of a box whose centre is `along` in front of the other's, which is half as wide as `width`; `toward_b` is
+/// −1 if it is a face of B.
 fn facing(
     of: &PlacedBox,
     along: f32,
@@ -151,7 +151,7 @@ fn edges(a: &PlacedBox, b: &PlacedBox, (i, j): (usize, usize), parallel_sine: f3
     Some(Axis { normal, separation, of: AxisOf::Edges(i, j) })
 }
 
-/// The axis of that name, with the bits that [`Crossed`] gives it; `None` if they have none of it.
+/// The axis with that name, with the bits of [`Crossed`]; `None` if there is none.
 pub(crate) fn axis(a: &PlacedBox, b: &PlacedBox, of: AxisOf, parallel_sine: f32) -> Option<Axis> {
     match of {
         AxisOf::FaceA(k) => (k < 3).then(|| face(a, b, 1.0, AxisOf::FaceA, k)),
@@ -161,8 +161,8 @@ pub(crate) fn axis(a: &PlacedBox, b: &PlacedBox, of: AxisOf, parallel_sine: f32)
     }
 }
 
-/// The faces of the Minkowski difference of two boxes have those 15 directions for normals, so the way out along the best of
-/// them is the shortest of all.
+/// The faces of the Minkowski difference of two boxes have those 15 normals, so the best of them gives the shortest way
+/// out.
 pub(super) fn penetration(a: &PlacedBox, b: &PlacedBox) -> Option<Penetration> {
     if !FifteenAxes::of(a, b).overlap() {
         return None;

@@ -1,17 +1,17 @@
-//! Edges of two polytopes that may be what meets: whose arcs on the Gauss map cross, eight at a time.
+//! Pairs of edges of two polytopes whose arcs cross on the Gauss map, eight at a time.
 
 use crate::hull::Polytope;
 use sinew_math::Vec3;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 
-/// Edges of one polytope that are held against eight of the other in one go.
+/// Number of edges of one polytope that are compared with eight of the other in one call.
 const CHUNK: usize = 64;
 
 /// An edge with the normals of its faces.
 #[derive(Clone, Copy)]
 pub(super) struct Arc {
-    /// Number of the half-edge that stands for it.
+    /// Index of the half-edge that represents it.
     pub side: usize,
     pub from: Vec3,
     pub along: Vec3,
@@ -31,9 +31,9 @@ impl Arc {
         }
     }
 
-    /// The direction across both edges that points out of this one's polytope, not of unit length, if there the Minkowski
-    /// difference has a face: if this arc and the other's opposite cross. An edge of a triangle, between opposite normals, has
-    /// half a circle: its direction tells which half.
+    /// The direction across both edges that points out of this polytope, not of unit length, if the Minkowski
+    /// difference has a face there: if this arc and the reversed other arc cross. The arc of a triangle's edge, between
+    /// opposite normals, is half a circle; its direction selects the half.
     pub fn crossing(&self, other: &Self) -> Option<Vec3> {
         let [c, d] = other.normals.map(|n| n.dot(self.along));
         if c * d >= 0.0 {
@@ -48,7 +48,7 @@ impl Arc {
     }
 }
 
-/// Calls `visit` with all pairs of an edge of each polytope whose arcs may cross, in no order that means anything.
+/// Calls `visit` with all pairs of edges whose arcs may cross, in an unspecified order.
 pub(super) fn for_each_crossing(a: &Polytope<'_>, b: &Polytope<'_>, mut visit: impl FnMut(&Arc, &Arc)) {
     let mut left = b.topology.edge_numbers();
     loop {
@@ -81,7 +81,7 @@ pub(super) fn for_each_crossing(a: &Polytope<'_>, b: &Polytope<'_>, mut visit: i
     }
 }
 
-/// Eight arcs side by side: directions of the edges, then the normals on both sides.
+/// Eight arcs: directions of the edges, then the normals on both sides.
 struct ArcLanes {
     along: [[f32; WIDTH]; 3],
     normals: [[[f32; WIDTH]; 3]; 2],
@@ -101,7 +101,7 @@ impl ArcLanes {
     }
 }
 
-/// Signs by which [`Arc::crossing`] tells, of eight arcs and each of some others: bit `k` is lane `k`.
+/// Signs that decide [`Arc::crossing`] for eight arcs and each of some others: bit `k` is lane `k`.
 struct Cross<'a> {
     arcs: &'a ArcLanes,
     others: &'a [Arc],
@@ -142,7 +142,7 @@ mod tests {
     use crate::hull::Hull;
     use sinew_math::Random;
 
-    /// The pairs that one by one cross are those that eight at a time do, each once.
+    /// Eight at a time finds the pairs that one by one finds, each once.
     #[test]
     fn lanes_find_the_arcs_that_cross() {
         let mut random = Random::new(12);

@@ -1,4 +1,4 @@
-//! Common parts of boxes and polytopes: the separating axis that a contact takes, and its points.
+//! Code shared by boxes and polytopes: the choice of the separating axis, and its points.
 
 use super::clip::{Incident, Reference, clip};
 use super::feature::{self, pair};
@@ -8,46 +8,48 @@ use super::reduce::{midway, push_best};
 use crate::boxes::separation::{Axis, AxisOf};
 use sinew_math::{Vec3, min};
 
-/// Edges whose sine is below this are taken as parallel: the faces' axes then say all there is to say.
+/// Edges with a smaller sine count as parallel: the face axes suffice then.
 pub(super) const PARALLEL_SINE: f32 = 0.005;
 
-/// Settles ties between the faces of A and B by geometry, so that neither the order of the shapes nor rounding
-/// decides. No common direction of a level (axes, diagonals) is at right angles to it.
+/// Breaks ties between the faces of A and B by geometry, so that neither the order of the shapes nor rounding decides.
+/// No common direction of a level (axes, diagonals) is perpendicular to it.
 pub(super) const TIE_DIRECTION: Vec3 = Vec3::new(0.331, 0.873, 0.357);
 
-/// Below which lengths don't matter for the choice of features: 1 % of the thinner one's half width, at most 0.5 mm.
+/// Length below which the choice of features does not depend on lengths: 1 % of the thinner shape's half width, at most
+/// 0.5 mm.
 pub(super) fn tolerance(half_width_a: f32, half_width_b: f32) -> f32 {
     min(0.0005, 0.01 * min(half_width_a, half_width_b))
 }
 
-/// The better of two faces. Those that lie on each other are as good, and one of them is kept to.
-/// `tie` is [`TIE_DIRECTION`] in the frame at hand.
+/// The better of two faces. Faces that lie on each other are equally good, and the choice between them must be stable.
+/// `tie` is [`TIE_DIRECTION`] in the current frame.
 pub(super) fn choose_face(a: Axis, b: Axis, tolerance: f32, tie: Vec3) -> Axis {
     let tied = (a.separation - b.separation).abs() <= tolerance && a.normal.dot(b.normal) > 0.9;
     let a_wins = if tied { (a.normal + b.normal).dot(tie) > 0.0 } else { a.separation > b.separation };
     if a_wins { a } else { b }
 }
 
-/// The edges instead of the face if they are clearly the better axis: faces give up to four points and hold better.
+/// Chooses the edges over the face only if they are clearly the better axis: faces give up to four points and are more
+/// stable.
 pub(super) fn choose(face: Axis, edges: Option<Axis>, tolerance: f32) -> Axis {
     let least = least_of_edges(&face, tolerance);
     edges.filter(|edges| edges.separation > least).unwrap_or(face)
 }
 
-/// Least gap of edges to be taken instead of a face, metres.
+/// Least gap of edges to be preferred over a face, metres.
 pub(super) fn least_of_edges(face: &Axis, tolerance: f32) -> f32 {
     face.separation + tolerance + 0.05 * face.separation.abs()
 }
 
 /// A solid with flat faces.
 pub(super) trait Faceted {
-    /// The corner furthest along a direction: its number and place.
+    /// The corner furthest along a direction: index and position.
     fn corner(&self, direction: Vec3) -> (usize, Vec3);
 
-    /// The edge that an axis names, of several the one furthest along a direction; and its feature.
+    /// The edge that an axis names (if several, the furthest along a direction), and its feature.
     fn edge_named(&self, number: usize, direction: Vec3) -> (Segment, u16);
 
-    /// The face of `other` that looks at a face of this one, cut to it: [`push_faces`].
+    /// The face of `other` that faces this one, clipped to it: [`push_faces`].
     fn push_faces(
         &self,
         face: usize,
@@ -58,8 +60,8 @@ pub(super) trait Faceted {
         out: &mut Manifold,
     ) -> bool;
 
-    /// The closest points of this solid and another that is apart, by trying corners and edges: slow and sure, for the rare
-    /// pairs that pass each other corner by corner or edge by edge. `normal` parts them.
+    /// The closest points of this solid and a separated one, by trying all corners and edges: slow but reliable, for
+    /// the rare pairs that pass corner by corner or edge by edge. `normal` separates them.
     fn push_closest(&self, other: &Self, normal: Vec3, margin: f32, tolerance: f32, out: &mut Manifold);
 }
 
@@ -81,8 +83,8 @@ pub(super) fn push<S: Faceted>(a: &S, b: &S, axis: &Axis, margin: f32, tolerance
     }
 }
 
-/// The closest points of two edges. False, and nothing pushed, if the solids are apart and these are not their closest
-/// points.
+/// The closest points of two edges. Returns false and pushes nothing if the solids are apart and these are not their
+/// closest points.
 fn push_edges(
     (edge_a, feature_a): (Segment, u16),
     (edge_b, feature_b): (Segment, u16),
@@ -107,8 +109,8 @@ fn push_support<S: Faceted>(a: &S, b: &S, axis: &Axis, out: &mut Manifold) {
     out.push(position, axis.separation, pair(feature::vertex(of_a), feature::vertex(of_b)));
 }
 
-/// The other shape's face cut to the reference face. False, and nothing pushed, if that does not show how far the
-/// shapes are apart: they pass each other beside the face.
+/// The other shape's face clipped to the reference face. Returns false and pushes nothing if that does not give the
+/// distance of the shapes because they pass beside the face.
 pub(super) fn push_faces<const N: usize>(
     reference: &impl Reference,
     (incident, corners): (u16, impl Iterator<Item = Incident>),
@@ -160,9 +162,9 @@ impl Bridge {
     }
 }
 
-/// The contact of shapes that are apart, with bridges of which `best` is the shortest. Parallel edges are equally close
-/// along a line, at whose ends there are corners: `corners` are all bridges from corners. `size` is that of the shapes,
-/// `fallback` the direction in which they part.
+/// The contact of separated shapes from candidate bridges, of which `best` is the shortest. Parallel edges are equally
+/// close along a line whose ends are corners: `corners` are all bridges from corners. `size` is that of the shapes,
+/// `fallback` the separating direction.
 pub(super) fn push_bridges<const N: usize>(
     best: Bridge,
     corners: impl Iterator<Item = Bridge>,

@@ -87,16 +87,16 @@ impl Faceted for PlacedBox {
 /// Share of two boxes' size that rounding may add to a distance between them.
 const BLUR: f32 = 1e-5;
 
-/// Two boxes whose closest points are looked for: with what corners and edges are left out that cannot have them.
+/// Closest points of two boxes, without the corners and edges that cannot have them.
 struct Closest<'a> {
     boxes: [&'a PlacedBox; 2],
     corners: [[Vec3; 8]; 2],
-    /// Reach of each corner of A and of B along the direction that parts them, metres.
+    /// Reach of each corner of A and of B along the separating direction, metres.
     heights: [[f32; 8]; 2],
     /// Furthest reach of either's corners toward the other box, metres.
     tops: [f32; 2],
     normal: Vec3,
-    /// Gap beyond which nothing counts, metres.
+    /// Gap beyond which nothing is reported, metres.
     most: f32,
 }
 
@@ -123,11 +123,11 @@ impl<'a> Closest<'a> {
         of_a.chain(of_b)
     }
 
-    /// The closest points of a pair of edges, if those are closer than the ones that were found.
+    /// The closest points of a pair of edges, if they are closer than the ones found so far.
     fn shortest_edge_bridge(&self, found: Option<Bridge>) -> Option<Bridge> {
         let most = found.map_or(self.most, |found| min(found.span().length() * (1.0 + BLUR), self.most));
         let most = most + self.most * BLUR;
-        // Along the shortest way so far, few edges are closer.
+        // Only a few edges are closer along the shortest way so far.
         let toward = found.map_or(self.normal, |found| normalize_or(found.span(), self.normal));
         let reach = self.corners.map(|corners| corners.map(|corner| corner.dot(toward)));
         let mut best = found;
@@ -152,7 +152,7 @@ impl<'a> Closest<'a> {
         best
     }
 
-    /// The closest points of two edges, each by its number and ends.
+    /// The closest points of two edges, each by index and ends.
     fn edge_bridge(&self, (i, ends): (usize, [usize; 2]), (j, others): (usize, [usize; 2])) -> Bridge {
         let edge_a = Segment { ends: ends.map(|k| self.corners[0][k]) };
         let edge_b = Segment { ends: others.map(|k| self.corners[1][k]) };
@@ -162,7 +162,7 @@ impl<'a> Closest<'a> {
     }
 }
 
-/// Corners at the ends of each edge of a box: four along each axis.
+/// Corners at the ends of each edge of a box: four per axis.
 const EDGES: [[usize; 2]; 12] =
     [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]];
 
@@ -180,8 +180,7 @@ mod tests {
         )
     }
 
-    /// The direction across two edges that separates best is the same however many are left out that separate by no more than
-    /// enough.
+    /// Skipping edges that separate by no more than enough does not change which direction separates best.
     #[test]
     fn edges_that_part_too_little_are_left_out() {
         let mut random = Random::new(41);
@@ -204,7 +203,7 @@ mod tests {
         assert!(found > 3_000 && left_out > 3_000, "{found}, {left_out}");
     }
 
-    /// All corners and edges tried, as written down once more.
+    /// Reference implementation that tries all corners and edges.
     fn tried(a: &PlacedBox, b: &PlacedBox, normal: Vec3, margin: f32) -> Manifold {
         let all = Closest::new(a, b, normal, f32::INFINITY);
         let corners: Vec<Bridge> = all.corner_bridges().collect();

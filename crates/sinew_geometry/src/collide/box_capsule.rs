@@ -1,5 +1,5 @@
-//! Box against capsule: closest points of the box and the core while they are apart, separating axes once the core
-//! has entered the box. Everything happens in the box's frame.
+//! Box against capsule: closest points of the box and the core while they are apart, separating axes once the core has
+//! entered the box. Computed in the box's frame.
 
 use super::feature::{self, WHOLE, pair};
 use super::line::Line;
@@ -8,13 +8,13 @@ use super::placed::{PlacedBox, PlacedCapsule, Segment, largest_axis, sign};
 use crate::boxes::segment::{Gap, Meeting, best_edge, best_face, cut, gap};
 use sinew_math::{Vec3, min};
 
-/// Normals within 0.03° of a face's are that face's: rounding is below that, and the rim of a long box not far off.
+/// Normals within 0.03° of a face's normal are replaced by it: rounding is below that, and so is the rim of a long box.
 const FACE_SINE: f32 = 5e-4;
 /// A core within 1.8° of a side's direction runs along it.
 const ALONG_COSINE: f32 = 0.9995;
 /// A normal within 1.8° of the plane across that side.
 const ACROSS_SINE: f32 = 0.03;
-/// A core whose sine against a side is below this is taken as parallel: the faces then say all there is to say.
+/// A core with a smaller sine against a side counts as parallel: the face axes suffice then.
 const PARALLEL_SINE: f32 = 0.005;
 
 pub(super) fn collide(
@@ -45,15 +45,15 @@ pub(super) fn collide(
 /// The closest points, if the core is clearly outside the box.
 fn apart(half: Vec3, core: &Segment) -> Option<Meeting> {
     let Gap { on_core, on_box, distance } = gap(half, core)?;
-    // Closer than rounding can tell, the direction between the points is noise.
+    // The direction between points closer than rounding is noise.
     let reach = half.length() + on_core.length();
     (distance > 1e-4 * reach).then(|| Meeting { normal: (on_core - on_box) / distance, on_box, on_core })
 }
 
-/// The shortest way out, over the box's faces and the directions across the core and an edge.
+/// The shortest way out, over the box's faces and the cross products of core and edges.
 fn pierced(half: Vec3, core: &Segment, radius: f32) -> Meeting {
     let (face_gap, face) = best_face(half, core);
-    // A face can carry two points: an edge must be clearly the better way.
+    // A face can carry two points, so an edge must be clearly better.
     let preference = 0.05 * face_gap.abs() + 0.01 * min(min(half.x, half.y), min(half.z, radius));
     match best_edge(half, core, PARALLEL_SINE) {
         Some((edge_gap, edge)) if edge_gap > face_gap + preference => edge,
@@ -61,8 +61,8 @@ fn pierced(half: Vec3, core: &Segment, radius: f32) -> Meeting {
     }
 }
 
-/// The two ends of the stretch of the core that lies over the face or along the edge it meets. False, and nothing
-/// pushed, if it meets a corner, crosses an edge, or the stretch is too short.
+/// The two ends of the part of the core over the face or along the edge it touches. Returns false and pushes nothing if
+/// it touches a corner, crosses an edge, or that part is too short.
 fn push_line(
     half: Vec3,
     core: &Segment,

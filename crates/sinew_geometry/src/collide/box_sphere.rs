@@ -19,6 +19,6 @@ pub(super) fn collide(
         return;
     }
     out.normal = a.vector(normal);
-    // One id for all features of the box: the contact of a ball that rolls over an edge is still the same one.
+    // One id for all features of the box, so that the contact of a ball rolling over an edge persists.
     out.push(b.center - out.normal * (b.radius + 0.5 * separation), separation, pair(WHOLE, WHOLE));
 }

@@ -5,8 +5,8 @@ use super::manifold::{Manifold, SeparationCache};
 use super::placed::{PlacedCapsule, direction_or, sign};
 use sinew_math::{Vec3, any_orthonormal, min, normalize_or};
 
-/// Cores that run side by side touch along a line; its two ends are used while the cores lie within this share of
-/// the smaller radius of each other's plane through the normal.
+/// Parallel cores touch along a line; its two ends are used while the cores lie within this share of the smaller radius
+/// of each other's plane through the normal.
 const SIDEWAYS_SHARE: f32 = 0.25;
 
 /// Sine of the angle from which on cores count as crossing: about half a degree.
@@ -26,8 +26,8 @@ pub(super) fn collide(
     let inside = |share: f32, pill: &PlacedCapsule| {
         0.0 < share && share < 1.0 && pill.core.ends[0] != pill.core.ends[1]
     };
-    // Of cores that cross, the common perpendicular is exact however near they are; the direction between the two points
-    // is rounding then.
+    // For crossing cores the common perpendicular is exact at any distance; the direction between the two points is
+    // rounding then.
     let (normal, separation) = if inside(s, a) && inside(t, b) && sine > LEAST_SINE {
         let gap = (pb - pa).dot(cross) / sine;
         (cross * (sign(gap) / sine), gap.abs() - a.radius - b.radius)
@@ -50,12 +50,12 @@ pub(super) fn collide(
 
 /// The two ends of the stretch along which the cores run side by side; false, and nothing pushed, if they don't.
 fn push_side_by_side(a: &PlacedCapsule, b: &PlacedCapsule, margin: f32, out: &mut Manifold) -> bool {
-    // Along both, so that their order does not matter.
+    // The direction uses both cores, so that their order does not matter.
     let common = a.axis + b.axis * sign(a.axis.dot(b.axis));
     let place = |p: Vec3| (p - a.core.ends[0]).dot(common);
     let (end_of_a, [t0, t1]) = (place(a.core.ends[1]), b.core.ends.map(place));
     let (first, last) = if t0 < t1 { ((t0, 0), (t1, 1)) } else { ((t1, 1), (t0, 0)) };
-    // Each end of the stretch is an end of one core, beside the other one.
+    // Each end of the overlap is an end of one core, beside the other core.
     let beside_a =
         |i: usize| (a.core.at(a.core.closest(b.core.ends[i])), b.core.ends[i], pair(WHOLE, end(i)));
     let beside_b =
@@ -64,7 +64,7 @@ fn push_side_by_side(a: &PlacedCapsule, b: &PlacedCapsule, margin: f32, out: &mu
         if first.0 > 0.0 { beside_a(first.1) } else { beside_b(0) },
         if last.0 < end_of_a { beside_a(last.1) } else { beside_b(1) },
     ];
-    // Shorter than a tenth of the radius, the stretch is a point.
+    // A part shorter than a tenth of the radius counts as a point.
     let thinner = min(a.radius, b.radius);
     let middle = |k: usize| (ends[k].0 + ends[k].1) * 0.5;
     if (middle(1) - middle(0)).length() < 0.1 * thinner {

@@ -20,7 +20,7 @@ pub(super) fn collide(
         parting.gap = separation;
         return;
     }
-    // A centre on the core: any way out across the core is as good as another.
+    // The centre lies on the core: every way out across the core is equally short.
     out.normal = direction_or(offset, a.radius + b.radius, any_orthonormal(a.axis));
     let position = on_core + out.normal * (a.radius + 0.5 * separation);
     out.push(position, separation, pair(WHOLE, WHOLE));

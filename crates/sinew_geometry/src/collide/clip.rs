@@ -1,4 +1,4 @@
-//! A face cut to the prism over another, with the names of the features that meet.
+//! Clips a face to the prism over another and names the features that touch.
 
 use super::feature;
 use super::placed::PlacedBox;
@@ -14,7 +14,7 @@ pub(super) struct Corner {
     pub reference: u16,
     /// Feature of the incident shape.
     pub incident: u16,
-    /// Plane on which the side from this corner to the next one lies.
+    /// Plane that contains the side from this corner to the next.
     side: Side,
 }
 
@@ -44,7 +44,7 @@ impl<const N: usize> Polygon<N> {
     }
 
     fn push(&mut self, corner: Corner) {
-        // Rounding could make one more corner of a sliver; it adds nothing.
+        // Rounding could produce one more corner of a sliver; it is dropped.
         if self.count < N {
             self.corners[self.count] = corner;
             self.count += 1;
@@ -52,7 +52,7 @@ impl<const N: usize> Polygon<N> {
     }
 }
 
-/// A convex face that another one is cut to. Sides are numbered in the order in which they cut.
+/// A convex face to clip against. Sides are numbered in clipping order.
 pub(super) trait Reference {
     /// Name of the face.
     fn feature(&self) -> u16;
@@ -82,8 +82,8 @@ pub(super) struct Line {
 /// A corner of an incident face: where, its name, and the name of the edge from it to the next.
 pub(super) type Incident = (Vec3, u16, u16);
 
-/// The part of the incident face that lies over or under the reference face, widened by `tolerance` so that corners
-/// which lie on its sides keep their names under rounding (Sutherland & Hodgman 1974).
+/// Clips the incident face to the prism over the reference face, widened by `tolerance` so that corners on its sides
+/// keep their names under rounding (Sutherland & Hodgman 1974).
 pub(super) fn clip<const N: usize>(
     reference: &impl Reference,
     face: u16,
@@ -105,7 +105,7 @@ pub(super) fn clip<const N: usize>(
     polygon
 }
 
-/// Cuts away what lies beyond one side of the reference face.
+/// Removes the part beyond one side of the reference face.
 fn cut<const N: usize>(
     polygon: &mut Polygon<N>,
     reference: &impl Reference,
@@ -141,7 +141,7 @@ fn cut<const N: usize>(
                 }
                 Side::None => {}
             }
-            // Where the outline leaves, it goes on along this side of the reference face.
+            // Where the outline leaves, it continues along this side of the reference face.
             if d0 <= 0.0 {
                 corner.side = Side::Reference(side as u16);
             }
@@ -183,7 +183,7 @@ impl<'a> BoxFace<'a> {
             | usize::from(positive[1]) << v
     }
 
-    /// The four corners in turn.
+    /// The four corners in order.
     pub fn corners(&self) -> impl Iterator<Item = Incident> {
         let [u, v] = self.sides;
         let sides = [([false, false], u), ([true, false], v), ([true, true], u), ([false, true], v)];
@@ -256,7 +256,7 @@ impl<'a> PolytopeFace<'a> {
         Self { of, face, axes: [u, normal.cross(u), normal], origin: of.center - normal * height }
     }
 
-    /// Its corners in turn.
+    /// Its corners in order.
     pub fn corners(&self) -> impl Iterator<Item = Incident> {
         let Polytope { vertices, topology, .. } = *self.of;
         topology.sides(self.face).map(move |side| {

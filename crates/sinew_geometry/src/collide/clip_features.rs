@@ -1,27 +1,27 @@
-//! A feature of one solid cut to the prism over a face of another, with the names of the parts that meet.
+//! Clips a feature of one solid to the prism over a face of another and names the parts that touch.
 
 use super::feature::WHOLE;
 use crate::convex::feature::{Corner, Feature, MOST_CORNERS};
 use sinew_math::{Vec3, normalize_or};
 
-/// Each side of the face can add a corner to what is cut.
+/// Each side of the face can add a corner to the clipped feature.
 pub(super) const MOST_POINTS: usize = 2 * MOST_CORNERS;
 
 /// A point of the cut feature.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Clipped {
     pub point: Vec3,
-    /// Part of the face.
+    /// Part on the face.
     pub reference: u16,
-    /// Part of the feature.
+    /// Part on the feature.
     pub incident: u16,
 }
 
-/// A corner of the outline on the way.
+/// A corner of the outline while clipping.
 #[derive(Clone, Copy, Default)]
 struct Outline {
     at: Clipped,
-    /// Plane on which the side from here to the next corner lies.
+    /// Plane that contains the side from this corner to the next.
     side: Side,
 }
 
@@ -47,7 +47,7 @@ impl Cut {
     }
 }
 
-/// Part that lies over or under the face, widened by `tolerance` so that corners on its sides keep their names under rounding
+/// The part over or under the face, widened by `tolerance` so that corners on its sides keep their names under rounding
 /// (Sutherland & Hodgman 1974).
 pub(super) fn clip(face: &Feature, incident: &Feature, tolerance: f32) -> Cut {
     let mut outline = [Outline::default(); MOST_POINTS];
@@ -69,7 +69,7 @@ pub(super) fn clip(face: &Feature, incident: &Feature, tolerance: f32) -> Cut {
     Cut { points: outline.map(|corner| corner.at), count }
 }
 
-/// Cuts away what lies beyond one side of the face; how many corners are left.
+/// Removes the part beyond one side of the face; returns the number of remaining corners.
 fn cut(
     outline: &[Outline],
     face: &Feature,
@@ -80,7 +80,7 @@ fn cut(
 ) -> usize {
     let mut count = 0;
     let mut push = |corner: Outline| {
-        // Rounding could make a corner too many of a sliver; it adds nothing.
+        // Rounding could produce one more corner of a sliver; it is dropped.
         if count < MOST_POINTS {
             out[count] = corner;
             count += 1;
@@ -91,7 +91,7 @@ fn cut(
         if d0 <= 0.0 {
             push(*from);
         }
-        // Of a segment there is no way back from its end.
+        // A segment has no side from its end back to its start.
         if k + 1 == outline.len() && incident.corners().len() < 3 {
             break;
         }
@@ -112,7 +112,7 @@ fn cut(
             }
             Side::None => {}
         }
-        // Where the outline leaves, it goes on along this side of the face.
+        // Where the outline leaves, it continues along this side of the face.
         if d0 <= 0.0 {
             corner.side = Side::Reference(number);
         }
@@ -121,7 +121,7 @@ fn cut(
     count
 }
 
-/// Name of the corner of the face at which two of its sides meet; of none if they don't.
+/// Name of the face's corner at which two of its sides meet; none if they do not.
 fn corner_between(face: &Feature, one: usize, other: usize) -> u16 {
     let sides = face.corners().len();
     if (one + 1) % sides == other {

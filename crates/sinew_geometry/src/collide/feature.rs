@@ -38,8 +38,8 @@ pub(crate) fn half_edge(topology: Topology<'_>, side: usize) -> u16 {
     EDGE | topology.edge_of(side) as u16
 }
 
-/// Direction of the edge that a feature names, in the frame of its shape, of any length. `None` if it names none, or the shape is
-/// neither a box nor a hull.
+/// Direction of the edge that a feature names, in the frame of its shape, of any length. `None` if it names no edge, or
+/// the shape is neither a box nor a hull.
 fn direction(shape: &Shape, feature: u16) -> Option<Vec3> {
     let number = usize::from(feature & !FACE);
     match shape {
@@ -53,8 +53,8 @@ fn direction(shape: &Shape, feature: u16) -> Option<Vec3> {
     }
 }
 
-/// Directions of the two edges that cross at a contact point, each in the frame of its shape and of any length. `None` if it is not one of
-/// edges of boxes or hulls.
+/// Directions of the two edges that cross at a contact point, each in the frame of its shape and of any length. `None`
+/// if the point is not one of edges of boxes or hulls.
 pub fn edge_directions(shapes: [&Shape; 2], feature: u32) -> Option<[Vec3; 2]> {
     let [a, b] = [feature as u16, (feature >> 16) as u16];
     Some([direction(shapes[0], a)?, direction(shapes[1], b)?])

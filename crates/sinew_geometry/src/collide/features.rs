@@ -1,4 +1,4 @@
-//! Any two convex solids: where their supporting features meet, once it is known along which direction.
+//! Any two convex solids: contact of their supporting features along a known direction.
 
 use super::clip_features::{Clipped, clip};
 use super::feature::{WHOLE, pair};
@@ -10,19 +10,20 @@ use crate::convex::support::{Posed, Support, wide};
 use crate::convex::{Gap, apart_along, meet};
 use sinew_math::{Vec3, min};
 
-/// A face whose normal is within about 18° of the direction may be what the solids meet with.
+/// A face may be in contact if its normal is within about 18° of the direction.
 const FACING: f32 = 0.95;
-/// Faces give more points and hold better than edges and corners: those must be better by this share of the gap, and by this
-/// share of the thinner solid.
+/// Faces give more points and are more stable than edges and corners: those must be better by this share of the gap and
+/// by this share of the thinner solid.
 const PREFERENCE: f32 = 0.05;
 const PREFERENCE_OF_SIZE: f32 = 0.01;
 /// Normals within this of a face's are that face's.
 const FACE_SINE: f32 = 2e-3;
-/// Edges whose sine is below this run side by side, and touch along a line.
+/// Edges with a smaller sine are parallel and touch along a line.
 const PARALLEL_SINE: f32 = 0.05;
-/// They do so while they lie within this share of the thinner solid of each other's plane through the normal.
+/// Parallel edges touch along a line while they lie within this share of the thinner solid of each other's plane
+/// through the normal.
 const SIDEWAYS_SHARE: f32 = 0.25;
-/// Settles ties between faces by geometry, so that the order of the solids does not decide: see `box_box`.
+/// Breaks ties between faces by geometry, so that the order of the solids does not decide: see `box_box`.
 const TIE_DIRECTION: Vec3 = Vec3::new(0.331, 0.873, 0.357);
 
 /// Any two convex solids: direction and gap by GJK and EPA.
@@ -41,9 +42,9 @@ pub(crate) fn collide<A: Support, B: Support>(
     }
 }
 
-/// The contact of two solids that are closest, or deepest in each other, along `gap.normal`: the face that looks along it,
-/// with what meets it of the other solid cut to it; or two edges side by side; or the one point that `gap` names. Points
-/// further apart than `margin` are left out.
+/// The contact of two solids that are closest, or deepest in each other, along `gap.normal`: a face along it with the
+/// other solid's feature clipped to it, two parallel edges, or the single point of `gap`. Points further apart than
+/// `margin` are dropped.
 pub(crate) fn manifold_of_features<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
@@ -99,9 +100,9 @@ impl Of {
 }
 
 impl Pairing<'_> {
-    /// The face to which the other feature is cut, if one of them is such a face, and how far the solids are apart along its
-    /// normal: it looks along the direction, or nearly so, the other feature is no mere corner, and the gap along the face's
-    /// own normal is as good within `slack`.
+    /// The face to clip the other feature to, if there is one, and the distance of the solids along its normal: the
+    /// face looks nearly along the direction, the other feature is more than a corner, and the gap along the face's own
+    /// normal is as good within `slack`.
     fn reference(&self, slack: f32, apart_along: impl Fn(Vec3) -> f32) -> Option<(Of, f32)> {
         let score = |of: Of| {
             let feature = self.feature(of);
@@ -141,8 +142,8 @@ impl Pairing<'_> {
         if of == Of::A { self.gap.normal } else { -self.gap.normal }
     }
 
-    /// The other feature cut to the face, along whose normal the solids are `apart`. False if that does not show how far they
-    /// are apart: they pass each other beside the face.
+    /// The other feature clipped to the face, along whose normal the solids are `apart`. Returns false if that does not
+    /// give their distance because they pass beside the face.
     fn push_faces(&self, of: Of, apart: f32, out: &mut Manifold) -> bool {
         let other = of.other();
         let (reference, incident) = (self.feature(of), self.feature(other));
@@ -192,7 +193,7 @@ impl Pairing<'_> {
         if !(parallel && across) || length <= 0.0 || length_b <= 0.0 {
             return false;
         }
-        // Along both, so that their order does not matter.
+        // The direction uses both edges, so that their order does not matter.
         let common = along / length + along_b * (sign(along.dot(along_b)) / length_b);
         let run = along.dot(common);
         let place = |p: Vec3| (p - a0.point).dot(common) / run;

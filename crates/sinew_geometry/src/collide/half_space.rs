@@ -10,7 +10,7 @@ use crate::convex::support::{Posed, Support, narrow, wide};
 use crate::hull::{Hull, MAX_VERTICES};
 use sinew_math::{Transform, Vec3, min};
 
-/// The four corners of the face that looks at the plane: the deepest corner is always one of them.
+/// The four corners of the face toward the plane; the deepest corner is always one of them.
 pub(super) fn against_box(a: &Plane, b: &PlacedBox, margin: f32, out: &mut Manifold) {
     let (axis, side) = b.facing(-a.normal);
     out.normal = a.normal;
@@ -22,7 +22,7 @@ pub(super) fn against_box(a: &Plane, b: &PlacedBox, margin: f32, out: &mut Manif
     }
 }
 
-/// The corners of the face that looks at the plane from the deepest corner, or from one that is nearly as deep.
+/// The corners of the face toward the plane, starting at the deepest corner or one nearly as deep.
 pub(super) fn against_hull(a: &Plane, b: &Hull, frame: &Transform, margin: f32, out: &mut Manifold) {
     let polytope = b.polytope();
     let down = frame.rotation.inverse() * -a.normal;
@@ -50,7 +50,7 @@ pub(super) fn against_sphere(a: &Plane, b: &PlacedSphere, margin: f32, out: &mut
     push(a, b.center, b.radius, margin, WHOLE, out);
 }
 
-/// The corners of what looks at the plane.
+/// The corners of the feature toward the plane.
 pub(super) fn against_core<S: Support>(a: &Plane, b: &Posed<'_, S>, margin: f32, out: &mut Manifold) {
     const POINTS: usize = MOST_CORNERS + 1;
     let (feature, radius) = (b.feature(-a.normal), b.solid.rounding());
@@ -60,12 +60,12 @@ pub(super) fn against_core<S: Support>(a: &Plane, b: &Posed<'_, S>, margin: f32,
     push_deepest::<POINTS>(corners, lowest, ROUNDING * b.solid.reach(), margin, out);
 }
 
-/// Heights over a plane are equal if they differ by less than this share of a solid's reach. They are rounded by a few 6e-8 of
-/// it; what rests is never quite still, and is to keep the points that were chosen.
+/// Relative height difference below which heights over a plane count as equal. Heights are rounded by a few 6e-8 of a
+/// solid's reach, and a resting solid must keep its points.
 const ROUNDING: f32 = 1e-5;
 
-/// Four of some corners, or fewer, that are within the margin. Of what leans a little, or is round, the `lowest` point need not
-/// be among the corners that stand for what looks at the plane: then it joins them, `N` at most.
+/// At most four of the given corners that are within the margin. For a tilted or round solid the `lowest` point need
+/// not be among them; it is then added. `N` points at most.
 fn push_deepest<const N: usize>(
     corners: impl Iterator<Item = ManifoldPoint>,
     lowest: ManifoldPoint,

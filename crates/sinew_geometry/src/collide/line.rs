@@ -1,4 +1,4 @@
-//! A capsule that lies on a face or along an edge: contact along a line.
+//! Contact along a line: a capsule on a face or along an edge.
 
 use super::feature::{end, pair};
 use super::manifold::Manifold;
@@ -18,8 +18,8 @@ pub(super) struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// Pushes the two ends of the stretch, A being what the capsule lies on; `height` is that of a point over it. False, and
-    /// nothing pushed, if the stretch is too short to tell two points apart, or neither end is within the margin.
+    /// Pushes the two ends of the part; A is the solid under the capsule, `height` a point's height over it. Returns
+    /// false and pushes nothing if the part is too short for two points, or neither end is within the margin.
     pub fn push_ends(&self, height: impl Fn(Vec3) -> f32, margin: f32, out: &mut Manifold) -> bool {
         let &Self { core, radius, stretch: (from, to), normal, name } = self;
         let length = (core.ends[1] - core.ends[0]).length();

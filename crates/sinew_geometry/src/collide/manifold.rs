@@ -1,20 +1,20 @@
-//! Manifolds: what the contact of two shapes is.
+//! Contact manifolds of two shapes.
 
 use crate::boxes::separation::{Axis, AxisOf};
 use sinew_math::Vec3;
 
-/// At most this many points describe the contact of two shapes.
+/// Maximum number of points in a manifold.
 pub const MAX_POINTS: usize = 4;
 
 /// One point of a manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ManifoldPoint {
-    /// Half-way between the two surfaces, in the frame the shapes were given in (world), metres.
+    /// Half-way between the two surfaces, in the common frame of the shapes (world), metres.
     pub position: Vec3,
     /// Gap along the normal, metres; negative when they overlap.
     pub separation: f32,
-    /// Features that touch: A's in the low 16 bits, B's in the high ones. The same from step to step while the
-    /// same features touch; the other order of the shapes exchanges the halves (`feature.rotate_left(16)`).
+    /// Features that touch: A's in the low 16 bits, B's in the high ones. Stable across steps while the same features
+    /// touch; swapped shapes exchange the halves (`feature.rotate_left(16)`).
     pub feature: u32,
 }
 
@@ -36,20 +36,20 @@ impl Manifold {
         &self.points[..self.count]
     }
 
-    /// Middle of its points, metres; the origin if there are none.
+    /// Mean of its points, metres; the origin if there are none.
     #[inline]
     pub fn center(&self) -> Vec3 {
         let sum = self.points().iter().fold(Vec3::ZERO, |sum, point| sum + point.position);
         if self.count > 0 { sum / self.count as f32 } else { sum }
     }
 
-    /// Appends a point that lies on one of the surfaces' midplane.
+    /// Appends a point that lies midway between the surfaces.
     pub(super) fn push(&mut self, position: Vec3, separation: f32, feature: u32) {
         self.points[self.count] = ManifoldPoint { position, separation, feature };
         self.count += 1;
     }
 
-    /// Appends a point, or puts it in the place of the one that is least deep where there is no room.
+    /// Appends a point, or replaces the shallowest one if the manifold is full.
     pub(super) fn push_or_replace_shallowest(&mut self, position: Vec3, separation: f32, feature: u32) {
         if self.count < MAX_POINTS {
             self.push(position, separation, feature);
@@ -61,7 +61,7 @@ impl Manifold {
         }
     }
 
-    /// Turns the result of (B, A) into that of (A, B).
+    /// Converts the result of (B, A) to that of (A, B).
     pub(super) fn flip(&mut self) {
         self.normal = -self.normal;
         for point in &mut self.points[..self.count] {
@@ -81,18 +81,18 @@ impl Manifold {
     }
 }
 
-/// Knowledge of two shapes beside their points. It decides nothing about those, whatever it is.
+/// Cache for two shapes between calls. It never changes the result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeparationCache {
-    /// The axis along which two polytopes were parted when they were asked last: it is tried first, since most that stay apart
-    /// do so along the same one.
+    /// The axis that separated two polytopes in the last call. It is tried first, since separated pairs mostly stay so
+    /// along the same axis.
     pub axis: Option<AxisOf>,
-    /// Least gap that they surely have, metres. Told where no points are found.
+    /// Lower bound of their gap, metres. Given if no points are found.
     pub gap: f32,
 }
 
 impl Default for SeparationCache {
-    /// Nothing is known.
+    /// Empty cache.
     fn default() -> Self {
         Self { axis: None, gap: f32::NEG_INFINITY }
     }

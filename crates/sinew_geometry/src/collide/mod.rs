@@ -1,8 +1,8 @@
 //! Narrow phase: from two placed shapes to a manifold.
 //!
-//! One file per pair of shapes; each is written for one order of its pair, [`collide`] brings the pair into that
-//! order and turns the result round if need be. Inside, positions are relative to one of the two shapes, so that
-//! a contact far from the world's origin is as precise as one near it.
+//! One file per pair of shapes, each written for one order of its pair; [`collide`] sorts the pair and flips the result
+//! if needed. Positions are computed relative to one of the shapes, so that a contact far from the world's origin is as
+//! precise as one near it.
 
 mod arcs;
 mod axes;
@@ -39,11 +39,11 @@ pub use triangles::{
     name_as_hidden,
 };
 
-/// Fills `out` with the contact of two placed shapes: the normal points from `a` to `b`, every point has a
-/// separation of at most `margin` (metres, ≥ 0). No points if the shapes are further apart than that, if both are
-/// half-spaces, one is a mesh or height field (see [`collide_all`]), or if a number is not finite. What `out` held before does not matter.
+/// Fills `out` with the contact of two placed shapes: the normal points from `a` to `b`, every point has a separation
+/// of at most `margin` (metres, ≥ 0). No points if the shapes are further apart, if both are half-spaces, one is a mesh
+/// or height field (see [`collide_all`]), or a number is not finite. The previous content of `out` is discarded.
 ///
-/// The order of the shapes does not matter but for rounding: the other one gives the opposite normal, the same
+/// The order of the shapes does not matter except for rounding: swapped shapes give the opposite normal, the same
 /// points, and features with their halves exchanged.
 pub fn collide(
     a: &Shape,
@@ -56,10 +56,10 @@ pub fn collide(
     collide_again((a, world_from_a), (b, world_from_b), margin, &mut SeparationCache::default(), out);
 }
 
-/// Share of the distance between two frames by which rounding may make a gap too large.
+/// Share of the distance between two frames by which rounding may overestimate a gap.
 const ROUNDING: f32 = 4e-6;
 
-/// [`collide`] of shapes that were asked before.
+/// [`collide`] with a cache from an earlier call.
 pub fn collide_again(
     (a, world_from_a): (&Shape, &Transform),
     (b, world_from_b): (&Shape, &Transform),
@@ -83,8 +83,8 @@ pub fn collide_again(
     parting.gap -= ROUNDING * (world_from_b.translation - world_from_a.translation).length();
 }
 
-/// Calls `visit` with the contacts of two placed shapes, as [`collide`] gives them: of a mesh or height field and a convex
-/// shape there may be several, each with a normal of its own. Two surfaces, and a surface and a half-space, never meet.
+/// Calls `visit` with the contacts of two placed shapes, as [`collide`] returns them: a mesh or height field and a
+/// convex shape may have several, each with its own normal. Two surfaces, or a surface and a half-space, have none.
 pub fn collide_all(
     a: &Shape,
     world_from_a: &Transform,
@@ -106,7 +106,8 @@ pub fn collide_all(
     patch.manifolds().iter().for_each(visit);
 }
 
-/// The contacts of two placed shapes of which one is a surface: normals point from `a` to `b`. `ground` is what lies beside the surface.
+/// The contacts of two placed shapes of which one is a surface: normals point from `a` to `b`. `ground` are the shapes
+/// beside the surface.
 pub fn collide_pair(
     (a, world_from_a): (&Shape, &Transform),
     (b, world_from_b): (&Shape, &Transform),
@@ -227,7 +228,7 @@ fn collide_ranked(
         (round, &Shape::Sphere { radius }) => {
             round_sphere::collide(round, &wa, &PlacedSphere::new(radius, &wb), margin, out);
         }
-        // The other half of the pairs is brought into this order by `collide`; two half-spaces never meet.
+        // `collide` sorts the pair into this order; two half-spaces have no contact.
         (a, b) => {
             if let (Some(a), Some(b)) = (Core::of(a), Core::of(b)) {
                 let (a, b) = (Posed::new(&a, &wa, Vec3::ZERO), Posed::new(&b, &wb, Vec3::ZERO));
@@ -256,7 +257,7 @@ mod tests {
         Shape::Hull(Arc::new(Hull::new(&points).expect("points in general position")))
     }
 
-    /// Pairs that drift by each other have the same contacts whether what parted them is remembered or not, and whatever is.
+    /// Contacts of pairs that drift past each other do not depend on the cached axis.
     #[test]
     fn what_parted_shapes_before_decides_nothing() {
         let mut random = Random::new(71);

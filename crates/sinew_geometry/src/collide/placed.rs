@@ -6,7 +6,7 @@ use sinew_math::{Transform, Vec3};
 
 /// Plane with solid matter below it.
 pub(crate) struct Plane {
-    /// Unit, out of the matter.
+    /// Unit, out of the solid.
     pub normal: Vec3,
     /// Distance of the plane from the origin along the normal.
     pub offset: f32,
@@ -53,8 +53,8 @@ impl PlacedCapsule {
     }
 }
 
-/// Unit direction of the offset between two cores whose radii add up to `radii`, or `fallback` if the cores touch:
-/// then the offset is rounding.
+/// Unit direction of the offset between two cores whose radii add up to `radii`, or `fallback` if the cores touch: then
+/// the offset is rounding.
 pub(crate) fn direction_or(offset: Vec3, radii: f32, fallback: Vec3) -> Vec3 {
     let length = offset.length();
     if length > 1e-3 * radii { offset / length } else { fallback }

@@ -1,6 +1,6 @@
-//! Polytope against polytope: hulls, boxes and triangles, by separating axes. Of the pairs of edges only those count whose
-//! arcs cross on the Gauss map, since only they are faces of the Minkowski difference (Gregorius, "The Separating Axis Test
-//! between Convex Polyhedra", GDC 2013). Then the two faces or the two edges that meet.
+//! Polytope against polytope (hulls, boxes, triangles) by separating axes. Only pairs of edges whose arcs cross on the
+//! Gauss map are faces of the Minkowski difference and count (Gregorius, "The Separating Axis Test between Convex
+//! Polyhedra", GDC 2013). Then the two faces or edges in contact give the points.
 
 use super::arcs::{Arc, for_each_crossing};
 use super::axes::{
@@ -14,12 +14,12 @@ use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{MAX_VERTICES, Plane, Polytope};
 use sinew_math::{Vec3, max, min};
 
-/// Two faces of hulls cut to each other have at most so many corners, but for slivers.
+/// Most corners of two hull faces clipped to each other, except for slivers.
 const FACE_CORNERS: usize = MAX_VERTICES;
 /// Parallel edges and corners that are as close as the closest.
 const CLOSEST: usize = 16;
 
-/// `tie` settles ties between faces of A and B: a direction that stays when the shapes change places.
+/// `tie` breaks ties between faces of A and B: a direction that does not change when the shapes are swapped.
 pub(super) fn collide(
     a: &Polytope<'_>,
     b: &Polytope<'_>,
@@ -59,8 +59,8 @@ pub(super) fn collide(
     }
 }
 
-/// Adds a point where edges cross: two that part better than the face that was preferred to them, they may cross beside that face, deeper than all
-/// that is over it: then their points are told, too.
+/// Adds a point where edges cross: two edges that separate better than the preferred face may cross beside that face,
+/// deeper than all points over it.
 fn push_crossing(
     (a, b): (&Polytope<'_>, &Polytope<'_>),
     face: &Axis,
@@ -83,7 +83,7 @@ fn push_crossing(
     }
 }
 
-/// The axis of that name, with the bits that [`best_face`] and [`best_edges`] give it; `None` if they have none of it.
+/// The axis with that name, with the bits of [`best_face`] and [`best_edges`]; `None` if there is none.
 fn axis(a: &Polytope<'_>, b: &Polytope<'_>, of: AxisOf) -> Option<Axis> {
     match of {
         AxisOf::FaceA(k) => a.planes.get(k).map(|plane| face(plane, b, of)),
@@ -114,7 +114,7 @@ fn best_face(of: &Polytope<'_>, other: &Polytope<'_>, enough: f32, name: fn(usiz
     best
 }
 
-/// The direction across an edge of each that separates best; of equal ones the first by the edges' numbers.
+/// The best cross product of edges; of equal ones the first by the edges' indices.
 fn best_edges(a: &Polytope<'_>, b: &Polytope<'_>) -> Option<Axis> {
     let mut best: Option<Axis> = None;
     for_each_crossing(a, b, |arc, other| {
@@ -167,13 +167,13 @@ impl Faceted for Polytope<'_> {
         push_faces::<FACE_CORNERS>(&reference, corners, best, margin, tolerance, out)
     }
 
-    /// Tries those corners and edges that may be as close as the closest found so far: what lies further from the other solid along
-    /// `normal` is further from it.
+    /// Tries the corners and edges that may be as close as the closest so far: those further along `normal` are further
+    /// from the other solid.
     fn push_closest(&self, b: &Self, normal: Vec3, margin: f32, tolerance: f32, out: &mut Manifold) {
         let a = self;
         let (top, bottom) = (a.reach(normal), -b.reach(-normal));
         let size = (b.center - a.center).length();
-        // Rounding must leave out none of several that are equally close.
+        // Rounding must not drop one of several that are equally close.
         let slack = 1e-5 * (size + top.abs() + bottom.abs());
         let from_a = |k: usize| {
             let on_a = a.vertices[k];
@@ -235,7 +235,7 @@ mod tests {
         -b.reach(-n) - a.reach(n)
     }
 
-    /// Two faces and three edges are enough: the best of all face normals and crossed edges, both ways, is found.
+    /// Two faces and three edges are enough to find the best of all face normals and crossed edges, both ways.
     #[test]
     fn a_triangle_is_a_polytope() {
         let mut random = Random::new(31);
@@ -277,7 +277,7 @@ mod tests {
         assert!(touching > 500 && faces > 100, "{touching} touch, {faces} with three points or more");
     }
 
-    /// The closest of all corners and edges are found, whatever is left out on the way.
+    /// The closest of all corners and edges are found, whatever is skipped.
     #[test]
     fn nothing_closer_is_left_out() {
         let mut random = Random::new(8);

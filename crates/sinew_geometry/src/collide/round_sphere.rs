@@ -13,6 +13,6 @@ pub(super) fn collide(a: &Shape, frame: &Transform, b: &PlacedSphere, margin: f3
         return;
     }
     out.normal = normal;
-    // One id for all features: the contact of a ball that rolls over a rim is still the same one.
+    // One id for all features, so that the contact of a ball rolling over a rim persists.
     out.push(b.center - normal * (b.radius + 0.5 * separation), separation, pair(WHOLE, WHOLE));
 }

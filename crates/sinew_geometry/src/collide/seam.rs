@@ -1,20 +1,20 @@
-//! Seams: what solids that abut show of their faces where they meet. A floor of boxes has no edges, although each of its boxes has: of two
-//! that meet in a plane neither shows the other the side on which they meet.
+//! Seams: the visible faces of solids that abut. A floor of boxes has no edges although each box has some: where two
+//! boxes meet in a plane, each hides the other's side.
 
 use crate::boxes::Aabb;
 use crate::shape::Shape;
 use crate::triangles::{Surface, Triangle, closest_on_triangle};
 use sinew_math::{Transform, Vec3, max, normalize_or};
 
-/// Most faces of a solid that are looked at around a point. Where more meet, nothing is known.
+/// Most faces of a solid examined around a point. If more meet, the result is unknown.
 const MOST: usize = 8;
-/// Faces whose normals have this cosine are parts of one.
+/// Faces whose normals have at least this cosine are merged.
 const SAME: f32 = 0.999;
 /// Sine up to which a direction that leads out of a solid counts as leading along it.
 const ALONG: f32 = 0.03;
-/// Rounding of a direction that lies in a face.
+/// Rounding error of a direction that lies in a face.
 const FLAT: f32 = 1e-3;
-/// Cosine to the asked normal below which a face has nothing to do with it.
+/// Least cosine of a face's normal to the queried normal.
 const AVERSE: f32 = -0.3;
 
 /// The faces of a solid, or of a surface, around a point.
@@ -25,13 +25,13 @@ pub struct Faces {
     /// Height of the point over each, metres.
     heights: [f32; MOST],
     count: usize,
-    /// Faces that others hide, bit by bit.
+    /// Mask of faces that other solids hide.
     hidden: u8,
 }
 
 impl Faces {
-    /// Faces within `reach` (metres) of a point in the world; none if the point is deeper inside than that. `None` if the point is farther
-    /// outside, or the shape has no flat faces.
+    /// Faces within `reach` (metres) of a point in the world; none if the point is deeper inside than that. `None` if
+    /// the point is further outside, or the shape has no flat faces.
     pub fn around(shape: &Shape, world_from_shape: &Transform, point: Vec3, reach: f32) -> Option<Self> {
         let mut faces = Self { normals: [Vec3::ZERO; MOST], heights: [0.0; MOST], count: 0, hidden: 0 };
         let p = world_from_shape.inverse_point(point);
@@ -58,7 +58,7 @@ impl Faces {
         self.count
     }
 
-    /// Takes a face, if it is near; false if the point is farther outside, or there is no room.
+    /// Adds a face if it is near; false if the point is further outside, or there is no room.
     fn take(&mut self, normal: Vec3, height: f32, reach: f32) -> bool {
         if height > reach {
             return false;
@@ -73,7 +73,8 @@ impl Faces {
         true
     }
 
-    /// Takes the triangles around a point, and the sides on which the surface ends or falls away there. True if there are any.
+    /// Adds the triangles around a point, and the sides on which the surface ends or falls away there. True if there
+    /// are any.
     fn take_surface(&mut self, surface: &Surface<'_>, p: Vec3, reach: f32) -> bool {
         let mut fits = true;
         surface.overlapping(&Aabb::around(p, Vec3::splat(reach)), |triangle| {
@@ -95,13 +96,13 @@ impl Faces {
         fits
     }
 
-    /// Takes a face unless it is part of one that is there.
+    /// Adds a face unless it merges with one already there.
     fn take_new(&mut self, normal: Vec3, height: f32, reach: f32) -> bool {
         let is_known = self.normals[..self.count].iter().any(|known| known.dot(normal) > SAME);
         is_known || self.take(normal, height, reach)
     }
 
-    /// Hides the faces that lie behind another solid around the point: from where they are every way along them leads into it.
+    /// Hides the faces that lie behind another solid around the point: every way along them leads into it.
     pub fn hide_behind(&mut self, other: &Self) {
         for face in 0..self.count {
             if self.is_behind(face, other) {
@@ -113,7 +114,7 @@ impl Faces {
     fn is_behind(&self, face: usize, other: &Self) -> bool {
         let normal = self.normals[face];
         let others = &other.normals[..other.count];
-        // What both have in common both show.
+        // A face that both solids have is visible on both.
         if others.iter().any(|out| out.dot(normal) > SAME) {
             return false;
         }
@@ -141,8 +142,8 @@ impl Faces {
         self.hidden != 0
     }
 
-    /// The normal nearest to this one that the faces which are not hidden have between them, and the height of the point over the plane through
-    /// them that it stands on, metres. `None` if all are hidden, or none looks that way.
+    /// The nearest normal to this one that the visible faces span, and the height of the point over the supporting
+    /// plane with that normal, metres. `None` if all are hidden, or none looks that way.
     pub fn shown(&self, normal: Vec3) -> Option<(Vec3, f32)> {
         let shown = |face: &usize| self.hidden >> face & 1 == 0;
         let mut best: Option<(f32, Vec3, f32)> = None;
@@ -189,7 +190,7 @@ mod tests {
         Shape::cuboid(Vec3::splat(0.5))
     }
 
-    /// Two boxes side by side, turned and placed anyhow: their common side is hidden, and what stands out of the other is not.
+    /// Two boxes side by side at random poses: their common side is hidden, the protruding part of the other is not.
     #[test]
     fn what_abuts_hides_its_common_side_alone() {
         let mut random = Random::new(5);
@@ -206,7 +207,7 @@ mod tests {
             let tilted = (up + side * random.range(0.01, 3.0)).normalize();
             let (normal, height) = left.shown(tilted).expect("its top");
             assert!((normal - up).length() < 1e-5 && height.abs() < 1e-5, "case {case}: {normal} {height}");
-            // A wall that stands on the floor, and goes down beside it.
+            // A wall that stands on the floor and continues below it.
             for below in [0.5, 0.0] {
                 let foot = Vec3::new(0.5, 0.5, seam.z);
                 let at = Vec3::new(1.0, 1.0 - below, 0.0);
@@ -215,7 +216,7 @@ mod tests {
                 let (normal, _) = wall.shown(-side).expect("its side");
                 assert!((normal + side).length() < 1e-5, "case {case}, {below} below: {normal}");
             }
-            // Alone it shows all.
+            // A single box shows all faces.
             let alone = around(Vec3::ZERO, seam).expect("it is there");
             let (normal, _) = alone.shown(tilted).expect("its edge");
             assert!((normal - tilted).length() < 1e-5, "case {case}: {normal} {tilted}");

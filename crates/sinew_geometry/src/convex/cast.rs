@@ -1,11 +1,11 @@
-//! Shapes that move until they meet others: conservative advancement (Mirtich, "Impulse-based dynamic simulation of rigid
-//! body systems", PhD thesis 1996, §3.2).
+//! Shape casts by conservative advancement (Mirtich, "Impulse-based dynamic simulation of rigid body systems", PhD
+//! thesis 1996, §3.2).
 
 use super::pair::{Gap, gap};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, min};
 
-/// First touch of a moving shape with another.
+/// First touch of a moving shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeHit {
     /// Share of the motion before the hit, 0..=1.
@@ -16,18 +16,18 @@ pub struct ShapeHit {
     pub normal: Vec3,
 }
 
-/// Closer than this share of the smaller shape counts as touching, and by [`CLOSE_STEP`] of the motion beyond.
+/// Gap below this share of the smaller shape counts as touching; the motion then continues by [`CLOSE_STEP`].
 const CLOSE: f32 = 1e-5;
 const CLOSE_STEP: f32 = 1e-7;
 /// Steps are Newton's: only motions that graze a round shape need more than a few.
 const MOST_STEPS: usize = 64;
 
-/// Moves `a` by `motion` (metres) and says where it first touches `b`, or `None` if it does not, or a number is not
+/// Moves `a` by `motion` (metres) and returns where it first touches `b`; `None` if it does not, or a number is not
 /// finite. `a` may not be a half-space or mesh.
 ///
-/// Shapes that overlap or touch at the start hit at fraction 0: the normal is the direction in which A leaves B by the shortest way,
-/// and the point lies half-way through the overlap. So it is for every pair of shapes. Later hits count once the gap is less
-/// than 1e-5 of the smaller shape; where the gap does not close any further, there is none.
+/// Shapes that overlap or touch at the start hit at fraction 0: the normal is the shortest way of A out of B, and the
+/// point lies half-way through the overlap. This holds for every pair of shapes. Later hits count once the gap is less
+/// than 1e-5 of the smaller shape; if the gap no longer closes, there is none.
 pub fn cast_shape(
     a: &Shape,
     world_from_a: &Transform,
@@ -45,7 +45,7 @@ pub fn cast_shape(
     })
 }
 
-/// [`cast_shape`] of whatever is `close` once it touches; `gap_after` says how it lies to the other after a part of its way.
+/// [`cast_shape`] with touch distance `close`; `gap_after` returns the gap after a part of the motion.
 pub fn advance(motion: Vec3, close: f32, mut gap_after: impl FnMut(Vec3) -> Option<Gap>) -> Option<ShapeHit> {
     let hit_of = |gap: Gap, fraction: f32| ShapeHit {
         fraction,
@@ -57,7 +57,7 @@ pub fn advance(motion: Vec3, close: f32, mut gap_after: impl FnMut(Vec3) -> Opti
         return Some(hit_of(now, 0.0));
     }
     for _ in 0..MOST_STEPS {
-        // Nothing of B lies before the plane across the gap.
+        // No part of B lies in front of the plane across the gap.
         let approach = motion.dot(now.normal);
         if approach <= 0.0 {
             return None;

@@ -7,7 +7,7 @@ use sinew_math::DVec3;
 
 /// Depth and its lower bound agree to this share of the sizes.
 const PRECISION: f64 = 1e-9;
-/// A triangle or tetrahedron whose height is below this share of the sizes is flat.
+/// A triangle or tetrahedron with a smaller height relative to the sizes is flat.
 const FLAT: f64 = 1e-9;
 /// A vertex less than this share of the sizes above a face is in its plane.
 const COPLANAR: f64 = 1e-13;
@@ -15,21 +15,21 @@ const MOST_VERTICES: usize = 96;
 const MOST_FACES: usize = 2 * MOST_VERTICES;
 /// Sides of the hole that a new vertex makes.
 const MOST_SIDES: usize = 64;
-/// Times that a round core's direction is made better after the polytope is full.
+/// Most improvements of a round core's direction after the polytope is full.
 const MOST_REFINEMENTS: usize = 32;
 
-/// Directions from which the shortest way is sought where a polytope is full, further than 25° from each other.
+/// Most restart directions of a full polytope, further than 25° from each other.
 const MOST_STARTS: usize = 8;
 const SAME_START: f64 = 0.9;
-/// Share of the sizes by which cores are moved apart to find a better direction: then what is between them is not rounding.
+/// Relative distance by which cores are moved apart to find a better direction, so that the gap exceeds rounding.
 const BEYOND: f64 = 0.05;
-/// Up to this many times each of these turns is doubled.
+/// Most doublings of each such rotation.
 const MOST_DOUBLINGS: u32 = 24;
 
 #[derive(Clone, Copy, Default)]
 struct Face {
     corners: [usize; 3],
-    /// Unit, outward; 0 of a face without area, which is kept as it closes the polytope.
+    /// Unit, outward; 0 for a face without area, which is kept to close the polytope.
     normal: DVec3,
     /// Distance of its plane from the origin; infinite without area.
     distance: f64,
@@ -44,8 +44,8 @@ struct Polytope {
     size: f64,
 }
 
-/// The shortest way out of each other for two cores whose simplex holds the origin: the distance is 0 or less, and B moved by
-/// as much along the normal touches A.
+/// The shortest way out for two cores whose simplex contains the origin: the distance is 0 or less, and B moved by it
+/// along the normal touches A.
 pub(super) fn deepest<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
@@ -73,14 +73,14 @@ pub(super) fn deepest<A: Support, B: Support>(
     }
     let best = best.unwrap_or_else(|| touching(simplex, DVec3::Y));
     if best.distance > -2.0 * gjk::TOUCH * size {
-        // They touch: the points by which that was found are as close as can be.
+        // They touch: the points that showed it are as close as possible.
         let [on_a, on_b] = simplex.touching_ends();
         return Bridge { on_a, on_b, ..best };
     }
     if -best.distance - bound <= PRECISION * size {
         return best;
     }
-    // Round cores have filled the polytope: it still says which other ways might be shorter.
+    // Round cores have filled the polytope; its other faces still give directions that might be shorter.
     let mut best = refined(a, b, best, size);
     let mut tried = [best.normal; MOST_STARTS];
     for count in 1..MOST_STARTS {
@@ -95,9 +95,9 @@ pub(super) fn deepest<A: Support, B: Support>(
     best
 }
 
-/// The best direction of a full polytope, made better where the cores are round: B is moved out along it and further, and if
-/// the shortest way back is another, that is also a shorter way out. Round cores that are nearly concentric are nearly as deep in all
-/// directions and turn it by little: the turn is doubled while that makes the way shorter.
+/// Improves the best direction of a full polytope if the cores are round: B is moved out along it and beyond, and a
+/// different shortest way back is a shorter way out. Nearly concentric round cores are nearly equally deep in all
+/// directions, so the rotation is doubled while that shortens the way.
 fn refined<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
@@ -137,8 +137,8 @@ fn touching(simplex: &Simplex, normal: DVec3) -> Bridge {
     Bridge { on_a, on_b, distance: 0.0, normal }
 }
 
-/// Four points of the difference that are not in a plane: those of the simplex, and others where they are too few. A
-/// difference that is flat itself has no depth: then the direction across it.
+/// Four non-coplanar points of the difference: those of the simplex, and others if they are too few. A flat difference
+/// has no depth; its normal direction is returned.
 fn tetrahedron<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
@@ -163,7 +163,7 @@ fn tetrahedron<A: Support, B: Support>(
     let along = (p1.difference - p0.difference).normalize();
     let (u, v) = across(along);
     let from_line = |p: DVec3| (p - p0.difference).cross(along).length();
-    // So far from the line that the triangle's sides, of which no other is twice as long as the first, span an area.
+    // Far enough from the line that the triangle has an area (no side is twice as long as the first).
     let Some(p2) = furthest(&[u, v, u + v, u - v], 4.0 * flat, &from_line) else {
         return Err(touching(simplex, u));
     };
@@ -175,7 +175,7 @@ fn tetrahedron<A: Support, B: Support>(
     Ok([p0, p1, p2, p3])
 }
 
-/// Two unit vectors at right angles to a third one and to each other.
+/// Two unit vectors perpendicular to a third and to each other.
 fn across(n: DVec3) -> (DVec3, DVec3) {
     let (x, y, z) = (n.x.abs(), n.y.abs(), n.z.abs());
     let axis = if x <= y && x <= z {
@@ -200,7 +200,7 @@ impl Polytope {
         };
         polytope.vertices[..4].copy_from_slice(&corners);
         let [a, b, c, d] = corners.map(|vertex| vertex.difference);
-        // Seen from outside, each face runs counter-clockwise.
+        // Each face runs counter-clockwise seen from outside.
         let turned = (b - a).cross(c - a).dot(d - a) > 0.0;
         for [i, j, k] in [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]] {
             polytope.push_face(if turned { [i, k, j] } else { [i, j, k] });
@@ -222,23 +222,23 @@ impl Polytope {
         self.face_count += 1;
     }
 
-    /// The face whose plane is closest to the origin, or furthest outside of which the origin is; the first among equals. `None`
-    /// if no face has an area.
+    /// The face whose plane is closest to the origin, or furthest on the other side of it; the first among equals.
+    /// `None` if no face has an area.
     fn nearest_face(&self) -> Option<Face> {
         let nearer = |x: Face, y: Face| if y.distance < x.distance { y } else { x };
         let faces = self.faces[..self.face_count].iter().copied();
         faces.reduce(nearer).filter(|face| face.distance < f64::INFINITY)
     }
 
-    /// The nearest face whose plane is closer than `distance`, in another direction than those tried.
+    /// The nearest face whose plane is closer than `distance`, in a direction not yet tried.
     fn untried(&self, tried: &[DVec3], distance: f64) -> Option<Face> {
         let new = |face: &&Face| tried.iter().all(|other| other.dot(face.normal) < SAME_START);
         let faces = self.faces[..self.face_count].iter().filter(|face| face.distance < distance);
         faces.filter(new).copied().reduce(|x, y| if y.distance < x.distance { y } else { x })
     }
 
-    /// The way out along a face's normal, with the origin's image in its plane as witness: in a face that lies in the plane
-    /// and holds the image, or comes closest to that.
+    /// The way out along a face's normal, with the origin's projection as witness: in the coplanar face that contains
+    /// it, or comes closest to it.
     fn bridge(&self, face: &Face, height: f64) -> Bridge {
         let image = face.normal * face.distance;
         let plane = |other: &&Face| {
@@ -253,7 +253,7 @@ impl Polytope {
         let weighted = in_plane.map(|other| (other, self.weights(other, image)));
         let holder = weighted.reduce(|x, y| if least(&y.1) > least(&x.1) { y } else { x });
         let (carrier, weights) = holder.unwrap_or((face, [1.0, 0.0, 0.0]));
-        // Of an image beside all of them, the nearest that the corners make.
+        // If the projection is beside all faces, the nearest combination of corners.
         let weights = weights.map(|weight| if weight > 0.0 { weight } else { 0.0 });
         let sum = weights[0] + weights[1] + weights[2];
         let mixed = |of: fn(&Vertex) -> DVec3| {
@@ -268,7 +268,7 @@ impl Polytope {
         }
     }
 
-    /// Shares of a face's corners in a point of its plane; negative where the point is beyond the side across from a corner.
+    /// Barycentric weights of a point in the face's plane; negative beyond the side opposite a corner.
     fn weights(&self, face: &Face, point: DVec3) -> [f64; 3] {
         let [a, b, c] = face.corners.map(|index| self.vertices[index].difference - point);
         let areas = [b.cross(c), c.cross(a), a.cross(b)].map(|area| area.dot(face.normal));
@@ -276,8 +276,8 @@ impl Polytope {
         areas.map(|area| area / sum)
     }
 
-    /// Takes a vertex in: the faces that it sees make way for those that join it to their outline. False, and the polytope is
-    /// of no use any more, if there is no room.
+    /// Adds a vertex: the faces that it sees are replaced by faces to their outline. False, with an unusable polytope,
+    /// if there is no room.
     fn grow(&mut self, vertex: Vertex) -> bool {
         if self.vertex_count == MOST_VERTICES {
             return false;
@@ -298,7 +298,7 @@ impl Polytope {
             }
             let [i, j, k] = face.corners;
             for side in [(i, j), (j, k), (k, i)] {
-                // A side between two faces that go is met once in either direction.
+                // A side between two removed faces is found once in each direction.
                 if let Some(at) = outline[..sides].iter().position(|other| *other == (side.1, side.0)) {
                     sides -= 1;
                     outline[at] = outline[sides];

@@ -10,7 +10,7 @@ use sinew_math::{Vec3, normalize_or};
 /// A face with more corners is described by this many of them.
 pub const MOST_CORNERS: usize = 32;
 
-/// A hull's face whose normal is within about 26° of a direction looks that way.
+/// A hull's face whose normal is within about 26° of a direction counts as facing it.
 const FACES: f32 = 0.9;
 
 /// A corner of a feature.
@@ -20,12 +20,12 @@ pub struct Corner {
     pub point: Vec3,
     /// Name of the corner.
     pub name: u16,
-    /// Name of the side from here to the next corner.
+    /// Name of the side from this corner to the next.
     pub side: u16,
 }
 
-/// A convex polygon, counter-clockwise seen from outside; or an edge; or a corner. Names are the same as long as the
-/// same part of the solid is meant: contact points are known by them from step to step.
+/// A convex polygon, counter-clockwise seen from outside, or an edge, or a corner. Names are stable for the same part
+/// of the solid, so that contact points can be matched across steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Feature {
     corners: [Corner; MOST_CORNERS],
@@ -37,18 +37,18 @@ pub struct Feature {
 }
 
 impl Feature {
-    /// A corner without a name of its own.
+    /// A corner without its own name.
     pub fn of_point(point: Vec3) -> Self {
         Self::new(&[Corner { point, name: WHOLE, side: WHOLE }], WHOLE, Vec3::ZERO)
     }
 
-    /// An edge without a name of its own.
+    /// An edge without its own name.
     pub fn of_edge(ends: [Vec3; 2]) -> Self {
         let corner = |index: usize| Corner { point: ends[index], name: feature::end(index), side: WHOLE };
         Self::new(&[corner(0), corner(1)], WHOLE, Vec3::ZERO)
     }
 
-    /// From the corners, at most [`MOST_CORNERS`]; `normal` is 0 if they are fewer than three.
+    /// From the corners, at most [`MOST_CORNERS`]; `normal` is 0 for fewer than three.
     pub fn new(corners: &[Corner], name: u16, normal: Vec3) -> Self {
         let mut feature =
             Self { corners: [Corner::default(); MOST_CORNERS], count: corners.len(), name, normal };
@@ -68,7 +68,7 @@ impl Feature {
         self.count > 2
     }
 
-    /// In another frame.
+    /// The feature in another frame.
     pub fn mapped(mut self, point: impl Fn(Vec3) -> Vec3, vector: impl Fn(Vec3) -> Vec3) -> Self {
         for corner in &mut self.corners[..self.count] {
             corner.point = point(corner.point);
@@ -82,7 +82,7 @@ impl Feature {
         let axis = largest_axis(direction);
         let side = sign(direction[axis]);
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        // Counter-clockwise about the axis; the other way round seen from the negative side.
+        // Counter-clockwise about the axis; reversed on the negative side.
         let mut turns = [(false, false), (true, false), (true, true), (false, true)];
         if side < 0.0 {
             turns.reverse();
@@ -105,8 +105,8 @@ impl Feature {
         Self::new(&corners, feature::face(axis, side), normal)
     }
 
-    /// Feature of a hull that reaches furthest along `direction`: the face that looks that way or nearly
-    /// so, or else the edge across it, or else the corner.
+    /// Feature of a hull that reaches furthest along `direction`: a face that looks nearly that way, else an edge
+    /// across it, else a corner.
     pub fn of_hull(hull: &Hull, direction: Vec3) -> Self {
         let (polytope, vertices) = (hull.polytope(), hull.vertices());
         let topology = polytope.topology;
@@ -156,8 +156,8 @@ impl Feature {
     }
 }
 
-/// Directions whose sine against the axis is below this meet an end flat: then its octagon stays where it is on the solid.
-/// Else a corner of it lies where the end reaches furthest, so that what leans rolls on its rim and not on an octagon.
+/// Sine against the axis below which an end is touched flat and its octagon stays fixed on the solid. Otherwise a
+/// corner of the octagon lies where the end reaches furthest, so that a tilted solid rolls on its rim.
 const LEANING: f32 = 0.01;
 
 /// Eight points of a rim.
@@ -176,7 +176,7 @@ fn end_of_truncated_cone(y: f32, radius: f32, direction: Vec3, out: Vec3) -> Fea
     Feature::new(&corners, feature::face(1, end), Vec3::new(0.0, end, 0.0))
 }
 
-/// Tells the names of the two ends apart.
+/// Distinguishes the names of the two ends.
 fn end_offset(end: f32) -> u16 {
     if end < 0.0 { 0 } else { 0x10 }
 }

@@ -7,14 +7,14 @@ use sinew_math::DVec3;
 
 /// Distance and its lower bound agree to this share of the distance: directions are then right to its root, 1e-6.
 const PRECISION: f64 = 1e-12;
-/// Cores closer than this share of their sizes touch: that is less than their places in `f32` say.
+/// Cores closer than this share of their sizes touch; `f32` positions are coarser than that.
 pub(super) const TOUCH: f64 = 3e-8;
-/// A tetrahedron whose height is below this share of its edges is flat.
+/// A tetrahedron with a smaller height relative to its edges is flat.
 const THIN: f64 = 1e-12;
-/// Far above what is needed: polytopes take as many steps as they have faces near by, round cores some 30.
+/// Far above what is needed: polytopes take about as many steps as they have nearby faces, round cores some 30.
 const MOST_STEPS: usize = 128;
 
-/// A point of the Minkowski difference A − B, and where it comes from.
+/// A point of the Minkowski difference A − B, and the points it comes from.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Vertex {
     pub difference: DVec3,
@@ -32,7 +32,7 @@ pub(super) fn support<A: Support, B: Support>(
     Vertex { difference: on_a - on_b, on_a, on_b }
 }
 
-/// Up to four points of A − B, and the weights that make the point of their hull that is closest to the origin.
+/// Up to four points of A − B, and the weights of the point of their hull closest to the origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Simplex {
     pub vertices: [Vertex; 4],
@@ -40,7 +40,7 @@ pub(super) struct Simplex {
     pub count: usize,
 }
 
-/// The closest points of two cores that are apart.
+/// The closest points of two separated cores.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bridge {
     pub on_a: DVec3,
@@ -50,10 +50,10 @@ pub(super) struct Bridge {
     pub normal: DVec3,
 }
 
-/// Steps that do not come closer before no further one is tried.
+/// Steps without improvement before the search ends.
 const MOST_STALLS: u32 = 12;
 
-/// Relation of two cores to each other.
+/// Relation of two cores.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::large_enum_variant, reason = "it lives on the stack, for one pair")]
 pub(super) enum Cores {
@@ -69,8 +69,8 @@ pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>
     let start = if offset.length() > TOUCH * size { offset } else { DVec3::X };
     let mut simplex = Simplex::of(support(a, b, start));
     let mut nearest = simplex.nearest();
-    // The direction along which the cores are surely furthest apart, and the closest points so far: where the distance is small
-    // beside the sizes, rounding hides from the one how good the other is.
+    // The best separating direction so far, and the closest points so far: at distances small against the sizes,
+    // rounding hides how good one is by the other.
     let (mut apart, mut toward_a) = (f64::NEG_INFINITY, DVec3::X);
     let (mut shortest, mut bridge) = (f64::INFINITY, simplex);
     let mut stalls = 0;
@@ -86,7 +86,7 @@ pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>
             stalls += 1;
         }
         let vertex = support(a, b, -nearest);
-        // No point of the difference is below this along the way to the nearest one.
+        // Lower bound of the difference along the way to its nearest point.
         let bound = vertex.difference.dot(nearest);
         if bound / length > apart {
             (apart, toward_a) = (bound / length, nearest / length);
@@ -109,7 +109,7 @@ pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>
     Cores::Apart(Bridge { on_a, on_b, distance: apart, normal: -toward_a })
 }
 
-/// Knowledge of a direction that shows the cores to be apart: then no simplex holds the origin, however it looks.
+/// A known separating direction: then no simplex contains the origin, whatever rounding says.
 #[derive(Clone, Copy, PartialEq)]
 enum Known {
     Nothing,
@@ -148,8 +148,8 @@ impl Simplex {
         [self.weighted(|vertex| vertex.on_a), self.weighted(|vertex| vertex.on_b)]
     }
 
-    /// Ends on A and B of the point of the simplex's surface that is closest to the origin: as close to each other as cores
-    /// that touch are deep.
+    /// Points on A and B for the point of the simplex's surface closest to the origin: for touching cores their
+    /// distance equals the depth.
     pub fn touching_ends(mut self) -> [DVec3; 2] {
         if self.count == 4 {
             self.reduce(Known::Apart);
@@ -157,8 +157,8 @@ impl Simplex {
         self.ends()
     }
 
-    /// Leaves the vertices that carry the point closest to the origin, with their weights. True, and nothing left out, if
-    /// the simplex holds the origin.
+    /// Keeps the vertices that carry the point closest to the origin, with their weights. True, with nothing dropped,
+    /// if the simplex contains the origin.
     fn reduce(&mut self, known: Known) -> bool {
         let p: [DVec3; 4] = self.vertices.map(|vertex| vertex.difference);
         let (carriers, weights) = match self.count {
@@ -180,7 +180,7 @@ impl Simplex {
     }
 }
 
-/// Three vertices by number, and the weight of each; 0 for those that do not count.
+/// Three vertices by index, with weights; 0 for those that do not count.
 type Carriers = ([usize; 3], [f64; 3]);
 
 /// Carriers of the nearest point, the first among equals.
@@ -214,8 +214,8 @@ fn on_segment([p, q]: [DVec3; 2], [i, j]: [usize; 2]) -> Carriers {
     }
 }
 
-/// By the areas that the origin's projection spans with the sides: where one of them is not positive, that side or another
-/// carries the closest point.
+/// By the areas that the origin's projection spans with the sides: if one is not positive, that side or another carries
+/// the closest point.
 fn on_triangle(p: &[DVec3; 4], at: [usize; 3]) -> Carriers {
     let [i, j, k] = at;
     let [a, b, c] = at.map(|index| p[index]);
@@ -242,8 +242,8 @@ fn holds_origin(p: &[DVec3; 4]) -> bool {
     })
 }
 
-/// On the face that comes closest. On which side of its faces the origin lies is rounding where a tetrahedron is flat, so that
-/// all are looked at.
+/// Takes the face that comes closest. For a flat tetrahedron the side of the origin is rounding, so all faces are
+/// checked.
 fn on_tetrahedron(p: &[DVec3; 4]) -> Carriers {
     nearest_of(p, FACES.map(|[i, j, k, _]| on_triangle(p, [i, j, k])))
 }

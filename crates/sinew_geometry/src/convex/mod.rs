@@ -1,8 +1,7 @@
-//! Pairs of placed shapes without a world: how far apart, how deep in each other, where they meet when one moves.
+//! Pairs of placed shapes without a world: distance, depth, and casts.
 //!
-//! Every question is answered for every pair of shapes. Solids are cores with a radius around them; cores that are apart
-//! are asked by GJK, cores that overlap by EPA, both in `f64`, so that shapes of 1 mm and of 100 m are told apart as
-//! well as those of one size.
+//! Every query works for every pair of shapes. Solids are cores with a radius; separated cores use GJK, overlapping
+//! ones EPA, both in `f64`, so that a shape of 1 mm against one of 100 m is as precise as equal sizes.
 //!
 //! ```
 //! use sinew_math::{Rotation, Transform, Vec3};

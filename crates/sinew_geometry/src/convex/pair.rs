@@ -1,4 +1,4 @@
-//! Gap between two solids, or their depth in each other.
+//! Gap between two solids, or their penetration depth.
 
 use super::epa;
 use super::gjk::{self, Bridge, Cores};
@@ -6,7 +6,7 @@ use super::support::{Core, Posed, Support, narrow, wide};
 use crate::shape::Shape;
 use sinew_math::{DVec3, Transform, Vec3};
 
-/// The closest points of two solids that are apart; of two that overlap, the ends of the shortest way out of each other.
+/// The closest points of two separated solids; for overlapping ones, the ends of the shortest way out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
     /// Metres; negative, the depth, if they overlap; 0 if they touch.
@@ -19,11 +19,11 @@ pub struct Gap {
     pub on_b: Vec3,
 }
 
-/// Gap between two placed shapes, or their depth in each other; `None` of two half-spaces, of a mesh, or if a number is not finite.
+/// Gap between two placed shapes, or their penetration; `None` for two half-spaces, a mesh, or numbers that are not
+/// finite.
 ///
-/// Right to a few roundings (6e-8) of the sizes and the distance. Where several ways out are shortest, one of them, always
-/// the same; of round shapes that are nearly concentric, and so nearly as deep in many directions, the way found may be longer
-/// than the shortest by 5e-5 of the sizes.
+/// Accurate to a few roundings (6e-8) of the sizes and the distance. If several ways out are shortest, always the same
+/// one; for round, nearly concentric shapes the result may be longer than the shortest by 5e-5 of the sizes.
 pub fn gap(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &Transform) -> Option<Gap> {
     if !(world_from_a.is_finite() && world_from_b.is_finite()) {
         return None;
@@ -44,13 +44,13 @@ pub fn gap(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &Transf
     .filter(Gap::is_finite)
 }
 
-/// True if two placed shapes have a point in common; what touches overlaps. Two half-spaces always do.
+/// True if two placed shapes have a common point; touching counts. Two half-spaces always overlap.
 pub fn overlaps(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &Transform) -> bool {
     (*a == Shape::HalfSpace && *b == Shape::HalfSpace)
         || gap(a, world_from_a, b, world_from_b).is_some_and(|gap| gap.distance <= 0.0)
 }
 
-/// A half-space and what is over it: along the plane's normal.
+/// A half-space and a solid over it: along the plane's normal.
 fn over_plane(world_from_plane: &Transform, core: &Core<'_>, world_from_core: &Transform) -> Option<Gap> {
     let origin = world_from_core.translation;
     let posed = Posed::new(core, world_from_core, origin);
@@ -85,7 +85,7 @@ impl Bridge {
 
 impl From<Bridge> for Gap {
     fn from(bridge: Bridge) -> Self {
-        // Witnesses of overlapping cores lie on faces, not across from each other: their middle is what both mean.
+        // Witness points of overlapping cores lie on faces, not opposite each other: their mean is used.
         let middle = (bridge.on_a + bridge.on_b) * 0.5;
         let half = bridge.normal * (0.5 * bridge.distance);
         Self {
@@ -104,7 +104,7 @@ impl Gap {
         Self { normal: -self.normal, on_a: self.on_b, on_b: self.on_a, ..self }
     }
 
-    /// In coordinates whose origin is `origin` of these.
+    /// In coordinates relative to `origin`.
     pub fn placed(self, origin: Vec3) -> Self {
         Self { on_a: self.on_a + origin, on_b: self.on_b + origin, ..self }
     }

@@ -7,8 +7,8 @@ use crate::revolved::{TaperedCapsule, TruncatedCone};
 use crate::shape::Shape;
 use sinew_math::{DVec3, Transform, Vec3, max, min};
 
-/// A convex solid as a core and a radius by which it is rounded: every point of the solid is within the radius of the core.
-/// What implements this collides with everything else that does. Coordinates are those of the solid's own frame.
+/// A convex solid as a core and a rounding radius: every point of the solid is within the radius of the core. Every
+/// type with this trait collides with every other. Coordinates are in the solid's own frame.
 pub trait Support {
     /// The point of the core that is furthest along `direction`, which has any length but 0.
     fn support(&self, direction: DVec3) -> DVec3;
@@ -23,8 +23,8 @@ pub trait Support {
     /// measured by it.
     fn thinnest(&self) -> f32;
 
-    /// Feature of the core's surface that meets another solid that lies along the unit vector `direction`: the face that looks that
-    /// way or, where there is none, the edge or corner.
+    /// Feature of the core's surface that touches another solid along the unit vector `direction`: the face that looks
+    /// that way, else the edge or corner.
     fn feature(&self, direction: Vec3) -> Feature;
 }
 
@@ -50,14 +50,14 @@ pub enum Core<'a> {
     },
     /// A cylinder or cone.
     TruncatedCone(TruncatedCone),
-    /// A tapered capsule, rounded by the smaller radius: what is left is a ball and a point.
+    /// A tapered capsule, rounded by the smaller radius: the core is the hull of a ball and a point.
     Tapered(TaperedCapsule),
     /// A convex hull.
     Hull(&'a Hull),
 }
 
 impl<'a> Core<'a> {
-    /// Core of a shape; `None` of what is not convex or has no end.
+    /// Core of a shape; `None` if it is not convex or unbounded.
     pub fn of(shape: &'a Shape) -> Option<Self> {
         Some(match *shape {
             Shape::Box { half_extents: half } => Self::Box { half },
@@ -148,7 +148,7 @@ impl Support for Core<'_> {
     }
 }
 
-/// Directions this close to a tapered capsule's side meet the side, not an end.
+/// Directions this close to a tapered capsule's side normal touch the side, not an end.
 const TAPERED_SIDE: f32 = 0.1;
 
 /// The rim that reaches further, at the azimuth of the direction.
@@ -160,7 +160,7 @@ fn truncated_cone_support(cone: &TruncatedCone, d: DVec3) -> DVec3 {
     if across > 0.0 {
         DVec3::new(radius * (d.x / across), y, radius * (d.z / across))
     } else {
-        // Flat on an end: its middle is as far as its rim.
+        // Flat on an end: its middle reaches as far as its rim.
         DVec3::new(0.0, y, 0.0)
     }
 }
@@ -186,8 +186,8 @@ fn tapered_support(tapered: &TaperedCapsule, d: DVec3) -> DVec3 {
     DVec3::new(0.0, y, 0.0) + d * (radius / length)
 }
 
-/// A convex solid in the frame in which a pair is examined. In `f64`, so that what differs by little is told apart whatever
-/// the sizes: the digits of `f32` places and sizes are few beside those.
+/// A convex solid in the frame in which a pair is examined. `f64` resolves small differences at all sizes, since `f32`
+/// positions and sizes have few digits.
 pub struct Posed<'a, S> {
     /// Solid in its own frame.
     pub solid: &'a S,
@@ -226,7 +226,7 @@ impl<'a, S: Support> Posed<'a, S> {
         self.support(direction).dot(direction) + f64::from(self.solid.rounding())
     }
 
-    /// Feature that meets another solid along the unit vector `direction`, in the frame of the pair.
+    /// Feature that touches another solid along the unit vector `direction`, in the frame of the pair.
     pub fn feature(&self, direction: Vec3) -> Feature {
         let [x, y, z] = self.axes.map(narrow);
         let local = Vec3::new(direction.dot(x), direction.dot(y), direction.dot(z));

@@ -1,4 +1,4 @@
-//! Boxes together: distance to their faces, the outer surface and the volume of their union.
+//! A set of boxes: distance to their faces, outer surface and volume of their union.
 
 use super::fitted::{bounds, sample_surface};
 use crate::boxes::Aabb;
@@ -54,7 +54,7 @@ impl<'a> BoxSet<'a> {
         outer
     }
 
-    /// Volume of the union, m³: each box's volume, shared with those that hold the same points.
+    /// Volume of the union, m³: each box's volume, divided among boxes that contain the same sample points.
     pub fn volume(&self, random: &mut Random) -> f32 {
         const SAMPLES: usize = 100_000;
         let total: f32 = self.boxes.iter().map(Cuboid::volume).sum();

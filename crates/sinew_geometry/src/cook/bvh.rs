@@ -14,13 +14,13 @@ pub struct MeshBvh {
     tree: Tree,
     /// Cluster of the triangles below each node of the tree.
     clusters: Vec<Cluster>,
-    /// Corners, in the order of leaves.
+    /// Corners, in leaf order.
     triangles: Vec<[Vec3; 3]>,
-    /// Number of each of them in the list that the tree was made from.
+    /// Their indices in the original list.
     numbers: Vec<u32>,
 }
 
-/// Triangles as seen from afar.
+/// Dipoles of the clusters.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cluster {
     /// Sum of areas times normals.
@@ -32,12 +32,12 @@ struct Cluster {
     radius: f32,
 }
 
-/// The point of a mesh that is closest to another.
+/// Closest point of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosestPoint {
     /// On the surface, metres.
     pub point: Vec3,
-    /// From the point asked for, metres, ≥ 0.
+    /// Distance from the query point, metres, ≥ 0.
     pub distance: f32,
     /// Unit normal of the triangle, to the side from which its corners run counter-clockwise.
     pub normal: Vec3,
@@ -49,7 +49,7 @@ impl MeshBvh {
     /// From triangles, by their corners in metres.
     ///
     /// # Panics
-    /// If there is none, or a corner is not finite.
+    /// If there is no triangle, or a corner is not finite.
     pub fn new(triangles: &[[Vec3; 3]]) -> Self {
         assert!(!triangles.is_empty(), "a mesh has triangles");
         assert!(triangles.iter().flatten().all(|p| p.is_finite()), "corners are finite");
@@ -70,7 +70,7 @@ impl MeshBvh {
         self.triangles.is_empty()
     }
 
-    /// The point of the surface closest to `p`; of several the one found first, always the same.
+    /// The point of the surface closest to `p`; if several, always the same.
     pub fn closest_point(&self, p: Vec3) -> ClosestPoint {
         let (square, point, at) = self.search(p, f32::INFINITY);
         self.answer(square, point, at)
@@ -87,7 +87,7 @@ impl MeshBvh {
         ClosestPoint { point, distance: square.sqrt(), normal, triangle: self.numbers[at as usize] }
     }
 
-    /// The closest point, its squared distance, if that is less than `square`, and the triangle's place.
+    /// The closest point, its squared distance, if that is below `square`, and the triangle's index.
     fn search(&self, p: Vec3, square: f32) -> (f32, Vec3, u32) {
         let mut best = (square, Vec3::ZERO, 0);
         self.tree.nearest(p, square, |places| {
@@ -139,7 +139,7 @@ fn triangles_in(triangles: &[[Vec3; 3]], places: Range<u32>) -> &[[Vec3; 3]] {
     &triangles[places.start as usize..places.end as usize]
 }
 
-/// Clusters of each node of a tree over triangles, which are in the order of its leaves.
+/// Clusters of each node of a tree over triangles in leaf order.
 fn clusters(tree: &Tree, triangles: &[[Vec3; 3]]) -> Vec<Cluster> {
     let mut clusters = vec![Cluster::default(); tree.len()];
     // Those below a node have higher numbers.
@@ -178,7 +178,7 @@ impl Cluster {
     }
 }
 
-/// Solid angle of a triangle seen from `p`, positive where it turns its back (van Oosterom & Strackee 1983, eq. 8).
+/// Solid angle of a triangle seen from `p`, positive if it faces away (van Oosterom & Strackee 1983, eq. 8).
 fn solid_angle_of(triangle: &[Vec3; 3], p: Vec3) -> f32 {
     let [a, b, c] = triangle.map(|corner| corner - p);
     let (la, lb, lc) = (a.length(), b.length(), c.length());

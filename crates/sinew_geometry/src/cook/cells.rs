@@ -5,7 +5,7 @@ use core::ops::Range;
 /// Cells between planes along three axes.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
-    /// Rising coordinates; cell i of an axis lies between planes i and i + 1.
+    /// Ascending coordinates; cell i of an axis lies between planes i and i + 1.
     pub planes: [Vec<f32>; 3],
     /// Cell (i, j, k) is number `(i * ny + j) * nz + k`.
     pub full: Vec<bool>,
@@ -15,7 +15,7 @@ pub(super) struct Grid {
 pub(super) type CellBox = [Range<usize>; 3];
 
 impl Grid {
-    /// Cells between planes, each full if `is_full` says so of its low and high corner.
+    /// Cells between planes; `is_full` decides from the low and high corner.
     pub fn new(planes: [Vec<f32>; 3], mut is_full: impl FnMut([f32; 3], [f32; 3]) -> bool) -> Self {
         let mut grid = Self { planes, full: Vec::new() };
         let [nx, ny, nz] = grid.counts();
@@ -40,8 +40,8 @@ impl Grid {
         ([0, 1, 2].map(|a| at(a, cells[a].start)), [0, 1, 2].map(|a| at(a, cells[a].end)))
     }
 
-    /// Boxes of full cells that together hold all full cells but for a share `left_out` of their volume; at most
-    /// `most`. Boxes may overlap: each is as large as it can be.
+    /// At most `most` boxes of full cells that cover all full cells except for a share `left_out` of their volume.
+    /// Boxes may overlap: each is as large as possible.
     pub fn cover(&self, left_out: f32, most: usize) -> Vec<CellBox> {
         let filled = Sums::new(self.counts(), |cell| if self.full[cell] { 1.0 } else { 0.0 });
         let volumes = self.volumes();
@@ -94,7 +94,7 @@ impl Grid {
         })
     }
 
-    /// Distance, in cells, of each full cell from an empty one, along the nearest axis.
+    /// Distance, in cells, of each full cell from an empty one along the nearest axis.
     fn depths(&self) -> Vec<u32> {
         let counts = self.counts();
         let strides = [counts[1] * counts[2], counts[2], 1];
@@ -120,7 +120,7 @@ impl Grid {
         depth
     }
 
-    /// The box grown from a cell, as far as it goes along one axis after the other.
+    /// The box grown from a cell as far as possible along one axis after the other.
     fn grow(&self, seed: usize, order: [usize; 3], filled: &Sums) -> CellBox {
         let counts = self.counts();
         let place = [seed / (counts[1] * counts[2]), seed / counts[2] % counts[1], seed % counts[2]];
@@ -148,7 +148,7 @@ const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2,
 /// Sums over boxes of cells in constant time (Crow 1984, in three dimensions).
 struct Sums {
     counts: [usize; 3],
-    /// Sums over all cells below a corner; in f64, whose differences keep a whole number's digits.
+    /// Prefix sums over all cells below a corner; in f64, whose differences are exact for whole numbers.
     sums: Vec<f64>,
 }
 

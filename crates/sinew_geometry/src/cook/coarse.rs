@@ -1,11 +1,11 @@
-//! Small boxes put together before the search for good merges, the time of which grows with the square of their number.
+//! Merges small boxes before the search for good merges, which takes quadratic time.
 
 use super::fitted::around;
 use crate::boxes::{Cuboid, Obb};
 use sinew_math::max;
 
-/// No more than about `most` boxes: the larger half of them as they are, the others in one box per cell of a grid of
-/// cubes, the smallest that leaves few enough.
+/// At most about `most` boxes: the larger half as they are, the others merged per cell of a grid of cubes, the smallest
+/// that leaves few enough.
 pub(super) fn at_most(most: usize, mut blocks: Vec<Obb>, thinnest: f32) -> Vec<Obb> {
     if blocks.len() <= most {
         return blocks;
@@ -15,14 +15,14 @@ pub(super) fn at_most(most: usize, mut blocks: Vec<Obb>, thinnest: f32) -> Vec<O
     let farthest = small.iter().flat_map(|block| block.center.to_array()).map(f32::abs).fold(0.0, max);
     let mut size = max(farthest / 1024.0, thinnest);
     let mut cells = by_cell(&small, size);
-    // No more than the eight around the origin are left once cells are larger than `farthest`.
+    // At most the eight cells around the origin remain once cells are larger than `farthest`.
     while cells.len() > usize::max(most - most / 2, 8) {
         size *= 1.25;
         cells = by_cell(&small, size);
     }
     blocks.extend(cells.iter().map(|cell| {
         let corners = cell.iter().flat_map(|block| block.corners());
-        // Of the largest, which come first.
+        // Largest ones first.
         around(corners, cell[0].rotation, thinnest)
     }));
     blocks

@@ -1,4 +1,4 @@
-//! Attitude in which a box lies close around a part of a mesh.
+//! Orientation in which a box fits a part of a mesh closely.
 
 use super::fitted::around;
 use super::mesh::SurfaceMesh;
@@ -9,7 +9,7 @@ use sinew_math::{Mat3, Rotation, Vec3, any_orthonormal, normalize_or};
 const SAME: f32 = 0.985;
 /// Axes within this cosine (1.8°) of the world's are the world's.
 const LEVEL: f32 = 0.9995;
-/// An oriented box must be smaller by this share to be taken instead of one along the world's axes.
+/// An oriented box must be smaller by this share to replace an axis-aligned one.
 const GAIN: f32 = 0.92;
 
 /// The smallest of the boxes along the world's axes, along the largest facets, and along those about the vertical.
@@ -28,7 +28,7 @@ pub(super) fn fit(mesh: &SurfaceMesh, triangles: &[u32], least: f32) -> Obb {
     best
 }
 
-/// Facing of a part: directions, without sign, by area.
+/// Directions of a part's faces, without sign, weighted by area.
 pub(super) fn facet_directions(mesh: &SurfaceMesh, triangles: &[u32]) -> Vec<(Vec3, f32)> {
     let normals = triangles.iter().map(|&t| mesh.doubled_area(t as usize));
     cluster(normals.map(|doubled| {
@@ -37,12 +37,12 @@ pub(super) fn facet_directions(mesh: &SurfaceMesh, triangles: &[u32]) -> Vec<(Ve
     }))
 }
 
-/// Directions with weights, those that agree but for sign put together, the heaviest first.
+/// Weighted directions, merged if they agree except for sign, the heaviest first.
 pub(super) fn cluster(weighted: impl Iterator<Item = (Vec3, f32)>) -> Vec<(Vec3, f32)> {
-    /// Beyond these, the rest of a round surface tells nothing new.
+    /// Most directions; further ones of a round surface add nothing.
     const MOST: usize = 24;
     let mut clusters: Vec<(Vec3, f32)> = Vec::new();
-    // Weight of each that is along the world's axes.
+    // Added weight of directions along the world's axes.
     let mut along: Vec<Vec3> = Vec::new();
     for (direction, weight) in weighted {
         let same = |(sum, _): &(Vec3, f32)| direction.dot(normalize_or(*sum, Vec3::Y)).abs() > SAME;
@@ -74,7 +74,7 @@ pub(super) fn cluster(weighted: impl Iterator<Item = (Vec3, f32)>) -> Vec<(Vec3,
     clusters
 }
 
-/// Frames with an axis along the heaviest directions, and another along the heaviest at right angles to it.
+/// Frames with one axis along a heavy direction and another along the heaviest perpendicular to it.
 pub(super) fn orientations(directions: &[(Vec3, f32)]) -> impl Iterator<Item = Rotation> {
     const TRIED: usize = 3;
     let first = directions.iter().take(TRIED).map(|&(x, _)| snap(x));
@@ -88,18 +88,18 @@ pub(super) fn orientations(directions: &[(Vec3, f32)]) -> impl Iterator<Item = R
     })
 }
 
-/// The world's axis that a direction is along but for noise, else itself.
+/// The world axis that a direction nearly has, else the direction itself.
 fn snap(direction: Vec3) -> Vec3 {
     axis_along(direction).map_or(direction, |axis| Vec3::AXES[axis])
 }
 
-/// Index of the world's axis that a direction is along but for noise.
+/// Index of the world axis that a direction nearly has.
 fn axis_along(direction: Vec3) -> Option<usize> {
     (0..3).find(|&axis| direction[axis].abs() > LEVEL)
 }
 
-/// A rotation whose axes are, in some order and sign, x, y and their cross product: the one closest to the identity,
-/// so that a box's second half extent is its height.
+/// A rotation whose axes are, in some order and sign, x, y and their cross product: the one closest to the identity, so
+/// that a box's second half extent is its height.
 fn frame(x: Vec3, y: Vec3) -> Rotation {
     let axes = [x, y, x.cross(y)];
     let most = |world: Vec3, taken: Option<usize>| {

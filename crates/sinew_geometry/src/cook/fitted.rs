@@ -15,7 +15,7 @@ pub(super) fn around(points: impl Iterator<Item = Vec3>, rotation: Rotation, lea
     from_corners(low, high, rotation, least)
 }
 
-/// The box from corner to corner in the axes of `rotation`, widened likewise.
+/// The box from corner to corner in the axes of `rotation`, widened in the same way.
 pub(super) fn from_corners(low: Vec3, high: Vec3, rotation: Rotation, least: f32) -> Obb {
     let half_extents = max3((high - low) * 0.5, Vec3::splat(least));
     Obb { center: rotation * ((low + high) * 0.5), rotation, half_extents }

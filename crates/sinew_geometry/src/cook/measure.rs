@@ -1,4 +1,4 @@
-//! Deviation of boxes from the mesh they stand for.
+//! Deviation of boxes from their mesh.
 
 use super::box_set::BoxSet;
 use super::bvh::MeshBvh;
@@ -7,23 +7,22 @@ use super::sample::sample;
 use crate::boxes::{Aabb, Obb, Overlap};
 use sinew_math::{Random, Vec3, max};
 
-/// Points on either side.
+/// Sample points per side.
 const SAMPLES: usize = 20_000;
 
 /// Distances between two surfaces and a ratio of volumes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
-    /// Volume of the boxes' union over the volume that the mesh encloses; `None` if the mesh is open,
-    /// or encloses nothing.
+    /// Volume of the boxes' union over the volume of the mesh; `None` if the mesh is open or encloses nothing.
     pub volume_ratio: Option<f32>,
-    /// 95 of 100 points of either surface are closer than this to the other, metres: the larger of both ways.
+    /// 95th percentile of the distance between the two surfaces, metres: the larger of both directions.
     pub distance_p95: f32,
     /// The largest distance, metres.
     pub distance_max: f32,
 }
 
-/// Measures boxes against their mesh by points uniform over either surface: points of the mesh to the nearest face of
-/// a box, and points of the boxes' outer surface (faces inside another box do not count) to the mesh.
+/// Compares boxes with their mesh by points uniform over either surface: points of the mesh to the nearest box face,
+/// and points of the boxes' outer surface (without faces inside another box) to the mesh.
 pub(super) fn measure(mesh: &SurfaceMesh, bvh: &MeshBvh, blocks: &[Obb], random: &mut Random) -> Deviation {
     let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
     let (points, _) = sample(mesh, &all, SAMPLES, random);
@@ -34,7 +33,7 @@ pub(super) fn measure(mesh: &SurfaceMesh, bvh: &MeshBvh, blocks: &[Obb], random:
     let [p95_back, max_back] = quantiles(outer.iter().map(|&p| bvh.closest_point(p).distance).collect());
     let ratio = mesh.is_closed().then(|| tree.volume(random) / enclosed_volume(mesh, bvh, random));
     Deviation {
-        // Closed shells may cancel out: then nothing is enclosed.
+        // Closed shells may cancel; then nothing is enclosed.
         volume_ratio: ratio.filter(|ratio| ratio.is_finite()),
         distance_p95: max(p95_there, p95_back),
         distance_max: max(max_there, max_back),
@@ -48,7 +47,8 @@ fn quantiles(mut distances: Vec<f32>) -> [f32; 2] {
     [distances[(distances.len() * 95).div_ceil(100) - 1], last]
 }
 
-/// Volume of a closed mesh: by the divergence theorem where its parts are apart, else by points with a winding number.
+/// Volume of a closed mesh: by the divergence theorem if its parts are apart, else by sample points with a winding
+/// number.
 fn enclosed_volume(mesh: &SurfaceMesh, bvh: &MeshBvh, random: &mut Random) -> f32 {
     const ACROSS: usize = 48;
     if !parts_meet(mesh) {
@@ -57,7 +57,7 @@ fn enclosed_volume(mesh: &SurfaceMesh, bvh: &MeshBvh, random: &mut Random) -> f3
             let [a, b, c] = mesh.corners(t).map(|p| p - center);
             f64::from(a.dot(b.cross(c)))
         };
-        // Of a room, whose faces look inward, it is negative.
+        // Negative for a room, whose faces look inward.
         return ((0..mesh.triangles.len()).map(sixfold).sum::<f64>() / 6.0).abs() as f32;
     }
     let size = mesh.bounds.max - mesh.bounds.min;

@@ -1,4 +1,4 @@
-//! A triangle mesh made fit for cooking: checked, welded, split into its connected parts.
+//! Prepares a triangle mesh for cooking: checks, welds, splits into connected parts.
 
 use crate::boxes::Aabb;
 use core::fmt;
@@ -13,12 +13,12 @@ pub const MAX_TRIANGLES: usize = 16 << 20;
 /// Why a mesh cannot be cooked. Indices are those of the slices given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CookError {
-    /// Nothing is left to make boxes of: no triangle, or none with an area.
+    /// No triangle is left, or none has an area.
     NoTriangles {
         /// Number of triangles without area.
         degenerate: usize,
     },
-    /// A triangle names a vertex that is not there.
+    /// A triangle names a missing vertex.
     IndexOutOfRange {
         /// Number of the triangle.
         triangle: usize,
@@ -58,7 +58,7 @@ impl fmt::Display for CookError {
 impl core::error::Error for CookError {}
 
 impl CookError {
-    /// Place in the mesh, such as `triangle 7, vertex 12`; empty for the mesh as a whole.
+    /// Location in the mesh, such as `triangle 7, vertex 12`; empty for the mesh as a whole.
     pub fn place(&self) -> String {
         match *self {
             Self::NoTriangles { .. } | Self::TooMany { .. } => String::new(),
@@ -68,12 +68,12 @@ impl CookError {
     }
 }
 
-/// Repairs that were made to a mesh.
+/// Repairs of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repairs {
-    /// Triangles without area, left out.
+    /// Triangles without area, dropped.
     pub degenerate: usize,
-    /// Triangles that were there already, left out.
+    /// Duplicate triangles, dropped.
     pub repeated: usize,
     /// Edges that no second triangle closes: the rims of holes, and of sheets.
     pub open_edges: usize,
@@ -101,7 +101,7 @@ impl SurfaceMesh {
         for triangle in triangles {
             let triangle = triangle.map(|i| welded[i as usize]);
             let [a, b, c] = triangle.map(|i| positions[i as usize]);
-            // Height over the longest side, so that slivers of the weld's width go too.
+            // Height over the longest side, so that slivers of the weld's width are dropped too.
             let doubled_area = (b - a).cross(c - a).length();
             let longest = (b - a).length_squared() + (c - b).length_squared() + (a - c).length_squared();
             if doubled_area > 0.5 * WELD * diagonal * longest.sqrt() {
@@ -138,7 +138,7 @@ impl SurfaceMesh {
         self.repairs.open_edges == 0
     }
 
-    /// Numbers of the triangles of each part.
+    /// Triangle indices of each part.
     pub fn triangles_by_part(&self) -> Vec<Vec<u32>> {
         let mut by_part = vec![Vec::new(); self.parts];
         for (triangle, &part) in self.part.iter().enumerate() {
@@ -148,7 +148,7 @@ impl SurfaceMesh {
     }
 }
 
-/// The bounds of what the triangles use.
+/// Bounds of the used vertices.
 fn check(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Aabb, CookError> {
     const FARTHEST: f32 = 1e6;
     if triangles.len() > MAX_TRIANGLES {
@@ -171,12 +171,12 @@ fn check(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Aabb, CookError> 
     bounds.ok_or(CookError::NoTriangles { degenerate: 0 })
 }
 
-/// Vertices that are used, each once within `tolerance`, and which one each vertex became.
+/// Used vertices, each once within `tolerance`, and the new index of each old vertex.
 fn weld(positions: &[Vec3], triangles: &[[u32; 3]], tolerance: f32) -> (Vec<Vec3>, Vec<u32>) {
     const UNSEEN: u32 = u32::MAX;
     let cell = if tolerance > 0.0 { 8.0 * tolerance } else { 1.0 };
     let key = |p: Vec3| [p.x, p.y, p.z].map(|x| (x / cell).floor() as i64);
-    // Only looked up, never walked through: its order decides nothing.
+    // Used for lookup only, never iterated: its order decides nothing.
     let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
     let mut kept: Vec<Vec3> = Vec::new();
     let mut welded = vec![UNSEEN; positions.len()];
@@ -208,7 +208,7 @@ fn weld(positions: &[Vec3], triangles: &[[u32; 3]], tolerance: f32) -> (Vec<Vec3
     (kept, welded)
 }
 
-/// Takes out triangles with the corners of an earlier one, turned the same way; says how many.
+/// Removes triangles with the corners and orientation of an earlier one; returns their number.
 fn remove_repeated(triangles: &mut Vec<[u32; 3]>) -> usize {
     let before = triangles.len();
     for triangle in triangles.iter_mut() {
@@ -236,7 +236,7 @@ fn open_edges(triangles: &[[u32; 3]]) -> usize {
     edges.chunk_by(|p, q| (p.0, p.1) == (q.0, q.1)).map(surplus).sum()
 }
 
-/// The part of each triangle, numbered in the order of triangles, and how many there are.
+/// The part of each triangle, numbered in triangle order, and the number of parts.
 fn connected_parts(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, usize) {
     let mut parent: Vec<u32> = (0..vertices as u32).collect();
     for &[a, b, c] in triangles {

@@ -1,21 +1,21 @@
 //! From a triangle mesh to a few oriented boxes.
 //!
-//! A level is drawn as triangles and collides better as boxes: they are solid, few, and have no inner edges to stumble
-//! over. [`cook`] goes from one to the other, [`Cooked::deviation`] says how far it went astray.
+//! Levels are drawn as triangles and collide better as boxes, which are solid, few, and have no internal edges.
+//! [`cook`] converts a mesh, [`Cooked::deviation`] measures the error.
 //!
-//! 1. The mesh is checked and welded, and falls into its connected parts.
-//! 2. A part that is a box within the tolerance becomes that box. Another is divided by the planes of its own facets
-//!    into cells (with even planes between where it is slanted or round), those inside the mesh by its winding
-//!    number are full, and the full ones are covered by boxes as large as they can be.
-//! 3. Flat regions that no box is near, as of a sheet without thickness, become plates behind their faces.
-//! 4. Of more than a few hundred boxes the smallest are put together, cell by cell of a grid: searching all for what
-//!    to merge would take the square of the time.
-//! 5. Steps that add least to the squared distance between the surfaces, dropping a box or merging two, follow until
-//!    no more are left than were asked for.
-//! 6. A box on which one can stand is laid against the ground that it stands for: treads stay level, and as high as drawn.
+//! 1. The mesh is checked, welded and split into its connected parts.
+//! 2. A part that is a box within the tolerance becomes that box. Others are divided by the planes of their own facets
+//!    into cells (with regular planes where they are slanted or round); cells inside the mesh by its winding number are
+//!    full and are covered by boxes as large as possible.
+//! 3. Flat regions far from any box, as of a sheet without thickness, become plates behind their faces.
+//! 4. Of more than a few hundred boxes the smallest are merged, cell by cell of a grid, because the search for merges
+//!    takes quadratic time.
+//! 5. Steps that add least to the squared distance between the surfaces, dropping a box or merging two, follow until at
+//!    most the requested number remains.
+//! 6. A box on which one can stand is aligned with its ground: treads stay level, and as high as drawn.
 //!
-//! Few triangles make few boxes, and coarse ones. Then all is done again with half of the tolerance, and again, as long as boxes are
-//! left to spend and come closer.
+//! Few triangles give few, coarse boxes. Then everything is repeated with half of the tolerance, as long as boxes
+//! remain and the error falls.
 
 mod box_set;
 mod bvh;
@@ -45,8 +45,8 @@ use sinew_math::{Random, Vec3, max};
 pub struct CookOptions {
     /// Most boxes, at least 1. Default 150.
     pub max_boxes: usize,
-    /// Most distance of a box from the part of the mesh that it stands for, as a share of the mesh's diagonal, before
-    /// more boxes are tried. Default 0.01.
+    /// Largest distance of a box from its part of the mesh, as a share of the mesh's diagonal, before more boxes are
+    /// tried. Default 0.01.
     pub tolerance: f32,
 }
 
@@ -63,44 +63,44 @@ pub struct Cooked {
     pub boxes: Vec<Obb>,
     /// Their distance from it.
     pub deviation: Deviation,
-    /// Repairs that were made to the mesh.
+    /// Repairs of the mesh.
     pub repairs: Repairs,
     /// Connected parts of the mesh.
     pub parts: usize,
 }
 
-/// Progress of the cooking: told as it goes, for whoever waits.
+/// Progress of the cooking, reported during the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
     /// So many triangles have their boxes.
     Triangles(usize),
-    /// So many boxes are left.
+    /// Number of boxes left.
     Boxes(usize),
 }
 
-/// Lengths that decisions are made by, metres.
+/// Length thresholds, metres.
 #[derive(Clone, Copy, Debug)]
 struct Scale {
-    /// Most distance of a box from its part.
+    /// Largest distance of a box from its part.
     tolerance: f32,
     /// Least half extent of a box.
     thinnest: f32,
     /// Thickness of a plate behind a sheet.
     thickness: f32,
-    /// Distances that nobody sees.
+    /// Invisible distances.
     unseen: f32,
-    /// Distance at which a part may still be filled where that closes its holes: boxes that are solid hold better than plates. It goes
-    /// by the tolerance that was asked for, however fine the boxes are.
+    /// Distance up to which a part is filled even if that closes its holes: solid boxes are more robust than plates. It
+    /// depends on the requested tolerance only.
     filled: f32,
-    /// Share of the usual size of the cells in which slanted parts are seen.
+    /// Share of the usual cell size for slanted parts.
     finer: f32,
 }
 
 /// [`Scale::filled`], in tolerances.
 const FILLED: f32 = 2.0;
 
-/// Boxes for a mesh given by its vertices (metres) and triangles, counter-clockwise seen from outside. The same boxes for
-/// the same mesh, always.
+/// Boxes for a mesh of vertices (metres) and triangles, counter-clockwise seen from outside. The same mesh always gives
+/// the same boxes.
 ///
 /// # Errors
 /// See [`CookError`].
@@ -136,16 +136,16 @@ pub fn cook(
     Ok(Cooked { boxes, deviation, repairs: mesh.repairs, parts: mesh.parts })
 }
 
-/// Most triangles of a mesh that is cooked again for want of boxes.
+/// Most triangles of a mesh that is cooked again for lack of boxes.
 const FEW_TRIANGLES: usize = 4096;
 /// Times that its tolerance is halved.
 const FINER: usize = 2;
 /// Boxes are close enough where 95 % of the surfaces are within this share of the tolerance: a plate is half as thick.
 const CLOSE: f32 = 0.55;
-/// More boxes are taken where they bring that down to this share at least.
+/// More boxes are used only if they reduce the error to this share.
 const WORTH: f32 = 0.9;
 
-/// Boxes, and their distance from the mesh, where the tolerance is `finer` times what was asked for.
+/// Boxes, and their distance from the mesh, with the requested tolerance times `finer`.
 fn cook_once(
     mesh: &SurfaceMesh,
     bvh: &MeshBvh,
@@ -169,14 +169,14 @@ fn cook_once(
 
 /// Points of the mesh by which boxes are judged.
 const POINTS: usize = 16_384;
-/// Boxes that the search for good merges begins with, at most, unless nearly as many are to remain.
+/// Most boxes at the start of the search for merges, unless nearly as many are to remain.
 const MOST_FIRST: usize = 768;
 
 fn scale(mesh: &SurfaceMesh, options: &CookOptions, finer: f32) -> Scale {
     let diagonal = mesh.diagonal();
     Scale {
         tolerance: finer * options.tolerance * diagonal,
-        // What the engine can hold apart at least: a box thinner than its slop is no obstacle.
+        // Least thickness that the engine resolves: a box thinner than its slop is no obstacle.
         thinnest: max(5e-4 * diagonal, 1e-6),
         thickness: 0.5 * options.tolerance * diagonal,
         unseen: 0.15 * finer * options.tolerance * diagonal,
@@ -185,7 +185,7 @@ fn scale(mesh: &SurfaceMesh, options: &CookOptions, finer: f32) -> Scale {
     }
 }
 
-/// As many boxes as the mesh asks for.
+/// As many boxes as the mesh needs.
 fn first_boxes(
     mesh: &SurfaceMesh,
     bvh: &MeshBvh,

@@ -1,4 +1,4 @@
-//! Plates: flat regions of the mesh that no box is near become plates behind their faces.
+//! Plates: flat regions of the mesh far from any box become plates behind their faces.
 
 use super::Scale;
 use super::bvh::MeshBvh;
@@ -23,7 +23,7 @@ pub(super) fn uncovered(mesh: &SurfaceMesh, triangles: &[u32], blocks: &[Obb], s
         let corners = mesh.corners(triangle as usize);
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         let size = (corners[1] - corners[0]).length() + (corners[2] - corners[0]).length();
-        // Of small ones the middle says all.
+        // For small triangles the middle suffices.
         !near(middle)
             || (size > scale.tolerance
                 && corners.iter().any(|&corner| !near(corner + (middle - corner) * 0.2)))
@@ -99,7 +99,7 @@ fn neighbors(mesh: &SurfaceMesh, triangles: &[u32]) -> Vec<[u32; 3]> {
 
 fn plates_of_region(mesh: &SurfaceMesh, region: &[u32], scale: Scale) -> Vec<Obb> {
     let (rotation, low, high) = smallest_rectangle(mesh, region);
-    // Behind the face, so that what stands on it stands where it is seen.
+    // Behind the face, so that objects stand on the drawn surface.
     let low = low - Vec3::Y * scale.thickness;
     let area: f32 = region.iter().map(|&t| 0.5 * mesh.doubled_area(t as usize).length()).sum();
     let size = high - low;

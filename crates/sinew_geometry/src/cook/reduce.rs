@@ -1,4 +1,4 @@
-//! Fewer boxes: what costs least is dropped or merged, until no more are left than wanted.
+//! Reduces boxes: drops or merges the cheapest until the requested number remains.
 
 use super::Scale;
 use super::bvh::MeshBvh;
@@ -15,7 +15,7 @@ const SURFACE: usize = 64;
 /// Neighbours that a box may merge with.
 const NEIGHBORS: usize = 8;
 
-/// A box on its way.
+/// A box during the reduction.
 #[derive(Clone)]
 struct Entry {
     block: Obb,
@@ -23,35 +23,35 @@ struct Entry {
     bounds: Aabb,
     /// Points of the mesh to which it is the closest.
     points: Vec<u32>,
-    /// Integral of squared distances of and to its surface, m⁴, and how many boxes were left when it was found.
+    /// Integral of squared distances of and to its surface, m⁴, and the number of boxes when it was computed.
     cost: f32,
     seen: usize,
     /// Neither dropped nor merged so far.
     alive: bool,
 }
 
-/// A way to come by with one box less.
+/// A way to remove one box.
 #[derive(Clone, Copy)]
 enum Step {
-    /// Leave out a box.
+    /// Drop a box.
     Drop(usize),
-    /// Put a box in the place of two.
+    /// Replace two boxes by one.
     Merge(usize, usize, Obb),
 }
 
 struct Candidate {
     step: Step,
-    /// Its addition to the integral of squared distances when last looked at, m⁴.
+    /// Its addition to the integral of squared distances when last computed, m⁴.
     cost: f32,
-    /// Number of boxes that were left then.
+    /// Number of boxes at that time.
     seen: usize,
 }
 
-/// Boxes, points of the mesh, and what may become of them.
+/// Boxes, points of the mesh, and candidate reductions.
 pub(super) struct Reduction<'a> {
     bvh: &'a MeshBvh,
     points: &'a [MeshPoint],
-    /// Area of the mesh that each point stands for, m².
+    /// Area that each mesh point represents, m².
     area: f32,
     scale: Scale,
     entries: Vec<Entry>,
@@ -60,7 +60,7 @@ pub(super) struct Reduction<'a> {
 }
 
 impl<'a> Reduction<'a> {
-    /// Reduction of `blocks` that stand for a mesh of which `points` are known, each for `area` square metres.
+    /// Reduction of `blocks` for a mesh with sample `points`, each for `area` square metres.
     pub fn new(bvh: &'a MeshBvh, points: &'a [MeshPoint], area: f32, scale: Scale, blocks: &[Obb]) -> Self {
         let entries: Vec<Entry> = blocks.iter().map(|&block| Entry::new(block)).collect();
         let left = entries.len();
@@ -75,10 +75,10 @@ impl<'a> Reduction<'a> {
         reduction
     }
 
-    /// Boxes that are left when no more than `most` are, and none can go without being missed. `tick` is told how
-    /// many are left after each step.
+    /// Boxes that remain when at most `most` are left and every further step would be visible. `tick` gets the number
+    /// of boxes after each step.
     pub fn run(mut self, most: usize, tick: &mut dyn FnMut(usize)) -> Vec<Obb> {
-        // Squared distance, times the area concerned, that nobody sees.
+        // Squared distance, times the area concerned, that is invisible.
         let free = self.scale.unseen * self.scale.unseen;
         while self.left > 1 {
             let cheaper = |a: usize, b: usize| {
@@ -186,7 +186,7 @@ impl<'a> Reduction<'a> {
         }
     }
 
-    /// Integral that a box itself stands for, m⁴: looked up where nothing has changed since it was last asked.
+    /// Integral of a box itself, m⁴: cached while nothing has changed.
     fn cost_of(&mut self, i: usize) -> f32 {
         if self.entries[i].seen != self.left {
             let Entry { block, ref points, .. } = self.entries[i];
@@ -196,7 +196,7 @@ impl<'a> Reduction<'a> {
         self.entries[i].cost
     }
 
-    /// Gives a point of the mesh to the box whose surface is closest.
+    /// Assigns a point of the mesh to the box with the closest surface.
     fn give(&mut self, point: u32) {
         let p = self.points[point as usize].position;
         let (nearest, _) = self.nearest(p, usize::MAX);
@@ -205,7 +205,7 @@ impl<'a> Reduction<'a> {
         }
     }
 
-    /// The box whose faces are closest to `p`, one left out, and how far they are.
+    /// The box whose faces are closest to `p`, except one, and its distance.
     fn nearest(&self, p: Vec3, without: usize) -> (Option<usize>, f32) {
         let mut best = (None, f32::INFINITY);
         for (i, entry) in self.entries.iter().enumerate() {
@@ -223,7 +223,7 @@ impl<'a> Reduction<'a> {
         best
     }
 
-    /// The nearest boxes by the gap between bounds, then by the size of what holds both.
+    /// The nearest boxes by the gap between bounds, then by the size of the common bounds.
     fn neighbors(&self, i: usize) -> Vec<usize> {
         let bounds = self.entries[i].bounds;
         let mut near: Vec<(f32, f32, usize)> = Vec::new();
@@ -240,7 +240,7 @@ impl<'a> Reduction<'a> {
     }
 
     /// Single boxes for two: the smallest around both, along the axes of either, of the world, or of the mesh there;
-    /// and the plate behind the faces that they stand for.
+    /// and the plate behind their faces.
     fn merged(&self, i: usize, j: usize) -> [Obb; 2] {
         let [a, b] = [&self.entries[i], &self.entries[j]];
         let corners = [a.block.corners(), b.block.corners()].concat();
@@ -254,7 +254,7 @@ impl<'a> Reduction<'a> {
         let around_both = around_both.unwrap_or(a.block);
         let Some(rotation) = along_faces else { return [around_both; 2] };
         let normal: Vec3 = points().map(|p| p.normal).sum();
-        // Behind the faces where they look one way, nowhere where they look all ways.
+        // Behind the faces if they look one way; none if they look all ways.
         let behind = normal * (-self.scale.thickness / points().count() as f32);
         let plate = points().flat_map(|p| [p.position, p.position + behind]);
         [around_both, around(plate, rotation, self.scale.thinnest)]
@@ -270,10 +270,10 @@ impl<'a> Reduction<'a> {
         points.iter().map(square).sum::<f32>() * self.area
     }
 
-    /// Integral of squared distance to the mesh over a box's surface outside all other boxes, m⁴. `own` are those that
-    /// it stands for.
+    /// Integral of squared distance to the mesh over a box's surface outside all other boxes, m⁴. `own` are the points
+    /// that it represents.
     fn surface_cost(&self, block: &Obb, own: [usize; 2]) -> f32 {
-        // The same points of the same box, so that costs can be compared.
+        // The same points for the same box, so that costs can be compared.
         let mut points = Vec::with_capacity(SURFACE);
         sample_surface(block, SURFACE, &mut Random::new(0), &mut points);
         let square = |&p: &Vec3| {

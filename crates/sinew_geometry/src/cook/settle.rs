@@ -1,4 +1,4 @@
-//! Boxes laid against what they stand for: a tread is level, and as high as it was drawn.
+//! Aligns boxes with their ground: a tread is level, and as high as drawn.
 
 use super::Scale;
 use super::fit::cluster;
@@ -8,17 +8,17 @@ use sinew_math::{Rotation, Vec3};
 
 /// Least height of a unit normal on which one can stand (45°).
 const GROUND: f32 = 0.7;
-/// A top stands for points whose normals are within this cosine (11°) of its own.
+/// A top represents points whose normals are within this cosine (11°) of its own.
 const FACING: f32 = 0.98;
-/// Least number of them that tell anything, least share of them that must lie in one plane, and least share of all points of a
-/// box that are its top if it is to be turned.
+/// Least number of points, least share of them in one plane, and least share of all points of a box on its top, for the
+/// box to be rotated.
 const LEAST: usize = 4;
 const IN_PLANE: f32 = 0.6;
 const MOSTLY_TOP: f32 = 0.3;
 /// A box is turned if its top is farther from the plane than this cosine (0.1°).
 const TURNED: f32 = 0.999_998_5;
 
-/// A box whose top lies in the plane of the ground that it stands for, its bottom where it was.
+/// A box whose top lies in the plane of its ground, its bottom unchanged.
 pub(super) fn settled(block: Obb, points: &[MeshPoint], scale: Scale) -> Obb {
     let (axis, up) = top(&block);
     if up.y < GROUND {
@@ -45,7 +45,7 @@ pub(super) fn settled(block: Obb, points: &[MeshPoint], scale: Scale) -> Obb {
         laid.rotation = (Rotation::from_arc(up, normal) * block.rotation).normalize();
     }
     let raised = height - (laid.center.dot(normal) + laid.half_extents[axis]);
-    // A top that is far from it stands for more than that.
+    // A top far from the plane represents more than that ground.
     if raised.abs() > 2.0 * scale.tolerance || laid.half_extents[axis] + 0.5 * raised < scale.thinnest {
         return block;
     }

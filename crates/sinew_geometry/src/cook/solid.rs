@@ -1,4 +1,4 @@
-//! A connected part of a mesh as boxes: one where one is close enough, else boxes of cells.
+//! A connected part of a mesh as boxes: one if it is close enough, else boxes of cells.
 
 use super::Scale;
 use super::box_set::BoxSet;
@@ -14,7 +14,7 @@ use sinew_math::{Random, Rotation, Vec3, max};
 
 /// Normals within this cosine of an axis are along it (8°).
 const ALIGNED: f32 = 0.99;
-/// Most planes along an axis of a part's grid.
+/// Most planes per axis of a part's grid.
 const MOST_PLANES: usize = 40;
 /// Cells along the longest side, where slanted faces need them.
 const CELLS: f32 = 24.0;
@@ -23,8 +23,8 @@ const MOST_BOXES: usize = 256;
 /// Share of a part's volume that may stay uncovered.
 const LEFT_OUT: f32 = 0.005;
 
-/// Boxes for a connected part of the mesh: one, if the part is nearly a box; else those that fill what it encloses, or
-/// plates behind its faces, whichever are closer to it. To fill an open shell costs the faces that close its holes.
+/// Boxes for a connected part: one if the part is nearly a box; else boxes of its inside, or plates behind its faces,
+/// whichever are closer to it. Filling an open shell costs the faces that close its holes.
 pub(super) fn blocks_of_part(
     mesh: &SurfaceMesh,
     bvh: &MeshBvh,
@@ -58,10 +58,10 @@ pub(super) fn blocks_of_part(
     if larger(&shell) < of_filled { shell } else { filled }
 }
 
-/// Points of a part that boxes are held against.
+/// Points of a part to compare boxes with.
 const SAMPLES: usize = 400;
 
-/// Root of the mean squared distance from points of a part to boxes, and from the boxes' outer surface to the mesh.
+/// Root mean squared distance from points of a part to boxes, and from the boxes' outer surface to the mesh.
 fn rms_distances(bvh: &MeshBvh, points: &[MeshPoint], blocks: &[Obb], random: &mut Random) -> [f32; 2] {
     let set = BoxSet::new(blocks);
     let rms = |distances: Vec<f32>| {
@@ -73,7 +73,7 @@ fn rms_distances(bvh: &MeshBvh, points: &[MeshPoint], blocks: &[Obb], random: &m
     [there, rms(outer.iter().map(|&p| bvh.closest_point(p).distance).collect())]
 }
 
-/// True if the faces around the middle of a box look inward, as a room's.
+/// True if the faces around the middle of a box look inward, as in a room.
 pub(super) fn is_seen_from_inside(bvh: &MeshBvh, block: &Obb) -> bool {
     bvh.winding_number(block.center) < -0.5
 }
@@ -107,7 +107,7 @@ fn boxes_of_cells(
     boxes.iter().map(block).collect()
 }
 
-/// Planes of the part's facets along each axis of the frame, with even ones between where much of it is slanted.
+/// Planes of the part's facets along each axis of the frame, with regular ones where much of it is slanted.
 fn planes(mesh: &SurfaceMesh, triangles: &[u32], rotation: Rotation, scale: Scale) -> [Vec<f32>; 3] {
     let mut facets: [Vec<(f32, f32)>; 3] = Default::default();
     let (mut slanted, mut area) = (0.0, 0.0);
@@ -160,7 +160,7 @@ fn distinct(mut weighted: Vec<(f32, f32)>, ends: [f32; 2], apart: f32) -> Vec<f3
     planes
 }
 
-/// The planes with even ones between them, so that no two neighbours are farther apart than `step`.
+/// The planes with regular ones between, so that neighbours are at most `step` apart.
 fn subdivided(planes: &[f32], step: f32) -> Vec<f32> {
     let mut out = vec![planes[0]];
     for pair in planes.windows(2) {

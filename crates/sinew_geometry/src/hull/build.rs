@@ -10,8 +10,8 @@ use sinew_math::{Vec3, max, max3, min, min3};
 
 /// Numbers of corners to try. Triangles around 66 corners are [`MAX_FACES`].
 const BUDGETS: [usize; 4] = [usize::MAX, MAX_VERTICES, 128, MAX_FACES / 2 + 2];
-/// Distance from the plane of a face, in steps of the grid, within which a corner is on it. The last one merges what is exactly
-/// one plane, and always succeeds.
+/// Distances from a face's plane, in grid steps, within which a corner counts as on it. The last one merges exact
+/// planes only, and always succeeds.
 const TOLERANCES: [f64; 4] = [8.0, 2.0, 0.5, 0.0];
 /// Share of the size by which merging may leave a corner outside.
 const MOST_LOST: f32 = 4e-6;
@@ -38,7 +38,7 @@ fn size(bounds: &Aabb) -> f32 {
     max(max(sides.x, sides.y), sides.z)
 }
 
-/// The hull of at most so many points; `None` if it has too many faces.
+/// The hull with at most so many points; `None` if it has too many faces.
 fn with_budget(grid: &Grid, budget: usize) -> Result<Option<Hull>, HullError> {
     let mut corners: Vec<u32> =
         quick::hull(&grid.points, budget)?.iter().flat_map(|triangle| triangle.corners).collect();
@@ -63,8 +63,7 @@ fn with_budget(grid: &Grid, budget: usize) -> Result<Option<Hull>, HullError> {
     Err(HullError::TooThin)
 }
 
-/// The corners that faces use, and the faces by their numbers among these; `None` if there are too many. Both in an order that
-/// depends on nothing else.
+/// The corners that faces use, and the faces by corner index; `None` if there are too many. Both in a canonical order.
 fn numbered(places: &[Vec3], faces: &merge::Faces) -> Option<(Vec<Vec3>, Vec<Vec<u8>>)> {
     let mut used: Vec<u32> = faces.iter().flatten().copied().collect();
     used.sort_unstable();
@@ -86,10 +85,10 @@ fn numbered(places: &[Vec3], faces: &merge::Faces) -> Option<(Vec<Vec3>, Vec<Vec
     Some((used.iter().map(|&i| places[i as usize]).collect(), loops))
 }
 
-/// A hull from its corners and the corners of each face, counter-clockwise from outside, and everything that follows.
+/// A hull from its corners and the corners of each face, counter-clockwise from outside.
 ///
 /// # Errors
-/// What is wrong, if they are not those of a convex solid.
+/// A description of the problem, if they do not form a convex solid.
 pub(super) fn from_faces(vertices: Vec<Vec3>, loops: &[Vec<u8>]) -> Result<Hull, &'static str> {
     let outline = Outline::new(loops, vertices.len())?;
     let low = vertices.iter().copied().fold(Vec3::splat(f32::INFINITY), min3);
@@ -104,7 +103,7 @@ pub(super) fn from_faces(vertices: Vec<Vec3>, loops: &[Vec<u8>]) -> Result<Hull,
     for ring in loops {
         let (normal, area) = newell(&vertices, ring).ok_or("a face of a hull has no area")?;
         let on_face = ring.iter().map(|&i| normal.dot(vertices[usize::from(i)])).fold(f32::INFINITY, min);
-        // As far out as any corner, so that a face's plane holds the hull up to rounding.
+        // At the furthest corner, so that a face's plane bounds the hull up to rounding.
         let offset = reach(&vertices, normal);
         if offset - on_face > CONVEX * size + ROUNDING * bounding_radius {
             return Err("a hull is not convex");
@@ -134,7 +133,7 @@ pub(super) fn from_faces(vertices: Vec<Vec3>, loops: &[Vec<u8>]) -> Result<Hull,
     })
 }
 
-/// Unit normal and area of a polygon (Newell's sum), in `f64`, from its first corner; `None` if it has none.
+/// Unit normal and area of a polygon (Newell's sum), in `f64`, relative to its first corner; `None` if it has no area.
 fn newell(vertices: &[Vec3], ring: &[u8]) -> Option<(Vec3, f32)> {
     let corner = |k: usize| vertices[usize::from(ring[k])].to_array().map(f64::from);
     let from = corner(0);

@@ -1,15 +1,15 @@
-//! Points as whole numbers: what lies on which side of a plane is then exact, and no cloud is too flat or too regular.
+//! Points as whole numbers: plane sides are exact, and no cloud is too flat or too regular.
 
 use super::HullError;
 use sinew_math::{Vec3, max3, min3};
 
-/// Steps along the longest side of a cloud's bounds, at most: the finest for which a multiple of the step is a `f32` again.
+/// Most steps along the longest side of a cloud's bounds: the finest for which every multiple of the step is an `f32`.
 const STEPS: f64 = 8_388_608.0;
-/// Longest sides that a hull may have, metres: beyond them its inertia leaves the range of `f32`.
+/// Longest side of a hull, metres: beyond it the inertia leaves the range of `f32`.
 pub(super) const SIZES: core::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
-/// A cloud's points on a grid whose step is a power of two, at most 2⁻²² of the longest side; sorted, each once, so that the
-/// order in which they were given decides nothing.
+/// A cloud's points on a grid whose step is a power of two, at most 2⁻²² of the longest side; sorted and unique, so
+/// that the input order decides nothing.
 pub(super) struct Grid {
     /// In steps from the lowest corner, 0..=2²³.
     pub points: Vec<[i64; 3]>,
@@ -29,7 +29,7 @@ impl Grid {
         };
         let [mut low, mut high] = [low, high].map(wide);
         let mut step = step_for(low, high)?;
-        // Rounding the bounds may make them longer than the step is meant for.
+        // Rounding may make the bounds longer than the step allows.
         loop {
             [low, high] = [low, high].map(|corner| corner.map(|x| (x / step).round_ties_even() * step));
             let again = step_for(low, high)?;
@@ -59,7 +59,7 @@ fn wide(p: Vec3) -> [f64; 3] {
     p.to_array().map(f64::from)
 }
 
-/// The smallest power of two of which [`STEPS`] are as long as the bounds.
+/// The smallest power of two with which [`STEPS`] steps cover the bounds.
 fn step_for(low: [f64; 3], high: [f64; 3]) -> Result<f64, HullError> {
     let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, |a: f64, b| if b > a { b } else { a });
     if size == 0.0 {

@@ -1,6 +1,6 @@
-//! Volume, centre and inertia of a hull: sums over the tetrahedra between a point inside and the triangles of its faces
-//! (Mirtich, "Fast and Accurate Computation of Polyhedral Mass Properties", 1996, has the same integrals over faces), in
-//! `f64`, since large terms cancel.
+//! Volume, centre and inertia of a hull: sums over the tetrahedra between an inner point and the triangles of its faces
+//! (after Mirtich, "Fast and Accurate Computation of Polyhedral Mass Properties", 1996), in `f64`, since large terms
+//! cancel.
 
 use sinew_math::{Sym3, Vec3};
 
@@ -55,7 +55,7 @@ impl Integrals {
         }
     }
 
-    /// Volume, centre, and inertia about it at density 1; `None` if there is no volume or it is not finite.
+    /// Volume, centre, and inertia about it at density 1; `None` if the volume is zero or not finite.
     pub fn solid(&self) -> Option<(f32, Vec3, Sym3)> {
         let volume = self.volume as f32;
         if !(volume > 0.0 && volume < f32::INFINITY) {

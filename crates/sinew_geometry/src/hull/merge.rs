@@ -1,4 +1,4 @@
-//! Triangles of a hull to faces: those that lie in one plane but for a tolerance become one polygon.
+//! Merges a hull's triangles that lie in one plane, within a tolerance, into polygons.
 
 use super::HullError;
 use super::quick::{self, Point, Triangle, side};
@@ -6,8 +6,8 @@ use super::quick::{self, Point, Triangle, side};
 /// A hull's faces, each by its corners, counter-clockwise from outside.
 pub(super) type Faces = Vec<Vec<u32>>;
 
-/// The faces around `points`, with corners that lie within `tolerance` (in steps) of a face's plane on it. All corners have
-/// three faces or more; with a tolerance of 0 nothing is lost.
+/// The faces around `points`; corners within `tolerance` (in steps) of a face's plane count as on it. Every corner has
+/// three faces or more; a tolerance of 0 loses nothing.
 ///
 /// # Errors
 /// If nothing solid is left.
@@ -23,7 +23,7 @@ pub(super) fn faces(points: &[Point], tolerance: f64) -> Result<Faces, HullError
             let named = faces.into_iter().map(|face| face.into_iter().map(|i| used[i as usize]).collect());
             return Ok(named.collect());
         }
-        // The others lie on a face or an edge: they go, and what is left has a hull of its own.
+        // The other points lie on a face or an edge; they are dropped, and the rest gets a hull of its own.
         used = kept.into_iter().map(|i| used[i as usize]).collect();
     }
 }
@@ -31,14 +31,14 @@ pub(super) fn faces(points: &[Point], tolerance: f64) -> Result<Faces, HullError
 /// Triangles by the face that they belong to.
 struct Regions<'a> {
     triangles: &'a [Triangle],
-    /// Region of each triangle; a region is named by the triangle it grew from.
+    /// Region of each triangle, named by its first triangle.
     region: Vec<u32>,
 }
 
 const NONE: u32 = u32::MAX;
 
 impl<'a> Regions<'a> {
-    /// From the largest triangle on, each takes in its neighbours as long as they lie in its plane.
+    /// From the largest triangle on, each absorbs its neighbours while they lie in its plane.
     fn grow(points: &[Point], triangles: &'a [Triangle], tolerance: f64) -> Self {
         let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
         let area = |i: u32| triangles[i as usize].plane.length;
@@ -67,7 +67,7 @@ impl<'a> Regions<'a> {
         Self { triangles, region }
     }
 
-    /// The number of corners of all triangles, and those of them where three faces or more meet, ascending.
+    /// Number of corners of all triangles, and those where three faces or more meet, ascending.
     fn corners(&self, points: usize) -> (usize, Vec<u32>) {
         let mut meet: Vec<(u32, u32)> = Vec::with_capacity(3 * self.triangles.len());
         for (triangle, &region) in self.triangles.iter().zip(&self.region) {
@@ -83,7 +83,8 @@ impl<'a> Regions<'a> {
         (faces.iter().filter(|&&count| count > 0).count(), kept)
     }
 
-    /// The regions' outlines. One that has a dent deeper than the tolerance, or is no simple polygon, stays in triangles.
+    /// The regions' outlines. A region with a dent deeper than the tolerance, or without a simple outline, stays in
+    /// triangles.
     fn faces(&self, points: &[Point], tolerance: f64) -> Faces {
         let mut members: Vec<(u32, u32)> =
             self.region.iter().enumerate().map(|(i, &region)| (region, i as u32)).collect();
@@ -106,7 +107,7 @@ impl<'a> Regions<'a> {
         faces
     }
 
-    /// The ring of sides around a region, if it is one ring that meets each corner once.
+    /// The outline of a region, if it is one ring that meets each corner once.
     fn outline(&self, group: &[(u32, u32)]) -> Option<Vec<u32>> {
         let mut sides: Vec<[u32; 2]> = Vec::new();
         for &(region, t) in group {

@@ -1,6 +1,6 @@
-//! Convex hulls: solids with flat faces, made from points.
+//! Convex hulls: solids with flat faces, built from points.
 //!
-//! Made once and never changed; shapes hold them by [`Arc`](std::sync::Arc). Everything is in the hull's own frame, metres.
+//! Immutable; shapes hold them by [`Arc`](std::sync::Arc). Everything is in the hull's own frame, metres.
 
 mod build;
 mod bytes;
@@ -25,7 +25,7 @@ pub(crate) use topology::{Plane, Topology};
 
 /// Most faces that a hull has.
 pub const MAX_FACES: usize = 128;
-/// Most corners that a hull has: what so many faces can have if three meet in each.
+/// Most corners of a hull: the maximum for that many faces if three meet in each.
 pub const MAX_VERTICES: usize = 2 * MAX_FACES - 4;
 
 /// Why points have no hull.
@@ -88,14 +88,14 @@ pub struct HullFace<'a> {
 impl Hull {
     /// The smallest convex solid that holds all points (metres): quickhull, exactly.
     ///
-    /// Points are put on a grid of at most 2⁻²² of the longest side of their bounds, on which all decisions are exact. Faces
-    /// within 2e-6 of that side of one plane become one polygon; no point is left further outside than 1e-5 of it. The order of
-    /// the points does not matter, and a point that is there twice counts once.
+    /// Points are snapped to a grid of at most 2⁻²² of the longest side of their bounds, on which all decisions are
+    /// exact. Faces within 2e-6 of that side of one plane become one polygon; no point is left further outside than
+    /// 1e-5 of it. Order and duplicates of the points do not matter.
     ///
-    /// If the hull would have more than [`MAX_FACES`] faces it is **simplified**: it is grown from four points by the one that
-    /// is furthest outside, and ends at 252, 128 or 66 corners, whichever comes first with few enough faces. It then lies
-    /// inside the cloud; [`distance`](Self::distance) tells how far a point is left outside (a ball of 10,000 points: about
-    /// 5 % of its radius).
+    /// A hull that would have more than [`MAX_FACES`] faces is **simplified**: it grows from four points by the
+    /// furthest outside point, and ends at 252, 128 or 66 corners, whichever comes first with few enough faces. It then
+    /// lies inside the cloud; [`distance`](Self::distance) tells how far a point is outside (about 5 % of the radius
+    /// for a ball of 10,000 points).
     ///
     /// # Errors
     /// [`HullError`]: points that span no solid, or numbers that are no lengths.
@@ -114,7 +114,7 @@ impl Hull {
         (0..self.planes.len()).map(|index| HullFace { hull: self, index })
     }
 
-    /// Edges as pairs of corners, by their numbers, each once.
+    /// Edges as pairs of corner indices, each once.
     pub fn edges(&self) -> impl Iterator<Item = [usize; 2]> {
         let topology = self.topology();
         topology.edge_numbers().map(move |edge| topology.ends(edge))
@@ -170,7 +170,7 @@ impl Hull {
     }
 }
 
-/// By content: what is derived follows from corners and faces.
+/// Compared by content; everything else is derived from corners and faces.
 impl PartialEq for Hull {
     fn eq(&self, other: &Self) -> bool {
         self.content_hash == other.content_hash

@@ -5,7 +5,7 @@ use super::{Hull, MAX_FACES, MAX_VERTICES, reach, support};
 use crate::boxes::segment::Segment;
 use sinew_math::{Transform, Vec3, min};
 
-/// Corners, planes, and how they hang together. A triangle has two faces.
+/// Corners, planes and topology. A triangle has two faces.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Polytope<'a> {
     /// A point inside.
@@ -13,7 +13,7 @@ pub(crate) struct Polytope<'a> {
     pub vertices: &'a [Vec3],
     pub planes: &'a [Plane],
     pub topology: Topology<'a>,
-    /// Radius of a ball inside: what lengths are held against. Infinite where that is for the other shape to say.
+    /// Radius of an inscribed ball, a reference for lengths. Infinite if the other shape decides.
     pub thickness: f32,
 }
 
@@ -30,7 +30,7 @@ impl Hull {
     }
 }
 
-/// Memory for a hull seen from another frame.
+/// Buffer for a hull in another frame.
 pub(crate) struct Room {
     vertices: [Vec3; MAX_VERTICES],
     planes: [Plane; MAX_FACES],
@@ -44,7 +44,7 @@ impl Room {
 }
 
 impl<'a> Polytope<'a> {
-    /// The same thing seen from another frame.
+    /// The same polytope in another frame.
     pub fn seen_from<'b>(&self, frame_from_this: &Transform, room: &'b mut Room) -> Polytope<'b>
     where
         'a: 'b,
@@ -81,7 +81,7 @@ impl<'a> Polytope<'a> {
         Segment { ends: self.topology.ends(side).map(|corner| self.vertices[corner]) }
     }
 
-    /// The face that looks most into a direction; the first among equals.
+    /// The face whose normal is closest to a direction; the first among equals.
     pub fn facing(&self, direction: Vec3) -> usize {
         let (mut best, mut most) = (0, f32::NEG_INFINITY);
         for (face, plane) in self.planes.iter().enumerate() {
@@ -93,8 +93,8 @@ impl<'a> Polytope<'a> {
         best
     }
 
-    /// The face, of those at the corner that is furthest along a direction, or as far but for `tolerance`, that looks most
-    /// into it.
+    /// The face whose normal is closest to a direction, among those at the corner furthest along it (within
+    /// `tolerance`).
     pub fn face_at_support(&self, direction: Vec3, tolerance: f32) -> usize {
         let least = self.reach(direction) - tolerance;
         let reaches = |corner: usize| self.vertices[corner].dot(direction) >= least;
@@ -120,14 +120,14 @@ impl<'a> Polytope<'a> {
         (highest, normal)
     }
 
-    /// The point of the surface closest to one outside, which lies on a face that looks at it; else the point itself.
+    /// The surface point closest to an outside point, on a face toward it; for an inside point the point itself.
     pub fn closest(&self, p: Vec3) -> Vec3 {
         let (mut best, mut closest) = (f32::INFINITY, p);
-        // A point on a face may seem to be just below it, and just above the next one, which is elsewhere.
+        // A point on a face may seem just below it and just above a neighbour, which is elsewhere.
         let lowest = -1e-6 * ((p - self.center).length() + p.length());
         for (face, plane) in self.planes.iter().enumerate() {
             let height = plane.height(p);
-            // The way to a face is at least as long as that to its plane.
+            // The distance to a face is at least that to its plane.
             if height <= lowest || height * height >= best {
                 continue;
             }
@@ -140,7 +140,7 @@ impl<'a> Polytope<'a> {
         closest
     }
 
-    /// Right above the face, or on one of the edges beyond which the point is.
+    /// Directly above the face, or on one of the edges beyond which the point is.
     fn closest_on_face(&self, face: usize, p: Vec3) -> Vec3 {
         let plane = &self.planes[face];
         let (mut best, mut closest) = (f32::INFINITY, p - plane.normal * plane.height(p));
@@ -167,7 +167,7 @@ impl<'a> Polytope<'a> {
         }
         let span = p - self.closest(p);
         let distance = span.length();
-        // Where the points are close the direction between them is rounding, which far corners turn into millimetres.
+        // The direction between close points is rounding, which distant corners would amplify to millimetres.
         let noise = 1e-4 * (p - self.center).length();
         if distance > noise { (distance, span / distance) } else { (distance, normal) }
     }

@@ -4,8 +4,8 @@ use super::Hull;
 use sinew_math::Vec3;
 
 impl Hull {
-    /// Signed distance of a point to the surface, metres, and the unit outward normal at the closest point of it: exact,
-    /// whether that is on a face, an edge or a corner. Of several closest points the one on the first face.
+    /// Signed distance of a point to the surface, metres, and the unit outward normal at the closest point of it: exact
+    /// for faces, edges and corners. If several points are closest, the one on the first face.
     pub fn distance(&self, p: Vec3) -> (f32, Vec3) {
         self.polytope().distance(p)
     }

@@ -1,10 +1,10 @@
-//! Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", ACM TOMS 1996) over whole numbers:
-//! triangles, exactly convex. Points on a face or an edge are left out.
+//! Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", ACM TOMS 1996) over whole
+//! numbers: exactly convex triangles. Points on a face or an edge are dropped.
 
 use super::HullError;
 use std::collections::BinaryHeap;
 
-/// Coordinates of at most 24 bits: differences, their products and a plane's height then fit in 25, 50 and 77 bits.
+/// Coordinates have at most 24 bits: differences, their products and a plane's height then fit in 25, 50 and 77 bits.
 pub(super) type Point = [i64; 3];
 
 /// A triangle on the hull, counter-clockwise from outside.
@@ -14,7 +14,7 @@ pub(super) struct Triangle {
     /// Across the side from corner k to the next.
     pub neighbors: [u32; 3],
     pub plane: Plane,
-    /// Points that see it and were not yet taken in, the furthest last.
+    /// Outside points assigned to it, the furthest last.
     outside: Vec<u32>,
     alive: bool,
 }
@@ -29,12 +29,12 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// True if both look to the same half of all directions.
+    /// True if both normals look to the same half-space.
     pub fn faces_like(&self, other: &Self) -> bool {
         dot(self.normal, other.normal) > 0
     }
 
-    /// By how much the way from a to c has to bend outward for b, in steps: negative where a polygon that looks along the
+    /// Outward bend of a polygon at b on the way from a to c, in steps; negative if the polygon that looks along the
     /// normal has a dent at b.
     pub fn bulge(&self, [a, b, c]: [Point; 3]) -> f64 {
         let chord = sub(c, a);
@@ -73,8 +73,8 @@ fn dot(a: Point, b: Point) -> i128 {
     (0..3).map(|k| i128::from(a[k]) * i128::from(b[k])).sum()
 }
 
-/// The triangles around `points`, of which at most `budget` (≥ 4) become corners: always the one that is furthest outside
-/// next, so that what is left out lies as little outside as may be.
+/// The triangles around `points`, of which at most `budget` (≥ 4) become corners: always the furthest outside point
+/// next, so that dropped points lie as little outside as possible.
 pub(super) fn hull(points: &[Point], budget: usize) -> Result<Vec<Triangle>, HullError> {
     let mut hull = Growing::simplex(points)?;
     for _ in 4..budget {
@@ -92,7 +92,7 @@ struct Growing<'a> {
 }
 
 impl<'a> Growing<'a> {
-    /// Four points that span as much as may be.
+    /// Four points that span a large volume.
     fn simplex(points: &'a [Point]) -> Result<Self, HullError> {
         if points.len() < 4 {
             return Err(HullError::TooFewPoints);
@@ -139,7 +139,7 @@ impl<'a> Growing<'a> {
         self.triangles.push(Triangle { corners, neighbors, plane, outside: Vec::new(), alive: true });
     }
 
-    /// Gives each point to a triangle from `first` on that it is outside of, and drops those that are inside of all.
+    /// Assigns each point to a triangle from `first` on that it is outside of, and drops inner points.
     fn share_out(&mut self, orphans: Vec<u32>, first: usize) {
         let points = self.points;
         for i in orphans {
@@ -217,7 +217,7 @@ impl<'a> Growing<'a> {
         }
     }
 
-    /// The triangles that are left, renumbered.
+    /// The remaining triangles, renumbered.
     fn finish(self) -> Vec<Triangle> {
         let mut number = vec![u32::MAX; self.triangles.len()];
         let alive = |t: &&Triangle| t.alive;

@@ -1,4 +1,4 @@
-//! Boxes and triangles as polytopes: topologies that are always the same.
+//! Boxes and triangles as polytopes with fixed topologies.
 
 use super::polytope::Polytope;
 use super::topology::{HalfEdge, Loop, Plane, Topology};

@@ -1,4 +1,4 @@
-//! Topology of corners, edges and faces: half-edges, those of a face one after the other.
+//! Topology of corners, edges and faces: half-edges, stored face by face.
 
 use sinew_math::Vec3;
 
@@ -24,7 +24,7 @@ pub(crate) struct HalfEdge {
     pub origin: u8,
     /// Face that it belongs to.
     pub face: u8,
-    /// The same edge as a side of the other face, which runs the other way.
+    /// The same edge as a side of the other face, in the opposite direction.
     pub twin: u16,
 }
 
@@ -43,33 +43,33 @@ pub(crate) struct Topology<'a> {
 }
 
 impl<'a> Topology<'a> {
-    /// Numbers of the half-edges of a face, in turn.
+    /// Half-edge indices of a face, in order.
     pub fn sides(self, face: usize) -> core::ops::Range<usize> {
         let Loop { first, count } = self.faces[face];
         usize::from(first)..usize::from(first + count)
     }
 
-    /// Numbers of the corners of a face, in turn.
+    /// Corner indices of a face, in order.
     pub fn corners(self, face: usize) -> impl ExactSizeIterator<Item = usize> + Clone + use<'a> {
         self.sides(face).map(move |side| usize::from(self.half_edges[side].origin))
     }
 
-    /// Numbers of the half-edges that stand for an edge: one of each two.
+    /// Half-edge indices that represent an edge: one per pair.
     pub fn edge_numbers(self) -> impl Iterator<Item = usize> + 'a {
         (0..self.half_edges.len()).filter(move |&side| self.is_first(side))
     }
 
-    /// True if a half-edge of that number is there and stands for its edge.
+    /// True if that half-edge exists and represents its edge.
     pub fn has_edge(self, side: usize) -> bool {
         side < self.half_edges.len() && self.is_first(side)
     }
 
-    /// True if a half-edge is the one of two that stands for its edge.
+    /// True if a half-edge represents its edge.
     pub fn is_first(self, side: usize) -> bool {
         side < usize::from(self.half_edges[side].twin)
     }
 
-    /// Number of the half-edge that stands for the edge of this one.
+    /// Index of the half-edge that represents the edge of this one.
     pub fn edge_of(self, side: usize) -> usize {
         usize::min(side, usize::from(self.half_edges[side].twin))
     }
@@ -95,10 +95,11 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    /// From the corners of each face, counter-clockwise from outside, of a polytope with so many corners.
+    /// Topology of a polytope from the corners of each face, counter-clockwise from outside.
     ///
     /// # Errors
-    /// What is wrong: it is not the surface of one solid without holes in which three faces or more meet in each corner.
+    /// A description of the problem: not the surface of one solid without holes in which three or more faces meet in
+    /// each corner.
     pub fn new(loops: &[Vec<u8>], corners: usize) -> Result<Self, &'static str> {
         let (mut faces, mut half_edges, mut ends) = (Vec::new(), Vec::new(), Vec::new());
         for (face, ring) in loops.iter().enumerate() {
@@ -128,7 +129,8 @@ impl Outline {
         Ok(outline)
     }
 
-    /// Checks that it is one closed surface without handles (Euler: V − E + F = 2), around each corner just once.
+    /// Checks that it is one closed surface without handles (Euler: V − E + F = 2), with one fan of faces around each
+    /// corner.
     fn check(&self, corners: usize) -> Result<(), &'static str> {
         let mut leaving = vec![0_u32; corners];
         let mut start = vec![None; corners];
@@ -149,7 +151,7 @@ impl Outline {
         Ok(())
     }
 
-    /// Half-edges that leave the corner of one, counted around it.
+    /// Half-edges that leave a corner, in order around it.
     fn turns_around(&self, start: usize) -> u32 {
         let (mut side, mut count) = (start, 0);
         loop {
@@ -168,7 +170,7 @@ impl Outline {
         if after == usize::from(first + count) { usize::from(first) } else { after }
     }
 
-    /// Number of faces that hang together with the first.
+    /// Number of faces connected to the first.
     fn connected(&self) -> usize {
         let mut met = vec![false; self.faces.len()];
         let (mut open, mut count) = (vec![0], 1);

@@ -1,4 +1,4 @@
-//! The part of a shape below a plane, as water is: volume and centre, in closed forms.
+//! The part of a shape below a water plane: volume and centre, in closed form.
 
 mod revolved;
 
@@ -25,12 +25,12 @@ impl WaterPlane {
     }
 }
 
-/// The part of something that is under water.
+/// The submerged part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Submerged {
     /// Volume, m³.
     pub volume: f32,
-    /// Volume times centre: of parts it adds up, m⁴.
+    /// Volume times centre, which is additive, m⁴.
     moment: Vec3,
 }
 
@@ -61,9 +61,8 @@ impl Submerged {
 }
 
 impl Shape {
-    /// The part of the shape below the surface: volume, and its centre in the world. Exact for every shape up to rounding
-    /// (about 1e-5 of the volume); nothing of a half-space, which has no end, or of a mesh or
-    /// height field.
+    /// The part of the shape below the surface: volume, and its centre in the world. Exact for every shape up to
+    /// rounding (about 1e-5 of the volume); zero for half-spaces, meshes and height fields.
     pub fn submerged(&self, world_from_shape: &Transform, plane: &WaterPlane) -> Submerged {
         // In the shape's frame, where nothing is far away.
         let normal = world_from_shape.rotation.inverse() * plane.normal;
@@ -106,19 +105,19 @@ impl Shape {
     }
 }
 
-/// Part of the unit ball with `n·x ≤ s`, −1 ≤ s ≤ 1: a cap of height `h = 1 + s` has the volume `π h² (3 − h)/3`, and its
-/// centre lies `3 (2 − h)²/(4 (3 − h))` from the ball's.
+/// Part of the unit ball with `n·x ≤ s`, −1 ≤ s ≤ 1: a cap of height `h = 1 + s` has the volume `π h² (3 − h)/3`, and
+/// its centre lies `3 (2 − h)²/(4 (3 − h))` from the ball's.
 fn ball_below(s: f32, normal: Vec3) -> Submerged {
     let h = 1.0 + clamp(s, -1.0, 1.0);
     let down = 0.75 * (2.0 - h) * (2.0 - h) / (3.0 - h);
     Submerged::new(PI / 3.0 * h * h * (3.0 - h), normal * -down)
 }
 
-/// Part of a convex polyhedron below the surface: `faces` are its corners, each in order around the face, counter-clockwise
-/// seen from outside. The centre is in the frame of the corners.
+/// Part of a convex polyhedron below the surface: `faces` are its corners, each in order around the face,
+/// counter-clockwise seen from outside. The centre is in the frame of the corners.
 ///
-/// Each face is clipped against the surface and joined to one point **of the surface** by tetrahedra; what the cut itself
-/// would add has no height over that point, so that it need not be built (divergence theorem).
+/// Each face is clipped and joined to one point **of the surface** by tetrahedra; the cut itself has no height over
+/// that point and need not be built (divergence theorem).
 pub fn submerged_hull<F>(faces: impl Iterator<Item = F>, plane: &WaterPlane) -> Submerged
 where
     F: Iterator<Item = Vec3> + Clone,
@@ -141,7 +140,7 @@ where
     sum
 }
 
-/// Corners of the part of a polygon that is under water, in order (Sutherland and Hodgman 1974).
+/// Corners of the submerged part of a polygon, in order (Sutherland and Hodgman 1974).
 fn clip(face: impl Iterator<Item = Vec3> + Clone, plane: &WaterPlane, mut corner: impl FnMut(Vec3)) {
     let Some(last) = face.clone().last() else { return };
     let (mut from, mut above_from) = (last, plane.above(last));
@@ -183,10 +182,10 @@ fn capsule_below(half_height: f32, normal: Vec3, s: f32) -> Submerged {
     )
 }
 
-/// Part with `n·x ≤ s` of the half of the unit ball on the side `a·x ≥ 0`, by the divergence theorem: with `Ω` the area of
-/// what is left of the sphere, `A₁` of the flat side and `A₂` of the cut, `V = (Ω + s A₂)/3`, and the moment is a quarter
-/// of the faces' moments by their distances, where that of the sphere is `A₁ a − A₂ n` since a closed surface has no
-/// vector area. `Ω` is the half sphere less its lens with the cap above the water, by Gauss and Bonnet.
+/// Part with `n·x ≤ s` of the half of the unit ball on the side `a·x ≥ 0`, by the divergence theorem: with `Ω` the area
+/// of the remaining sphere, `A₁` of the flat side and `A₂` of the cut, `V = (Ω + s A₂)/3`, and the moment is a quarter
+/// of the faces' moments by their distances; that of the sphere is `A₁ a − A₂ n`, since a closed surface has no vector
+/// area. `Ω` is the half sphere less its lens with the cap above the water, by Gauss and Bonnet.
 fn half_ball_below(a: Vec3, n: Vec3, s: f32) -> Submerged {
     if s >= 1.0 {
         return Submerged::new(2.0 / 3.0 * PI, a * 0.375);
@@ -198,7 +197,7 @@ fn half_ball_below(a: Vec3, n: Vec3, s: f32) -> Submerged {
     let across = a - n * cos;
     let sin = max(across.length(), 1e-6);
     let rho = max((1.0 - s * s).sqrt(), 1e-6);
-    // Where the flat side meets the cut, along `across` in the cut's own radius.
+    // Where the flat side meets the cut, along `across` in units of the cut's radius.
     let q = clamp(-s * cos / (sin * rho), -1.0, 1.0);
     let cut = rho * rho * segment(-q);
     let cut_moment = 2.0 / 3.0 * rho * rho * rho * (1.0 - q * q) * (1.0 - q * q).sqrt();
@@ -218,10 +217,10 @@ fn root(c: f32) -> f32 {
     max(1.0 - c * c, 0.0).sqrt()
 }
 
-/// Part with `n·x ≤ s` of the cylinder of radius 1 along y: where the surface leaves a whole disk, and where it cuts it at
-/// `x = c(y)` along the way from the axis up to the surface.
+/// Part with `n·x ≤ s` of the cylinder of radius 1 along y: where the surface leaves a whole disk, and where it cuts it
+/// at `x = c(y)` along the direction from the axis up to the surface.
 fn cylinder_below(half_height: f32, normal: Vec3, s: f32) -> Submerged {
-    // Mirrored so that what is at smaller y is deeper.
+    // Mirrored so that smaller y is deeper.
     let (mirror, cos) = if normal.y < 0.0 { (-1.0, -normal.y) } else { (1.0, normal.y) };
     let flat = Vec3::new(normal.x, 0.0, normal.z);
     let sin = max(flat.length(), 1e-6);
@@ -259,8 +258,8 @@ fn wedge(s: f32, cos: f32, sin: f32, low: f32, high: f32) -> (f32, f32, f32) {
     (slope * volume, slope * along, slope * (aside(high) - aside(low)))
 }
 
-/// The same from `from` to `to` along the axis where the cut hardly changes, and the differences above would be rounding:
-/// the three-point Gauss rule.
+/// The same from `from` to `to` along the axis where the cut hardly changes and the differences above would be
+/// rounding: the three-point Gauss rule.
 fn wedge_by_rule(from: f32, to: f32, at: impl Fn(f32) -> f32) -> (f32, f32, f32) {
     const NODES: [(f32, f32); 3] =
         [(-0.774_596_67, 0.555_555_56), (0.0, 0.888_888_9), (0.774_596_67, 0.555_555_56)];

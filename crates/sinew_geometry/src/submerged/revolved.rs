@@ -1,10 +1,10 @@
-//! The part of a solid of revolution that is under water, disk by disk.
+//! The submerged part of a solid of revolution, disk by disk.
 
 use super::{Submerged, WaterPlane, segment};
 use crate::revolved::Slice;
 use sinew_math::{Vec3, normalize_or};
 
-/// Nodes and weights of the Gauss rule for polynomials up to the degree 15, on −1..1; the other half mirrors them.
+/// Nodes and weights of the Gauss rule for polynomials up to degree 15, on −1..1; the other half is mirrored.
 const GAUSS: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_3),
@@ -12,9 +12,9 @@ const GAUSS: [(f64, f64); 4] = [
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
 ];
 
-/// Volume and moment below the surface, about the axis y. Exact to about 1e-5 of the whole: the heights at which the surface
-/// begins and ceases to cut the disks are found, and between them the rule is smoothed toward both ends, where the cut part
-/// grows with the root of the way.
+/// Volume and moment below the surface, about the axis y. Exact to about 1e-5 of the whole: the rule runs between the
+/// heights at which the surface starts and stops cutting the disks, smoothed toward both ends, where the cut part grows
+/// with a square root.
 pub(super) fn revolved_below(slices: &[Slice], plane: &WaterPlane) -> Submerged {
     let mut sums = [0.0; 3];
     for slice in slices {
@@ -43,7 +43,7 @@ fn crossings(slice: &Slice, plane: &WaterPlane) -> [f64; 3] {
     if root < 0.0 {
         return [slice.to; 3];
     }
-    // Without the difference of what is nearly equal.
+    // Avoids the difference of nearly equal numbers.
     let sum = if q > 0.0 { -(q + root.sqrt()) } else { -q + root.sqrt() };
     let (y0, y1) = (inside(sum / p), inside(r / sum));
     if y0 < y1 { [y0, y1, slice.to] } else { [y1, y0, slice.to] }
@@ -60,7 +60,7 @@ fn between(slice: &Slice, plane: &WaterPlane, from: f64, to: f64) -> [f64; 3] {
         let weight = weight * half * 1.5 * (1.0 - node * node);
         let squared = slice.radius_squared_at(y);
         let (radius, depth) = (squared.sqrt(), height - cos * y);
-        // Where the surface cuts the disk, in its radii along the way up.
+        // Where the surface cuts the disk, in units of its radius along the upward direction.
         let t = if depth >= flat * radius {
             1.0
         } else if depth <= -flat * radius {

@@ -1,4 +1,4 @@
-//! Many leaves at once: from the top down, each part where the surface area heuristic finds it best, by bins (Wald, "On fast
+//! Builds a tree top down; each part is split at the best place by the surface area heuristic, by bins (Wald, "On fast
 //! construction of SAH-based bounding volume hierarchies", RT 2007).
 
 use super::node::{Child, Node, half_area};
@@ -8,7 +8,7 @@ use core::ops::Range;
 use sinew_math::Vec3;
 use sinew_math::lanes::WIDTH;
 
-/// A leaf to be built in.
+/// A leaf for the build.
 #[derive(Clone, Copy, Debug)]
 pub struct Item {
     /// Bounds.
@@ -24,11 +24,11 @@ impl Item {
     }
 }
 
-/// Places at which a part is tried to be split, per axis.
+/// Candidate split positions per axis.
 const BINS: usize = 16;
 
 impl Tree {
-    /// Becomes a tree of these leaves, each of which has a number of its own. Puts the items in another order.
+    /// Builds a tree of these leaves, each with its own number. Reorders the items.
     pub fn build(&mut self, items: &mut [Item]) {
         self.nodes.clear();
         self.parents.clear();
@@ -41,7 +41,7 @@ impl Tree {
         let most = items.iter().fold(0, |most, item| u32::max(most, item.leaf)) as usize;
         self.places.reserve_exact((most + 1).saturating_sub(self.places.len()));
         self.make_room(most as u32);
-        // Nodes of the lowest level are full; those above make up for a fifth or so.
+        // Nodes of the lowest level are full; those above add about a fifth.
         let nodes = items.len() / WIDTH + items.len() / (5 * WIDTH) + 1;
         self.nodes.reserve_exact(nodes);
         self.parents.reserve_exact(nodes);
@@ -52,7 +52,7 @@ impl Tree {
         self.root = Some(self.build_node(items, self.levels - 1, Place::NOWHERE));
     }
 
-    /// The same leaves in a tree that is built at once. `scratch` is memory for them.
+    /// Rebuilds the tree with the same leaves. `scratch` is a buffer.
     pub fn rebuild(&mut self, scratch: &mut Vec<Item>) {
         scratch.clear();
         self.collect(scratch);
@@ -89,7 +89,7 @@ impl Tree {
     }
 }
 
-/// Puts items in an order in which ranges of at most `most` of them, eight at most, are near each other.
+/// Orders items so that ranges of at most `most` of them, eight at most, are near each other.
 fn partition(items: &mut [Item], most: usize) -> ([Range<usize>; WIDTH], usize) {
     let mut parts: [Range<usize>; WIDTH] = core::array::from_fn(|_| 0..0);
     parts[0] = 0..items.len();
@@ -101,7 +101,7 @@ fn partition(items: &mut [Item], most: usize) -> ([Range<usize>; WIDTH], usize) 
             return (parts, count);
         }
         let needed: usize = parts[..count].iter().map(|part| part.len().div_ceil(most)).sum();
-        // With a slot to spare a part may be split anywhere; else only so that no slot is lost.
+        // If a slot is spare, a part may be split anywhere; else only so that no slot is lost.
         let unit = if needed < WIDTH { WIDTH } else { most };
         let first = split(&mut items[part.clone()], unit);
         parts[largest] = part.start..part.start + first;
@@ -110,7 +110,7 @@ fn partition(items: &mut [Item], most: usize) -> ([Range<usize>; WIDTH], usize) 
     }
 }
 
-/// Orders items so that the first of them, as many as it says (a multiple of `unit`), and the rest are split well.
+/// Orders items so that the first of them, in the returned number (a multiple of `unit`), and the rest are split well.
 fn split(items: &mut [Item], unit: usize) -> usize {
     let (axis, count) = best_split(items);
     let most = (items.len() - 1) / unit * unit;
@@ -133,7 +133,7 @@ fn best_split(items: &[Item]) -> (usize, usize) {
     for item in items {
         let at = (item.middle() - low) * scale;
         for axis in 0..3 {
-            // What is infinite or NaN goes into the first or the last.
+            // Infinite or NaN values go into the first or the last bin.
             let bin = usize::min(at[axis] as usize, BINS - 1);
             bins[axis][bin].add(&item.bounds);
         }

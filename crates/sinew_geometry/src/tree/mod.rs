@@ -1,9 +1,9 @@
-//! A tree of bounds (bounding-volume hierarchy) with eight boxes in each node: which leaves overlap a box, lie along a line,
-//! or are closest to a point.
+//! Bounding-volume tree with eight boxes a node: leaves that overlap a box, lie along a line, or are closest to a
+//! point.
 //!
-//! All leaves are equally deep. [`build`](Tree::build) makes a tree of many at once by the surface area heuristic with full
-//! nodes at the bottom; single leaves come and go as in an R-tree (Guttman, "R-trees: a dynamic index structure for spatial
-//! searching", SIGMOD 1984). What a query finds never depends on the tree's shape, only in which order.
+//! All leaves have the same depth. [`build`](Tree::build) makes a tree by the surface area heuristic with full nodes at
+//! the bottom; single leaves are inserted and removed as in an R-tree (Guttman, "R-trees: a dynamic index structure for
+//! spatial searching", SIGMOD 1984). Query results never depend on the tree's shape, only their order does.
 
 mod build;
 mod node;
@@ -22,10 +22,10 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, WIDTH};
 pub use traversal::{Stop, Traversal};
 
-/// Most levels of nodes: what the queries' stacks are made for. Full nodes hold 2³² leaves in 11.
+/// Most levels of nodes, for the queries' stacks. Full nodes hold 2³² leaves in 11 levels.
 const MOST_LEVELS: usize = 14;
 
-/// Place of a child: node times eight plus slot.
+/// Position of a child: node times eight plus slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Place(u32);
 
@@ -42,20 +42,20 @@ impl Place {
     }
 }
 
-/// Leaves are numbers that the user gives, from 0 on.
+/// Leaf numbers are chosen by the user, from 0 on.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
     nodes: Vec<Node>,
-    /// Place of each node in its parent.
+    /// Position of each node in its parent.
     parents: Vec<Place>,
     free: Vec<u32>,
-    /// Place of each leaf, by its number.
+    /// Position of each leaf, by its number.
     places: Vec<Place>,
     root: Option<u32>,
     /// Levels of nodes.
     levels: usize,
     len: usize,
-    /// Leaves that were put in one by one since the tree was built.
+    /// Leaves inserted one by one since the tree was built.
     inserted: usize,
 }
 
@@ -72,13 +72,13 @@ impl Tree {
         self.len == 0
     }
 
-    /// True if a leaf of that number is there.
+    /// True if there is a leaf with that number.
     #[inline]
     pub fn contains(&self, leaf: u32) -> bool {
         self.places.get(leaf as usize).is_some_and(|&place| place != Place::NOWHERE)
     }
 
-    /// Bounds of a leaf that is there.
+    /// Bounds of an existing leaf.
     #[inline]
     pub fn bounds(&self, leaf: u32) -> Aabb {
         let (node, slot) = self.places[leaf as usize].split();
@@ -103,7 +103,7 @@ impl Tree {
         }
     }
 
-    /// Takes a leaf out that is there.
+    /// Removes an existing leaf.
     pub fn remove(&mut self, leaf: u32) {
         let place = core::mem::replace(&mut self.places[leaf as usize], Place::NOWHERE);
         self.len -= 1;
@@ -124,8 +124,8 @@ impl Tree {
         }
     }
 
-    /// Gives a leaf that is there other bounds. It keeps its place as long as they are inside those of the node it is in;
-    /// one that went farther is put in anew.
+    /// Changes the bounds of an existing leaf. It stays in its node while the new bounds fit; otherwise it is inserted
+    /// again.
     pub fn update(&mut self, leaf: u32, bounds: &Aabb) {
         let (node, slot) = self.places[leaf as usize].split();
         let parent = self.parents[node as usize];
@@ -142,13 +142,13 @@ impl Tree {
         }
     }
 
-    /// True if building anew pays: many leaves were put in one by one, or many nodes are nearly empty.
+    /// True if a rebuild pays: many leaves were inserted one by one, or many nodes are nearly empty.
     pub fn is_worn(&self) -> bool {
         let used = self.nodes.len() - self.free.len();
         (self.inserted > 64 && self.inserted > self.len) || used > self.len / 2 + MOST_LEVELS
     }
 
-    /// Makes room for so many leaves, however they come and go.
+    /// Reserves memory for so many leaves, however they change.
     pub fn reserve(&mut self, leaves: usize) {
         let nodes = leaves + MOST_LEVELS;
         self.nodes.reserve(nodes.saturating_sub(self.nodes.len()));
@@ -156,7 +156,7 @@ impl Tree {
         self.free.reserve(nodes.saturating_sub(self.free.len()));
     }
 
-    /// Makes room in the list of places for a leaf of that number.
+    /// Reserves an entry in the list of positions for a leaf with that number.
     fn make_room(&mut self, leaf: u32) {
         if self.places.len() <= leaf as usize {
             self.places.resize(leaf as usize + 1, Place::NOWHERE);
@@ -210,7 +210,7 @@ impl Tree {
         }
     }
 
-    /// Divides what a full node holds, and one more, between it and a new node, which it gives.
+    /// Splits a full node and one more child into itself and a new node, which it returns.
     fn split(&mut self, node: u32, child: Child, bounds: &Aabb) -> u32 {
         let own = &self.nodes[node as usize];
         let mut all = [(*bounds, child); WIDTH + 1];
@@ -229,7 +229,7 @@ impl Tree {
         other
     }
 
-    /// Brings the boxes above a node up to date.
+    /// Updates the boxes above a node.
     fn refit(&mut self, mut node: u32) {
         loop {
             let parent = self.parents[node as usize];
@@ -275,7 +275,7 @@ impl Kernel for Descent<'_> {
 /// Fewest children of a node that was split.
 const FEWEST: usize = 3;
 
-/// Orders children so that the first of them, as many as it says, and the rest have the least surface together.
+/// Orders children so that the first of them, in the returned number, and the rest have the least surface together.
 fn divide(all: &mut [(Aabb, Child); WIDTH + 1]) -> usize {
     let mut best = (f32::INFINITY, 0, FEWEST);
     for axis in 0..3 {

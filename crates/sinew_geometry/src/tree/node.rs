@@ -1,4 +1,4 @@
-//! A node: eight boxes side by side, and what each of them holds.
+//! A node: eight boxes side by side, and their children.
 
 use crate::boxes::Aabb;
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
@@ -49,8 +49,8 @@ impl Child {
     }
 }
 
-/// Eight boxes, row by row, so that a query tries all of them at once. Seven times a register of eight lanes: no row
-/// crosses a line of the cache.
+/// Eight boxes, row by row, so that a query tests all of them at once. Seven registers of eight lanes: no row crosses a
+/// cache line.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Node {
@@ -114,7 +114,7 @@ impl Node {
         self.children.iter().all(|child| child.is_none())
     }
 
-    /// The slot whose box has to grow least to hold another, by its surface; of equals the one with the least surface.
+    /// The slot whose box grows least to contain another, by surface; of equals the one with the least surface.
     #[inline(always)]
     pub fn least_growth<L: Lanes>(&self, other: &[L; 6]) -> usize {
         let mut low = [L::splat(0.0); 3];
@@ -142,8 +142,8 @@ impl Node {
         best.map_or(0, |(slot, _)| slot)
     }
 
-    /// Children in the slots of a mask, lowest first. Bounds without end and sums that overflow meet empty slots, too: these are
-    /// left out.
+    /// Children in the slots of a mask, lowest first. Infinite bounds and overflowing sums match empty slots too; these
+    /// are skipped.
     #[inline(always)]
     pub fn held(&self, mut mask: u8) -> impl Iterator<Item = (usize, Child)> {
         let next_slot = move || {
@@ -155,7 +155,8 @@ impl Node {
         children.filter(|(_, child)| !child.is_none())
     }
 
-    /// Mask of the boxes that overlap another one: bit `k` for slot `k`. Of empty slots the bit says nothing: see [`held`](Self::held).
+    /// Mask of the boxes that overlap another one: bit `k` for slot `k`. Bits of empty slots are undefined: see
+    /// [`held`](Self::held).
     #[inline(always)]
     pub fn overlapping<L: Lanes>(&self, other: &[L; 6]) -> u8 {
         let [x, y, z, u, v, w] = &self.rows;
@@ -168,7 +169,8 @@ impl Node {
         mask.bits()
     }
 
-    /// Mask of the boxes that a line meets before `limit`, and the fraction at which it enters each; as in [`overlapping`](Self::overlapping).
+    /// Mask of the boxes that a line enters before `limit`, and the entry fractions; empty slots as in
+    /// [`overlapping`](Self::overlapping).
     #[inline(always)]
     pub fn entered<L: Lanes>(&self, line: &Line, limit: f32, enter: &mut [f32; WIDTH]) -> u8 {
         let slack = L::splat(1.0 + PAD);
@@ -176,7 +178,7 @@ impl Node {
         let mut last = L::splat(f32::INFINITY);
         for axis in 0..3 {
             let inverse = L::splat(line.inverse[axis]);
-            // NaN, where a line runs in a face, leaves what is there.
+            // NaN, for a line in a face's plane, leaves the value unchanged.
             first = L::max(self.beyond::<L>(&line.near, axis) * inverse, first);
             last = L::min(self.beyond::<L>(&line.far, axis) * inverse, last);
         }
@@ -184,14 +186,14 @@ impl Node {
         (L::le(first, last * slack) & L::le(first, L::splat(limit) * slack)).bits()
     }
 
-    /// Distances of faces beyond the start of a line, along an axis.
+    /// Distances of faces from the start of a line, along an axis.
     #[inline(always)]
     fn beyond<L: Lanes>(&self, faces: &Faces, axis: usize) -> L {
         L::load(&self.rows[faces.row[axis]]) - L::splat(faces.origin[axis])
     }
 
-    /// Squares of the distances from a point to the boxes, as they are at least; bit `k` of the mask tells whether slot `k` is
-    /// not farther than `limit`, as in [`overlapping`](Self::overlapping).
+    /// Lower bounds of the squared distances from a point to the boxes; bit `k` of the mask says whether slot `k` is
+    /// within `limit`, empty slots as in [`overlapping`](Self::overlapping).
     #[inline(always)]
     pub fn distances<L: Lanes>(&self, point: &[L; 3], pad: L, limit: f32, squares: &mut [f32; WIDTH]) -> u8 {
         let zero = L::splat(0.0);
@@ -207,40 +209,39 @@ impl Node {
     }
 }
 
-/// Half the surface of a box: what the surface area heuristic counts with.
+/// Half the surface of a box, the cost measure of the surface area heuristic.
 pub(super) fn half_area(bounds: &Aabb) -> f32 {
     let Vec3 { x, y, z } = max3(bounds.max - bounds.min, Vec3::ZERO);
     x * y + y * z + z * x
 }
 
-/// [`half_area`] in each lane, of boxes with these sides.
+/// [`half_area`] in each lane, for boxes with these sides.
 #[inline(always)]
 fn half_area_of<L: Lanes>([x, y, z]: &[L; 3]) -> L {
     *x * *y + *y * *z + *z * *x
 }
 
-/// Share of the coordinates at hand by which boxes and lines are thicker than they are, so that what rounding does in an
-/// exact test never brings a hit that the boxes leave out (as in Ize, "Robust BVH ray traversal", JCGT 2013, but for tests
-/// whose error is that of the places, not of the boxes).
+/// Relative widening of boxes and lines, so that rounding in an exact test never finds a hit that the boxes exclude (as
+/// in Ize, "Robust BVH ray traversal", JCGT 2013, for tests whose error is that of positions, not of boxes).
 pub const PAD: f32 = 4e-6;
 
-/// A stretch of a line, prepared: slabs (Kay & Kajiya 1986) of which the near and the far face are known beforehand.
+/// A prepared part of a line: slabs (Kay & Kajiya 1986) with known near and far faces.
 pub(super) struct Line {
     near: Faces,
     far: Faces,
     inverse: [f32; 3],
 }
 
-/// The faces of boxes that a line comes to first, or last, along each axis.
+/// The near or far faces of boxes along each axis.
 struct Faces {
     /// Row of a node that they are.
     row: [usize; 3],
-    /// Start of the line, moved aside by what is swept along it and by what rounding may do.
+    /// Start of the line, shifted by the swept extent and by rounding.
     origin: [f32; 3],
 }
 
 impl Line {
-    /// Way of a box with these half extents that goes from `origin` along `direction`, at most `limit` times.
+    /// Path of a box with these half extents from `origin` along `direction`, at most `limit` times.
     #[inline(always)]
     pub fn new(origin: Vec3, direction: Vec3, half_extents: Vec3, limit: f32) -> Self {
         let end = origin.abs() + direction.abs() * limit + half_extents;

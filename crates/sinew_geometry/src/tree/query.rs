@@ -1,5 +1,5 @@
-//! Questions to a tree. Each goes through the nodes with a stack of its own size, allocates nothing, and calls the closure
-//! that it is given with every leaf whose bounds are in question; the closure makes the exact test.
+//! Tree queries. Each traverses nodes with a fixed stack, without allocation, and calls the closure with every
+//! candidate leaf; the closure makes the exact test.
 
 use super::Tree;
 use super::node::Line;
@@ -15,7 +15,7 @@ use sinew_math::lanes::{Lanes, WIDTH};
 pub struct Sweep {
     /// Metres.
     pub origin: Vec3,
-    /// Way at fraction 1, metres.
+    /// Displacement at fraction 1, metres.
     pub direction: Vec3,
     /// Half extents of the box, metres, ≥ 0.
     pub half_extents: Vec3,
@@ -24,7 +24,7 @@ pub struct Sweep {
 }
 
 impl Tree {
-    /// Every leaf whose bounds overlap these, touching ones too, in no order, until one breaks off.
+    /// Visits every leaf whose bounds overlap or touch these, in no order, until one breaks.
     pub fn overlapping<B>(&self, bounds: &Aabb, visit: impl FnMut(u32) -> ControlFlow<B>) -> ControlFlow<B> {
         match self.root {
             Some(root) => dispatch::run(Overlapping { tree: self, root, bounds, visit }),
@@ -32,16 +32,16 @@ impl Tree {
         }
     }
 
-    /// Every leaf that may be met along a line, the nearer boxes of a node first. `visit` gives the fraction beyond which
-    /// nothing counts any more: as it was, or less once something was hit; below 0 to break off.
+    /// Visits every leaf that a line may hit, nearer boxes of a node first. `visit` returns the new limit of the
+    /// fraction: unchanged, smaller after a hit, or below 0 to stop.
     pub fn along(&self, sweep: &Sweep, visit: impl FnMut(u32) -> f32) {
         if let Some(root) = self.root {
             dispatch::run(Along { tree: self, root, sweep, visit });
         }
     }
 
-    /// Every leaf whose bounds are within `distance` (m) of a point, the nearer boxes of a node first. `visit` gives the
-    /// distance beyond which nothing counts any more.
+    /// Visits every leaf whose bounds are within `distance` (m) of a point, nearer boxes of a node first. `visit`
+    /// returns the new limit of the distance.
     pub fn nearest(&self, point: Vec3, distance: f32, visit: impl FnMut(u32) -> f32) {
         if let Some(root) = self.root {
             dispatch::run(Nearest { tree: self, root, point, distance, visit });
@@ -100,7 +100,7 @@ impl<V: FnMut(u32) -> f32> Kernel for Along<'_, V> {
         let mut waiting = Waiting::new(self.root);
         let mut enter = [0.0; WIDTH];
         while let Some((key, child)) = waiting.pop() {
-            // What is as near as the best so far may be as good.
+            // A leaf as near as the best so far may be as good.
             if key > limit * (1.0 + super::PAD) {
                 continue;
             }
@@ -132,7 +132,7 @@ impl<V: FnMut(u32) -> f32> Kernel for Nearest<'_, V> {
         let far = self.point.abs();
         let pad = super::PAD * sinew_math::max(far.x, sinew_math::max(far.y, far.z));
         let point = self.point.to_array().map(L::splat);
-        // Squares of distances that are as large as this and those a rounding beyond.
+        // Squares of distances up to this one and a rounding beyond.
         let square = |distance: f32| distance * distance * (1.0 + super::PAD);
         let mut limit = square(self.distance);
         let mut waiting = Waiting::new(self.root);

@@ -9,7 +9,7 @@ fn cases(all: usize) -> usize {
     if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
 }
 
-/// A box somewhere, near the origin or far off, large or without extent.
+/// A random box, near the origin or far off, large or without extent.
 fn some_box(random: &mut Random, scale: f32) -> Aabb {
     let center = random.in_cube() * scale;
     let size = scale * if random.unit() < 0.1 { 1.0 } else { 0.05 };
@@ -21,7 +21,7 @@ fn some_box(random: &mut Random, scale: f32) -> Aabb {
     Aabb { min: center - half, max: center + half }
 }
 
-/// A tree and what should be in it.
+/// A tree and its expected content.
 struct Pair {
     tree: Tree,
     leaves: Vec<Option<Aabb>>,
@@ -37,7 +37,7 @@ impl Pair {
                 self.leaves[leaf as usize] = None;
             }
             (Some(old), 1) => {
-                // A little way.
+                // A small displacement.
                 let way = random.in_cube() * 0.02 * scale;
                 let bounds = Aabb { min: old.min + way, max: old.max + way };
                 self.tree.update(leaf, &bounds);
@@ -69,7 +69,7 @@ impl Pair {
         }
     }
 
-    /// Leaves below a node, all of them on the same level, and each box that of what is below it.
+    /// Checks that leaves are on the same level and each box bounds its content.
     fn count(&self, node: u32, levels: usize) -> usize {
         let own = &self.tree.nodes[node as usize];
         let slots = (0..WIDTH).filter(|&slot| !own.child(slot).is_none());
@@ -139,7 +139,7 @@ impl Pair {
     }
 }
 
-/// True if a swept box meets a box, by clipping in `f64`.
+/// True if a swept box hits a box, by clipping in `f64`.
 fn meets(bounds: &Aabb, sweep: &Sweep) -> bool {
     let (mut first, mut last) = (0.0_f64, f64::from(sweep.limit));
     for axis in 0..3 {
@@ -200,7 +200,7 @@ fn a_tree_of_many_is_full_and_finds_them() {
     }
 }
 
-/// Boxes in a row, in order: what makes trees that only grow at the end deep.
+/// Boxes in a row, in order, which makes insertion trees deep.
 #[test]
 fn a_row_does_not_make_a_deep_tree() {
     let mut tree = Tree::default();
@@ -213,7 +213,7 @@ fn a_row_does_not_make_a_deep_tree() {
     assert!(used < 10_000 / 3, "{used} nodes");
 }
 
-/// Boxes without end are found by all, and the others are found as before.
+/// Infinite boxes are found by all queries, and the others as before.
 #[test]
 fn boxes_without_end_hurt_nothing() {
     let mut random = Random::new(3);
@@ -233,7 +233,7 @@ fn boxes_without_end_hurt_nothing() {
     pair.ask(&mut random, 10.0);
 }
 
-/// However far a query reaches, it finds what is there, and no slot that is empty.
+/// A query of any reach finds every leaf and no empty slot.
 #[test]
 fn queries_without_end_find_every_leaf_once() {
     let mut random = Random::new(4);

@@ -1,5 +1,4 @@
-//! One line of several that go through a tree by turns. What a line waits for, its next node to come from memory and the
-//! processor to find out which that is, the others use.
+//! Interleaved traversal of one line among several. While one line waits for memory or a branch, the others proceed.
 
 use super::node::Line;
 use super::waiting::Waiting;
@@ -7,32 +6,32 @@ use super::{PAD, Sweep, Tree};
 use sinew_math::Vec3;
 use sinew_math::lanes::{Lanes, WIDTH};
 
-/// A line, how far it counts, and what it has still to see.
+/// State of a line: its limit and pending children.
 pub struct Traversal {
     line: Line,
-    /// Fraction beyond which nothing counts any more, ≥ 0.
+    /// Fraction beyond which hits do not count, ≥ 0.
     pub limit: f32,
     waiting: Waiting,
 }
 
-/// Next place on the way of a line.
+/// Next item of a line.
 pub enum Stop {
-    /// A leaf that it may meet.
+    /// A leaf that the line may hit.
     Leaf(u32),
-    /// A node, to be [entered](Traversal::enter).
+    /// A node to [enter](Traversal::enter).
     Node(u32),
-    /// It has seen all.
+    /// The traversal is complete.
     End,
 }
 
 impl Traversal {
-    /// Has seen all.
+    /// True if the traversal is complete.
     pub fn ended() -> Self {
         let line = Line::new(Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, 0.0);
         Self { line, limit: 0.0, waiting: Waiting::NONE }
     }
 
-    /// Sets out along another line.
+    /// Starts another line.
     #[inline(always)]
     pub fn start(&mut self, tree: &Tree, sweep: &Sweep) {
         let Sweep { origin, direction, half_extents, limit } = *sweep;
@@ -43,7 +42,7 @@ impl Traversal {
         }
     }
 
-    /// The nearest of what it has still to see.
+    /// Pops the nearest pending child.
     #[inline(always)]
     pub fn next_stop(&mut self) -> Stop {
         while let Some((key, child)) = self.waiting.pop() {
@@ -58,7 +57,7 @@ impl Traversal {
         Stop::End
     }
 
-    /// Has those children of a node before it that it may meet.
+    /// Pushes the children of a node that the line may hit.
     #[inline(always)]
     pub fn enter<L: Lanes>(&mut self, tree: &Tree, node: u32) {
         let node = &tree.nodes[node as usize];

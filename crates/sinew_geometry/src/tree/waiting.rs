@@ -1,17 +1,17 @@
-//! Nodes that a query has seen and not gone into yet.
+//! Nodes of a query that are not visited yet.
 
 use super::MOST_LEVELS;
 use super::node::{Child, Node};
 use sinew_math::lanes::WIDTH;
 
-/// Room for the most children that wait: all of a node but the one that is gone into, on each level. A power of two, so that
-/// a mask holds places inside.
+/// Capacity for pending children: all but one of a node on each level. A power of two, so that a mask keeps indices in
+/// range.
 pub(super) const STACK: usize = ((WIDTH - 1) * MOST_LEVELS + 1).next_power_of_two();
 pub(super) const MASK: usize = STACK - 1;
 
-/// Children that wait, each with what it is sorted by; the last is the next.
+/// Pending children with their sort keys; the last is the next.
 pub(super) struct Waiting {
-    /// The key's bits above the child's: of numbers that are not negative the bits have the same order.
+    /// The key's bits above the child's: for non-negative numbers the bits have the same order.
     children: [u64; STACK],
     count: usize,
 }
@@ -42,7 +42,7 @@ impl Waiting {
         Some((f32::from_bits((entry >> 32) as u32), Child::from_bits(entry as u32)))
     }
 
-    /// Pushes slots of a node so that the one with the smallest key, ≥ 0, is the next.
+    /// Pushes slots of a node so that the one with the smallest key, ≥ 0, is next.
     #[inline(always)]
     pub fn push(&mut self, node: &Node, mask: u8, keys: &[f32; WIDTH]) {
         let start = self.count;
@@ -58,8 +58,8 @@ impl Waiting {
         }
     }
 
-    /// Pushes those of a mask; up to two slots, as it mostly is, without a branch: of those, the processor guesses every other one wrongly. A
-    /// slot that is empty may be among them.
+    /// Pushes the slots of a mask; up to two slots, the usual case, without a branch, which would be mispredicted every
+    /// other time. An empty slot may be among them.
     #[inline(always)]
     pub fn push_few(&mut self, node: &Node, mask: u8, keys: &[f32; WIDTH]) {
         let rest = mask & mask.wrapping_sub(1);
@@ -70,7 +70,7 @@ impl Waiting {
             let slot = mask.trailing_zeros() as usize % WIDTH;
             entry(keys[slot], node.child(slot))
         });
-        // Where there is no second, 0 is the least, and beyond what counts.
+        // If there is no second slot, 0 is the least key, and it is beyond the count.
         let b = if rest != 0 { b } else { 0 };
         self.children[self.count & MASK] = u64::max(a, b);
         self.children[(self.count + 1) & MASK] = u64::min(a, b);

@@ -1,20 +1,20 @@
-//! Triangles made fit to be hit: checked, welded, and which of their edges can be felt.
+//! Prepares triangles for collision: checked, welded, with active edges.
 
 use super::mesh::{MAX_COORDINATE, MAX_TRIANGLES, MeshError};
 use super::triangle;
 use sinew_math::Vec3;
 
-/// Cosine of the angle, 5°, by which a surface falls away at an edge that can be felt.
+/// Cosine of the angle, 5°, by which a surface falls away at an active edge.
 const FELT_COSINE: f32 = 0.996_194_7;
-/// A triangle whose height is less than this share of its longest side has no area.
+/// A triangle with a smaller height relative to its longest side has no area.
 const THINNEST: f32 = 1e-6;
 
-/// Triangles that were left out of a mesh.
+/// Triangles that were dropped from a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dropped {
     /// Triangles without area.
     pub degenerate: usize,
-    /// Triangles that were there already.
+    /// Duplicates.
     pub repeated: usize,
 }
 
@@ -23,9 +23,9 @@ pub struct Dropped {
 pub(super) struct Sheet {
     pub vertices: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
-    /// Bit k of each: its edge from corner k on can be felt.
+    /// Bit k of each: its edge from corner k on is active.
     pub active: Vec<u8>,
-    /// Numbers in the list that they come from.
+    /// Their indices in the original list.
     pub numbers: Vec<u32>,
     pub dropped: Dropped,
 }
@@ -69,9 +69,9 @@ fn check(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// Each place once, in the order in which it comes first, and which of them each vertex is.
+/// Unique positions in order of first use, and the new index of each vertex.
 fn weld(vertices: &[Vec3]) -> (Vec<Vec3>, Vec<u32>) {
-    // Adding 0 makes −0 of neither sign.
+    // Adding 0 turns −0 into 0.
     let key = |i: u32| (vertices[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
     let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
     order.sort_unstable_by_key(|&i| (key(i), i));
@@ -99,7 +99,7 @@ fn has_area([a, b, c]: [Vec3; 3]) -> bool {
     (b - a).cross(c - a).length() > THINNEST * longest * longest
 }
 
-/// Takes out triangles with the corners of an earlier one, turned the same way; says how many.
+/// Removes triangles with the corners and orientation of an earlier one; returns their number.
 fn drop_repeated(kept: &mut Vec<([u32; 3], u32)>) -> usize {
     let before = kept.len();
     let turned = |[a, b, c]: [u32; 3]| {
@@ -141,7 +141,7 @@ fn active_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
     let mut active = vec![0_u8; triangles.len()];
     for around in sides.chunk_by(|p, q| p.edge == q.edge) {
         for side in around {
-            // Of several triangles that go on there, the one that goes on straightest.
+            // Of several triangles at an edge, the one that continues most nearly straight.
             let beyond = around.iter().filter(|other| other.forward != side.forward);
             let felt = beyond.map(|other| is_felt(&corners(side.triangle), &corners(other.triangle)));
             if felt.reduce(|a, b| a && b).unwrap_or(true) {
@@ -152,11 +152,12 @@ fn active_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
     active
 }
 
-/// True if the edge between two triangles can be felt: the surface falls away there.
+/// True if the edge between two triangles is active: the surface falls away there.
 pub(super) fn is_felt(triangle: &[Vec3; 3], beyond: &[Vec3; 3]) -> bool {
     let (n, m) = (triangle::normal(triangle), triangle::normal(beyond));
     let middle = |&[a, b, c]: &[Vec3; 3]| (a + b + c) * (1.0 / 3.0);
-    // Seen from each the middle of the other lies below; from both at once, so that rounding does not tell them apart.
+    // From each triangle the middle of the other lies below; both are checked, so that rounding does not decide
+    // differently for the two.
     let below = (middle(beyond) - middle(triangle)).dot(n - m) < 0.0;
     // The back of the same sheet.
     let folded = n.dot(m) < -FELT_COSINE;

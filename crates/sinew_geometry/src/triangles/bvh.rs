@@ -10,7 +10,7 @@ const LEAF: usize = 4;
 /// More levels than a balanced tree of 2³² leaves has.
 pub(crate) const DEPTH: usize = 40;
 
-/// Bounds of triangles in a binary tree. Leaves hold ranges of places: the triangles' order after [`Tree::new`].
+/// Bounds of triangles in a binary tree. Leaves hold index ranges in the triangles' order after [`Tree::new`].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tree {
     nodes: Vec<Node>,
@@ -19,7 +19,7 @@ pub(crate) struct Tree {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Node {
     bounds: Aabb,
-    /// First place of a leaf, else index of the second child; the first follows its parent.
+    /// First triangle of a leaf, else index of the second child; the first follows its parent.
     next: u32,
     /// Triangles of a leaf, 0 for an inner node.
     count: u32,
@@ -29,12 +29,12 @@ struct Node {
 pub(crate) enum Branch {
     /// Two nodes, by number.
     Nodes([u32; 2]),
-    /// Triangles, by place.
+    /// Triangles, in leaf order.
     Leaf(Range<u32>),
 }
 
 impl Tree {
-    /// Over the triangles of those numbers, at least one, which it brings into the order of its leaves.
+    /// Tree over at least one triangle; sorts the indices into leaf order.
     pub fn new(numbers: &mut [u32], corners: &impl Fn(u32) -> [Vec3; 3]) -> Self {
         let mut nodes = Vec::with_capacity(numbers.len());
         grow(numbers, 0, corners, &mut nodes);
@@ -47,12 +47,12 @@ impl Tree {
         self.bounds_below(0)
     }
 
-    /// Bytes that it takes.
+    /// Memory use, bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.nodes.as_slice())
     }
 
-    /// Number of nodes. The first is the root, and none has a number below its parent's.
+    /// Number of nodes. The first is the root; children have higher numbers than their parent.
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
@@ -79,20 +79,20 @@ impl Tree {
         });
     }
 
-    /// Calls `visit` with leaves that may hold something whose squared distance from `p` is at most what it returned last,
-    /// first `square`; the nearer ones first.
+    /// Calls `visit` with leaves that may be within the squared distance of `p` that it returned last (first `square`),
+    /// nearer ones first.
     pub fn nearest(&self, p: Vec3, square: f32, visit: impl FnMut(Range<u32>) -> f32) {
         let away = |bounds: &Aabb| max3(max3(bounds.min - p, p - bounds.max), Vec3::ZERO).length_squared();
         self.walk(square, away, visit);
     }
 
-    /// Calls `visit` with leaves that a line from `origin` may enter before the share of `direction` that it returned last,
-    /// first `share`; the nearer ones first.
+    /// Calls `visit` with leaves that a line from `origin` may enter before the share of `direction` that it returned
+    /// last (first `share`), nearer ones first.
     pub fn along(&self, origin: Vec3, direction: Vec3, share: f32, visit: impl FnMut(Range<u32>) -> f32) {
         self.walk(share, |bounds| enter(bounds, origin, direction), visit);
     }
 
-    /// Visits the leaves whose key is at most `limit`, which each of them may lower. No node has a key below its parent's;
+    /// Visits the leaves whose key is at most `limit`; each visit may lower it. No node has a key below its parent's;
     /// an infinite key is never visited.
     fn walk(&self, mut limit: f32, key: impl Fn(&Aabb) -> f32, mut visit: impl FnMut(Range<u32>) -> f32) {
         let key = |index: u32| (index, key(&self.nodes[index as usize].bounds));
@@ -121,8 +121,8 @@ impl Tree {
     }
 }
 
-/// Share of `direction` after which a line enters the bounds, 0 if it begins inside, infinite if it passes. Wider by
-/// rounding than the bounds are.
+/// Share of `direction` at which a line enters the bounds, 0 if it starts inside, infinite if it misses. The bounds are
+/// widened by rounding.
 fn enter(bounds: &Aabb, origin: Vec3, direction: Vec3) -> f32 {
     let (mut first, mut last) = (0.0, f32::INFINITY);
     for k in 0..3 {
@@ -141,7 +141,7 @@ fn enter(bounds: &Aabb, origin: Vec3, direction: Vec3) -> f32 {
     if first * (1.0 - ROUNDING) <= last * (1.0 + ROUNDING) { first * (1.0 - ROUNDING) } else { f32::INFINITY }
 }
 
-/// Appends the tree over the triangles `numbers`, the first of which has the place `offset`.
+/// Appends the tree over the triangles `numbers`, the first of which has index `offset`.
 fn grow(numbers: &mut [u32], offset: u32, corners: &impl Fn(u32) -> [Vec3; 3], nodes: &mut Vec<Node>) {
     let place = nodes.len();
     let around = numbers.iter().map(|&i| bounds(&corners(i))).reduce(|a, b| a.merge(&b)).unwrap_or_default();
@@ -154,7 +154,7 @@ fn grow(numbers: &mut [u32], offset: u32, corners: &impl Fn(u32) -> [Vec3; 3], n
         let [a, b, c] = corners(*i);
         a[axis] + b[axis] + c[axis]
     };
-    // Halves by number: the depth stays that of a balanced tree, whatever the mesh.
+    // Halves by number: the depth stays balanced for every mesh.
     let half = numbers.len() / 2;
     numbers.select_nth_unstable_by(half, |i, j| middle(i).total_cmp(&middle(j)).then(i.cmp(j)));
     let (low, high) = numbers.split_at_mut(half);

@@ -8,7 +8,7 @@ use core::fmt;
 use core::ops::Range;
 use sinew_math::{StableHasher, Vec3, clamp, max, min};
 
-/// A height field to be made.
+/// Definition of a height field.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeightFieldDef {
@@ -21,25 +21,25 @@ pub struct HeightFieldDef {
     /// Heights, metres: `columns × rows` of them, row after row. That of column i and row j is over (i × spacing.0, j ×
     /// spacing.1).
     pub heights: Vec<f32>,
-    /// Cells that are not there, by `column + row × (columns − 1)`.
+    /// Missing cells, by `column + row × (columns − 1)`.
     pub holes: Vec<u32>,
 }
 
 impl HeightFieldDef {
-    /// A field without holes, `columns` × `rows` vertices that are `spacing` metres apart along x and z, with heights in metres,
-    /// row after row.
+    /// A field without holes: `columns` × `rows` vertices, `spacing` metres apart along x and z, with heights in
+    /// metres, row by row.
     pub fn new(columns: usize, rows: usize, spacing: f32, heights: Vec<f32>) -> Self {
         Self { columns, rows, spacing: [spacing; 2], heights, holes: Vec::new() }
     }
 
-    /// The same with the height that a function gives for a column and a row, metres.
+    /// The same with heights from a function of column and row, metres.
     pub fn from_fn(columns: usize, rows: usize, spacing: f32, height: impl Fn(usize, usize) -> f32) -> Self {
         let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
         Self::new(columns, rows, spacing, cells.map(|(column, row)| height(column, row)).collect())
     }
 }
 
-/// Why numbers make no height field.
+/// Error returned when samples do not form a valid height field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeightFieldError {
     /// Fewer than 2 vertices along an axis, or more than 2²⁶ cells.
@@ -51,11 +51,11 @@ pub enum HeightFieldError {
         /// Number that is needed.
         vertices: usize,
     },
-    /// A spacing that is not positive and finite, or makes the field larger than [`MAX_COORDINATE`].
+    /// A spacing is not positive and finite, or makes the field larger than [`MAX_COORDINATE`].
     Spacing,
-    /// A height that is not finite, or beyond [`MAX_COORDINATE`].
+    /// A height is not finite, or beyond [`MAX_COORDINATE`].
     NotFinite {
-        /// Its place in the list.
+        /// Its index in the list.
         index: usize,
     },
     /// A hole where no cell is.
@@ -88,12 +88,13 @@ impl fmt::Display for HeightFieldError {
 
 impl core::error::Error for HeightFieldError {}
 
-/// Terrain: heights on a grid in x and z, solid from above. Each cell is two triangles, parted from its corner at the
-/// lower x and higher z to the one at the higher x and lower z. Edges are felt as those of a [`Mesh`](super::Mesh).
+/// Terrain: heights on a grid in x and z, solid from above. Each cell is two triangles, split from the corner at lower
+/// x and higher z to the one at higher x and lower z. Edges are active as in a [`Mesh`](super::Mesh).
 #[derive(Clone, Debug)]
 pub struct HeightField {
     def: HeightFieldDef,
-    /// Bits of each cell: active edges of its first triangle in the lowest three bits, of its second in the next; `HOLE`.
+    /// Bits of each cell: active edges of its first triangle in the lowest three bits, of its second in the next;
+    /// `HOLE`.
     cells: Vec<u8>,
     bounds: Aabb,
     hash: u64,
@@ -109,7 +110,7 @@ impl HeightField {
     /// What is wrong with them.
     pub fn new(mut def: HeightFieldDef) -> Result<Self, HeightFieldError> {
         check(&def)?;
-        // In one order, so that equal fields are equal.
+        // Sorted, so that equal fields are equal.
         def.holes.sort_unstable();
         def.holes.dedup();
         let lowest = def.heights.iter().fold(f32::INFINITY, |y, &h| min(h, y));
@@ -129,17 +130,17 @@ impl HeightField {
         Ok(field)
     }
 
-    /// Definition it was made from.
+    /// The definition.
     pub fn def(&self) -> &HeightFieldDef {
         &self.def
     }
 
-    /// Around all of it, in its own frame.
+    /// Bounds in its own frame.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// Corners of its triangles, counter-clockwise seen from above, cell after cell.
+    /// Corners of its triangles, counter-clockwise seen from above, cell by cell.
     pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
         let cells = (0..self.cells.len()).filter(|&cell| self.cells[cell] & HOLE == 0);
         cells.flat_map(|cell| [self.corners(2 * cell as u32), self.corners(2 * cell as u32 + 1)])
@@ -178,7 +179,7 @@ impl HeightField {
         Triangle::new(self.corners(number), vertices, active)
     }
 
-    /// The triangle beyond each edge of another, if one is there.
+    /// The triangle beyond each edge of another, if there is one.
     fn beyond(&self, triangle: u32) -> [Option<u32>; 3] {
         let cell = triangle as usize / 2;
         let (i, j) = (cell % self.width(), cell / self.width());
@@ -214,11 +215,11 @@ impl HeightField {
         }
     }
 
-    /// Cells between two places along an axis.
+    /// Cells between two positions along an axis.
     fn cells_between(&self, axis: usize, from: f32, to: f32) -> Range<usize> {
         let cells = [self.def.columns - 1, self.def.rows - 1][axis];
         let cell = |x: f32| clamp((x / self.def.spacing[axis]).floor(), -1.0, cells as f32) as i64;
-        // One more on either side: a place on a grid line belongs to both.
+        // One more on either side: a position on a grid line belongs to both.
         let first = i64::max(cell(from) - 1, 0) as usize;
         let end = i64::min(cell(to) + 2, cells as i64);
         first..usize::max(i64::max(end, 0) as usize, first)
@@ -246,8 +247,8 @@ impl HeightField {
         }
     }
 
-    /// As [`Surface::closest`](super::Surface::closest): in ever larger boxes around the point, until the closest point found
-    /// is nearer than the box's sides.
+    /// Like [`Surface::closest`](super::Surface::closest): searches growing boxes around the point until the closest
+    /// point is nearer than the box's sides.
     pub(super) fn closest(&self, p: Vec3, reach: f32) -> Option<Closest> {
         let nearest = sinew_math::max3(sinew_math::min3(p, self.bounds.max), self.bounds.min);
         let least = (nearest - p).length();
@@ -269,7 +270,7 @@ impl HeightField {
         }
     }
 
-    /// As [`Surface::enter`](super::Surface::enter): column of cells after column, in each those rows that the line crosses.
+    /// Like [`Surface::enter`](super::Surface::enter): column by column, in each the rows that the line crosses.
     pub(super) fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         let span = |low: f32, high: f32, from: f32, along: f32| {
             if along == 0.0 {

@@ -12,15 +12,15 @@ pub const MAX_TRIANGLES: usize = 1 << 28;
 /// Largest coordinate of a vertex, metres.
 pub const MAX_COORDINATE: f32 = 1e6;
 
-/// Why triangles make no mesh.
+/// Error returned when triangles do not form a valid mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshError {
-    /// Nothing is left: no triangle, or none with an area.
+    /// No triangle is left, or none has an area.
     NoTriangles {
         /// Number of triangles without area.
         degenerate: usize,
     },
-    /// A triangle names a vertex that is not there.
+    /// A triangle names a missing vertex.
     IndexOutOfRange {
         /// Number of the triangle.
         triangle: usize,
@@ -57,10 +57,11 @@ impl fmt::Display for MeshError {
 
 impl core::error::Error for MeshError {}
 
-/// A surface of triangles, each solid from the side from which its corners run counter-clockwise: for levels. It may be open,
-/// and need not enclose anything.
+/// A surface of triangles, each solid on the side from which its corners run counter-clockwise; for levels. It may be
+/// open and need not enclose anything.
 ///
-/// Edges that lie within the surface are not felt: only those count at which it falls away by more than 5°, and its rim.
+/// Internal edges are inactive: only edges at which the surface falls away by more than 5°, and its rim, cause
+/// contacts.
 #[derive(Clone, Debug)]
 pub struct Mesh {
     vertices: Vec<Vec3>,
@@ -71,7 +72,7 @@ pub struct Mesh {
     hash: u64,
 }
 
-/// A triangle as it is kept.
+/// A triangle as stored.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
     pub vertices: [u32; 3],
@@ -92,7 +93,7 @@ impl Face {
 impl Mesh {
     /// From vertices (metres) and the indices of each triangle's corners, counter-clockwise seen from outside.
     ///
-    /// Vertices at the same place are one. Triangles without area, and those that are there twice, are left out:
+    /// Vertices at the same position are merged. Triangles without area and duplicates are dropped:
     /// [`dropped`](Self::dropped) counts them.
     ///
     /// # Errors
@@ -114,17 +115,17 @@ impl Mesh {
         Self { vertices, faces, tree, dropped, hash }
     }
 
-    /// Vertices, metres: each place once.
+    /// Unique vertices, metres.
     pub fn vertices(&self) -> &[Vec3] {
         &self.vertices
     }
 
-    /// The triangles that are kept, by [`vertices`](Self::vertices), in the mesh's own order.
+    /// The kept triangles, by [`vertices`](Self::vertices), in the mesh's own order.
     pub fn triangles(&self) -> impl ExactSizeIterator<Item = [u32; 3]> {
         self.faces.iter().map(|face| face.vertices)
     }
 
-    /// The corners of each of them, metres.
+    /// The corners of each, metres.
     pub fn corners_of_all(&self) -> impl ExactSizeIterator<Item = [Vec3; 3]> {
         self.faces.iter().map(|face| face.vertices.map(|v| self.vertices[v as usize]))
     }
@@ -139,7 +140,7 @@ impl Mesh {
         self.faces.len()
     }
 
-    /// Triangles that were left out.
+    /// Dropped triangles.
     pub fn dropped(&self) -> Dropped {
         self.dropped
     }
@@ -154,7 +155,7 @@ impl Mesh {
         self.hash
     }
 
-    /// Bytes that it takes in memory.
+    /// Memory use, bytes.
     pub fn memory(&self) -> usize {
         size_of::<Self>()
             + size_of_val(self.vertices.as_slice())
@@ -166,7 +167,7 @@ impl Mesh {
         &self.tree
     }
 
-    /// The triangle at a place of the tree.
+    /// The triangle at a position of the tree.
     pub(super) fn triangle(&self, place: u32) -> Triangle {
         let face = self.faces[place as usize];
         Triangle::new(self.corners(place), face.vertices, face.active())

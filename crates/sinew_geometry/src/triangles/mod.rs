@@ -1,7 +1,7 @@
 //! Surfaces of one-sided triangles: meshes and height fields.
 //!
-//! Both answer the same questions (`Surface`): which triangles are near, which point is closest, where a line enters. What
-//! a body touches of them is found in `collide/surface`.
+//! Both implement the same queries (`Surface`): nearby triangles, closest point, entry of a line. `collide/triangles`
+//! computes contacts.
 
 mod build;
 mod bvh;
@@ -24,7 +24,7 @@ fn ordered(a: u32, b: u32) -> (u32, u32) {
     if a < b { (a, b) } else { (b, a) }
 }
 
-/// A shape that is made of one-sided triangles.
+/// A shape of one-sided triangles.
 #[derive(Clone, Copy, Debug)]
 pub enum Surface<'a> {
     /// Any triangles.
@@ -40,7 +40,7 @@ pub struct Closest {
     pub square: f32,
     /// Closest point, in the surface's frame, metres.
     pub point: Vec3,
-    /// Part of the triangle that it lies on.
+    /// Feature of the triangle that it lies on.
     part: Part,
     /// Triangle that it lies on.
     pub triangle: Triangle,
@@ -61,8 +61,8 @@ impl Closest {
         }
     }
 
-    /// Takes `other` instead if it is nearer. Of a point that several triangles share, the one whose plane `p` is
-    /// farthest from tells on which side it lies.
+    /// Takes `other` instead if it is nearer. For a point that several triangles share, the triangle whose plane is
+    /// furthest from `p` decides the side.
     fn improve(
         best: &mut Option<Self>,
         p: Vec3,
@@ -123,8 +123,8 @@ impl Surface<'_> {
         }
     }
 
-    /// Share of `direction` (≥ 0, may exceed 1) after which a line from `origin` comes through the surface from its
-    /// outside, and the surface's normal there.
+    /// Share of `direction` (≥ 0, may exceed 1) at which a line from `origin` enters the surface from its outside, and
+    /// the surface's normal there.
     pub fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         match self {
             Self::Mesh(mesh) => {

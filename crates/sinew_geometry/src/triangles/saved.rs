@@ -6,7 +6,7 @@ use super::mesh::{MAX_TRIANGLES, Mesh};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
 impl Mesh {
-    /// Writes vertices, triangles with their numbers, and how many were left out.
+    /// Writes vertices, triangles with their numbers, and the number of dropped ones.
     pub fn save(&self, w: &mut Writer) {
         w.count(self.vertices().len());
         for &vertex in self.vertices() {

@@ -1,24 +1,23 @@
-//! One triangle of a surface: what is closest on it, where a line comes through it.
+//! One triangle of a surface: closest point, entry of a line.
 
 use crate::boxes::Aabb;
 use sinew_math::triangle::{Nearest, nearest};
 use sinew_math::{Vec3, max, max3, min3, normalize_or};
 
-/// A triangle that is solid from one side: the one from which its corners run counter-clockwise.
+/// A one-sided triangle: solid on the side from which its corners run counter-clockwise.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Triangle {
     /// Corners, counter-clockwise seen from outside, metres.
     pub corners: [Vec3; 3],
     /// Unit normal, to the outside.
     pub normal: Vec3,
-    /// Names of the corners: triangles that meet in one have the same.
+    /// Names of the corners, shared by adjacent triangles.
     pub vertices: [u32; 3],
-    /// Bit k is set if the edge from corner k to the next one can be hit: nothing lies beyond it, or the surface falls
-    /// away there.
+    /// Bit k is set if the edge from corner k to the next one is active: the surface ends or falls away there.
     pub active: u8,
 }
 
-/// Part of a triangle: its face, an edge or a corner.
+/// Feature of a triangle: its face, an edge or a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// Its inside.
@@ -30,7 +29,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// Part at a share of an edge, 0..=1 from its first corner to its second: its ends are corners, which the edge itself must not claim.
+    /// Feature at a parameter of an edge, 0..=1 from its first corner to its second: its ends are corners.
     pub fn on_edge(edge: usize, share: f32) -> Self {
         match share {
             t if t <= 0.0 => Self::Corner(edge),
@@ -41,7 +40,7 @@ impl Part {
 }
 
 impl Triangle {
-    /// Triangle with its normal worked out.
+    /// Triangle with its normal computed.
     #[inline]
     pub fn new(corners: [Vec3; 3], vertices: [u32; 3], active: u8) -> Self {
         Self { corners, normal: normal(&corners), vertices, active }
@@ -64,7 +63,7 @@ impl Triangle {
         super::ordered(self.vertices[edge], self.vertices[(edge + 1) % 3])
     }
 
-    /// The part that reaches furthest along a direction, to within `tolerance`, metres.
+    /// The feature that reaches furthest along a direction, within `tolerance`, metres.
     pub fn support(&self, direction: Vec3, tolerance: f32) -> Part {
         let along = self.corners.map(|corner| corner.dot(direction));
         let top = max(max(along[0], along[1]), along[2]);
@@ -79,14 +78,14 @@ impl Triangle {
         }
     }
 
-    /// Seen from another frame, in which the origin of this one is `offset` away.
+    /// The triangle in another frame, in which the origin of this one is `offset` away.
     #[inline]
     pub fn moved(&self, offset: Vec3) -> Self {
         Self { corners: self.corners.map(|corner| corner + offset), ..*self }
     }
 }
 
-/// Unit normal of a triangle, to the side from which the corners run counter-clockwise; up if they lie on a line.
+/// Unit normal of a triangle, toward the side from which the corners run counter-clockwise; up if they lie on a line.
 pub fn normal(&[a, b, c]: &[Vec3; 3]) -> Vec3 {
     normalize_or((b - a).cross(c - a), Vec3::Y)
 }
@@ -95,7 +94,7 @@ pub(crate) fn bounds(&[a, b, c]: &[Vec3; 3]) -> Aabb {
     Aabb { min: min3(min3(a, b), c), max: max3(max3(a, b), c) }
 }
 
-/// The point of a triangle closest to `p`, and of which part it is.
+/// The point of a triangle closest to `p`, and its feature.
 pub fn closest_on_triangle(corners: &[Vec3; 3], p: Vec3) -> (Vec3, Part) {
     let [a, b, c] = *corners;
     match nearest(corners, p) {
@@ -107,10 +106,10 @@ pub fn closest_on_triangle(corners: &[Vec3; 3], p: Vec3) -> (Vec3, Part) {
     }
 }
 
-/// Share of `direction` (≥ 0, may exceed 1) after which a line from `origin` comes through a triangle from its outside.
+/// Share of `direction` (≥ 0, may exceed 1) at which a line from `origin` enters a triangle from its outside.
 ///
-/// By the line's turn round each side, whose sign is exactly opposite for the triangle beyond: no line slips through
-/// between two triangles.
+/// By the sign of the line's rotation around each side, which is exactly opposite for the neighbouring triangle: no
+/// line slips through between two triangles.
 pub(crate) fn enter_triangle(corners: &[Vec3; 3], origin: Vec3, direction: Vec3) -> Option<f32> {
     let [a, b, c] = corners.map(|corner| corner - origin);
     let beside = |p: Vec3, q: Vec3| direction.dot(p.cross(q));

@@ -1,7 +1,7 @@
-//! Eight lanes in one register of AVX.
+//! Eight lanes in one AVX register.
 //!
-//! A value of [`Avx2`] is made by [`dispatch`](crate::dispatch) alone, and only where the processor has AVX2; each
-//! `unsafe` below rests on that. The types are private to this crate, so that nothing else can call them into being.
+//! Only [`dispatch`](crate::dispatch) creates values of [`Avx2`], and only if the processor supports AVX2; each
+//! `unsafe` below relies on that. The types are private to this crate, so no other code can create one.
 
 use super::avx2_wide::Wide;
 use super::{LaneMask, Lanes, Mask, Real, WIDTH};
@@ -21,13 +21,13 @@ pub(crate) struct Avx2(__m256);
 #[derive(Clone, Copy)]
 pub(crate) struct Avx2Mask(__m256);
 
-/// The sign's bit alone.
+/// The sign bit only.
 const SIGN: f32 = -0.0;
 
-/// All bits set: what comparisons give for true.
+/// All bits set: the true result of a comparison.
 const TRUE: f32 = f32::from_bits(u32::MAX);
 
-/// Intrinsics of AVX, called where there are values of [`Avx2`].
+/// AVX intrinsics. A value of [`Avx2`] proves that they may be called.
 macro_rules! avx {
     ($call:expr) => {
         // SAFETY: whoever holds, or makes, a value of `Avx2` was entered by `dispatch`, on a processor with AVX2.
@@ -171,7 +171,7 @@ impl Lanes for Avx2 {
 
     #[inline(always)]
     fn turn(self, by: usize) -> Self {
-        // Only the lowest three bits of a place count.
+        // Only the lowest three bits of an index are used.
         let places =
             avx!(_mm256_add_epi32(_mm256_set1_epi32(by as i32), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7)));
         Self(avx!(_mm256_permutevar8x32_ps(self.0, places)))

@@ -1,6 +1,6 @@
 //! Eight `f64` in two registers of AVX, for [`Avx2`](super::avx2::Avx2).
 //!
-//! Values are made where those of [`Avx2`](super::avx2::Avx2) are, and each `unsafe` below rests on the same.
+//! Values exist only where those of [`Avx2`](super::avx2::Avx2) do; each `unsafe` below relies on that.
 
 use super::{Mask, Real};
 use core::arch::x86_64::{
@@ -18,13 +18,13 @@ pub(crate) struct Wide(pub __m256d, pub __m256d);
 #[derive(Clone, Copy)]
 pub(crate) struct WideMask(__m256d, __m256d);
 
-/// The sign's bit alone.
+/// The sign bit only.
 const SIGN: f64 = -0.0;
 
-/// All bits set: what comparisons give for true.
+/// All bits set: the true result of a comparison.
 const TRUE: f64 = f64::from_bits(u64::MAX);
 
-/// Intrinsics of AVX, called where there are values of [`Wide`].
+/// AVX intrinsics. A value of [`Wide`] proves that they may be called.
 macro_rules! avx {
     ($call:expr) => {
         // SAFETY: whoever holds, or makes, a value of `Wide` was entered by `dispatch`, on a processor with AVX2.

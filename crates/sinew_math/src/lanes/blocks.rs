@@ -4,8 +4,8 @@ use super::WIDTH;
 
 /// Eight records of `F` numbers: row `f` holds number `f` of all eight.
 ///
-/// A kernel reads a block from one place in memory, whatever `F` is. One long array per field would have it read from
-/// `F` places, which fall into the same set of the cache where the arrays' lengths are powers of two.
+/// A kernel reads a block as one stream, whatever `F` is. One array per field would give `F` streams, which share cache
+/// sets if the array lengths are powers of two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
 pub struct Block<const F: usize>(pub [[f32; WIDTH]; F]);
@@ -37,7 +37,7 @@ impl<const F: usize> Block<F> {
 
 /// A list of records of `F` numbers, in [`Block`]s.
 ///
-/// Lanes of the last block beyond the list's end repeat a record, so that a kernel may compute them with the rest.
+/// Unused lanes of the last block repeat a record, so that kernels may compute them too.
 #[derive(Clone, Debug, Default)]
 pub struct Blocks<const F: usize> {
     blocks: Vec<Block<F>>,
@@ -84,7 +84,7 @@ impl<const F: usize> Blocks<F> {
         self.len = 0;
     }
 
-    /// Makes it `len` records long; those that it had not are zero.
+    /// Resizes to `len` records; new ones are zero.
     pub fn resize(&mut self, len: usize) {
         self.blocks.resize(len.div_ceil(WIDTH), Block::splat([0.0; F]));
         for index in self.len..len {
@@ -93,12 +93,12 @@ impl<const F: usize> Blocks<F> {
         self.len = len;
     }
 
-    /// The blocks, the last one filled up.
+    /// The blocks; the last one is padded.
     pub fn blocks(&self) -> &[Block<F>] {
         &self.blocks
     }
 
-    /// The blocks, to be written to.
+    /// The blocks, mutable.
     pub fn blocks_mut(&mut self) -> &mut [Block<F>] {
         &mut self.blocks
     }

@@ -1,13 +1,13 @@
-//! The first of eight lanes alone, for what has no others to go with it.
+//! Lane 0 alone, for an item that has no others to share lanes with.
 
 use super::{LaneMask, Lanes, Mask, Real, WIDTH};
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// One `f32` where eight could be: it reads and writes lane 0, which gets the bits that it has beside others.
+/// One `f32` in place of eight: it reads and writes lane 0, with the same bits as in a full register.
 #[derive(Clone, Copy, Debug)]
 pub struct First(f32);
 
-/// True or false in lane 0; the others say the same.
+/// Mask of lane 0; the other lanes repeat it.
 #[derive(Clone, Copy, Debug)]
 pub struct FirstMask(bool);
 

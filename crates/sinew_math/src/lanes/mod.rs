@@ -1,16 +1,16 @@
 //! Eight `f32` side by side, with the same bits on every processor.
 //!
-//! A formula is written once, generic over [`Real`]: over `f32` it computes one item, over [`Lanes`] eight at a time,
-//! and lane `k` of the eight has the bits that `f32` gives for item `k`. That holds because there is nothing here whose
-//! result depends on the processor: `+ − × ÷ √` are IEEE-exact everywhere, the rest are comparisons and selections.
-//! There is no fused multiply-add, no estimate of a reciprocal and no sum across the lanes.
+//! A formula is written once, generic over [`Real`]: with `f32` it computes one item, with [`Lanes`] eight, and lane
+//! `k` has the bits of `f32` for item `k`. This holds because no operation here depends on the processor: `+ − × ÷ √`
+//! are exact by IEEE 754, and the rest are comparisons and selections. There is no fused multiply-add, no reciprocal
+//! estimate and no sum across lanes.
 //!
-//! One freedom is left: the sign and payload of a NaN that arithmetic makes. *Whether* a lane is NaN is the same
-//! everywhere; its bits are not, so none may be stored where bits count.
+//! The only exception is the sign and payload of a NaN produced by arithmetic. *Whether* a lane is NaN is the same
+//! everywhere; its bits are not, so do not store them where bits count.
 //!
-//! Kernels are entered through [`dispatch`](crate::dispatch), which alone picks the type that [`Lanes`] stands for.
-//! Everything a kernel calls must be `#[inline(always)]`: what is left as a call of its own is compiled for the oldest
-//! processor and takes its vectors through memory. For the same reason kernels hold no closures.
+//! Kernels are entered through [`dispatch`](crate::dispatch), which picks the type for [`Lanes`]. Everything a kernel
+//! calls must be `#[inline(always)]`: a separate call is compiled for the oldest processor and passes its vectors
+//! through memory. Closures are not allowed in kernels for the same reason.
 #![allow(unsafe_code)] // the intrinsics of AVX2, and loads and stores
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -49,9 +49,9 @@ pub const WIDTH: usize = 8;
 /// Result of a comparison of [`Real`]s: true or false, in each lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {}
 
-/// A number, or several side by side; its operations act in each lane alone.
+/// A number, or eight of them; operations act on each lane separately.
 ///
-/// No method has a processor's own answer for NaN or −0: see [`min`](Self::min), and `sinew_math::min`, which it is.
+/// NaN and −0 have a fixed result on every processor: see [`min`](Self::min), which equals `sinew_math::min`.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
@@ -61,7 +61,7 @@ pub trait Real:
     /// `value` in every lane.
     fn splat(value: f32) -> Self;
 
-    /// `value` in every lane, rounded to what lanes hold.
+    /// `value` in every lane, rounded to the precision of the lanes.
     #[inline(always)]
     fn splat_wide(value: f64) -> Self {
         Self::splat(value as f32)
@@ -70,7 +70,7 @@ pub trait Real:
     /// Square root, exact; NaN below zero, −0 of −0.
     fn sqrt(self) -> Self;
 
-    /// The number without its sign.
+    /// Absolute value.
     fn abs(self) -> Self;
 
     /// `a < b`; false where either is NaN.
@@ -94,7 +94,7 @@ pub trait Real:
         Self::le(b, a)
     }
 
-    /// `a` where the mask is true, `b` where it is false; the bits are kept, those of a NaN too.
+    /// `a` where the mask is true, else `b`; bits are copied unchanged, including NaN.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
 
     /// The number where the mask is true, +0 where it is false.
@@ -103,13 +103,13 @@ pub trait Real:
     /// NaN where the mask is true, the number where it is false.
     fn nan_where(self, mask: Self::Mask) -> Self;
 
-    /// The smaller: `b` where either is NaN, and where they are equal, so of 0 and −0 the second.
+    /// The smaller number; `b` if either is NaN or both are equal (so of 0 and −0 the second).
     #[inline(always)]
     fn min(a: Self, b: Self) -> Self {
         Self::select(Self::lt(a, b), a, b)
     }
 
-    /// The larger: `b` where either is NaN, and where they are equal, so of 0 and −0 the second.
+    /// The larger number; `b` if either is NaN or both are equal (so of 0 and −0 the second).
     #[inline(always)]
     fn max(a: Self, b: Self) -> Self {
         Self::select(Self::lt(b, a), a, b)
@@ -136,25 +136,24 @@ pub trait LaneMask: Mask {
 
 /// Eight numbers.
 ///
-/// A type that stands for a processor's own registers exists only where [`dispatch`](crate::dispatch) has found them:
-/// nothing else can name it.
+/// Types of processor registers can only be created by [`dispatch`](crate::dispatch), after it has checked for support.
 pub trait Lanes: Real<Mask: LaneMask> {
-    /// Eight numbers of twice the digits, for sums that cancel.
+    /// Eight `f64`, for sums that cancel.
     type Wide: Real;
 
-    /// The same numbers in 64 bits.
+    /// The same numbers as `f64`.
     fn widen(self) -> Self::Wide;
 
-    /// Eight numbers of 64 bits, each rounded to the nearest of 32.
+    /// Eight `f64` rounded to the nearest `f32`.
     fn narrow(wide: Self::Wide) -> Self;
 
-    /// The numbers of an array, item `k` in lane `k`.
+    /// Loads an array, item `k` into lane `k`.
     fn load(from: &[f32; WIDTH]) -> Self;
 
-    /// Lane `k` into item `k`.
+    /// Stores lane `k` into item `k`.
     fn store(self, to: &mut [f32; WIDTH]);
 
-    /// Lane `k` gets the number of lane `k + by`, counted round. `by` is less than eight.
+    /// Rotates lanes: lane `k` gets the number of lane `(k + by) % 8`. `by` is less than eight.
     #[inline(always)]
     fn turn(self, by: usize) -> Self {
         let mut twice = [[0.0; WIDTH]; 2];
@@ -164,7 +163,7 @@ pub trait Lanes: Real<Mask: LaneMask> {
         Self::load(&core::array::from_fn(|k| twice[by + k]))
     }
 
-    /// Rows become columns: lane `j` of row `i` goes to lane `i` of row `j`. Eight records become eight fields, and back.
+    /// Transposes: lane `j` of row `i` goes to lane `i` of row `j`.
     #[inline(always)]
     fn transpose(rows: [Self; WIDTH]) -> [Self; WIDTH] {
         let [mut records, mut fields] = [[[0.0; WIDTH]; WIDTH]; 2];

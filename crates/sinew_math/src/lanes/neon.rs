@@ -1,6 +1,6 @@
-//! Four lanes of NEON, which every aarch64 has.
+//! Four lanes of NEON (every aarch64).
 //!
-//! `fmin` and `fmax` are not used: their answer for NaN is not the selection's.
+//! `fmin` and `fmax` are not used because their NaN result differs from the selection's.
 
 use super::quads::{Quad, Quads};
 use core::arch::aarch64::{

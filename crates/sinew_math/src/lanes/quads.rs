@@ -1,12 +1,12 @@
-//! Eight lanes as two registers of four, for the processors that have those.
+//! Eight lanes as two registers of four.
 
 use super::scalar::Doubles;
 use super::{LaneMask, Lanes, Mask, Real, WIDTH};
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// A register of four `f32`: what a processor has to offer. Each operation is that of [`Real`] or [`Lanes`] of its name.
+/// A register of four `f32`. Each operation corresponds to that of [`Real`] or [`Lanes`] with the same name.
 pub(crate) trait Quad: Copy {
-    /// Result of a comparison: all bits of a lane set, or none.
+    /// Comparison result: all bits of a lane set, or none.
     type Mask: Copy;
 
     fn splat(value: f32) -> Self;
@@ -38,7 +38,7 @@ pub(crate) trait Quad: Copy {
 #[derive(Clone, Copy)]
 pub(crate) struct Quads<Q>(Q, Q);
 
-/// Result of a comparison of [`Quads`].
+/// Comparison result of [`Quads`].
 #[derive(Clone, Copy)]
 pub(crate) struct QuadsMask<Q: Quad>(Q::Mask, Q::Mask);
 

@@ -1,4 +1,4 @@
-//! One number; and eight of them in an array, for processors of which nothing is known.
+//! One number, and eight in an array for processors without a known register set.
 
 use super::{LaneMask, Lanes, Mask, Real, WIDTH};
 use core::array;
@@ -6,7 +6,7 @@ use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 impl Mask for bool {}
 
-/// One lane: what the others are defined by.
+/// One lane; defines the results of all other types.
 impl Real for f32 {
     type Mask = bool;
 
@@ -56,7 +56,7 @@ impl Real for f32 {
     }
 }
 
-/// One number of twice the digits, for sums that cancel.
+/// One `f64`, for sums that cancel.
 impl Real for f64 {
     type Mask = bool;
 
@@ -111,12 +111,13 @@ impl Real for f64 {
     }
 }
 
-/// Eight `f32`, each treated as `f32` is. Its operations are calls: written out eight times at each place, kernels are more than twice as
-/// large and no faster (wasm32 without simd128, which is what this is for beside development builds: see [`dispatch`](crate::dispatch)).
+/// Eight `f32`, each handled like `f32`. Operations are calls: inlined eight times at each use, kernels are more than
+/// twice as large and no faster (wasm32 without simd128 and development builds use this: see
+/// [`dispatch`](crate::dispatch)).
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar([f32; WIDTH]);
 
-/// Eight `f64`, each treated as `f64` is: on processors without registers for so many, too.
+/// Eight `f64`, each handled like `f64`.
 #[derive(Clone, Copy, Debug)]
 pub struct Doubles([f64; WIDTH]);
 
@@ -169,7 +170,7 @@ impl LaneMask for Bools {
     }
 }
 
-/// Numbers side by side in an array, each treated as one of them is.
+/// Numbers in an array, each handled like a single one.
 macro_rules! array_of {
     ($of:ident $number:ident) => {
         impl Neg for $of {

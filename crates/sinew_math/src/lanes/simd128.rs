@@ -1,4 +1,4 @@
-//! Four lanes of WebAssembly, in builds for it: its intrinsics are safe to call here.
+//! Four lanes of WebAssembly simd128; its intrinsics are safe to call in builds that enable it.
 
 use super::quads::{Quad, Quads};
 use core::arch::wasm32::{
@@ -64,7 +64,7 @@ impl Quad for v128 {
         f32x4_abs(self)
     }
 
-    // `pmin(b, a)` is `a < b ? a : b`, and `pmax(b, a)` is `b < a ? a : b`; `f32x4_min` has another answer for NaN.
+    // `pmin(b, a)` is `a < b ? a : b` and `pmax(b, a)` is `b < a ? a : b`; `f32x4_min` has another result for NaN.
     #[inline(always)]
     fn min(a: Self, b: Self) -> Self {
         f32x4_pmin(b, a)

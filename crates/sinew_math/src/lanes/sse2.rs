@@ -1,4 +1,4 @@
-//! Four lanes of SSE2, which every x86-64 has.
+//! Four lanes of SSE2 (every x86-64).
 
 use super::quads::{Quad, Quads};
 use core::arch::x86_64::{
@@ -9,10 +9,10 @@ use core::arch::x86_64::{
 
 pub(crate) type Sse2 = Quads<__m128>;
 
-/// The sign's bit alone.
+/// The sign bit only.
 const SIGN: f32 = -0.0;
 
-/// All bits set: what comparisons give for true.
+/// All bits set: the true result of a comparison.
 const TRUE: f32 = f32::from_bits(u32::MAX);
 
 /// Intrinsics of SSE and SSE2.

@@ -8,7 +8,7 @@ use crate::{Random, StableHasher};
 /// Hash of the soup's results, on x86-64, aarch64 and wasm.
 const GOLDEN: u64 = 0xa6ab_2171_d2ba_4a5b;
 
-/// Numbers at which arithmetic goes another way.
+/// Numbers at which arithmetic branches.
 const CORNERS: [f32; 24] = [
     0.0,
     -0.0,
@@ -50,7 +50,7 @@ fn soup() -> Vec<[f32; 2]> {
 
 const OPERATIONS: usize = 17;
 
-/// Each operation once, masks by what they select.
+/// Each operation once; masks are observed through selections.
 #[inline(always)]
 fn operations<R: Real>(a: R, b: R) -> [R; OPERATIONS] {
     let (less, same) = (R::lt(a, b), R::eq(a, b));
@@ -75,7 +75,7 @@ fn operations<R: Real>(a: R, b: R) -> [R; OPERATIONS] {
     ]
 }
 
-/// All NaN are one: neither their sign nor their payload is anybody's promise.
+/// All NaN count as equal: neither sign nor payload is promised.
 fn bits(number: f32) -> u32 {
     if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() }
 }
@@ -83,7 +83,7 @@ fn bits(number: f32) -> u32 {
 struct Operations<'a>(&'a [[f32; 2]]);
 
 impl Kernel for Operations<'_> {
-    /// Results of each pair; lanes in which the first is less, in each eight pairs.
+    /// Results of each pair; then the lanes in which the first is less, eight pairs at a time.
     type Output = (Vec<[u32; OPERATIONS]>, Vec<u8>);
 
     #[inline(always)]
@@ -175,7 +175,7 @@ fn golden_soup_of_operations() {
     }
 }
 
-/// Answers to NaN and −0 that the documentation promises, by name.
+/// Documented results for NaN and −0, by name.
 fn answers<R: Real>() -> [R; 6] {
     let [zero, minus, nan] = [0.0, -0.0, f32::NAN].map(R::splat);
     let one = R::splat(1.0);

@@ -4,7 +4,7 @@ use super::{Lanes, Real, WIDTH};
 use crate::{Rotation, Vec3};
 use core::ops::{Add, Mul, Neg, Sub};
 
-/// A vector, or one in each lane. Sums are taken in the order in which [`Vec3`] takes them, so that the bits are equal.
+/// A vector, or one per lane. Sums use the order of [`Vec3`], so the bits are equal.
 #[derive(Clone, Copy, Debug)]
 pub struct Vector3<R> {
     /// First coordinate.
@@ -28,7 +28,7 @@ impl<R: Real> Vector3<R> {
         Self::new(R::splat(v.x), R::splat(v.y), R::splat(v.z))
     }
 
-    /// The vector after a rotation, the same in every lane, with the bits of `by * v`.
+    /// The vector rotated by one rotation for all lanes, with the bits of `by * v`.
     #[inline(always)]
     pub fn turned(self, by: Rotation) -> Self {
         let axis = Self::splat(by.vector());
@@ -42,7 +42,7 @@ impl<R: Real> Vector3<R> {
         [self.x, self.y, self.z]
     }
 
-    /// The coordinates' sum.
+    /// Sum of the coordinates.
     #[inline(always)]
     pub fn sum(self) -> R {
         self.x + self.y + self.z

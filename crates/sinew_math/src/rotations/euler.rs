@@ -1,13 +1,13 @@
-//! Euler angles: three turns about coordinate axes, in any of the 24 conventions, and what they cannot say.
+//! Euler angles in all 24 conventions, and gimbal lock.
 
 use crate::limits::wrap;
 use crate::{Rotation, Vec3, clamp, trig};
 use core::f32::consts::{FRAC_PI_2, PI};
 
-/// Order of three turns: the coordinate axes that they are about, in the order of the turns.
+/// Order of three rotations about coordinate axes.
 ///
-/// The first six are Tait-Bryan orders (three different axes: heading, pitch and roll are such), the last six the proper
-/// Euler orders (first and third axis the same: precession, nutation and spin of a top are such).
+/// The first six are Tait-Bryan orders (three different axes, such as heading, pitch and roll), the last six proper
+/// Euler orders (first and third axis equal, such as precession, nutation and spin).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EulerOrder {
     /// About x, y, z.
@@ -20,7 +20,7 @@ pub enum EulerOrder {
     Yzx,
     /// About z, x, y.
     Zxy,
-    /// About z, y, x: yaw, pitch and roll of an aircraft whose z points down, when the axes move along.
+    /// About z, y, x: yaw, pitch and roll of an aircraft whose z points down, with intrinsic axes.
     Zyx,
     /// About x, y, x.
     Xyx,
@@ -53,17 +53,17 @@ impl EulerOrder {
         Self::Zyz,
     ];
 
-    /// Each turn about axes that have moved along with the turns before it: `R = R₁ R₂ R₃`.
+    /// Each rotation is about axes that moved with the rotations before it: `R = R₁ R₂ R₃`.
     pub const fn intrinsic(self) -> EulerConvention {
         EulerConvention { order: self, axes: EulerAxes::Moving }
     }
 
-    /// Each turn about axes that stay as they are: `R = R₃ R₂ R₁`.
+    /// Each rotation is about fixed axes: `R = R₃ R₂ R₁`.
     pub const fn extrinsic(self) -> EulerConvention {
         EulerConvention { order: self, axes: EulerAxes::Fixed }
     }
 
-    /// The axes in the order of the turns; 0, 1, 2 for x, y, z.
+    /// The axes in the order of the rotations; 0, 1, 2 for x, y, z.
     pub const fn indices(self) -> [usize; 3] {
         match self {
             Self::Xyz => [0, 1, 2],
@@ -88,7 +88,7 @@ impl EulerOrder {
     }
 }
 
-/// Axes of the second and third turn: moved by the turns before, or not.
+/// Motion of the second and third axis: with the rotations before them, or fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EulerAxes {
     /// Moved by them: *intrinsic* angles, those of nested rings. The axes are the body's.
@@ -97,12 +97,12 @@ pub enum EulerAxes {
     Fixed,
 }
 
-/// One of the 24 meanings that three angles may have. Made by [`EulerOrder::intrinsic`] and [`EulerOrder::extrinsic`].
+/// One of the 24 conventions. Made by [`EulerOrder::intrinsic`] and [`EulerOrder::extrinsic`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct EulerConvention {
-    /// Axes that the turns are about.
+    /// Axes of the rotations.
     pub order: EulerOrder,
-    /// Motion of these axes with the turns.
+    /// Motion of these axes: with the rotations, or fixed.
     pub axes: EulerAxes,
 }
 
@@ -113,13 +113,13 @@ impl EulerConvention {
     }
 }
 
-/// Gimbal lock: whether the three angles can be told apart.
+/// Gimbal lock: whether the three angles can be separated.
 ///
-/// Where the middle turn brings the third axis onto the first, both turn about the same line: one freedom of the three
-/// is lost, and of the two outer angles only a combination means anything. No convention is without such places.
+/// If the middle rotation aligns the third axis with the first, both rotate about the same line: one degree of freedom
+/// is lost, and only a combination of the two outer angles is defined. Every convention has such orientations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum GimbalLock {
-    /// The three angles can be told apart.
+    /// The three angles can be separated.
     Free,
     /// Only the sum of the first and the third angle is determined. The third is given as 0.
     OnlySum,
@@ -133,22 +133,22 @@ pub struct EulerAngles {
     /// In the order of the turns, radians. First and third −π..=π; the second −π/2..=π/2 of a Tait-Bryan order, 0..=π of
     /// a proper one.
     pub angles: [f32; 3],
-    /// Distance of the second angle from gimbal lock, radians, 0..=π/2. The error of first and third angle is that of the
-    /// rotation over the sine of this: at a margin of 0.001 an error of 1e-7 in the rotation is one of 1e-4 in each of them.
+    /// Distance of the second angle from gimbal lock, radians, 0..=π/2. The error of the first and third angle is the
+    /// error of the rotation over the sine of this margin: at 0.001 an error of 1e-7 becomes 1e-4.
     pub lock_margin: f32,
     /// Gimbal lock: locked if [`lock_margin`](Self::lock_margin) is below [`EulerAngles::LOCKED_BELOW`].
     pub lock: GimbalLock,
 }
 
 impl EulerAngles {
-    /// Margin, radians, below which outer angles are noise: the third is then given as 0 and the first takes over the
-    /// turns of both. The rotation is still met within as much. Three turns with the second exactly at lock are always
-    /// found to be locked.
+    /// Margin, radians, below which the outer angles are noise: the third is then 0 and the first has the rotation of
+    /// both. The rotation is reproduced within this margin. Angles with the second exactly at lock are always reported
+    /// as locked.
     pub const LOCKED_BELOW: f32 = 2e-6;
 }
 
 impl Rotation {
-    /// Three turns by `angles` (radians, in the order of the turns, any size). Identity if one is not finite.
+    /// Rotation from three `angles` (radians, in the order of the rotations, any size). Identity if one is not finite.
     ///
     /// ```
     /// use sinew_math::{EulerOrder, Rotation, Vec3};
@@ -167,19 +167,20 @@ impl Rotation {
         }
     }
 
-    /// The three turns that make up this rotation, and whether it is one at which they lock.
+    /// The three angles of this rotation, and whether they are locked.
     ///
-    /// After Bernardes & Viollet, "Quaternion to Euler angles conversion: a direct, general and computationally efficient
-    /// method", PLoS ONE 17(11), 2022. The quaternion of turns by α, β, γ about axes i, j, i, with third axis l and
-    /// `e_i e_j = ε e_l`, is
+    /// After Bernardes & Viollet, "Quaternion to Euler angles conversion: a direct, general and computationally
+    /// efficient method", PLoS ONE 17(11), 2022. The quaternion of rotations by α, β, γ about axes i, j, i, with third
+    /// axis l and `e_i e_j = ε e_l`, is
     ///
     /// ```text
     /// w   = cos(β/2) cos((α+γ)/2)      q_j   = sin(β/2) cos((α−γ)/2)
     /// q_i = cos(β/2) sin((α+γ)/2)      ε q_l = sin(β/2) sin((α−γ)/2)
     /// ```
     ///
-    /// so that two arctangents give sum and difference and a third gives β, without the loss of an arccosine. A
-    /// Tait-Bryan order becomes a proper one by a quarter turn: `R_i(α) R_j(β) R_l(γ) R_j(π/2) = R_i(α) R_j(β+π/2) R_i(−εγ)`.
+    /// so that two arctangents give sum and difference and a third gives β, without the precision loss of an arccosine.
+    /// A Tait-Bryan order becomes a proper one by a quarter turn:
+    /// `R_i(α) R_j(β) R_l(γ) R_j(π/2) = R_i(α) R_j(β+π/2) R_i(−εγ)`.
     ///
     /// ```
     /// use sinew_math::{EulerOrder, GimbalLock, Rotation};
@@ -193,7 +194,7 @@ impl Rotation {
     pub fn to_euler(self, convention: EulerConvention) -> EulerAngles {
         let order = match convention.axes {
             EulerAxes::Moving => convention.order.indices(),
-            // Turns about fixed axes are those about moving ones, last first.
+            // Rotations about fixed axes equal those about moving axes in reverse order.
             EulerAxes::Fixed => {
                 let [first, second, third] = convention.order.indices();
                 [third, second, first]
@@ -216,8 +217,8 @@ impl Rotation {
     }
 }
 
-/// Three rings, one in the other, that make up a rotation: its turns about moving axes, outer one first. Angles of outer
-/// and inner one within −2π..=2π.
+/// Three nested rings that make up a rotation: rotations about moving axes, outer one first. Angles of the outer and
+/// inner ring are within −2π..=2π.
 struct Rings {
     outer: f32,
     middle: f32,
@@ -246,11 +247,11 @@ impl Rings {
         let middle = if is_proper {
             clamp(2.0 * trig::atan2(sin, cos), 0.0, PI)
         } else {
-            // Less a quarter turn, as `sin − cos` over `sin + cos`; the former is `(sin² − cos²) / (sin + cos)`, which
-            // loses nothing where the angle is small.
+            // The quarter turn is subtracted as `sin − cos` over `sin + cos`; the former is computed as
+            // `(sin² − cos²) / (sin + cos)`, which does not cancel for small angles.
             clamp(2.0 * trig::atan2(tilt / (cos + sin), cos + sin), -FRAC_PI_2, FRAC_PI_2)
         };
-        // The inner axis of a Tait-Bryan order is brought onto the outer one, or against it.
+        // The inner axis of a Tait-Bryan order is aligned with the outer one, or against it.
         let sign = if is_proper { 1.0 } else { -parity };
         let (half_sum, half_difference) = (trig::atan2(x, w), trig::atan2(z, y));
         let (small, large, share) = if sin < cos { (sin, cos, 1.0) } else { (cos, sin, -1.0) };

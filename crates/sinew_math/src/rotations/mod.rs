@@ -1,4 +1,4 @@
-//! Rotations, and every other way to write one.
+//! Rotations in all representations.
 
 pub(crate) mod euler;
 pub(crate) mod orthonormal;

@@ -1,4 +1,4 @@
-//! Matrices that should be rotations: how far they have drifted, and the way back.
+//! Matrices that should be rotations: their drift, and how to correct it.
 
 use crate::symmetric::jacobi;
 use crate::{Mat3, Rotation, Vec3, abs3, any_orthonormal, max, max3, normalize_or};
@@ -7,9 +7,9 @@ use crate::{Mat3, Rotation, Vec3, abs3, any_orthonormal, max, max3, normalize_or
 /// 2e-6 and 1.5e-6 at most for one made by [`Rotation::to_mat3`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatrixDrift {
-    /// `‖RᵀR − I‖`, Frobenius: 0 if columns have length 1 and stand at right angles, whether mirrored or not.
+    /// `‖RᵀR − I‖`, Frobenius: 0 if the columns are orthonormal, mirrored or not.
     pub deviation: f32,
-    /// The volume that the unit cube becomes: 1, −1 if mirrored.
+    /// Determinant: the signed volume of the transformed unit cube; −1 if mirrored.
     pub determinant: f32,
 }
 
@@ -20,49 +20,49 @@ impl MatrixDrift {
     }
 }
 
-/// Method of making a rotation of a matrix that is not quite one.
+/// Method of turning a nearly orthonormal matrix into a rotation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Orthonormalization {
-    /// The rotation nearest to the matrix, in the sum of squares of the differences: the rotation part of its polar
-    /// decomposition (Higham, "Computing the polar decomposition", 1986). The default, since it treats the three axes
-    /// alike: the result turns along when the matrix is seen from other axes, and pure stretch leaves no turn behind.
+    /// The rotation nearest to the matrix in the sum of squared differences: the rotation part of its polar
+    /// decomposition (Higham, "Computing the polar decomposition", 1986). The default, because it treats the three axes
+    /// alike: the result rotates with the matrix, and pure stretch gives no rotation.
     ///
-    /// Found as the eigenvector of the largest eigenvalue of Horn's symmetric 4×4 matrix ("Closed-form solution of
-    /// absolute orientation using unit quaternions", 1987), so a mirrored or flat matrix has an answer, too.
+    /// Computed as the eigenvector of the largest eigenvalue of Horn's symmetric 4×4 matrix ("Closed-form solution of
+    /// absolute orientation using unit quaternions", 1987), so mirrored and flat matrices have a result too.
     #[default]
     Polar,
-    /// Gram-Schmidt: x keeps its direction, y gives up what of it lies along x, z is their cross product. Cheaper (two
-    /// square roots), exact about x, but the error of all goes into y and z: turning first and mending then is not mending
-    /// first and turning then.
+    /// Gram-Schmidt: x keeps its direction, y loses its component along x, z is their cross product. Cheaper (two
+    /// square roots) and exact in x, but the whole error goes into y and z, and the result does not commute with
+    /// rotations.
     GramSchmidt,
 }
 
-/// A rotation that a matrix was mended to.
+/// Result of correcting a matrix to a rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orthonormalized {
     /// The rotation; [`Rotation::to_mat3`] for its matrix.
     pub rotation: Rotation,
-    /// `‖M − R‖`, Frobenius: how much had to be changed. Infinite for a matrix that is not finite.
+    /// `‖M − R‖`, Frobenius: size of the correction. Infinite for a matrix that is not finite.
     pub residual: f32,
-    /// Uniqueness of the answer.
+    /// Uniqueness of the result.
     pub answer: Uniqueness,
 }
 
-/// Uniqueness of an answer.
+/// Uniqueness of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Uniqueness {
-    /// There was one answer.
+    /// There is only one nearest rotation.
     Unique,
-    /// Other rotations would do as well; which one is given depends on the matrix alone. So it is with columns that are
-    /// zero or parallel (the zero matrix and one that is not finite give the identity), and for [`Orthonormalization::Polar`] with mirrored
-    /// matrices whose two smallest stretches are equal, such as −I.
+    /// Other rotations are as near; the choice depends on the matrix alone. This happens with zero or parallel columns
+    /// (the zero matrix and matrices that are not finite give the identity), and for [`Orthonormalization::Polar`] with
+    /// mirrored matrices whose two smallest stretches are equal, such as −I.
     Arbitrary,
 }
 
-/// A distance of what decides from what does not, as a share, below which it is rounding.
+/// Relative difference below which two candidates count as equal (rounding).
 const ROUNDING: f32 = 1e-6;
 
-/// The rotation that a matrix stands for, once scale, shear and mirroring are taken out of it.
+/// Rotation part of a matrix, without scale, shear and mirroring.
 pub fn orthonormalize(m: &Mat3, method: Orthonormalization) -> Orthonormalized {
     if !m.is_finite() {
         let residual = f32::INFINITY;
@@ -81,7 +81,7 @@ fn nearest(m: &Mat3) -> (Rotation, Uniqueness) {
     let columns = [m.x_axis, m.y_axis, m.z_axis].map(abs3);
     let largest = max3(columns[0], max3(columns[1], columns[2]));
     let largest = max(largest.x, max(largest.y, largest.z));
-    // Every size of matrix has the same answer, and none overflows.
+    // Scaled first, so that matrices of every size give the same result without overflow.
     let [a, b, c] = [m.x_axis, m.y_axis, m.z_axis].map(|column| column / largest);
     // tr(RᵀM) = qᵀKq for the quaternion q = (x, y, z, w) of R: the nearest rotation has the largest.
     let (values, vectors) = jacobi([

@@ -5,10 +5,9 @@ use core::ops::{Add, Mul, Neg, Sub};
 
 /// A quaternion of any length: a number and a vector, `w + x i + y j + z k`.
 ///
-/// Hamilton found it as what a vector has to be multiplied by to become another one. To take vector `a` into vector `b`,
-/// it must be turned and it must be stretched: a turn has two numbers for the plane in which it happens and one for its
-/// angle, the stretch is the fourth. So a quaternion is a **versor** (the turn) times a **tensor** (the stretch, a
-/// positive number; nothing to do with the tensors of today):
+/// Hamilton defined it as the quotient of two vectors. Taking vector `a` to vector `b` needs a rotation and a stretch:
+/// two numbers for the plane of the rotation, one for its angle, one for the stretch. So a quaternion is a **versor**
+/// (the rotation) times a **tensor** (the stretch, a positive number; not today's tensors):
 ///
 /// ```text
 /// b / a = b a⁻¹ = |b|/|a| · (cos θ + n sin θ)        θ from a to b about the unit vector n
@@ -25,11 +24,11 @@ use core::ops::{Add, Mul, Neg, Sub};
 /// assert_eq!(q * Quaternion::from(a), Quaternion::from(b));
 /// ```
 ///
-/// **Whole and half angles.** There are two ways to let a quaternion act on a vector. Multiplied from the left,
-/// `q v` ([`apply`](Self::apply)), it turns by its own angle, but only vectors at right angles to its axis stay vectors.
-/// Multiplied from both sides, `q v q̄` ([`sandwich`](Self::sandwich)), it turns any vector, but by twice its angle. A
+/// **Whole and half angles.** A quaternion can act on a vector in two ways. Multiplied from the left, `q v`
+/// ([`apply`](Self::apply)), it rotates by its own angle, but only vectors perpendicular to its axis stay vectors.
+/// Multiplied from both sides, `q v q̄` ([`sandwich`](Self::sandwich)), it rotates any vector, by twice its angle. A
 /// [`Rotation`] acts in the second way, so its four numbers hold *half* the angle; [`to_rotation`](Self::to_rotation)
-/// goes from the first reading to the second.
+/// converts from the first to the second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quaternion {
     /// The number, Hamilton's *scalar part*.
@@ -39,9 +38,9 @@ pub struct Quaternion {
 }
 
 impl Quaternion {
-    /// Nothing: the quotient of the zero vector by any other.
+    /// Zero: the quotient of the zero vector by any other.
     pub const ZERO: Self = Self::new(0.0, Vec3::ZERO);
-    /// Neither turns nor stretches: the quotient of a vector by itself.
+    /// One: neither rotates nor stretches.
     pub const ONE: Self = Self::new(1.0, Vec3::ZERO);
 
     /// From its two parts.
@@ -49,21 +48,21 @@ impl Quaternion {
         Self { scalar, vector }
     }
 
-    /// Quaternion that turns and stretches `from` into `to`: `to from⁻¹ = (from·to + from×to) / |from|²`.
-    /// `None` if `from` is zero, or either is not finite. For opposite vectors: a negative number, which has no axis.
+    /// Quaternion that rotates and stretches `from` into `to`: `to from⁻¹ = (from·to + from×to) / |from|²`. `None` if
+    /// `from` is zero, or either is not finite. Opposite vectors give a negative number, which has no axis.
     pub fn quotient(to: Vec3, from: Vec3) -> Option<Self> {
         let unit = direction(from)?;
         let length = from.dot(unit);
         to.is_finite().then(|| Self::new(unit.dot(to) / length, unit.cross(to) * (1.0 / length)))
     }
 
-    /// A versor times a scale: turns by `angle` (radians) about `axis` (length 1), stretches by `scale`.
+    /// A versor times a scale: rotates by `angle` (radians) about `axis` (length 1), stretches by `scale`.
     pub fn from_scale_axis_angle(scale: f32, axis: Vec3, angle: f32) -> Self {
         let (sin, cos) = trig::sin_cos(angle);
         Self::new(scale * cos, axis * (scale * sin))
     }
 
-    /// The length, Hamilton's *tensor*: by how much it stretches. Infinite above 1e19, 0 below 1e-23.
+    /// Length, Hamilton's *tensor*: the factor of the stretch. Infinite above 1e19, 0 below 1e-23.
     pub fn norm(self) -> f32 {
         self.norm_squared().sqrt()
     }
@@ -73,57 +72,58 @@ impl Quaternion {
         self.scalar * self.scalar + self.vector.length_squared()
     }
 
-    /// By how much it turns, radians, 0..=π. 0 for zero.
+    /// Angle of the rotation, radians, 0..=π. 0 for zero.
     pub fn angle(self) -> f32 {
         trig::atan2(self.vector.length(), self.scalar)
     }
 
-    /// The unit vector about which it turns. `None` for a number: a positive one does not turn, a negative one turns every
-    /// vector to its opposite.
+    /// Unit axis of the rotation. `None` for a number: a positive one does not rotate, a negative one reverses every
+    /// vector.
     pub fn axis(self) -> Option<Vec3> {
         direction(self.vector)
     }
 
-    /// The turn without the stretch: the quaternion at length 1. [`ONE`](Self::ONE) for zero, and for what is not finite.
+    /// The rotation without the stretch: the quaternion at length 1. [`ONE`](Self::ONE) for zero, and if it is not
+    /// finite.
     pub fn versor(self) -> Self {
         let v = abs3(self.vector);
         let largest = max(max(v.x, v.y), max(v.z, self.scalar.abs()));
         if largest == 0.0 || !self.is_finite() {
             return Self::ONE;
         }
-        // Divided by the largest first: the squares neither overflow nor vanish.
+        // Divides by the largest component first, so that squares neither overflow nor vanish.
         let scaled = Self::new(self.scalar / largest, self.vector / largest);
         scaled * (1.0 / scaled.norm())
     }
 
-    /// The turn as a [`Rotation`]: by [`angle`](Self::angle) about [`axis`](Self::axis), with half the angle inside. Identity
-    /// for zero; half a turn about x for a negative number, which does not say about what.
+    /// The rotation as a [`Rotation`]: by [`angle`](Self::angle) about [`axis`](Self::axis), with half the angle
+    /// inside. Identity for zero; half a turn about x for a negative number, which has no axis.
     pub fn to_rotation(self) -> Rotation {
         let q = self.versor();
         let Some(axis) = q.axis() else {
             return if q.scalar > 0.0 { Rotation::IDENTITY } else { Rotation::from_xyzw(1.0, 0.0, 0.0, 0.0) };
         };
-        // tan(θ/2) = sin θ / (1 + cos θ) = (1 − cos θ) / sin θ: whichever does not cancel.
+        // tan(θ/2) = sin θ / (1 + cos θ) = (1 − cos θ) / sin θ: the one that does not cancel.
         let sin = q.vector.length();
         let (sin, cos) = if q.scalar > 0.0 { (sin, 1.0 + q.scalar) } else { (1.0 - q.scalar, sin) };
         let half = axis * sin;
         Rotation::from_xyzw(half.x, half.y, half.z, cos).normalize()
     }
 
-    /// The same with the turn reversed: `w − v`.
+    /// Conjugate: `w − v`.
     pub fn conjugate(self) -> Self {
         Self::new(self.scalar, -self.vector)
     }
 
-    /// Quaternion that undoes it: `q⁻¹ = q̄ / |q|²`, with `q q⁻¹ = q⁻¹ q = 1`. `None` for zero and for what is not finite.
+    /// Inverse: `q⁻¹ = q̄ / |q|²`, with `q q⁻¹ = q⁻¹ q = 1`. `None` for zero and if it is not finite.
     pub fn inverse(self) -> Option<Self> {
         let versor = self.versor();
         let norm = versor.scalar * self.scalar + versor.vector.dot(self.vector);
         (norm > 0.0 && norm < f32::INFINITY).then(|| versor.conjugate() * (1.0 / norm))
     }
 
-    /// A part of it, or a multiple: `|q|ᵗ (cos tθ + n sin tθ)`, so `q.power(0.5) * q.power(0.5)` is `q`. Zero stays zero. The
-    /// part of a negative number, which does not say about what it turns, is taken about x.
+    /// Power: `|q|ᵗ (cos tθ + n sin tθ)`, so `q.power(0.5) * q.power(0.5)` is `q`. Zero stays zero. A negative number,
+    /// which has no axis, uses x.
     pub fn power(self, t: f32) -> Self {
         let norm = self.norm();
         if norm == 0.0 {
@@ -132,19 +132,19 @@ impl Quaternion {
         Self::from_scale_axis_angle(trig::pow(norm, t), self.axis().unwrap_or(Vec3::X), self.angle() * t)
     }
 
-    /// Turns `v` by [`angle`](Self::angle) about [`axis`](Self::axis) and stretches it by [`norm`](Self::norm). A number
-    /// multiplies; zero gives zero.
+    /// Rotates `v` by [`angle`](Self::angle) about [`axis`](Self::axis) and stretches it by [`norm`](Self::norm). A
+    /// number multiplies; zero gives zero.
     ///
-    /// For `v` at right angles to the axis it is the product `q v`, so `Quaternion::quotient(b, a)` takes `a` into `b`.
-    /// What of `v` lies along the axis is stretched only (Rodrigues): `w v + u × v + (|q| − w) u (u·v)/u²`. Close to half a
-    /// turn the axis hangs on the last digits of `u`, and so does what happens to that part.
+    /// For `v` perpendicular to the axis it is the product `q v`, so `Quaternion::quotient(b, a)` takes `a` to `b`. The
+    /// component of `v` along the axis is only stretched (Rodrigues): `w v + u × v + (|q| − w) u (u·v)/u²`. Close to
+    /// half a turn the axis depends on the last digits of `u`, and so does that component.
     pub fn apply(self, v: Vec3) -> Vec3 {
         let along = self.axis().map_or(Vec3::ZERO, |axis| axis * axis.dot(v));
         v * self.scalar + self.vector.cross(v) + along * (self.norm() - self.scalar)
     }
 
-    /// `q v q̄`: turns `v` by twice [`angle`](Self::angle) and stretches it by the square of [`norm`](Self::norm).
-    /// Turns follow each other as products do: `(p q).sandwich(v) = p.sandwich(q.sandwich(v))`.
+    /// `q v q̄`: rotates `v` by twice [`angle`](Self::angle) and stretches it by the square of [`norm`](Self::norm).
+    /// Rotations compose as products: `(p q).sandwich(v) = p.sandwich(q.sandwich(v))`.
     pub fn sandwich(self, v: Vec3) -> Vec3 {
         let (w, u) = (self.scalar, self.vector);
         v * (w * w - u.length_squared()) + u * (2.0 * u.dot(v)) + u.cross(v) * (2.0 * w)
@@ -198,7 +198,7 @@ impl Mul<f32> for Quaternion {
     }
 }
 
-/// Hamilton's product, `ij = k = −ji`: numbers and lengths multiply, the order matters.
+/// Hamilton's product, `ij = k = −ji`: lengths multiply, the order matters.
 impl Mul for Quaternion {
     type Output = Self;
     fn mul(self, b: Self) -> Self {

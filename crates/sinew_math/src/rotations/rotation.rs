@@ -5,14 +5,13 @@ use core::ops::Mul;
 
 /// A rotation as a unit quaternion `x i + y j + z k + w`.
 ///
-/// Its algebra is scalar and ours: the bits of `glam::Quat` differ between targets. Converts from and to
-/// `glam::Quat` with `From`, component by component. `a * b` applies `b` first; `r * v` turns a vector.
+/// The algebra is scalar code of our own, because the bits of `glam::Quat` differ between targets. Converts from and to
+/// `glam::Quat` with `From`, component by component. `a * b` applies `b` first; `r * v` rotates a vector.
 ///
-/// A turn by angle θ about the unit vector n is `cos(θ/2) + n sin(θ/2)`, and turns v into `q v q̄`; so q and −q are the
-/// same rotation. For quaternions of any length, and for whole angles instead of half ones, see
-/// [`Quaternion`](crate::Quaternion).
+/// A rotation by angle θ about the unit vector n is `cos(θ/2) + n sin(θ/2)` and takes v to `q v q̄`; so q and −q are
+/// the same rotation. For quaternions of any length, and for whole angles, see [`Quaternion`](crate::Quaternion).
 ///
-/// The five operations that the rest is made of:
+/// The five basic operations:
 ///
 /// ```
 /// use sinew_math::{Rotation, Vec3};
@@ -53,7 +52,7 @@ impl Rotation {
     /// No rotation.
     pub const IDENTITY: Self = Self { x: 0.0, y: 0.0, z: 0.0, w: 1.0 };
 
-    /// From the four numbers as they are; call [`normalize`](Self::normalize) if they may not have length 1.
+    /// From four numbers as they are; call [`normalize`](Self::normalize) if their length may differ from 1.
     #[inline(always)]
     pub const fn from_xyzw(x: f32, y: f32, z: f32, w: f32) -> Self {
         Self { x, y, z, w }
@@ -70,20 +69,20 @@ impl Rotation {
         Vec3::new(self.x, self.y, self.z)
     }
 
-    /// Rotation by `angle` radians (any size) about `axis`, right-handed: `cos(angle/2) + axis sin(angle/2)`.
-    /// `axis` has length 1, or else the quaternion has not; see [`about`](Self::about) for an axis of any length.
+    /// Rotation by `angle` radians (any size) about `axis`, right-handed: `cos(angle/2) + axis sin(angle/2)`. `axis`
+    /// must have length 1; see [`about`](Self::about) for an axis of any length.
     pub fn from_axis_angle(axis: Vec3, angle: f32) -> Self {
         let (sin, cos) = trig::sin_cos(0.5 * angle);
         Self::from_vector(axis * sin, cos)
     }
 
-    /// Rotation by `angle` radians about an axis of any length. Identity if the axis is zero, or a number not finite.
+    /// Rotation by `angle` radians about an axis of any length. Identity if the axis is zero or a number is not finite.
     pub fn about(axis: Vec3, angle: f32) -> Self {
         direction(axis).map_or(Self::IDENTITY, |axis| Self::from_axis_angle(axis, angle).normalize())
     }
 
-    /// Axis (length 1) and angle, radians, 0..=π. For the identity the axis is x.
-    /// A rotation by more than half a turn is one by less about the opposite axis.
+    /// Axis (length 1) and angle, radians, 0..=π. The identity has axis x. A rotation by more than half a turn is
+    /// returned as a smaller one about the opposite axis.
     pub fn to_axis_angle(self) -> (Vec3, f32) {
         let q = self.positive();
         let axis_and_angle = |axis: Vec3| (axis, 2.0 * trig::atan2(axis.dot(q.vector()), q.w));
@@ -96,14 +95,14 @@ impl Rotation {
     pub fn from_scaled_axis(v: Vec3) -> Self {
         let angle = v.length();
         let (sin, cos) = trig::sin_cos(0.5 * angle);
-        // sin(a/2)/a → 1/2: the series keeps the quotient exact where the division would lose it.
+        // sin(a/2)/a → 1/2: the series keeps precision where the division would lose it.
         let scale = if angle > 1e-4 { sin / angle } else { 0.5 - angle * angle / 48.0 };
         Self::from_vector(v * scale, cos).normalize()
     }
 
-    /// Logarithm: axis times angle (radians, at most π long), the inverse of [`from_scaled_axis`](Self::from_scaled_axis)
-    /// for vectors no longer than π. Zero for the identity. Of half a turn one of two opposite vectors, as its four numbers
-    /// say.
+    /// Logarithm: axis times angle (radians, at most π long), the inverse of
+    /// [`from_scaled_axis`](Self::from_scaled_axis) for vectors no longer than π. Zero for the identity. For half a
+    /// turn the signs of the four numbers choose one of two opposite vectors.
     #[doc(alias = "ln")]
     #[doc(alias = "log")]
     pub fn to_scaled_axis(self) -> Vec3 {
@@ -116,17 +115,16 @@ impl Rotation {
         v * (2.0 * trig::atan2(sin, q.w) / sin)
     }
 
-    /// The shortest rotation that turns unit vector `from` onto unit vector `to`.
-    /// For opposite vectors: half a turn about an axis at right angles to `from`, the same one always.
-    /// Lands within 7e-7 rad over the sine of the angle between the two where that is obtuse: 5e-4 at worst, a tenth of a
-    /// degree from opposite.
-    /// For vectors of other lengths see [`Quaternion::quotient`](crate::Quaternion::quotient).
+    /// The shortest rotation that takes unit vector `from` to unit vector `to`. For opposite vectors: half a turn about
+    /// a fixed axis perpendicular to `from`. Accurate within 7e-7 rad over the sine of an obtuse angle between the two:
+    /// 5e-4 at worst, a tenth of a degree from opposite. For vectors of other lengths see
+    /// [`Quaternion::quotient`](crate::Quaternion::quotient).
     pub fn from_arc(from: Vec3, to: Vec3) -> Self {
         let cos = from.dot(to);
         if cos >= -0.999_999 {
             return Self::from_vector(from.cross(to), 1.0 + cos).normalize();
         }
-        // The same from numbers that have not lost their digits: from × to, and sin²/(1 − cos) for 1 + cos.
+        // Uses terms that do not cancel: from × to, and sin²/(1 − cos) for 1 + cos.
         let sin = from.cross(from + to);
         let square = sin.length_squared();
         if square < 1e-13 {
@@ -135,9 +133,9 @@ impl Rotation {
         Self::from_vector(sin, square / (1.0 - cos)).normalize()
     }
 
-    /// From a rotation matrix with orthonormal columns (Shepperd, "Quaternion from rotation matrix", 1978: by the component
-    /// that is largest, so that nothing cancels). Of other matrices the
-    /// result is a rotation, but not one that stands for anything: see [`orthonormalize`](crate::orthonormalize).
+    /// From a rotation matrix with orthonormal columns (Shepperd, "Quaternion from rotation matrix", 1978: by the
+    /// largest component, so that nothing cancels). For other matrices the result is some rotation: see
+    /// [`orthonormalize`](crate::orthonormalize).
     pub fn from_mat3(m: &Mat3) -> Self {
         let (a, b, c) = (m.x_axis, m.y_axis, m.z_axis);
         let trace = a.x + b.y + c.z;
@@ -153,14 +151,14 @@ impl Rotation {
         q.normalize()
     }
 
-    /// The rotation of `m` without scale and shear, by Gram-Schmidt, x first. A mirrored matrix gives the rotation of its
-    /// mirror image in z. Degenerate columns are replaced. See [`orthonormalize`](crate::orthonormalize) for the rotation
-    /// that is nearest to `m`, for what was lost and for whether there was one answer.
+    /// The rotation of `m` without scale and shear, by Gram-Schmidt, x first. A mirrored matrix gives the rotation of
+    /// its mirror image in z. Degenerate columns are replaced. [`orthonormalize`](crate::orthonormalize) returns the
+    /// nearest rotation, the size of the correction and whether it is unique.
     pub fn from_mat3_lossy(m: &Mat3) -> Self {
         gram_schmidt(m).0
     }
 
-    /// The same rotation as a matrix; its columns are where the axes go.
+    /// The same rotation as a matrix; its columns are the images of the axes.
     #[inline]
     pub fn to_mat3(self) -> Mat3 {
         let Self { x, y, z, w } = self;
@@ -171,7 +169,7 @@ impl Rotation {
         )
     }
 
-    /// The opposite rotation. Of a quaternion of length 1 it is the [`conjugate`](Self::conjugate).
+    /// The inverse rotation; at length 1 it equals the [`conjugate`](Self::conjugate).
     #[inline(always)]
     pub fn inverse(self) -> Self {
         self.conjugate()
@@ -189,7 +187,7 @@ impl Rotation {
         self.x * other.x + self.y * other.y + (self.z * other.z + self.w * other.w)
     }
 
-    /// Length of the quaternion: 1, and how far from it tells how far rounding has carried it.
+    /// Length of the quaternion; its difference from 1 shows the accumulated rounding.
     #[inline(always)]
     pub fn length(self) -> f32 {
         self.dot(self).sqrt()
@@ -229,8 +227,8 @@ impl Rotation {
         (self.inverse() * other).to_scaled_axis().length()
     }
 
-    /// Normalised linear blend, the short way; `t` in 0..=1. Same path as [`slerp`](Self::slerp), but faster in its middle.
-    /// Of two rotations half a turn apart, between which both ways are as long, that of the signs they come with.
+    /// Normalised linear blend, the short way; `t` in 0..=1. Same path as [`slerp`](Self::slerp), but faster in its
+    /// middle. Between rotations half a turn apart the signs of the two choose the way.
     pub fn nlerp(self, other: Self, t: f32) -> Self {
         let b = other.toward(self);
         let s = 1.0 - t;
@@ -243,10 +241,10 @@ impl Rotation {
         .normalize()
     }
 
-    /// Spherical blend at constant angular speed, the short way; `t` in 0..=1 (Shoemake, "Animating rotation with quaternion
-    /// curves", 1985): `(q sin((1−t)φ) + p sin(tφ)) / sin φ` with `cos φ = q·p`. Below 3.6° between the two it is
-    /// [`nlerp`](Self::nlerp), which there is as good. Opposite quaternions are the same rotation, and stay it. Of two
-    /// rotations half a turn apart, between which both ways are as long, it goes that of the signs they come with.
+    /// Spherical blend at constant angular speed, the short way; `t` in 0..=1 (Shoemake, "Animating rotation with
+    /// quaternion curves", 1985): `(q sin((1−t)φ) + p sin(tφ)) / sin φ` with `cos φ = q·p`. Below 3.6° it is
+    /// [`nlerp`](Self::nlerp), which is as accurate there. Opposite quaternions are the same rotation, so a blend of
+    /// them is constant. Between rotations half a turn apart the signs of the two choose the way.
     pub fn slerp(self, other: Self, t: f32) -> Self {
         let b = other.toward(self);
         let cos = self.dot(b);
@@ -266,7 +264,8 @@ impl Rotation {
     }
 
     /// Splits into `(swing, twist)` with `self = swing * twist`, `twist` about unit vector `axis` and the axis of
-    /// `swing` at right angles to it. At a swing of half a turn (within 2e-4) the twist is not defined and taken as none.
+    /// `swing` perpendicular to it. At a swing of half a turn (within 2e-4) the twist is undefined and returned as
+    /// none.
     pub fn swing_twist(self, axis: Vec3) -> (Self, Self) {
         let q = self.positive();
         let along = q.vector().dot(axis);
@@ -277,7 +276,8 @@ impl Rotation {
         (q * twist.inverse(), twist)
     }
 
-    /// Twist angle about unit vector `axis`, radians, −π..=π: that of the second part of [`swing_twist`](Self::swing_twist).
+    /// Twist angle about unit vector `axis`, radians, −π..=π: that of the second part of
+    /// [`swing_twist`](Self::swing_twist).
     pub fn twist_angle(self, axis: Vec3) -> f32 {
         let q = self.positive();
         2.0 * trig::atan2(q.vector().dot(axis), q.w)
@@ -289,8 +289,8 @@ impl Rotation {
         (Self::from_scaled_axis(w * h) * self).normalize()
     }
 
-    /// The constant angular velocity (rad/s, world axes) that turns `self` into `later` within `dt` seconds, the short way:
-    /// the logarithm of what is between them over `dt`, at most `π/dt`. `dt` is not 0.
+    /// The constant angular velocity (rad/s, world axes) that takes `self` to `later` within `dt` seconds, the short
+    /// way; at most `π/dt`. `dt` is not 0.
     pub fn angular_velocity_to(self, later: Self, dt: f32) -> Vec3 {
         let turn = (later * self.inverse()).positive();
         let square = turn.vector().length_squared();
@@ -300,20 +300,20 @@ impl Rotation {
         turn.vector() * (2.0 * Self::half_angle_over_sine(square) / dt)
     }
 
-    /// Squared length of the vector part, that is of the sine of half the angle, up to which
-    /// [`half_angle_over_sine`](Self::half_angle_over_sine) holds: an angle of 0.2 rad.
+    /// Squared sine of half the angle up to which [`half_angle_over_sine`](Self::half_angle_over_sine) is accurate: an
+    /// angle of 0.2 rad.
     pub const SHORT_TURN: f32 = 0.01;
 
-    /// Half of a rotation's angle (rad) over its sine `s`, from `s²`: the first terms of the series of `asin(s) / s`. Up to
-    /// [`SHORT_TURN`](Self::SHORT_TURN), 3e-10 is left out.
+    /// Half of a rotation's angle (rad) over its sine `s`, from `s²`: the first terms of the series of `asin(s) / s`.
+    /// The truncation error is 3e-10 up to [`SHORT_TURN`](Self::SHORT_TURN).
     #[inline(always)]
     pub fn half_angle_over_sine<R: Real>(square: R) -> R {
         let [one, third, fifth, seventh] = [1.0, 1.0 / 6.0, 3.0 / 40.0, 15.0 / 336.0].map(R::splat);
         one + square * (third + square * (fifth + square * seventh))
     }
 
-    /// `self * v` without what the quaternion's length is off from 1 by. After normalising, that is up to 1e-7 and on the
-    /// average positive: turned to and fro in every substep, a vector would grow by 1e-3 in a minute.
+    /// `self * v`, corrected for the quaternion's deviation from length 1. After normalising, the deviation is up to
+    /// 1e-7 and positive on average: rotated back and forth in every substep, a vector would grow by 1e-3 in a minute.
     #[inline]
     pub fn turn(self, v: Vec3) -> Vec3 {
         let [x, y, z, w] = [self.x, self.y, self.z, self.w].map(f64::from);

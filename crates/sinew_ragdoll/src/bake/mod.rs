@@ -35,7 +35,7 @@ pub struct BakeHit {
     pub impulse: Vec3,
 }
 
-/// Input of a bake: what is to be simulated.
+/// Input of a bake.
 #[derive(Clone, Debug)]
 pub struct BakeInput<'a> {
     /// The character.
@@ -46,23 +46,23 @@ pub struct BakeInput<'a> {
     pub phase: f32,
     /// Settings of the world. Its step is the simulation's.
     pub world: WorldDef,
-    /// Bodies of the world beside the character's own.
+    /// Bodies of the world besides the character's own.
     pub bodies: &'a [BodyDef],
     /// Pushes, in any order.
     pub hits: &'a [BakeHit],
-    /// Effect of pushes. Default: each fells.
+    /// Effect of pushes. Default: each one fells.
     pub hit_effect: HitEffect,
-    /// When it goes limp without being pushed, seconds; `None`: only by a hit.
+    /// When it goes limp without a push, seconds; `None`: only by a hit.
     pub limp_at: Option<f32>,
     /// Length, seconds.
     pub seconds: f32,
     /// Frames per second of the clip, at least 1.
     pub fps: f32,
-    /// Velocity that its highest point gets besides when it goes limp at [`limp_at`](Self::limp_at), m/s, world axes: the body as a whole turns
-    /// about the ground under it. Default zero. What has a foot broad enough stays upright without it.
+    /// Extra velocity of its highest point when it goes limp at [`limp_at`](Self::limp_at), m/s, world axes: the whole
+    /// body rotates about the ground under it. Default zero. A body with broad feet stays upright without it.
     pub topple: Vec3,
-    /// Bound on the distance of any joint of the clip from where the frames have it, metres and radians: keys that are not needed
-    /// for that are left out.
+    /// Largest distance of any joint of the clip from the frames, metres and radians; keys that are not needed for that
+    /// are dropped.
     pub key_bound: KeyBound,
     /// Name of the clip.
     pub name: &'a str,
@@ -74,7 +74,7 @@ pub enum HitEffect {
     /// It fells. Default.
     #[default]
     Falls,
-    /// It lets the limb flinch, or fells, by [`InWorld::toughness`](crate::InWorld::toughness).
+    /// It makes the limb flinch, or fells, by [`InWorld::toughness`](crate::InWorld::toughness).
     FlinchesOrFalls,
 }
 
@@ -117,44 +117,44 @@ pub struct Frame {
 /// The result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Baked {
-    /// Linear keys at times of frames, for every joint that moves: rotations, and translations where they change. It
-    /// starts where the file's character stands, and all root motion is in the pelvis.
+    /// Linear keys at frame times for every joint that moves: rotations, and translations that change. It starts where
+    /// the file's character stands, and all root motion is in the pelvis.
     pub clip: Clip,
     /// Largest error of the clip's joints against the frames, at the times of frames: metres and radians, within
     /// [`BakeInput::key_bound`].
     pub key_error: KeyError,
-    /// Keys of the clip's channels: with one for each frame, and as they are.
+    /// Keys of the clip's channels: with one per frame, and as reduced.
     pub keys: [usize; 2],
-    /// The frames that the clip was made of.
+    /// The frames of the clip.
     pub frames: Vec<Frame>,
     /// From the model space of the file to the world, the same for all frames.
     pub world_from_model: Affine,
     /// The figures.
     pub quality: FallQuality,
-    /// Events, each with its time in seconds.
+    /// Events with their times in seconds.
     pub events: Vec<(f32, CharacterEvent)>,
     /// Number of bodies of the ragdoll.
     pub bodies: usize,
     /// Steps that were simulated.
     pub steps: u64,
-    /// Hash of the snapshots of world and character at the end: of the world alone it would tell nothing of the fall,
-    /// once the character is up and its bodies are gone.
+    /// Hash of the snapshots of world and character at the end; the world alone says nothing about the fall once the
+    /// character is up and its bodies are gone.
     pub hash: u64,
 }
 
 impl Baked {
-    /// The clip for the file of the character: as high as the clip that was played stands in the file, where its floor is not that of
-    /// the rest pose ([`CharacterDef::raised`]).
+    /// The clip for the character's own file: at the height of the played clip, if its floor is not that of the rest
+    /// pose ([`CharacterDef::raised`]).
     pub fn clip_for_file(&self, character: &CharacterDef) -> Clip {
         let down = character.mapping().character_from_model().inverse().vector(Vec3::Y * -character.raised());
         moved(&character.rig, &character.ragdoll, &self.clip, down, down)
     }
 }
 
-/// Runs a character through a world. The same bits on every target and for every frame rate.
+/// Simulates a character in a world. Same bits on every target and for every frame rate.
 ///
 /// # Panics
-/// If a number is not finite, `fps` is below 1, the key bound is negative, or a hit names a body that is not there.
+/// If a number is not finite, `fps` is below 1, the key bound is negative, or a hit names a missing body.
 pub fn bake(input: &BakeInput<'_>) -> Baked {
     assert!(
         input.seconds.is_finite() && input.fps >= 1.0,
@@ -173,7 +173,7 @@ pub fn bake(input: &BakeInput<'_>) -> Baked {
     let hash = run.hash();
     let rig = &input.character.rig;
     let world_from_model = input.character.mapping().world_from_model(input.world_from_character);
-    // Seen from where the character starts: far from the world's origin small ways drown in rounding.
+    // Relative to the character's start: far from the world's origin small displacements are lost in rounding.
     let root = input.character.mapping().character_from_model();
     let every_key = keys::clip(rig, input.name, &frames.list);
     let Reduced { clip, error, keys } = reduce_keys(rig, &every_key, &root, input.key_bound);
@@ -191,26 +191,27 @@ pub fn bake(input: &BakeInput<'_>) -> Baked {
     }
 }
 
-/// A bake on its way.
+/// A running bake.
 struct Run {
     world: World,
     character: Character,
     meter: QualityMeter,
-    /// Not yet done, the latest first.
+    /// Pending interventions, the latest first.
     pending: Vec<(f32, Push)>,
     events: Vec<(f32, CharacterEvent)>,
-    /// Events of pushes that are noted, and told again by the next update.
+    /// Events of pushes that are recorded already; the next update repeats them.
     ahead: usize,
 }
 
-/// The character as it starts: in the world, if pushes may let it flinch or it wears garments, for that takes bodies.
+/// The character at its start: in the world, if pushes may make it flinch or it wears garments, because that needs
+/// bodies.
 fn spawned(input: &BakeInput<'_>, world: &mut World) -> Character {
     let falls = input.hit_effect == HitEffect::Falls;
     if falls && input.character.garments().is_empty() {
         return Character::new(input.character.clone(), input.world_from_character, input.phase);
     }
     let mut def = CharacterDef::clone(&input.character);
-    // It goes where its clips go, and feels what it is told of.
+    // It follows its clips and feels only what it is told.
     def.in_world = InWorld { mover: None, feels: f32::INFINITY, ..def.in_world };
     if falls {
         def.in_world.toughness = Toughness::None;
@@ -220,7 +221,7 @@ fn spawned(input: &BakeInput<'_>, world: &mut World) -> Character {
     character
 }
 
-/// Intervention in the bake at a moment: the character goes limp, or is hit.
+/// Intervention at a moment: the character goes limp, or is hit.
 #[derive(Clone, Copy)]
 enum Push {
     Limp { topple: Vec3 },
@@ -241,7 +242,7 @@ impl Run {
             .into_iter()
             .chain(hits)
             .collect();
-        // Stable, so that pushes at one moment keep their order.
+        // Stable, so that simultaneous pushes keep their order.
         pending.sort_by(|a, b| a.0.total_cmp(&b.0));
         pending.reverse();
         let character = spawned(input, &mut world);
@@ -268,13 +269,13 @@ impl Run {
         hash_bytes(w.as_bytes())
     }
 
-    /// One step of the world, and what is due at its end.
+    /// One step of the world, and the interventions due at its end.
     fn step(&mut self) {
         self.meter.before_step(&self.world);
         self.world.step();
         match (self.character.ragdoll(), self.character.state()) {
             (Some(ragdoll), State::Limp) => self.meter.after_step(&self.world, ragdoll),
-            // Led by clips: what they do is no matter of physics.
+            // While clips lead the bodies, their motion is not measured.
             (Some(_), State::Flinching) => {}
             (Some(ragdoll), _) => self.meter.after_driven_step(&self.world, ragdoll),
             (None, _) => {}
@@ -284,7 +285,7 @@ impl Run {
         self.push_due();
     }
 
-    /// Pushes whose time has come.
+    /// Applies pushes whose time has come.
     fn push_due(&mut self) {
         let noted = self.character.events().len();
         // Half a step early is nearer than half a step late.
@@ -314,7 +315,8 @@ impl Run {
         self.ahead = self.character.events().len() - noted;
     }
 
-    /// Turns a limp body as a whole about the ground under its middle, so that its highest part gets that velocity besides.
+    /// Rotates a limp body as a whole about the ground under its middle, so that its highest part gets that extra
+    /// velocity.
     fn topple(&mut self, velocity: Vec3) {
         let Some(ragdoll) = self.character.ragdoll().filter(|_| velocity != Vec3::ZERO) else { return };
         let ids: Vec<BodyId> = ragdoll.own_bodies().map(|(_, id)| id).collect();
@@ -347,7 +349,7 @@ impl Run {
     }
 }
 
-/// Frames at their own rate out of the steps at theirs.
+/// Resamples steps to frames.
 struct Frames {
     list: Vec<Frame>,
     fps: f32,
@@ -378,7 +380,7 @@ impl Frames {
         let time = run.time();
         self.now.clear();
         self.now.extend_from_slice(character.pose());
-        // All frames are seen from where the character started.
+        // All frames are relative to the character's start.
         character.def().mapping().reframe(
             &mut self.now,
             character.world_from_character(),
@@ -403,7 +405,7 @@ impl Frames {
 }
 
 fn between(a: &LocalTransform, b: &LocalTransform, t: f32) -> LocalTransform {
-    // What lies still has the same bits in all frames.
+    // A resting body has the same bits in all frames.
     if a == b {
         return *a;
     }

@@ -1,4 +1,4 @@
-//! Bones of a rig as the stages of the build know them: the kept ones, in character space, parents before children.
+//! Bones of a rig for the stages of the build: the kept ones, in character space, parents before children.
 //!
 //! ```
 //! use sinew_anim::roles::{Role, Side};
@@ -20,7 +20,7 @@ use sinew_anim::JointIdx;
 use sinew_anim::roles::Role;
 use sinew_math::{Vec3, max, normalize_or};
 
-/// One kept bone: what will become a body.
+/// One kept bone, the source of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bone {
     /// Rig joint that carries it.
@@ -39,7 +39,7 @@ pub struct Bone {
     pub parent: Option<usize>,
     /// Pivot of the joint to the parent, character space at the bind pose, metres.
     pub head: Vec3,
-    /// True if it is carried and no part of the body: nothing ends where it begins, and its joint is fixed.
+    /// True for props: they are no bone end, and their joint is fixed.
     pub is_prop: bool,
 }
 
@@ -83,8 +83,8 @@ impl Bones {
         Self { list, children, anatomy, height }
     }
 
-    /// The child that continues the bone: forearm of an upper arm, neck of a chest. `None` for the end of a chain, and
-    /// where no child continues it more than the others.
+    /// The child that continues the bone: forearm of an upper arm, neck of a chest. `None` for the end of a chain, or
+    /// if no child continues it more than the others.
     pub fn continuation(&self, bone: usize) -> Option<usize> {
         let children = &self.children[bone];
         let wanted = self.list[bone].part.continued_by();
@@ -94,8 +94,8 @@ impl Bones {
             .or_else(|| (children.len() == 1 && wanted.is_empty()).then(|| children[0]))
     }
 
-    /// End of the bone, character space: the pivot of its continuation, else the mean of its children's pivots. `None` at the end
-    /// of a chain, or where that point is the bone's own pivot.
+    /// End of the bone, character space: the pivot of its continuation, else the mean of its children's pivots. `None`
+    /// at the end of a chain, or if that point is the bone's own pivot.
     pub fn tail(&self, bone: usize) -> Option<Vec3> {
         let children = &self.children[bone];
         let tail = match self.continuation(bone) {
@@ -123,7 +123,7 @@ impl Bones {
         self.tail(bone).map(|tail| (tail - self.list[bone].head).length())
     }
 
-    /// First bone that is this part on this side.
+    /// First bone of this part on this side.
     pub fn find(&self, part: Part, side: Side) -> Option<usize> {
         self.list.iter().position(|bone| bone.part == part && bone.side == side)
     }
@@ -135,15 +135,15 @@ impl Bones {
         self.list.iter().position(|other| other.role == role.mirror())
     }
 
-    /// True if a bone lies in the body's plane of symmetry, so that its left and right halves are one shape.
+    /// True if a bone lies in the body's plane of symmetry, so that its left and right halves are equal.
     pub fn is_central(&self, bone: usize) -> bool {
         let bone = &self.list[bone];
         let aside = (bone.head.x - self.plane_of_symmetry()).abs();
         bone.side == Side::Middle && bone.part != Part::Limb && aside < 0.02 * self.size()
     }
 
-    /// A human's height; of a creature, of which nothing may tell which way is up, twice the way from its first bone to the
-    /// farthest. Metres.
+    /// A human's height; for a creature, whose up may be unknown, twice the distance from its first bone to the
+    /// furthest. Metres.
     pub fn size(&self) -> f32 {
         match self.anatomy {
             Anatomy::Human => self.height,

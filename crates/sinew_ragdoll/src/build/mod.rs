@@ -40,15 +40,15 @@ use sinew_math::{Transform, Vec3};
 pub struct BuildOptions {
     /// Kind of shapes. Default auto.
     pub shapes: ShapeChoice,
-    /// Mass of the whole, kg; `None`: from the height for humans, from the volume for creatures.
+    /// Total mass, kg; `None`: from the height for humans, from the volume for creatures.
     pub mass: Option<f32>,
-    /// Whose mass distribution. Default male.
+    /// Sex for the mass distribution. Default male.
     pub sex: Sex,
     /// Source of joint limits. Default anatomy.
     pub limits: LimitSource,
 }
 
-/// Why there is no ragdoll.
+/// Reason why there is no ragdoll.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum BuildError {
     /// The file has meshes or bones but no skin that ties them.
@@ -57,18 +57,18 @@ pub enum BuildError {
     /// No bone was worth keeping.
     #[error("no bones: nothing to build a ragdoll from")]
     NoBones,
-    /// Numbers of the rig are not finite or out of all proportion.
+    /// Numbers of the rig are not finite or out of proportion.
     #[error("the bind pose is not finite")]
     NotFinite,
-    /// The mass asked for is not a positive number.
+    /// The requested mass is not a positive number.
     #[error("a mass of {0} kg: it must be positive")]
     Mass(f32),
-    /// Limits were to be learned, and there is nothing to learn from.
+    /// Limits were to be learned without any clip to learn from.
     #[error("no clip moves a joint: there are no limits to learn")]
     NoClips,
 }
 
-/// Builds a ragdoll from a rig and what its analysis found.
+/// Builds a ragdoll from a rig and its analysis.
 ///
 /// # Errors
 /// See [`BuildError`].
@@ -80,18 +80,18 @@ pub fn build(
     build_overridden(rig, analysis, options, &Overrides::none())
 }
 
-/// A body's index, its fit, and a way to fit a shape of another kind, to the fit that is wanted.
+/// A body's index, its fit, and a function that fits another kind of shape.
 type Refit<'a> = dyn Fn(usize, Fit, &dyn Fn(ShapeChoice) -> Fit) -> Fit + 'a;
 
-/// Changes that settings make within the build.
+/// Changes that settings make during the build.
 pub(crate) struct Overrides<'a> {
-    /// Another shape of a body.
+    /// Replaces a body's shape.
     pub shape: &'a Refit<'a>,
     /// Pairs of bodies that shall not collide, the smaller index first.
     pub disable: Vec<(usize, usize)>,
     /// Pairs of bodies that shall.
     pub enable: Vec<(usize, usize)>,
-    /// Takes of the character's motions.
+    /// Clips of the character as takes.
     pub takes: &'a [Take],
 }
 
@@ -144,7 +144,7 @@ pub(crate) fn build_overridden(
     let weighs = MassOptions { total: options.mass, sex: options.sex, enclosed: mass };
     let masses = distribute(&bones, &fits, weighs);
     let total_mass = masses.iter().map(|mass| mass.mass).sum();
-    // Friction goes by the mass, which goes by the shapes.
+    // Friction depends on the mass, which depends on the shapes.
     let heavy = joints(&bones, &fits, total_mass);
     for (plan, torque) in plans.iter_mut().zip(friction_torques(&bones, &fits, &masses, &heavy)) {
         plan.def.friction_torque = torque;
@@ -177,7 +177,7 @@ pub(crate) fn build_overridden(
     Ok((def, report))
 }
 
-/// Volume that a creature's skin encloses, and what fills it.
+/// Volume that a creature's skin encloses, and its density.
 struct Enclosed {
     /// m³.
     volume: f32,
@@ -187,7 +187,7 @@ struct Enclosed {
 }
 
 impl Enclosed {
-    /// `None` for humans, whose mass goes by their height, and where the skin is too open to tell.
+    /// `None` for humans, whose mass follows their height, and if the skin is too open.
     fn of(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Option<Self> {
         if bones.anatomy == Anatomy::Human {
             return None;
@@ -202,7 +202,7 @@ impl Enclosed {
         self.density * self.volume
     }
 
-    /// Note on the source of the mass, if it is from here.
+    /// Note on the source of the mass, if it was computed here.
     fn note(&self, total_mass: f32) -> Option<String> {
         let Self { volume, matter, .. } = self;
         let is_from_here = (self.mass() / total_mass - 1.0).abs() < 1e-3;
@@ -211,7 +211,7 @@ impl Enclosed {
     }
 }
 
-/// Joints, and the poses in which shapes are held against each other.
+/// Joints, and the poses in which shapes are compared.
 struct Planned {
     plans: Vec<JointPlan>,
     /// Source of the limits of each joint.
@@ -227,7 +227,7 @@ fn planned(
     options: &BuildOptions,
     takes: &[Take],
 ) -> Result<Planned, BuildError> {
-    // The mass is not known yet, and nothing but friction depends on it.
+    // The mass is not known yet; only friction depends on it.
     let mut plans = joints(bones, fits, 1.0);
     let mut limits = vec![LimitSource::Anatomy; plans.len()];
     if options.limits == LimitSource::Clips {

@@ -1,4 +1,4 @@
-//! Parts of a body, as the tables of anthropometry and joint ranges know them.
+//! Body parts, as in the tables of anthropometry and joint ranges.
 //!
 //! ```
 //! use sinew_anim::roles::{Role, Side as RoleSide};
@@ -84,7 +84,7 @@ impl Part {
         }
     }
 
-    /// True if it belongs to the trunk: what the other parts hang on.
+    /// True if it belongs to the trunk.
     pub fn is_trunk(self) -> bool {
         matches!(self, Part::Pelvis | Part::Spine | Part::Clavicle)
     }
@@ -95,7 +95,7 @@ impl Part {
     }
 }
 
-/// Part and side that a role stands for.
+/// Part and side of a role.
 pub fn part_of_role(role: Role) -> (Part, Side) {
     let side = match role.side() {
         Some(roles::Side::Left) => Side::Left,

@@ -1,4 +1,4 @@
-//! Report of the build on its work.
+//! Report of the build.
 
 use super::bones::Bones;
 use super::joint_name;
@@ -9,31 +9,31 @@ use crate::limits::{JointPlan, LimitSource};
 use crate::tuning::NOTED_WIDENING;
 use sinew_anim::Rig;
 
-/// Report on how a ragdoll came about.
+/// Report on a ragdoll.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BuildReport {
     /// One per body, in the definition's order.
     pub bodies: Vec<BodyReport>,
-    /// Bodies that overlap although no joint connects them, and what was done about each, sorted by pair.
+    /// Bodies that overlap without a joint, and the remedy for each, sorted by pair.
     pub overlaps: Vec<Overlap>,
     /// Area-weighted mean distance between skin and shapes over all bodies, metres.
     pub mean_error: f32,
     /// Sum of the shapes' volumes, m³; more than the flesh has, for shapes overlap.
     pub shape_volume: f32,
-    /// Notes that a person should read, a sentence each.
+    /// Notes for a person, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// Report on how one body came about.
+/// Report on one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyReport {
     /// Area-weighted mean distance between the bone's skin and the shape's surface, metres.
     pub error: f32,
     /// Selection of the skin that the shape was fitted to.
     pub selection: Selection,
-    /// Factor on the cross-section to get clear of other bodies; 1 if it was not needed.
+    /// Factor on the cross-section to avoid other bodies; 1 if not needed.
     pub scale: f32,
-    /// Angle by which the bind pose was beyond the table's limits of the joint to the parent, radians; they were widened.
+    /// Angle by which the bind pose exceeded the table's limits of the joint to the parent, radians; they were widened.
     pub widened: f32,
     /// Source of the limits of the joint to the parent.
     pub limits: LimitSource,

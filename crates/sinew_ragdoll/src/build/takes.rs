@@ -1,13 +1,13 @@
-//! A character's clips as poses that a build looks at.
+//! A character's clips as poses for the build.
 
 use crate::tuning::FRAME_TIME;
 use sinew_anim::{Clip, Rig, Take};
 
-/// Frames of all takes together: what a joint does in a minute.
+/// Frames of all takes together: about a minute of motion.
 const MOST_FRAMES: usize = 2048;
 
-/// The clips as takes, all with the same time between frames: 30 a second, or fewer if they are long. Clips that do not
-/// last a finite time are left out, and so are those beyond the first 2,048.
+/// The clips as takes with equal frame times: 30 a second, or fewer if they are long. Clips without a finite duration
+/// are dropped, and so are those beyond the first 2,048.
 ///
 /// # Panics
 /// As [`sample`](sinew_anim::sample()): if a clip is not one of the rig's.

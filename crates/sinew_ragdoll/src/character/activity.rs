@@ -1,4 +1,4 @@
-//! The state of a character, with what only that state knows.
+//! The state of a character, with the data of that state.
 
 use super::get_up::Rising;
 use super::limp::{Lying, Stillness};
@@ -32,7 +32,7 @@ impl Activity {
         }
     }
 
-    /// Stumble that goes on.
+    /// The current stumble.
     pub fn stumble(&self) -> Option<&Stumble> {
         match self {
             Self::Powered(balance) => balance.stumble.as_ref(),
@@ -40,7 +40,7 @@ impl Activity {
         }
     }
 
-    /// Time for which a character has lain, in the two states in which it lies.
+    /// Time for which a character has lain, in the two lying states.
     pub fn stillness(&self) -> Option<&Stillness> {
         match self {
             Self::Limp(lying) => Some(&lying.stillness),
@@ -49,7 +49,7 @@ impl Activity {
         }
     }
 
-    /// [`stillness`](Self::stillness), to be changed.
+    /// [`stillness`](Self::stillness), mutable.
     pub fn stillness_mut(&mut self) -> Option<&mut Stillness> {
         match self {
             Self::Limp(lying) => Some(&mut lying.stillness),
@@ -58,13 +58,13 @@ impl Activity {
         }
     }
 
-    /// True of a limp character on its way out of a wall.
+    /// True for a limp character that is being moved out of a wall.
     pub fn is_clearing(&self) -> bool {
         matches!(self, Self::Limp(lying) if !lying.clearing.velocities.is_empty())
     }
 
-    /// Share of a get-up that is left until the character stands upright: 1 and more as long as it still lies, 0 and less once it
-    /// stands. 0 in all other states.
+    /// Remaining share of a get-up until the character stands upright: 1 and more while it still lies, 0 and less once
+    /// it stands. 0 in all other states.
     pub fn left_to_rise(&self, def: &CharacterDef, animator: &Animator) -> f32 {
         match self {
             Self::GettingUp(rising) => rising.left(def, animator),
@@ -72,7 +72,7 @@ impl Activity {
         }
     }
 
-    /// 1 for a body near the ground, which little can fell, to 0 for one that stands upright.
+    /// 1 for a body near the ground, which is hard to fell, to 0 for one that stands upright.
     pub fn lowness(&self, def: &CharacterDef, animator: &Animator) -> f32 {
         match self {
             Self::Limp(_) | Self::Preparing(_) => 1.0,
@@ -85,11 +85,11 @@ impl Activity {
 /// A character of which a limb was struck.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Flinch {
-    /// Seconds until the limb has come back.
+    /// Seconds until the limb has returned.
     pub seconds: f32,
 }
 
-/// Seconds that a limb takes to come back.
+/// Seconds that a limb takes to return.
 fn comes_back() -> f32 {
     RETURNED_AFTER * FLINCH_HALF_LIFE
 }
@@ -100,12 +100,12 @@ impl Flinch {
         Self { seconds: FLINCH_TIME + comes_back() }
     }
 
-    /// Has the limb go on giving way: something holds it.
+    /// Keeps the limb weak because something holds it.
     pub fn go_on(&mut self) {
         self.seconds = max(self.seconds, Self::begun().seconds);
     }
 
-    /// Takes the flinch forward; true in the moment in which the limb begins to come back.
+    /// Advances the flinch; true at the moment when the limb begins to return.
     pub fn turns_back(&mut self, dt: f32) -> bool {
         let before = self.seconds;
         self.seconds -= dt;

@@ -1,4 +1,4 @@
-//! The calls of a user: what a character is told and asked, from outside.
+//! The public calls of a character.
 
 use super::activity::{Activity, Flinch};
 use super::grasp::Grab;
@@ -17,22 +17,22 @@ use std::sync::Arc;
 impl Character {
     // Coming and going
 
-    /// A character in a world, animated: with a mover and hit bodies as [`CharacterDef::in_world`] says. `world_from_character`
-    /// is where it stands (metres, its +Y up, +Z the way it faces). [`despawn`](Self::despawn) takes all of it out again.
+    /// Creates an animated character in a world, with a mover and hit bodies by [`CharacterDef::in_world`].
+    /// `world_from_character` is where it stands (metres, its +Y up, +Z forward). [`despawn`](Self::despawn) removes
+    /// all of it.
     ///
     /// # Panics
-    /// If the place is not finite.
+    /// If the transform is not finite.
     pub fn spawn(world: &mut World, def: &Arc<CharacterDef>, world_from_character: Transform) -> Self {
         let mut character = Self::new(def.clone(), world_from_character, 0.0);
         character.enter(world);
         character
     }
 
-    /// Brings a character that was made [`new`](Self::new) into a world, as [`spawn`](Self::spawn) does. Nothing happens if it
-    /// is in one.
+    /// Adds a character made by [`new`](Self::new) to a world, like [`spawn`](Self::spawn). No effect if it is in one.
     ///
     /// # Panics
-    /// If it stands nowhere finite, or is not animated.
+    /// If its transform is not finite, or it is not animated.
     pub fn enter(&mut self, world: &mut World) {
         if self.is_in_world() {
             return;
@@ -43,19 +43,20 @@ impl Character {
         self.settle_detail(world);
     }
 
-    /// Takes all of it out of the world: bodies, joints, drives, mover.
+    /// Removes all of it from the world: bodies, joints, drives, mover.
     ///
     /// # Panics
-    /// If something of it is no longer there.
+    /// If a part of it is missing.
     pub fn despawn(mut self, world: &mut World) {
         self.leave(world);
     }
 
-    /// Puts it elsewhere at once, standing; what lies between is not asked. A character that lies is brought there as it lies, springs and
-    /// garments as they swing; [`reset_springs`](Self::reset_springs) and [`reset_garments`](Self::reset_garments) start those over.
+    /// Moves it elsewhere at once; the way between is not checked. A lying character keeps its pose, springs and
+    /// garments their swing; [`reset_springs`](Self::reset_springs) and [`reset_garments`](Self::reset_garments)
+    /// restart those.
     ///
     /// # Panics
-    /// If the place is not finite.
+    /// If the transform is not finite.
     pub fn teleport(&mut self, world: &mut World, world_from_character: Transform) {
         assert!(world_from_character.is_finite(), "a character stands at a finite place");
         let moved = world_from_character * self.figure.place.inverse();
@@ -84,15 +85,15 @@ impl Character {
         }
     }
 
-    /// Detail that it has, or will have once its clips move it again. Full for a character that is in no world.
+    /// Its level of detail, now or once clips move it again. Full for a character outside of a world.
     pub fn level_of_detail(&self) -> Detail {
         self.detail.unwrap_or_default()
     }
 
-    /// Gives it as much detail as that: at once if its clips move it, else once they do again, for what flinches, lies or gets up goes on
-    /// until then. The pose and the place are the same before and after. Less than hit bodies takes its bodies out of the world,
-    /// unless it holds something; they come back with other ids. Its springs ease to the pose with less than hit bodies, whatever it does, and cost nothing from there
-    /// until they return with the motion of the pose. Without a world nothing happens.
+    /// Sets its level of detail: at once if clips move it, else once they do again, because a flinch, a fall or a
+    /// get-up finishes first. Pose and place do not change. Below hit bodies its bodies leave the world, unless it
+    /// holds something; they return with other ids. Its springs ease to the pose below hit bodies and cost nothing from
+    /// there until they return with the motion of the pose. No effect outside of a world.
     pub fn set_level_of_detail(&mut self, world: &mut World, detail: Detail) {
         if self.is_in_world() {
             self.detail = Some(detail);
@@ -107,7 +108,7 @@ impl Character {
         &self.def
     }
 
-    /// State of the character: what decides its pose.
+    /// Its current state.
     pub fn state(&self) -> State {
         self.activity.state()
     }
@@ -117,17 +118,18 @@ impl Character {
         self.activity.stumble().is_some()
     }
 
-    /// Pose of the character in the world. While it is limp: the one in which it went limp.
+    /// Transform of the character in the world. While it is limp: the last one before.
     pub fn world_from_character(&self) -> Transform {
         self.figure.place
     }
 
-    /// From the file's model space to the world: what a renderer puts above the pose.
+    /// From the file's model space to the world, for a renderer's root node.
     pub fn world_from_model(&self) -> Affine {
         self.def.mapping().world_from_model(self.figure.place)
     }
 
-    /// Local transform of every joint of the rig, springs, garments and all; nodes above the pelvis are at rest (see [`crate::mapping`]).
+    /// Local transform of every joint of the rig, including springs and garments; nodes above the pelvis are at rest
+    /// (see [`crate::mapping`]).
     pub fn pose(&self) -> &[LocalTransform] {
         if self.wear.pose.is_empty() { self.pose_without_springs() } else { &self.wear.pose }
     }
@@ -137,16 +139,16 @@ impl Character {
         self.feet.led(&self.figure.pose)
     }
 
-    /// Pose and place between the last step (`alpha` 0) and this one (1): `pose` is cleared and gets one local transform per
-    /// joint; gives where it stands.
+    /// Pose and place between the last step (`alpha` 0) and this one (1): `pose` is cleared and gets one local
+    /// transform per joint; returns the character's transform.
     pub fn interpolated(&self, alpha: f32, pose: &mut Vec<LocalTransform>) -> Transform {
         self.figure.between(self.pose(), alpha, pose)
     }
 
-    /// Matrices of a skin for a renderer, between the last step (`alpha` 0) and this one (1): `palette` is cleared and gets one
-    /// for each joint of the skin, from the mesh's bind pose to the world in metres. Each is the upper three rows of a 4×4
-    /// matrix that a column vector stands to the right of, **row after row**: `[m00, m01, m02, m03, m10, …, m23]`, the
-    /// translation in `m03`, `m13`, `m23`. What was [cut off](Self::detach) shrinks to the point where it was cut. Allocates a pose.
+    /// Skinning matrices for a renderer, between the last step (`alpha` 0) and this one (1): `palette` is cleared and
+    /// gets one per joint of the skin, from the mesh's bind pose to the world in metres. Each is the upper three rows
+    /// of a 4×4 matrix for column vectors, **row by row**: `[m00, m01, m02, m03, m10, …, m23]`, with the translation in
+    /// `m03`, `m13`, `m23`. [Detached](Self::detach) parts shrink to the cut. Allocates a pose.
     ///
     /// # Panics
     /// If the rig has no such skin.
@@ -169,9 +171,9 @@ impl Character {
         &self.gait.animator
     }
 
-    /// Animator that plays its clips, to be given others: tracks, crossfades, layers. To begin with it plays the looped clip, and
-    /// again after getting up; getting up stops all other tracks of layer 0. While the character is limp, what plays still moves
-    /// the joints that no body does ([`Mapping::free`](crate::Mapping::free)), and events go on.
+    /// The animator that plays its clips; add tracks, crossfades and layers to it. It starts with the looped clip, and
+    /// plays that again after getting up; getting up stops all other tracks of layer 0. While the character is limp,
+    /// clips still move the joints without a body ([`Mapping::free`](crate::Mapping::free)), and events continue.
     pub fn animator_mut(&mut self) -> &mut Animator {
         &mut self.gait.animator
     }
@@ -192,7 +194,7 @@ impl Character {
         &self.physique.drives
     }
 
-    /// Drives of its bodies, to be changed: they count while it has any. [`set_drive`](Self::set_drive) gives it some.
+    /// Drives of its bodies, mutable; used while it has any. [`set_drive`](Self::set_drive) creates them.
     pub fn drives_mut(&mut self) -> &mut Drives {
         &mut self.physique.drives
     }
@@ -202,31 +204,31 @@ impl Character {
         self.gait.mover
     }
 
-    /// Its bodies in the world, in the order of the definition: hit bodies or those of its ragdoll; none of a character that
-    /// was not brought into a world. Those that were [cut off](Self::detach) keep their places.
+    /// Its bodies in the world, in the order of the definition: hit bodies or those of its ragdoll; empty outside of a
+    /// world. [Detached](Self::detach) bodies keep their entries.
     pub fn bodies(&self) -> &[BodyId] {
         self.physique.ids()
     }
 
-    /// Index in the definition of a body of its: of what a ray hit, for one.
+    /// Index in the definition of one of its bodies, for instance one that a ray hit.
     pub fn body_index(&self, id: BodyId) -> Option<usize> {
         self.physique.index_of(id)
     }
 
-    /// True if a body, by index in the definition, was not cut off.
+    /// True if a body, by index in the definition, was not detached.
     pub fn has_body(&self, body: usize) -> bool {
         self.physique.has(body)
     }
 
-    /// Joints of the rig whose skin went with what was cut off, ascending: what is drawn of the character leaves them out.
+    /// Joints of the rig whose skin was detached, ascending.
     pub fn lost_joints(&self) -> Vec<JointIdx> {
         self.physique.lost_joints(&self.def)
     }
 
     // Where it goes
 
-    /// Has it go at a velocity over the ground from now on, m/s, whatever its clips do: they are played as fast as it really
-    /// goes. Its part along up does nothing. Without a mover nothing happens.
+    /// Sets the velocity over the ground, m/s, in place of root motion: clips play at the real speed. The component
+    /// along up is ignored. No effect without a mover.
     ///
     /// # Panics
     /// If the velocity is not finite.
@@ -237,13 +239,13 @@ impl Character {
         }
     }
 
-    /// Has it go as its clips go again, which it does to begin with.
+    /// Returns to root motion, the initial state.
     pub fn follow_clips(&mut self) {
         self.gait.follow_clips(&self.def);
     }
 
-    /// Has it turn to look along a direction, at [`InWorld::turn_speed`](super::InWorld::turn_speed), once it stands. A direction that is
-    /// level nowhere does nothing.
+    /// Turns it toward a direction, at [`InWorld::turn_speed`](super::InWorld::turn_speed), once it stands. A vertical
+    /// direction has no effect.
     ///
     /// # Panics
     /// If the direction is not finite.
@@ -265,8 +267,8 @@ impl Character {
     // What moves it
 
     /// Hits a body with an impulse (N·s, world axes) at its centre of mass. A character that is in a world and
-    /// [tough](super::InWorld::toughness) enough flinches; any other goes limp at the speed it has. Gives the work that the
-    /// impulse did, joules; 0 of a body that was [cut off](Self::detach).
+    /// [tough](super::InWorld::toughness) enough flinches; any other goes limp at its present speed. Returns the work
+    /// of the impulse, joules; 0 for a [detached](Self::detach) body.
     ///
     /// # Panics
     /// If there is no such body or the impulse is not finite.
@@ -274,8 +276,8 @@ impl Character {
         self.strike(world, body, impulse, None)
     }
 
-    /// [`hit`](Self::hit) where a ray or a shape hit one of its bodies, at that point. `None`, and nothing happens, if it is no
-    /// body of this character.
+    /// [`hit`](Self::hit) at the point where a ray or a shape hit one of its bodies. `None`, with no effect, if it is
+    /// no body of this character.
     ///
     /// # Panics
     /// If the impulse is not finite.
@@ -284,13 +286,12 @@ impl Character {
         Some(self.strike(world, body, impulse, Some(hit.point)))
     }
 
-    /// Lets the bodies take over, at the pose and the speed that the animation has now. Nothing happens if they did
-    /// already.
+    /// Goes limp: bodies take over at the pose and speed of the animation. No effect if they did already.
     pub fn go_limp(&mut self, world: &mut World) {
         self.fall(world);
     }
 
-    /// Has all of it moved in another way.
+    /// Sets the drive of all bodies.
     ///
     /// # Panics
     /// If it is not in the world.
@@ -313,8 +314,8 @@ impl Character {
         }
     }
 
-    /// Has part of it moved in another way: half of the change is made within `half_life` seconds. What stands is powered
-    /// from then on, all else of it as its clips have it.
+    /// Sets the drive of a part; half of the change is made within `half_life` seconds. A standing character is powered
+    /// from then on, with all other bodies as its clips have them.
     ///
     /// # Panics
     /// If no body is called so, or as [`Drives::set`].
@@ -338,11 +339,12 @@ impl Character {
         }
     }
 
-    /// Moves a limp character out of static shapes that it is deep in, at 1.9 m/s, all its bodies together; it falls from where it is clear.
-    /// Returns false if there is nothing to do: it is not limp, or held, or no body is deeper than 0.1 m, or no way of at most 1.2 m leads out.
+    /// Moves a limp character out of static shapes that it is deep in, at 1.9 m/s, all its bodies together; it falls
+    /// from where it is clear. Returns false if there is nothing to do: it is not limp, or held, no body is deeper than
+    /// 0.1 m, or no way of at most 1.2 m leads out.
     ///
-    /// A character that moves leaves a wall on the side that it came from, one at rest on the nearer side. Going limp calls this; call it yourself for
-    /// a limp character where a wall was put or a door has closed.
+    /// A moving character leaves a wall on the side that it came from, a resting one on the nearer side. Going limp
+    /// calls this; call it yourself if a wall was placed or a door has closed on a limp character.
     pub fn clear(&mut self, world: &mut World) -> bool {
         let is_gripped = self.grips.is_gripped(&self.physique, world);
         let Activity::Limp(lying) = &mut self.activity else { return false };
@@ -358,11 +360,13 @@ impl Character {
 
     // What it holds
 
-    /// Has one of its bodies (by role or bone) hold a dynamic body of the world, which is put there, on a fixed joint. As long as it
-    /// is held it passes through the character's own bodies and through movers. For limbs of others there is [`grab`](Self::grab).
+    /// Makes one of its bodies (by role or bone) hold a dynamic body, which is moved there, on a fixed joint. While
+    /// held it passes through the character's own bodies and through movers. Use [`grab`](Self::grab) for limbs of
+    /// others.
     ///
     /// # Panics
-    /// If no body is called so or it was [cut off](Self::detach), the character has none in the world, it holds that one already, or that is a part of a character or ragdoll.
+    /// If no body has that name or it was [detached](Self::detach), the character has none in the world, it holds that
+    /// one already, or that is part of a character or ragdoll.
     #[track_caller]
     pub fn hold(&mut self, world: &mut World, bone: &str, held: BodyId, grip: &Grip) -> JointId {
         let body = self.def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
@@ -376,25 +380,27 @@ impl Character {
         self.grips.hold(bodies, body, held, grip, world)
     }
 
-    /// Lets go of what it holds; false if it does not hold that.
+    /// Releases a held body; false if it does not hold that.
     pub fn release(&mut self, world: &mut World, held: BodyId) -> bool {
         self.grips.release(self.physique.own(), held, world, &mut self.events)
     }
 
-    /// Bodies that it holds, in the order in which it took them.
+    /// Held bodies, in the order in which it took them.
     pub fn held(&self) -> impl Iterator<Item = BodyId> {
         self.grips.held()
     }
 
-    /// Has one of its bodies (by role or bone) take hold of a body of the world: another's limb, a crate. It holds the point of its surface that is nearest
-    /// to the hand, where that is, so that nothing snaps, and draws what is not yet at the hand there at [`speed`](Grab::speed); what is held turns freely about the point. From then on it drags and lifts with
-    /// [`max_force`](Grab::max_force), and lets go where that does not do: [`CharacterEvent::LetGo`]. [`release`](Self::release) lets go
-    /// at once. What is held passes through the character's own bodies, and through movers.
+    /// Makes one of its bodies (by role or bone) grab a body: another's limb, a crate. It holds the surface point
+    /// nearest to the hand, in place, so that nothing snaps, and pulls it to the hand at [`speed`](Grab::speed); the
+    /// body rotates freely about the point. It drags and lifts with at most [`max_force`](Grab::max_force), and lets go
+    /// if that does not suffice: [`CharacterEvent::LetGo`]. [`release`](Self::release) lets go at once. A grabbed body
+    /// passes through the character's own bodies and through movers.
     ///
-    /// Forces must move one of the two: a hand that clips lead drags what is limp or powered. Who is held stays limp, and does not get up.
+    /// One of the two must be dynamic: a kinematic hand drags limp or powered bodies. A grabbed character stays limp
+    /// and does not get up.
     ///
-    /// `None` if what is to be grabbed is out of reach, its own, held by it already, or no force moves either of them; or if it has no such body
-    /// in the world, since that was cut off or it has none at all.
+    /// `None` if the target is out of reach, its own, held by it already, or neither body is dynamic; or if the
+    /// character has no such body in the world.
     ///
     /// ```
     /// use sinew_math::{Rotation, Transform, Vec3};
@@ -420,7 +426,7 @@ impl Character {
     /// ```
     ///
     /// # Panics
-    /// If no body is called so, or a number of the grip makes no sense.
+    /// If no body has that name, or a number of the grip is invalid.
     #[track_caller]
     pub fn grab(&mut self, world: &mut World, bone: &str, held: BodyId, grab: &Grab) -> Option<JointId> {
         grab.check();
@@ -431,13 +437,15 @@ impl Character {
         self.grips.grab(&self.physique, body, held, grab, world)
     }
 
-    /// Cuts a limb off: the body called so, by role or bone, and all that hang on it. They are bodies of their own from now on, as fast as they were, in
-    /// whatever state the character is; who holds them goes on holding them. What they held themselves is dropped, garments hang on what is left.
+    /// Detaches a limb: the named body (by role or bone) and everything below it. They become bodies of their own at
+    /// their present velocity, in any state; a holder keeps holding them. What they held is dropped; garments hang on
+    /// the rest.
     ///
-    /// The character lives on. Without an arm or a hand it does all that it did. Without a leg, a foot, the head or a part of the trunk it goes limp, and does not
-    /// get up again. [`bodies`](Self::bodies) keeps its order: the ids of the limb's bodies stay where they were, and [`has_body`](Self::has_body) is false of them.
+    /// The character lives on. Without an arm or a hand it continues. Without a leg, a foot, the head or a part of the
+    /// trunk it goes limp and does not get up again. [`bodies`](Self::bodies) keeps its order: the ids of the limb's
+    /// bodies stay in place, and [`has_body`](Self::has_body) is false for them.
     ///
-    /// `None` if it has lost that body already.
+    /// `None` if that body is detached already.
     ///
     /// ```
     /// use sinew_math::Transform;
@@ -489,15 +497,15 @@ impl Character {
 
     // What it wears
 
-    /// Has its springs start over at rest with the next step: after a cut, where the way from the place before is none.
+    /// Restarts its springs at rest with the next step, for instance after a camera cut.
     pub fn reset_springs(&mut self) {
         self.wear.springs.reset();
     }
 
-    /// Has its garments start over at rest: after a cut, where the way from the place before is none.
+    /// Restarts its garments at rest, for instance after a camera cut.
     ///
     /// # Panics
-    /// If the world is not the one that the character is in.
+    /// If it is another world than the character's.
     pub fn reset_garments(&mut self, world: &mut World) {
         if !self.wear.garments.groups.is_empty() {
             self.wear.garments.take_off(world);
@@ -506,7 +514,8 @@ impl Character {
         }
     }
 
-    /// Particles of its garments in the world, in the order of [`CharacterDef::garments`](super::CharacterDef::garments); none while it has no bodies.
+    /// Particles of its garments in the world, in the order of
+    /// [`CharacterDef::garments`](super::CharacterDef::garments); empty while it has no bodies.
     pub fn garments(&self) -> &[GroupId] {
         &self.wear.garments.groups
     }

@@ -1,4 +1,4 @@
-//! Changes from state to state, which concern several parts at once.
+//! State changes that involve several parts.
 
 use super::activity::{Activity, Flinch};
 use super::figure::Scratch;
@@ -25,7 +25,7 @@ impl Character {
         self.detail.is_some()
     }
 
-    /// True if its feet follow the ground as it goes.
+    /// True if its feet follow the ground.
     pub(super) fn follows_ground(&self) -> bool {
         self.def.in_world.foot_planting == FootPlanting::OnGround
             && self.def.in_world.hit_bodies != HitBodies::Absent
@@ -47,7 +47,7 @@ impl Character {
 
     // Detail
 
-    /// Brings bodies and mover in or out as its detail asks.
+    /// Adds or removes bodies and mover by its level of detail.
     pub(super) fn settle_detail(&mut self, world: &mut World) {
         let Some(detail) = self.detail else { return };
         if self.state() != State::Animated || self.physique.ragdoll.is_some() {
@@ -80,7 +80,7 @@ impl Character {
         wear.dress(bearer, world);
     }
 
-    /// Takes all of it out of the world and keeps its clips going, at the place where it stood.
+    /// Removes all of it from the world; its clips continue at its last place.
     pub(super) fn leave(&mut self, world: &mut World) {
         self.grips.release_all(self.physique.own(), false, world, &mut self.events);
         self.wear.garments.take_off(world);
@@ -95,14 +95,14 @@ impl Character {
         self.detail = None;
     }
 
-    /// Puts a mover where it stands, at a share of its height.
+    /// Adds a mover at its place, at a share of its height.
     fn stand_up(&mut self, world: &mut World, share: f32) {
         if self.is_in_world() {
             self.gait.stand_up(&self.def, self.figure.place.translation, world, share);
         }
     }
 
-    /// Takes its mover out: it lies.
+    /// Removes its mover because it lies.
     fn sit_down(&mut self, world: &mut World) {
         self.gait.sit_down(world);
         self.grips.spare_bearer(self.physique.own(), None, world);
@@ -110,7 +110,7 @@ impl Character {
 
     // Bodies and clips
 
-    /// Foresight of what its clips will do, and buffers for it.
+    /// Prediction of its clips, with buffers.
     fn ahead(&mut self) -> (Foresight<'_>, &mut Scratch) {
         let foresight = Foresight {
             def: &self.def,
@@ -137,7 +137,7 @@ impl Character {
         }
     }
 
-    /// Makes its bodies those of a ragdoll, at the pose and the speed that the animation has now, driven in one way.
+    /// Turns its bodies into a ragdoll, at the pose and speed of the animation, with one drive for all.
     pub(super) fn take_bodies(&mut self, world: &mut World, mode: DriveMode) {
         if self.physique.ragdoll.is_none() {
             self.become_bodies(world, self.def.in_world.rule());
@@ -145,7 +145,7 @@ impl Character {
         }
     }
 
-    /// Brings the bodies into the hands of physics, with joints between them.
+    /// Makes the bodies dynamic, with joints between them.
     fn become_bodies(&mut self, world: &mut World, rule: ContactRule) {
         if !self.feet.pose.is_empty() {
             self.figure.pose.clone_from(&self.feet.pose);
@@ -158,7 +158,7 @@ impl Character {
         self.physique.wake(&self.def, &states, rule, world);
     }
 
-    /// Gives the bodies back to the clips: they leave the world, or stay in it as hit bodies.
+    /// Makes clips lead the bodies again: they leave the world, or stay as hit bodies.
     pub(super) fn leave_bodies(&mut self, world: &mut World) {
         self.physique.let_go(&self.def, world);
         let Some(ragdoll) = self.physique.ragdoll.take() else { return };
@@ -172,8 +172,8 @@ impl Character {
         self.physique.keep_own();
     }
 
-    /// Gives bodies that clips lead the velocities that they have in the clips: with those that bring them to their place within a step, which a mover
-    /// that takes a kerb has put up by the height of it, they would be thrown once they are let go.
+    /// Gives led bodies the velocities of their clips. Their current ones, which move them to their place within a
+    /// step, would throw them when a mover has just climbed a kerb.
     fn slow_led(&mut self, world: &mut World, bodies: &[usize]) {
         let (foresight, scratch) = self.ahead();
         foresight.next(world.def().dt(), scratch);
@@ -203,7 +203,8 @@ impl Character {
         }
     }
 
-    /// Flinches or falls by a blow that contacts brought to one of its bodies. A body that forces move has had the impulse with the contact.
+    /// Flinches or falls by a contact blow to one of its bodies. A dynamic body received the impulse in the contact
+    /// already.
     pub(super) fn be_struck(&mut self, world: &mut World, body: usize, strike: Strike) {
         let is_led = world.kind(self.physique.ids()[body]) != BodyKind::Dynamic;
         if self.react(world, body, strike.impulse) && is_led {
@@ -237,7 +238,8 @@ impl Character {
             }
     }
 
-    /// Lets the limb that was struck give way; false if none may. Of one whose bodies are being brought to where a clip begins all do.
+    /// Makes the struck limb weak; false if none may be. For a body that is being driven to the start of a clip, all
+    /// are.
     pub(super) fn flinch(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
         let state = self.state();
         let gives_way = match state {
@@ -269,7 +271,7 @@ impl Character {
         gives_way
     }
 
-    /// Takes up an impulse that its bodies got, N·s.
+    /// Adds an impulse that its bodies received, N·s.
     fn shove(&mut self, world: &mut World, impulse: Vec3) {
         let Activity::Powered(balance) = &mut self.activity else { return };
         let on = Balancing {
@@ -285,7 +287,7 @@ impl Character {
 
     // Powered
 
-    /// Muscles and pins draw all of it to its clips.
+    /// Muscles and pins drive all bodies to the clips.
     pub(super) fn power(&mut self, world: &mut World) {
         self.end_clearing(world);
         self.take_bodies(world, DriveMode::Powered(Muscle::ALIVE));
@@ -303,7 +305,7 @@ impl Character {
 
     // Limp
 
-    /// Lets the bodies take over, at the pose and the speed that the animation has now.
+    /// Goes limp at the pose and speed of the animation.
     pub(super) fn fall(&mut self, world: &mut World) {
         if self.physique.ragdoll.is_some() {
             return self.fall_again(world);
@@ -320,7 +322,7 @@ impl Character {
         self.clear(world);
     }
 
-    /// A body that was about to get up, or that muscles held, is limp again.
+    /// A preparing or powered body becomes limp again.
     fn fall_again(&mut self, world: &mut World) {
         let powered = match self.state() {
             State::Flinching | State::Powered => true,
@@ -347,7 +349,7 @@ impl Character {
         self.clear(world);
     }
 
-    /// Goes on with its way out of a wall for the next step, or lets the bodies fall where the way ends.
+    /// Continues its way out of a wall for the next step, or makes the bodies fall where the way ends.
     pub(super) fn go_out(&mut self, world: &mut World) {
         let Activity::Limp(lying) = &mut self.activity else { return };
         if !lying.clearing.go_on(self.physique.own(), world) {
@@ -355,7 +357,7 @@ impl Character {
         }
     }
 
-    /// Makes bodies that are on their way out of a wall fall from where they are.
+    /// Makes bodies on their way out of a wall fall from where they are.
     pub(super) fn end_clearing(&mut self, world: &mut World) {
         let Activity::Limp(lying) = &mut self.activity else { return };
         let clearing = core::mem::take(&mut lying.clearing);
@@ -367,7 +369,7 @@ impl Character {
 
     // Getting up
 
-    /// Gets up, or first brings the body to where it can.
+    /// Gets up, or first prepares the body for it.
     pub(super) fn prepare(&mut self, world: &mut World) {
         let def = self.def.clone();
         let moves = def.moves();
@@ -385,7 +387,7 @@ impl Character {
         prepare::draw(&def, &choice, &mut self.physique, &mut self.scratch, world);
     }
 
-    /// Gives the pose back to the clips where nobody stands or lies on it: it lies until they have gone.
+    /// Gets up if nobody stands or lies on it; otherwise it waits.
     pub(super) fn get_up_where_free(&mut self, world: &mut World) {
         let lies = self.figure.stance(&self.def, &mut self.scratch);
         let moves = self.def.moves();
@@ -399,13 +401,13 @@ impl Character {
             && (is_taken(&self.def, world, place.translation)
                 || is_under(&self.def, self.physique.own(), steps, world));
         let Some(still) = self.activity.stillness_mut() else { return };
-        // Who was on it may have got up in this update, and touches nothing before the next step.
+        // A character that lay on it may have got up in this update and only leaves with the next step.
         if core::mem::replace(&mut still.free, !waits) && !waits {
             self.get_up(world);
         }
     }
 
-    /// Gives the pose back to the clips, by the moment of a get-up clip that is most like it.
+    /// Starts the moment of a get-up clip that is most like the pose.
     pub(super) fn get_up(&mut self, world: &mut World) {
         let def = self.def.clone();
         let moves = def.moves();
@@ -459,14 +461,14 @@ impl Character {
         self.events.push(CharacterEvent::Up);
     }
 
-    /// Begins a passage of so many seconds to what is no deeper than `to`, from the pose that is shown.
+    /// Starts a transition of so many seconds to a pose no deeper than `to`, from the shown pose.
     fn pass(&mut self, to: super::clearance::Depths, seconds: f32) {
         let from = self.feet.shown_depths(&self.def, &self.figure, &mut self.scratch.model);
         self.feet.pass(&self.def, from, to, seconds);
     }
 
-    /// Stands on the ground at `place`, stops what plays on the whole body, and lets the present pose and its motion die
-    /// away within `seconds` in what will be played. Nothing moves in the world yet.
+    /// Stands on the ground at `place`, stops all tracks of the whole body, and lets the present pose and motion decay
+    /// within `seconds`. Nothing moves in the world yet.
     fn settle_into(&mut self, world: &World, place: Transform, lean: Vec3, seconds: f32) {
         let def = self.def.clone();
         let own = self.detail.map(|_| self.physique.own());
@@ -489,7 +491,7 @@ impl Character {
 
     // Limbs that are cut off
 
-    /// Takes a limb's bodies and joints from it: those that it has, or new ones of a character without any.
+    /// Takes a limb's bodies and joints from it: the present ones, or new ones for a character without any.
     pub(super) fn part_with(&mut self, world: &mut World, parts: &[usize]) -> (Vec<BodyId>, Vec<JointId>) {
         let (bodies, joints) = if self.physique.ragdoll.is_some() {
             self.slow_led(world, parts);
@@ -499,7 +501,7 @@ impl Character {
             self.physique.cut_led(&self.def, parts, states, world)
         };
         for &body in &bodies {
-            // It pushes as any body does, and is in nobody's way.
+            // It collides like any body and blocks nobody.
             let rule = ContactRule::Yields(Yields::default());
             world.set_contact_rule(sinew_physics::ShapeId { body, shape: 0 }, rule);
         }
@@ -508,11 +510,11 @@ impl Character {
         (bodies, joints)
     }
 
-    /// Goes on without what was cut off.
+    /// Continues without the detached bodies.
     pub(super) fn live_on(&mut self, world: &mut World) {
         self.scratch.posed.clear();
         match &mut self.activity {
-            // What lay still may fall.
+            // A still body may fall.
             Activity::Limp(lying) => {
                 (lying.stillness.settled, lying.stillness.calm_steps) = (false, 0);
             }
@@ -527,7 +529,7 @@ impl Character {
         wear.rehang(bearer, world);
     }
 
-    /// Springs and garments, and who wears them.
+    /// Springs and garments, with their wearer.
     pub(super) fn wearing(&mut self) -> (&mut Wear, Bearer<'_>) {
         let bearer = Bearer {
             def: &self.def,

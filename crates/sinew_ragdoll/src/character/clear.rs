@@ -1,5 +1,5 @@
-//! Moving a limp character out of walls and floors that it is deep in. Contacts push bodies out one by one and slowly, and out of a thin wall to both
-//! sides.
+//! Moves a limp character out of walls and floors. Contacts push bodies out one by one and slowly, and out of a thin
+//! wall to both sides.
 
 use super::limp::Clearing;
 use super::tuning::{CLEARING_REACH, CLEARING_SPEED, DEEP, MOST_OBSTACLES, SAME_WAY, SUNK};
@@ -9,7 +9,8 @@ use sinew_physics::{
     ShapeCast, ShapeId, Velocity, World,
 };
 
-/// Lets bodies go out of static shapes that they are deep in, all together; `None` if nothing is deep, or no way leads out.
+/// Starts to move all bodies together out of static shapes that they are deep in; `None` if none is deep, or no way
+/// leads out.
 pub(super) fn begin(own: &[BodyId], world: &mut World) -> Option<Clearing> {
     let momentum: Vec3 = own.iter().map(|&body| world.velocity(body).linear * world.mass(body).mass).sum();
     let back = normalize_or(-momentum, Vec3::ZERO);
@@ -17,7 +18,7 @@ pub(super) fn begin(own: &[BodyId], world: &mut World) -> Option<Clearing> {
     let direction = normalize_or(way, Vec3::Y);
     let mut velocities: Vec<Velocity> = own.iter().map(|&body| world.velocity(body)).collect();
     for velocity in &mut velocities {
-        // What took it into the wall does not take it there again.
+        // The velocity that took it into the wall is removed.
         velocity.linear -= direction * min(velocity.linear.dot(direction), 0.0);
     }
     own.iter().for_each(|&body| world.set_kind(body, BodyKind::Kinematic));
@@ -25,7 +26,7 @@ pub(super) fn begin(own: &[BodyId], world: &mut World) -> Option<Clearing> {
 }
 
 impl Clearing {
-    /// Goes on for the next step; false where the way ends.
+    /// Continues for the next step; false where the way ends.
     pub fn go_on(&mut self, own: &[BodyId], world: &mut World) -> bool {
         let way = &mut self.way;
         let dt = world.def().dt();
@@ -51,8 +52,8 @@ impl Clearing {
     }
 }
 
-/// Way on which bodies together come out of all that they are deep in, world, metres; `None` if nothing is deep, or no way leads out.
-/// `back` is the direction that they came from, of length 1 or 0.
+/// Displacement by which the bodies together leave all shapes that they are deep in, world, metres; `None` if none is
+/// deep, or no way leads out. `back` is the direction that they came from, of length 1 or 0.
 fn way_out(world: &World, bodies: &[BodyId], back: Vec3) -> Option<Vec3> {
     let placed: Vec<(Shape, Transform)> = bodies.iter().flat_map(|&body| world.shapes(body)).collect();
     let moved = |way: Vec3| {
@@ -102,7 +103,7 @@ fn deepest(
     found.reduce(deeper)
 }
 
-/// Directions in which probes are nearest to the outside of a shape, and those against them, each once.
+/// Directions of the shortest ways of probes out of a shape, and their opposites, each once.
 fn directions(world: &World, probes: impl Iterator<Item = Probe>, obstacle: ShapeId) -> Vec<Vec3> {
     let only = |body, shape| obstacle == ShapeId { body, shape };
     let mut directions: Vec<Vec3> = Vec::new();
@@ -116,7 +117,8 @@ fn directions(world: &World, probes: impl Iterator<Item = Probe>, obstacle: Shap
     directions
 }
 
-/// Way along `direction` on which a probe comes out of a shape, metres; `None` if it is in it still at the end of [`CLEARING_REACH`].
+/// Distance along `direction` at which a probe leaves a shape, metres; `None` if it is still inside at
+/// [`CLEARING_REACH`].
 fn exit(world: &World, mut probe: Probe, obstacle: ShapeId, direction: Vec3) -> Option<f32> {
     let reach = direction * CLEARING_REACH;
     probe.world_from_shape.translation += reach;

@@ -1,8 +1,8 @@
-//! Skin out of the floor while a character passes from its bodies to a clip and from clip to clip. Joints turn from one pose to the other by
-//! themselves, and on the way feet, hands and knees would go through the floor on which both poses lie.
+//! Keeps the skin out of the floor during transitions from bodies to a clip and between clips. Joints blend separately,
+//! so feet, hands and knees would pass through the floor on which both poses lie.
 //!
-//! Each part may be as deep as it is where the passage begins, and by and by as deep as it ever is in the clip. What is deeper is raised:
-//! the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper arm.
+//! Each part may be as deep as at the start of the transition, and gradually as deep as in the clip. Deeper parts are
+//! raised: the whole body for trunk and knees, a foot or a hand by its limb, an elbow by the upper arm.
 
 use super::{CharacterDef, State};
 use crate::character::tuning::{LIMBS_SINK, MOST_LIFT, STEP_HEIGHT, STEP_OVER, STEPS_FROM, STRAIGHT_UP};
@@ -15,53 +15,53 @@ use sinew_anim::take::Take;
 use sinew_anim::{JointIdx, LocalTransform, Rig, local_to_model, smoothstep};
 use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
 
-/// Number of parts: the trunk with its knees, the feet, the hands, the elbows, of each pair the left one first.
+/// Number of parts: the trunk with its knees, the feet, the hands, the elbows, left ones first.
 pub(super) const PARTS: usize = 7;
 const TRUNK: usize = 0;
 pub(super) const FEET: [usize; 2] = [1, 2];
 const HANDS: [usize; 2] = [3, 4];
 const ELBOWS: [usize; 2] = [5, 6];
 
-/// Depth of each part in the floor, metres; negative above it, without end where there is no such part.
+/// Depth of each part in the floor, metres; negative above it, −∞ for a missing part.
 pub(super) type Depths = [f32; PARTS];
 
 /// The passage that a character is in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Passage {
-    /// Depths where it began, at least 0.
+    /// Depths at the start, at least 0.
     pub from: Depths,
-    /// Deepest of what it leads to, at least 0.
+    /// Largest depths in the target, at least 0.
     pub to: Depths,
-    /// Ankles where it began, world, left and right.
+    /// Ankles at the start, world, left and right.
     pub ankles: [Transform; 2],
-    /// Least way that the feet have to go, metres.
+    /// Least distance for a foot to step, metres.
     pub far: [f32; 2],
-    /// Seconds since it began, and how long it takes.
+    /// Seconds since its start, and its duration.
     pub age: f32,
     pub seconds: f32,
 }
 
-/// A foot on its way from where it stood to where a clip has it.
+/// A stepping foot.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
     /// Character space.
     from: Transform,
-    /// Least way to where it goes, metres.
+    /// Least distance to its goal, metres.
     far: f32,
-    /// Share of the way.
+    /// Share of the step.
     along: f32,
-    /// Height over it, as a share of the whole height of the step.
+    /// Height over the line, as a share of the step height.
     over: f32,
 }
 
 impl Passage {
-    /// Depths that parts may have after so many seconds more.
+    /// Allowed depths after so many seconds more.
     pub fn allowed(&self, later: f32) -> Depths {
         let share = if self.seconds > 0.0 { smoothstep((self.age + later) / self.seconds) } else { 1.0 };
         core::array::from_fn(|part| self.from[part] + (self.to[part] - self.from[part]) * share)
     }
 
-    /// Steps of the feet: at once while it lies, one after the other once it stands.
+    /// Steps of the feet: at once while it lies, alternately once it stands.
     pub fn steps(&self, later: f32, state: State, place: Transform) -> [Step; 2] {
         let u = if self.seconds > 0.0 { (self.age + later) / self.seconds } else { f32::INFINITY };
         [0, 1].map(|foot| {
@@ -72,7 +72,7 @@ impl Passage {
         })
     }
 
-    /// Share of a lift that is given: it goes back to none once the passage is over.
+    /// Share of a lift that is applied; it returns to zero after the transition.
     pub fn share(&self, later: f32, state: State) -> f32 {
         match state {
             State::GettingUp => 1.0,
@@ -84,21 +84,21 @@ impl Passage {
     }
 }
 
-/// Joints of a leg or an arm, whose end can be lifted by itself.
+/// Joints of a leg or an arm whose end can be lifted.
 #[derive(Clone, Copy, Debug)]
 struct LimbChain {
     bones: TwoBone,
-    /// Part of its end, and of its middle joint where that is raised by the limb.
+    /// Part of its end, and of its middle joint if the limb raises that.
     end: usize,
     middle: Option<usize>,
 }
 
 impl LimbChain {
-    /// An ankle that steps to `to`; `None` where it is there.
+    /// An ankle stepping to `to`; `None` if it is there.
     fn stepped(&self, to: Transform, steps: Option<[Step; 2]>, def: &CharacterDef) -> Option<Transform> {
         let foot = FEET.into_iter().position(|part| part == self.end)?;
         let Step { from, far, along, over } = steps?[foot];
-        // A foot of a leg that lies is on no sole that could slide: lifted, it would press the knee into the floor.
+        // A lying leg has no sole that could slide; lifting its foot would press the knee into the floor.
         let stands = from.rotation * (def.bind()[self.bones.end].to_rigid().rotation.inverse() * Vec3::Y);
         if along >= 1.0 || from == to || stands.y < STEPS_FROM {
             return None;
@@ -111,13 +111,13 @@ impl LimbChain {
     }
 }
 
-/// Points of the skin that reach the floor first, and what raises them.
+/// Lowest candidate points of the skin, and how to raise them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Clearance {
     /// Skin of each part.
     parts: Vec<Surface>,
     limbs: Vec<LimbChain>,
-    /// Joints beside the limb that carries them, each with the joint that it goes with.
+    /// Joints beside the limb that carries them, each with the joint that it follows.
     strays: Vec<(JointIdx, JointIdx)>,
 }
 
@@ -179,7 +179,7 @@ impl Clearance {
         core::array::from_fn(|part| self.depth(part, model, &mut palette))
     }
 
-    /// Deepest of each part over some poses, at least 0.
+    /// Largest depth of each part over some poses, at least 0.
     pub fn deepest(&self, def: &CharacterDef, take: &Take) -> Depths {
         let (mut model, mut deepest) = (Vec::new(), [0.0; PARTS]);
         for frame in 0..take.frames() {
@@ -189,7 +189,7 @@ impl Clearance {
         deepest
     }
 
-    /// Raises what is deeper than it may be, by `share` of that.
+    /// Raises parts beyond their allowed depth, by `share` of the excess.
     pub fn clear(
         &self,
         def: &CharacterDef,
@@ -256,7 +256,7 @@ impl Clearance {
     }
 }
 
-/// Brings the end of a limb to a place, in the axes of `model`.
+/// Moves the end of a limb to a position, in the axes of `model`.
 fn put(
     rig: &Rig,
     bones: TwoBone,
@@ -271,7 +271,7 @@ fn put(
     turn_to(rig, bones.end, end.rotation, root, pose, model);
 }
 
-/// Gives a joint a rotation in the axes of `model`; what hangs on it goes along.
+/// Sets a joint's rotation in the axes of `model`, with its descendants.
 fn turn_to(
     rig: &Rig,
     joint: JointIdx,
@@ -289,7 +289,7 @@ pub(super) fn larger(a: Depths, b: Depths) -> Depths {
     core::array::from_fn(|part| max(a[part], b[part]))
 }
 
-/// Legs and arms by the roles of the bodies; a limb that is no chain of three joints is left out.
+/// Legs and arms by the roles of the bodies; limbs that are not chains of three joints are skipped.
 fn limbs(rig: &Rig, def: &RagdollDef) -> Vec<LimbChain> {
     let joint = |role: Role| def.bodies.iter().find(|body| body.role == role.name()).map(|body| body.joint);
     let hangs = |joint: JointIdx, above: JointIdx| {
@@ -309,7 +309,7 @@ fn limbs(rig: &Rig, def: &RagdollDef) -> Vec<LimbChain> {
     limbs
 }
 
-/// The part of a point of a body's skin, in model space as bound; `None` of tails and the like, for which nobody stands up higher.
+/// The part of a skin point, in model space of the bind pose; `None` for tails and the like.
 fn part_of(
     def: &RagdollDef,
     limbs: &[LimbChain],
@@ -321,7 +321,7 @@ fn part_of(
         Role::from_name(&def.bodies[body].role).is_some_and(|role| HUMANOID_ROLES.contains(&role))
     };
     let parent = |body: usize| def.joints.iter().find(|joint| joint.child == body).map(|joint| joint.parent);
-    // What is held or worn goes with the part that bears it.
+    // Props follow the part that carries them.
     let bearers = core::iter::successors(Some(body), |&body| parent(body));
     let Some(bearer) = bearers.into_iter().find(|&body| is_human(body)) else { return Some(TRUNK) };
     let is_beyond = |joint: JointIdx, of: JointIdx| {
@@ -346,7 +346,7 @@ fn part_of(
     is_human(body).then_some(TRUNK)
 }
 
-/// Joints that do not hang on the joint of the body that carries them, topmost ones only.
+/// Joints that are not descendants of the joint that carries their body, topmost ones only.
 fn strays(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, JointIdx)> {
     let hangs = |joint: JointIdx, above: JointIdx| {
         core::iter::successors(Some(joint), |&i| rig.joints[i].parent).any(|i| i == above)
@@ -361,7 +361,7 @@ fn strays(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, JointIdx)> {
         let parent = rig.joints[joint].parent.and_then(|parent| carried[parent]);
         (!hangs(joint, carrier) && parent != carried[joint]).then_some((joint, carrier))
     });
-    // What carries its own carrier goes along with nothing.
+    // A joint that carries its own carrier follows nothing.
     of_bodies.chain(of_joints).filter(|&(joint, carrier)| !hangs(carrier, joint)).collect()
 }
 
@@ -377,7 +377,7 @@ fn directions() -> impl Iterator<Item = Vec3> {
 /// A foot of a humanoid.
 pub(crate) struct Sole<'a> {
     pub joint: JointIdx,
-    /// Up in its own axes where it stands flat.
+    /// Up in its own axes when it stands flat.
     pub up: Vec3,
     skin: &'a Surface,
 }
@@ -402,14 +402,14 @@ impl CharacterDef {
         legs.map(sole).collect()
     }
 
-    /// Depth of the deepest point of the drawn skin in the floor over a motion of its rig, metres: with what it holds; at least 0, and 0 of a rig
-    /// without skin.
+    /// Depth of the lowest point of the drawn skin, with props, in the floor over a motion of its rig, metres; at least
+    /// 0, and 0 for a rig without skin.
     pub fn deepest_skin(&self, take: &Take) -> f32 {
         self.clearance.deepest(self, take).into_iter().fold(0.0, max)
     }
 
-    /// Raises feet, hands and elbows whose drawn skin is in the floor of a pose, by bending their limbs. The pose has a local transform per
-    /// joint of the rig.
+    /// Raises feet, hands and elbows whose drawn skin is in the floor of a pose, by bending their limbs. The pose has a
+    /// local transform per joint of the rig.
     pub fn raise_limbs(&self, pose: &mut [LocalTransform]) {
         if !self.clearance.parts.is_empty() {
             let mut allowed = [LIMBS_SINK * self.ragdoll.height; PARTS];

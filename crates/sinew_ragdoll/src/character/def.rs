@@ -20,9 +20,9 @@ use std::sync::Arc;
 /// Motion of a character over the ground while its looped clip plays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Locomotion {
-    /// The character moves as the clip does, and with each lap is back where it began.
+    /// The character returns to the clip's start with each lap.
     InPlace,
-    /// On and on as the clip takes it, with each lap from where the last one ended. A clip that ends where it began stays in its place.
+    /// The character travels on with each lap. A clip that ends where it began stays in place.
     ByClip,
     /// The clip walks on the spot; the character advances along its facing at this speed, m/s.
     Forward {
@@ -34,29 +34,29 @@ pub enum Locomotion {
 /// Action of a limp character once it lies still.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AfterSettling {
-    /// It gets up by the clip that fits the way it lies; without such a clip it fades to its looped clip, standing.
+    /// It gets up by the clip that fits its pose; without such a clip it fades to its looped clip, standing.
     GetUp,
     /// It stays where it is.
     StayDown,
 }
 
-/// First action of a character that lies otherwise than any of its get-up clips begins.
+/// First action of a character that lies unlike the start of all get-up clips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GettingReady {
     /// Nothing: the difference dies away in the clip.
     AtOnce,
-    /// It is rolled over and its limbs are drawn to where the nearest clip begins, within bounds of force and time.
+    /// It is rolled over and its limbs are driven to the start of the nearest clip, within bounds of force and time.
     RollOver,
 }
 
-/// Treatment of floor and feet while a character passes from its bodies to a get-up clip, and from that to what follows.
+/// Treatment of floor and feet during the transitions to a get-up clip and to what follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GroundContact {
-    /// None: the difference of the two poses dies away smoothly in every joint, though limbs may go through the floor on the way. Default.
+    /// None: the pose difference decays smoothly in every joint, and limbs may pass through the floor. Default.
     #[default]
     AsBlended,
-    /// The drawn skin stays out of the floor, as far as it was before and is in the clips, and feet that go elsewhere step there. Motions
-    /// are quicker for it.
+    /// The drawn skin stays out of the floor, as far as in the poses before and after, and feet step to their new
+    /// places. Motions are quicker then.
     Enforced,
 }
 
@@ -65,7 +65,7 @@ pub enum GroundContact {
 pub enum Opening {
     /// It plays its looped clip.
     Looped,
-    /// It stands in its rest pose; the looped clip is what it does after getting up.
+    /// It stands in its rest pose; the looped clip plays after getting up.
     Rest,
 }
 
@@ -76,16 +76,18 @@ pub struct MotionSet {
     pub clips: Vec<Clip>,
     /// The clip that loops while the character is animated; `None`: it stands in its rest pose. Default none.
     pub looped: Option<usize>,
-    /// Clips that loop at higher speeds than the looped one (a jog, a run), each with its locomotion. Where
-    /// [`Character::set_move`](super::Character::set_move) moves the character, the two whose speeds are next to its own are blended, in step with
-    /// each other by their first events with the payload `left`. Clips that cover no ground are not played. Default none.
+    /// Clips that loop at higher speeds than the looped one (a jog, a run), each with its locomotion. If
+    /// [`Character::set_move`](super::Character::set_move) moves the character, the two with neighbouring speeds are
+    /// blended, in step by their first events with the payload `left`. Clips that cover no ground are skipped. Default
+    /// none.
     pub faster: Vec<(usize, Locomotion)>,
-    /// The clip that loops while it stands, where [`Character::set_move`](super::Character::set_move) moves it; `None`: the
-    /// looped clip stops. Default none.
+    /// The clip that loops at rest, if [`Character::set_move`](super::Character::set_move) moves it; `None`: the looped
+    /// clip stops. Default none.
     pub idle: Option<usize>,
-    /// Clips that start lying and end standing. Each is used as a mirror shows it, too. Default none.
+    /// Clips that start lying and end standing. Their mirror images are used, too. Default none.
     pub get_ups: Vec<usize>,
-    /// Moments of clips that [`CharacterEvent::Clip`](super::CharacterEvent::Clip) tells of, each with the index of its clip: steps, punches. Default none.
+    /// Clip moments for [`CharacterEvent::Clip`](super::CharacterEvent::Clip), each with the index of its clip: steps,
+    /// punches. Default none.
     pub events: Vec<(usize, sinew_anim::ClipEvent)>,
     /// Default in place.
     pub locomotion: Locomotion,
@@ -113,7 +115,7 @@ impl Default for MotionSet {
 pub struct CharacterDef {
     /// The file's nodes, skins and meshes.
     pub rig: Rig,
-    /// Its bodies and joints; other bodies need another definition, for the mapping was made from these.
+    /// Its bodies and joints; the mapping was built from these, so other bodies need another definition.
     pub ragdoll: RagdollDef,
     /// Default get up.
     pub after_settling: AfterSettling,
@@ -123,7 +125,7 @@ pub struct CharacterDef {
     pub ground_contact: GroundContact,
     /// Drive mode of its bodies while it falls: powered, toward the pose that its clips go on with. Default limp.
     pub falling: DriveMode,
-    /// Seconds for which a limp character may go on moving before it gets up all the same. Default 6.
+    /// Seconds after which a limp character gets up even if it still moves. Default 6.
     pub patience: f32,
     /// Surface and filter of its bodies.
     pub body_settings: BodySettings,
@@ -135,7 +137,7 @@ pub struct CharacterDef {
     rest: Vec<LocalTransform>,
     /// Bind pose in character space, metres.
     bind: Vec<Affine>,
-    /// Legs that it stands on, if it is a humanoid.
+    /// Its legs, if it is a humanoid.
     legs: Option<Legs>,
     /// Points of its skin that meet the floor first.
     pub(super) clearance: Arc<Clearance>,
@@ -144,7 +146,7 @@ pub struct CharacterDef {
     /// Capes and the like, which are cloth in the world.
     garments: GarmentRig,
     motions: MotionSet,
-    /// Clips and stances made of the motions.
+    /// Clips and stances built from the motions.
     moves: Arc<Moves>,
 }
 
@@ -185,28 +187,28 @@ impl CharacterDef {
         &self.mapping
     }
 
-    /// Gives it motions: builds all clips, and the mirror images of those to get up by.
+    /// Sets its motions: builds all clips, and the mirror images of get-ups.
     ///
     /// # Errors
-    /// A clip that cannot be played; the motions are then as they were.
+    /// If a clip cannot be played; the motions are unchanged then.
     ///
     /// # Panics
-    /// If `looped`, `faster` or `get_ups` names a clip that is not there, or a channel moves a joint that the rig does not have.
+    /// If `looped`, `faster` or `get_ups` names a missing clip, or a channel moves a joint that the rig does not have.
     pub fn set_motions(&mut self, motions: MotionSet) -> Result<(), MotionError> {
         self.moves = Arc::new(Moves::new(self, &motions)?);
         self.motions = motions;
         Ok(())
     }
 
-    /// Sets what a character does before anything has happened to it. Characters that are there already are of the definition before.
+    /// Sets what a character does at first. Existing characters keep the old definition.
     pub fn set_opening(&mut self, opening: Opening) {
         self.motions.opening = opening;
     }
 
-    /// Gives it other springs than those of its rig, or none. Characters that are there already are of the definition before.
+    /// Replaces its rig's springs. Existing characters keep the old definition.
     ///
     /// # Panics
-    /// If they name a joint or a collider that is not there.
+    /// If they name a missing joint or collider.
     pub fn set_springs(&mut self, springs: &Springs) {
         let bind_model = self.bind_model();
         self.springs = SpringRig::new(&self.rig, &self.ragdoll, &self.mapping, &bind_model, springs);
@@ -217,11 +219,10 @@ impl CharacterDef {
         &self.springs
     }
 
-    /// Dresses it in garments, or in none, instead of those that it had; their joints are taken out of its springs. Characters that are there already
-    /// are of the definition before.
+    /// Sets its garments; their joints are removed from its springs. Existing characters keep the old definition.
     ///
     /// # Panics
-    /// If they name a joint that is not there.
+    /// If they name a missing joint.
     pub fn set_garments(&mut self, garments: &[Garment]) {
         let bind_model = self.bind_model();
         self.garments = GarmentRig::new(&self.rig, &self.ragdoll, &self.mapping, &bind_model, garments);
@@ -251,7 +252,7 @@ impl CharacterDef {
         &self.motions
     }
 
-    /// Animation set that its characters' animators play: the clips of [`motions`](Self::motions), and what was made of them.
+    /// Animation set of its characters' animators: the clips of [`motions`](Self::motions), and derived ones.
     pub fn set(&self) -> &AnimationSet {
         &self.moves.set
     }
@@ -281,18 +282,18 @@ impl CharacterDef {
         Some(animator.play(self.set(), &TrackDef { start: phase, sync_group, ..TrackDef::new(clip) }))
     }
 
-    /// Clips that it goes by, slowest first: the looped one, then those that are faster.
+    /// Locomotion clips, slowest first: the looped one, then faster ones.
     pub(super) fn paces(&self) -> &[Pace] {
         &self.moves.paces
     }
 
-    /// Group in which its clips that go are kept in step; none for a single clip.
+    /// Sync group of its locomotion clips; none for a single clip.
     pub(super) fn sync_group(&self) -> Option<u8> {
         (self.paces().len() > 1).then_some(0)
     }
 
-    /// Height by which its looped clip is raised so that its lowest drawn point stands on the floor of the rest pose, metres: 0 where it
-    /// does so by itself, as a rule.
+    /// Height by which its looped clip is raised so that its lowest drawn point stands on the floor of the rest pose,
+    /// metres; usually 0.
     pub fn raised(&self) -> f32 {
         self.moves.raised.looped
     }

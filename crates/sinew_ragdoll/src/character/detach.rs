@@ -1,4 +1,4 @@
-//! Limbs that are cut off: what becomes bodies of their own, and what is left.
+//! Detached limbs: the new bodies, and the rest.
 
 use super::CharacterDef;
 use super::limb::{cut_joint, shrunk};
@@ -11,19 +11,19 @@ use sinew_anim::JointIdx;
 use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::{BodyId, JointId, World};
 
-/// Parts of roles that a character gets up without.
+/// Roles of parts without which a character still gets up.
 const SPARED: [&str; 5] = ["Shoulder", "Arm", "Hand", "Toes", "tail"];
 /// Words in the roles of fingers, which it gets up without as well.
 const FINGERS: [&str; 5] = ["Thumb", "Index", "Middle", "Ring", "Little"];
 
 impl Physique {
-    /// Indices of a body and of all that hang on it and were not cut off before.
+    /// Indices of a body and of its descendants that were not detached before.
     pub fn limb_from(&self, def: &CharacterDef, first: usize) -> Vec<usize> {
         let all = 0..def.ragdoll.bodies.len();
         all.filter(|&body| hangs_on(&def.ragdoll, body, first) && self.has(body)).collect()
     }
 
-    /// Joints of the rig whose skin went with what was cut off, ascending.
+    /// Joints of the rig whose skin was detached, ascending.
     pub fn lost_joints(&self, def: &CharacterDef) -> Vec<JointIdx> {
         let carrier = |joint: JointIdx| def.mapping().body_above(&def.rig, joint);
         let is_lost = |&joint: &JointIdx| carrier(joint).is_some_and(|body| !self.has(body));
@@ -33,7 +33,7 @@ impl Physique {
         (0..def.rig.joints.len()).filter(is_lost).collect()
     }
 
-    /// True if nothing is missing that it would need to stand.
+    /// True if it still has everything it needs to stand.
     pub fn may_get_up(&self, def: &CharacterDef) -> bool {
         self.lost.iter().all(|&(body, _)| {
             let role = &def.ragdoll.bodies[body].role;
@@ -41,7 +41,7 @@ impl Physique {
         })
     }
 
-    /// Bodies and joints of a ragdoll's limb that is cut off, free of drives.
+    /// Bodies and joints of a ragdoll's limb, without drives.
     pub fn cut(
         &mut self,
         def: &CharacterDef,
@@ -58,7 +58,7 @@ impl Physique {
         (parts.iter().map(|&part| ragdoll.bodies[part]).collect(), joints)
     }
 
-    /// Bodies and joints of a limb that is cut off where clips lead the bodies or there are none: at the velocities of `states`.
+    /// Bodies and joints of a limb of a character whose bodies are led or absent: at the velocities of `states`.
     pub fn cut_led(
         &self,
         def: &CharacterDef,
@@ -84,14 +84,14 @@ impl Physique {
         (bodies, parts[1..].iter().map(|&part| ragdoll.joints[part - 1]).collect())
     }
 
-    /// Parts with bodies that were cut off.
+    /// Parts of detached bodies.
     pub fn lose(&mut self, parts: &[usize], bodies: &[BodyId]) {
         self.lost.extend(parts.iter().copied().zip(bodies.iter().copied()));
         self.lost.sort_unstable_by_key(|&(part, _)| part);
         self.keep_own();
     }
 
-    /// Has what was cut off and what is left collide, but for what overlaps where it was cut: that does as soon as it is apart.
+    /// Enables collision between the limb and the rest; pairs that overlap at the cut collide once they are apart.
     pub fn part_bodies(&mut self, bodies: &[BodyId], world: &mut World) {
         let mut parting = core::mem::take(&mut self.parting);
         for &own in self.own() {
@@ -107,7 +107,7 @@ impl Physique {
         self.parting = parting;
     }
 
-    /// Has bodies collide that have come apart since they were cut.
+    /// Enables collision of bodies that have come apart since the cut.
     pub fn mind_parting(&mut self, world: &mut World) {
         self.parting.retain(|&(a, b)| {
             if !world.contains(a) || !world.contains(b) {
@@ -121,7 +121,7 @@ impl Physique {
         });
     }
 
-    /// The matrix by which a skin's joint that was cut off is drawn: all of its skin in the point where it was cut; `None` of a joint that it has.
+    /// Skinning matrix of a detached joint: shrinks its skin to the cut; `None` for a present joint.
     pub fn shrunk_joint(&self, def: &CharacterDef, joint: JointIdx, model: &[Affine]) -> Option<Affine> {
         if self.lost.is_empty() {
             return None;
@@ -139,7 +139,7 @@ impl Physique {
         }
     }
 
-    /// Puts the bodies that were cut off where springs do not meet them.
+    /// Moves detached bodies where springs do not meet them.
     pub fn hide_lost(&self, bodies: &mut [Transform]) {
         for &(lost, _) in &self.lost {
             if let Some(body) = bodies.get_mut(lost) {

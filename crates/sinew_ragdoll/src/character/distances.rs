@@ -1,4 +1,4 @@
-//! Detail of a character by the distance from which it is seen.
+//! Level of detail by distance.
 
 use sinew_math::max;
 
@@ -7,9 +7,9 @@ use sinew_math::max;
 pub enum Detail {
     /// Nothing: its clips stand still, nothing stops or carries it, and an update costs nothing.
     Frozen,
-    /// A mover and its clips; nothing sees its limbs.
+    /// A mover and its clips; rays and contacts do not see its limbs.
     Keyed,
-    /// Hit bodies besides, which give no way: blows below the threshold are told of and do nothing.
+    /// Also hit bodies that do not flinch: blows below the threshold are only reported.
     HitBodies,
     /// Everything. Default.
     #[default]
@@ -19,13 +19,13 @@ pub enum Detail {
 /// Distances at which [`Detail`] changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distances {
-    /// Up to here full, metres. Default 15.
+    /// Largest distance of full detail, metres. Default 15.
     pub full: f32,
-    /// Up to here with hit bodies, metres. Default 40.
+    /// Largest distance of hit bodies, metres. Default 40.
     pub hit_bodies: f32,
-    /// Up to here keyed, beyond it frozen, metres. Default 120.
+    /// Largest distance of keyed characters, frozen beyond, metres. Default 120.
     pub keyed: f32,
-    /// Share by which a distance must be passed for less detail, so that it does not change to and fro. Default 0.1.
+    /// Hysteresis: share by which a distance must be exceeded for less detail. Default 0.1.
     pub slack: f32,
 }
 

@@ -1,4 +1,4 @@
-//! States of a character, and what it tells of.
+//! States and events of a character.
 
 use sinew_anim::FiredEvent;
 use sinew_math::{ReadError, Reader, Writer};
@@ -11,11 +11,11 @@ pub enum State {
     Animated,
     /// Its bodies: it falls, or lies.
     Limp,
-    /// Its bodies, which are brought to where a get-up clip begins.
+    /// Its bodies, which are driven to the start of a get-up clip.
     Preparing,
     /// A get-up clip, in which the pose and the motion of the bodies die away.
     GettingUp,
-    /// Clips, but for a limb that was struck and comes back to them.
+    /// Clips, except for a struck limb that returns to them.
     Flinching,
     /// Its bodies, which muscles and pins draw to its clips.
     Powered,
@@ -29,26 +29,27 @@ pub enum CharacterEvent {
         /// Index of the body in the definition.
         body: usize,
     },
-    /// Something struck one of its bodies: contacts tell more.
+    /// Something struck one of its bodies (from contacts).
     Struck {
         /// Index of the body in the definition.
         body: usize,
         /// N·s.
         impulse: f32,
     },
-    /// A blow did not fell it: the limb gives way and comes back.
+    /// A blow did not fell it: the limb is weak and returns.
     Flinched {
         /// Index of the struck body in the definition.
         body: usize,
     },
-    /// Its limb is as the clips have it again.
+    /// Its limb follows the clips again.
     Recovered,
     /// Muscles and pins hold it from now on.
     Powered,
-    /// A moment of a clip came by that decides its pose ([`MotionSet::events`](super::MotionSet::events)); the name is [`AnimationSet::event`](sinew_anim::AnimationSet::event) of
-    /// [`CharacterDef::set`](super::CharacterDef::set).
+    /// A moment of a clip that decides its pose passed ([`MotionSet::events`](super::MotionSet::events)); its name is
+    /// [`AnimationSet::event`](sinew_anim::AnimationSet::event) of [`CharacterDef::set`](super::CharacterDef::set).
     Clip(FiredEvent),
-    /// One of its bodies began or stopped to touch a body that is not its own: where [`InWorld::tells_contacts`](super::InWorld::tells_contacts) says so.
+    /// One of its bodies began or stopped touching another's body, if
+    /// [`InWorld::tells_contacts`](super::InWorld::tells_contacts) is set.
     Contact {
         /// Index of its body in the definition.
         body: usize,
@@ -57,44 +58,44 @@ pub enum CharacterEvent {
         /// False: they parted.
         begins: bool,
     },
-    /// It let go of what one of its bodies held, or that was torn off.
+    /// It released a held body, or that was torn off.
     LetGo {
         /// Index of its body in the definition.
         body: usize,
         /// Body that was held.
         held: BodyId,
     },
-    /// A push would have it over: it begins to step.
+    /// It starts stepping to catch a push.
     Stumbled,
-    /// Its steps caught it; its feet are as its clips have them again.
+    /// Its steps caught it; its feet follow the clips again.
     Caught {
-        /// Number of steps beside those that only brought its feet home.
+        /// Number of steps, without those that only returned the feet.
         steps: u32,
     },
-    /// A limb was cut off.
+    /// A limb was detached.
     Detached {
-        /// Index in the definition of the body where it was cut, which went with it.
+        /// Index in the definition of the body at the cut, the limb's first.
         body: usize,
     },
-    /// Its bodies took over.
+    /// It went limp.
     WentLimp,
     /// The first of its bodies touched something of the world since it went limp.
     Touched,
     /// It lies still.
     Settled {
-        /// When it began to lie still, seconds of the world's time.
+        /// Start of lying still, seconds of the world's time.
         since: f32,
     },
-    /// It did not come to rest in the time it was given.
+    /// It did not come to rest in the given time.
     NeverSettled,
-    /// It lies otherwise than its get-up clips begin, and is brought to where the nearest does.
+    /// It lies unlike the start of its get-up clips, and is driven to the nearest one.
     Preparing {
-        /// True if it has to be rolled over.
+        /// True if it must be rolled over.
         rolls: bool,
     },
     /// It began to get up.
     GettingUp {
-        /// Index of the clip; `None`: it has none that fits, and fades to standing.
+        /// Index of the clip; `None`: none fits, and it fades to standing.
         clip: Option<usize>,
     },
     /// It is animated again.
@@ -102,7 +103,8 @@ pub enum CharacterEvent {
 }
 
 impl CharacterEvent {
-    /// Writes one that a call brought about and no update has told of: those of clips are told by the update that they come in.
+    /// Writes an event that a call caused and no update has reported; those of clips are reported by the update in
+    /// which they occur.
     pub(super) fn save(&self, w: &mut Writer) {
         let (tag, numbers): (u8, [u64; 2]) = match *self {
             Self::Hit { body } => (0, [body as u64, 0]),
@@ -155,11 +157,11 @@ impl CharacterEvent {
     }
 }
 
-/// Events of a character that were not told yet, and those of its last update.
+/// Unreported events of a character, and those of its last update.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Events {
     pub list: Vec<CharacterEvent>,
-    /// Number of events that were there at the end of the last update.
+    /// Number of events at the end of the last update.
     told: usize,
 }
 
@@ -168,12 +170,12 @@ impl Events {
         self.list.push(event);
     }
 
-    /// Forgets what was there at the end of the last update.
+    /// Discards the events of the last update.
     pub fn begin(&mut self) {
         self.list.drain(..self.told);
     }
 
-    /// Events that calls brought about since the last update.
+    /// Events caused by calls since the last update.
     pub fn untold(&self) -> &[CharacterEvent] {
         &self.list[self.told..]
     }

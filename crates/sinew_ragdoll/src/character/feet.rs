@@ -1,8 +1,8 @@
-//! Feet on the ground under them, while a character gets up where that is not the floor its clip was made for: across the edge
-//! of a stair both feet would be over the lower step.
+//! Feet on the ground while a character gets up on other ground than its clip's floor: across the edge of a stair both
+//! feet would be over the lower step.
 //!
-//! What is kept from step to step is how high the ground is that each foot stands on, over the floor of the clip: it follows
-//! the world as a spring does that is damped critically, so that an edge below a foot that moves is no jump.
+//! The state is the height of the ground under each foot over the clip's floor: it follows the world like a critically
+//! damped spring, so that an edge below a moving foot causes no jump.
 
 use super::activity::Activity;
 use super::clearance::{Depths, FEET, PARTS, Passage, larger};
@@ -20,20 +20,20 @@ use sinew_physics::{BodyId, World};
 /// Depths of the pose that is shown, at least 0, and its ankles in the world.
 pub(super) type Depth = (Depths, [Transform; 2]);
 
-/// Feet of a character on the ground, and its skin out of it.
+/// Planted feet of a character, and clearance of its skin.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Feet {
     /// Ground under its feet where it is not the floor of its clips.
     pub planting: Planting,
-    /// Feet of one who goes; `None` of one who gets up, lies, or is as its clips have it.
+    /// Feet of a walking character; `None` while it gets up, lies, or follows its clips only.
     pub treads: Option<Treads>,
-    /// Way from one pose to another on which it is kept out of the floor.
+    /// Transition during which it is kept out of the floor.
     pub passage: Passage,
-    /// The pose of clips with the feet planted and out of the floor, while that is another; else empty.
+    /// The clips' pose with planted feet and floor clearance, if that differs; else empty.
     pub pose: Vec<LocalTransform>,
 }
 
-/// Parts that feet look at.
+/// Inputs for the feet.
 #[derive(Clone, Copy)]
 pub(super) struct Stand<'a> {
     pub def: &'a CharacterDef,
@@ -44,30 +44,30 @@ pub(super) struct Stand<'a> {
     pub speed: f32,
     /// Seconds since it had ground.
     pub air: f32,
-    /// Its feet follow the ground as it goes.
+    /// Its feet follow the ground.
     pub follows: bool,
     /// Its bodies, if it is in the world.
     pub own: Option<&'a [BodyId]>,
 }
 
 impl Feet {
-    /// True while what is shown is not quite the clips' pose.
+    /// True while the shown pose differs from the clips'.
     pub fn are_placed(&self) -> bool {
         !self.planting.is_over() || self.is_passing() || self.are_astray()
     }
 
-    /// True while a foot is beside where the clips have it.
+    /// True while a foot is displaced from the clips'.
     fn are_astray(&self) -> bool {
         self.treads.iter().flat_map(|treads| treads.feet).any(|tread| tread.offset != Vec3::ZERO)
     }
 
-    /// The pose that clips or bodies lead to, with feet on the ground and nothing deep in the floor.
+    /// The pose of clips or bodies, with feet on the ground and out of the floor.
     pub fn led<'a>(&'a self, pose: &'a [LocalTransform]) -> &'a [LocalTransform] {
         if self.pose.is_empty() { pose } else { &self.pose }
     }
 
-    /// Puts the feet of a character that gets up, or has and still stands there, on the ground under them. Of one that goes on
-    /// they come back to where its clips have them.
+    /// Plants the feet of a character that gets up, or has and still stands there. For one that walks they return to
+    /// the clips.
     pub fn plant(&mut self, stand: &Stand<'_>, world: &World, model: &mut Vec<Affine>) {
         self.go_on_passing(stand.activity.state(), world.def().dt());
         self.follow_ground(stand, world, model);
@@ -107,7 +107,7 @@ impl Feet {
         self.planting.follow(goals, world.def().dt());
     }
 
-    /// Makes the pose that is shown of the clips'.
+    /// Computes the shown pose from the clips'.
     pub fn show(&mut self, def: &CharacterDef, state: State, figure: &Figure, model: &mut Vec<Affine>) {
         let mut pose = core::mem::take(&mut self.pose);
         pose.clone_from(&figure.pose);
@@ -116,7 +116,8 @@ impl Feet {
         self.pose = pose;
     }
 
-    /// Brings a pose of the clips to where the feet are planted after `later` seconds more, of a character that will be at `place`.
+    /// Moves a pose of the clips to the planted feet after `later` seconds more, for a character that will be at
+    /// `place`.
     pub fn place(
         &self,
         def: &CharacterDef,
@@ -153,7 +154,7 @@ impl Feet {
         (depths, [0, 1].map(ankle))
     }
 
-    /// Begins a passage of so many seconds to what is no deeper than `to`, from the pose that was shown.
+    /// Starts a transition of so many seconds to a pose no deeper than `to`, from the shown pose.
     pub fn pass(&mut self, def: &CharacterDef, (from, ankles): Depth, to: Depths, seconds: f32) {
         self.passage = match def.ground_contact {
             GroundContact::Enforced => Passage { from, to, ankles, far: [0.0; 2], age: 0.0, seconds },
@@ -161,7 +162,7 @@ impl Feet {
         };
     }
 
-    /// The passage just begun leads to where these bodies are, in the world: feet that go far are lifted at once.
+    /// Sets these bodies, in the world, as the target of the new transition: feet with far goals are lifted at once.
     pub fn pass_to(&mut self, def: &CharacterDef, bodies: &[Transform], motion: Transform, to: &[Transform]) {
         if !self.is_passing() {
             return;
@@ -176,7 +177,7 @@ impl Feet {
         }
     }
 
-    /// Goes on with it by a step.
+    /// Advances the transition by a step.
     fn go_on_passing(&mut self, state: State, dt: f32) {
         if !self.is_passing() {
             return;
@@ -187,12 +188,12 @@ impl Feet {
         }
     }
 
-    /// True while what is shown is kept out of the floor.
+    /// True while the shown pose is kept out of the floor.
     pub fn is_passing(&self) -> bool {
         self.passage != Passage::default()
     }
 
-    /// Raises a pose of the clips out of the floor, as it will be after `later` seconds more.
+    /// Raises a pose of the clips out of the floor, as after `later` seconds more.
     pub fn clear_floor(
         &self,
         def: &CharacterDef,
@@ -219,8 +220,8 @@ impl Feet {
 }
 
 impl Stand<'_> {
-    /// The ground under each foot over the floor of the clip: on a slope that under the heel, and how it tilts; across an edge
-    /// what is higher of that under heel and ball, for there a foot stands.
+    /// The ground under each foot over the clip's floor: on a slope the one under the heel, with the tilt; across an
+    /// edge the higher one of heel and ball.
     fn needed(&self, world: &World, legs: &Legs, model: &mut Vec<Affine>) -> [Need; 2] {
         let root = self.def.mapping().character_from_model();
         local_to_model(&self.def.rig, &self.figure.pose, &root, model);

@@ -1,4 +1,4 @@
-//! Pose and place of a character: now, a step ago, and as they were shown.
+//! Pose and place of a character: now, one step ago, and as shown.
 
 use super::CharacterDef;
 use super::pose_similarity::Stance;
@@ -6,7 +6,7 @@ use sinew_anim::{Animator, LocalTransform, Pose, local_to_model};
 use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::Velocity;
 
-/// Pose and place of a moment.
+/// Pose and place at a moment.
 #[derive(Clone, Debug)]
 pub(super) struct Moment {
     pub pose: Vec<LocalTransform>,
@@ -16,13 +16,13 @@ pub(super) struct Moment {
 /// Pose and place of a character.
 #[derive(Clone, Debug)]
 pub(super) struct Figure {
-    /// As bodies or clips have it, without feet on the ground and what it wears.
+    /// As bodies or clips have it, without planted feet and worn parts.
     pub pose: Vec<LocalTransform>,
     /// World from character.
     pub place: Transform,
     /// A step ago.
     pub earlier: Moment,
-    /// As they were shown at the end of the step before, with feet and what it wears.
+    /// As shown at the end of the last step, with feet and worn parts.
     pub shown: Moment,
 }
 
@@ -38,14 +38,14 @@ impl Figure {
         self.pose.extend(animator.pose().iter());
     }
 
-    /// Remembers the present pose as the one before the next.
+    /// Stores the present pose as the previous one.
     pub fn keep_earlier(&mut self) {
         core::mem::swap(&mut self.earlier.pose, &mut self.pose);
         self.earlier.place = self.place;
         self.pose.clone_from(&self.earlier.pose);
     }
 
-    /// Has it stand elsewhere with every joint where it is in the world.
+    /// Changes its place and keeps every joint where it is in the world.
     pub fn reframe(&mut self, def: &CharacterDef, to: Transform) {
         let mapping = def.mapping();
         mapping.reframe(&mut self.pose, self.place, to);
@@ -56,7 +56,7 @@ impl Figure {
         }
     }
 
-    /// Brings it elsewhere as it is.
+    /// Changes its place with its pose.
     pub fn carry(&mut self, to: Transform) {
         let moved = to * self.place.inverse();
         self.place = to;
@@ -72,7 +72,7 @@ impl Figure {
         landmarks.stance(def.mapping(), &scratch.model, self.place, points, &mut scratch.before)
     }
 
-    /// Pose and place between what was shown last (`alpha` 0) and `now` (1).
+    /// Pose and place between the last shown (`alpha` 0) and `now` (1).
     pub fn between(&self, now: &[LocalTransform], alpha: f32, pose: &mut Vec<LocalTransform>) -> Transform {
         pose.clear();
         let (from, to) = (self.shown.place, self.place);
@@ -93,11 +93,11 @@ impl Figure {
     }
 }
 
-/// Buffers that are kept to be used again; but for `posed` they hold nothing from one call to the next.
+/// Buffers for reuse; except for `posed` they hold nothing between calls.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
-    /// Bodies that the present pose was made of, where it will be the same as long as they stay; else nothing. Work that is
-    /// saved, not state: the pose is the same without it.
+    /// Bodies from which the present pose was computed, a cache while they do not move; else empty. It is not state:
+    /// the pose is the same without it.
     pub posed: Vec<Transform>,
     pub ahead: Option<Animator>,
     pub pose: Vec<LocalTransform>,
@@ -127,7 +127,7 @@ impl Scratch {
         }
     }
 
-    /// A copy of an animator, in the place of the last one: it is to be put back into `ahead`.
+    /// A copy of an animator, in place of the last one; it must be put back into `ahead`.
     pub fn sent_ahead(&mut self, animator: &Animator) -> Animator {
         match self.ahead.take() {
             Some(mut ahead) => {

@@ -1,4 +1,4 @@
-//! The floor of a clip: where its lowest drawn point stands, which need not be where the rest pose does.
+//! The floor of a clip: the height of its lowest drawn point, which may differ from the rest pose's.
 
 use super::{CharacterDef, MotionSet};
 use crate::character::tuning::OWN_FLOOR;
@@ -9,13 +9,13 @@ use sinew_anim::take::Take;
 use sinew_anim::{Channel, Clip, Interpolation, LocalTransform, Property, Rig, local_to_model};
 use sinew_math::{Affine, Vec3, min};
 
-/// Poses of a looped clip that are looked at, evenly spread.
+/// Evenly spread poses of a looped clip that are examined.
 const LOOKS: usize = 24;
 /// Words in names of clips that are in the air or in water: their lowest point is on no floor.
 const ALOFT: [&str; 7] = ["fly", "flies", "hover", "swim", "float", "glide", "jump"];
 
-/// Heights by which clips are raised so that they stand on the floor of the rest pose, metres: the looped clip, and by clip those to get
-/// up by.
+/// Heights by which clips are raised to stand on the floor of the rest pose, metres: the looped clip, and get-ups by
+/// clip.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Raised {
     pub looped: f32,
@@ -50,14 +50,14 @@ impl Raised {
         let looped = motions.looped.map_or(0.0, |index| {
             let clip = &motions.clips[index];
             let raised = raise(low(clip, 0));
-            // What has no legs or is in the air stands on nothing: only what is in the floor is raised out of it.
+            // Without legs, or in the air, nothing stands; only parts in the floor are raised.
             if raised < 0.0 && (!has_legs || is_aloft(&clip.name)) { 0.0 } else { raised }
         });
         let get_ups = motions.get_ups.iter().map(|&clip| (clip, raise(low(&motions.clips[clip], LOOKS))));
         Self { looped, get_ups: get_ups.collect() }
     }
 
-    /// Height by which that clip is raised: as the looped one, where it is none to get up by.
+    /// Height by which that clip is raised; the looped clip's, unless it is a get-up.
     pub fn of_clip(&self, index: usize) -> f32 {
         self.get_ups.iter().find(|(clip, _)| *clip == index).map_or(self.looped, |(_, raised)| *raised)
     }
@@ -78,7 +78,7 @@ fn lowest(def: &CharacterDef, surface: &Surface, pose: &[LocalTransform]) -> f32
     heights.fold(f32::INFINITY, min)
 }
 
-/// A clip with all roots of the rig that carry the character moved `by` so much, and the others, such as a floor of the file, by what is
+/// A clip with all rig roots that carry the character moved by `by`, and the others, such as a floor in the file, by
 /// `beside`; model space.
 pub(crate) fn moved(rig: &Rig, ragdoll: &RagdollDef, clip: &Clip, by: Vec3, beside: Vec3) -> Clip {
     let mut moved = clip.clone();

@@ -1,4 +1,4 @@
-//! Poses and velocities of the bodies as the clips will have them in a moment: for the speeds that they hand over, and for drives that lead there.
+//! Predicted poses and velocities of the bodies by the clips, for hand-over speeds and drives.
 
 use super::CharacterDef;
 use super::State;
@@ -14,7 +14,7 @@ use sinew_anim::Animator;
 use sinew_math::{Transform, Vec3};
 use sinew_physics::Velocity;
 
-/// The parts that decide how a pose goes on.
+/// The parts that decide how a pose continues.
 #[derive(Clone, Copy)]
 pub(super) struct Foresight<'a> {
     pub def: &'a CharacterDef,
@@ -26,8 +26,8 @@ pub(super) struct Foresight<'a> {
 }
 
 impl Foresight<'_> {
-    /// Poses of the bodies as an animator that is sent ahead has them after `seconds` more, seen from where the character
-    /// stands now. `place` is where the animator has brought it until then.
+    /// Poses of the bodies by an animator that is advanced by `seconds`, relative to the character's present place.
+    /// `place` is where the animator has moved it until then.
     fn bodies(
         &self,
         ahead: &mut Animator,
@@ -51,23 +51,24 @@ impl Foresight<'_> {
         scratch.pose = pose;
     }
 
-    /// Poses and velocities of the bodies as the animation carries them, whatever it is made of: by where it will
-    /// have them in a moment, for tracks, weights and transitions may all have changed since the last pose.
+    /// Poses and velocities of the bodies by the animation: by its pose a moment later, because tracks, weights and
+    /// transitions may have changed since the last pose.
     pub fn carried(&self, scratch: &mut Scratch) -> Vec<BodyState> {
         let (mut now, mut ahead) =
             (core::mem::take(&mut scratch.before), core::mem::take(&mut scratch.after));
-        // Seen by the character: far from the world's origin small ways drown in rounding.
+        // Relative to the character: far from the world's origin small displacements are lost in rounding.
         let pose = self.feet.led(&self.figure.pose);
         scratch.bodies_of(self.def, pose, Transform::IDENTITY, &mut now);
         let (mut animator, mut way) = (scratch.sent_ahead(&self.gait.animator), Transform::IDENTITY);
         let laps = laps(&animator);
-        // Velocities are those of the clips, from what they have now: the pose may be that of bodies or of stepping feet, which is not quite theirs.
+        // Velocities are those of the clips from their present pose: the shown pose may be that of bodies or of
+        // stepping feet.
         let (mut from, mut further) = (Vec::new(), Vec::new());
         self.bodies(&mut animator, &mut way, 0.0, scratch, &mut from);
         self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut ahead);
         self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut further);
         if self::laps(&animator) != laps {
-            // Across a loop's seam poses may jump: what counts is how they go on behind it.
+            // Across a loop's seam poses may jump: the motion behind the seam counts.
             core::mem::swap(&mut from, &mut further);
             self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut ahead);
             self.bodies(&mut animator, &mut way, HAND_OVER_TIME, scratch, &mut further);
@@ -78,7 +79,8 @@ impl Foresight<'_> {
             let [first, second, third] = [from[index], ahead[index], further[index]];
             let between = |a, b| body_velocity(a, b, body.mass.center, HAND_OVER_TIME, self.def.speed_bound);
             let (soon, later) = (between(first, second), between(second, third));
-            // Means of two spans, brought to the start of the first: a transition may well change speeds by a tenth in one.
+            // Means of two spans, extrapolated to the start of the first: a transition may change speeds by a tenth in
+            // one.
             let start = |soon: Vec3, later: Vec3| place.rotation * (soon + (soon - later) * 0.5);
             let velocity = Velocity {
                 linear: start(soon.linear, later.linear),
@@ -91,8 +93,8 @@ impl Foresight<'_> {
         states
     }
 
-    /// Poses of the bodies in the clips at the end of the next step, in `scratch.after`, and their velocities on the way there, in
-    /// `scratch.velocities`.
+    /// Poses of the bodies by the clips at the end of the next step, in `scratch.after`, and their velocities until
+    /// then, in `scratch.velocities`.
     pub fn next(&self, dt: f32, scratch: &mut Scratch) {
         let mut targets = core::mem::take(&mut scratch.after);
         let mut before = core::mem::take(&mut scratch.before);
@@ -115,7 +117,7 @@ impl Foresight<'_> {
     }
 }
 
-/// Laps of all tracks, summed: another sum after a moment tells of a seam between.
+/// Sum of the laps of all tracks: a change shows a seam in between.
 fn laps(animator: &Animator) -> i64 {
     animator.tracks().fold(0, |sum, track| sum.wrapping_add(track.playhead().lap()))
 }

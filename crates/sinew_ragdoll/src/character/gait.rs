@@ -1,4 +1,4 @@
-//! Locomotion of a character: its clips, its mover, and the velocity and heading that were asked for.
+//! Locomotion of a character: its clips, its mover, and the requested velocity and heading.
 
 use super::activity::Activity;
 use super::figure::Figure;
@@ -17,25 +17,26 @@ pub(super) struct Gait {
     pub animator: Animator,
     /// While it stands in a world.
     pub mover: Option<MoverId>,
-    /// Velocity that it is to go with, m/s; `None`: as its clips do.
+    /// Requested velocity, m/s; `None`: root motion.
     pub wish: Option<Vec3>,
     /// Direction in which it is to look, level, of length 1.
     pub facing: Option<Vec3>,
-    /// The mover's turn as it was last asked.
+    /// The mover's rotation when last read.
     pub yaw: f32,
     /// Velocity of the mover, m/s.
     pub velocity: Vec3,
     /// Speed over the ground in the last step, m/s.
     pub speed: f32,
-    /// Speed at which the ground took the character's origin up in the last step, m/s; 0 with a mover.
+    /// Speed at which the ground raised the character's origin in the last step, m/s; 0 with a mover.
     pub climbing: f32,
     /// Speed at which the looped clip is played, m/s.
     pub pace: f32,
     /// Seconds since the mover had ground.
     pub air: f32,
-    /// Way from its mover to where it is shown: it takes a moment to come down a step, or to where the mover was pushed out, metres.
+    /// Offset from its mover to its shown place: it takes a moment to follow a step down, or a mover that was pushed
+    /// out, metres.
     pub beside: Vec3,
-    /// It left the ground for too long or came down too fast.
+    /// It left the ground for too long or landed too fast.
     pub falls: bool,
 }
 
@@ -65,8 +66,7 @@ impl Gait {
         }
     }
 
-    /// Takes the clips forward by a step, and the figure over the ground with them. `own`: bodies of a character that is in the
-    /// world.
+    /// Advances the clips and the figure over the ground by a step. `own`: bodies of a character in the world.
     pub fn advance(
         &mut self,
         def: &CharacterDef,
@@ -81,7 +81,7 @@ impl Gait {
         figure.keep_earlier();
         figure.take(&self.animator);
         let step = root_step(def, &self.animator);
-        // Who lies would be swung about by its feet: it turns as it comes to stand.
+        // A lying body would be swung about its feet, so it turns as it comes to stand.
         let most = if activity.state() == State::Powered { POWERED_TURNS } else { f32::INFINITY };
         let turns = min(def.in_world.turn_speed, most) * (1.0 - activity.lowness(def, &self.animator));
         let from = figure.place;
@@ -100,8 +100,7 @@ impl Gait {
         self.climbing = (to.translation.y - from.translation.y) / dt;
     }
 
-    /// Place that it comes to within a step, with the mover that stands for it; notes what the mover feels. `turns`: speed at which
-    /// it may turn, rad/s.
+    /// Place after a step, by its mover; records what the mover feels. `turns`: largest turning speed, rad/s.
     fn ride(
         &mut self,
         def: &CharacterDef,
@@ -119,7 +118,7 @@ impl Gait {
         let way = feet - mover.interpolated(0.0);
         let level = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
         let beyond = way - velocity * dt;
-        // What overlaps it, and a tread in front of it, push it aside within a step.
+        // Overlapping bodies and a tread in front of it push it aside within a step.
         let aside = if ground.is_some() { level(beyond) } else { beyond };
         let pushed = aside * max(1.0 - PUSHED_ASIDE * dt / max(aside.length(), 1e-6), 0.0);
         self.beside -= pushed;
@@ -132,7 +131,7 @@ impl Gait {
         let landed = ground.is_some() && self.air > 0.0;
         self.air = if ground.is_some() { 0.0 } else { self.air + dt };
         self.falls = self.air > settings.air_time || landed && fell > settings.landing_speed;
-        // What falls keeps the velocity with which it came down.
+        // A falling body keeps its landing velocity.
         if !(self.falls && landed) {
             self.velocity = velocity;
         }
@@ -145,11 +144,12 @@ impl Gait {
             None if self.wish.is_some() => heading,
             None => heading * step.rotation,
         };
-        // The mover keeps its skin free, the character stands on its soles.
+        // The mover keeps its skin distance; the character stands on its soles.
         Some(Transform::new(feet + self.beside - Vec3::Y * mover.def().skin, rotation.normalize()))
     }
 
-    /// Tells the mover where to go in the next step, and lets it grow to its height. `on_feet`: it picks up speed by its own feet.
+    /// Tells the mover where to go in the next step, and lets it grow to its height. `on_feet`: it accelerates by its
+    /// own feet.
     pub fn steer(
         &mut self,
         def: &CharacterDef,
@@ -170,7 +170,7 @@ impl Gait {
         }
     }
 
-    /// [`wanted_walk`](Self::wanted_walk), or as near to it as what stands on its own feet gets within a step.
+    /// [`wanted_walk`](Self::wanted_walk), limited by the acceleration of its own feet.
     fn reachable_walk(
         &self,
         def: &CharacterDef,
@@ -188,14 +188,14 @@ impl Gait {
         now + change * min(PICKS_UP * dt / max(change.length(), 1e-6), 1.0)
     }
 
-    /// Velocity over the ground at which it is to go in a step of `dt` seconds: as it was told, or as its clips go.
+    /// Wanted velocity over the ground in a step of `dt` seconds: as requested, or by root motion.
     pub fn wanted_walk(&self, def: &CharacterDef, state: State, rotation: Rotation, dt: f32) -> Vec3 {
         let step = root_step(def, &self.animator).translation;
         let wish = self.wish.filter(|_| state != State::GettingUp);
         wish.unwrap_or(rotation * step / dt * Vec3::new(1.0, 0.0, 1.0))
     }
 
-    /// Plays the looped clip as fast as the character goes, and lets it stand where it does not.
+    /// Plays the looped clip at the character's speed, and idles at rest.
     fn keep_pace(&mut self, def: &CharacterDef, dt: f32) {
         if self.mover.is_none() || self.wish.is_none() {
             return;
@@ -237,7 +237,7 @@ impl Gait {
         }
     }
 
-    /// The track of a clip; one with no weight is started if there is none.
+    /// The track of a clip, started without weight if there is none.
     fn track_or_silent(&mut self, def: &CharacterDef, clip: ClipId, sync_group: Option<u8>) -> TrackId {
         self.track_of(clip).unwrap_or_else(|| {
             self.animator.play(def.set(), &TrackDef { weight: 0.0, sync_group, ..TrackDef::new(clip) })
@@ -269,7 +269,7 @@ impl Gait {
         self.animator.tracks().find(plays).map(sinew_anim::Track::id)
     }
 
-    /// Place that it comes to in `seconds` more, seen from where it stands now: by its mover, or by its clips.
+    /// Place after `seconds` more, relative to its present place: by its mover, or by its clips.
     pub fn gone_on(
         &self,
         def: &CharacterDef,
@@ -290,7 +290,7 @@ impl Gait {
         place
     }
 
-    /// Puts a mover where it stands, at a share of its height.
+    /// Adds a mover at its place, at a share of its height.
     pub fn stand_up(&mut self, def: &CharacterDef, place: Vec3, world: &mut World, share: f32) {
         let Some(mover) = def.in_world.mover.as_ref().filter(|_| self.mover.is_none()) else { return };
         let height = max(2.0 * mover.radius, share * mover.height);
@@ -305,14 +305,14 @@ impl Gait {
         (self.velocity, self.beside, self.falls) = (Vec3::ZERO, Vec3::ZERO, false);
     }
 
-    /// Takes its mover out: it lies.
+    /// Removes its mover because it lies.
     pub fn sit_down(&mut self, world: &mut World) {
         if let Some(mover) = self.mover.take().filter(|&mover| world.contains_mover(mover)) {
             world.remove_mover(mover);
         }
     }
 
-    /// Starts over at a place that it was brought to.
+    /// Restarts at a new place.
     pub fn teleport(&mut self, place: Vec3, world: &mut World) {
         (self.air, self.beside, self.velocity) = (0.0, Vec3::ZERO, Vec3::ZERO);
         if let Some(mover) = self.mover {
@@ -322,7 +322,7 @@ impl Gait {
     }
 }
 
-/// A rotation turned about the vertical so that +z comes toward a level direction, by an angle at most.
+/// A rotation turned about the vertical so that +z moves toward a level direction, by at most an angle.
 fn turned_to(rotation: Rotation, direction: Vec3, most: f32) -> Rotation {
     let ahead = rotation * Vec3::Z;
     let angle = trig::atan2(

@@ -1,4 +1,4 @@
-//! From lying to standing: which clip, from which moment, where there is room, and which way round.
+//! From lying to standing: choice of clip and moment, room, and heading.
 
 use super::CharacterDef;
 use super::figure::Figure;
@@ -9,15 +9,15 @@ use sinew_anim::{Animator, TrackId, smoothstep};
 use sinew_math::{Rotation, Transform, Vec3};
 use sinew_physics::{BodyContact, BodyId, BodyKind, Effect, World};
 
-/// A character on its way up.
+/// A rising character.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rising {
     pub way: Way,
-    /// Slope of the ground on which it gets up, as a turn from the vertical: scaled axis, world axes.
+    /// Slope of the ground, as a rotation from the vertical: scaled axis, world axes.
     pub lean: Vec3,
 }
 
-/// A way to get up.
+/// A get-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Way {
     /// By this track.
@@ -29,7 +29,7 @@ pub(super) enum Way {
 /// Outcome of a step of rising.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Risen {
-    /// It goes on.
+    /// It continues.
     NotYet,
     /// Its clip is over.
     ByClip,
@@ -38,7 +38,7 @@ pub(super) enum Risen {
 }
 
 impl Rising {
-    /// Share of a get-up that is left until it stands upright: 1 and more as long as it still lies, 0 and less once it does.
+    /// Remaining share of a get-up until it stands upright: 1 and more while it still lies, 0 and less once it stands.
     pub fn left(&self, def: &CharacterDef, animator: &Animator) -> f32 {
         match self.way {
             Way::ByClip(id) => {
@@ -52,19 +52,19 @@ impl Rising {
         }
     }
 
-    /// On a slope the clip, made for a level floor, lies as the slope does and comes to stand upright.
+    /// On a slope the clip, made for a level floor, lies along the slope and gradually stands upright.
     pub fn straighten(&self, def: &CharacterDef, animator: &Animator, figure: &mut Figure) {
         if self.lean == Vec3::ZERO {
             return;
         }
         let before = figure.place.rotation;
-        // What is left of the lean after the last step is in the rotation: the heading is what it had without.
+        // The remaining lean after the last step is in the rotation; the heading is the one without it.
         let heading = Rotation::from_axis_angle(Vec3::Y, before.twist_angle(Vec3::Y));
         let left = smoothstep(self.left(def, animator));
         figure.place.rotation = Rotation::from_scaled_axis(self.lean * left) * heading;
     }
 
-    /// Goes on for `dt` seconds.
+    /// Advances by `dt` seconds.
     pub fn go_on(&mut self, animator: &Animator, dt: f32) -> Risen {
         match &mut self.way {
             Way::ByClip(track) => {
@@ -87,7 +87,7 @@ pub(super) struct Choice<'a> {
     pub pose_similarity: PoseSimilarity,
 }
 
-/// The best of all clips and moments for a body that lies like that in the world.
+/// The best of all clips and moments for a body in this pose.
 pub(super) fn choose<'a>(get_ups: &'a [GetUp], landmarks: &Landmarks, lies: &Stance) -> Option<Choice<'a>> {
     let all = get_ups.iter().flat_map(|get_up| get_up.starts.iter().map(move |start| (get_up, start)));
     all.map(|(get_up, start)| Choice {
@@ -98,8 +98,8 @@ pub(super) fn choose<'a>(get_ups: &'a [GetUp], landmarks: &Landmarks, lies: &Sta
     .reduce(|a, b| if b.pose_similarity.distance < a.pose_similarity.distance { b } else { a })
 }
 
-/// Place, height and turn at which a character that lies as its figure does stands on a slope: as high as the ground where the pelvis
-/// is, on the slope that it lies on. `ground`: height of the ground there.
+/// Place, height and heading of a character lying on a slope: as high as the ground at the pelvis. `ground`: height of
+/// the ground there.
 pub(super) fn standing(place: Transform, lean: Vec3, pelvis: Vec3, ground: f32) -> Transform {
     let mut to = Transform::new(place.translation, Rotation::from_scaled_axis(lean) * place.rotation);
     let normal = Rotation::from_scaled_axis(lean) * Vec3::Y;
@@ -108,7 +108,7 @@ pub(super) fn standing(place: Transform, lean: Vec3, pelvis: Vec3, ground: f32) 
     to
 }
 
-/// True if another mover stands where its own would.
+/// True if another mover occupies its mover's place.
 pub(super) fn is_taken(def: &CharacterDef, world: &World, place: Vec3) -> bool {
     let Some(own) = &def.in_world.mover else { return false };
     world.mover_ids().any(|id| {
@@ -120,9 +120,9 @@ pub(super) fn is_taken(def: &CharacterDef, world: &World, place: Vec3) -> bool {
     })
 }
 
-/// True if it bears what could go away by itself, and has not done so for too long: a kinematic body that stands on it, or dynamic
-/// ones that press it down by more than it presses others. Of those who lie on each other these loads sum to none, so that one is
-/// always free to get up. `steps`: for which it has lain.
+/// True if something movable lies on it, and it has not waited too long: a kinematic body that stands on it, or dynamic
+/// ones that press it down by more than it presses others. These net loads of characters in a pile sum to zero, so that
+/// one is always free. `steps`: time it has lain.
 pub(super) fn is_under(def: &CharacterDef, own: &[BodyId], steps: u32, world: &World) -> bool {
     let dt = world.def().dt();
     if steps as f32 * dt > BEARS_FOR {

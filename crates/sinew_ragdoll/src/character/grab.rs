@@ -1,4 +1,4 @@
-//! Grips on the limbs of others, and on whatever forces move: they take hold where they touch, pull no harder than they may, and let go.
+//! Grips on limbs and other dynamic bodies: they hold the touched point with bounded force, and let go beyond it.
 
 use super::grasp::{Grab, Grasp};
 use super::hold::{Grips, Hold};
@@ -10,7 +10,7 @@ use sinew_physics::boxes::Overlap;
 use sinew_physics::{Aabb, BodyId, BodyKind, JointId, JointState, World};
 
 impl Grips {
-    /// Has one of its bodies, by index, take hold of another body where they touch.
+    /// Makes one of its bodies, by index, grab another body where they touch.
     pub fn grab(
         &mut self,
         physique: &Physique,
@@ -36,7 +36,8 @@ impl Grips {
         Some(joint)
     }
 
-    /// True if a hand, a grip or a joint holds one of its bodies that is not its own: another character's, or one that no force moves.
+    /// True if a hand, a grip or a joint of something else holds one of its bodies: another character, or a body that
+    /// is not dynamic.
     pub fn is_gripped(&self, physique: &Physique, world: &World) -> bool {
         let own = physique.own();
         let is_own_joint =
@@ -53,13 +54,13 @@ impl Grips {
         })
     }
 
-    /// True of a body through which its own pass because it hangs on what it holds, or has let go of.
+    /// True for a body that its own pass through because it hangs on a held or released one.
     pub fn passes_through(&self, world: &World, body: BodyId) -> bool {
         let mut all = self.held().chain(self.freed.iter().copied()).filter(|&held| world.contains(held));
         all.any(|held| held == body || together(world, held).contains(&body))
     }
 
-    /// Has its bodies collide with what it let go of, as soon as the two are apart.
+    /// Enables collision with released bodies once they are apart.
     pub fn mind_freed(&mut self, own: &[BodyId], world: &mut World) {
         if self.freed.is_empty() {
             return;
@@ -84,7 +85,7 @@ impl Grips {
         self.freed = freed;
     }
 
-    /// Has its grips pull through the next step; gives what one lets go of.
+    /// Pulls all grips through the next step; returns what one lets go of.
     pub(super) fn pull(&mut self, world: &mut World) -> Option<BodyId> {
         for hold in &mut self.holds {
             if let Some(grasp) = &mut hold.grasp
@@ -97,7 +98,7 @@ impl Grips {
     }
 }
 
-/// True if a mover stands in these bodies: one that has dragged them, for one.
+/// True if a mover stands in these bodies, for instance one that dragged them.
 pub(super) fn is_entered(world: &World, own: &[BodyId]) -> bool {
     let Some(own) = around(world, own) else { return false };
     world.mover_ids().any(|id| {
@@ -109,7 +110,7 @@ pub(super) fn is_entered(world: &World, own: &[BodyId]) -> bool {
     })
 }
 
-/// Bounds of bodies, with room for a step.
+/// Bounds of bodies, enlarged for a step.
 fn around(world: &World, bodies: &[BodyId]) -> Option<Aabb> {
     let bounds = bodies.iter().map(|&body| world.bounds(body)).reduce(|a, b| a.merge(&b))?;
     let room = Vec3::splat(PARTED);

@@ -7,8 +7,8 @@ use sinew_physics::{BodyDef, BodyId, BodyKind, JointId, World};
 /// First bytes; the last is the version.
 const MAGIC: &[u8; 8] = b"sinew-g\x01";
 
-/// A point of the world that holds a body, a limb for one, and drags it to where the game says: with a mouse, for one. It goes there at
-/// [`Grab::speed`], not farther ahead of what it holds than its force stretches it, so that nothing is thrown however the target jumps.
+/// A point of the world that holds a body, such as a limb, and drags it: for instance a mouse. It moves at
+/// [`Grab::speed`], at most as far ahead of its body as its force stretches, so that jumps of the target throw nothing.
 ///
 /// ```
 /// use sinew_math::{Transform, Vec3};
@@ -39,17 +39,17 @@ pub struct GrabPoint {
     ground: BodyId,
     joint: JointId,
     held: BodyId,
-    /// Point at which it took hold, world.
+    /// Grab point, world.
     origin: Vec3,
     grasp: Grasp,
 }
 
 impl GrabPoint {
-    /// Takes hold of a body at the point of its surface nearest to `point` (metres, world), or at that itself if it is inside. `None` if that is farther away than [`Grab::reach`], or no force
-    /// moves the body.
+    /// Grabs a body at the surface point nearest to `point` (metres, world), or at `point` itself if it is inside.
+    /// `None` if that is further away than [`Grab::reach`], or the body is not dynamic.
     ///
     /// # Panics
-    /// If a number of the grip makes no sense, the point is not finite, or the body is not there.
+    /// If a number of the grip is invalid, the point is not finite, or the body is missing.
     #[track_caller]
     pub fn take(world: &mut World, held: BodyId, point: Vec3, grab: &Grab) -> Option<Self> {
         grab.check();
@@ -73,7 +73,7 @@ impl GrabPoint {
         self.grasp.lead(point - self.origin);
     }
 
-    /// Point to which it goes, metres, world.
+    /// Target position, metres, world.
     pub fn target(&self) -> Vec3 {
         self.origin + self.grasp.goal
     }
@@ -88,7 +88,8 @@ impl GrabPoint {
         self.joint
     }
 
-    /// Pulls through the next step: call it before each. False once it holds no more: what it held is gone, or farther from the target than [`Grab::slip`].
+    /// Pulls through the next step: call it before each. False once it holds nothing: the body is gone, or further from
+    /// the target than [`Grab::slip`].
     pub fn update(&mut self, world: &mut World) -> bool {
         let is_there = world.contains_joint(self.joint) && world.contains(self.held);
         if is_there && self.grasp.pull(world, self.joint, true) {
@@ -109,7 +110,7 @@ impl GrabPoint {
         }
     }
 
-    /// Writes what the world's snapshot does not hold.
+    /// Writes the state that the world's snapshot does not hold.
     pub fn save(&self, w: &mut Writer) {
         w.raw(MAGIC);
         w.u64(self.ground.to_bits());
@@ -119,7 +120,7 @@ impl GrabPoint {
         self.grasp.save(w);
     }
 
-    /// A point that was saved; it goes with the world's snapshot of the same time.
+    /// Reads a saved point; it belongs to the world's snapshot of the same time.
     ///
     /// # Errors
     /// If the bytes are not those of such a point of this version.

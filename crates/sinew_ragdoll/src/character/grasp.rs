@@ -1,4 +1,5 @@
-//! A grip: a joint with a motor that holds one point of what is held, as stiff as its force is reached at a hundredth of a metre.
+//! A grip: a joint with a motor that holds one point, with a stiffness that reaches its force at a hundredth of a
+//! metre.
 
 use super::tuning::{GRIP_SHARE, GRIP_STRETCH, LEAST_ALONG, LEAST_GAP};
 use sinew_math::{ReadError, Reader, Rotation, Transform, Vec3, Writer, max, min};
@@ -6,19 +7,20 @@ use sinew_physics::{
     BodyId, BodyKind, Gains, JointDef, JointId, JointKind, Motor, SixDof, Softness, Velocity, World,
 };
 
-/// A way to grab something.
+/// Settings of a grab.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grab {
-    /// Most force of the grip, N. Default 1300: what drags a man at a walk.
+    /// Largest force of the grip, N. Default 1300, which drags a man at a walk.
     pub max_force: f32,
-    /// Farthest that the surface of what is grabbed may be from the middle of the hand, or from the point, metres. Default 0.25.
+    /// Largest distance from the surface to the middle of the hand, or to the point, metres. Default 0.25.
     pub reach: f32,
-    /// Distance by which the grip slips at its full force before it lets go, metres; of a [`GrabPoint`](super::GrabPoint) the distance from its target.
-    /// Default 0.4.
+    /// Distance by which the grip slips at its full force before it lets go, metres; for a
+    /// [`GrabPoint`](super::GrabPoint) the distance from its target. Default 0.4.
     pub slip: f32,
-    /// Point in the frame of the hand's body to which it draws what it holds, at `speed`; `None`: to the hand's surface, where what touches it stays. Default `None`.
+    /// Point in the frame of the hand's body to which it pulls the held body, at `speed`; `None`: to the hand's
+    /// surface. Default `None`.
     pub to: Option<Vec3>,
-    /// Speed at which it draws what it holds, and at which a [`GrabPoint`](super::GrabPoint) moves, m/s. Default 1.
+    /// Speed at which it pulls the held body, and at which a [`GrabPoint`](super::GrabPoint) moves, m/s. Default 1.
     pub speed: f32,
     /// It lets go when its character goes limp. Default true.
     pub drops: bool,
@@ -28,11 +30,11 @@ impl Grab {
     /// Grip of a hand.
     pub const HAND: Self =
         Self { max_force: 1300.0, reach: 0.25, slip: 0.4, to: None, speed: 1.0, drops: true };
-    /// Grip of a point that a person moves, a mouse's: at most at 2.5 m/s, and it never lets go by itself.
+    /// Grip for a point moved by a person, such as a mouse: at most 2.5 m/s, and it never lets go by itself.
     pub const POINT: Self = Self { slip: f32::INFINITY, speed: 2.5, ..Self::HAND };
 
     /// # Panics
-    /// If a number makes no sense.
+    /// If a number is invalid.
     #[track_caller]
     pub(super) fn check(&self) {
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
@@ -50,14 +52,14 @@ impl Default for Grab {
     }
 }
 
-/// A grip that holds. Points are seen from the anchor on the hand, in the axes of the hand's body, metres.
+/// An active grip. Points are relative to the anchor on the hand, in the axes of the hand's body, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Grasp {
-    /// Place at which it is to hold.
+    /// Target of the hold.
     pub goal: Vec3,
-    /// From there to where it holds now, world axes: what is drawn to a hand from afar does not turn with it.
+    /// Offset from there to the current hold, world axes: what is pulled to a hand from afar does not rotate with it.
     pub off: Vec3,
-    /// Anchors on the hand's body and on what is held, in their frames.
+    /// Anchors on the hand's body and on the held one, in their frames.
     anchors: [Vec3; 2],
     max_force: f32,
     slip: f32,
@@ -67,14 +69,14 @@ pub(super) struct Grasp {
 }
 
 impl Grasp {
-    /// Point of `held` at which a hand at `palm` takes hold, world; `None` where it does not reach.
+    /// Point of `held` that a hand at `palm` grabs, world; `None` if it is out of reach.
     pub fn touch(world: &World, held: BodyId, palm: Vec3, reach: f32) -> Option<Vec3> {
         let surface = world.nearest_surface(held, palm)?;
         let point = if surface.distance <= 0.0 { palm } else { surface.point };
         (surface.distance <= reach).then_some(point)
     }
 
-    /// Joins two bodies at `point` of the one that is held, which is drawn to `to`; world.
+    /// Joins two bodies at `point` of the held one, which is pulled to `to`; world.
     pub fn take(
         world: &mut World,
         [hand, held]: [BodyId; 2],
@@ -100,7 +102,8 @@ impl Grasp {
         (grasp, joint)
     }
 
-    /// Pulls through the next step; `leads`: the point that it holds stays near what it holds, which is not dragged behind. False: it lets go.
+    /// Pulls through the next step; `leads`: the target stays near the held point instead of dragging behind. False: it
+    /// lets go.
     pub fn pull(&mut self, world: &mut World, joint: JointId, leads: bool) -> bool {
         let (dt, def) = (world.def().dt(), world.joint(joint));
         let held = def.frame_a.rotation * world.joint_transform(joint).translation;
@@ -122,15 +125,16 @@ impl Grasp {
         true
     }
 
-    /// Has it go to another place, seen from the anchor on a hand that is not turned.
+    /// Sets another target, relative to the anchor on a hand that is not rotated.
     pub fn lead(&mut self, goal: Vec3) {
         self.off += self.goal - goal;
         self.goal = goal;
     }
 
-    /// The joint as it pulls what is held at a point; `velocity`: of where that is to be.
+    /// The joint that pulls the held point; `velocity` is that of the target.
     ///
-    /// Each axis has a cap of its own. The axes lie about the pull, all at the same angle to it: together they give the force, and no more in any direction.
+    /// Each axis has its own cap. The axes lie symmetrically about the pull, so that together they give the force, and
+    /// no more in any direction.
     fn pulling(&self, def: &JointDef, at: Vec3, held: Vec3, velocity: Vec3) -> JointDef {
         let (gap, third) = (at - held, (1.0_f32 / 3.0).sqrt());
         let (about, mut turn) = (Vec3::splat(third), def.frame_a.rotation);

@@ -5,13 +5,14 @@ use sinew_math::{Rotation, Vec3, max, min, trig};
 use sinew_physics::ray::Ray;
 use sinew_physics::{BodyHit, BodyId, BodyKinds, ContactRule, QueryFilter, ShapeId, Velocity, World};
 
-/// Height of what bears under a point, sought from `above` metres over it: of the static world for a character that is not in
-/// it (`own` is `None`), else of whatever is there but its own bodies, those of others that their clips move, and limbs that were cut off.
+/// Height of the supporting surface under a point, searched from `above` metres over it: of the static world for a
+/// character outside of a world (`own` is `None`), else of everything except its own bodies, led bodies of others, and
+/// detached limbs.
 pub(super) fn below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId]>) -> Option<f32> {
     found_below(world, point, above, own).map(|hit| hit.point.y)
 }
 
-/// [`below`], with what bears.
+/// [`below`], with the supporting body.
 pub(super) fn found_below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId]>) -> Option<BodyHit> {
     let ray = Ray { origin: point + Vec3::Y * above, direction: Vec3::Y * -(above + GROUND_DEPTH) };
     let hit = match own {
@@ -29,7 +30,7 @@ pub(super) fn bearer(world: &World, ray: &Ray, own: &[BodyId]) -> Option<BodyHit
     world.query().filter(QueryFilter::without(own)).accept(bears).first(ray)
 }
 
-/// Motion of the ground that bears a body; by default it stands.
+/// Motion of the ground under a body; by default it stands.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct GroundMotion {
     velocity: Velocity,
@@ -48,7 +49,7 @@ impl GroundMotion {
     }
 }
 
-/// Motion of what the first of some bodies, a pelvis, lies on.
+/// Motion of the body under a pelvis, the first of some bodies.
 pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
     let Some(&pelvis) = bodies.first() else { return GroundMotion::default() };
     let ray = Ray { origin: world.center_of_mass(pelvis), direction: Vec3::Y * -LIES_ON };
@@ -56,8 +57,8 @@ pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
     GroundMotion { velocity: world.velocity(hit.body), center: world.center_of_mass(hit.body) }
 }
 
-/// The ground that a body lies on, as a plane through its heights under these points: the turn that brings the vertical to
-/// the plane's normal, scaled axis. Stairs are the slope on which they lie.
+/// The ground under a body as a plane through its heights under these points: the rotation from the vertical to the
+/// plane's normal, scaled axis. Stairs act as the slope through their treads.
 pub(super) fn slope(world: &World, points: &[Vec3], own: Option<&[BodyId]>) -> Vec3 {
     let under =
         |&point: &Vec3| below(world, point, LYING_SEARCH, own).map(|y| Vec3::new(point.x, y, point.z));
@@ -72,7 +73,7 @@ pub(super) fn slope(world: &World, points: &[Vec3], own: Option<&[BodyId]>) -> V
         (xx, xz, zz) = (xx + d.x * d.x, xz + d.x * d.z, zz + d.z * d.z);
         (xy, zy) = (xy + d.x * d.y, zy + d.z * d.y);
     }
-    // Points in a row say nothing of the slope across it: there it is level.
+    // Collinear points do not determine the slope across them; it is level there.
     let ridge = 0.01 * (xx + zz) + 1e-6;
     let (xx, zz) = (xx + ridge, zz + ridge);
     let det = xx * zz - xz * xz;

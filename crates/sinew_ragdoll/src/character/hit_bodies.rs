@@ -1,4 +1,4 @@
-//! Bodies of a character that its clips move: led from pose to pose, and what strikes them.
+//! Bodies of a character that its clips lead, and contacts that strike them.
 
 use super::figure::Scratch;
 use super::physique::Physique;
@@ -9,17 +9,17 @@ use sinew_anim::LocalTransform;
 use sinew_math::{Transform, Vec3, max, min, normalize_or};
 use sinew_physics::{BodyId, BodyKind, Hit, Velocity, World};
 
-/// A blow that contacts brought.
+/// A contact blow.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Strike {
     /// N·s, world axes.
     pub impulse: Vec3,
-    /// Fastest that what struck can make what it meets, m/s.
+    /// Largest speed that the striker can give, m/s.
     pub speed: f32,
 }
 
 impl Physique {
-    /// Has the hit bodies go where the pose will be at the end of the next step, as far as it goes on as it did.
+    /// Leads the hit bodies to the predicted pose at the end of the next step.
     pub fn lead(
         &mut self,
         def: &CharacterDef,
@@ -54,7 +54,8 @@ impl Physique {
         (self.before, scratch.after) = (now, before);
     }
 
-    /// The hardest of what struck its bodies in the last step, if that is felt. `steps`: it stands on its own feet, whose steps are no blows.
+    /// The hardest blow to its bodies in the last step, if it is felt. `steps`: it stands on its own feet, whose steps
+    /// are no blows.
     pub fn felt(&self, def: &CharacterDef, steps: bool, world: &World) -> Option<(usize, Strike)> {
         let least = def.in_world.feels;
         if self.hit.is_empty() || least == f32::INFINITY {
@@ -69,7 +70,7 @@ impl Physique {
             }
         };
         let own = |id: BodyId| self.index_of(id);
-        // Its own steps are no blows: what stands comes into nobody.
+        // Its own steps are no blows: standing things strike nobody.
         let stands = |id: BodyId| steps && world.contains(id) && world.kind(id) == BodyKind::Static;
         for hit in &world.events().hits {
             match (own(hit.a.body), own(hit.b.body)) {
@@ -106,8 +107,8 @@ impl Physique {
         })
     }
 
-    /// Gives the impulse that a led body stopped to the body, and what would make that faster than what struck it to the bodies above it, up to
-    /// the pelvis: all of it on a hand would fling the hand away.
+    /// Applies the impulse that a led body stopped: to the body, and, as far as that would make it faster than the
+    /// striker, to the bodies above it up to the pelvis. All of it on a hand would fling the hand away.
     pub fn take_up(&self, def: &CharacterDef, body: usize, strike: Strike, world: &mut World) {
         let def = &def.ragdoll;
         let way = normalize_or(strike.impulse, Vec3::ZERO);
@@ -121,7 +122,7 @@ impl Physique {
         }
     }
 
-    /// Gives a body an impulse, at a point or at its centre of mass, and what work that did, joules.
+    /// Applies an impulse to a body, at a point or at its centre of mass; returns the work, joules.
     pub fn push(&self, body: usize, impulse: Vec3, point: Option<Vec3>, world: &mut World) -> f32 {
         let id = self.limp().bodies[body];
         let before = world.body_energy(id).kinetic;
@@ -133,8 +134,9 @@ impl Physique {
     }
 }
 
-/// Impulse of a hit on one of its bodies by another, `way` being from that to it, N·s: no more than what comes could bring to all of it, `whole` kg, and to a
-/// led body what comes by itself. A foot that comes down on a hand presses that to the ground however hard it is led.
+/// Impulse of a hit on one of its bodies by another, `way` being the direction from that to it, N·s: at most what the
+/// striker could give to the whole character, `whole` kg, and to a led body only what comes by itself. A foot that
+/// comes down on a hand presses it to the ground however hard it is led.
 fn taken(world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3, whole: f32) -> Strike {
     let Velocity { linear, angular } = world.velocity(own);
     let led = linear + angular.cross(hit.point - world.center_of_mass(own));
@@ -144,7 +146,8 @@ fn taken(world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3, whole: 
     Strike { impulse: way * min(hit.impulse, meeting_mass(world, other, whole) * speed), speed }
 }
 
-/// Mass of all of it and of what comes, as they answer to a push between them, kg; what joints hold, or nothing moves, may have any mass.
+/// Effective mass of the character and the striker for a push between them, kg; jointed or immovable strikers count as
+/// infinite.
 fn meeting_mass(world: &World, other: BodyId, whole: f32) -> f32 {
     if world.contains(other) && is_limb(world, other) {
         let mass: f32 = together(world, other).iter().map(|&body| world.mass(body).mass).sum();
@@ -160,7 +163,7 @@ fn meeting_mass(world: &World, other: BodyId, whole: f32) -> f32 {
     mass * whole / (mass + whole)
 }
 
-/// Impulse that a body that goes through one of its own would give it, if the two stopped each other: N·s.
+/// Impulse that a body passing through one of its own would give it if they stopped each other: N·s.
 fn passing(world: &World, own: BodyId, other: BodyId, whole: f32) -> Strike {
     let gone = !world.contains(other) || !world.contains(own);
     if gone || world.kind(other) != BodyKind::Dynamic || world.kind(own) == BodyKind::Dynamic {
@@ -169,7 +172,7 @@ fn passing(world: &World, own: BodyId, other: BodyId, whole: f32) -> Strike {
     let relative = world.velocity(other).linear - world.velocity(own).linear;
     let toward = world.center_of_mass(own) - world.center_of_mass(other);
     let way = normalize_or(toward, Vec3::ZERO);
-    // What comes by itself, not what it walks into.
+    // Only the striker's own motion counts.
     let comes = max(world.velocity(other).linear.dot(way), 0.0);
     let closing = max(relative.dot(way), 0.0);
     let speed = min(closing, comes);

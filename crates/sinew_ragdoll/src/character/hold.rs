@@ -1,5 +1,5 @@
-//! Bodies that hang on a character's: a sword in a hand, a lantern on a belt. Hit bodies and ragdoll are the same bodies, so that what hangs
-//! on them does in every state.
+//! Bodies that hang on a character's: a sword in a hand, a lantern on a belt. Hit bodies and ragdoll are the same
+//! bodies, so held bodies stay in every state.
 
 use super::CharacterEvent;
 use super::event::Events;
@@ -10,10 +10,10 @@ use sinew_physics::{
     BodyId, BodyKind, ContactRule, JointDef, JointId, JointKind, MoverId, Strength, Velocity, World, Yields,
 };
 
-/// A way to hold a body.
+/// Settings of a hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip {
-    /// From the frame of what is held to the frame of the bone's body. Default: they are one.
+    /// From the frame of the held body to the frame of the bone's body. Default: identity.
     pub bone_from_held: Transform,
     /// Force and torque beyond which the held body is torn off. Default unbreakable.
     pub strength: Strength,
@@ -27,7 +27,7 @@ impl Default for Grip {
     }
 }
 
-/// A body that is held, and by what.
+/// A held body, and its holder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hold {
     pub held: BodyId,
@@ -35,22 +35,22 @@ pub(super) struct Hold {
     /// Index of the body that holds it.
     pub body: u32,
     pub drops: bool,
-    /// A grip that pulls, and lets go; `None`: a fixed joint holds.
+    /// A pulling grip; `None`: a fixed joint.
     pub grasp: Option<Grasp>,
 }
 
-/// Bodies that a character holds, has let go of, and stands on: its own pass through all of these.
+/// Bodies that a character holds, has released, and stands on: its own pass through all of these.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Grips {
     pub holds: Vec<Hold>,
-    /// Limbs that it has let go of, through whose bodies its own pass until they are apart.
+    /// Released limbs, through whose bodies its own pass until they are apart.
     pub freed: Vec<BodyId>,
-    /// Dynamic body that bears the mover.
+    /// Dynamic body under the mover.
     pub bearer: Option<BodyId>,
 }
 
 impl Grips {
-    /// Puts a body on a fixed joint to one of its own, `own[body]`, at that one's velocity.
+    /// Attaches a body by a fixed joint to one of its own, `own[body]`, at that one's velocity.
     pub fn hold(
         &mut self,
         (ids, own): (&[BodyId], &[BodyId]),
@@ -74,7 +74,7 @@ impl Grips {
         joint
     }
 
-    /// Lets go of what it holds; false if it does not hold that.
+    /// Releases a held body; false if it does not hold that.
     pub fn release(&mut self, own: &[BodyId], held: BodyId, world: &mut World, events: &mut Events) -> bool {
         let Some(index) = self.holds.iter().position(|hold| hold.held == held) else { return false };
         let hold = self.holds.remove(index);
@@ -88,12 +88,12 @@ impl Grips {
         true
     }
 
-    /// Bodies that it holds, in the order in which it took them.
+    /// Held bodies, in the order in which it took them.
     pub fn held(&self) -> impl Iterator<Item = BodyId> {
         self.holds.iter().map(|hold| hold.held)
     }
 
-    /// Lets go of what was torn off or is no longer there, and has the others pull.
+    /// Drops torn or missing bodies, and pulls the other grips.
     pub fn mind(&mut self, own: &[BodyId], world: &mut World, events: &mut Events) {
         while let Some(lost) = self.torn(world) {
             self.release(own, lost, world, events);
@@ -112,7 +112,7 @@ impl Grips {
         Some(self.holds.iter().find(is_lost)?.held)
     }
 
-    /// Lets go of what it holds, or only of what it drops when it goes limp.
+    /// Drops all held bodies, or only those dropped when going limp.
     pub fn release_all(
         &mut self,
         own: &[BodyId],
@@ -126,7 +126,7 @@ impl Grips {
         }
     }
 
-    /// Lets go of what these bodies hold, by index.
+    /// Drops what these bodies hold, by index.
     pub fn drop_from(&mut self, own: &[BodyId], parts: &[usize], world: &mut World, events: &mut Events) {
         let holds = self.holds.iter();
         let dropped: Vec<BodyId> =
@@ -136,8 +136,8 @@ impl Grips {
         }
     }
 
-    /// Lets a body pass through those of the character and through movers, or takes that back. One that a character keeps has rules of its own, and takes all of that
-    /// along; the two collide again once they are apart.
+    /// Lets a body pass through those of the character and through movers, or reverts that. For a body of another
+    /// character this applies to all of that one's bodies; the two collide again once they are apart.
     pub fn set_passes(&mut self, own: &[BodyId], other: BodyId, passes: bool, world: &mut World) {
         let rule = if passes { ContactRule::Yields(Yields::default()) } else { ContactRule::Push };
         let is_owned = world.body_owner(other).is_some();
@@ -161,8 +161,8 @@ impl Grips {
         }
     }
 
-    /// Has its bodies pass through the dynamic body that bears its mover, which presses it with its weight alone: feet that kicked a crate on
-    /// which they ride would drive it, and themselves with it, faster and faster.
+    /// Lets its bodies pass through the dynamic body that bears its mover, which only feels the mover's weight: feet
+    /// that kick a crate on which they ride would accelerate it and themselves without end.
     pub fn spare_bearer(&mut self, own: &[BodyId], mover: Option<MoverId>, world: &mut World) {
         let ground = mover.and_then(|mover| world.mover_ground(mover));
         let bearer = ground.and_then(|ground| ground.shape).map(|shape| shape.body);

@@ -1,5 +1,5 @@
-//! A character's share of the world while its clips move it: a mover that stands, walks and falls, and bodies that can be
-//! hit. Settings.
+//! Settings of a character's share of the world while clips move it: a mover that stands, walks and falls, and bodies
+//! that can be hit.
 
 use super::{CharacterDef, State};
 use crate::character::tuning::{FELLING_SPEED, MOVER_RADIUS};
@@ -10,7 +10,7 @@ use sinew_physics::{ContactRule, MoverDef, Yields};
 /// Bodies of a character that its clips move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HitBodies {
-    /// In the world, kinematic: rays and shapes find them, contacts tell of them, what flies bounces off. They push within
+    /// In the world, kinematic: rays, shapes and contacts find them, and flying bodies bounce off. They push within
     /// these bounds. Default.
     Present(Yields),
     /// Not in the world.
@@ -28,15 +28,15 @@ pub struct Blow {
     pub state: State,
 }
 
-/// Rule by which blows fell a character that stands, or let it flinch.
+/// Rule by which blows fell a standing character, or make it flinch.
 #[derive(Clone, Copy, Debug)]
 pub enum Toughness {
-    /// Each blow does.
+    /// Every blow fells.
     None,
-    /// Blows of that many N·s and more; weaker ones let it flinch. While it gets up, 2.5 times as many where it is still near the ground.
-    /// Default: the speed of 0.6 m/s for its whole mass.
+    /// Blows of at least that many N·s fell; weaker ones make it flinch. While it gets up near the ground, 2.5 times as
+    /// much is needed. Default: a speed of 0.6 m/s for its whole mass.
     Impulse(f32),
-    /// The user's function says: true fells it.
+    /// A user's function decides: true fells it.
     Function(fn(&CharacterDef, &Blow) -> bool),
 }
 
@@ -54,22 +54,23 @@ impl PartialEq for Toughness {
 /// Feet of a character that goes and stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FootPlanting {
-    /// On the ground under them: on stairs, slopes, edges and what moves; a foot that is down stays where it is. What is lighter than a twentieth of the
-    /// character, and limbs of others, are no ground. For humanoids in a world, with [hit bodies](InWorld::hit_bodies). Default.
+    /// On the ground under them: on stairs, slopes, edges and moving ground; a planted foot keeps its place. Bodies
+    /// lighter than a twentieth of the character, and limbs of others, are no ground. For humanoids in a world, with
+    /// [hit bodies](InWorld::hit_bodies). Default.
     OnGround,
-    /// As the clips have them, but for a character that got up and still stands there.
+    /// As the clips have them, except for a character that got up and still stands there.
     AsClips,
 }
 
-/// The share of a world that characters of a kind have while their clips move them, and the blows and falls that they stand.
+/// Settings of a kind of character in a world while clips move it: mover, bodies, blows and falls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InWorld {
     /// Its bodies. Default present.
     pub hit_bodies: HitBodies,
-    /// Mover that stands for it, by size, mass and filter; `position` does nothing. `None`: nothing stops or carries it, and
-    /// it goes where its clips take it over the static world. Default: as tall and heavy as the character.
+    /// Its mover, by size, mass and filter; `position` is ignored. `None`: nothing stops or carries it, and root motion
+    /// moves it over the static world. Default: as tall and heavy as the character.
     pub mover: Option<MoverDef>,
-    /// Speed at which it turns to where it is to face, rad/s; powered at most at 3.5. Default 8.
+    /// Turning speed, rad/s; powered at most 3.5. Default 8.
     pub turn_speed: f32,
     /// Speed of a jump, m/s. Default 3.5, which is 0.6 m.
     pub jump_speed: f32,
@@ -77,19 +78,19 @@ pub struct InWorld {
     pub air_time: f32,
     /// Speed toward the ground with which a landing fells it, m/s. Default 7, a fall from 2.5 m.
     pub landing_speed: f32,
-    /// Feet while it goes and stands. Default on the ground.
+    /// Placement of its feet. Default on the ground.
     pub foot_planting: FootPlanting,
-    /// Rule by which blows fell it or let it flinch.
+    /// Rule by which blows fell it or make it flinch.
     pub toughness: Toughness,
-    /// Steps in a row with which it tries, powered, to catch itself from a push: a powered character that may step is felled by losing its
-    /// balance and not by [`toughness`](Self::toughness), unless that is a function's or none. 0: it stands or falls where it is. Humanoids with a mover only.
-    /// Default 4.
+    /// Most steps in a row to catch a push while powered: such a character is felled by losing its balance and not by
+    /// [`toughness`](Self::toughness), unless that is a function or none. 0: it does not step. Humanoids with a mover
+    /// only. Default 4.
     pub most_steps: u32,
-    /// Impulse from which it feels what strikes its bodies by itself, N·s; infinite: it feels only what it is told of by
+    /// Least impulse that it feels from contacts, N·s; infinite: it feels only
     /// [`Character::hit`](super::Character::hit). Default 3.
     pub feels: f32,
-    /// True: [`CharacterEvent::Contact`](super::CharacterEvent::Contact) tells which of its bodies begin and stop to touch something. Default false: in crowds that
-    /// is much to look through.
+    /// True: [`CharacterEvent::Contact`](super::CharacterEvent::Contact) reports contacts of its bodies. Default false,
+    /// because crowds have many.
     pub tells_contacts: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Legs of a humanoid, and the ground that its feet are brought to.
+//! Legs of a humanoid, and bringing its feet to the ground.
 
 use crate::character::tuning::{BALL_AHEAD, FEET_QUICKNESS, FOOT_HOME, FOOT_RANGE, MOST_TILT};
 use crate::def::RagdollDef;
@@ -22,7 +22,7 @@ pub(super) struct Legs {
 }
 
 impl Legs {
-    /// By the roles of the bodies; `None` without two whole legs that hang on the pelvis. `bind`: in character space, metres.
+    /// By the roles of the bodies; `None` without two whole legs below the pelvis. `bind`: in character space, metres.
     pub fn of(rig: &Rig, def: &RagdollDef, bind: &[Affine]) -> Option<Self> {
         let joint = |role: &str| def.bodies.iter().find(|body| body.role == role).map(|body| body.joint);
         let hangs_on = |joint: JointIdx, above: JointIdx| {
@@ -40,7 +40,7 @@ impl Legs {
                 (place(leg.lower) - place(leg.upper)).length() + (place(leg.end) - place(leg.lower)).length();
             let body = def.bodies.iter().find(|body| body.joint == leg.end)?;
             let toes = part("Toes").into_iter().chain(body.merged.iter().copied()).map(place);
-            // The foremost of what the foot is made of.
+            // The foremost joint of the foot.
             let foremost = toes.fold(ankle.translation, |a, b| if b.z > a.z { b } else { a });
             let usual = ankle.translation + Vec3::Z * (BALL_AHEAD * length);
             let ball =
@@ -68,7 +68,7 @@ impl Legs {
         })
     }
 
-    /// Level way of an ankle on a slope, which goes up along the normal of that and not along the vertical; `model` is in the space of the
+    /// Displacement of an ankle on a slope along its normal instead of the vertical; `model` is in the space of the
     /// character.
     pub fn lean(&self, foot: usize, slope: f32, model: &[Affine]) -> Vec3 {
         let ankle = model[self.chains[foot].end].to_rigid();
@@ -76,8 +76,8 @@ impl Legs {
         ahead * (slope / (1.0 + slope * slope).sqrt() * (self.ankle_height - ankle.translation.y))
     }
 
-    /// Brings a pose's feet onto the ground as it is planted on, by the pelvis and the knees; `up` is seen by the character.
-    /// `model` is cleared and filled.
+    /// Moves a pose's feet onto the planted ground, by the pelvis and the knees; `up` is in character space. `model` is
+    /// cleared and filled.
     pub fn place(
         &self,
         rig: &Rig,
@@ -159,7 +159,7 @@ impl Planting {
         }
     }
 
-    /// Ends what is left of a foot that is back on the floor of its clip.
+    /// Resets a foot that is back on the floor of its clip.
     pub fn come_to_rest(&mut self, foot: usize, goal: Need) {
         let all = [self.heights[foot], self.rates[foot], self.slopes[foot], self.slope_rates[foot]];
         if goal == Need::default() && all.iter().all(|x| x.abs() < FOOT_HOME) {

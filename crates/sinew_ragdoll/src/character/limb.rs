@@ -1,4 +1,4 @@
-//! A limb that was cut off a character: bodies of its own in the world, and its part of the skin.
+//! A detached limb: bodies of its own in the world, and its part of the skin.
 
 use super::CharacterDef;
 use super::show::rows;
@@ -15,8 +15,8 @@ const MAGIC: &[u8; 8] = b"sinew-l\x01";
 const BODY_BYTES: usize = 12;
 const SKIN_BYTES: usize = 56;
 
-/// A limb that [`Character::detach`](super::Character::detach) cut off: bodies, joints between them, and the joints of the rig that move its part of the
-/// skin. It falls as the world has it, needs no update, and stays until [`despawn`](Self::despawn).
+/// A limb from [`Character::detach`](super::Character::detach): bodies, joints between them, and the joints of the rig
+/// that move its skin. The world simulates it, it needs no update, and it stays until [`despawn`](Self::despawn).
 #[derive(Clone, Debug)]
 pub struct Limb {
     def: Arc<CharacterDef>,
@@ -38,7 +38,8 @@ struct SkinJoint {
 }
 
 impl Limb {
-    /// A limb whose bodies are in the world. `world_from_joint`: of every joint of the rig, in the pose of the moment; `poses`: of its bodies.
+    /// A limb whose bodies are in the world. `world_from_joint`: of every joint of the rig at that moment; `poses`: of
+    /// its bodies.
     pub(super) fn new(
         def: Arc<CharacterDef>,
         parts: Vec<usize>,
@@ -78,7 +79,7 @@ impl Limb {
         &self.joints
     }
 
-    /// Joints of the rig whose skin is the limb's, ascending. Of the skin's vertices those belong to it that hang on these most.
+    /// Joints of the rig whose skin is the limb's, ascending. A vertex belongs to it if these joints move it most.
     pub fn skin_joints(&self) -> impl Iterator<Item = JointIdx> {
         self.skin.iter().map(|skin| skin.joint)
     }
@@ -86,7 +87,7 @@ impl Limb {
     /// World transform of each of [`skin_joints`](Self::skin_joints), metres, between the last step (`alpha` 0) and this one (1): `out` is cleared and filled.
     ///
     /// # Panics
-    /// If one of its bodies is no longer there.
+    /// If one of its bodies is missing.
     pub fn world_from_joints(&self, world: &World, alpha: f32, out: &mut Vec<Affine>) {
         let poses: Vec<Affine> =
             self.bodies.iter().map(|&body| Affine::from(world.interpolated(body, alpha))).collect();
@@ -94,11 +95,11 @@ impl Limb {
         out.extend(self.skin.iter().map(|skin| poses[skin.body] * skin.body_from_joint));
     }
 
-    /// Matrices of a skin for a renderer, as [`Character::skin_palette`](super::Character::skin_palette) has them: the limb is drawn with the mesh of the whole
-    /// character, all else of which shrinks to the point where it was cut. Allocates.
+    /// Skinning matrices for a renderer, like [`Character::skin_palette`](super::Character::skin_palette): the limb is
+    /// drawn with the whole mesh, whose other parts shrink to the cut. Allocates.
     ///
     /// # Panics
-    /// If the rig has no such skin, or one of its bodies is no longer there.
+    /// If the rig has no such skin, or one of its bodies is missing.
     pub fn skin_palette(&self, world: &World, skin: usize, alpha: f32, palette: &mut Vec<[f32; 12]>) {
         let mut places = Vec::new();
         self.world_from_joints(world, alpha, &mut places);
@@ -116,10 +117,11 @@ impl Limb {
         );
     }
 
-    /// Cuts a part of it off, by role or bone, as [`Character::detach`](super::Character::detach) does. `None` if it has no such body, or hangs on it as a whole.
+    /// Detaches a part of it, by role or bone, like [`Character::detach`](super::Character::detach). `None` if it has
+    /// no such body, or that is its first one.
     ///
     /// # Panics
-    /// If no body of the definition is called so, or one of its bodies is no longer there.
+    /// If no body of the definition has that name, or one of its bodies is missing.
     pub fn detach(&mut self, world: &mut World, bone: &str) -> Option<Self> {
         let def = self.def.clone();
         let named = def.body_named(bone).unwrap_or_else(|| panic!("no body is called '{bone}'"));
@@ -152,10 +154,10 @@ impl Limb {
         Some(off)
     }
 
-    /// Takes it out of the world.
+    /// Removes it from the world.
     ///
     /// # Panics
-    /// If one of its bodies is no longer there.
+    /// If one of its bodies is missing.
     pub fn despawn(self, world: &mut World) {
         for body in self.bodies {
             world.disown_body(body);
@@ -163,14 +165,14 @@ impl Limb {
         }
     }
 
-    /// Makes its bodies and joints its own, so that no other call takes them out.
+    /// Takes ownership of its bodies and joints, so that no other call removes them.
     pub(super) fn own(&self, world: &mut World) {
         let owner = owner(&self.def.ragdoll, OwnerKind::Limb);
         world.own_bodies(&owner, &self.bodies, &self.parts);
         world.own_joints(&owner, &self.joints, &self.parts[1..]);
     }
 
-    /// Writes what the world's snapshot and the definition do not hold.
+    /// Writes the state that the world's snapshot and the definition do not hold.
     pub fn save(&self, w: &mut Writer) {
         w.raw(MAGIC);
         w.count(self.parts.len());
@@ -188,7 +190,8 @@ impl Limb {
         }
     }
 
-    /// Limb that was saved, of a character of that definition. Its bodies are those of the world's snapshot that was saved at the same time.
+    /// Reads a saved limb of a character of that definition. Its bodies are those of the world's snapshot of the same
+    /// time.
     ///
     /// # Errors
     /// If the bytes are not those of a limb of this definition and version.
@@ -225,7 +228,7 @@ impl Limb {
     }
 }
 
-/// Takes a joint of a ragdoll out of the world.
+/// Removes a joint of a ragdoll from the world.
 pub(super) fn cut_joint(world: &mut World, joint: JointId) {
     world.disown_joint(joint);
     world.remove_joint(joint);

@@ -1,4 +1,4 @@
-//! Lying: what a limp character keeps from step to step, and when it lies still.
+//! Lying: state of a limp character, and when it lies still.
 
 use super::CharacterDef;
 use super::figure::{Figure, Scratch};
@@ -14,7 +14,7 @@ use sinew_physics::{BodyId, Velocity, World};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Lying {
     pub stillness: Stillness,
-    /// Way out of what it was deep in when it went limp.
+    /// Way out of shapes that it was deep in when it went limp.
     pub clearing: Clearing,
 }
 
@@ -27,30 +27,30 @@ pub(super) struct Stillness {
     pub calm_steps: u32,
     pub settled: bool,
     pub touched: bool,
-    /// Nobody was on it when it last wanted to get up.
+    /// Nobody was on it when it last tried to get up.
     pub free: bool,
 }
 
 /// A limp character on its way out of a wall or the floor.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Clearing {
-    /// Way that is left after the next step, world, metres.
+    /// Remaining displacement after the next step, world, metres.
     pub way: Vec3,
-    /// Velocities of its bodies at the end of the way; empty while it is on no such way.
+    /// Velocities of its bodies at the end of the way; empty without one.
     pub velocities: Vec<Velocity>,
 }
 
-/// Outcome of a step for one who lies.
+/// Result of a step while lying.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Lain {
     /// The first of its bodies touched something.
     pub touched: bool,
-    /// It lies still since so many seconds.
+    /// It has lain still for so many seconds.
     pub settled: Option<f32>,
 }
 
 impl Stillness {
-    /// Looks whether the bodies touch something and lie still, after a step. `on_ground`: beside what bears them.
+    /// Updates whether the bodies touch something and lie still. `on_ground`: relative to the body under them.
     pub fn look(&mut self, world: &World, own: &[BodyId], on_ground: bool) -> Lain {
         let mut lain = Lain::default();
         if !self.touched && touches_world(world, own) {
@@ -70,27 +70,26 @@ impl Stillness {
         lain
     }
 
-    /// Something holds it: it lies anew once it is free.
+    /// Something holds it: its time restarts once it is free.
     pub fn wait(&mut self, dt: f32) {
         let slack = (SLACKENS / dt) as u32 + 1;
         self.steps = u32::min(self.steps, slack);
         self.settled &= self.calm_steps > 0;
     }
 
-    /// Share of the joints' friction that one who is limp for so long has.
+    /// Share of the joint friction after so much time limp.
     pub fn slackness(&self, dt: f32) -> f32 {
         self.steps as f32 * dt / SLACKENS
     }
 }
 
 impl Physique {
-    /// The ragdoll of one who has one.
+    /// The ragdoll, if there is one.
     pub fn limp(&self) -> &Ragdoll {
         self.ragdoll.as_ref().expect("a limp character has bodies")
     }
 
-    /// Brings a share of the friction into the joints: what muscles held a moment ago goes on, for all of it at once would stop a
-    /// hand within a step.
+    /// Applies a share of the friction to the joints: full friction at once would stop a hand within a step.
     pub fn slacken(&self, def: &CharacterDef, share: f32, world: &mut World) {
         for (child, id) in self.limp().own_joints() {
             let joint = &def.ragdoll.joints[child - 1];
@@ -98,7 +97,7 @@ impl Physique {
         }
     }
 
-    /// Lets what no body moves come to rest by and by: toes, helpers, and the places of joints that a clip moved along.
+    /// Lets joints without bodies come to rest gradually: toes, helpers, and translations of joints.
     pub fn let_linger(&mut self, figure: &Figure, seconds: f32, scratch: &mut Scratch) {
         let now: Pose = figure.pose.iter().copied().collect();
         let earlier: Pose = figure.earlier.pose.iter().copied().collect();
@@ -107,7 +106,7 @@ impl Physique {
         scratch.resting = now;
     }
 
-    /// The base pose, and what lingers of its motion a step later, in `scratch.pose`.
+    /// The base pose, with the decaying rest of its motion a step later, in `scratch.pose`.
     fn come_to_rest(&mut self, seconds: f32, scratch: &mut Scratch) {
         let base = self.physical.base();
         scratch.pose.clear();
@@ -124,8 +123,8 @@ impl Physique {
         scratch.pose.extend(resting.iter());
     }
 
-    /// Has a figure take its pose from the bodies, but for what they do not move. Bodies that lie where the last pose had them need no
-    /// other: most of a fall is lying.
+    /// Takes the pose from the bodies, except for joints without one. Bodies that have not moved since the last pose
+    /// need no new one, which saves most of a fall.
     pub fn pose(&mut self, def: &CharacterDef, figure: &mut Figure, world: &World, scratch: &mut Scratch) {
         self.poses(def, world, scratch);
         if self.lingering.is_over() && scratch.posed == scratch.after {
@@ -141,12 +140,12 @@ impl Physique {
     }
 }
 
-/// True if every body is slower than what counts as still.
+/// True if every body is below the stillness speeds.
 pub(crate) fn is_still(world: &World, bodies: &[BodyId]) -> bool {
     is_still_on(world, bodies, GroundMotion::default())
 }
 
-/// The same beside what bears them.
+/// The same relative to the body under them.
 fn is_still_on(world: &World, bodies: &[BodyId], ground: GroundMotion) -> bool {
     bodies.iter().all(|&body| {
         let velocity = world.velocity(body);
@@ -155,7 +154,7 @@ fn is_still_on(world: &World, bodies: &[BodyId], ground: GroundMotion) -> bool {
     })
 }
 
-/// True if one of the bodies is deeper than [`SUNK`] in what stands, and on its way out.
+/// True if one of the bodies is deeper than [`SUNK`] in static shapes and being pushed out.
 pub(crate) fn is_sunk(world: &World, bodies: &[BodyId]) -> bool {
     bodies.iter().any(|&body| world.penetration(body) > SUNK)
 }

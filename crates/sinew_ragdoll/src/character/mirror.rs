@@ -1,7 +1,7 @@
-//! A motion as a mirror shows it: left becomes right, for any rig.
+//! Mirror images of motions for any rig.
 //!
-//! What turns is not a local rotation, whose axes differ from rig to rig, but what a joint has turned since the bind pose,
-//! in the character's own axes.
+//! It mirrors not local rotations, whose axes differ from rig to rig, but rotations since the bind pose, in the
+//! character's own axes.
 
 use super::CharacterDef;
 use crate::character::tuning::{MIRROR_TOLERANCE, MOVED};
@@ -13,7 +13,7 @@ use sinew_math::{Affine, Rotation, Transform, Vec3};
 pub(super) struct Mirror {
     /// A joint of the midline, or one that has no counterpart, is its own.
     twins: Vec<JointIdx>,
-    /// True for what one side alone carries, a sword in one hand: it stays on its limb as the motion has it.
+    /// True for one-sided parts, such as a sword in one hand: they stay on their limb.
     one_sided: Vec<bool>,
     /// Character space.
     bind: Vec<Rotation>,
@@ -24,7 +24,7 @@ impl Mirror {
         let bind: Vec<Transform> = def.bind().iter().map(Affine::to_rigid).collect();
         let mut twins = by_places(&def.rig, &bind, MIRROR_TOLERANCE * def.ragdoll.height);
         by_roles(def, &mut twins);
-        // Whoever is not seen by the one that it sees is alone.
+        // A joint whose counterpart has another counterpart is one-sided.
         let seen = twins.clone();
         for (joint, twin) in twins.iter_mut().enumerate() {
             if seen[*twin] != joint {
@@ -39,8 +39,8 @@ impl Mirror {
         Self { twins, one_sided, bind: bind.iter().map(|bind| bind.rotation).collect() }
     }
 
-    /// The mirror image of a flat pose. A joint that its clip moves along sits where its counterpart does; the others keep their
-    /// own place, for the two sides of a rig may differ.
+    /// The mirror image of a flat pose. A joint with an animated translation takes its counterpart's; others keep their
+    /// own place, since the two sides of a rig may differ.
     pub fn pose(&self, def: &CharacterDef, pose: &[LocalTransform]) -> Vec<LocalTransform> {
         let (rig, mapping) = (&def.rig, def.mapping());
         let root = mapping.character_from_model();
@@ -76,7 +76,7 @@ impl Mirror {
     }
 }
 
-/// True if a pose has the joint elsewhere on its parent than it rests.
+/// True if a pose translates the joint from its rest place.
 fn is_moved(rig: &Rig, pose: &[LocalTransform], joint: JointIdx) -> bool {
     let rest = rig.joints[joint].rest.translation;
     (pose[joint].translation - rest).length() > MOVED * rest.length()
@@ -86,7 +86,7 @@ fn across(v: Vec3) -> Vec3 {
     Vec3::new(-v.x, v.y, v.z)
 }
 
-/// The same turn seen in a mirror across x.
+/// The same rotation mirrored across x.
 fn reflected(q: Rotation) -> Rotation {
     Rotation::from_xyzw(q.x, -q.y, -q.z, q.w)
 }
@@ -106,7 +106,7 @@ fn by_places(rig: &Rig, bind: &[Transform], tolerance: f32) -> Vec<JointIdx> {
     twins
 }
 
-/// Counterparts by the roles of the bodies, which know more than places do.
+/// Counterparts by the roles of the bodies, which are more reliable than positions.
 fn by_roles(def: &CharacterDef, twins: &mut [JointIdx]) {
     for body in &def.ragdoll.bodies {
         let Some(part) = body.role.strip_prefix("left") else { continue };

@@ -1,5 +1,5 @@
-//! A character: animated until something knocks it over, limp until it lies still, brought to where a get-up clip begins
-//! if it lies otherwise, getting up, animated again. Each change is a [`CharacterEvent`].
+//! A character: animated until a blow fells it, limp until it lies still, prepared for a get-up clip if needed, getting
+//! up, animated again. Each change is a [`CharacterEvent`].
 //!
 #![doc = include_str!("states.svg")]
 //!
@@ -104,9 +104,9 @@ use wear::{Bearer, Wear};
 #[derive(Clone, Debug)]
 pub struct Character {
     def: Arc<CharacterDef>,
-    /// State, with what only that state knows.
+    /// State, with its data.
     activity: Activity,
-    /// Detail that it has, or will have once its clips move it; `None`: it is in no world.
+    /// Its level of detail, now or once clips move it; `None`: it is in no world.
     detail: Option<Detail>,
     gait: Gait,
     figure: Figure,
@@ -119,8 +119,8 @@ pub struct Character {
 }
 
 impl Character {
-    /// An animated character that stands at `world_from_character` (metres, its +Y up, +Z the way it faces), `phase`
-    /// seconds into its looped clip.
+    /// An animated character that stands at `world_from_character` (metres, its +Y up, +Z forward), `phase` seconds
+    /// into its looped clip.
     ///
     /// # Panics
     /// If `phase` is not finite.
@@ -142,10 +142,10 @@ impl Character {
         }
     }
 
-    /// Follows the world by the step that it has just taken.
+    /// Updates the character after a step of the world.
     ///
     /// # Panics
-    /// If the world is not the one that the character is in.
+    /// If it is another world than the character's.
     pub fn update(&mut self, world: &mut World) {
         self.events.begin();
         self.keep_shown();
@@ -163,7 +163,7 @@ impl Character {
         self.events.end();
     }
 
-    /// Takes a step of its state.
+    /// Advances its state by a step.
     fn follow(&mut self, world: &mut World) {
         match self.state() {
             State::Animated => self.go_animated(world),
@@ -200,7 +200,7 @@ impl Character {
         self.attend(world);
     }
 
-    /// Takes the clips forward by a step, and the character over the ground with them.
+    /// Advances the clips and the character over the ground by a step.
     fn advance(&mut self, world: &World) {
         let own = self.detail.map(|_| self.physique.hit.as_slice());
         self.gait.advance(&self.def, &self.activity, &mut self.figure, own, world);
@@ -238,7 +238,7 @@ impl Character {
         self.steer(world);
     }
 
-    /// Flinches or falls by what struck its bodies in the last step.
+    /// Flinches or falls by blows to its bodies in the last step.
     fn feel(&mut self, world: &mut World) {
         if !self.is_in_world() {
             return;
@@ -290,7 +290,7 @@ impl Character {
         self.steer(world);
     }
 
-    /// Takes a flinch forward; false once its limb has come back. True of one who is powered.
+    /// Advances a flinch; false once its limb has returned. True while powered.
     fn goes_on_flinching(&mut self, world: &World) -> bool {
         let Activity::Flinching(flinch) = &mut self.activity else { return true };
         if self.grips.is_gripped(&self.physique, world) {
@@ -302,7 +302,7 @@ impl Character {
         flinch.seconds > 0.0
     }
 
-    /// Steps to keep its balance, if it does; true if that is in vain.
+    /// Steps to keep its balance; true if that fails.
     fn keep_balance(&mut self, world: &World) -> bool {
         let steps = self.steps();
         let Activity::Powered(balance) = &mut self.activity else { return false };
@@ -362,7 +362,7 @@ impl Character {
         }
     }
 
-    /// True while something holds it: then movers pass through it, so that it is in nobody's way who drags it.
+    /// True while something holds it: movers then pass through it, so that it does not block whoever drags it.
     fn mind_grips(&mut self, world: &mut World) -> bool {
         let is_gripped = self.grips.is_gripped(&self.physique, world);
         let ragdoll = self.physique.limp();
@@ -378,7 +378,7 @@ impl Character {
         is_gripped
     }
 
-    /// A step of being brought to where a clip begins; gets up where the body lies as the clip begins, or time is up.
+    /// A step of preparing; gets up when the body lies as the clip begins, or time is up.
     fn go_preparing(&mut self, world: &mut World) {
         self.follow_bodies(world);
         if self.grips.is_gripped(&self.physique, world) {
@@ -402,7 +402,7 @@ impl Character {
         prepare::draw(&def, &choice, &mut self.physique, &mut self.scratch, world);
     }
 
-    /// Takes the pose from the bodies, but for what they do not move.
+    /// Takes the pose from the bodies, except for joints without one.
     fn follow_bodies(&mut self, world: &World) {
         self.figure.keep_earlier();
         let animator = &mut self.gait.animator;
@@ -413,7 +413,7 @@ impl Character {
         }
     }
 
-    /// Takes what it wears forward.
+    /// Advances what it wears.
     fn go_on_wearing(&mut self, world: &mut World) {
         let is_far = self.level_of_detail() <= Detail::Keyed;
         let mends = self.state() == State::Animated;
@@ -426,7 +426,7 @@ impl Character {
         self.wear.go_on(bearer, &self.figure.shown, (is_far, mends), &mut self.scratch, world);
     }
 
-    /// Keeps what is shown now for [`interpolated`](Self::interpolated).
+    /// Stores the shown pose for [`interpolated`](Self::interpolated).
     fn keep_shown(&mut self) {
         let mut pose = core::mem::take(&mut self.figure.shown.pose);
         pose.clear();

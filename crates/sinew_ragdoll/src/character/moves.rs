@@ -1,4 +1,4 @@
-//! A character's clips, ready to be played: made once for all characters of a kind.
+//! A character's clips prepared for playback, once for all characters of a kind.
 
 use super::clearance::{Depths, PARTS};
 use super::floor::{Raised, moved};
@@ -25,13 +25,13 @@ pub struct MotionError {
     pub error: ClipBuildError,
 }
 
-/// Moves of a kind of character: what [`CharacterDef`] makes of its clips.
+/// Prepared moves of a kind of character.
 #[derive(Clone, Debug)]
 pub(super) struct Moves {
     pub set: AnimationSet,
     /// In the order of [`MotionSet::clips`].
     pub clips: Vec<ClipId>,
-    /// Clips that it goes by, slowest first; the first is the looped one.
+    /// Locomotion clips, slowest first; the first is the looped one.
     pub paces: Vec<Pace>,
     /// Each with its mirror image after it.
     pub get_ups: Vec<GetUp>,
@@ -44,15 +44,15 @@ pub(super) struct Moves {
     pub deepest: Depths,
 }
 
-/// A clip that a character goes by.
+/// A locomotion clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pace {
     pub clip: ClipId,
-    /// Speed over the ground as it is, m/s; 0: it covers none.
+    /// Speed over the ground, m/s; 0: it covers none.
     pub speed: f32,
 }
 
-/// A way to get up.
+/// A get-up clip.
 #[derive(Clone, Debug)]
 pub(super) struct GetUp {
     /// Index into [`MotionSet::clips`].
@@ -60,7 +60,7 @@ pub(super) struct GetUp {
     pub id: ClipId,
     /// Moments at which it may begin.
     pub starts: Vec<Start>,
-    /// Deepest that its parts are in the floor.
+    /// Largest depth of its parts in the floor.
     pub deepest: Depths,
 }
 
@@ -168,16 +168,16 @@ fn standing(def: &CharacterDef, motions: &MotionSet) -> Take {
     poses
 }
 
-/// Payload of the events by which clips are kept in step.
+/// Payload of the events that keep clips in step.
 const LEFT: &str = "left";
 
-/// Way in which that clip covers ground, if the character goes by it.
+/// Locomotion of that clip, if the character uses it.
 fn locomotion_of(motions: &MotionSet, index: usize) -> Option<Locomotion> {
     let looped = motions.looped.filter(|&clip| clip == index).map(|_| motions.locomotion);
     looped.or_else(|| motions.faster.iter().find(|(clip, _)| *clip == index).map(|&(_, by)| by))
 }
 
-/// The looped clip and those that are faster, by their speeds. What is no faster than the one before it is left out.
+/// The looped clip and faster ones, by speed. Clips that are no faster than the one before are dropped.
 fn paces(def: &CharacterDef, set: &AnimationSet, clips: &[ClipId], motions: &MotionSet) -> Vec<Pace> {
     let pace = |index: usize| {
         let clip = set.clip(clips[index]);
@@ -228,7 +228,7 @@ fn flat_take(def: &CharacterDef, clip: &Clip, frame_time: f64) -> Take {
     take
 }
 
-/// A clip that travels, on its place, and its way; frames fit its length, so that the last is its end.
+/// A travelling clip in place, and its path; frames divide its length, so that the last is its end.
 fn travelling(def: &CharacterDef, clip: &Clip) -> Option<(Clip, MotionTrack)> {
     let frames = (f64::from(clip.duration) / ROOT_FRAME).round();
     if !(frames >= 1.0 && frames < (Take::MOST_FRAMES - 1) as f64) {

@@ -1,4 +1,5 @@
-//! Bodies of a character in the world: hit bodies that its clips lead, or those of a ragdoll; with drives, and without what was cut off.
+//! Bodies of a character in the world: hit bodies that its clips lead, or a ragdoll, with drives, without detached
+//! ones.
 
 use super::CharacterDef;
 use super::figure::Scratch;
@@ -15,18 +16,18 @@ use sinew_physics::{BodyId, ContactRule, Velocity, World};
 pub(super) struct Physique {
     /// Hit bodies, which are the ragdoll's while it has one.
     pub hit: Vec<BodyId>,
-    /// Poses of the bodies a step ago as clips had them; empty: none.
+    /// Poses of the bodies by the clips a step ago; empty: none.
     pub before: Vec<Transform>,
     pub ragdoll: Option<Ragdoll>,
     pub drives: Drives,
     pub physical: Physical,
-    /// Motion of what neither bodies nor clips move, as it dies away after the bodies took over.
+    /// Motion of joints without bodies, which decays after the bodies took over.
     pub lingering: Inertia,
-    /// Bodies that were cut off, by index, with their ids.
+    /// Detached bodies, by index, with their ids.
     pub lost: Vec<(usize, BodyId)>,
-    /// Bodies that are its own, where some were cut off.
+    /// Remaining bodies, if some were detached.
     pub kept: Vec<BodyId>,
-    /// Bodies of its own and others that were cut off, which overlap and pass through each other until they do not.
+    /// Pairs of own and detached bodies that overlap and pass through each other until they are apart.
     pub parting: Vec<(BodyId, BodyId)>,
 }
 
@@ -45,17 +46,17 @@ impl Physique {
         }
     }
 
-    /// Bodies in the order of the definition; those that were cut off keep their places. None of a character without bodies.
+    /// Bodies in the order of the definition, detached ones included. Empty for a character without bodies.
     pub fn ids(&self) -> &[BodyId] {
         self.ragdoll.as_ref().map_or(&self.hit, |ragdoll| &ragdoll.bodies)
     }
 
-    /// Bodies that are still its own.
+    /// Remaining bodies.
     pub fn own(&self) -> &[BodyId] {
         if self.lost.is_empty() { self.ids() } else { &self.kept }
     }
 
-    /// True if a body, by index in the definition, was not cut off.
+    /// True if a body, by index in the definition, was not detached.
     pub fn has(&self, body: usize) -> bool {
         self.lost.iter().all(|&(lost, _)| lost != body)
     }
@@ -65,12 +66,12 @@ impl Physique {
         self.ids().iter().position(|&body| body == id).filter(|&body| self.has(body))
     }
 
-    /// Indices of what was cut off.
+    /// Indices of detached bodies.
     pub fn lost_indices(&self) -> Vec<usize> {
         self.lost.iter().map(|&(body, _)| body).collect()
     }
 
-    /// Finds which bodies are its own, after its bodies or what it has lost have changed.
+    /// Updates the remaining bodies after a change.
     pub fn keep_own(&mut self) {
         let lost = self.lost_indices();
         let mut kept = core::mem::take(&mut self.kept);
@@ -89,7 +90,7 @@ impl Physique {
         }
     }
 
-    /// Makes its bodies and joints in the world its own, so that no other call takes them out.
+    /// Takes ownership of its bodies and joints in the world, so that no other call removes them.
     fn mark_own(&self, def: &CharacterDef, world: &mut World) {
         let def = &def.ragdoll;
         if let Some(ragdoll) = &self.ragdoll {
@@ -111,7 +112,7 @@ impl Physique {
         self.mark_own(def, world);
     }
 
-    /// Takes its hit bodies out of the world.
+    /// Removes its hit bodies from the world.
     pub fn remove_hit(&mut self, world: &mut World) {
         let lost = self.lost_indices();
         for (_, body) in self.hit.drain(..).enumerate().filter(|(index, _)| !lost.contains(index)) {
@@ -122,7 +123,7 @@ impl Physique {
         self.keep_own();
     }
 
-    /// Brings the bodies into the hands of physics, with joints between them.
+    /// Makes the bodies dynamic, with joints between them.
     pub fn wake(&mut self, def: &CharacterDef, states: &[BodyState], rule: ContactRule, world: &mut World) {
         let ragdoll = if self.hit.is_empty() {
             let ragdoll = Ragdoll::spawn_without(world, &def.ragdoll, states, &def.body_settings, &self.lost);
@@ -141,7 +142,7 @@ impl Physique {
         self.mark_own(def, world);
     }
 
-    /// Takes all drives off the bodies but those of a fall.
+    /// Removes all drives except those of a fall.
     pub fn let_go(&mut self, def: &CharacterDef, world: &mut World) {
         if let Some(ragdoll) = &self.ragdoll {
             self.drives.release(world, ragdoll);
@@ -149,7 +150,7 @@ impl Physique {
         self.drives.set_all(def.falling, 0.0);
     }
 
-    /// Sets what becomes of its contacts while it has a ragdoll.
+    /// Sets the contact rules while it has a ragdoll.
     pub fn set_rule(&self, world: &mut World, rule: ContactRule) {
         if let Some(ragdoll) = &self.ragdoll {
             ragdoll.set_rule(world, rule);
@@ -169,7 +170,7 @@ impl Physique {
         }
     }
 
-    /// Poses of the bodies of a ragdoll, in `scratch.after`; one that was cut off is where it would be at rest.
+    /// Poses of the bodies of a ragdoll, in `scratch.after`; detached ones are in their rest place.
     pub fn poses(&self, def: &CharacterDef, world: &World, scratch: &mut Scratch) {
         let ragdoll = self.ragdoll.as_ref().expect("it has bodies");
         ragdoll.poses(world, &mut scratch.after);

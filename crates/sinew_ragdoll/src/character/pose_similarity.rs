@@ -1,7 +1,7 @@
-//! Similarity of two poses, wherever they are and whichever way they face.
+//! Similarity of two poses, independent of place and heading.
 //!
-//! As in motion graphs (Kovar, Gleicher, Pighin, SIGGRAPH 2002, §3.1): one pose is turned about the vertical and moved so
-//! that points of the body come as near to those of the other as they can; what distance is left tells them apart.
+//! As in motion graphs (Kovar, Gleicher, Pighin, SIGGRAPH 2002, §3.1): one pose is rotated about the vertical and moved
+//! so that its points are as near to the other's as possible; the remaining distance is the difference.
 
 use crate::character::tuning::{STICK, STICK_WEIGHT};
 use crate::def::{RagdollBodyDef, RagdollDef};
@@ -14,9 +14,9 @@ use sinew_math::{Affine, Rotation, Transform, Vec3, min, trig};
 pub(super) struct Landmarks {
     /// Joints of the bodies, in their order.
     joints: Vec<JointIdx>,
-    /// Bodies whose turning counts, besides: by the ends of two short sticks, forward and up. The pelvis is the first.
+    /// Bodies whose orientation counts too: by the ends of two short sticks, forward and up. The pelvis is the first.
     trunk: Vec<(usize, Rotation)>,
-    /// One for each joint and each stick; they add up to 1.
+    /// One for each joint and each stick; they sum to 1.
     weights: Vec<f32>,
     /// Length of the sticks, metres.
     stick: f32,
@@ -30,12 +30,12 @@ pub(super) struct Stance {
     pub pelvis: Rotation,
 }
 
-/// Motion that brings one stance to another, and the distance that is left.
+/// Motion that aligns one stance with another, and the remaining distance.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PoseSimilarity {
     /// A turn about the vertical, then a move.
     pub motion: Transform,
-    /// Distance that is left then: root of the weighted mean of squared distances, metres.
+    /// Remaining distance: root of the weighted mean of squared distances, metres.
     pub distance: f32,
 }
 
@@ -69,7 +69,7 @@ impl Landmarks {
         }
     }
 
-    /// The stance of a pose in model space; `world_from_character` says where that is. Memory is that of `points` and `bodies`.
+    /// The stance of a pose in model space at `world_from_character`. `points` and `bodies` are buffers.
     pub fn stance(
         &self,
         mapping: &Mapping,
@@ -93,12 +93,12 @@ impl Landmarks {
         Stance { points, pelvis }
     }
 
-    /// Bodies whose turning counts, the pelvis first.
+    /// Bodies whose orientation counts, the pelvis first.
     pub fn trunk_bodies(&self) -> impl Iterator<Item = usize> {
         self.trunk.iter().map(|&(body, _)| body)
     }
 
-    /// Brings `from` to `to`, which lies on the ground as `from` does: their lowest points come to one height.
+    /// Aligns `from` with `to`, with the same lowest height.
     pub fn compare(&self, from: &Stance, to: &Stance) -> PoseSimilarity {
         let middle = |stance: &Stance| {
             let mean =

@@ -1,4 +1,4 @@
-//! Bodies between clips and physics: each led, pinned, held by muscles or limp, while clips and mover go on.
+//! Bodies between clips and physics: led, pinned, driven by muscles or limp, while clips and mover continue.
 
 use super::CharacterDef;
 use super::figure::Scratch;
@@ -11,14 +11,14 @@ use sinew_anim::Animator;
 use sinew_math::{Rotation, Transform, Vec3};
 use sinew_physics::World;
 
-/// Ways to move all of a character.
+/// Presets for all bodies of a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preset {
-    /// Its clips: what lies gets up, what is powered comes back to them.
+    /// Clips: a lying character gets up, a powered one returns to them.
     Animated,
-    /// Its clips, with bodies that give way and come back as if it had just been struck everywhere.
+    /// Clips, with all bodies weak and returning as if struck everywhere.
     Flinching,
-    /// Muscles toward its clips, and soft pins, the strongest at the pelvis, that keep it near its place.
+    /// Muscles toward the clips, and soft pins that keep it near its place, strongest at the pelvis.
     Powered,
     /// Nothing: it falls.
     Limp,
@@ -33,11 +33,11 @@ pub enum Part<'a> {
     Body(usize),
     /// One, by role or bone.
     Named(&'a str),
-    /// That one, by role or bone, and all that hangs on it.
+    /// That body, by role or bone, and everything below it.
     From(&'a str),
 }
 
-/// Pins that keep a body of a powered character near its place, and its legs and pelvis firmer: else feet would drag.
+/// Pins that keep a body of a powered character near its place, stronger for legs and pelvis: else feet would drag.
 const NEAR: Pin = Pin { hertz: 2.0, damping_ratio: 1.0, max_force: 0.0, max_torque: 0.0 };
 const WALKS: Pin = Pin { hertz: 4.0, ..NEAR };
 
@@ -66,8 +66,8 @@ pub(super) fn set_drives(def: &CharacterDef, physique: &mut Physique, world: &Wo
     }
 }
 
-/// True if the pelvis has got too far from where its clips want it for the feet to hold it, or leans too far; how far it is turned about the
-/// vertical says nothing of that: it lags behind who turns on the spot.
+/// True if the pelvis is too far from its clips' for the feet to hold it, or leans too far; its heading is ignored,
+/// because it lags behind when the character turns on the spot.
 pub(super) fn is_toppled(
     def: &CharacterDef,
     animator: &Animator,

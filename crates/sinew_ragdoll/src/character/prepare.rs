@@ -1,7 +1,7 @@
-//! Between lying still and getting up: a body that lies like no clip begins is brought to where the nearest one does.
+//! Between lying still and getting up: drives a body to the start of the nearest get-up clip.
 //!
-//! Its muscles draw its limbs there. What rolls its trunk over is a torque from nowhere, as no limp body has: a pin that only
-//! turns, bounded in torque and time, so that [`Drives::pin_effort`](crate::Drives::pin_effort) tells how much that was.
+//! Muscles drive the limbs. The trunk is rolled over by a non-physical torque: a pin that only rotates, bounded in
+//! torque and time; [`Drives::pin_effort`](crate::Drives::pin_effort) reports how much.
 
 use super::CharacterDef;
 use super::figure::Scratch;
@@ -13,27 +13,26 @@ use crate::drive::{DriveMode, Muscle, Pin};
 use sinew_math::Rotation;
 use sinew_physics::{Velocity, World};
 
-/// A body that is brought to where a clip begins.
+/// A body that is driven to the start of a clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Preparing {
     pub stillness: Stillness,
-    /// Index of the way to get up, and of its moment.
+    /// Index of the get-up, and of its moment.
     pub get_up: u32,
     pub start: u32,
-    /// That are left.
+    /// Remaining seconds.
     pub seconds: f32,
 }
 
-/// By so much a trunk is turned from how its clip begins, radians, and so far are the joints on the mean from where they are
-/// then, share of the body's height: where a body may get up at once, and when one that is brought there has come near
-/// enough.
+/// Largest rotation of the trunk from the start of its clip, radians, and largest mean distance of the joints, share of
+/// the body's height: for getting up at once, and after driving.
 const AT_ONCE: [f32; 2] = [0.85, 0.16];
 const NEAR_ENOUGH: [f32; 2] = [0.7, 0.14];
 /// Muscle that draws the limbs.
 const PULL: Muscle = Muscle { hertz: 2.0, damping_ratio: 1.0, strength: 0.6 };
 
 impl Preparing {
-    /// On the way to a moment of a clip; `rolls`: its trunk has to be turned.
+    /// Toward a moment of a clip; `rolls`: its trunk must be rolled over.
     pub fn toward(def: &CharacterDef, choice: &Choice<'_>, rolls: bool, stillness: Stillness) -> Self {
         let index = |at: Option<usize>| at.unwrap_or_default() as u32;
         let get_ups = &def.moves().get_ups;
@@ -47,17 +46,17 @@ impl Preparing {
 }
 
 impl Choice<'_> {
-    /// True if a body whose pelvis lies like that may get up at once.
+    /// True if a body with this pelvis may get up at once.
     pub fn is_near(&self, def: &CharacterDef, pelvis: Rotation) -> bool {
         self.is_like(def, pelvis, AT_ONCE)
     }
 
-    /// True if a body that was drawn has come near enough.
+    /// True if a driven body is near enough.
     pub fn is_reached(&self, def: &CharacterDef, pelvis: Rotation) -> bool {
         self.is_like(def, pelvis, NEAR_ENOUGH)
     }
 
-    /// True if the trunk has to be rolled over.
+    /// True if the trunk must be rolled over.
     pub fn rolls(&self, pelvis: Rotation) -> bool {
         self.trunk_off(pelvis) > AT_ONCE[0]
     }
@@ -73,7 +72,7 @@ impl Choice<'_> {
     }
 }
 
-/// Sets the drives that draw a body to where a clip begins.
+/// Sets the drives toward the start of a clip.
 pub(super) fn set_drives(def: &CharacterDef, rolls: bool, physique: &mut Physique, world: &World) {
     physique.drives.set_all(DriveMode::Powered(PULL), PREPARES_HALF_LIFE);
     if !rolls {
@@ -87,7 +86,7 @@ pub(super) fn set_drives(def: &CharacterDef, rolls: bool, physique: &mut Physiqu
     }
 }
 
-/// Drives the bodies toward the moment of the clip, where they lie, for the next step.
+/// Drives the bodies toward the moment of the clip, at their place, for the next step.
 pub(super) fn draw(
     def: &CharacterDef,
     choice: &Choice<'_>,

@@ -1,4 +1,4 @@
-//! Recognition of the clips that get a body up: by what they are called, or by what they do.
+//! Recognises get-up clips by name or by motion.
 
 use super::CharacterDef;
 use sinew_anim::{Clip, LocalTransform, Wrap, local_to_model, sample};
@@ -6,15 +6,15 @@ use sinew_math::{Affine, Transform, Vec3};
 
 /// Names of such clips, without case, blanks, `-` and `_`.
 const NAMES: [&str; 3] = ["getup", "standup", "gettingup"];
-/// Lying, the pelvis' own up rises by no more than this over its length, and its height is no more than this share of that
+/// While lying, the pelvis' own up rises by at most this over its length, and its height is at most this share of that
 /// in the bind pose.
 const LYING: [f32; 2] = [0.6, 0.4];
-/// Standing, no less.
+/// While standing, at least this.
 const STANDING: [f32; 2] = [0.8, 0.8];
 
 impl CharacterDef {
-    /// Indices of the clips that get this character up: those that are called so (`get_up`, `StandUp`, …), and those that start
-    /// lying and end standing, whatever they are called.
+    /// Indices of the get-up clips of this character: by name (`get_up`, `StandUp`, …), and those that start lying and
+    /// end standing.
     ///
     /// # Panics
     /// As [`sample`](sinew_anim::sample()).

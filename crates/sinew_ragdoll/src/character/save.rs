@@ -24,17 +24,17 @@ use sinew_physics::{BodyId, JointId, MoverId, Velocity};
 
 /// First bytes; the last is the version.
 const MAGIC: &[u8; 8] = b"sinew-c\x07";
-/// Bit of what is held: a grip that pulls follows.
+/// Flag of a held body: a pulling grip follows.
 const GRASPS: u8 = 2;
-/// Bytes of an event that no update has told of.
+/// Bytes of an unreported event.
 const EVENT_BYTES: usize = 17;
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
-/// Why bytes are refused that do not fit the definition.
+/// Reason why bytes that do not fit the definition are refused.
 const OF_ANOTHER: &str = "is of another character";
 
 impl Character {
-    /// Writes what decides the future, and nothing that its definition holds.
+    /// Writes what decides the future, without the definition.
     pub fn save(&self, w: &mut Writer) {
         w.raw(MAGIC);
         save_activity(w, &self.activity);
@@ -67,11 +67,11 @@ impl Character {
         untold.iter().for_each(|event| event.save(w));
     }
 
-    /// Brings back a saved state of a character of the same definition. Its bodies are those of the world's snapshot
-    /// that was saved at the same time.
+    /// Restores a saved state of a character of the same definition. Its bodies are those of the world's snapshot of
+    /// the same time.
     ///
     /// # Errors
-    /// If the bytes are not those of a character of this definition and version; the character is then as it was.
+    /// If the bytes are not those of a character of this definition and version; the character is unchanged then.
     pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
             return Err(ReadError { at: 0, what: "is not a character of this version" });
@@ -113,7 +113,7 @@ impl Character {
         Ok(())
     }
 
-    /// The pose with feet and what it wears, as it was shown when it was saved.
+    /// The shown pose at the time of saving.
     fn show_loaded(&mut self) {
         let state = self.activity.state();
         self.feet.pose.clear();

@@ -1,4 +1,4 @@
-//! A looped clip that travels: the way from its start to its end is taken out of the pose, so that it goes on with each lap.
+//! A travelling looped clip: its path is extracted from the pose, so that each lap continues it.
 
 use super::CharacterDef;
 use crate::character::tuning::{STAYS_TURNED, STAYS_WITHIN, STRAIGHT};
@@ -33,7 +33,7 @@ impl Lap {
         if self.turn.abs() < STRAIGHT {
             return Transform::new(self.way * share, turned(self.turn * share));
         }
-        // About the centre c that stays: way = c − R c.
+        // About the fixed centre c: way = c − R c.
         let half = 0.5 * self.turn;
         let across = Vec3::new(self.way.z, 0.0, -self.way.x);
         let center = (self.way + across * (trig::cos(half) / trig::sin(half))) * 0.5;
@@ -54,7 +54,7 @@ fn stand(def: &CharacterDef, take: &Take, frame: usize) -> Transform {
     Transform::new(place, Rotation::from_axis_angle(Vec3::Y, heading))
 }
 
-/// The clip on its place and the way that was taken out of it: model space. `None` if it does not travel.
+/// The clip in place and the extracted path: model space. `None` if it does not travel.
 pub(super) fn parted(def: &CharacterDef, take: &Take) -> Option<(Take, MotionTrack)> {
     let last = take.frames() - 1;
     if last == 0 {

@@ -1,8 +1,8 @@
-//! Feet of a character that goes: each stands where it came down, on what is there, and swings over edges.
+//! Feet of a walking character: each stays planted where it came down, and swings over edges.
 //!
-//! A foot that stands keeps its place on the ground: what its clip moves it by is taken back, but for the roll from heel to ball. In the air
-//! that goes back to nothing, and the foot is brought to the height of the ground where it will come down: as far ahead as it gets at half its
-//! speed in [`LOOKS_AHEAD`]. Ground that goes on is followed at once, edges as a spring does.
+//! A planted foot keeps its place on the ground: the clip's displacement is removed, except for the roll from heel to
+//! ball. In the air the offset decays, and the foot takes the height of the ground where it will come down:
+//! [`LOOKS_AHEAD`] ahead at half its speed. Continuous ground is followed at once, edges like a spring.
 
 use super::CharacterDef;
 use super::feet::{Feet, Stand};
@@ -20,20 +20,20 @@ use sinew_math::{Affine, Transform, Vec3, clamp, max, min, trig};
 use sinew_physics::ray::Ray;
 use sinew_physics::{BodyHit, BodyKind, World};
 
-/// A foot, beside what [`Planting`](super::legs::Planting) tells of its height.
+/// A foot, apart from the height in [`Planting`](super::legs::Planting).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Tread {
-    /// Level way from where the clips have the foot to where it is, world, metres.
+    /// Level offset of the foot from the clips', world, metres.
     pub offset: Vec3,
-    /// Such a way as it goes to while in the air, so that its toes come down in no wall.
+    /// Target of that offset in the air, so that its toes avoid walls.
     pub home: Vec3,
     /// Velocity with which the clips slide it over the ground, level, m/s.
     pub slip: Vec3,
     /// Its ankle and ball as the clips had them in the last step, world.
     pub points: [Vec3; 2],
-    /// Height of the ground that it goes by, world, metres.
+    /// Height of its ground, world, metres.
     pub ground: f32,
-    /// Velocity of the ground on which it stands, m/s.
+    /// Velocity of the ground under it, m/s.
     pub floor: Vec3,
     pub stands: bool,
 }
@@ -53,17 +53,17 @@ struct Step {
     sole: [Vec3; 3],
     /// Motion of the ball over the ground, level, metres.
     way: Vec3,
-    /// Part of it that is none of the clip's: what the character goes beyond its clips.
+    /// Part of the motion that is not the clip's.
     slip: Vec3,
     /// Height of its lower end over the floor of the clip, metres.
     height: f32,
 }
 
 impl Tread {
-    /// Takes a foot forward that stands or swings; `size`: height of the whole body, metres.
+    /// Advances a planted or swinging foot; `size`: height of the whole body, metres.
     fn go_on(&mut self, step: &Step, size: f32, grounded: bool, dt: f32) {
         let speed = step.way.length() / dt;
-        // Half again as much until it leaves.
+        // A planted foot leaves only at half again as much.
         let slack = if self.stands { 1.5 } else { 1.0 };
         let stands = grounded && step.height < slack * STANCE_HEIGHT * size && speed < slack * STANCE_SPEED;
         if stands && self.stands {
@@ -80,7 +80,8 @@ impl Tread {
 }
 
 impl Legs {
-    /// A foot of a pose, by its model in the space of a character at `place`: ankle and ball, and below them and at the tip of the toes, world.
+    /// A foot of a pose, by its model in the space of a character at `place`: ankle and ball, the points below them and
+    /// the tip of the toes, world.
     fn points(&self, foot: usize, place: Transform, model: &[Affine]) -> ([Vec3; 2], [Vec3; 3]) {
         let ankle = place * model[self.chains[foot].end].to_rigid();
         ([ankle.translation, ankle.point(self.balls[foot])], self.soles[foot].map(|point| ankle.point(point)))
@@ -88,7 +89,7 @@ impl Legs {
 }
 
 impl Feet {
-    /// Follows the ground for a step of a character that goes, stands or is powered.
+    /// Follows the ground for a step of a character that walks, stands or is powered.
     pub(super) fn tread(&mut self, stand: &Stand<'_>, legs: &Legs, world: &World, model: &mut Vec<Affine>) {
         let (def, figure, dt) = (stand.def, stand.figure, world.def().dt());
         let (place, level) = (figure.place, figure.place.translation.y);
@@ -119,7 +120,7 @@ impl Feet {
             let planting = &mut self.planting;
             let ground = level + found.need.height;
             let change = ground - tread.ground;
-            // Ground that goes on is followed at once, so is ground that moves.
+            // Continuous ground is followed at once, and so is moving ground.
             let moves = max(tread.floor.y.abs(), found.floor.y.abs()) * dt;
             let goes_on = !is_new && change.abs() <= FOOT_EDGE * step.way.length() + moves;
             planting.heights[foot] += if goes_on { change } else { tread.floor.y * dt } - rise;
@@ -135,7 +136,8 @@ impl Feet {
         self.treads = Some(treads);
     }
 
-    /// Brings the feet of a pose of the clips, which are where they stand by height, to where they stand over the ground. `now` is where the character is after `later` seconds.
+    /// Moves the feet of a pose of the clips, already at their heights, to their planted places. `now` is where the
+    /// character is after `later` seconds.
     pub(super) fn bring_home(
         &self,
         def: &CharacterDef,
@@ -156,7 +158,7 @@ impl Feet {
         hold_feet(&def.rig, legs.pelvis, &legs.chains, &ankles, most, pose, model);
     }
 
-    /// Level ways of the feet from where a pose of the clips has them, `later` seconds from now.
+    /// Level offsets of the feet from a pose of the clips, `later` seconds from now.
     pub(super) fn offsets(&self, later: f32) -> [Vec3; 2] {
         let Some(treads) = self.treads else { return [Vec3::ZERO; 2] };
         treads.feet.map(|tread| {
@@ -181,7 +183,7 @@ impl Feet {
     }
 }
 
-/// Ground that a foot finds.
+/// Ground under a foot.
 struct Found {
     need: Need,
     floor: Vec3,
@@ -189,12 +191,12 @@ struct Found {
     under: [Option<f32>; 3],
     /// Level direction from ankle to ball.
     ahead: Vec3,
-    /// Level way that its toes have to keep back from a wall where it comes down, metres.
+    /// Level distance by which its toes must stay back from a wall where it comes down, metres.
     home: Vec3,
 }
 
 impl Found {
-    /// Least height by which the foot is to be raised so that no end is in the ground, metres.
+    /// Least height by which the foot must be raised so that neither end is in the ground, metres.
     fn least(&self, step: &Step, level: f32, slope: f32) -> f32 {
         let flat = |end: usize| (step.sole[end] - step.points[0]) * Vec3::new(1.0, 0.0, 1.0);
         let each = (0..3).filter_map(|end| {
@@ -208,13 +210,13 @@ impl Found {
 }
 
 impl Stand<'_> {
-    /// The ground under a foot as it is shown, and where it will come down.
+    /// The ground under the shown foot, and where it will come down.
     fn found(&self, world: &World, tread: &Tread, step: &Step, (heel, dt): (f32, f32)) -> Found {
         let (level, size) = (self.figure.place.translation.y, self.def.ragdoll.height);
         let under = |point: Vec3| {
             let over = Vec3::new(point.x, level, point.z);
             let hit = ground::found_below(world, over, FOOT_SEARCH, self.own)?;
-            // What is light is kicked, limbs are stepped over.
+            // Light bodies are kicked, limbs are stepped over.
             let is_loose = world.kind(hit.body) == BodyKind::Dynamic
                 && (world.body_owner(hit.body).is_some()
                     || world.mass(hit.body).mass < LEAST_TREAD * self.def.ragdoll.total_mass);
@@ -259,8 +261,8 @@ impl Stand<'_> {
         Found { need, floor, under: heights, ahead, home }
     }
 
-    /// Way along itself by which a foot comes down beside where its ankle and ball would, metres: with its toes out of a wall, and with
-    /// its ball on the step that bears its heel or its heel past the edge of that. `heel`, `toes`: lengths behind the ankle and before the ball.
+    /// Shift along itself of a foot's landing place, metres: toes out of a wall, and the ball on the step that bears
+    /// the heel, or the heel past its edge. `heel`, `toes`: lengths behind the ankle and before the ball.
     fn aside(
         &self,
         world: &World,

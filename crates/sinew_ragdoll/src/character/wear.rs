@@ -14,7 +14,7 @@ use sinew_physics::World;
 pub(super) struct Wear {
     pub springs: SpringSwing,
     pub garments: Worn,
-    /// The pose with springs and garments as they are; empty of a character that wears none.
+    /// The pose with springs and garments; empty for a character without any.
     pub pose: Vec<LocalTransform>,
 }
 
@@ -46,8 +46,8 @@ impl Wear {
         Self { springs: SpringSwing::new(), garments: Worn::default(), pose: Vec::new() }
     }
 
-    /// Takes what it wears forward by a step of the world, about the pose that the bearer has now. `shown`: the moment that was shown last;
-    /// `is_far`: springs rest; `mends`: what clips have caught is freed.
+    /// Advances springs and garments by a step of the world, about the wearer's pose. `shown`: the moment that was
+    /// shown last; `is_far`: springs rest; `mends`: frees cloth caught by clips.
     pub fn go_on(
         &mut self,
         bearer: Bearer<'_>,
@@ -73,7 +73,7 @@ impl Wear {
         self.show_garments(def);
     }
 
-    /// Springs of one who is far away are the pose, and return with its motion: that which was shown.
+    /// Springs of a far character equal the pose, and return with the shown pose's motion.
     fn swing(
         &mut self,
         bearer: Bearer<'_>,
@@ -113,14 +113,14 @@ impl Wear {
         scratch.after = bodies;
     }
 
-    /// Puts its garments on if it has bodies to wear them, mends what its clips have caught, and looks how they lie. Their joints are shown below springs that have
-    /// swung; cloth itself lies as the pose without springs has it, from near and from afar.
+    /// Adds its garments if it has bodies to wear them, frees cloth caught by clips, and reads their pose. Their joints
+    /// are shown below swinging springs; cloth itself follows the pose without springs.
     fn drape(&mut self, bearer: Bearer<'_>, mends: bool, world: &mut World) {
         self.dress(bearer, world);
         if self.garments.groups.is_empty() {
             return;
         }
-        // Where the pose of one who is getting up has the sheet is ground.
+        // The sheet in the pose of a character getting up may be in the ground.
         if mends {
             bearer.wearer().mend(world, &self.garments.groups);
         }
@@ -135,7 +135,7 @@ impl Wear {
         }
     }
 
-    /// Hangs its garments on what is left of its bodies, as they lie.
+    /// Attaches its garments to its remaining bodies, at their present shape.
     pub fn rehang(&mut self, bearer: Bearer<'_>, world: &mut World) {
         if self.garments.groups.is_empty() {
             return;
@@ -146,14 +146,14 @@ impl Wear {
         self.garments.lay(world, &was);
     }
 
-    /// Turns the bones of springs as they are, in the pose that is shown.
+    /// Rotates the bones of springs in the shown pose.
     fn show_springs(&mut self, def: &CharacterDef) {
         for (joint, &turn) in def.springs().joints().zip(self.springs.turns()) {
             self.pose[joint].rotation = turn;
         }
     }
 
-    /// Turns and moves the joints of garments as they are, in the pose that is shown.
+    /// Rotates and moves the joints of garments in the shown pose.
     fn show_garments(&mut self, def: &CharacterDef) {
         for (joint, &turn) in def.garments().joints().zip(&self.garments.turns) {
             self.pose[joint].rotation = turn;
@@ -163,7 +163,7 @@ impl Wear {
         }
     }
 
-    /// Shows what it wears over a pose, as it was when it was saved.
+    /// Shows springs and garments over a pose, as saved.
     pub fn show_loaded(&mut self, def: &CharacterDef, pose: &[LocalTransform]) {
         self.pose.clear();
         if !(self.springs.turns().is_empty() && self.garments.turns.is_empty()) {

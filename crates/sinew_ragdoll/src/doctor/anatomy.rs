@@ -1,4 +1,4 @@
-//! Requirements on the body as a whole: finite, of a sensible size, with a head and limbs.
+//! Checks of the body as a whole: finite, of plausible size, with a head and limbs.
 
 use super::exam::{Exam, bones_of};
 use super::{Code, Finding, Repair, Severity};
@@ -14,11 +14,11 @@ use sinew_physics::JointKind;
 
 /// Heights of characters that fall like people, metres.
 const HEIGHTS: core::ops::RangeInclusive<f32> = 0.3..=5.0;
-/// Heights of creatures, from a mouse to a whale that stands on its tail, metres.
+/// Heights of creatures, from a mouse to an upright whale, metres.
 const CREATURES: core::ops::RangeInclusive<f32> = 0.05..=30.0;
 /// Heights that a human may have, metres.
 const HUMAN: core::ops::RangeInclusive<f32> = 0.5..=3.0;
-/// Lengths of units that files are mistaken in, metres, and what they are called.
+/// Lengths of units that files get wrong, metres, with their names.
 const UNITS: [(f32, &str); 6] = [
     (0.01, "centimetres"),
     (0.0254, "inches"),
@@ -28,7 +28,7 @@ const UNITS: [(f32, &str); 6] = [
     (39.37, "metres taken as inches"),
 ];
 
-/// Bodies and joints with numbers that are none.
+/// Bodies and joints with numbers that are not finite.
 pub(super) fn not_finite(def: &RagdollDef) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut find = |body: usize, what: String| {
@@ -104,7 +104,7 @@ fn heights(def: &RagdollDef) -> core::ops::RangeInclusive<f32> {
     if bones_of(def).anatomy == Anatomy::Human { HEIGHTS } else { CREATURES }
 }
 
-/// The same in metres; its rig too, where that was read in the same unit.
+/// The same in metres; its rig too, if that was read in the same unit.
 pub(super) fn repair_in_metres(repair: &Repair) -> Repair {
     let def = in_metres(&repair.def);
     let is_same = |rig: &RagdollDef| (0.5..2.0).contains(&(rig.height / repair.def.height));
@@ -113,9 +113,9 @@ pub(super) fn repair_in_metres(repair: &Repair) -> Repair {
     Repair { def, reference, ..repair.clone() }
 }
 
-/// Factor on all lengths, and the unit that it stands for.
+/// Factor on all lengths, and the assumed unit.
 fn unit_of(def: &RagdollDef) -> (f32, String) {
-    // The unit that comes nearest to a person's height; of a creature any that makes a creature of it.
+    // The unit that comes nearest to a person's height; for a creature any that gives a plausible size.
     let human = bones_of(def).anatomy == Anatomy::Human;
     let heights = if human { HUMAN } else { HEIGHTS };
     let ratio = |factor: f32| max(def.height * factor / USUAL_HEIGHT, USUAL_HEIGHT / (def.height * factor));
@@ -145,7 +145,7 @@ fn in_metres(def: &RagdollDef) -> RagdollDef {
     def.height *= factor;
     def.unit_scale *= factor;
     def.character_from_model = place(def.character_from_model);
-    // A mass that came from the wrong height is as wrong as that.
+    // A mass derived from the wrong height is wrong, too.
     let natural = default_mass(def.height, Sex::Male);
     let ratio = natural / def.total_mass;
     if !(0.2..5.0).contains(&ratio) {
@@ -154,7 +154,7 @@ fn in_metres(def: &RagdollDef) -> RagdollDef {
     def
 }
 
-/// Head and limbs that have no body: the rig's, if it is at hand, else those of a human.
+/// Head and limbs without a body: the rig's, if it is at hand, else those of a human.
 pub(super) fn missing_bodies(exam: &Exam<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (role, parent_is_there) in expected(exam) {
@@ -163,7 +163,7 @@ pub(super) fn missing_bodies(exam: &Exam<'_>) -> Vec<Finding> {
         let known = exam.repair.reference.as_ref();
         let bone = known.and_then(|rig| rig.bodies.iter().find(|body| body.role == role.name()));
         if known.is_some() && bone.is_none() {
-            // The rig has no such bone: there is nothing to make a body of.
+            // The rig has no such bone to make a body of.
             continue;
         }
         let above =
@@ -179,7 +179,7 @@ pub(super) fn missing_bodies(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// Roles without a body that a human has, each with the body that it would hang on: of a limb only the first.
+/// A human's roles without a body, each with its parent body; of a limb only the first.
 fn expected(exam: &Exam<'_>) -> Vec<(Role, Option<usize>)> {
     use sinew_anim::roles::Side::{Left, Right};
     if exam.bones.anatomy != Anatomy::Human {
@@ -200,7 +200,7 @@ fn expected(exam: &Exam<'_>) -> Vec<(Role, Option<usize>)> {
             for (at, role) in chain.into_iter().enumerate() {
                 match body(role) {
                     Some(found) => above = Some(found),
-                    // Hands and feet may ride along on both sides; one alone is a mistake.
+                    // Hands and feet may lack bodies on both sides; on one side it is a mistake.
                     None if at == 2 && body(role.mirror()).is_none() && exam.repair.reference.is_none() => {}
                     None => {
                         missing.push((role, above));
@@ -213,7 +213,7 @@ fn expected(exam: &Exam<'_>) -> Vec<(Role, Option<usize>)> {
     missing
 }
 
-/// Findings about what was inferred of the rig, and may be wrong.
+/// Findings about assumptions that may be wrong.
 pub(super) fn inferred(exam: &Exam<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     let unit = exam.def.unit_scale;

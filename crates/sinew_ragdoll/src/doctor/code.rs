@@ -5,7 +5,7 @@
 pub enum Severity {
     /// It jitters, explodes or falls apart.
     Error,
-    /// It behaves, but not as a body does.
+    /// It behaves, but not like a body.
     Warning,
     /// Worth knowing.
     Note,
@@ -55,7 +55,7 @@ macro_rules! codes {
                 }
             }
 
-            /// Advice on what to do, a sentence.
+            /// Recommended action, one sentence.
             pub fn fix(self) -> &'static str {
                 match self {
                     $(Self::$variant => $fix,)*
@@ -82,11 +82,11 @@ codes! {
     IdentityFrames "identity-frames" Error
         "the zero of the joint is not the bind pose, so that its limits are broken at the start"
         "Turn the frames so that they agree in the bind pose and meet at the bone's head.";
-    /// The two anchors of a joint are not in one place.
+    /// The two anchors of a joint differ.
     AnchorsApart "anchors-apart" Error
         "the joint is torn open at the start and snaps shut"
         "Move the anchor of the parent to that of the child.";
-    /// The pivot is not where the bone begins.
+    /// The pivot is not at the start of the bone.
     PivotOffBone "pivot-off-bone" Error
         "the bone swings about a point outside itself, as a hip that hangs on the middle of the pelvis"
         "Move the pivot to the head of the bone.";
@@ -94,7 +94,7 @@ codes! {
     LimitViolatedAtBind "limit-violated-at-bind" Error
         "the limit pushes from the first step on"
         "Widen the limit until it holds the bind pose with 2° to spare.";
-    /// Two bodies that collide start inside each other.
+    /// Two colliding bodies overlap at the start.
     OverlapAtStart "overlap-at-start" Error
         "contacts push the bodies apart at the first step: the ragdoll explodes"
         "Leave out contacts between the two.";
@@ -130,7 +130,7 @@ codes! {
     NoSelfCollision "no-self-collision" Warning
         "limbs sink into the trunk, because all pairs of them are left out"
         "Let the pairs collide that do not overlap in the bind pose.";
-    /// A shape too small to be felt.
+    /// A shape too small to have an effect.
     TinyShape "tiny-shape" Warning
         "so thin a shape sinks into everything and falls through meshes"
         "Give it a thickness in proportion to the character.";
@@ -178,7 +178,7 @@ codes! {
     SkinLopsided "skin-lopsided" Warning
         "the two sides got bodies of different length, size or mass, so that it falls to one side"
         "Set shape, scale or mass of both by the role without its side, or give the missing part a body.";
-    /// A part hangs on what it does not grow from.
+    /// A part hangs on a body that its skin does not grow from.
     LimbApart "limb-apart" Warning
         "the rig has a part of a limb beside the body, as controls of inverse kinematics do, and it was hung elsewhere"
         "Say with `--role` which part of which limb it is.";

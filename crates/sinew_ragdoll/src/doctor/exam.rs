@@ -1,4 +1,4 @@
-//! Ragdoll with what follows from it, as all examinations look at it.
+//! A ragdoll with derived data for all checks.
 
 use super::{Code, Finding, Repair};
 use crate::build::bones::{Anatomy, Bone, Bones};
@@ -13,23 +13,23 @@ use sinew_math::limits::hinge_angle;
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min};
 use sinew_physics::JointKind;
 
-/// A ragdoll with what follows from it.
+/// A ragdoll with derived data.
 pub(super) struct Exam<'a> {
     pub repair: &'a Repair,
     pub def: &'a RagdollDef,
-    /// The bodies as the build's stages know them; heads are the pivots of the definition.
+    /// The bodies as bones of the build's stages; heads are the pivots of the definition.
     pub bones: Bones,
     pub fits: Vec<Fit>,
     /// Height, metres.
     pub size: f32,
 }
 
-/// Angles by which a joint is beyond what it leaves free, radians.
+/// Angles by which a joint exceeds its freedom, radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Beyond {
     /// Beyond its limits.
     pub limit: f32,
-    /// Turned where it does not turn.
+    /// Rotated where it is locked.
     pub locked: f32,
 }
 
@@ -60,7 +60,7 @@ impl<'a> Exam<'a> {
         }
     }
 
-    /// Role and bone of a body, the latter where it says something else.
+    /// Role and bone of a body; the latter only if it differs.
     pub fn who(&self, body: usize) -> String {
         let body = &self.def.bodies[body];
         if body.role == body.bone { body.role.clone() } else { format!("{} ({})", body.role, body.bone) }
@@ -72,7 +72,7 @@ impl<'a> Exam<'a> {
         format!("{} and {}", self.who(joint.parent), self.who(joint.child))
     }
 
-    /// The joint's rotation in the bind pose, its child turned by `turn` (character axes) from there.
+    /// The joint's rotation in the bind pose, its child rotated by `turn` (character axes) from there.
     pub fn turned(&self, joint: usize, turn: Rotation) -> Rotation {
         let joint = &self.def.joints[joint];
         let rotation = |body: usize| self.def.bodies[body].character_from_body.rotation;
@@ -100,7 +100,7 @@ impl<'a> Exam<'a> {
         self.bones.list[body].part
     }
 
-    /// The joint that anatomy has here: same pivot, axes and range from the table.
+    /// The anatomical joint: same pivot, axes and range from the table.
     pub fn anatomical(&self, joint: usize) -> JointPlan {
         let mut plan = joints(&self.bones, &self.fits, self.def.total_mass)[joint];
         plan.def.kind = within_half_turns(plan.def.kind);
@@ -108,8 +108,8 @@ impl<'a> Exam<'a> {
     }
 }
 
-/// The kind with twists and hinges that end within half a turn each way: room that was added for a bind pose near that
-/// end would reach round to the other side.
+/// The kind with twists and hinges limited to half a turn each way: added room near that end would wrap to the other
+/// side.
 fn within_half_turns(kind: JointKind) -> JointKind {
     let held = |range: Range| Range::new(max(range.lo, -PI), min(range.hi, PI));
     match kind {
@@ -127,7 +127,7 @@ pub(super) fn anchors(def: &RagdollDef, joint: &RagdollJointDef) -> [Vec3; 2] {
     [point(joint.parent, joint.frame_parent), point(joint.child, joint.frame_child)]
 }
 
-/// Angles by which the joint rotation `frame_a⁻¹ frame_b` is beyond what the joint leaves free, radians.
+/// Angles by which the joint rotation `frame_a⁻¹ frame_b` exceeds the joint's freedom, radians.
 pub(super) fn beyond(kind: &JointKind, seen: Rotation) -> Beyond {
     let (swing, twist) = seen.swing_twist(Vec3::X);
     let swung = swing.to_scaled_axis().length();
@@ -151,8 +151,9 @@ pub(super) fn swing_excess(limit: &SwingTwistLimit, seen: Rotation) -> f32 {
     max(0.0, -limit.swing_state(seen).slack)
 }
 
-/// Angle by which the child of a joint can turn about an axis of its own joint frame from `bind`, the joint's rotation there,
-/// before it meets a limit: radians, at most π. A universal joint's twist is let be: it shows in a swing that goes round.
+/// Angle by which the child of a joint can rotate about an axis of its own joint frame from `bind`, the joint's
+/// rotation there, before it meets a limit: radians, at most π. The twist of a universal joint is ignored: it appears
+/// in a swing that goes round.
 pub fn limit_reach(kind: &JointKind, bind: Rotation, axis: Vec3) -> f32 {
     const STEP: f32 = 0.02;
     let is_free = |angle: f32| {
@@ -186,7 +187,7 @@ pub(crate) fn bones_of(def: &RagdollDef) -> Bones {
         .iter()
         .enumerate()
         .map(|(index, body)| {
-            // A role that we do not know is a limb of its own.
+            // An unknown role counts as a limb of its own.
             let unknown = Role::LimbSegment { limb: u16::MAX, segment: index as u16 };
             let role = Role::from_name(&body.role).unwrap_or(unknown);
             let joint = index.checked_sub(1).map(|joint| &def.joints[joint]);

@@ -5,14 +5,15 @@ use crate::def::RagdollDef;
 use crate::skin::Flaw;
 use sinew_physics::{Softness, WorldDef};
 
-/// A ragdoll to be examined and repaired.
+/// A ragdoll to examine and repair.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Repair {
     /// The ragdoll.
     pub def: RagdollDef,
-    /// Spring or motor of each joint, in the order of the joints; `None` for a limp one. May be shorter than the joints.
+    /// Spring or motor of each joint, in the order of the joints; `None` for a limp one. May be shorter than the
+    /// joints.
     pub springs: Vec<Option<Softness>>,
-    /// Ragdoll that a build from its rig gives, if that is at hand: it knows what the definition leaves out.
+    /// Ragdoll built from its rig, if that is at hand: it shows what the definition lacks.
     pub reference: Option<RagdollDef>,
     /// Flaws of its skin ([`SkinQuality::flaws`](crate::SkinQuality::flaws)), where it was measured.
     pub skin: Vec<Flaw>,
@@ -21,7 +22,7 @@ pub struct Repair {
 }
 
 impl Repair {
-    /// A limp ragdoll whose rig is not at hand.
+    /// A limp ragdoll without its rig.
     pub fn new(def: RagdollDef) -> Self {
         let world = WorldDef::default();
         let substep = world.dt() / world.substeps as f32;
@@ -36,14 +37,14 @@ pub struct Finding {
     pub code: Code,
     /// Severity of the trouble.
     pub severity: Severity,
-    /// Indices of the bodies that it is about, the one to look at first.
+    /// Indices of the bodies concerned, the first to look at first.
     pub bodies: Vec<usize>,
     /// Names of their bones; of a body that is missing, its role.
     pub bones: Vec<String>,
     /// Measured evidence, a sentence with both bodies' names.
     pub evidence: String,
-    /// Advice on what to do, a sentence.
+    /// Recommended action, one sentence.
     pub fix: String,
-    /// True if [`cure`](super::cure) has mended it; false from [`doctor`](super::doctor()).
+    /// True if [`cure`](super::cure) fixed it; false from [`doctor`](super::doctor()).
     pub fixed: bool,
 }

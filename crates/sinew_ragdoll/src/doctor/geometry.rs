@@ -29,7 +29,7 @@ pub(super) fn depth(exam: &Exam<'_>, a: usize, b: usize) -> f32 {
     depth_at(exam, (a, exam.def.bodies[a].character_from_body), b)
 }
 
-/// The shape with all of its lengths times `factor`. Surfaces, which no body of a ragdoll is, stay as they are.
+/// The shape scaled by `factor`. Surfaces, which no ragdoll has, are unchanged.
 pub fn scaled(shape: &Shape, factor: f32) -> Shape {
     match *shape {
         Shape::Box { half_extents } => Shape::Box { half_extents: half_extents * factor },

@@ -1,4 +1,4 @@
-//! Joints: where they are, which way they face, how far they go.
+//! Checks of joints: position, frames, ranges.
 
 use super::exam::{Beyond, Exam, beyond, swing_excess};
 use super::geometry::longest;
@@ -13,12 +13,12 @@ use sinew_math::{
 };
 use sinew_physics::{JointKind, MassProperties, Softness};
 
-/// Adds what is wrong with joints to `findings`, which has what is known of their bodies.
+/// Adds defects of joints to `findings`, which holds those of their bodies.
 pub(super) fn findings(exam: &Exam<'_>, findings: &mut Vec<Finding>) {
     let joints = 0..exam.def.joints.len();
     let checks: [fn(&Exam<'_>, usize) -> Option<Finding>; 4] = [frames, pivot, at_bind, missing];
     for joint in joints.clone() {
-        // The first cause found is the one that brings the others.
+        // The first cause found explains the others.
         findings.extend(checks.iter().find_map(|check| check(exam, joint)));
     }
     let alike = all_alike(exam);
@@ -35,7 +35,7 @@ pub(super) fn findings(exam: &Exam<'_>, findings: &mut Vec<Finding>) {
     findings.extend(joints.filter_map(|joint| too_stiff(exam, joint)));
 }
 
-/// True if something is known to be wrong with the joint's frames or limits.
+/// True if a defect of the joint's frames or limits is known.
 pub(super) fn is_marked(findings: &[Finding], joint: usize) -> bool {
     use Code::{
         AnchorsApart, BendsBothWays, IdentityFrames, LimitTooNarrow, LimitViolatedAtBind, LimitsAllAlike,
@@ -58,7 +58,7 @@ pub(super) fn is_marked(findings: &[Finding], joint: usize) -> bool {
     })
 }
 
-/// Frames that nobody set, and anchors that are not in one place.
+/// Default frames, and anchors that differ.
 fn frames(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let bodies = [joint.child, joint.parent];
@@ -69,7 +69,7 @@ fn frames(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let angle = turn.angle_to(Rotation::IDENTITY);
     let both = |test: &dyn Fn(Transform) -> bool| test(joint.frame_parent) && test(joint.frame_child);
     let mut said = Vec::new();
-    // A hinge may well be bent in the bind pose: frames are wrong where they break what the joint holds.
+    // A hinge may be bent in the bind pose: frames are wrong if they break a locked direction.
     let Beyond { limit, locked } = beyond(&joint.kind, turn);
     if both(&is_identity) && angle > OTHER_ZERO && max(limit, locked) > BEYOND_AT_BIND {
         said.push(format!("its zero is {:.0}° from the bind pose", angle.to_degrees()));
@@ -88,8 +88,7 @@ fn frames(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     })
 }
 
-/// A pivot that is not where its bone begins: far from where the rig has it, or at the parent's origin and outside the
-/// child.
+/// A pivot away from the start of its bone: far from the rig's, or at the parent's origin and outside the child.
 fn pivot(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let joint = &exam.def.joints[index];
     let (pivot, child) = (exam.bones.list[joint.child].head, &exam.def.bodies[joint.child]);
@@ -116,7 +115,7 @@ fn pivot(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     })
 }
 
-/// Head of a body's bone as the rig has it, character space; `None` where the rig is not at hand or has no such joint.
+/// Start of a body's bone in the rig, character space; `None` without the rig or the joint.
 pub(super) fn head_of_rig(exam: &Exam<'_>, body: usize) -> Option<Vec3> {
     let rig = exam.repair.reference.as_ref()?;
     let bone = &exam.def.bodies[body].bone;
@@ -170,7 +169,7 @@ fn missing(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     Some(exam.finding(Code::LimitsMissing, &[joint.child, joint.parent], evidence))
 }
 
-/// Ranges of the directions that a joint leaves free.
+/// Ranges of a joint's free directions.
 fn ranges(kind: &JointKind) -> Vec<(&'static str, Range)> {
     match *kind {
         JointKind::Ball { limit: Some(l) } => {
@@ -184,7 +183,7 @@ fn ranges(kind: &JointKind) -> Vec<(&'static str, Range)> {
     }
 }
 
-/// True if a range is neither wide enough to move in nor locked.
+/// True if a range is too narrow to move in but not locked.
 pub(super) fn is_narrow(range: Range) -> bool {
     (LOCKED..NARROW).contains(&width(range))
 }
@@ -211,7 +210,7 @@ fn all_alike(exam: &Exam<'_>) -> Option<Finding> {
         .joints
         .iter()
         .filter_map(|joint| match joint.kind {
-            // What is unlimited is told of by itself.
+            // Unlimited joints have their own finding.
             JointKind::Ball { limit: Some(limit) } if width(limit.twist) <= NO_LIMIT => {
                 Some((joint.child, limit))
             }
@@ -262,7 +261,7 @@ fn both_ways(exam: &Exam<'_>, index: usize) -> Option<Finding> {
         }
         _ => return None,
     };
-    // Widths beyond half a turn are angles that wrapped.
+    // Widths beyond half a turn are wrapped angles.
     if sinew_math::min(back, on) <= BACKWARDS {
         return None;
     }
@@ -335,7 +334,7 @@ fn too_stiff(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     Some(exam.finding(Code::StiffnessAboveNyquist, &[joint.child, joint.parent], evidence))
 }
 
-/// Frequency of a joint's spring, with the two sides of the joint each taken as one rigid piece, Hz.
+/// Frequency of a joint's spring, with each side of the joint as one rigid piece, Hz.
 pub(super) fn hertz(exam: &Exam<'_>, index: usize, softness: Softness) -> f32 {
     let Softness::Stiffness { stiffness, .. } = softness else {
         let Softness::Frequency { hertz, .. } = softness else { return 0.0 };
@@ -344,7 +343,7 @@ pub(super) fn hertz(exam: &Exam<'_>, index: usize, softness: Softness) -> f32 {
     (stiffness / turning_inertia(exam, index)).sqrt() / (2.0 * PI)
 }
 
-/// Least inertia of the motion of the two sides of a joint against each other, kg·m².
+/// Least inertia of the relative motion of a joint's two sides, kg·m².
 pub(super) fn turning_inertia(exam: &Exam<'_>, index: usize) -> f32 {
     let child = exam.def.joints[index].child;
     let mut below = vec![false; exam.def.bodies.len()];
@@ -356,7 +355,7 @@ pub(super) fn turning_inertia(exam: &Exam<'_>, index: usize) -> f32 {
         *side = side.combine(&def.mass.transformed(&def.character_from_body));
     }
     let pivot = exam.bones.list[child].head;
-    // About the axis with the least of it: what lies in line with the pivot adds nothing about its own line.
+    // About the axis with the least inertia: bodies in line with the pivot add nothing about their own line.
     let [above, below] = sides.map(|side| {
         let arm = side.center - pivot;
         let about_pivot = side.inertia.to_mat3()

@@ -28,7 +28,7 @@ pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// True if a world takes a body of this mass.
+/// True if a world accepts a body of this mass.
 pub(super) fn is_positive(mass: &MassProperties) -> bool {
     mass.mass > 0.0
         && mass.mass.is_finite()
@@ -85,7 +85,7 @@ fn ratios(exam: &Exam<'_>) -> Vec<Finding> {
     let mass = |body: usize| exam.def.bodies[body].mass.mass;
     let ratio = |a: usize, b: usize| max(mass(a) / mass(b), mass(b) / mass(a));
     let mut findings = Vec::new();
-    // What is held fast moves as one with what holds it.
+    // Props move as one with their carrier.
     let is_held = |body: usize| exam.bones.list[body].is_prop;
     for joint in exam.def.joints.iter().filter(|joint| !is_held(joint.child)) {
         let found = ratio(joint.parent, joint.child);
@@ -161,7 +161,7 @@ fn shown(v: Vec3) -> String {
     format!("{:.2e}, {:.2e} and {:.2e}", v.x, v.y, v.z)
 }
 
-/// Mass, centre and inertia of a shape at a mass, fit for a solver: no moment below an eighth of the largest.
+/// Mass, centre and inertia of a shape at a mass, suitable for a solver: no moment below an eighth of the largest.
 pub(super) fn of_shape(shape: &Shape, mass: f32) -> MassProperties {
     let unit = shape.mass_properties(1.0);
     let factor = mass / max(unit.mass, 1e-9);
@@ -181,7 +181,7 @@ pub(super) fn scale_all(def: &mut RagdollDef, factor: f32) {
     def.total_mass = def.bodies.iter().map(|body| body.mass.mass).sum();
 }
 
-/// Makes the lighter of two bodies heavy enough for their ratio to be `most`, and keeps the total.
+/// Makes the lighter of two bodies heavy enough for the ratio `most`, and keeps the total.
 pub(super) fn relieve(def: &mut RagdollDef, [a, b]: [usize; 2], most: f32) {
     let (light, heavy) = if def.bodies[a].mass.mass < def.bodies[b].mass.mass { (a, b) } else { (b, a) };
     let total = def.total_mass;

@@ -1,4 +1,4 @@
-//! One remedy for each finding.
+//! One repair per finding.
 
 use super::exam::{Exam, anchors, beyond};
 use super::geometry::{depth, full_size, longest, scaled};
@@ -11,12 +11,12 @@ use core::f32::consts::PI;
 use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min};
 use sinew_physics::{JointKind, Shape, Softness};
 
-/// Mends what a finding tells of; false if nothing could be done.
+/// Repairs a finding; false if nothing could be done.
 pub(super) fn mend(repair: &mut Repair, finding: &Finding) -> bool {
     let Some(&body) = finding.bodies.first() else { return false };
     let other = finding.bodies.get(1).copied().unwrap_or(body);
     match finding.code {
-        // Numbers that are none are lost, and whether a guess is right only a person can say.
+        // Numbers that are not finite cannot be recovered, and only a person can confirm a guess.
         Code::NotFinite | Code::UnitInferred | Code::RoleUncertain => false,
         Code::WrongUnit => {
             *repair = anatomy::repair_in_metres(repair);
@@ -37,7 +37,7 @@ pub(super) fn mend(repair: &mut Repair, finding: &Finding) -> bool {
     }
 }
 
-/// The definition with one finding mended.
+/// The definition with one finding repaired.
 fn remedied(exam: &Exam<'_>, finding: &Finding, body: usize, other: usize) -> Option<RagdollDef> {
     let mut def = exam.def.clone();
     let joint = body.checked_sub(1);
@@ -109,13 +109,13 @@ fn natural(exam: &Exam<'_>, body: usize) -> sinew_physics::MassProperties {
     masses::of_shape(shape, masses::natural_mass(exam) * shape.volume() / all)
 }
 
-/// The joint with both frames at one pivot; with `IdentityFrames` also with the axes and range of anatomy.
+/// The joint with both frames at one pivot; with `IdentityFrames` also with the anatomical axes and range.
 fn moved(exam: &Exam<'_>, index: usize, code: Code) -> RagdollJointDef {
     let joint = exam.def.joints[index];
     let [on_parent, on_child] = exam.anchors(index);
     let end = near_end(exam, index);
     let pivot = head_of_rig(exam, joint.child).unwrap_or_else(|| match code {
-        // Whichever of the two anchors is nearer to where the child begins.
+        // The anchor nearer to the start of the child.
         Code::AnchorsApart if (on_parent - end).length() < (on_child - end).length() => on_parent,
         Code::AnchorsApart => on_child,
         Code::IdentityFrames if (on_parent - on_child).length() < 0.003 * exam.size => on_child,
@@ -138,12 +138,12 @@ fn moved(exam: &Exam<'_>, index: usize, code: Code) -> RagdollJointDef {
     new
 }
 
-/// The end of the child's shape that is nearer to the parent, character space: where the bone must begin.
+/// The end of the child's shape nearer to the parent, character space, where the bone must begin.
 fn near_end(exam: &Exam<'_>, index: usize) -> Vec3 {
     let joint = &exam.def.joints[index];
     let child = &exam.def.bodies[joint.child];
     let half = full_size(&child.shape) * 0.5;
-    // A little inside, where a bone's head lies.
+    // Slightly inside, where a bone's head is.
     let along = if half.y >= half.x && half.y >= half.z {
         Vec3::Y * (0.9 * half.y)
     } else if half.x >= half.z {
@@ -223,7 +223,7 @@ fn locked(exam: &Exam<'_>, index: usize) -> RagdollJointDef {
     at_bind(exam, RagdollJointDef { kind, ..joint })
 }
 
-/// A narrow range, made wide enough to be quiet (±5°).
+/// A narrow range, widened to be stable (±5°).
 fn quiet(range: Range) -> Range {
     Range::new(min(range.lo, -0.09), max(range.hi, 0.09))
 }
@@ -249,7 +249,7 @@ fn at_bind(exam: &Exam<'_>, joint: RagdollJointDef) -> RagdollJointDef {
     fitted(&joint, pose(joint.parent), pose(joint.child))
 }
 
-/// Gives one of two sides the other's range: that which is farther from anatomy.
+/// Gives one of two sides the other's range: the one further from anatomy.
 fn mirror_joint(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     let strangeness = |body: usize| {
         let anatomical = exam.anatomical(body - 1).def.kind;
@@ -258,7 +258,7 @@ fn mirror_joint(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     let (wrong, right) = if strangeness(a) >= strangeness(b) { (a, b) } else { (b, a) };
     let joint = mirror::mirrored_joint(exam, wrong, right);
     let pose = |body: usize| exam.def.bodies[body].character_from_body;
-    // Where the two sides are not bound alike the mirror image must still hold the bind pose.
+    // If the two sides are bound differently the mirrored range must still contain the bind pose.
     let seen = {
         let parent = pose(joint.parent).rotation * joint.frame_parent.rotation;
         parent.inverse() * (pose(joint.child).rotation * joint.frame_child.rotation)
@@ -280,7 +280,7 @@ fn span(a: &JointKind, b: &JointKind) -> f32 {
     }
 }
 
-/// Gives one of two sides the mirror image of the other's shape: that whose length is nearer to its bone's.
+/// Gives one of two sides the mirror image of the other's shape: the one whose length is further from its bone's.
 fn mirror_shape(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     let misfit = |body: usize| {
         let long = longest(&exam.def.bodies[body].shape);
@@ -292,7 +292,7 @@ fn mirror_shape(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     reshape(exam, def, wrong, source.shape.clone(), mirror::mirrored(source.character_from_body, plane));
 }
 
-/// Gives a body another shape in another place; its joints stay where they are in the character.
+/// Changes a body's shape and place; its joints stay in place in the character.
 fn reshape(exam: &Exam<'_>, def: &mut RagdollDef, body: usize, shape: Shape, place: Transform) {
     let old = exam.def.bodies[body].character_from_body;
     let new_from_old = place.inverse() * old;
@@ -322,8 +322,8 @@ fn min_of(a: usize, b: usize) -> usize {
     if a < b { a } else { b }
 }
 
-/// Takes away what may push: limits that the bind pose is a little beyond, each too little to be told of by itself; where
-/// there are none, the deepest contact near `body`.
+/// Removes what may push: limits that the bind pose slightly exceeds, each too small for a finding; without any, the
+/// deepest contact near `body`.
 fn settle(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) -> Option<()> {
     let strained = |joint: &usize| {
         let out = beyond(&exam.def.joints[*joint].kind, exam.turned(*joint, Rotation::IDENTITY));
@@ -355,7 +355,7 @@ fn nearest_pair(exam: &Exam<'_>, body: usize) -> Option<(usize, usize)> {
     best.1
 }
 
-/// A shape of the size that the rig, the other side or the bone says.
+/// A shape with the size of the rig, the other side or the bone.
 fn resize(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) {
     let own = &exam.def.bodies[body];
     let rig = exam.repair.reference.as_ref();
@@ -378,7 +378,7 @@ fn resize(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) {
     let factor = if long > wanted { wanted / long } else { max(wanted / long, 1.0) };
     let shape = scaled(&own.shape, factor);
     let shape = if shape.smallest_extent() < THIN * exam.size {
-        // A thread along its bone stays thin when it is made longer: it becomes a capsule.
+        // A thread along its bone would stay thin when lengthened: it becomes a capsule.
         let radius = max(0.1 * wanted, 2.0 * THIN * exam.size);
         Shape::Capsule { half_height: max(0.5 * wanted - radius, 0.0), radius }
     } else {

@@ -12,7 +12,7 @@ use sinew_physics::{JointKind, Shape};
 /// Steps in which a reach is measured, radians (2.5°).
 const STEP: f32 = 0.043_633;
 
-/// Adds what is not mirrored to what is known.
+/// Adds findings about asymmetric sides.
 pub(super) fn findings(exam: &Exam<'_>, findings: &mut Vec<Finding>) {
     for right in 1..exam.def.bodies.len() {
         let Some(left) = exam.bones.twin(right).filter(|&left| left != 0) else { continue };
@@ -32,12 +32,12 @@ pub(super) fn findings(exam: &Exam<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-/// A rotation axis as the mirror in x has it: rotations turn the other way round about the mirrored line.
+/// A rotation axis mirrored in x: rotations about the mirrored line are reversed.
 fn mirrored_axis(axis: Vec3) -> Vec3 {
     Vec3::new(axis.x, -axis.y, -axis.z)
 }
 
-/// Angle by which the child of a joint can turn about `axis` (character axes) from the bind pose, radians.
+/// Angle by which the child of a joint can rotate about `axis` (character axes) from the bind pose, radians.
 fn reach(exam: &Exam<'_>, joint: usize, axis: Vec3) -> f32 {
     let kind = &exam.def.joints[joint].kind;
     if let JointKind::Hinge { .. } = kind {
@@ -49,7 +49,7 @@ fn reach(exam: &Exam<'_>, joint: usize, axis: Vec3) -> f32 {
     let is_free = |step: &usize| {
         let turn = Rotation::from_axis_angle(axis, *step as f32 * STEP);
         let beyond = beyond(kind, exam.turned(joint, turn));
-        // An axis that is a little off turns a hinge a little where it does not turn: that is no stop.
+        // A slightly wrong axis rotates a hinge slightly in a locked direction: that is no stop.
         let locked = if matches!(kind, JointKind::Fixed) { beyond.locked } else { 0.0 };
         max(beyond.limit, locked) <= 1e-3
     };
@@ -102,7 +102,7 @@ fn shapes(exam: &Exam<'_>, left: usize, right: usize) -> Option<Finding> {
     Some(exam.finding(Code::SidesDiffer, &[right, left], evidence))
 }
 
-/// Mirror image of a placed frame in the plane x = `plane`: x axes keep their meaning, y and z turn the other way round.
+/// Mirror image of a placed frame in the plane x = `plane`: x axes keep their meaning, y and z are reversed.
 pub(super) fn mirrored(frame: Transform, plane: f32) -> Transform {
     let m = frame.rotation.to_mat3();
     let turned = |v: Vec3| Vec3::new(-v.x, v.y, v.z);

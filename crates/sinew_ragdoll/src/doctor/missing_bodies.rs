@@ -5,8 +5,7 @@ use super::exam::anchors;
 use crate::def::{RagdollDef, RagdollJointDef};
 use sinew_math::Transform;
 
-/// Adds the body of a role, and what hangs on it in the rig and is missing too; false if the rig is not at hand or has
-/// no such bone.
+/// Adds the body of a role, and its missing descendants in the rig; false without the rig or such a bone.
 pub(super) fn add_missing(repair: &mut Repair, role: &str) -> bool {
     let Some(rig) = repair.reference.clone() else { return false };
     let Some(found) = rig.bodies.iter().position(|body| body.role == role) else { return false };
@@ -33,13 +32,13 @@ fn is_below(rig: &RagdollDef, body: usize, above: usize) -> bool {
     at == above
 }
 
-/// Puts one body of the rig's build behind the others, and hangs on it what the rig hangs on it.
+/// Appends one body of the rig's build, and reattaches its children.
 fn add(def: &mut RagdollDef, rig: &RagdollDef, body: usize) {
     let new = def.bodies.len();
     let own_of =
         |def: &RagdollDef, body: usize| def.bodies.iter().position(|own| own.bone == rig.bodies[body].bone);
     let Some(joint) = body.checked_sub(1).map(|joint| &rig.joints[joint]) else { return };
-    // The nearest body above that is there.
+    // The nearest existing body above.
     let mut above = joint.parent;
     let parent = loop {
         match own_of(def, above) {
@@ -68,7 +67,7 @@ fn add(def: &mut RagdollDef, rig: &RagdollDef, body: usize) {
     def.dropped_bones.retain(|bone| *bone != rig.bodies[body].bone);
 }
 
-/// A joint of the rig's build between two bodies of the definition, whose frames may be others.
+/// A joint of the rig's build between two bodies of the definition, whose frames may differ.
 fn hung(
     def: &RagdollDef,
     rig: &RagdollDef,
@@ -90,7 +89,7 @@ fn hung(
     }
 }
 
-/// Parents before children again, with joints in the order of the bodies; otherwise the order stays.
+/// Restores parents before children, with joints in the order of the bodies; otherwise the order stays.
 fn put_in_order<T: Clone>(def: &mut RagdollDef, springs: &mut Vec<Option<T>>) {
     let parent_of = |body: usize| body.checked_sub(1).map(|joint| def.joints[joint].parent);
     let mut order: Vec<usize> = Vec::with_capacity(def.bodies.len());

@@ -1,7 +1,7 @@
-//! Why a ragdoll jitters, explodes or looks wrong: each cause with what was measured, and what mends it.
+//! Why a ragdoll jitters, explodes or looks wrong: causes with evidence and repairs.
 //!
-//! The causes are those that other tools leave their users alone with: limits that are all alike, joints without
-//! limits, heads without bodies, frames whose zero is not the bind pose, bodies that start inside each other.
+//! The causes are common defaults of tools: identical limits, joints without limits, heads without bodies, frames whose
+//! zero is not the bind pose, bodies that overlap at the start.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -57,7 +57,7 @@ pub fn doctor(repair: &Repair) -> Vec<Finding> {
     let mut findings = anatomy::not_finite(def);
     if findings.is_empty() {
         findings = anatomy::wrong_unit(def);
-        // What else is wrong shows in the right size only.
+        // Other defects are only visible at the right size.
         let sized;
         let repair = if findings.is_empty() {
             repair
@@ -72,7 +72,7 @@ pub fn doctor(repair: &Repair) -> Vec<Finding> {
     findings
 }
 
-/// A flaw of the skin as a finding. What mends a definition does not measure the skin anew, so that none counts as fixed.
+/// A flaw of the skin as a finding. Repairs do not measure the skin again, so none counts as fixed.
 fn of_skin(flaw: &Flaw) -> Finding {
     let code = match flaw.kind {
         FlawKind::Uncovered => Code::SkinUncovered,
@@ -102,7 +102,7 @@ fn in_proportion(exam: &Exam<'_>) -> Vec<Finding> {
     findings.extend(anatomy::inferred(exam));
     limits::findings(exam, &mut findings);
     mirror::findings(exam, &mut findings);
-    // Places where it moves are an effect; where the cause is known, they show what that does.
+    // Motion of the bodies is an effect; with a known cause it shows what that does.
     let jitter = motion::Jitter::of(exam);
     if let Some(evidence) = jitter.is_notable(exam) {
         let cause = findings.iter_mut().find(|f| f.severity == Severity::Error || f.code == Code::HugeShape);
@@ -114,11 +114,11 @@ fn in_proportion(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// The most rounds of mending: what one fix uncovers, the next round mends.
+/// The most rounds of repair; each repairs what the one before uncovered.
 const ROUNDS: usize = 6;
 
-/// The ragdoll with everything mended that can be, and what was wrong with the one that came in; `fixed` tells of each
-/// finding whether it is gone.
+/// The ragdoll with everything repaired that can be, and the findings about the input; `fixed` tells whether each is
+/// gone.
 ///
 /// # Panics
 /// As [`doctor`].
@@ -139,7 +139,7 @@ pub fn cure(repair: &Repair) -> (Repair, Vec<Finding>) {
     for finding in &mut findings {
         finding.fixed = !open.iter().any(|left| left.code == finding.code && left.bones == finding.bones);
     }
-    // What a remedy brought with it and none could take away is told too.
+    // Unrepairable effects of a repair are reported too.
     let known = |left: &Finding| findings.iter().any(|f| f.code == left.code && f.bones == left.bones);
     let new: Vec<Finding> = open.into_iter().filter(|left| !known(left)).collect();
     findings.extend(new);

@@ -1,4 +1,4 @@
-//! Motion of the ragdoll when it is left alone: in its bind pose, at rest, without gravity.
+//! Motion of the ragdoll without gravity, from its bind pose at rest.
 
 use super::exam::Exam;
 use super::{Code, Finding};
@@ -9,12 +9,13 @@ use sinew_physics::{BodyDef, BodyId, JointDef, ShapeDef, Spring, World, WorldDef
 /// Half a second.
 const STEPS: u32 = 30;
 
-/// Motion of the bodies that nothing has caused. Places tell more than speeds: a solver that adds no energy mends what is wrong by moving it.
+/// Uncaused motion of the bodies. Positions show more than speeds: a solver that adds no energy corrects errors by
+/// moving.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Jitter {
-    /// Farthest way of a body, metres, and whose.
+    /// Largest displacement of a body, metres, and the body.
     moved: (f32, usize),
-    /// Largest turn of a body, radians, and whose.
+    /// Largest rotation of a body, radians, and the body.
     turned: (f32, usize),
     /// Most kinetic energy, J.
     energy: f32,
@@ -74,7 +75,7 @@ impl Jitter {
         seen
     }
 
-    /// Phrase about what is worth telling; `None` where nothing is.
+    /// Description of significant motion; `None` if there is none.
     pub fn is_notable(&self, exam: &Exam<'_>) -> Option<String> {
         if self.is_lost {
             return Some("left alone without gravity it is lost within half a second".to_owned());

@@ -1,4 +1,4 @@
-//! Shapes: which overlap, which are out of proportion, which may meet.
+//! Checks of shapes: overlaps, proportions, and collision pairs.
 
 use super::exam::Exam;
 use super::geometry::{depth, depth_at, longest};
@@ -30,7 +30,7 @@ pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// Overlap that is let be, metres.
+/// Tolerated overlap, metres.
 pub(super) fn tolerated(exam: &Exam<'_>) -> f32 {
     max(TOLERATED, 0.002 * exam.size) * 1.02
 }
@@ -50,7 +50,7 @@ fn out_of_size(exam: &Exam<'_>, body: usize) -> Option<Finding> {
         return Some(exam.finding(Code::TinyShape, &[body], evidence));
     }
     let most = longest_allowed(exam);
-    // A spear may be longer than who carries it.
+    // A spear may be longer than its carrier.
     (long > most && !exam.bones.list[body].is_prop).then(|| {
         let evidence = format!(
             "{} is {:.2} m long, {:.0} % of a height of {:.2} m",
@@ -88,7 +88,7 @@ fn overlap(exam: &Exam<'_>, (a, b): (usize, usize)) -> Option<Finding> {
     })
 }
 
-/// All pairs of the free ends of limbs with the trunk are left out, though they do not overlap.
+/// All pairs of limb ends with the trunk are disabled, although they do not overlap.
 fn no_self_collision(exam: &Exam<'_>) -> Option<Finding> {
     let pairs = limbs_and_trunk(exam);
     let is_disabled = |&(a, b): &(usize, usize)| {
@@ -107,7 +107,7 @@ fn no_self_collision(exam: &Exam<'_>) -> Option<Finding> {
     Some(exam.finding(Code::NoSelfCollision, &[limb, trunk], evidence))
 }
 
-/// Pairs of a forearm, hand, shank or foot with a bone of the trunk that are clear of each other in the bind pose.
+/// Pairs of a forearm, hand, shank or foot and a trunk bone that do not overlap in the bind pose.
 pub(super) fn limbs_and_trunk(exam: &Exam<'_>) -> Vec<(usize, usize)> {
     let is_end =
         |body: usize| matches!(exam.part(body), Part::Forearm | Part::Hand | Part::Shank | Part::Foot);
@@ -128,7 +128,7 @@ fn fights(exam: &Exam<'_>, pairs: &[(usize, usize)]) -> Vec<Finding> {
         if exam.bones.distance(a, b) != 2 {
             continue;
         }
-        // The body that the joint moves: the one whose joint lies between the two.
+        // The body that the joint moves: the child of the two.
         let moved = [b, a].into_iter().find(|&body| body > 0 && body > other_of(exam, body, a, b));
         let Some(child) = moved else { continue };
         if is_unlimited(&exam.def.joints[child - 1].kind) {
@@ -151,7 +151,7 @@ fn fights(exam: &Exam<'_>, pairs: &[(usize, usize)]) -> Vec<Finding> {
     findings
 }
 
-/// The body between a pair, as seen from one of them: its parent, which is the other's parent or child.
+/// The body between a pair, seen from one of them: its parent, which is also the parent or child of the other.
 fn other_of(exam: &Exam<'_>, body: usize, a: usize, b: usize) -> usize {
     let other = a + b - body;
     let parent = exam.bones.list[body].parent;

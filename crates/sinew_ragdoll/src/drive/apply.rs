@@ -1,4 +1,4 @@
-//! Drives in a world: motors of joints, pins, bodies that become kinematic.
+//! Applies drives to a world: joint motors, pins, kinematic bodies.
 
 use super::{Drive, Drives, target};
 use crate::def::RagdollDef;
@@ -11,14 +11,15 @@ use sinew_physics::{
 };
 
 impl Drives {
-    /// Before a step: lets the time of one step pass, and sets the motors, pins and velocities with which the bodies go
-    /// where they are wanted.
+    /// Call before a step: advances the drives by one step and sets the motors, pins and velocities that move the
+    /// bodies to their targets.
     ///
-    /// `targets`: world pose of each body (its frame) at the end of the coming step; `velocities`: of its centre of mass and
-    /// its spin on the way there, world axes. A target beyond a joint's limit counts as at the limit.
+    /// `targets`: world pose of each body frame at the end of the coming step. `velocities`: linear velocity of each
+    /// centre of mass and angular velocity, world axes. A target beyond a joint limit is clamped to the limit.
     ///
     /// # Panics
-    /// If there is not one finite target and velocity for each body, or the ragdoll is not one of `def` in `world`.
+    /// If `targets` or `velocities` does not have one finite entry per body, or the ragdoll is not an instance of `def`
+    /// in `world`.
     pub fn apply(
         &mut self,
         world: &mut World,
@@ -58,16 +59,16 @@ impl Drives {
         }
     }
 
-    /// Lets time pass without a world: blends go on, and weakness falls. For drives that are made anew beside a world that
-    /// has gone on: as many times a step's length as steps were taken.
+    /// Advances time without a world: blends continue and weakness decays. For drives recreated for a running world:
+    /// call it once per step taken so far, with the step length.
     pub fn skip(&mut self, seconds: f32) {
         for drive in &mut self.drives {
             drive.pass(seconds, self.recovery);
         }
     }
 
-    /// Takes pins and motors out of the world and gives keyed bodies back to it, as fast as they were led. What is to be
-    /// done before the ragdoll is taken out; the modes stay as they are.
+    /// Removes pins and motors from the world and makes keyed bodies dynamic again, with the velocity they were driven
+    /// at. Call it before removing the ragdoll; the modes do not change.
     pub fn release(&mut self, world: &mut World, ragdoll: &Ragdoll) {
         let all: Vec<usize> = ragdoll.own_bodies().map(|(body, _)| body).collect();
         self.release_bodies(world, ragdoll, &all);
@@ -93,8 +94,8 @@ impl Drives {
         }
     }
 
-    /// Reaction that the pin of a body really gave in the last step, as a mean over its time: N at its centre of mass and N·m
-    /// about it, world axes. Zero where there is no pin.
+    /// Reaction of a body's pin in the last step, averaged over the step: force in N at the centre of mass and torque
+    /// in N·m about it, world axes. Zero without a pin.
     pub fn pin_force(&self, world: &World, body: usize) -> Reaction {
         let pin = self.drives[body].pin.filter(|&pin| world.contains_joint(pin));
         pin.map_or(Reaction::default(), |pin| world.reaction(pin))
@@ -108,7 +109,7 @@ impl Drives {
         })
     }
 
-    /// Makes, moves or takes away the pin of a body. `center`: of its mass, in its frame.
+    /// Creates, moves or removes the pin of a body. `center`: centre of mass in the body frame.
     fn pin(
         &mut self,
         world: &mut World,
@@ -120,7 +121,7 @@ impl Drives {
     ) {
         let drive = &self.drives[body];
         let vigour = 1.0 - drive.weakness;
-        // The user may have made it kinematic or static.
+        // The user may have made the body kinematic or static.
         let moves = !drive.keyed && world.kind(id) == BodyKind::Dynamic;
         let softness = drive.level.pin.softness(vigour).filter(|_| moves);
         let old = drive.pin.filter(|&pin| world.contains_joint(pin));
@@ -167,7 +168,7 @@ impl Drives {
     }
 }
 
-/// The motor of a joint; `None` while it has no strength, or nothing to move.
+/// The motor of a joint; `None` if it has no strength or nothing to move.
 fn muscle(
     world: &World,
     joint: JointId,
@@ -192,8 +193,8 @@ fn muscle(
     })
 }
 
-/// A motor's target stands still within a step while what it stands for goes on: it is put to where that is on the average of
-/// the substeps' beginnings, when motors look at it.
+/// A motor's target is constant within a step although the pose moves. The target is therefore the pose at the mean of
+/// the substep start times, when motors are evaluated.
 struct Lag {
     /// Before the step's end.
     seconds: f32,
@@ -205,7 +206,7 @@ impl Lag {
         Self { seconds: world.def().dt() * (substeps + 1.0) / (2.0 * substeps) }
     }
 
-    /// Rotation, by the lag before `end`, of what turns at `rate` (rad/s, axes that stand still).
+    /// Rotation `lag` before `end` of a frame that rotates at `rate` (rad/s, fixed axes).
     fn back(&self, end: Rotation, rate: Vec3) -> Rotation {
         (Rotation::from_scaled_axis(rate * -self.seconds) * end).normalize()
     }

@@ -17,7 +17,7 @@ impl Spring {
         Self { stiffness: hertz * hertz, damping: 2.0 * damping_ratio * hertz }
     }
 
-    /// The spring with `share` of its stiffness and the damping ratio that it has; `None` if nothing is left of it.
+    /// The spring with `share` of its stiffness and the same damping ratio; `None` if the result is zero.
     pub fn softness(self, share: f32) -> Option<Softness> {
         let hertz = (self.stiffness * share).sqrt();
         let damping_ratio = self.damping / (2.0 * max(self.stiffness.sqrt(), 1e-6));
@@ -30,10 +30,10 @@ impl Spring {
     }
 }
 
-/// Pin that holds a body on its way to being keyed.
+/// Pin that holds a body during its blend to keyed.
 const KEYING: Pin = Pin { hertz: 30.0, damping_ratio: 1.0, max_force: 1e5, max_torque: 2e4 };
 
-/// Strength of what drives a body at present: the springs of its muscle and its pin, and the bounds on them.
+/// Current strength of a body's drive: the springs of its muscle and pin, and their caps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Level {
     pub muscle: Spring,
@@ -68,7 +68,7 @@ impl Level {
 }
 
 impl Drive {
-    /// `dt` seconds pass. Gives true if the body is keyed from now on.
+    /// Advances by `dt` seconds. Returns true if the body is keyed from now on.
     pub(super) fn pass(&mut self, dt: f32, recovery: f32) -> bool {
         self.since += dt;
         let share = if self.half_life > 0.0 {

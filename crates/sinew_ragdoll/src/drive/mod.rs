@@ -1,5 +1,6 @@
-//! Drives of a ragdoll, which move its bodies beside gravity and contacts: nothing, muscles, pins to a pose in the world, or the
-//! animation itself. Body by body, blended over time, as strong as a person is.
+//! Drives of a ragdoll, which move its bodies in addition to gravity and contacts. Each body has one of four modes:
+//! limp, muscle, pin to a world pose, or keyed by the animation. Modes blend over time, and strengths are limited to
+//! human ones.
 //!
 //! | mode | what acts | what it can do |
 //! |---|---|---|
@@ -8,7 +9,7 @@
 //! | pinned | the same, and a spring from the world to the body | hold a place; the force that this took is told |
 //! | keyed | nothing: the body goes where the animation has it | push what is in its way, carry what hangs on it |
 //!
-//! Changes are exponential with a half-life, so they do not depend on the length of a step: `x += (goal − x)(1 − 2^(−dt/T))`
+//! Changes are exponential with a half-life, so they do not depend on the step length: `x += (goal − x)(1 − 2^(−dt/T))`
 //! for each number of a spring (stiffness, damping, cap).
 //!
 //! ```
@@ -49,10 +50,10 @@ use sinew_math::{clamp, max};
 use sinew_physics::{BodyId, JointId};
 pub use torque::torque_caps;
 
-/// The motor of a joint, as a muscle: toward the angle that the pose has there, and at the speed at which it changes.
+/// A joint motor that acts as a muscle: it drives toward the pose's angle and angular velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Muscle {
-    /// Natural frequency of what hangs on the joint, Hz, at least 0.
+    /// Natural frequency of everything the joint carries, Hz, at least 0.
     pub hertz: f32,
     /// 1 is critical.
     pub damping_ratio: f32,
@@ -61,11 +62,11 @@ pub struct Muscle {
 }
 
 impl Muscle {
-    /// Follows late and gives way: 2 Hz, critically damped.
+    /// Follows with a lag and yields: 2 Hz, critically damped.
     pub const RELAXED: Self = Self { hertz: 2.0, damping_ratio: 1.0, strength: 1.0 };
-    /// Follows as a person does who expects nothing: 5 Hz, critically damped. Default.
+    /// Follows like a person who expects no hit: 5 Hz, critically damped. Default.
     pub const ALIVE: Self = Self { hertz: 5.0, damping_ratio: 1.0, strength: 1.0 };
-    /// Hardly gives way: 20 Hz, overdamped.
+    /// Hardly yields: 20 Hz, overdamped.
     pub const STIFF: Self = Self { hertz: 20.0, damping_ratio: 2.0, strength: 1.0 };
 }
 
@@ -75,23 +76,23 @@ impl Default for Muscle {
     }
 }
 
-/// Springs from the world to a body: to its place (at its centre of mass) and to its turn.
+/// Springs from the world to a body: to its position (at the centre of mass) and to its rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pin {
-    /// Natural frequency of all that is nearer to this pin than to others, Hz, at least 0.
+    /// Natural frequency of all bodies that are nearer to this pin than to other pins, Hz, at least 0.
     pub hertz: f32,
     /// 1 is critical.
     pub damping_ratio: f32,
-    /// Most force along each axis, N, finite.
+    /// Largest force along each axis, N, finite.
     pub max_force: f32,
-    /// Most torque about each axis, N·m, finite.
+    /// Largest torque about each axis, N·m, finite.
     pub max_torque: f32,
 }
 
 impl Pin {
-    /// Keeps a body near: 3 Hz, no more than 400 N and 100 N·m.
+    /// Keeps a body near its target: 3 Hz, at most 400 N and 100 N·m.
     pub const SOFT: Self = Self { hertz: 3.0, damping_ratio: 1.0, max_force: 400.0, max_torque: 100.0 };
-    /// Keeps it in its place: 20 Hz, 10 kN and 2 kN·m.
+    /// Holds a body at its target: 20 Hz, 10 kN and 2 kN·m.
     pub const FIRM: Self = Self { hertz: 20.0, damping_ratio: 1.0, max_force: 1e4, max_torque: 2e3 };
 }
 
@@ -105,11 +106,11 @@ pub enum DriveMode {
     Powered(Muscle),
     /// A muscle, and the world pulls.
     Pinned(Muscle, Pin),
-    /// As the animation has it, whatever is in the way.
+    /// Follows the animation exactly, whatever is in the way.
     Keyed,
 }
 
-/// Drive of a body, with its state on the way to the mode.
+/// Drive of a body, with the state of its blend to the mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Drive {
     mode: DriveMode,
@@ -118,7 +119,7 @@ struct Drive {
     /// Seconds since the mode was set.
     since: f32,
     level: Level,
-    /// Share of its strength that a hit took, 0..=1.
+    /// Share of its strength lost to a hit, 0..=1.
     weakness: f32,
     /// It is kinematic.
     keyed: bool,
@@ -126,15 +127,15 @@ struct Drive {
     pin: Option<JointId>,
 }
 
-/// The drives of one ragdoll. Plain data; [`apply`](Self::apply) brings it into a world, [`release`](Self::release) takes it
-/// out again.
+/// The drives of one ragdoll. Plain data: [`apply`](Self::apply) writes it into a world, [`release`](Self::release)
+/// removes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drives {
-    /// One for each body.
+    /// One per body.
     drives: Vec<Drive>,
     /// Per body: most torque of the joint to its parent, N·m.
     torques: Vec<f32>,
-    /// Body that pins hang on.
+    /// Body that pins attach to.
     ground: Option<BodyId>,
     /// Seconds in which the weakness after a hit falls to `1/e`. Default 0.45.
     pub recovery: f32,
@@ -150,7 +151,7 @@ impl Drives {
     /// of the first means nothing.
     ///
     /// # Panics
-    /// If there is not one for each body, or one is negative or not finite.
+    /// If the number of entries is not the number of bodies, or one is negative or not finite.
     pub fn with_torques(def: &RagdollDef, torques: Vec<f32>) -> Self {
         assert_eq!(torques.len(), def.bodies.len(), "each body has a torque");
         assert!(
@@ -160,7 +161,7 @@ impl Drives {
         Self { drives: vec![Drive::default(); def.bodies.len()], torques, ground: None, recovery: 0.45 }
     }
 
-    /// Mode in which a body is to be driven.
+    /// Drive mode of a body.
     pub fn mode(&self, body: usize) -> DriveMode {
         self.drives[body].mode
     }
@@ -170,11 +171,11 @@ impl Drives {
         1.0 - self.drives[body].weakness
     }
 
-    /// Drives a body in another way from now on: half of the change is made within `half_life` seconds, all of it at once if
-    /// that is 0. What is to be keyed is pinned ever firmer until then.
+    /// Changes the mode of a body: half of the change happens within `half_life` seconds, all of it at once if that is
+    /// 0. A body on its way to keyed is pinned with increasing strength.
     ///
     /// # Panics
-    /// If there is no such body, or a number is negative or not finite, or a strength above 1.
+    /// If the body does not exist, or a number is negative or not finite, or a strength exceeds 1.
     pub fn set(&mut self, body: usize, mode: DriveMode, half_life: f32) {
         let sound = |x: f32| (0.0..f32::INFINITY).contains(&x);
         assert!(sound(half_life), "a half-life is not negative, and finite, not {half_life} s (body {body})");
@@ -199,7 +200,7 @@ impl Drives {
         }
         drive.half_life = half_life;
         if half_life == 0.0 {
-            // At once, whether time passes for the drive or not: none does while its body is limp.
+            // Immediate, whether or not the drive advances: a limp body's drive does not.
             drive.level = Level::of(mode);
         }
     }
@@ -211,7 +212,7 @@ impl Drives {
         }
     }
 
-    /// [`set`](Self::set) for a body and all that hangs on it: an arm, or all above the waist.
+    /// [`set`](Self::set) for a body and all its descendants: an arm, or everything above the waist.
     pub fn set_from(&mut self, def: &RagdollDef, body: usize, mode: DriveMode, half_life: f32) {
         for other in (body..self.drives.len()).filter(|&other| hangs_on(def, other, body)) {
             self.set(other, mode, half_life);
@@ -223,14 +224,15 @@ impl Drives {
         self.drives.iter().any(|drive| drive.pin == Some(joint))
     }
 
-    /// Leaves a body no weaker than that, share of its strength.
+    /// Limits the weakness of a body to this share of its strength.
     pub(crate) fn steady(&mut self, body: usize, weakness: f32) {
         let drive = &mut self.drives[body];
         drive.weakness = sinew_math::min(drive.weakness, weakness);
     }
 
-    /// Muscles and pins weaken where an impulse of `impulse` N·s struck, and half as much one joint on, and so on. An impulse
-    /// that would move the whole ragdoll at 0.2 m/s takes all strength there. The push itself is the caller's.
+    /// Weakens muscles and pins where an impulse of `impulse` N·s hit, half as much one joint away, and so on. An
+    /// impulse that would move the whole ragdoll at 0.2 m/s removes all strength there. The caller applies the push
+    /// itself.
     pub fn hit(&mut self, def: &RagdollDef, body: usize, impulse: f32) {
         let mass: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
         let weakness = clamp(impulse.abs() / (NUMBING_SPEED * mass), 0.0, 1.0);
@@ -246,7 +248,7 @@ impl Drives {
     }
 }
 
-/// The parent of a body; `None` of the first.
+/// The parent of a body; `None` for the first.
 fn parent(def: &RagdollDef, body: usize) -> Option<usize> {
     body.checked_sub(1).map(|joint| def.joints[joint].parent)
 }
@@ -256,10 +258,10 @@ pub(crate) fn hangs_on(def: &RagdollDef, body: usize, ancestor: usize) -> bool {
     core::iter::successors(Some(body), |&at| parent(def, at)).any(|at| at == ancestor)
 }
 
-/// Number of joints on the way from one body to another.
+/// Number of joints on the path from one body to another.
 fn joints_between(def: &RagdollDef, mut a: usize, mut b: usize) -> usize {
     let mut count = 0;
-    // Parents come before their children: the later of two cannot be above the other.
+    // Parents precede their children, so the later of two bodies cannot be the ancestor.
     while a != b {
         let later = if a > b { &mut a } else { &mut b };
         *later = parent(def, *later).expect("only the first body has no parent");

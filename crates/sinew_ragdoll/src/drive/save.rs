@@ -1,4 +1,4 @@
-//! Drives beside the world's snapshot.
+//! Drives in a saved state, in addition to the world's snapshot.
 
 use super::level::{Level, Spring};
 use super::{Drive, DriveMode, Drives, Muscle, Pin};
@@ -9,7 +9,7 @@ use sinew_physics::{BodyId, JointId};
 const MAGIC: &[u8; 8] = b"sinew-d\x01";
 
 impl Drives {
-    /// Writes all that decides the future beside the world's own snapshot and the definition.
+    /// Writes all future-relevant state that the world's snapshot and the definition do not hold.
     pub fn save(&self, w: &mut Writer) {
         w.raw(MAGIC);
         w.f32(self.recovery);
@@ -31,10 +31,10 @@ impl Drives {
         }
     }
 
-    /// Brings back what was saved of drives of the same definition.
+    /// Restores saved drives of the same definition.
     ///
     /// # Errors
-    /// If the bytes are not such; the drives are then as they were.
+    /// If the bytes are not a saved state; the drives then do not change.
     pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
             return Err(r.error("is not a ragdoll's drives of this version"));

@@ -25,9 +25,10 @@ const HEAD: f32 = 50.0;
 /// The body that the figures are of, kg m.
 const REFERENCE: f32 = 75.0 * 1.75;
 
-/// Most that the muscles of each body's joint to its parent can do, N·m; 0 for the first body. Of roles that a person has,
-/// from a table, in proportion to mass and height. Of others from the weight that they carry: three times what holds all that
-/// hangs on the joint out level, and of limbs no less than bears the weight of the whole at the middle of their bone.
+/// Largest muscle torque of each body's joint to its parent, N·m; 0 for the first body. Human roles take it from a
+/// table, in proportion to mass and height. Other roles take it from the weight they carry: three times the torque that
+/// holds the joint's subtree level, and for limbs at least the torque that carries the whole weight at the middle of
+/// their bone.
 pub fn torque_caps(def: &RagdollDef) -> Vec<f32> {
     let total: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
     let strength = total * def.height / REFERENCE;

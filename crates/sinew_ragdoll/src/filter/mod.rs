@@ -1,12 +1,12 @@
-//! Filter of the pairs of a ragdoll's bodies that collide with each other.
+//! Collision filter for pairs of bodies within a ragdoll.
 //!
-//! Bodies that overlap where they start would be blown apart, and such as overlap wherever their joints turn would fight
-//! them for ever, so these pairs must be shrunk or left out. Shrinking is preferred where the contact is what makes a
+//! Bodies that overlap at the start would be pushed apart violently, and bodies that overlap in every joint pose would
+//! fight forever. Such pairs are shrunk or excluded from collision. Shrinking is preferred where the contact makes a
 //! crumple look real: hand on thigh, thigh on thigh, arm on trunk.
 //!
-//! A pair is looked at in the bind pose, in poses within the limits, and in those of the character's clips. What overlaps
-//! in a few poses alone is no fault of the shapes: limbs do meet. A ragdoll that starts in such a pose leaves the pair out
-//! by itself (`Ragdoll::spawn`).
+//! A pair is tested in the bind pose, in poses within the limits, and in poses of the character's clips. An overlap in
+//! a few poses is not a fault of the shapes: limbs do touch. A ragdoll that starts in such a pose excludes the pair
+//! itself (`Ragdoll::spawn`).
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -54,7 +54,7 @@ pub struct Seen {
     pub bind: f32,
     /// Share of the poses within the limits in which they overlap by more than [`TOLERATED`].
     pub limits: f32,
-    /// Share of the clips' poses in which they overlap by more than [`TOLERATED`]; `None` where there are none.
+    /// Share of the clip poses in which they overlap by more than [`TOLERATED`]; `None` without clips.
     pub clips: Option<f32>,
 }
 
@@ -63,9 +63,9 @@ pub struct Seen {
 pub enum Remedy {
     /// It is less than the solver notices, or a meeting of limbs in a few poses.
     Tolerated,
-    /// They overlap where the rig is bound and hardly anywhere else: they collide, but for a ragdoll that starts there.
+    /// They overlap in the bind pose and hardly anywhere else: they collide, except in a ragdoll that starts there.
     OnlyBound,
-    /// Both shapes were made thinner.
+    /// Both shapes were thinned.
     Shrunk,
     /// The pair does not collide.
     Disabled,
@@ -74,7 +74,7 @@ pub enum Remedy {
 /// Result of [`filter_pairs`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FilterReport {
-    /// Every overlap that was found.
+    /// All overlaps found.
     pub overlaps: Vec<Overlap>,
     /// Pairs that must not collide, the smaller index first, sorted.
     pub disabled: Vec<(usize, usize)>,
@@ -82,8 +82,8 @@ pub struct FilterReport {
     pub scale: Vec<f32>,
 }
 
-/// Finds the overlaps between bodies that no joint connects, in the bind pose and in `poses`; shrinks `fits` where that is
-/// enough and names the pairs that must not collide.
+/// Finds the overlaps between bodies that no joint connects, in the bind pose and in `poses`. Shrinks `fits` where that
+/// suffices and lists the pairs that must not collide.
 pub fn filter_pairs(bones: &Bones, fits: &mut [Fit], poses: &Poses) -> FilterReport {
     let mut report = FilterReport { scale: vec![1.0; fits.len()], ..FilterReport::default() };
     for a in 0..fits.len() {
@@ -109,12 +109,12 @@ pub fn filter_pairs(bones: &Bones, fits: &mut [Fit], poses: &Poses) -> FilterRep
     report
 }
 
-/// True if a pair is worth a look at every pose: most are apart in the first few within the limits, and in all of the
-/// clips.
+/// True if a pair needs testing in every pose: most pairs are separate in the first few poses within the limits and in
+/// all clips.
 fn may_need_room(fits: &[Fit], poses: &Poses, (a, b): (usize, usize)) -> bool {
     let meeting = Meeting::of(fits, (a, b));
     let apart = |pose: &&Vec<Transform>| !meeting.is_in(pose);
-    // One more apart than leaves them together always.
+    // One more separate pose proves that they do not always overlap.
     let within = &poses.within_limits;
     let enough = ((1.0 - ALWAYS) * within.len() as f32) as usize + 1;
     depth(&fits[a], &fits[b]) > 0.0
@@ -126,7 +126,7 @@ fn may_need_room(fits: &[Fit], poses: &Poses, (a, b): (usize, usize)) -> bool {
 struct Meeting<'a> {
     pair: (usize, usize),
     shapes: [&'a Shape; 2],
-    /// Bodies farther apart than that do not, metres.
+    /// Distance above which bodies cannot overlap, metres.
     reach: f32,
 }
 
@@ -144,7 +144,7 @@ impl<'a> Meeting<'a> {
     }
 }
 
-/// Looks for overlaps of a pair in all poses.
+/// Finds the overlaps of a pair in all poses.
 fn look(fits: &[Fit], poses: &Poses, (a, b): (usize, usize)) -> Seen {
     let meeting = Meeting::of(fits, (a, b));
     let share = |poses: &[Vec<Transform>]| {
@@ -176,7 +176,8 @@ fn is_never_apart(bones: &Bones, seen: &Seen, (a, b): (usize, usize)) -> bool {
     seen.limits >= ALWAYS || seen.clips.unwrap_or(0.0) > most
 }
 
-/// Repeats on one side what was done on the other, so that a slight asymmetry of the mesh makes no limping ragdoll.
+/// Repeats on one side what was done on the other, so that a slight asymmetry of the mesh does not make the ragdoll
+/// limp.
 fn mirror_remedies(bones: &Bones, fits: &mut [Fit], poses: &Poses, report: &mut FilterReport) {
     for body in 0..fits.len() {
         let Some(twin) = bones.twin(body) else { continue };
@@ -190,7 +191,7 @@ fn mirror_remedies(bones: &Bones, fits: &mut [Fit], poses: &Poses, report: &mut 
         let (a, b) = report.disabled[index];
         let (a, b) = (bones.twin(a).unwrap_or(a), bones.twin(b).unwrap_or(b));
         let pair = (usize::min(a, b), usize::max(a, b));
-        // The two of a pair may be joined on this side, where a rig is not built alike on both.
+        // A joint may connect the pair on this side, if the rig is not symmetric.
         if report.disabled.contains(&pair) || bones.list[pair.1].parent == Some(pair.0) {
             continue;
         }
@@ -238,8 +239,8 @@ fn remedy(
     if seen.limits < SELDOM { Remedy::OnlyBound } else { Remedy::Disabled }
 }
 
-/// True if two bodies with one between them touch around the very joint that hangs the later one (an upper arm and the
-/// chest beside the shoulder): whatever the pose, they then overlap there.
+/// True if two bodies with one between them touch around the joint of the later one (an upper arm and the chest at the
+/// shoulder): they then overlap there in every pose.
 fn meets_at_pivot(bones: &Bones, fits: &[Fit], a: usize, b: usize) -> bool {
     let pivot = bones.list[b].head;
     let (distance, _) = fits[a].shape.signed_distance(&fits[a].character_from_body, pivot);
@@ -252,8 +253,8 @@ fn is_worth_shrinking(bones: &Bones, a: usize, b: usize) -> bool {
     limb(a) && (limb(b) || b.is_trunk()) || limb(b) && a.is_trunk()
 }
 
-/// Makes both shapes thinner until they no longer overlap where they should not; leaves them as they are and says so if the
-/// most that is allowed does not do it. A trunk is not made thinner: its neighbours need its size.
+/// Thins both shapes until they no longer overlap where they should not. If the allowed amount does not suffice, they
+/// stay unchanged and this returns false. A trunk is not thinned: its neighbours need its size.
 fn shrink_apart(
     bones: &Bones,
     fits: &mut [Fit],

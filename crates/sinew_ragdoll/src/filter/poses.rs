@@ -1,4 +1,4 @@
-//! Poses in which bodies are looked at: what the joints allow, and what the character does.
+//! Poses in which the filter tests bodies: random ones within the joint limits, and the character's clips.
 //!
 //! ```
 //! use sinew_math::{Range, Rotation, Transform, Vec3};
@@ -41,9 +41,9 @@ use crate::limits::sample::random_turn;
 use sinew_anim::{Rig, Take, local_to_model};
 use sinew_math::{Affine, Random, Transform, Vec3};
 
-/// Poses within the limits: enough to tell a tenth from nothing.
+/// Number of poses within the limits: enough to tell a share of a tenth from zero.
 const WITHIN_LIMITS: usize = 96;
-/// No more of the clips' frames are looked at, the same number of each clip.
+/// Largest number of clip frames tested, the same number from each clip.
 const OF_CLIPS: usize = 256;
 const SEED: u64 = 0x00F1_17E4;
 
@@ -56,12 +56,12 @@ pub struct Poses {
     pub of_clips: Vec<Vec<Transform>>,
 }
 
-/// Choice of the frames that are looked at.
+/// Selection of the frames to test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frames {
     /// Every one.
     All,
-    /// 256 at most, as many of each take.
+    /// At most 256, the same number from each take.
     Some,
 }
 
@@ -71,7 +71,7 @@ pub fn within_limits(fits: &[Fit], plans: &[JointPlan]) -> Vec<Vec<Transform>> {
     let bind: Vec<_> = fits.iter().map(|fit| fit.character_from_body).collect();
     let turned = |random: &mut Random| {
         let mut pose = bind.clone();
-        // Parents come before their children.
+        // Parents precede their children.
         for JointPlan { def: joint, .. } in plans {
             let turn = Transform::new(Vec3::ZERO, random_turn(joint.kind, random, 1.0));
             let parent = pose[joint.parent];
@@ -82,10 +82,10 @@ pub fn within_limits(fits: &[Fit], plans: &[JointPlan]) -> Vec<Vec<Transform>> {
     (0..WITHIN_LIMITS).map(|_| turned(&mut random)).collect()
 }
 
-/// Poses of frames of `takes`; such as are not finite are left out.
+/// Poses of frames of `takes`, without those that are not finite.
 ///
 /// # Panics
-/// If a take is not one of the rig's.
+/// If a take does not belong to the rig.
 pub fn of_clips(
     rig: &Rig,
     takes: &[Take],
@@ -114,7 +114,7 @@ pub fn of_clips(
             local_to_model(rig, take.pose(look * frames / looks), &Affine::IDENTITY, &mut model);
             let body = |body: usize| rigid(&model, body) * bone_from_body[body];
             let pose: Vec<_> = (0..fits.len()).map(body).collect();
-            // Clips may scale a bone to nothing; what is nowhere overlaps nothing.
+            // Clips may scale a bone to zero; such a body overlaps nothing.
             if pose.iter().all(|body| body.is_finite()) {
                 poses.push(pose);
             }

@@ -1,10 +1,10 @@
-//! Shapes made thinner.
+//! Thinner shapes.
 
 use crate::fit::stretched;
 use sinew_math::Vec3;
 use sinew_physics::Shape;
 
-/// The shape with its cross-section scaled; its length along y stays.
+/// The shape with its cross-section scaled; its length along y does not change.
 pub(super) fn thinner(shape: &Shape, factor: f32) -> Shape {
     match shape {
         Shape::Box { half_extents: h } => {
@@ -17,7 +17,7 @@ pub(super) fn thinner(shape: &Shape, factor: f32) -> Shape {
         Shape::Sphere { radius } => Shape::Sphere { radius: radius * factor },
         Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
             let [low, high] = [radius_bottom * factor, radius_top * factor];
-            // Both ends stay where they are.
+            // Both ends keep their positions.
             let half_height = half_height + 0.5 * (radius_bottom - low + radius_top - high);
             Shape::TaperedCapsule { half_height, radius_bottom: low, radius_top: high }
         }
@@ -28,7 +28,7 @@ pub(super) fn thinner(shape: &Shape, factor: f32) -> Shape {
             Shape::Cone { half_height: *half_height, radius: radius * factor }
         }
         Shape::Hull(hull) => stretched(hull, Vec3::new(factor, 1.0, factor)).unwrap_or_else(|| shape.clone()),
-        // A fit is none of these.
+        // A fit is never one of these shapes.
         Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => shape.clone(),
     }
 }

@@ -1,4 +1,4 @@
-//! Axes of a shape, from the skin it stands for.
+//! Axes of a shape, from the skin it represents.
 //!
 //! ```
 //! use sinew_math::{Mat3, Vec3};
@@ -20,8 +20,8 @@ use sinew_math::{Mat3, Vec2, Vec3, any_orthonormal, normalize_or};
 
 /// Unit vector along the flesh of a bone, pointing away from its joint.
 ///
-/// The direction to the next joints where it agrees with the surface's long axis, else that axis; where the surface
-/// has none (a head), the direction from the joint to its middle.
+/// The direction to the next joints where the surface's long axis agrees with it, else that axis. Where the surface has
+/// no long axis (a head), the direction from the joint to its middle.
 pub fn long_axis(bones: &Bones, bone: usize, patch: &Patch) -> Vec3 {
     let mut direction = bones.direction(bone, Some(patch.center));
     if bones.is_central(bone) {
@@ -32,15 +32,15 @@ pub fn long_axis(bones: &Bones, bone: usize, patch: &Patch) -> Vec3 {
     let along = if along.dot(direction) < 0.0 { -along } else { along };
     let elongated = variance.x > ELONGATED * variance.y;
     let agrees = along.dot(direction) > ALONG_BONE && bones.tail(bone).is_some();
-    // The trunk is often wider than high: there the way to the next joint is what a capsule has to follow.
+    // The trunk is often wider than high; a capsule must then follow the direction to the next joint.
     if !elongated || agrees || bones.is_central(bone) { direction } else { along }
 }
 
 /// Axes of a box around a bone's skin: columns, right-handed, in any order and sign.
 pub fn box_frame(bones: &Bones, bone: usize, patch: &Patch) -> Mat3 {
     if bones.is_central(bone) {
-        // The skin is mirrored in x, so x is one of the axes and only the turn about it is open.
-        // People's trunks stand upright, creatures' follow their spine.
+        // The skin is symmetric in x, so x is one of the axes and only the rotation about it is open. Human trunks are
+        // upright; creatures' trunks follow their spine.
         let upright = match bones.anatomy {
             Anatomy::Human => Vec3::Y,
             Anatomy::Creature => long_axis(bones, bone, patch),
@@ -63,15 +63,15 @@ pub fn box_frame(bones: &Bones, bone: usize, patch: &Patch) -> Mat3 {
     best.0
 }
 
-/// A foot that stands level gets a level sole: a box tilted by a few degrees would stand on an edge.
+/// A level foot gets a level sole: a box tilted by a few degrees would rest on an edge.
 fn sole_frame(patch: &Patch) -> Option<Mat3> {
     let (_, axes) = patch.covariance.eigen();
     let along = axes * Vec3::X;
     (along.y.abs() < 0.5).then(|| around(patch, Vec3::Y, None))
 }
 
-/// `axis` and the sides of the least rectangle around the patch seen along it; `preferred` (at right angles to the
-/// axis) instead of the rectangle's side unless that saves a quarter of the area.
+/// `axis` and the sides of the smallest rectangle around the patch seen along it. `preferred` (perpendicular to the
+/// axis) replaces the rectangle's side unless the rectangle saves a quarter of the area.
 fn around(patch: &Patch, axis: Vec3, preferred: Option<Vec3>) -> Mat3 {
     let u = preferred.unwrap_or_else(|| any_orthonormal(axis));
     let v = axis.cross(u);
@@ -92,8 +92,8 @@ fn volume(patch: &Patch, frame: &Mat3) -> f32 {
     extent(frame.x_axis) * extent(frame.y_axis) * extent(frame.z_axis)
 }
 
-/// The same axes, named and signed so that y is the one nearest to `direction`, z as far as it goes forward (+Z), and
-/// the three right-handed.
+/// The same axes, named and signed so that y is nearest to `direction`, z points forward (+Z) as far as possible, and
+/// the three are right-handed.
 pub fn with_y(frame: Mat3, direction: Vec3) -> Mat3 {
     let axes = [frame.x_axis, frame.y_axis, frame.z_axis];
     let nearest = |to: Vec3, axes: &[Vec3]| {
@@ -103,7 +103,7 @@ pub fn with_y(frame: Mat3, direction: Vec3) -> Mat3 {
     let i = nearest(direction, &axes);
     let y = signed(axes[i], direction);
     let rest = [axes[(i + 1) % 3], axes[(i + 2) % 3]];
-    // Where y itself points forward, up takes the place of forward.
+    // If y itself points forward, up replaces forward.
     let forward = if y.z.abs() > 0.7 { Vec3::Y } else { Vec3::Z };
     let z = signed(rest[nearest(forward, &rest)], forward);
     Mat3::from_cols(y.cross(z), y, z)

@@ -1,8 +1,8 @@
-//! Shapes from skin: one per bone, along the flesh and not along the bone's own axes; of the kinds that come into question the
-//! one nearest to the skin.
+//! Fits one shape per bone to the skin, along the flesh instead of the bone's own axes, and picks the candidate kind
+//! nearest to the skin.
 //!
-//! Bone-aligned boxes are 3 to 4 times as large as they need be (measured on CesiumMan's arms); the axes of the
-//! area-weighted covariance are what the surface itself says.
+//! Bone-aligned boxes are 3 to 4 times too large (measured on CesiumMan's arms). The axes of the area-weighted
+//! covariance come from the surface itself.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -33,26 +33,27 @@ use sinew_physics::{Hull, Shape};
 use std::sync::Arc;
 use surface::Share;
 
-/// Choice of the shapes that a ragdoll is made of.
+/// Shape kinds of a ragdoll.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShapeChoice {
     /// Boxes only.
     Box,
     /// Capsules only.
     Capsule,
-    /// Boxes for trunk, hands, feet and what is carried, capsules for limbs, neck and head, unless the other is clearly closer to the skin.
+    /// Boxes for trunk, hands, feet and carried objects; capsules for limbs, neck and head, unless the other kind is
+    /// clearly closer to the skin.
     #[default]
     Auto,
 }
 
-/// A fitted shape and how well it fits.
+/// A fitted shape and its error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// Geometry, metres.
     pub shape: Shape,
     /// Body frame in character space: origin at the shape's middle, y along the bone.
     pub character_from_body: Transform,
-    /// Area-weighted mean distance between the bone's skin and the shape's surface, metres; 0 where there is no skin.
+    /// Area-weighted mean distance between the bone's skin and the shape's surface, metres; 0 without skin.
     pub error: f32,
     /// m² of that skin.
     pub area: f32,
@@ -69,8 +70,8 @@ pub fn fit_shapes(bones: &Bones, surface: &[Vec<Share>], choice: ShapeChoice) ->
     (0..fits.len()).map(|bone| held(bone).unwrap_or_else(|| reconciled(bones, &fits, bone))).collect()
 }
 
-/// The hull of a hand with what it holds by its own skin, such as a sword, which would lie in the floor; `None` of a hand that is
-/// like the other.
+/// The hull of a hand that holds an object with skin of its own, such as a sword, which would otherwise sink into the
+/// floor; `None` for a hand like its twin.
 fn holding(bones: &Bones, fits: &[Fit], bone: usize, shares: &[Share]) -> Option<Fit> {
     let twin = bones.twin(bone).filter(|_| bones.list[bone].part == Part::Hand)?;
     let radius = |fit: &Fit| fit.shape.bounding_radius();
@@ -81,8 +82,8 @@ fn holding(bones: &Bones, fits: &[Fit], bone: usize, shares: &[Share]) -> Option
     solid::fit_whole_hull(&solid::fit_box(bones, bone, &patch), &patch)
 }
 
-/// The shape of a bone, or the mirror image of its twin's where that is the better one: a pad that is skinned to a shoulder is
-/// no part of it, and a coarse mesh may give the two sides different shapes.
+/// The shape of a bone, or the mirror image of its twin's if that fits better: a pad skinned to a shoulder is not part
+/// of it, and a coarse mesh may give the two sides different shapes.
 fn reconciled(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
     let own = fits[bone].clone();
     let Some(twin) = bones.twin(bone) else { return own };
@@ -103,7 +104,7 @@ fn reconciled(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
     let frame = other.character_from_body;
     let axes = frame.rotation.to_mat3();
     let turned = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
-    // A mirror image of three axes is left-handed, so x is turned round; all shapes but hulls are even in x.
+    // The mirror image of three axes is left-handed, so x is negated; all shapes except hulls are even in x.
     let axes = Mat3::from_cols(-turned(axes.x_axis), turned(axes.y_axis), turned(axes.z_axis));
     let character_from_body = Transform::new(image(frame.translation), Rotation::from_mat3(&axes));
     let Some(shape) = with_x_turned(&other.shape) else { return own };
@@ -118,7 +119,7 @@ fn with_x_turned(shape: &Shape) -> Option<Shape> {
     }
 }
 
-/// The hull of a hull's corners, each coordinate times a factor; `None` if rounding leaves none.
+/// The hull of a hull's corners scaled per coordinate; `None` if rounding leaves none.
 pub(crate) fn stretched(hull: &Hull, factors: Vec3) -> Option<Shape> {
     let corners: Vec<Vec3> = hull.vertices().iter().map(|&corner| corner * factors).collect();
     Hull::new(&corners).ok().map(|hull| Shape::Hull(Arc::new(hull)))
@@ -135,7 +136,8 @@ fn fit_bone(bones: &Bones, bone: usize, shares: &[Share], choice: ShapeChoice) -
     }
 }
 
-/// The hull of a part of a tail with the spikes on it, which would lie in the floor; `None` of a tail without any.
+/// The hull of a tail part with its spikes, which would otherwise sink into the floor; `None` for a tail without
+/// spikes.
 fn spiked(bones: &Bones, bone: usize, patch: &Patch) -> Option<Fit> {
     if bones.list[bone].part != Part::Tail {
         return None;
@@ -149,7 +151,7 @@ fn spiked(bones: &Bones, bone: usize, patch: &Patch) -> Option<Fit> {
     solid::fit_whole_hull(&solid::fit_box(bones, bone, patch), patch)
 }
 
-/// Shape, of all kinds, with the least error, weighed by how well its kind suits the part.
+/// The shape with the least error among all kinds, weighted by how well the kind suits the part.
 fn nearest(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     let is_square = prefers_box(bones.list[bone].part) || bones.list[bone].is_prop;
     let [flat, round] = if is_square { [1.0, UNUSUAL] } else { [UNUSUAL, 1.0] };
@@ -185,9 +187,9 @@ fn stand_in(bones: &Bones, bone: usize) -> Fit {
     }
 }
 
-/// The extent `lo..hi` of a shape along `axis` from `origin`: cut where it passes the bone's own joint and that of its
-/// continuation by more than [`PAST_JOINT`] of its length, and for the
-/// trunk stretched to reach them. Shapes across the bone (feet) are left alone, and what is held and not grown.
+/// The extent `lo..hi` of a shape along `axis` from `origin`: cut where it passes the bone's own joint or that of its
+/// continuation by more than [`PAST_JOINT`] of its length, and for the trunk extended to reach them. Shapes across the
+/// bone (feet) and held objects stay as they are.
 fn clip_at_joints(bones: &Bones, bone: usize, origin: Vec3, axis: Vec3, lo: f32, hi: f32) -> (f32, f32) {
     let direction = bones.direction(bone, Some(origin));
     let Bone { part, is_prop, .. } = bones.list[bone];
@@ -200,11 +202,11 @@ fn clip_at_joints(bones: &Bones, bone: usize, origin: Vec3, axis: Vec3, lo: f32,
     let (mut new_lo, mut new_hi) =
         (own.map_or(lo, |own| max(lo, own - past)), next.map_or(hi, |next| min(hi, next + past)));
     if bones.is_central(bone) && bones.list[bone].part.is_trunk() {
-        // Where weights fade from one bone to the next the skin is neither's: close the gap up to the joint.
+        // Where weights fade from one bone to the next, neither owns the skin: the gap to the joint is closed.
         new_lo = own.map_or(new_lo, |own| min(new_lo, own));
         new_hi = next.map_or(new_hi, |next| max(new_hi, next));
     }
-    // A rig whose pivots lie outside its skin leaves nothing: then the skin is right.
+    // If the rig's pivots lie outside its skin, nothing remains; then the skin is right.
     if new_hi - new_lo > 0.2 * (hi - lo) { (new_lo, new_hi) } else { (lo, hi) }
 }
 

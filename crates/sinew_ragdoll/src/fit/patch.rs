@@ -23,16 +23,16 @@ use crate::fit::surface::{Share, for_each_part};
 use crate::tuning::{LEAST_AREA, SAMPLES};
 use sinew_math::{Sym3, Vec3, clamp, max, min};
 
-/// Selection of the triangles of the skin that were taken for a bone.
+/// Selection of the skin triangles used for a bone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Selection {
     /// Triangles on which the bone's mean weight is at least this.
     Weight(f32),
     /// Triangles on which no other bone has more weight.
     Most,
-    /// None: the bone moves no skin worth the name.
+    /// None: the bone moves almost no skin.
     Nothing,
-    /// Triangles of the same bone on the other side, which is free of what this one carries.
+    /// Triangles of the same bone on the other side, without what this side carries.
     Twin,
 }
 
@@ -41,7 +41,7 @@ pub enum Selection {
 pub struct Sample {
     /// Character space, metres.
     pub point: Vec3,
-    /// Area it stands for, m².
+    /// Area it represents, m².
     pub area: f32,
 }
 
@@ -60,10 +60,10 @@ pub struct Patch {
     pub selection: Selection,
 }
 
-/// Symmetry of a patch: as it is, or made even by adding its mirror image.
+/// Symmetry of a patch: unchanged, or made symmetric by adding its mirror image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Symmetry {
-    /// As it is.
+    /// Unchanged.
     AsIs,
     /// With its mirror image in the plane of this x, metres.
     Mirrored(f32),
@@ -104,8 +104,8 @@ impl Patch {
         value.z > 1e-4 * value.x
     }
 
-    /// Second moments by the closed form for triangles (Gottschalk, "Collision Queries using Oriented Bounding
-    /// Boxes", 2000, §5.3), about the first corner so that nothing cancels.
+    /// Second moments by the closed form for triangles (Gottschalk, "Collision Queries using Oriented Bounding Boxes",
+    /// 2000, §5.3), about the first corner to avoid cancellation.
     fn of_triangles(triangles: &[[Vec3; 3]], selection: Selection, symmetry: Symmetry) -> Option<Self> {
         let origin = triangles.first()?[0];
         let (mut area, mut first, mut second) = (0.0, Vec3::ZERO, Sym3::ZERO);
@@ -143,12 +143,12 @@ impl Patch {
         let aside = self.center.x - x;
         let v = &mut self.covariance;
         v.diagonal.x += aside * aside;
-        // What couples x with y and z has the other sign in the mirror image.
+        // The products of x with y and z change sign in the mirror image.
         v.off = Vec3::new(v.off.x, 0.0, 0.0);
         self.center.x = x;
     }
 
-    /// Values of `f` below which the share `share` of the area lies, for each of the shares.
+    /// Values of `f` below which the given shares of the area lie.
     pub fn quantiles<const N: usize>(&self, shares: [f32; N], f: impl Fn(Vec3) -> f32) -> [f32; N] {
         let mut values: Vec<_> = self.samples.iter().map(|s| (f(s.point), s.area)).collect();
         quantiles_of(&mut values, shares)
@@ -176,7 +176,7 @@ fn triangle_area(corners: &[Vec3; 3]) -> f32 {
     0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length()
 }
 
-/// Middles of equal parts of the triangles; large triangles are cut finer, so that coarse meshes are sampled as
+/// Centres of equal subdivisions of the triangles. Large triangles are cut finer, so that coarse meshes are sampled as
 /// evenly as fine ones.
 fn sample(triangles: &[[Vec3; 3]], area: f32) -> Vec<Sample> {
     let mut samples = Vec::new();

@@ -13,10 +13,10 @@
 
 use sinew_math::Vec2;
 
-/// Unit vector along one side of the least rectangle around the points; its other side is at right angles. X if the
+/// Unit vector along one side of the smallest rectangle around the points; the other side is perpendicular. X if the
 /// points span no area.
 ///
-/// One side of that rectangle lies on a side of the convex hull (Freeman & Shapira, CACM 1975).
+/// One side of that rectangle is collinear with a side of the convex hull (Freeman & Shapira, CACM 1975).
 pub fn least_rectangle(points: &mut Vec<Vec2>) -> Vec2 {
     let hull = convex_hull(points);
     let mut best = (f32::INFINITY, Vec2::X);

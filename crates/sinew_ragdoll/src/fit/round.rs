@@ -9,17 +9,17 @@ use crate::tuning::{BALL, STEEPEST};
 use sinew_math::{Rotation, Transform, Vec3, clamp, max, min};
 use sinew_physics::Shape;
 
-/// Shares of a limb's length, from its lower end, between which the radius of that end is looked for.
+/// Range, in shares of a limb's length from its lower end, in which the radius of that end is measured.
 const NEAR_END: [f32; 2] = [0.1, 0.4];
 
-/// Capsule nearest to the skin, of all axes that come into question.
+/// Capsule nearest to the skin, over all candidate axes.
 pub(super) fn fit_capsule(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     let axis = long_axis(bones, bone, patch);
     let along = capsule_along(bones, bone, patch, axis);
     if bones.list[bone].part != Part::Head {
         return along;
     }
-    // A head may be longer from chin to crown or from nose to nape, and neither is where its bone points.
+    // A head may be longest from chin to crown or from nose to nape; its bone points along neither.
     [Vec3::Y, Vec3::Z].into_iter().map(|axis| capsule_along(bones, bone, patch, axis)).fold(along, nearer)
 }
 
@@ -33,7 +33,7 @@ fn capsule_along(bones: &Bones, bone: usize, patch: &Patch, axis: Vec3) -> Fit {
     let (lo, hi) = clip_at_joints(bones, bone, patch.center, axis, lo, hi);
     let middle = patch.center + axis * (0.5 * (lo + hi));
     let half = 0.5 * (hi - lo);
-    // The ends are left out: they reach around joints, where the surface is wider than the limb.
+    // The ends are excluded: the surface there reaches around joints and is wider than the limb.
     let mut radial: Vec<_> = patch
         .samples
         .iter()
@@ -62,7 +62,7 @@ pub(super) fn rounded(fit: Fit) -> Fit {
     }
 }
 
-/// The capsule with a radius of its own at each end; `None` of a ball, and of what has no skin near an end.
+/// The capsule with a separate radius at each end; `None` for a ball, and without skin near an end.
 pub(super) fn taper(capsule: &Fit, patch: &Patch) -> Option<Fit> {
     let Shape::Capsule { half_height, radius } = capsule.shape else { return None };
     if half_height < BALL * radius {
@@ -90,13 +90,13 @@ pub(super) fn taper(capsule: &Fit, patch: &Patch) -> Option<Fit> {
         .reduce(|a, b| if b.error < a.error { b } else { a })
 }
 
-/// A tapered capsule that reaches as far as the capsule did, from radii a quarter of the length from each end.
+/// A tapered capsule with the capsule's extent, from radii a quarter of the length from each end.
 fn tapered([low, high]: [f32; 2], half: f32, frame: Transform, patch: &Patch) -> Fit {
     let (mean, slope) = (0.5 * (low + high), high - low);
     let least = 0.3 * mean;
     let limited = |r: f32| clamp(r * SHRINK, max(least, LEAST_HALF), 0.9 * half);
     let [mut low, mut high] = [limited(mean - slope), limited(mean + slope)];
-    // The middles of the two balls lie a radius inside the ends.
+    // The centres of the two balls lie one radius inside the ends.
     let distance = 2.0 * half - low - high;
     let steep = (high - low).abs() / max(distance, LEAST_HALF);
     if steep > STEEPEST {
@@ -104,7 +104,7 @@ fn tapered([low, high]: [f32; 2], half: f32, frame: Transform, patch: &Patch) ->
         (low, high) = (middle - apart, middle + apart);
     }
     let half_height = max(half - 0.5 * (low + high), LEAST_HALF);
-    // The ends stay where they were: the frame's origin is halfway between the two middles.
+    // The ends keep their positions: the frame's origin is halfway between the two centres.
     let middle = frame.point(Vec3::Y * (0.5 * (low - high)));
     let shape = Shape::TaperedCapsule { half_height, radius_bottom: low, radius_top: high };
     measured(shape, Transform::new(middle, frame.rotation), patch)

@@ -33,8 +33,8 @@ pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     measured(Shape::Box { half_extents }, frame, patch)
 }
 
-/// The hull of the outermost points along 26 directions: the faces, edges and corners of the part's box, within it, so that
-/// it ends at the joints where that does. `None` where they have none.
+/// The hull of the outermost points along 26 directions (the faces, edges and corners of the part's box), clipped to
+/// the box so that it ends at the joints like the box. `None` if the points have no hull.
 pub(super) fn fit_hull(cuboid: &Fit, patch: &Patch) -> Option<Fit> {
     let Shape::Box { half_extents: half } = cuboid.shape else { return None };
     hull_of(cuboid, patch, |point| max3(min3(point, half), -half))

@@ -1,4 +1,4 @@
-//! Shares of the bones in the skin: the part of it that belongs to each.
+//! Assigns the skin to bones.
 //!
 //! ```
 //! use sinew_ragdoll::fit::surface::for_each_part;
@@ -17,12 +17,12 @@ use sinew_anim::skinning::skin_vertices;
 use sinew_anim::{JointIdx, Primitive, Rig};
 use sinew_math::{Affine, Transform, Vec3, clamp, max, min};
 
-/// A triangle of the skin as one bone sees it.
+/// A triangle of the skin with its weight for one bone.
 #[derive(Clone, Copy, Debug)]
 pub struct Share {
     /// Corners, character space at the bind pose, metres.
     pub corners: [Vec3; 3],
-    /// Mean weight of the bone (with what is merged into it) on the corners, 0..=1.
+    /// Mean weight of the bone (with the bones merged into it) at the corners, 0..=1.
     pub weight: f32,
     /// True if no other bone has more weight here.
     pub most: bool,
@@ -30,12 +30,12 @@ pub struct Share {
 
 /// Index of the bone, if any, that carries each joint of the rig.
 ///
-/// A joint that is neither kept nor merged goes with its nearest ancestor that is.
+/// A joint that is neither kept nor merged follows its nearest ancestor that is.
 pub fn owners(rig: &Rig, bones: &Bones) -> Vec<Option<usize>> {
     carried(rig, bones.list.iter().map(|bone| (bone.joint, bone.merged.as_slice())))
 }
 
-/// [`owners`] of bodies by their joints and what is merged into them; joints that the rig does not have are passed over.
+/// [`owners`] of bodies by their joints and the joints merged into them; skips joints that the rig does not have.
 pub(crate) fn carried<'a>(
     rig: &Rig,
     bodies: impl Iterator<Item = (JointIdx, &'a [JointIdx])> + Clone,
@@ -60,7 +60,7 @@ pub(crate) fn carried<'a>(
     owner
 }
 
-/// Bind pose of a rig, and the way from it to character space.
+/// Bind pose of a rig, with the transform to character space.
 #[derive(Clone, Copy, Debug)]
 pub struct BindPose<'a> {
     /// Joint to model space, per joint of the rig, file units.
@@ -85,8 +85,8 @@ impl BindPose<'_> {
     }
 }
 
-/// The skin's triangles by bone. Meshes without a skin (armour, robots) count for the bones that have no skin at all,
-/// so that a sword does not make a hand longer.
+/// The skin's triangles by bone. Meshes without a skin (armour, robots) count for bones that have no skin at all, so
+/// that a sword does not lengthen a hand.
 pub fn share_surface(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<Vec<Share>> {
     let owner = owners(rig, bones);
     let mut skinned = vec![Vec::new(); bones.list.len()];
@@ -138,7 +138,7 @@ pub fn skin_triangles(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<[Vec3
     all
 }
 
-/// Corner indices and corners of the triangles whose corners are there and finite.
+/// Indices and positions of the triangles whose corners exist and are finite.
 fn triangles<'a>(
     primitive: &'a Primitive,
     positions: &'a [Vec3],
@@ -153,8 +153,8 @@ fn triangles<'a>(
 /// Weights of one bone on the corners of a triangle.
 type Pull = (usize, [f32; 3]);
 
-/// Triangles that several bones move are cut until no side is longer than `finest` (metres), so that on a coarse mesh
-/// too each bone gets its own part of them: weights are linear over a triangle.
+/// Triangles moved by several bones are subdivided until no side is longer than `finest` (metres), so that each bone
+/// gets its own part of them even on a coarse mesh: weights are linear over a triangle.
 fn share_skinned(
     primitive: &Primitive,
     positions: &[Vec3],
@@ -183,7 +183,7 @@ fn share_skinned(
     }
 }
 
-/// Into how many parts a triangle's sides are cut.
+/// Number of parts that a triangle's sides are cut into.
 fn cuts_of(corners: &[Vec3; 3], finest: f32) -> usize {
     let [p, q, r] = *corners;
     let longest = max((q - p).length(), max((r - q).length(), (p - r).length()));

@@ -4,7 +4,7 @@ use super::reduce::Reduced;
 use super::weld::Welded;
 use sinew_math::{Vec3, triangle};
 
-/// Particles that a vertex hangs on.
+/// Particles of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bound {
     pub particles: [usize; 4],
@@ -17,11 +17,11 @@ impl Bound {
     }
 }
 
-/// Each vertex on its own particle, or on those of the triangle that is nearest to it: among the triangles of the particle that it belongs to, or, where it
-/// belongs to none, among all.
+/// Weights each vertex to its own particle, or to those of the nearest triangle: among the triangles of its particle,
+/// or, if it has none, among all.
 pub(super) fn bind(welded: &Welded, reduced: &Reduced) -> Vec<Bound> {
     let area = |face: u32| welded.area(&reduced.faces[face as usize].map(|at| reduced.seeds[at as usize]));
-    // Nothing lies on what has no area.
+    // Triangles without area are skipped.
     let all: Vec<u32> = (0..reduced.faces.len() as u32).filter(|&face| area(face) > 0.0).collect();
     let mut of_particle: Vec<Vec<u32>> = vec![Vec::new(); reduced.seeds.len()];
     for &face in &all {
@@ -44,7 +44,7 @@ fn nearest(welded: &Welded, reduced: &Reduced, vertex: usize, faces: &[u32]) -> 
         let corners: [Vec3; 3] = [a, b, c].map(|particle| welded.places[reduced.seeds[particle]]);
         let [u, v, w] = triangle::nearest(&corners, place).shares();
         let off = (corners[0] * u + corners[1] * v + corners[2] * w - place).length_squared();
-        // What is not a number is not nearer than anything.
+        // NaN is never nearer.
         if off < best.map_or(f32::INFINITY, |(least, _)| least) {
             best = Some((off, Bound { particles: [a, b, c, a], weights: [u, v, w, 0.0] }));
         }

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 
 /// Edges of a mesh.
 pub(super) struct Graph {
-    /// Vertices beside each, ascending, with the length of the edge, metres.
+    /// Neighbours of each vertex, ascending, with the edge length, metres.
     pub beside: Vec<Vec<(usize, f32)>>,
     /// True for vertices of an edge that only one face has.
     pub is_border: Vec<bool>,
-    /// Component that each vertex is of.
+    /// Component of each vertex.
     pub component: Vec<usize>,
 }
 

@@ -1,4 +1,4 @@
-//! Meshes of a character as sheets of cloth: one joint for each particle, on which the vertices hang.
+//! Meshes as sheets of cloth: one joint per particle, to which the vertices are weighted.
 
 mod bind;
 mod graph;
@@ -12,10 +12,10 @@ use bind::Bound;
 use sinew_math::Affine;
 use weld::Welded;
 
-/// Part of a rig that a sheet is to be made of: all of a mesh, or what of it has one material.
+/// Part of a rig to make a sheet of: a whole mesh, or its parts with one material.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeshPart {
-    /// Name by which it was asked for.
+    /// Name that was requested.
     pub name: String,
     /// Index into [`Rig::meshes`].
     pub mesh: usize,
@@ -23,7 +23,7 @@ pub struct MeshPart {
     pub primitives: Vec<usize>,
 }
 
-/// Trouble with the part of a rig that is to be cloth.
+/// Reason why a part of a rig cannot be cloth.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SheetError {
     /// Nothing has the name.
@@ -32,7 +32,7 @@ pub enum SheetError {
     /// Several meshes have it: their nodes.
     #[error("{} meshes have that name or material, and a garment is of one: {}", .0.len(), .0.join(", "))]
     Several(Vec<String>),
-    /// It has no weights, and another part of its mesh has.
+    /// It has no weights, but another part of its mesh has.
     #[error("that part of the mesh has no weights, and others have: give it some")]
     NoSkin,
     /// It is cloth already.
@@ -44,43 +44,44 @@ pub enum SheetError {
     /// All of it is held.
     #[error("all of that mesh is held: nothing of it is left to hang")]
     AllHeld,
-    /// Most of it does not hang together with what is held.
+    /// Most of it is not connected to the held part.
     #[error(
         "most of that mesh does not hang together with what is held at its top: a larger `held` holds more"
     )]
     MostlyLoose,
-    /// More pieces are held than there may be particles.
+    /// More pieces are held than particles are allowed.
     #[error(
         "{0} separate pieces of that mesh are held, and each takes a particle at least: a larger `most_particles` has room for them"
     )]
     TooManyPieces(usize),
-    /// The skin would have more joints than can be told apart.
+    /// The skin would have more joints than its indices can address.
     #[error("its skin has no room for {0} joints more: 65536 is the most")]
     TooManyJoints(usize),
 }
 
-/// Settings of a sheet, and where the rig stands.
+/// Settings of a sheet, and the frame of the rig.
 #[derive(Clone, Copy, Debug)]
 pub struct SheetOptions<'a> {
     /// Bind pose of every joint in model space.
     pub bind_model: &'a [Affine],
-    /// From there to where +Y is up and the unit is a metre.
+    /// Transform to +Y up and metres.
     pub metres_from_model: Affine,
-    /// Most distance between particles beside each other, metres, positive; more where there would be too many, and along the diagonals of square cells.
+    /// Largest distance between neighbouring particles, metres, positive; larger if there would be too many, and along
+    /// diagonals of square cells.
     pub spacing: f32,
-    /// Depth below its highest point down to which it is held, metres; `None`: a tenth of its height.
+    /// Depth below its top down to which it is held, metres; `None`: a tenth of its height.
     pub held: Option<f32>,
     /// Most particles, at least 4: finer meshes are reduced, and coarser ones no further split.
     pub most_particles: usize,
-    /// Number of the first new joint's node in the file ([`Joint::source`]); the others follow.
+    /// File node of the first new joint ([`Joint::source`]); the others follow.
     pub first_source: usize,
 }
 
 impl MeshPart {
-    /// The mesh of a node of that name, of that name itself, or what has a material of that name.
+    /// The mesh of a node with that name, a mesh with that name, or the parts with a material of that name.
     ///
     /// # Errors
-    /// There is none, more than one, or it is the part without weights of a mesh that has a skin.
+    /// There is none, more than one, or it is the unweighted part of a skinned mesh.
     pub fn named(rig: &Rig, name: &str) -> Result<Self, SheetError> {
         let node = |mesh: usize| rig.joints[rig.meshes[mesh].joint].name.as_str();
         let all = |mesh: usize| (0..rig.meshes[mesh].primitives.len()).collect::<Vec<usize>>();
@@ -126,16 +127,17 @@ impl MeshPart {
     }
 }
 
-/// Makes a part of a rig a sheet of cloth: vertices in one place are one; where there are more than a sheet may have particles, such are chosen all over it
-/// that lie no farther apart than the spacing, its edges first; where edges are longer than that, there are particles between its vertices. The rig gets a joint for each particle, and the vertices hang on these instead of those that
-/// moved them: each on its own, or on the three of the triangle that it lies on. As long as nothing moves the new joints, the mesh goes along with the old ones.
+/// Turns a part of a rig into a sheet: vertices in one place are merged; a finer mesh is reduced to particles no
+/// further apart than the spacing, borders first; longer edges are split. The rig gets a joint per particle, and
+/// vertices are weighted to these: each to its own, or to the three of its triangle. While nothing moves the new
+/// joints, the mesh follows the old ones.
 ///
-/// Parts of the mesh that do not hang together with what is held (buttons, a buckle) move with the cloth that they lie on.
+/// Loose parts (buttons, a buckle) move with the cloth under them.
 ///
-/// Gives the index of the sheet in [`Rig::sheets`].
+/// Returns the index of the sheet in [`Rig::sheets`].
 ///
 /// # Errors
-/// The part cannot be a sheet; then the rig is as it was.
+/// If the part cannot be a sheet; the rig is unchanged then.
 ///
 /// # Panics
 /// If the part or the bind pose is of another rig.
@@ -162,13 +164,13 @@ pub fn lay_sheet(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> 
 }
 
 impl Rig {
-    /// True if a mesh without a skin is a part of one that has one.
+    /// True if a mesh without a skin is part of a skinned one.
     fn is_beside_skin(&self, mesh: usize) -> bool {
         let RigMesh { joint, skin, .. } = self.meshes[mesh];
         skin.is_none() && self.meshes.iter().any(|other| other.joint == joint && other.skin.is_some())
     }
 
-    /// Gives a mesh that moves rigidly a skin of its own, all on the joint that carries it.
+    /// Gives a rigid mesh its own skin, all on its joint.
     fn hang_on_its_joint(&mut self, mesh: usize) {
         let mesh = &mut self.meshes[mesh];
         mesh.skin = Some(self.skins.len());
@@ -180,7 +182,7 @@ impl Rig {
         }
     }
 
-    /// Takes that skin, the last one, away again.
+    /// Removes that skin, the last one, again.
     fn hang_rigidly(&mut self, mesh: usize) {
         self.skins.pop();
         let mesh = &mut self.meshes[mesh];
@@ -223,7 +225,7 @@ fn lay(rig: &mut Rig, part: &MeshPart, options: &SheetOptions<'_>) -> Result<usi
     Ok(rig.sheets.len() - 1)
 }
 
-/// A joint for each particle, and its slot at the end of the skin: where it is, it moves with its parent.
+/// A joint for each particle, and its slot at the end of the skin; it moves with its parent.
 fn add_joints(
     rig: &mut Rig,
     part: &MeshPart,
@@ -254,7 +256,7 @@ fn add_joints(
     Ok(joints)
 }
 
-/// Hangs the vertices on the last `particles` slots of their skin.
+/// Weights the vertices to the last `particles` slots of their skin.
 fn rewrite(rig: &mut Rig, part: &MeshPart, welded: &Welded, bound: &[Bound], particles: usize) {
     let mesh = &mut rig.meshes[part.mesh];
     let first = rig.skins[mesh.skin.expect("a part has a skin")].joints.len() - particles;
@@ -265,7 +267,7 @@ fn rewrite(rig: &mut Rig, part: &MeshPart, welded: &Welded, bound: &[Bound], par
             let Some(Bound { particles, weights }) = of.map_or(bound.first(), |of| bound.get(of)) else {
                 continue;
             };
-            // A slot without a weight is 0, as glTF 2.0 §3.7.3.3 wants it.
+            // A slot without a weight is 0, as glTF 2.0 §3.7.3.3 requires.
             let slot = |k: usize| if weights[k] > 0.0 { (first + particles[k]) as u16 } else { 0 };
             primitive.joints[vertex] = [0, 1, 2, 3].map(slot);
             primitive.weights[vertex] = *weights;

@@ -12,20 +12,20 @@ use std::collections::BTreeSet;
 pub(super) struct Reduced {
     /// Vertex of each particle.
     pub seeds: Vec<usize>,
-    /// Particle that each vertex belongs to; `None` where nothing holds its part of the mesh.
+    /// Particle of each vertex; `None` if nothing holds its part of the mesh.
     pub owner: Vec<Option<usize>>,
     pub faces: Vec<[u32; 3]>,
     pub links: Vec<[u32; 2]>,
     /// Area of the mesh about each particle, m².
     pub areas: Vec<f32>,
-    /// Every vertex is a particle of its own.
+    /// One particle per vertex.
     pub is_whole: bool,
 }
 
-/// Particles of a mesh, as many as there may be at most, with the particle of each welded vertex.
+/// Particles of a mesh within the limit, with the particle of each welded vertex.
 ///
 /// # Errors
-/// If what hangs on something held has no area, is less than half of the mesh, or is in more pieces than there may be particles.
+/// If the held part has no area, is less than half of the mesh, or has more pieces than particles are allowed.
 pub(super) fn reduce(
     welded: &Welded,
     graph: &Graph,
@@ -63,7 +63,7 @@ pub(super) fn reduce(
 }
 
 impl Reduced {
-    /// Triangles and edges between the particles that the vertices belong to, and what of the mesh's area is theirs: each vertex has a third of its triangles.
+    /// Triangles and edges between particles, and the mesh area of each: a vertex has a third of its triangles.
     fn new(welded: &Welded, seeds: Vec<usize>, owner: Vec<Option<usize>>, is_whole: bool) -> Self {
         let (mut known, mut faces, mut links) = (BTreeSet::new(), Vec::new(), BTreeSet::new());
         let mut areas = vec![0.0; seeds.len()];
@@ -96,8 +96,9 @@ impl IntoSorted for [u32; 2] {
     }
 }
 
-/// Vertices that lie all over a mesh, each the farthest from those before it (Gonzalez 1985): first where it is held, so that every piece of it is, then along
-/// its borders, so that a hem stays a hem. No vertex is farther from one of them than half the spacing; if that takes too many, the spacing grows.
+/// Vertices spread over a mesh, each the furthest from those before it (Gonzalez 1985): first the held part, so that
+/// every piece of it is held, then borders, so that hems keep their shape. No vertex is further from one of them than
+/// half the spacing; if that takes too many, the spacing grows.
 fn spread(
     welded: &Welded,
     graph: &Graph,

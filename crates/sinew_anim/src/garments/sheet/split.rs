@@ -1,4 +1,4 @@
-//! Meshes that are coarser than their particles shall lie: longer edges are halved, again and again.
+//! Splits meshes that are coarser than their particle spacing by halving long edges.
 
 use super::SheetOptions;
 use super::graph::Graph;
@@ -25,7 +25,7 @@ impl Welded {
         edges.map(|edge| self.length(edge)).fold(0.0, sinew_math::max)
     }
 
-    /// Splits what hangs together with something as high as `above` (m).
+    /// Splits what is connected to a vertex at least as high as `above` (m).
     pub fn split_what_hangs(&mut self, above: f32, options: &SheetOptions<'_>) {
         let graph = Graph::new(self);
         let mut is_held = vec![false; self.places.len()];
@@ -35,8 +35,8 @@ impl Welded {
         self.split(options.spacing, options.most_particles, |vertex| is_held[graph.component[vertex]]);
     }
 
-    /// Halves edges of what `hangs` that are longer than `spacing` (diagonals of square cells may be as long as these have them), the longest first, until `most` of its
-    /// vertices hang. Those in the middle of an edge come after all others, and belong to no vertex of the mesh.
+    /// Halves edges of the held part longer than `spacing` (diagonals of square cells may be longer), the longest
+    /// first, up to `most` vertices. New vertices come last and belong to no vertex of the mesh.
     fn split(&mut self, spacing: f32, most: usize, hangs: impl Fn(usize) -> bool) {
         let all = self.places.len();
         let others = (0..all).filter(|&vertex| !hangs(vertex)).count();
@@ -58,7 +58,7 @@ impl Welded {
     /// Edges that are too long, the longest first.
     fn long_edges(&self, spacing: f32, hangs: impl Fn(usize) -> bool) -> Vec<Edge> {
         let mut long: BTreeMap<Edge, f32> = BTreeMap::new();
-        // What has no area is no cloth.
+        // Parts without area are no cloth.
         for &[a, b, c] in self.faces.iter().filter(|face| hangs(face[0]) && self.area(face) > 0.0) {
             for [from, to, tip] in [[a, b, c], [b, c, a], [c, a, b]] {
                 let length = self.length(edge(from, to));
@@ -74,7 +74,7 @@ impl Welded {
         long.into_iter().map(|(edge, _)| edge).collect()
     }
 
-    /// The vertex in the middle of an edge, which goes with what the first of its ends goes with.
+    /// The vertex in the middle of an edge, in the component of its first end.
     fn halve(&mut self, [a, b]: Edge) -> usize {
         self.places.push((self.places[a] + self.places[b]) * 0.5);
         self.at.push((self.at[a] + self.at[b]) * 0.5);
@@ -82,13 +82,13 @@ impl Welded {
         self.places.len() - 1
     }
 
-    /// Puts a triangle back in parts, wound as it was.
+    /// Replaces a triangle by parts with the same winding.
     fn cut(&mut self, [a, b, c]: [usize; 3], middles: &BTreeMap<Edge, usize>) {
         let middle = |from: usize, to: usize| middles.get(&edge(from, to)).copied();
         match [middle(a, b), middle(b, c), middle(c, a)] {
             [None, None, None] => self.faces.push([a, b, c]),
             [Some(m), Some(n), Some(o)] => self.faces.extend([[a, m, o], [m, b, n], [o, n, c], [m, n, o]]),
-            // Turned so that the first side is cut, and the last is not.
+            // Rotated so that the first side is split, and the last is not.
             [None, Some(_), _] => self.cut([b, c, a], middles),
             [_, None, Some(_)] => self.cut([c, a, b], middles),
             [Some(m), None, None] => self.faces.extend([[a, m, c], [m, b, c]]),

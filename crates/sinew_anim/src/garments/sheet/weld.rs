@@ -1,21 +1,21 @@
-//! Vertices in one place, made one.
+//! Merges vertices in one place.
 
 use super::{MeshPart, SheetOptions};
 use crate::rig::{Primitive, Rig};
 use sinew_math::{Affine, Vec3, max, min};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A mesh whose vertices in one place are one.
+/// A mesh with merged vertices.
 pub(super) struct Welded {
-    /// Place of each as it was bound, metres, +Y up.
+    /// Position of each in the bind pose, metres, +Y up.
     pub places: Vec<Vec3>,
-    /// Place in mesh space.
+    /// Position in mesh space.
     pub at: Vec<Vec3>,
     /// Slot of the skin that moves it most.
     pub slots: Vec<u16>,
-    /// Triangles with three corners, each once, whichever way round.
+    /// Triangles with three distinct corners, each once in either orientation.
     pub faces: Vec<[usize; 3]>,
-    /// Index of the one that each vertex of each primitive is; `None` if it is of no triangle.
+    /// New index of each vertex of each primitive; `None` if no triangle uses it.
     pub of_vertex: Vec<Vec<Option<usize>>>,
 }
 
@@ -26,7 +26,7 @@ impl Welded {
         0.5 * (b - a).cross(c - a).length()
     }
 
-    /// Heights of the lowest and highest place of what has an area, metres; `None` if nothing has.
+    /// Lowest and highest position of triangles with area, metres; `None` if there are none.
     pub fn heights(&self) -> Option<(f32, f32)> {
         let faces = self.faces.iter().filter(|face| self.area(face) > 0.0);
         let heights = faces.flatten().map(|&corner| self.places[corner].y);
@@ -76,7 +76,7 @@ pub(super) fn weld(rig: &Rig, part: &MeshPart, options: &SheetOptions<'_>) -> We
 }
 
 impl Welded {
-    /// The one that a vertex is.
+    /// Merged index of a vertex.
     fn one(
         &mut self,
         primitive: &Primitive,
@@ -85,7 +85,7 @@ impl Welded {
         known: &mut BTreeMap<[u32; 3], usize>,
     ) -> usize {
         let at = primitive.positions[vertex];
-        // Both zeros are in one place.
+        // Both zeros are one place.
         let key = at.to_array().map(|x| (x + 0.0).to_bits());
         *known.entry(key).or_insert_with(|| {
             let (mut place, mut heaviest) = (Vec3::ZERO, 0);

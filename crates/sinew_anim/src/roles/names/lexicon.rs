@@ -1,21 +1,21 @@
-//! Words that rigs are named with, and what each of them says.
+//! Words in joint names, and their meaning.
 
 use super::super::role::Side;
 
 /// Meaning of one word of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Word {
-    /// Nothing about the body: what exporters put before and after their names.
+    /// No body part: prefixes and suffixes of exporters.
     Noise,
     Side(Side),
     /// The part nearer to the trunk, or higher in it.
     Upper,
     Lower,
-    /// Between upper and lower: of the spine another part, of a limb one that no human has.
+    /// Between upper and lower: another part of the spine; in a limb a part that humans lack.
     Mid,
     /// Before "arm" the lower one, before "leg" one of a beast.
     Fore,
-    /// Front of a body on four legs; `Back` is its hind part.
+    /// Front of a quadruped; `Back` is its hind part.
     Front,
     Back,
     Paw,
@@ -42,9 +42,9 @@ pub(super) enum Word {
     Ankle,
     Toes,
     Tail,
-    /// Turns with a bone's end: a helper beside a limb, a plain bone in the neck.
+    /// Twist helper beside a limb; a plain bone in the neck.
     Twist,
-    /// Control that an animator moves, and no part of a body: an appendix too, as long as it moves no skin to speak of.
+    /// Animator's control, not a body part: an appendix too, as long as it has little skin.
     Control,
     /// Makes the joint an appendix whatever else its name says.
     Appendix,
@@ -55,7 +55,7 @@ use Word::*;
 const LEFT: Word = Word::Side(super::super::role::Side::Left);
 const RIGHT: Word = Word::Side(super::super::role::Side::Right);
 
-/// Words by meaning, in lower case. Words of up to two letters are only understood where they stand alone.
+/// Words by meaning, in lower case. Words of up to two letters only count alone.
 const WORDS: &[(Word, &str)] = &[
     // Exporters' prefixes and suffixes.
     (
@@ -228,8 +228,8 @@ const WORDS: &[(Word, &str)] = &[
     (Appendix, "breast breasts bust boob butt buttock glute muscle pad armor tie qunzi スカート 乳 袖"),
 ];
 
-/// Words that mean a part of the body in one language only, where other names of the rig are of that language: the words that tell it,
-/// and what is meant.
+/// Words that mean a body part only if other names of the rig are in the same language: the words that tell the
+/// language, and the meaning.
 pub(super) const LANGUAGES: &[(&str, &[(&str, &str)])] = &[
     (
         "bras jambe cuisse pied tete tête bassin épaule epaule mollet",
@@ -259,8 +259,8 @@ pub(super) fn meaning(word: &str) -> Option<Word> {
     WORDS.iter().find(said).map(|&(meaning, _)| meaning)
 }
 
-/// Meanings of a word, whole or as several known ones glued together ("lefttoebase", "lthigh", "左足首"); `None` where some
-/// of it is unknown.
+/// Meanings of a word, whole or as known words joined together ("lefttoebase", "lthigh", "左足首"); `None` if a part of it
+/// is unknown.
 pub(super) fn meanings(word: &str) -> Option<Vec<Word>> {
     if let Some(whole) = meaning(word) {
         return Some(vec![whole]);
@@ -288,7 +288,7 @@ fn glued(text: &str, at_start: bool) -> Option<Vec<Word>> {
     best
 }
 
-/// Few letters say too little inside a word: two do for "up", one for a side before or after all the rest.
+/// Short words are weak inside a word: two letters count for "up", one for a side before or after all the rest.
 fn may_be_glued(word: &str, at_start: bool, rest: &str) -> bool {
     !word.is_ascii()
         || word.len() > 2

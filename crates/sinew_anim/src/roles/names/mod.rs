@@ -1,4 +1,4 @@
-//! Readings of joints' names. Names are a witness, not a judge: see [`super::humanoid`].
+//! Meanings of joint names. Names are evidence only: see [`super::humanoid`].
 
 mod lexicon;
 mod tokens;
@@ -9,7 +9,7 @@ use tokens::{Token, tokens};
 
 pub(crate) use tokens::words;
 
-/// Part of the body that a name speaks of.
+/// Body part of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Hips,
@@ -27,18 +27,18 @@ pub(super) enum Part {
     Tail,
     /// A limb of a body on four legs, which is no human's.
     Beast,
-    /// Never a body of its own: twist and IK joints, ends, sockets, fingers, face.
+    /// Never a body: twist and IK joints, ends, sockets, fingers, face.
     Appendix,
 }
 
-/// A name taken apart.
+/// A parsed name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Reading {
     /// Name without prefixes, numbers and side: equal for both joints of a mirrored pair.
     pub key: String,
     /// Side that the name states.
     pub side: Option<Side>,
-    /// Part of the body, where the name is one of those in use.
+    /// Body part, if the name is a known one.
     pub part: Option<Part>,
     /// True if the name speaks of a wing.
     pub is_wing: bool,
@@ -48,8 +48,8 @@ pub(super) struct Reading {
     pub is_control: bool,
 }
 
-/// Readings of all names of a rig, with the words resolved whose meaning hangs on the others. `parents` has the parent of
-/// every joint, or is empty where the names alone are asked.
+/// Parses all names of a rig and resolves words that depend on other names. `parents` has the parent of every joint, or
+/// is empty if only names are known.
 pub(super) fn read_names(names: &[&str], parents: &[Option<usize>]) -> Vec<Reading> {
     let (mut readings, senses): (Vec<Reading>, Vec<Option<Sense>>) =
         tokens(names).iter().map(|t| read(t)).unzip();
@@ -73,14 +73,14 @@ pub(super) fn read_names(names: &[&str], parents: &[Option<usize>]) -> Vec<Readi
         let sided = reading.side.is_some();
         reading.part = match sense {
             None => None,
-            // The clavicle to Mixamo, VRM and CMU, the humerus to SMPL and Daz, which have no other word for it.
+            // The clavicle in Mixamo, VRM and CMU, the humerus in SMPL and Daz.
             Some(Sense::Shoulder) if upper_arm => Some(Part::Clavicle),
             Some(Sense::Shoulder | Sense::Arm) => Some(Part::UpperArm),
             // SMPL's hip joint is the thigh; CMU's only leads to it. Rigify has a pelvis on either side.
             Some(Sense::Hip) if sided && !thigh => Some(Part::UpperLeg),
             Some(Sense::Hip | Sense::Pelvis) if sided => Some(Part::Appendix),
             Some(Sense::Hip | Sense::Pelvis) => Some(Part::Hips),
-            // The shank to Mixamo, the thigh to MMD and whoever has only one; the whole of a leg to some.
+            // The shank in Mixamo; the thigh in MMD and rigs with only one such name; the whole leg in some.
             Some(Sense::LegOrFoot) if thigh && shank => Some(Part::Foot),
             Some(Sense::Leg | Sense::LegOrFoot) if thigh => Some(Part::LowerLeg),
             Some(Sense::Leg | Sense::LegOrFoot) if shank || one_leg => Some(Part::UpperLeg),
@@ -117,9 +117,9 @@ fn name_ball(readings: &mut [Reading], parents: &[Option<usize>]) {
     balls.into_iter().for_each(|joint| readings[joint].part = Some(Part::Toes));
 }
 
-/// Settles parts that several joints of one side claim, of those that move skin: they have a `depth`, the number of
-/// joints above them. Where the rig names all four long limb parts, one is meant and the others continue it (Rigify's
-/// "upper_arm.L.001"); else the name tells nothing (CesiumMan calls all of its arm "arm").
+/// Resolves parts that several skinned joints of one side claim; they have a `depth`, the number of joints above them.
+/// If the rig names all four long limb parts, one joint is the part and the others continue it (Rigify's
+/// "upper_arm.L.001"); else the name says nothing (CesiumMan calls all of its arm "arm").
 pub(super) fn settle_duplicates(
     readings: &mut [Reading],
     names: &[&str],
@@ -153,8 +153,8 @@ pub(super) fn settle_duplicates(
     }
 }
 
-/// Finds the joint at which the trunk begins, of joints that move skin, and reads it as hips: what nobody calls hips but carries
-/// thighs and the rest of the trunk, too. No part of the spine is above the hips.
+/// Finds the skinned joint at which the trunk begins and reads it as hips: it is not named hips but carries the thighs
+/// and the rest of the trunk. No part of the spine is above the hips.
 pub(super) fn settle_trunk(
     readings: &mut [Reading],
     parents: &[Option<usize>],
@@ -175,7 +175,7 @@ pub(super) fn settle_trunk(
         }
         let top = with(Part::Head, None).or(with(Part::Neck, None))?;
         let fork = up(top).find(|&at| [left, right].into_iter().all(|thigh| up(thigh).any(|i| i == at)))?;
-        // Bare, the fork is no pelvis; what it carries toward the head is.
+        // If the fork joint has no skin, its child toward the head is the pelvis.
         let mut trunk: Vec<usize> = up(top).take_while(|&at| at != fork).collect();
         trunk.push(fork);
         let lowest = trunk.into_iter().rev().find(|&at| moves_skin(at))?;
@@ -196,8 +196,8 @@ pub(super) fn settle_trunk(
     readings[hips].part = Some(Part::Hips);
 }
 
-/// The joint that is meant of several of one name, whatever their order in the file: that nearest to the root; of siblings the
-/// one in the middle by name (of three palms the second, of two the first).
+/// The joint meant among several of one name, independent of the file order: the nearest to the root; of siblings the
+/// middle one by name (of three palms the second, of two the first).
 fn meant(mut same: Vec<usize>, names: &[&str], depth: &impl Fn(usize) -> Option<usize>) -> Option<usize> {
     let least = same.iter().filter_map(|&joint| depth(joint)).min()?;
     same.retain(|&joint| depth(joint) == Some(least));
@@ -205,7 +205,7 @@ fn meant(mut same: Vec<usize>, names: &[&str], depth: &impl Fn(usize) -> Option<
     same.get((same.len() - 1) / 2).copied()
 }
 
-/// Meaning of a name by itself; some words mean one part or another by what else the rig has.
+/// Meaning of a name by itself; some words depend on the rest of the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sense {
     Part(Part),
@@ -256,7 +256,7 @@ fn key(words: &[Word]) -> String {
     words.iter().map(|word| format!("{word:?}")).collect()
 }
 
-/// Meaning of known words together, in any order but where it matters.
+/// Meaning of known words together, mostly in any order.
 fn sense(words: &[Word]) -> Option<Sense> {
     use Word::{Arm, Back, Body, Fore, Front, Leg, Lower, Mid, Paw, Twist, Upper};
     let has = |word: Word| words.contains(&word);
@@ -374,7 +374,7 @@ mod tests {
         );
     }
 
-    /// Parts of a body in the languages of asset stores, with both sides, and whatever an exporter did to the case of letters.
+    /// Body parts in the languages of asset stores, on both sides, in any case.
     #[test]
     fn names_in_other_languages_and_in_any_case() {
         use Part::*;
@@ -463,7 +463,7 @@ mod tests {
                 (Some(Appendix), r),
             ],
         );
-        // A mesh beside the skeleton that is called a wrist makes no fingers of hands.
+        // A mesh beside the skeleton named a wrist does not turn hands into fingers.
         check(&["Wrist_2", "mixamorig:LeftHand"], &[(Some(Hand), None), (Some(Hand), l)]);
         check(&["leg_joint_L_1", "torso_joint_3", "Cube"], &[(None, l), (Some(Spine), None), (None, None)]);
     }

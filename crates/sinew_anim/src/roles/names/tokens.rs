@@ -1,9 +1,9 @@
-//! Names of a rig taken apart into words, less what most of its names have in common.
+//! Splits the names of a rig into words and drops what most names share.
 
 use super::lexicon::{LANGUAGES, Word, meaning, meanings};
 use std::collections::BTreeMap;
 
-/// A word of a name, in lower case, and what it says; `None` for a word that no lexicon knows.
+/// A word of a name, in lower case, and its meaning; `None` if unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Token {
     pub text: String,
@@ -17,7 +17,7 @@ const FEW: usize = 4;
 pub(super) fn tokens(names: &[&str]) -> Vec<Vec<Token>> {
     let mut split: Vec<Vec<String>> = names.iter().map(|name| words(name)).collect();
     name_vertebrae(names, &mut split);
-    // With "rt" beside it "lf" is short for left, else for left front.
+    // Beside "rt", "lf" is short for left, else for left front.
     let has = |wanted: &str| split.iter().flatten().any(|word| word == wanted);
     if has("rt") && !has("rf") {
         split.iter_mut().flatten().filter(|word| *word == "lf").for_each(|word| *word = "left".into());
@@ -37,7 +37,7 @@ pub(super) fn tokens(names: &[&str]) -> Vec<Vec<Token>> {
     split.into_iter().map(telling).collect()
 }
 
-/// Puts words that only a language's own names give a meaning into words that the lexicon has.
+/// Replaces words of one language by words of the lexicon.
 fn translate(split: &mut [Vec<String>]) {
     // French writes "avant-bras" as two words.
     for words in split.iter_mut() {
@@ -58,7 +58,7 @@ fn translate(split: &mut [Vec<String>]) {
     }
 }
 
-/// Xsens calls the spine by its vertebrae, L5 to T8; where there is an R1, an L1 is a left one.
+/// Xsens names the spine by vertebrae, L5 to T8; if there is an R1, L1 is a left one.
 fn name_vertebrae(names: &[&str], split: &mut [Vec<String>]) {
     let numbered = |name: &str, letter: char| {
         let rest = name.strip_prefix(letter).or_else(|| name.strip_prefix(letter.to_ascii_uppercase()));
@@ -75,8 +75,8 @@ fn name_vertebrae(names: &[&str], split: &mut [Vec<String>]) {
     }
 }
 
-/// Words that say nothing because most names have them: unknown ones anywhere in half of all names, known ones at the
-/// start of nearly all.
+/// Drops words without information because most names have them: unknown ones anywhere in half of all names, known ones
+/// at the start of nearly all.
 fn own_words(split: &[Vec<String>]) -> Vec<(String, bool)> {
     let named = split.iter().filter(|words| !words.is_empty()).count();
     let (mut anywhere, mut first): (BTreeMap<&str, usize>, BTreeMap<&str, usize>) = Default::default();
@@ -97,8 +97,8 @@ fn own_words(split: &[Vec<String>]) -> Vec<(String, bool)> {
     own
 }
 
-/// Cuts off what half of all first words begin with, if it is no word itself and the rest of them is known ("herohips",
-/// "herospine").
+/// Cuts off the common start of half of all first words, if it is no word itself and the rest of them is known
+/// ("herohips", "herospine").
 fn cut_glued_prefix(split: &mut [Vec<String>]) {
     let unknown = |words: &&Vec<String>| words.first().is_some_and(|word| meanings(word).is_none());
     let firsts: Vec<&str> = split.iter().filter(unknown).map(|words| words[0].as_str()).collect();
@@ -122,9 +122,9 @@ fn cut_glued_prefix(split: &mut [Vec<String>]) {
     }
 }
 
-/// Words in lower case, split at punctuation, at digits, at camel humps ("LHipJoint": l, hip, joint) and between Latin
-/// and other letters; namespaces and numbers are dropped. Where humps leave what is no word, and without them it is one or several
-/// ("UPPERarm", "fOOT"), case says nothing.
+/// Words in lower case, split at punctuation, digits, camel humps ("LHipJoint": l, hip, joint) and between Latin and
+/// other letters; namespaces and numbers are dropped. If humps give no known words but the text without them does
+/// ("UPPERarm", "fOOT"), case is ignored.
 pub(crate) fn words(name: &str) -> Vec<String> {
     let bare = name.rsplit([':', '|']).find(|part| !part.is_empty()).unwrap_or(name);
     let chars: Vec<char> = bare.chars().map(half_width).collect();
@@ -166,7 +166,7 @@ fn humps(run: &[char]) -> Vec<String> {
     words
 }
 
-/// The ASCII letter that a full-width one stands for: MMD writes "ＩＫ".
+/// The ASCII letter of a full-width one: MMD writes "ＩＫ".
 fn half_width(c: char) -> char {
     match c {
         '\u{ff01}'..='\u{ff5e}' => char::from_u32(u32::from(c) - 0xfee0).unwrap_or(c),

@@ -1,8 +1,8 @@
-//! Many at once: one box against many points, many pairs of boxes; eight side by side, on the widest registers there are.
+//! Batches: one box against many points, many pairs of boxes; eight at a time on the widest registers.
 //!
-//! The formulas are written once, over [`Real`](sinew_math::lanes::Real): for one item it is an `f32`, for eight it is
-//! whatever [`dispatch`](sinew_math::dispatch) finds. So an item's answer has the same bits alone and in a batch, and on
-//! every processor. NaN in an item gives NaN, or false, for that item alone.
+//! Formulas are written once, over [`Real`](sinew_math::lanes::Real): `f32` for one item, the type that
+//! [`dispatch`](sinew_math::dispatch) picks for eight. So an item's result has the same bits alone, in a batch, and on
+//! every processor. NaN in an item gives NaN or false for that item only.
 
 mod pairs;
 mod points;

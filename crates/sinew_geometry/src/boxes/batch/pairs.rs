@@ -7,7 +7,7 @@ use crate::boxes::fifteen::FifteenAxes;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Block, Blocks, LaneMask, Lanes, WIDTH};
 
-/// Pairs of boxes, stored so that eight are examined at a time: 80 bytes a pair.
+/// Pairs of boxes, stored for eight at a time: 80 bytes a pair.
 #[derive(Clone, Debug, Default)]
 pub struct Pairs(Blocks<{ 2 * NUMBERS }>);
 
@@ -26,7 +26,7 @@ impl Pairs {
         self.0.len()
     }
 
-    /// True if there are none.
+    /// True if there are no pairs.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -39,28 +39,30 @@ impl Pairs {
         self.0.push(pair);
     }
 
-    /// Removes all and keeps the memory.
+    /// Removes all pairs and keeps the memory.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// Finds the pairs that overlap, by all fifteen axes: [`Overlap::overlaps`](crate::boxes::Overlap::overlaps) of each, to the bit. Bit `k` of `overlapping[i]` is
-    /// pair `8 i + k`, bits beyond the last pair are 0. A pair with NaN does not overlap.
+    /// Finds the pairs that overlap, by all fifteen axes, with the result of
+    /// [`Overlap::overlaps`](crate::boxes::Overlap::overlaps) for each, to the bit. Bit `k` of `overlapping[i]` is pair
+    /// `8 i + k`; bits beyond the last pair are 0. A pair with NaN does not overlap.
     ///
     /// # Panics
-    /// If `overlapping` is not one byte for every eight pairs, the last eight begun.
+    /// If `overlapping` does not have one byte for every eight pairs, rounded up.
     pub fn overlaps(&self, overlapping: &mut [u8]) {
         dispatch::run(FindOverlaps { pairs: self, overlapping });
     }
 
-    /// Finds, for each pair, the axis among the fifteen along which the two boxes are furthest apart or overlap least:
-    /// [`Separation::between`] of each, to the bit. `found` takes its length from here, and allocates only to grow.
+    /// Finds, for each pair, the axis among the fifteen with the largest gap or the least overlap:
+    /// [`Separation::between`] of each, to the bit. `found` is resized to the number of pairs and allocates only to
+    /// grow.
     pub fn separations(&self, found: &mut Separations) {
         dispatch::run(FindSeparations { pairs: self, axes: Axes::Fifteen, found });
     }
 
-    /// Finds the same among the six axes of the faces alone, at a third of the cost: never more than the true gap, and at
-    /// least where the boxes overlap, so that what it separates is separate.
+    /// Finds the same among the six face axes, at a third of the cost. The result is never more than the true gap where
+    /// the boxes are apart, and at least the true value where they overlap.
     pub fn face_separations(&self, found: &mut Separations) {
         dispatch::run(FindSeparations { pairs: self, axes: Axes::Faces, found });
     }
@@ -69,9 +71,9 @@ impl Pairs {
 /// Axes that are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
-    /// The three sides of each box.
+    /// The three axes of each box.
     Faces,
-    /// The three sides of each box, and what is at right angles to a side of each.
+    /// The three axes of each box, and the cross products of one axis of each.
     Fifteen,
 }
 
@@ -86,7 +88,7 @@ impl Separations {
         self.0.len()
     }
 
-    /// True if there are none.
+    /// True if there are no pairs.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -94,7 +96,7 @@ impl Separations {
     /// Answer for pair `index`.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If the index is out of range.
     #[inline]
     pub fn get(&self, index: usize) -> Separation {
         let [distance, axis] = self.0.get(index);
@@ -107,7 +109,7 @@ impl Separations {
     }
 }
 
-/// The kernel of [`Pairs::overlaps`], for those who choose the registers.
+/// Kernel of [`Pairs::overlaps`], for callers that choose the registers.
 #[derive(Debug)]
 pub struct FindOverlaps<'a> {
     /// The boxes.
@@ -135,14 +137,14 @@ impl Kernel for FindOverlaps<'_> {
     }
 }
 
-/// The kernel of [`Pairs::separations`], for those who choose the registers.
+/// Kernel of [`Pairs::separations`], for callers that choose the registers.
 #[derive(Debug)]
 pub struct FindSeparations<'a> {
     /// The boxes.
     pub pairs: &'a Pairs,
     /// Axes that are tried on them.
     pub axes: Axes,
-    /// Place for the answers.
+    /// Output.
     pub found: &'a mut Separations,
 }
 

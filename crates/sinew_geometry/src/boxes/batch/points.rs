@@ -5,7 +5,7 @@ use sinew_math::Vec3;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Block, Blocks, LaneMask, Lanes, Real, Vector3, WIDTH};
 
-/// Points, stored so that eight are examined at a time.
+/// Points, stored for eight at a time.
 #[derive(Clone, Debug, Default)]
 pub struct Points(Blocks<3>);
 
@@ -20,7 +20,7 @@ impl Points {
         self.0.len()
     }
 
-    /// True if there are none.
+    /// True if there are no points.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -33,12 +33,12 @@ impl Points {
     /// Point `index`, metres.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If the index is out of range.
     pub fn get(&self, index: usize) -> Vec3 {
         Vec3::from_array(self.0.get(index))
     }
 
-    /// Removes all and keeps the memory.
+    /// Removes all points and keeps the memory.
     pub fn clear(&mut self) {
         self.0.clear();
     }
@@ -65,17 +65,17 @@ impl From<&[Vec3]> for Points {
 }
 
 impl Obb {
-    /// Finds the points in the box; those on its surface are. Bit `k` of `inside[i]` is point `8 i + k`, bits
-    /// beyond the last point are 0. A point with NaN is nowhere.
+    /// Finds the points in the box or on its surface. Bit `k` of `inside[i]` is point `8 i + k`; bits beyond the last
+    /// point are 0. A point with NaN is outside.
     ///
     /// # Panics
-    /// If `inside` is not one byte for every eight points, the last eight begun.
+    /// If `inside` does not have one byte for every eight points, rounded up.
     pub fn contains_points(&self, points: &Points, inside: &mut [u8]) {
         dispatch::run(ContainsPoints { obb: self, points, inside });
     }
 
-    /// Each point's distance from the box's surface, metres, negative inside; exact but for rounding, for distances up
-    /// to 1e19 m. NaN for a point with NaN.
+    /// Each point's distance from the box's surface, metres, negative inside; exact except for rounding, for distances
+    /// up to 1e19 m. NaN for a point with NaN.
     ///
     /// # Panics
     /// If `distances` is not as long as `points`.
@@ -103,7 +103,7 @@ impl<R: Real> Placed<R> {
         }
     }
 
-    /// Distances of a point from the box's planes of symmetry, along each of its axes.
+    /// Distances of a point from the box's mid-planes, along each of its axes.
     #[inline(always)]
     fn aside(&self, point: Vector3<R>) -> Vector3<R> {
         let offset = point - self.center;
@@ -117,19 +117,19 @@ impl<R: Real> Placed<R> {
         R::le(aside.x, self.half.x) & R::le(aside.y, self.half.y) & R::le(aside.z, self.half.z)
     }
 
-    /// Outside, the length of what reaches beyond the faces; inside, the way to the nearest face.
+    /// Outside: the length of the excess beyond the faces. Inside: the distance to the nearest face.
     #[inline(always)]
     fn signed_distance(&self, point: Vector3<R>) -> R {
         let zero = R::splat(0.0);
         let beyond = self.aside(point) - self.half;
-        // The second argument is chosen where one is NaN: this way round NaN stays, in each of the three.
+        // The second argument is returned if one is NaN, so in this order NaN propagates, in each of the three.
         let outside = Vector3::new(R::max(zero, beyond.x), R::max(zero, beyond.y), R::max(zero, beyond.z));
         let nearest = R::max(R::max(beyond.x, beyond.y), beyond.z);
         outside.length() + R::min(nearest, zero)
     }
 }
 
-/// The kernel of [`Obb::contains_points`], for those who choose the registers.
+/// Kernel of [`Obb::contains_points`], for callers that choose the registers.
 #[derive(Debug)]
 pub struct ContainsPoints<'a> {
     /// The box.
@@ -157,12 +157,12 @@ impl Kernel for ContainsPoints<'_> {
     }
 }
 
-/// The kernel of [`Obb::signed_distances`], for those who choose the registers.
+/// Kernel of [`Obb::signed_distances`], for callers that choose the registers.
 #[derive(Debug)]
 pub struct SignedDistances<'a> {
     /// The box.
     pub obb: &'a Obb,
-    /// Whose distances are sought.
+    /// Points whose distances are computed.
     pub points: &'a Points,
     /// As many, metres.
     pub distances: &'a mut [f32],

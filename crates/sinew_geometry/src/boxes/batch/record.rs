@@ -6,14 +6,14 @@ use sinew_math::lanes::{Lanes, Real, Vector3, WIDTH};
 /// Count of the numbers of a [`Record`].
 pub const NUMBERS: usize = 10;
 
-/// A box as numbers, or one in each lane; metres.
+/// A box as numbers, or one per lane; metres.
 #[derive(Clone, Copy)]
 pub struct Record<R> {
     /// Centre.
     pub center: Vector3<R>,
     /// Coefficients of i, j and k of the rotation's quaternion.
     pub vector: Vector3<R>,
-    /// Real part of it.
+    /// Scalar part of the rotation.
     pub w: R,
     /// Half extents.
     pub half: Vector3<R>,

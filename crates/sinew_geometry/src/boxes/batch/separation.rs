@@ -1,25 +1,25 @@
-//! Gap or depth of two boxes: the separating axis theorem (Gottschalk, Lin & Manocha, "OBBTree", SIGGRAPH
-//! 1996), with the amount along each axis.
+//! Gap or depth of two boxes: the separating axis theorem (Gottschalk, Lin & Manocha, "OBBTree", SIGGRAPH 1996), with
+//! the amount along each axis.
 
 use super::record::{Record, matrix};
 use crate::boxes::Obb;
 use sinew_math::Vec3;
 use sinew_math::lanes::Real;
 
-/// Squared sine below which two edges are taken as parallel. Without that axis the distance is off by up to the sine times
-/// the boxes' size, with it by roundings divided by the sine: at a thousandth neither is worse than a thousandth.
+/// Squared sine below which two edges count as parallel. Without that axis the distance is off by up to the sine times
+/// the boxes' size, with it by rounding divided by the sine: at a thousandth neither exceeds a thousandth.
 const PARALLEL: f32 = 1e-6;
 
-/// The axis along which two boxes are furthest apart, or overlap least, and how far.
+/// The axis with the largest gap or the least overlap of two boxes, and its amount.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Separation {
-    /// Gap along the axis, metres; negative if the boxes overlap: then it is the shortest way out, by moving B along
-    /// [`direction`](SeparatingAxis::direction). At 0 they touch. NaN if a number of the boxes is NaN;
-    /// nothing to rely on if one is infinite.
+    /// Gap along the axis, metres; 0 if they touch. Negative if the boxes overlap: then it is the shortest way out, by
+    /// moving B along [`direction`](SeparatingAxis::direction). NaN if a number of the boxes is NaN; unreliable if one
+    /// is infinite.
     ///
-    /// A gap is at most the boxes' distance: less where their closest points are a corner and a corner, or a corner and
-    /// an edge. Exact but for rounding, except where edges are within a milliradian of parallel: there it may be off by
-    /// that angle times the boxes' size.
+    /// A gap is at most the boxes' distance: less if their closest points are two corners, or a corner and an edge.
+    /// Exact except for rounding, unless edges are within a milliradian of parallel: then it may be off by that angle
+    /// times the boxes' size.
     pub distance: f32,
     /// The first of the best axes, in the order in which they are listed at [`SeparatingAxis`].
     pub axis: SeparatingAxis,
@@ -37,7 +37,7 @@ pub enum SeparatingAxis {
 }
 
 impl SeparatingAxis {
-    /// From its place in the order: three faces of A, three of B, nine pairs of edges, the side of B changing fastest.
+    /// From its index: three faces of A, three of B, nine pairs of edges, the axis of B changing fastest.
     #[inline]
     pub(super) fn from_index(index: u8) -> Self {
         match index {
@@ -47,7 +47,7 @@ impl SeparatingAxis {
         }
     }
 
-    /// The axis as a unit vector from A toward B, in the space in which the boxes stand.
+    /// The axis as a unit vector from A toward B, in the common space of the boxes.
     pub fn direction(self, a: &Obb, b: &Obb) -> Vec3 {
         let side = |of: &Obb, k: u8| {
             let m = of.rotation.to_mat3();
@@ -65,19 +65,19 @@ impl SeparatingAxis {
 impl Separation {
     /// Separation of two boxes, by all fifteen axes.
     ///
-    /// Swapping them gives the same distance but for rounding, and the same axis where no other is as good.
+    /// Swapped boxes give the same distance except for rounding, and the same axis unless another is as good.
     pub fn between(a: &Obb, b: &Obb) -> Self {
         let found = Relative::new(&Record::of(a), &Record::of(b)).fifteen_axes();
         Self { distance: found.distance, axis: SeparatingAxis::from_index(found.index as u8) }
     }
 }
 
-/// The axis found so far that separates most.
+/// The best separating axis so far.
 #[derive(Clone, Copy)]
 pub(super) struct Best<R> {
-    /// Along the axis; or what grows with it.
+    /// Gap along the axis, or a monotonic function of it.
     pub distance: R,
-    /// Its place in the order, a small whole number.
+    /// Index of the axis, a small whole number.
     pub index: R,
 }
 
@@ -87,11 +87,11 @@ impl<R: Real> Best<R> {
         Self { distance, index: R::splat(index as f32) }
     }
 
-    /// Takes the axis if it is better than all before; NaN is not. `index` is higher than theirs.
+    /// Takes the axis if it is better than all before (NaN is not). `index` must be higher than theirs.
     #[inline(always)]
     fn try_axis(&mut self, distance: R, index: usize) {
         let is_better = R::gt(distance, self.distance);
-        // Indices rise, so the highest one is the last one taken: cheaper than to select.
+        // Indices rise, so the maximum is the last one taken; that is cheaper than a selection.
         self.index = R::max(R::splat(index as f32).masked(is_better), self.index);
         self.distance = R::max(distance, self.distance);
     }
@@ -111,10 +111,10 @@ impl<R: Real> Relative<R> {
     #[inline(always)]
     pub fn new(a: &Record<R>, b: &Record<R>) -> Self {
         let (u, v) = (a.vector, b.vector);
-        // The turn from B to A: conjugate of A's times B's.
+        // The rotation from B to A: conjugate of A's times B's.
         let w = a.w * b.w + u.x * v.x + (u.y * v.y + u.z * v.z);
         let turn = v * a.w - u * b.w - u.cross(v);
-        // And the turn of the way to B's centre by A's conjugate.
+        // The offset of B's centre, rotated by A's conjugate.
         let way = b.center - a.center;
         let t = u.cross(way);
         let t = t + t;
@@ -170,12 +170,12 @@ impl<R: Real> Relative<R> {
         (best, of_a[0] + of_a[1] + of_a[2])
     }
 
-    /// The best of the nine pairs of edges, with its distance squared and the sign kept: the cross product of two axes
-    /// is as long as their sine, and its square needs no root.
+    /// The best of the nine pairs of edges, by signed squared distance: the length of the cross product of two axes is
+    /// their sine, and its square needs no root.
     #[inline(always)]
     fn best_edges(&self) -> Best<R> {
         let mut best = Best::of(R::splat(f32::NEG_INFINITY), 0);
-        // By hand, or they stay loops whose indices reach into memory.
+        // Unrolled by hand; loops with variable indices would go through memory.
         best.try_axis(self.edges::<0, 0>(), 6);
         best.try_axis(self.edges::<0, 1>(), 7);
         best.try_axis(self.edges::<0, 2>(), 8);
@@ -188,8 +188,8 @@ impl<R: Real> Relative<R> {
         best
     }
 
-    /// Along what is at right angles to edge `I` of A and edge `J` of B: the gap's square with its sign; NaN if the
-    /// edges are parallel.
+    /// Gap along the cross product of edge `I` of A and edge `J` of B: the signed square; NaN if the edges are
+    /// parallel.
     #[inline(always)]
     fn edges<const I: usize, const J: usize>(&self) -> R {
         let (c, t, a, b) = (&self.cosine, &self.offset, &self.half_a, &self.half_b);

@@ -1,5 +1,5 @@
-//! Box against a triangle: separating axes (one of the triangle, three of the box, nine of edges), then the faces or edges that
-//! meet; the closest points where they pass each other.
+//! Box against a triangle: separating axes (one of the triangle, three of the box, nine of edges), then the faces or
+//! edges in contact; the closest points if they pass each other.
 
 use super::{Teller, When};
 use crate::collide::ManifoldPoint;
@@ -8,12 +8,12 @@ use crate::collide::placed::{PlacedBox, Segment, sign};
 use crate::triangles::{Part, closest_on_triangle};
 use sinew_math::{Vec3, max, min};
 
-/// Edges whose sine is below this are taken as parallel.
+/// Edges with a smaller sine count as parallel.
 const PARALLEL_SINE: f32 = 0.005;
-/// Least cosine to the triangle's normal of a way out, so that none leads through the triangle: below this cosine to its normal.
+/// Least cosine of a way out to the triangle's normal, so that none leads through the triangle.
 const LEAST_COSINE: f32 = -0.02;
 
-/// Cosine of the angle between a normal and a face of the box from which on the face lies on what gives the normal.
+/// Cosine between a normal and a face of the box above which the face rests on the feature of that normal.
 const LIES_COSINE: f32 = 0.9;
 
 /// A direction from the triangle to the box and the gap along it.
@@ -32,17 +32,17 @@ enum AxisOf {
     Edges(usize, usize),
 }
 
-/// `gap` is that along the triangle's normal, at most the margin.
+/// `gap` is along the triangle's normal, at most the margin.
 pub(super) fn meet(placed: &PlacedBox, gap: f32, teller: &mut Teller<'_>) -> Option<Part> {
     let Axes { widest, best } = axes(placed, teller);
     if widest > teller.margin {
         return None;
     }
     let tolerance = teller.solid.tolerance();
-    // The triangle's own face holds best, and says what the surface is like: another axis must be clearly better.
+    // The triangle's own face is most stable and represents the surface, so another axis must be clearly better.
     let told = match best.filter(|best| best.separation > gap + tolerance + 0.05 * max(-gap, 0.0)) {
         None => face(gap, widest, teller),
-        // Apart along a direction that leads through the triangle: they pass each other beside its rim.
+        // Separated along a direction that leads through the triangle: they pass each other beside its rim.
         Some(axis) if axis.separation <= 0.0 && widest > 0.0 => None,
         Some(axis) => match axis.of {
             AxisOf::Face(k) => box_face(placed, k, &axis, teller),
@@ -62,8 +62,8 @@ pub(super) fn meet(placed: &PlacedBox, gap: f32, teller: &mut Teller<'_>) -> Opt
     None
 }
 
-/// Part of the box over the triangle. `None`, and nothing told, if that does not show how far they are apart: they pass each
-/// other beside the face.
+/// The part of the box over the triangle. `None`, and nothing reported, if that does not give their distance because
+/// they pass beside the face.
 fn face(gap: f32, widest: f32, teller: &mut Teller<'_>) -> Option<Part> {
     let over = teller.over_face(Vec3::ZERO);
     let nearest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
@@ -71,11 +71,11 @@ fn face(gap: f32, widest: f32, teller: &mut Teller<'_>) -> Option<Part> {
     (!beside && teller.face_points(&over, When::Now)).then_some(Part::Face)
 }
 
-/// Answers of the separating axes beside the triangle's own.
+/// Results of the separating axes other than the triangle's own.
 struct Axes {
     /// The largest gap along any of them.
     widest: f32,
-    /// The one with the largest gap of those that lead out of the surface.
+    /// The one with the largest gap among those that lead out of the surface.
     best: Option<Axis>,
 }
 
@@ -104,7 +104,7 @@ fn axes(placed: &PlacedBox, teller: &Teller<'_>) -> Axes {
             let sine = across.length();
             if sine > PARALLEL_SINE * length {
                 let direction = across / sine;
-                // Only what both edges bound is a way out over them.
+                // A way out over two edges must lie between the bounds of both.
                 consider(direction, placed.half_width(direction), AxisOf::Edges(i, j));
             }
         }
@@ -148,7 +148,7 @@ fn box_face(placed: &PlacedBox, k: usize, axis: &Axis, teller: &mut Teller<'_>) 
     Some(part)
 }
 
-/// Cuts a convex polygon down to where `beyond` is not positive; gives how many corners are left.
+/// Clips a convex polygon to where `beyond` is not positive; returns the number of remaining corners.
 fn cut(corners: &mut [Vec3; 8], count: usize, beyond: impl Fn(Vec3) -> f32) -> usize {
     let was = *corners;
     let mut left = 0;
@@ -179,7 +179,7 @@ fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Telle
     let of_box = Segment { ends: [placed.vertex(index), placed.vertex(index | 1 << j)] };
     let (s, t) = of_box.closest_to_segment(&edge);
     let inside = |x: f32| x > 0.0 && x < 1.0;
-    // The triangle may reach further beside this edge: then the axis is not that of the closest points.
+    // The triangle may reach further beside this edge; then the axis is not that of the closest points.
     let across = (of_box.at(s) - edge.at(t)).dot(axis.normal) - axis.separation;
     let bound = across.abs() <= teller.solid.tolerance();
     if axis.separation > 0.0 && !(inside(s) && inside(t) && bound) {
@@ -204,7 +204,7 @@ fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Telle
     Some(part)
 }
 
-/// Points of two that are no further apart than the margin.
+/// The points within the margin, of two.
 fn within(points: &[ManifoldPoint; 2], margin: f32) -> &[ManifoldPoint] {
     match points.each_ref().map(|point| point.separation <= margin) {
         [true, true] => points,
@@ -214,8 +214,8 @@ fn within(points: &[ManifoldPoint; 2], margin: f32) -> &[ManifoldPoint] {
     }
 }
 
-/// Both ends of what a face of the box has of an edge of the triangle, if the face lies on it and does not stand up from it: with
-/// the one point alone where the edges cross the box rocks from one side to the other for ever.
+/// Both ends of the overlap between a box face and an edge of the triangle, if the face lies on the edge: with only the
+/// point where edges cross, the box would rock from one side to the other for ever.
 fn under_face(
     placed: &PlacedBox,
     edge: &Segment,
@@ -229,16 +229,16 @@ fn under_face(
         return None;
     }
     let base = usize::from(side > 0.0) << k;
-    // Shares of the edge, and the box's feature above each.
+    // Parameters of the edge, and the box's feature above each.
     let mut ends = [(0.0, feature::face(k, side)), (1.0, feature::face(k, side))];
     for u in [(k + 1) % 3, (k + 2) % 3] {
         let along = 3 - k - u;
         let [from, to] = edge.ends.map(|end| end.dot(placed.axes[u]));
         for (low, limit) in [(true, -placed.half[u]), (false, placed.half[u])] {
-            // Of the side that the edge comes in by, or goes out by.
+            // Side through which the edge enters or leaves.
             let (comes, steps) = ((from < to) == low, to - from);
             if steps.abs() <= f32::MIN_POSITIVE {
-                // Along the side: all of it is beyond, or nothing.
+                // Parallel to the side: all of the edge is beyond it, or none.
                 if from.abs() > placed.half[u] {
                     return None;
                 }
@@ -262,7 +262,7 @@ fn under_face(
     }))
 }
 
-/// The closest points of a box and a triangle that are apart, by trying corners and edges.
+/// The closest points of a separated box and triangle, by trying corners and edges.
 fn closest(placed: &PlacedBox, teller: &mut Teller<'_>) -> Option<Part> {
     let corners = teller.triangle.corners;
     let mut best = (f32::INFINITY, Vec3::ZERO, Vec3::ZERO, Part::Face, WHOLE);
@@ -304,8 +304,8 @@ mod tests {
     use super::*;
     use sinew_math::Transform;
 
-    /// An edge along a side of the face under which it lies is under it as a whole, or not at all; one across it by what of it
-    /// is between the sides.
+    /// An edge parallel to a side of the face above it is under the face as a whole or not at all; a crossing edge is
+    /// clipped between the sides.
     #[test]
     fn an_edge_is_under_a_face_between_its_sides() {
         let placed = PlacedBox::new(Vec3::new(2.0, 0.5, 1.0), &Transform::IDENTITY);

@@ -1,23 +1,23 @@
-//! Contacts with the edges and corners of a surface that are real. One is if every triangle that has the edge or corner is
-//! nearest to the shape there: over whose face the shape lies, to that it touches none of its edges (the idea of voided
-//! features: Box2D's ghost vertices, Bullet's internal edges).
+//! Decides which contacts with edges and corners of a surface are real. A contact is real if every triangle with that
+//! edge or corner has its closest feature there; a triangle whose face is closest voids its edges (voided features:
+//! Box2D's ghost vertices, Bullet's internal edges).
 
 use super::patch::{MAX_PARTS, SAME_NORMAL};
 use super::{Candidate, When};
 use crate::triangles::Part;
 use sinew_math::Vec3;
 
-/// Cosine of the angle between a normal and its triangle's up to which an edge that cannot be felt may give it: a little more
-/// than the 5° by which the surface may turn there.
+/// Cosine of the angle between a normal and its triangle's normal up to which an inactive edge may give that normal:
+/// slightly more than the 5° by which the surface may bend there.
 const WITHIN_FACE: f32 = 0.995;
 
-/// Cosine of the angle between a normal and its triangle's from which on the shape lies on the triangle.
+/// Cosine of the angle between a normal and its triangle's normal from which the shape counts as lying on the triangle.
 const FACES: f32 = 0.9;
 
-/// Cosine of the angle between two normals up to which they keep a shape out from the same side.
+/// Cosine of the angle between two normals up to which they push to the same side.
 const SAME_SIDE: f32 = 0.5;
 
-/// Features of one surface that are not what a triangle which has them is touched at.
+/// Voided features of one surface: another triangle that has them is touched elsewhere.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Claims {
     edges: Vec<(u32, u32)>,
@@ -25,7 +25,7 @@ pub(super) struct Claims {
 }
 
 impl Claims {
-    /// Marks the candidates that do not hold. Overlaps up to the tolerance are none.
+    /// Marks the voided candidates. Overlaps up to the tolerance are ignored.
     pub fn settle(&mut self, candidates: &mut [Candidate], tolerance: f32) {
         self.edges.clear();
         self.vertices.clear();
@@ -37,8 +37,8 @@ impl Claims {
         for candidate in candidates.iter_mut() {
             candidate.holds = self.holds(candidate);
         }
-        // What lies above a corner may by rounding belong to no one, and what is deep in a steep valley is told of by edges alone
-        // that cannot be felt: then it touches what faces it best.
+        // Through rounding a point above a corner may belong to no triangle, and in a steep valley only inactive edges
+        // may be in contact: the best aligned candidate is kept then.
         let overlaps = |candidate: &Candidate| candidate.nearest < -tolerance;
         let is_deep = candidates.iter().any(overlaps);
         let counts = |candidate: &Candidate| !is_deep || overlaps(candidate);
@@ -54,8 +54,8 @@ impl Claims {
         hear_what_faces(candidates, &overlaps);
     }
 
-    /// Denies the parts at which a triangle is not touched. Corners are denied by edges that end there, and not the other way round: between
-    /// the two, rounding decides.
+    /// Voids the features at which a triangle is not touched. Edges void the corners at their ends, not the other way
+    /// round: between the two, rounding decides.
     fn deny_others(&mut self, candidate: &Candidate) {
         let triangle = &candidate.triangle;
         let (edges, vertices): (&[usize], &[usize]) = match candidate.part {
@@ -87,8 +87,8 @@ impl Claims {
     }
 }
 
-/// An overlap that faces its triangle is not left unfelt for want of anything that holds it from that side: of two walls of a
-/// valley along whose ridges a shape lies, each denies the other's corners at the bottom.
+/// An overlap that faces its triangle is kept if nothing else pushes from that side: along the ridges of a valley each
+/// wall voids the other's corners at the bottom.
 fn hear_what_faces(candidates: &mut [Candidate], overlaps: &impl Fn(&Candidate) -> bool) {
     let facing = |c: &Candidate| c.normal.dot(c.triangle.normal);
     for _ in 0..MAX_PARTS {
@@ -103,7 +103,7 @@ fn hear_what_faces(candidates: &mut [Candidate], overlaps: &impl Fn(&Candidate) 
     }
 }
 
-/// True if one of the edges can be felt, or else the normal is as good as the face's.
+/// True if one of the edges is active, or the normal is as good as the face's.
 fn is_felt(candidate: &Candidate, edges: [usize; 2]) -> bool {
     let triangle = &candidate.triangle;
     edges.into_iter().any(|edge| triangle.is_active(edge))

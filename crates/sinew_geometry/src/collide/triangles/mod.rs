@@ -1,9 +1,9 @@
-//! A surface of triangles against a convex shape: several manifolds, none of which knows of the edges between triangles.
+//! A surface of triangles against a convex shape: several manifolds, without contacts at internal edges.
 //!
-//! Each triangle near the shape is met by itself ([`round`], [`boxed`], [`other`]). What it gives is believed only where the triangle
-//! has a say: a face over which the shape is speaks first and claims its edges and corners; then edges at which the surface
-//! falls away, which claim their corners; then corners ([`claims`]). So nothing catches on an edge within a floor. What is
-//! left is merged by normal and reduced to four points each ([`patch`]).
+//! Each triangle near the shape is tested by itself ([`round`], [`boxed`], [`other`]). Its contacts are then filtered
+//! ([`claims`]): faces under the shape come first and void their edges and corners, then edges at which the surface
+//! falls away, which void their corners, then corners. So shapes do not catch on edges within a floor. The rest is
+//! merged by normal and reduced to four points each ([`patch`]).
 
 mod boxed;
 mod claims;
@@ -35,7 +35,7 @@ pub struct Motion {
     pub velocity: Vec3,
     /// For how long, seconds.
     pub dt: f32,
-    /// Points are looked for up to this distance, metres.
+    /// Search distance for points, metres.
     pub margin: f32,
 }
 
@@ -44,11 +44,11 @@ pub struct Motion {
 struct Candidate {
     /// From the surface to the shape.
     normal: Vec3,
-    /// Part of the triangle that is touched.
+    /// Feature of the triangle that is touched.
     part: Part,
-    /// Now, or once the shape has come over the triangle.
+    /// Time of the contact: now, or once the shape has moved over the triangle.
     when: When,
-    /// Way of the shape until then, metres.
+    /// Motion of the shape until then, metres.
     shift: Vec3,
     triangle: Triangle,
     /// Its points, in the list of all.
@@ -66,7 +66,7 @@ enum When {
     Soon,
 }
 
-/// Lists that are used for one pair after the other.
+/// Buffers reused from pair to pair.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
     candidates: Vec<Candidate>,
@@ -75,8 +75,8 @@ pub struct Scratch {
     merging: patch::Merging,
 }
 
-/// Fills `out` with the contacts of a placed surface and a placed convex shape: normals from the surface to the shape. `ground` is what lies
-/// beside the surface.
+/// Fills `out` with the contacts of a placed surface and a placed convex shape: normals from the surface to the shape.
+/// `ground` are the shapes beside the surface.
 pub fn collide_surface(
     surface: &Surface<'_>,
     world_from_surface: &Transform,
@@ -104,7 +104,7 @@ pub fn collide_surface(
     let around = shape.aabb(&frame).expand(motion.margin);
     let around = Aabb { min: around.min + center, max: around.max + center };
     surface.overlapping(&around, |triangle| {
-        // With the shape's centre for origin: what is near it is precise far from the surface's.
+        // The shape's centre is the origin, so that points near it are precise far from the surface's origin.
         meet(&triangle.moved(-center), &solid, &local, scratch);
     });
     if scratch.candidates.is_empty() {
@@ -129,9 +129,9 @@ fn middle(shape: &Shape) -> Vec3 {
     }
 }
 
-/// Asks a triangle near the shape.
+/// Tests a triangle near the shape.
 fn meet(triangle: &Triangle, solid: &Solid<'_>, motion: &Motion, scratch: &mut Scratch) {
-    // The centre is in front: from behind a triangle is not there.
+    // The centre is in front; triangles are one-sided.
     let height = triangle.height(Vec3::ZERO);
     let gap = height - solid.depth(triangle.normal);
     if height <= 0.0 || gap > motion.margin {
@@ -146,13 +146,14 @@ fn meet(triangle: &Triangle, solid: &Solid<'_>, motion: &Motion, scratch: &mut S
     };
     let closing = -motion.velocity.dot(triangle.normal);
     if part != Some(Part::Face) && closing > 0.0 && gap > 0.0 {
-        // Where the shape comes down on the triangle: at the foot of a ramp it must not be let in before it is over it.
+        // Where the shape will come down on the triangle: at the foot of a ramp it must not penetrate before it is over
+        // it.
         let time = min(gap / closing, motion.dt);
         teller.face(motion.velocity * time, When::Soon);
     }
 }
 
-/// A shape whose centre is behind the surface, by no more than it is thick, is pushed out where it is nearest.
+/// A shape whose centre is behind the surface by no more than its thickness is pushed out at the nearest point.
 fn sunk(surface: &Surface<'_>, center: Vec3, shape: &Shape, solid: &Solid<'_>, scratch: &mut Scratch) {
     let Some(closest) = surface.closest(center, shape.inner_radius()) else { return };
     let (distance, _) = closest.signed(center);
@@ -170,7 +171,7 @@ fn sunk(surface: &Surface<'_>, center: Vec3, shape: &Shape, solid: &Solid<'_>, s
     teller.tell(triangle.normal, Part::Face, When::Now, &[point]);
 }
 
-/// Writes down what a triangle has to say.
+/// Records a triangle's contacts.
 struct Teller<'a> {
     triangle: &'a Triangle,
     solid: &'a Solid<'a>,
@@ -185,7 +186,7 @@ impl Teller<'_> {
         outline.cut(self.triangle, self.solid.tolerance()).moved(-shift)
     }
 
-    /// Tells of what is over the triangle, once it has moved by `shift`; false if nothing is.
+    /// Records what is over the triangle, once it has moved by `shift`; false if nothing is.
     fn face(&mut self, shift: Vec3, when: When) -> bool {
         let over = self.over_face(shift);
         let has_points = self.face_points(&over, when);
@@ -214,7 +215,7 @@ impl Teller<'_> {
         count > 0
     }
 
-    /// Tells of points; of none, nothing.
+    /// Records points, if there are any.
     fn tell(&mut self, normal: Vec3, part: Part, when: When, points: &[ManifoldPoint]) {
         if points.is_empty() {
             return;
@@ -234,31 +235,31 @@ impl Teller<'_> {
         self.scratch.points.extend_from_slice(points);
     }
 
-    /// Tells of a shape that is deep in the rim of the triangle, so that nothing of the side which faces it is over the
-    /// triangle: the way out that leads to the outside. It speaks for this triangle alone.
+    /// Records a shape deep in the rim of the triangle whose facing side is not over the triangle: the way out toward
+    /// the outside. It counts for this triangle only.
     fn lift(&mut self, gap: f32, position: Vec3) {
         let feature = pair(name::FACE, feature::WHOLE);
         let point = ManifoldPoint { position, separation: gap, feature };
         self.tell(self.triangle.normal, Part::Face, When::Soon, &[point]);
     }
 
-    /// Tells of a single point between the shape and a part of the triangle.
+    /// Records a single point between the shape and a feature of the triangle.
     fn point(&mut self, normal: Vec3, part: Part, position: Vec3, separation: f32, of_shape: u16) {
         let feature = pair(name::part(self.triangle, part), of_shape);
         self.tell(normal, part, When::Now, &[ManifoldPoint { position, separation, feature }]);
     }
 }
 
-/// Names the points of a manifold that was found with a plane in the place of a surface as the surface would name them.
-/// `of_surface` says in which half of a feature the surface is.
+/// Renames the points of a manifold that was computed with a plane in place of a surface to the surface's names.
+/// `of_surface` selects the surface's half of a feature.
 pub fn name_as_face(manifold: &mut super::Manifold, of_surface: Half) {
     for point in &mut manifold.points[..manifold.count] {
         point.feature |= u32::from(name::FACE) << of_surface.shift();
     }
 }
 
-/// Names the points of a manifold as those of a side that other shapes hide: it says that two shapes touch, not where they push.
-/// `of_surface` says in which half of a feature that side is.
+/// Renames the points of a manifold to the name of hidden sides: they report that two shapes touch, but do not push.
+/// `of_surface` selects that side's half of a feature.
 pub fn name_as_hidden(manifold: &mut super::Manifold, of_surface: Half) {
     for point in &mut manifold.points[..manifold.count] {
         point.feature &= !(0xffff << of_surface.shift());

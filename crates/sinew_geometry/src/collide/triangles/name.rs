@@ -2,9 +2,9 @@
 
 use crate::triangles::{Part, Triangle};
 
-/// All faces have one name: a corner that slides from triangle to triangle is still the same contact.
+/// All faces share one name, so that the contact of a corner sliding from triangle to triangle persists.
 pub(super) const FACE: u16 = 0x300;
-/// Name of all features that other shapes hide. No number gives this to an edge or a corner.
+/// Name of all features that other shapes hide. No edge or corner can have this number.
 pub(super) const HIDDEN: u16 = 0x3ff;
 const EDGE: u16 = 0x200;
 const VERTEX: u16 = 0x100;

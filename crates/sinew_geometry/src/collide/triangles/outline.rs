@@ -5,7 +5,7 @@ use crate::convex::feature::MOST_CORNERS;
 use crate::triangles::Triangle;
 use sinew_math::Vec3;
 
-/// Corners of an outline: those of a shape's side, and one more for each side of the triangle.
+/// Most corners of an outline: those of a shape's side, and one more for each side of the triangle.
 pub(super) const MAX_CORNERS: usize = MOST_CORNERS + 3;
 
 /// A corner of an outline.
@@ -16,7 +16,7 @@ pub(super) struct Corner {
     pub of_shape: u16,
     /// Feature of the surface.
     pub of_surface: u16,
-    /// Plane on which the line from here to the next corner lies.
+    /// Plane that contains the line from this corner to the next.
     pub side: Side,
 }
 
@@ -52,7 +52,7 @@ impl Outline {
     }
 
     pub fn push(&mut self, corner: Corner) {
-        // Rounding could make one more of a sliver; it adds nothing.
+        // Rounding could produce one more corner of a sliver; it is dropped.
         if self.count < MAX_CORNERS {
             self.corners[self.count] = corner;
             self.count += 1;
@@ -66,8 +66,8 @@ impl Outline {
         self
     }
 
-    /// Part that lies over or under the triangle, widened by `tolerance` so that corners which lie on its edges keep their names
-    /// under rounding (Sutherland & Hodgman 1974).
+    /// The part over or under the triangle, widened by `tolerance` so that corners on its edges keep their names under
+    /// rounding (Sutherland & Hodgman 1974).
     pub fn cut(mut self, triangle: &Triangle, tolerance: f32) -> Self {
         for edge in 0..3 {
             let (from, to) = (triangle.corners[edge], triangle.corners[(edge + 1) % 3]);
@@ -86,7 +86,7 @@ impl Outline {
         self
     }
 
-    /// Cuts away what lies beyond an edge of the triangle.
+    /// Removes the part beyond an edge of the triangle.
     fn cut_by(&self, triangle: &Triangle, edge: usize, beyond: impl Fn(Vec3) -> f32) -> Self {
         let mut out = Self { face: self.face, ..Self::default() };
         let lines = if self.count == 2 { 1 } else { self.count };
@@ -107,7 +107,7 @@ impl Outline {
                     Side::Triangle(other) => (self.face, name::corner(triangle, other, edge)),
                     Side::None => (self.face, name::edge(triangle, edge)),
                 };
-                // Where the outline leaves, it goes on along this edge of the triangle.
+                // Where the outline leaves, it continues along this edge of the triangle.
                 let side = if d0 <= 0.0 { Side::Triangle(edge) } else { from.side };
                 out.push(Corner { at, of_shape, of_surface, side });
             }

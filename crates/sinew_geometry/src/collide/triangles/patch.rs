@@ -1,11 +1,11 @@
-//! From what triangles have to say to a few manifolds.
+//! Merges the contacts of triangles into a few manifolds.
 
 use super::Candidate;
 use crate::collide::reduce::push_best;
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use sinew_math::{Transform, Vec3};
 
-/// Most manifolds of a shape and a surface: what points in more directions than that joins those it is nearest to.
+/// Most manifolds of a shape and a surface; further normals join the nearest one.
 pub const MAX_PARTS: usize = 8;
 /// Cosine of the angle, 5°, up to which contacts have one normal.
 pub(super) const SAME_NORMAL: f32 = 0.996;
@@ -30,14 +30,14 @@ impl Patch {
         &self.manifolds[..self.count]
     }
 
-    /// Turns all round: the shape comes first.
+    /// Flips all manifolds: the shape comes first.
     pub fn flip(&mut self) {
         for manifold in &mut self.manifolds[..self.count] {
             manifold.flip();
         }
     }
 
-    /// From the surface's axes round the shape's centre to the world; what is not finite is left out.
+    /// From the surface's axes around the shape's centre to the world; drops what is not finite.
     pub fn finish(&mut self, world_from_surface: &Transform, center: Vec3) {
         let mut kept = 0;
         for k in 0..self.count {
@@ -56,7 +56,7 @@ impl Patch {
     }
 }
 
-/// Lists that are used for one pair after the other.
+/// Buffers reused from pair to pair.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Merging {
     /// Candidates that hold, the deepest first.
@@ -65,7 +65,7 @@ pub(super) struct Merging {
     points: Vec<ManifoldPoint>,
 }
 
-/// Brings together what has one normal, the deepest first, and leaves four points of each.
+/// Merges contacts with one normal, the deepest first, and keeps four points of each.
 pub(super) fn merge(
     candidates: &[Candidate],
     points: &[ManifoldPoint],
@@ -76,7 +76,7 @@ pub(super) fn merge(
     let Merging { order, points: gathered } = merging;
     order.clear();
     order.extend((0..candidates.len() as u32).filter(|&i| candidates[i as usize].holds));
-    // Near-ties go to the first, so that rounding does not change which normal stands for several.
+    // Near ties go to the first, so that rounding does not change which normal represents several.
     let depth = |i: u32| (candidates[i as usize].nearest / (4.0 * tolerance)).floor();
     order.sort_unstable_by(|&i, &j| depth(i).total_cmp(&depth(j)).then(i.cmp(&j)));
     while let Some(&first) = order.first()
@@ -103,13 +103,13 @@ pub(super) fn merge(
     }
 }
 
-/// Adds a point unless one is there already: triangles that meet have their common corners twice. Of many the few that are
-/// kept lie far apart anyway.
+/// Adds a point unless it is there already: adjacent triangles share corners. If there are many, those that are kept
+/// lie far apart.
 fn push_once(points: &mut Vec<ManifoldPoint>, point: &ManifoldPoint, tolerance: f32) {
     const FEW: usize = 4 * MAX_POINTS;
     let near = |p: &&mut ManifoldPoint| (p.position - point.position).length() <= 2.0 * tolerance;
     match points.iter_mut().rev().take(FEW).find(near) {
-        // The name that stays the same on other triangles is the better one.
+        // Prefers the name that is the same on other triangles.
         Some(known) => {
             if super::name::is_face(point.feature as u16) {
                 known.feature = point.feature;

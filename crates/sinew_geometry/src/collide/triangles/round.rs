@@ -31,7 +31,7 @@ pub(super) fn capsule(pill: &PlacedCapsule, teller: &mut Teller<'_>) -> Option<P
     let over = teller.over_face(Vec3::ZERO);
     let lowest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
     let nearest = nearest_rim(pill, teller);
-    // A core that comes round the rim is behind the triangle and not in it.
+    // A core that passes the rim is behind the triangle, not inside it.
     let in_front = lowest >= 0.0 || nearest.distance <= teller.solid.tolerance() || pierces(pill, teller);
     if in_front && lowest <= nearest.distance + teller.solid.tolerance() {
         return teller.face_points(&over, When::Now).then_some(Part::Face);
@@ -48,7 +48,7 @@ pub(super) fn capsule(pill: &PlacedCapsule, teller: &mut Teller<'_>) -> Option<P
     Some(nearest.part)
 }
 
-/// True if the core goes through the triangle.
+/// True if the core intersects the triangle.
 fn pierces(pill: &PlacedCapsule, teller: &Teller<'_>) -> bool {
     let [from, to] = pill.core.ends.map(|end| teller.triangle.height(end));
     if from * to > 0.0 {

@@ -1,4 +1,4 @@
-//! Contacts with edges at which a surface ends, where another shape goes on: they are put on what the two show there.
+//! Contacts with edges at which a surface ends and another shape continues: they get a normal that both show there.
 
 use super::solid::Solid;
 use super::{Candidate, name};
@@ -7,14 +7,14 @@ use crate::collide::feature::pair;
 use crate::triangles::{Part, closest_on_triangle};
 use sinew_math::{Transform, Vec3, min};
 
-/// Normal that the ground shows at a point of the surface, in place of the one that was found there, and the height of the point over the
-/// plane with that normal: world, unit, metres. `None` where other shapes hide the surface.
+/// Visible normal of the ground at a point of the surface, in place of the found one, and the height of the point over
+/// the plane with that normal: world, unit, metres. `None` if other shapes hide the surface.
 pub type Ground<'a> = dyn Fn(Vec3, Vec3) -> Option<(Vec3, f32)> + 'a;
 
-/// Cosine from which on a normal counts as the one that was found.
+/// Cosine from which a normal counts as the found one.
 const AS_FOUND: f32 = 0.999_999_9;
 
-/// Turns the candidates that hold to what the ground shows where they are. `margin` as in [`Motion`](super::Motion).
+/// Changes the valid candidates to the visible normals of the ground. `margin` as in [`Motion`](super::Motion).
 pub(super) fn mend(
     ground: &Ground<'_>,
     world_from_center: &Transform,
@@ -41,7 +41,7 @@ pub(super) fn mend(
     }
 }
 
-/// Puts a candidate on a plane: the points of a box, which are points of its edges; of other shapes, which may roll, what lies lowest.
+/// Moves a candidate onto a plane: a box's points on its edges, or the lowest point of a shape that may roll.
 fn put_on(
     (normal, origin): (Vec3, Vec3),
     (solid, margin): (&Solid<'_>, f32),

@@ -1,4 +1,4 @@
-//! Solids that meet a surface: a shape around the origin, in the directions of the surface's frame.
+//! Solids against a surface: a shape around the origin, in the axes of the surface's frame.
 
 use super::name;
 use super::outline::{Corner, Outline, Side};
@@ -8,7 +8,7 @@ use crate::convex::support::{Core, Posed, Support, narrow, wide};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, min};
 
-/// PlacedSphere, capsule and box have ways of their own; all others are met by GJK and EPA.
+/// Spheres, capsules and boxes have special cases; all others use GJK and EPA.
 pub(super) enum Solid<'a> {
     /// PlacedSphere of this radius.
     PlacedSphere(f32),
@@ -101,7 +101,7 @@ impl<'a> Solid<'a> {
     }
 }
 
-/// An edge or corner that stands for a round side lies where the side reaches furthest.
+/// An edge or corner that represents a round side lies where the side reaches furthest.
 fn lowest(posed: &Posed<'_, Core<'_>>, normal: Vec3, outline: Outline) -> Outline {
     let support = narrow(posed.support(-wide(normal)));
     let named = outline.corners().iter().fold(f32::INFINITY, |y, c| min(c.at.dot(normal), y));

@@ -1,9 +1,9 @@
 //! Steps with which a powered character that was pushed catches itself.
 //!
-//! A push gives its whole body a velocity. As long as the point at which that would come to rest lies over its feet its muscles and pins take
-//! it up. Beyond, it begins to stumble: its mover goes on as a pendulum goes that stands on the feet that are down, and a foot swings to where
-//! it stops that, again and again. Once it is as fast as it was to be, each foot takes a step home, to where the clips have it. Its bodies are drawn to
-//! all that by the muscles and pins that they have; in their pose only the legs are moved, by inverse kinematics.
+//! A push gives the whole body a velocity. While the point at which it would come to rest is over its feet, muscles and
+//! pins take it up. Beyond, the character stumbles: its mover moves as a pendulum that stands on the planted feet, and
+//! a foot swings to where it stops that, again and again. Once its speed is right, each foot steps back to the clips.
+//! Muscles and pins drive the bodies; in their pose only the legs are moved, by inverse kinematics.
 
 mod step;
 mod support;
@@ -25,7 +25,7 @@ use sinew_physics::World;
 use step::{Pendulum, Print, STEP_TIMES};
 use support::{Support, level};
 
-/// Steps of the world after which the mover is as fast as it was told to be.
+/// Steps after which the mover has its requested speed.
 const FOLLOWS: u32 = 4;
 
 /// Hold on a foot.
@@ -35,11 +35,11 @@ enum Footing {
     Free,
     /// The ground: its ankle in the world.
     Planted(Transform),
-    /// On its way for `time` seconds of `lasts`. `home`: to where its clips have it.
+    /// Swinging for `time` seconds of `lasts`. `home`: back to the clips.
     Swinging { from: Transform, to: Transform, time: f32, lasts: f32, home: bool },
 }
 
-/// A stumble as it goes on.
+/// The current stumble.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stumble {
     /// Velocity over the ground, level, m/s.
@@ -50,11 +50,11 @@ pub(super) struct Stumble {
     steps: u32,
     /// Steps of the world.
     age: u32,
-    /// It goes as it is to; its feet go home.
+    /// Its speed is right; its feet return.
     caught: bool,
 }
 
-/// Stand in which its clips have it.
+/// Feet in its clips' pose.
 struct Stand {
     center: Vec3,
     ankles: [Transform; 2],
@@ -70,7 +70,7 @@ pub(super) struct Balance {
     pub stumble: Option<Stumble>,
 }
 
-/// Parts that balance looks at.
+/// Inputs for balance.
 #[derive(Clone, Copy)]
 pub(super) struct Balancing<'a> {
     pub def: &'a CharacterDef,
@@ -81,7 +81,7 @@ pub(super) struct Balancing<'a> {
 }
 
 impl Balance {
-    /// Takes up an impulse that its bodies got, N·s; false if it has no ground.
+    /// Adds an impulse that its bodies received, N·s; false if it has no ground.
     pub fn shove(
         &mut self,
         on: Balancing<'_>,
@@ -102,7 +102,7 @@ impl Balance {
         true
     }
 
-    /// Goes on for a step of the world; true if it can no longer catch itself. `steps`: it may step.
+    /// Advances by a step; true if it can no longer catch itself. `steps`: it may step.
     pub fn go_on(
         &mut self,
         on: Balancing<'_>,
@@ -169,7 +169,7 @@ impl Balance {
 }
 
 impl Balancing<'_> {
-    /// Lets it fall over as far as its feet do not hold it, and swings them to where they will. True if that is in vain.
+    /// Lets it fall as far as its feet do not hold it, and swings them to where they will. True if that fails.
     fn catch(&self, world: &World, stand: &Stand, stumble: &mut Stumble) -> bool {
         let dt = world.def().dt();
         let mut body = self.pendulum(stand, stumble.velocity);
@@ -185,7 +185,7 @@ impl Balancing<'_> {
         }
         let outside = support.outside(body.capture());
         let off = (body.velocity - body.wish).length();
-        // Who walks is fastest as a foot comes down.
+        // A walker is fastest as a foot comes down.
         let calm = CAUGHT_SPEED + CAUGHT_SHARE * body.wish.length();
         if support.outside(body.center + body.velocity / body.omega - body.goes_on()) <= CAPTURE_MARGIN
             && off < calm
@@ -200,7 +200,7 @@ impl Balancing<'_> {
         false
     }
 
-    /// Has a foot that is on its way come down where it does most, and puts it down at once where the other one must step.
+    /// Aims a swinging foot at its best place, and puts it down at once if the other one must step.
     fn aim(&self, world: &World, body: &Pendulum, stumble: &mut Stumble, foot: usize) {
         let Footing::Swinging { from, to, time, lasts, home: false } = stumble.feet[foot] else { return };
         let Some(stance) = stumble.feet[1 - foot].planted().filter(|_| time < AIMS_UNTIL * lasts) else {
@@ -209,7 +209,7 @@ impl Balancing<'_> {
         let mut print = self.print(body, foot, to, stance, lasts - time);
         let mut lasts = lasts;
         if from == to {
-            // In the air as it was pushed.
+            // In the air it keeps the pushed velocity.
             print = self.print(body, foot, from, stance, lasts - time);
             if print.miss > HOPELESS * body.height {
                 lasts = DROP_TIME;
@@ -247,7 +247,7 @@ impl Balancing<'_> {
         body.print(foot, middle(from, foot), middle(stance, other), on, seconds)
     }
 
-    /// The ankle of a foot whose sole is to come down around a place.
+    /// The ankle of a foot whose sole comes down around a place.
     fn tread(&self, world: &World, foot: usize, at: Vec3) -> Transform {
         let def = self.def;
         let legs = def.legs().expect("it stands on feet");
@@ -269,7 +269,7 @@ impl Balancing<'_> {
         [ankle.translation, ankle.point(legs.balls[foot])]
     }
 
-    /// Ground under the feet that are down, left and right, by their ankles.
+    /// Ground under the planted feet, left and right, by their ankles.
     fn support(&self, ankles: [Option<Transform>; 2]) -> Support {
         let mut support = Support::new(SOLE_RIM * self.def.ragdoll.height);
         for (foot, ankle) in ankles.into_iter().enumerate() {
@@ -291,14 +291,14 @@ impl Balancing<'_> {
         }
     }
 
-    /// True if a capture point so far from the centre of mass leaves the feet as its clips have them.
+    /// True if a capture point this far from the centre of mass leaves the feet of the clips' pose.
     fn is_off(&self, stand: &Stand, away: Vec3, margin: f32) -> bool {
         let support = self.support(stand.ankles.map(Some));
         let center = support.nearest(stand.center);
         support.outside(center + away) > margin
     }
 
-    /// Stand in which its clips have it, if they do.
+    /// Planted feet in its clips' pose, if any.
     fn clips_stand(&self, world: &World, scratch: &mut Scratch) -> Option<Stand> {
         let ground = world.mover_ground(self.gait.mover?)?;
         let def = self.def;
@@ -327,7 +327,7 @@ impl Balancing<'_> {
         })
     }
 
-    /// Capture point of its bodies beside the one of its clips: what pushes it without telling.
+    /// Offset of its bodies' capture point from the clips': detects unreported pushes.
     fn sway(&self, world: &World, stand: &Stand) -> Vec3 {
         let Some(ragdoll) = &self.physique.ragdoll else { return Vec3::ZERO };
         let (mut place, mut momentum) = (Vec3::ZERO, Vec3::ZERO);
@@ -351,8 +351,8 @@ impl Footing {
 }
 
 impl Stumble {
-    /// Brings the legs of a pose of the clips to where a stumble has them in so many seconds; `way`: from where it stands now to where it
-    /// will then. `place`: where that is.
+    /// Moves the legs of a pose of the clips to a stumble's in so many seconds; `way`: displacement of the character
+    /// until then. `place`: its place then.
     pub fn hold_feet(
         &self,
         def: &CharacterDef,
@@ -395,7 +395,7 @@ impl Stumble {
         );
     }
 
-    /// Loses its balance again: what is not on its way is down where it is.
+    /// Loses its balance again: feet that do not swing are planted where they are.
     fn regain(&mut self, ankles: &[Transform; 2]) {
         self.caught = false;
         for (foot, &ankle) in self.feet.iter_mut().zip(ankles) {
@@ -409,7 +409,7 @@ impl Stumble {
         }
     }
 
-    /// Feet that are down go with the ground, others on their way.
+    /// Planted feet move with the ground, others swing.
     fn carry(&mut self, dt: f32) {
         let by = self.floor * dt;
         for foot in &mut self.feet {
@@ -430,7 +430,7 @@ impl Stumble {
         }
     }
 
-    /// Takes on the velocity that it is to have, and brings its feet to where its clips have them, one by one.
+    /// Approaches the requested velocity, and returns its feet to the clips one by one.
     fn go_home(&mut self, stand: &Stand, dt: f32) {
         self.velocity += (stand.wish - self.velocity) * -trig::exp_m1(-RESUMES * dt);
         let swings = self.feet.iter().any(|foot| matches!(foot, Footing::Swinging { .. }));

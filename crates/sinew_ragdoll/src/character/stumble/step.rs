@@ -1,22 +1,23 @@
-//! Place to which a step has to go: a body as a pendulum that stands on its head.
+//! Place of a step: the body as an inverted pendulum.
 //!
-//! With `ω² = g / h` its centre of mass `x` flees the place `p` on which it presses, `x″ = ω² (x − p)`, and comes to rest over `p` if that
-//! is the **capture point** `ξ = x + x′ / ω`, which itself flees: `ξ(t) = p + (ξ − p) exp(ω t)`. A foot that comes down at `ξ` stops it; one that
-//! comes down `u T / (exp(ω T) − 1)` before it lets it go on at the speed `u` with steps of the time `T`.
+//! With `ω² = g / h` its centre of mass `x` moves away from the point of support `p`, `x″ = ω² (x − p)`, and comes to
+//! rest over `p` if that is the **capture point** `ξ = x + x′ / ω`, which itself moves away:
+//! `ξ(t) = p + (ξ − p) exp(ω t)`. A foot that comes down at `ξ` stops it; one that comes down `u T / (exp(ω T) − 1)`
+//! before it keeps the speed `u` with steps of the time `T`.
 
 use super::support::level;
 use crate::character::tuning::{BRAKES, FEET_APART, FOOT_SPEED, STEP_OUT, STEP_REACH, STRIDE_TIME};
 use sinew_math::{Rotation, Vec3, clamp, max, min, trig};
 
-/// Seconds that a step takes: as long as it may, and shorter ones where they catch more.
+/// Allowed step times, seconds, the longest first.
 pub(super) const STEP_TIMES: [f32; 4] = [0.3, 0.26, 0.22, 0.18];
 
-/// A body that falls over, level but for the heights that ω is made of.
+/// A falling body, level except for the heights in ω.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pendulum {
     /// Centre of mass, world, metres.
     pub center: Vec3,
-    /// Velocity of the centre of mass over the ground, and the one it is to go on with, m/s.
+    /// Velocity of the centre of mass over the ground, and the requested one, m/s.
     pub velocity: Vec3,
     pub wish: Vec3,
     /// 1/s.
@@ -33,17 +34,17 @@ pub(super) struct Print {
     pub at: Vec3,
     /// By how much that falls short of where it should be, metres.
     pub miss: f32,
-    /// By how much the body is then farther from the other foot than a leg reaches, metres.
+    /// Distance by which the body would then be beyond the other foot's reach, metres.
     pub strain: f32,
 }
 
 impl Pendulum {
-    /// Place where it would come to the velocity that it is to have.
+    /// Place at which it would reach the requested velocity.
     pub fn capture(&self) -> Vec3 {
         level(self.center) + (self.velocity - self.wish) / self.omega
     }
 
-    /// Place on which it presses best to come to that velocity.
+    /// Best point of support to reach that velocity.
     pub fn brake(&self) -> Vec3 {
         level(self.center) + (self.velocity - self.wish) * (BRAKES / self.omega)
     }
@@ -53,13 +54,13 @@ impl Pendulum {
         (level(self.center) - on) * (self.omega * self.omega * seconds)
     }
 
-    /// Way by which a foot comes down before the capture point so that it goes on at the speed that it is to have.
+    /// Distance before the capture point at which a foot comes down to keep the requested speed.
     pub fn goes_on(&self) -> Vec3 {
         self.wish * (STRIDE_TIME / (trig::exp(self.omega * STRIDE_TIME) - 1.0))
     }
 
-    /// Place for a foot (0 left, 1 right), the middle of whose sole is at `from`, that comes down in `seconds`, while it stands on `on`, the
-    /// other foot at `stance`.
+    /// Place for a foot (0 left, 1 right) with the middle of its sole at `from` that comes down in `seconds`, while the
+    /// body stands on `on`, the other foot at `stance`.
     pub fn print(&self, foot: usize, from: Vec3, stance: Vec3, on: Vec3, seconds: f32) -> Print {
         let (grown, shrunk) = (trig::exp(self.omega * seconds), trig::exp(-self.omega * seconds));
         let (cosh, sinh) = (0.5 * (grown + shrunk), 0.5 * (grown - shrunk));
@@ -95,7 +96,8 @@ mod tests {
         Pendulum { center: Vec3::Y, velocity, wish, omega: 3.1, heading, height: 1.75 }
     }
 
-    /// Velocities when a foot comes down on its print, and after it has stood there as long as it swung; and by how much the print falls short.
+    /// Velocities when a foot comes down on its print, and after standing for as long as it swung; and the remaining
+    /// error of the print.
     fn after_a_step(mut body: Pendulum, foot: usize, stance: Vec3) -> ([Vec3; 2], f32) {
         let steps = 2800;
         let dt = STRIDE_TIME / steps as f32;
@@ -111,7 +113,8 @@ mod tests {
         (velocities, print.miss)
     }
 
-    /// On the capture point a pendulum's velocity dies away as `exp(-ω t)`; by what the print falls short of it, `ω sinh(ω t)` times as much is left.
+    /// On the capture point a pendulum's velocity decays as `exp(-ω t)`; the error of the print adds `ω sinh(ω t)`
+    /// times itself.
     #[test]
     fn a_step_onto_the_print_slows_it_as_a_pendulum_does() {
         let body = pushed(Vec3::new(0.1, 0.0, 0.9), Vec3::ZERO);

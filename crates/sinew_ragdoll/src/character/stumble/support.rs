@@ -24,7 +24,7 @@ impl Support {
         }
     }
 
-    /// The place nearest to a point of all that bear; the point itself where nothing does.
+    /// The nearest supporting point; the point itself without support.
     pub fn nearest(&self, point: Vec3) -> Vec3 {
         let (point, points) = (level(point), &self.points[..self.count]);
         let mut nearest: Option<Vec3> = None;
@@ -91,7 +91,7 @@ mod tests {
             assert_eq!(support.outside(inside), 0.0, "{inside}");
         }
         assert!((support.outside(at(-0.1, 0.6)) - 0.1).abs() < 1e-6);
-        // Across the corner that the hull leaves out.
+        // Across the corner of the hull.
         assert!(support.outside(at(0.15, 0.45)) > 0.03);
         let nearest = support.nearest(at(2.0, 0.05));
         assert!((nearest - Vec3::new(0.15, 0.0, 0.05)).length() < 1e-6, "{nearest}");
