@@ -152,7 +152,7 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
 
 /// What the native library computes and takes for the same scenes.
 fn native(arguments: &[&str]) -> Result<Value> {
-    let mut build = cargo(&["build", "--profile", "web", "--example", "native"]);
+    let mut build = cargo(&["build", "--release", "--example", "native"]);
     let program = command::build(&mut build, "native")?;
     let mut run = Command::new(program);
     command::output_json(run.arg(rigs()).args(RIGS).args(arguments))

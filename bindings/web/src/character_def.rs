@@ -164,6 +164,13 @@ impl CharacterDef {
         self.def.rig.springs.chains.len()
     }
 
+    /// Joints that swing, by index.
+    #[wasm_bindgen(getter, js_name = springJoints)]
+    pub fn spring_joints(&self) -> Vec<u32> {
+        let bones = self.def.rig.springs.chains.iter().flat_map(|chain| &chain.bones);
+        bones.map(|bone| bone.joint as u32).collect()
+    }
+
     /// Number of garments.
     #[wasm_bindgen(getter)]
     pub fn garments(&self) -> usize {

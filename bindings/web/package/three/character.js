@@ -1,5 +1,5 @@
 // Characters that move the bones of three's models.
-import { EventDispatcher, Matrix4 } from 'three';
+import { EventDispatcher, Matrix4, Vector3 } from 'three';
 import { clone } from 'three/addons/utils/SkeletonUtils.js';
 import { CharacterDef } from '../index.js';
 
@@ -88,6 +88,7 @@ function kindOf(gltf, bytes, options) {
  */
 export class SinewCharacter extends EventDispatcher {
   #kind;
+  #position = new Vector3();
   #wasCulled = /** @type {Map<Object3D, boolean>} */ (new Map());
 
   /**
@@ -153,9 +154,20 @@ export class SinewCharacter extends EventDispatcher {
     this.object.matrixWorldNeedsUpdate = true;
   }
 
+  /** Where its first body is, the pelvis of a human, in the world: for cameras that follow it. The vector is the character's own. */
+  get position() {
+    const joint = this.joints[this.#kind.def.boneJoints[0]];
+    return (joint ?? this.object).getWorldPosition(this.#position);
+  }
+
   /** What decides its pose. @returns {CharacterState} */
   get state() {
     return this.core.state;
+  }
+
+  /** Its kind, with the names and sizes of all that it has. */
+  get def() {
+    return this.#kind.def;
   }
 
   /** Assumptions about the file, and the clips that were chosen, one sentence each. */
