@@ -47,7 +47,11 @@ fn boxes() -> u64 {
     let cube = Shape::cuboid(Vec3::new(0.25, 0.25, 0.25));
     for i in 0..20 {
         let (column, row) = ((i % 5) as f32, (i / 5) as f32);
-        world.add_body(&BodyDef::dynamic(cube.clone()).at(Vec3::new(0.5 * column - 1.0, 0.25 + 0.5 * row, 0.0)));
+        world.add_body(&BodyDef::dynamic(cube.clone()).at(Vec3::new(
+            0.5 * column - 1.0,
+            0.25 + 0.5 * row,
+            0.0,
+        )));
     }
     let ball = BodyDef::dynamic(Shape::sphere(0.25)).at(Vec3::new(0.0, 1.0, 4.0));
     world.add_body(&BodyDef { linear_velocity: Vec3::new(0.0, 2.0, -8.0), ..ball });
@@ -77,7 +81,9 @@ fn times(def: &Arc<CharacterDef>) -> [f64; 2] {
     let mut crowd = Vec::new();
     for _ in 0..5 {
         let mut world = ground();
-        let place = |i: usize| Transform::from_translation(Vec3::new((i % 8) as f32 * 1.5, 0.0, (i / 8) as f32 * 1.5));
+        let place = |i: usize| {
+            Transform::from_translation(Vec3::new((i % 8) as f32 * 1.5, 0.0, (i / 8) as f32 * 1.5))
+        };
         let mut all: Vec<Character> = (0..40).map(|i| Character::spawn(&mut world, def, place(i))).collect();
         step(&mut world, &mut all, 10);
         for one in all.iter_mut().step_by(4) {

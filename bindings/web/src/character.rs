@@ -6,7 +6,8 @@ use crate::definitions::body;
 use crate::drive::drive_mode;
 use crate::inner::{Inner, Member};
 use crate::types::{
-    DetailName, DriveOptions, GrabOptions, HoldOptions, PlayOptions, PoseOut, PresetName, QuatLike, StateOut, Vec3Like,
+    DetailName, DriveOptions, GrabOptions, HoldOptions, PlayOptions, PoseOut, PresetName, QuatLike, StateOut,
+    Vec3Like,
 };
 use crate::values::{Options, pose, rotation, vec3};
 use crate::world::World;

@@ -19,8 +19,18 @@ pub struct CharacterDef {
 }
 
 const KNOWN: [&str; 12] = [
-    "name", "settings", "files", "height", "mass", "springs", "garments", "looped", "afterSettling", "falling",
-    "toughness", "tellsContacts",
+    "name",
+    "settings",
+    "files",
+    "height",
+    "mass",
+    "springs",
+    "garments",
+    "looped",
+    "afterSettling",
+    "falling",
+    "toughness",
+    "tellsContacts",
 ];
 
 /// Name of a body for JavaScript: its role, else its bone's.

@@ -5,8 +5,9 @@ use crate::values::{Options, object};
 use js_sys::Array;
 use sinew::math::{Range, Rotation, SwingTwistLimit, Transform, Vec3};
 use sinew::physics::{
-    BodyDef, BodyId, BodyKind, Filter, HeightField, HeightFieldDef, JointCollision, JointDef, JointId, JointKind,
-    MassProperties, Material, Motor, Quality, Sensing, Shape, ShapeDef, Sleeping, Softness, Spring, Strength, World, WorldDef,
+    BodyDef, BodyId, BodyKind, Filter, HeightField, HeightFieldDef, JointCollision, JointDef, JointId,
+    JointKind, MassProperties, Material, Motor, Quality, Sensing, Shape, ShapeDef, Sleeping, Softness,
+    Spring, Strength, World, WorldDef,
 };
 use std::sync::Arc;
 use wasm_bindgen::{JsCast, JsValue};
@@ -51,7 +52,16 @@ pub fn world_def(value: &JsValue) -> Outcome<WorldDef> {
 }
 
 const SHAPES: [&str; 10] = [
-    "box", "sphere", "capsule", "taperedCapsule", "cylinder", "cone", "halfSpace", "hull", "mesh", "heightField",
+    "box",
+    "sphere",
+    "capsule",
+    "taperedCapsule",
+    "cylinder",
+    "cone",
+    "halfSpace",
+    "hull",
+    "mesh",
+    "heightField",
 ];
 
 /// A shape by its `type` and sizes.
@@ -88,8 +98,21 @@ fn shape(options: &Options<'_>) -> Outcome<Shape> {
 }
 
 const SIZES: [&str; 15] = [
-    "type", "halfExtents", "radius", "halfHeight", "radiusBottom", "radiusTop", "points", "vertices", "indices", "columns",
-    "rows", "spacing", "heights", "position", "rotation",
+    "type",
+    "halfExtents",
+    "radius",
+    "halfHeight",
+    "radiusBottom",
+    "radiusTop",
+    "points",
+    "vertices",
+    "indices",
+    "columns",
+    "rows",
+    "spacing",
+    "heights",
+    "position",
+    "rotation",
 ];
 
 /// A shape alone, without a surface: for questions.
@@ -143,8 +166,19 @@ pub const KINDS: [(&str, BodyKind); 3] =
 /// A body to be added.
 pub fn body_def(value: &JsValue) -> Outcome<BodyDef> {
     let own = [
-        "kind", "position", "rotation", "linearVelocity", "angularVelocity", "linearDamping", "angularDamping",
-        "gravityScale", "shape", "shapes", "mass", "sleeping", "quality",
+        "kind",
+        "position",
+        "rotation",
+        "linearVelocity",
+        "angularVelocity",
+        "linearDamping",
+        "angularDamping",
+        "gravityScale",
+        "shape",
+        "shapes",
+        "mass",
+        "sleeping",
+        "quality",
     ];
     let known: Vec<&str> = own.into_iter().chain(SURFACE).collect();
     let options = Options::of(value, "body", &known)?;
@@ -153,7 +187,9 @@ pub fn body_def(value: &JsValue) -> Outcome<BodyDef> {
     let mut shapes = Vec::new();
     for value in [options.get("shape"), options.get("shapes")].into_iter().flatten() {
         match value.dyn_ref::<Array>() {
-            Some(all) => shapes.extend(all.iter().map(|one| shape_def(&one, &default)).collect::<Outcome<Vec<_>>>()?),
+            Some(all) => {
+                shapes.extend(all.iter().map(|one| shape_def(&one, &default)).collect::<Outcome<Vec<_>>>()?)
+            }
             None => shapes.push(shape_def(&value, &default)?),
         }
     }
@@ -201,7 +237,11 @@ pub fn body(world: &World, bits: u64) -> Outcome<BodyId> {
 /// The joint of an id, if it is there.
 pub fn joint(world: &World, bits: u64) -> Outcome<JointId> {
     let id = JointId::from_bits(bits);
-    if world.contains_joint(id) { Ok(id) } else { Err(Failure(format!("there is no joint {bits} in this world"))) }
+    if world.contains_joint(id) {
+        Ok(id)
+    } else {
+        Err(Failure(format!("there is no joint {bits} in this world")))
+    }
 }
 
 const JOINTS: [&str; 5] = ["ball", "hinge", "slider", "fixed", "distance"];
@@ -209,8 +249,21 @@ const JOINTS: [&str; 5] = ["ball", "hinge", "slider", "fixed", "distance"];
 /// A joint to be added, where its bodies are now.
 pub fn joint_def(value: &JsValue, world: &World) -> Outcome<JointDef> {
     let known = [
-        "type", "a", "b", "anchor", "anchorB", "axis", "range", "swing", "twist", "collide", "friction", "breakForce",
-        "breakTorque", "spring", "motor",
+        "type",
+        "a",
+        "b",
+        "anchor",
+        "anchorB",
+        "axis",
+        "range",
+        "swing",
+        "twist",
+        "collide",
+        "friction",
+        "breakForce",
+        "breakTorque",
+        "spring",
+        "motor",
     ];
     let options = Options::of(value, "joint", &known)?;
     let kind = JOINTS[options.needed_word("type", &JOINTS)?];
@@ -233,8 +286,14 @@ pub fn joint_def(value: &JsValue, world: &World) -> Outcome<JointDef> {
             };
             JointDef { kind: JointKind::Ball { limit: cone }, ..def }
         }
-        "hinge" => axial().map(|(at, axis)| JointDef { kind: JointKind::Hinge { limit: range }, ..world.hinge(a, b, at, axis) })?,
-        "slider" => axial().map(|(at, axis)| JointDef { kind: JointKind::Slider { limit: range }, ..world.slider(a, b, at, axis) })?,
+        "hinge" => axial().map(|(at, axis)| JointDef {
+            kind: JointKind::Hinge { limit: range },
+            ..world.hinge(a, b, at, axis)
+        })?,
+        "slider" => axial().map(|(at, axis)| JointDef {
+            kind: JointKind::Slider { limit: range },
+            ..world.slider(a, b, at, axis)
+        })?,
         "fixed" => world.fixed(a, b),
         _ => {
             let (from, to) = (options.needed_vec3("anchor")?, options.needed_vec3("anchorB")?);
@@ -300,7 +359,8 @@ pub fn motor(value: &JsValue) -> Outcome<Motor> {
         return Ok(Motor { velocity, max_force: force, max_torque: torque, ..Motor::spin(0.0, 0.0) });
     }
     let along = Vec3::X * options.number("target")?.unwrap_or(0.0);
-    let turn = options.vec3("turn")?.map_or_else(|| Rotation::from_scaled_axis(along), Rotation::from_scaled_axis);
+    let turn =
+        options.vec3("turn")?.map_or_else(|| Rotation::from_scaled_axis(along), Rotation::from_scaled_axis);
     let toward = Motor::toward(Transform::new(along, turn), softness(&options, 5.0)?);
     Ok(Motor { max_force: force, max_torque: torque, ..toward })
 }

@@ -91,7 +91,11 @@ fn one(told: &Told, roles: &impl Fn(usize) -> Option<Vec<String>>) -> JsValue {
     }
 }
 
-fn of_event(event: CharacterEvent, named: Option<&(String, String)>, role: impl Fn(usize) -> JsValue) -> JsValue {
+fn of_event(
+    event: CharacterEvent,
+    named: Option<&(String, String)>,
+    role: impl Fn(usize) -> JsValue,
+) -> JsValue {
     use CharacterEvent as E;
     let plain = |name: &str| object([("type", name.into())]);
     let at = |name: &str, body: usize| object([("type", name.into()), ("bone", role(body))]);

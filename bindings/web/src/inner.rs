@@ -109,7 +109,12 @@ fn settle<T>(list: &mut Vec<Option<T>>, item: T) -> usize {
     free
 }
 
-fn step(world: &mut World, characters: &mut [Option<Member>], grabs: &mut [Option<Gripped>], told: &mut Vec<Told>) {
+fn step(
+    world: &mut World,
+    characters: &mut [Option<Member>],
+    grabs: &mut [Option<Gripped>],
+    told: &mut Vec<Told>,
+) {
     for grab in grabs {
         if grab.as_mut().is_some_and(|grab| !grab.point.update(world)) {
             *grab = None;
@@ -206,8 +211,13 @@ impl Inner {
     /// Takes a character in; returns its place and its number.
     pub fn settle_character(&mut self, character: Character) -> (usize, u64) {
         self.serial += 1;
-        let mut member =
-            Member { serial: self.serial, character, pose: Vec::new(), view: View::default(), locals: Vec::new() };
+        let mut member = Member {
+            serial: self.serial,
+            character,
+            pose: Vec::new(),
+            view: View::default(),
+            locals: Vec::new(),
+        };
         member.write_pose(1.0);
         (settle(&mut self.characters, member), self.serial)
     }
@@ -273,7 +283,8 @@ impl Inner {
         let mut loaded = Vec::new();
         for _ in 0..count {
             let serial = r.u64().map_err(failed)?;
-            let is_it = |member: &Option<Member>| member.as_ref().is_some_and(|member| member.serial == serial);
+            let is_it =
+                |member: &Option<Member>| member.as_ref().is_some_and(|member| member.serial == serial);
             let place = self.characters.iter().position(is_it);
             let place = place.ok_or_else(|| Failure::new("the state is of a world with other characters"))?;
             let Some(member) = &self.characters[place] else { continue };

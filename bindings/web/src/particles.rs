@@ -10,9 +10,7 @@ use crate::world::World;
 use js_sys::Float32Array;
 use sinew::math::Vec3;
 use sinew::physics::GroupId;
-use sinew::physics::particles::{
-    AttachmentTarget, BlobDef, ClothDef, GroupDef, ParticleGroup, RopeDef,
-};
+use sinew::physics::particles::{AttachmentTarget, BlobDef, ClothDef, GroupDef, ParticleGroup, RopeDef};
 use wasm_bindgen::prelude::*;
 
 /// A rope, a piece of cloth or a soft ball in a world. To hold one at a body or a place, attach its particles.
@@ -33,7 +31,8 @@ impl World {
     /// Adds a rope: a row of particles from one end to the other.
     #[wasm_bindgen(js_name = addRope)]
     pub fn add_rope(&self, options: RopeOptions) -> Outcome<Particles> {
-        let options = Options::of(&options, "rope", &["from", "to", "links", "mass", "radius", "holdFrom", "holdTo"])?;
+        let options =
+            Options::of(&options, "rope", &["from", "to", "links", "mass", "radius", "holdFrom", "holdTo"])?;
         let [from, to] = [options.needed_vec3("from")?, options.needed_vec3("to")?];
         let usual = built(|| RopeDef::between(from, to))?;
         let def = RopeDef {

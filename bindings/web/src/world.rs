@@ -4,7 +4,8 @@ use crate::border::{Failure, Outcome, Shared};
 use crate::definitions::{KINDS, body, body_def, joint, joint_def, mass, motor, world_def};
 use crate::inner::Inner;
 use crate::types::{
-    BodyOptions, Events, JointOptions, MotorOptions, PoseOut, QuatLike, Vec3Like, Vec3Out, VelocityOut, WorldOptions,
+    BodyOptions, Events, JointOptions, MotorOptions, PoseOut, QuatLike, Vec3Like, Vec3Out, VelocityOut,
+    WorldOptions,
 };
 use crate::values::{object, pose, rotation, vec3, vector};
 use js_sys::Float32Array;
@@ -168,8 +169,8 @@ impl World {
     #[wasm_bindgen(js_name = setKind)]
     pub fn set_kind(&self, id: u64, kind: &str) -> Outcome {
         let found = KINDS.iter().find(|(name, _)| *name == kind).map(|(_, kind)| *kind);
-        let kind: BodyKind = found
-            .ok_or_else(|| Failure(format!("a body is dynamic, static or kinematic, not '{kind}'")))?;
+        let kind: BodyKind =
+            found.ok_or_else(|| Failure(format!("a body is dynamic, static or kinematic, not '{kind}'")))?;
         self.inner.change(|inner| {
             let body = body(&inner.world, id)?;
             inner.world.set_kind(body, kind);
@@ -191,7 +192,13 @@ impl World {
 
     /// Has a kinematic body arrive at a pose after `seconds` (one step by default), pushing what is in its way.
     #[wasm_bindgen(js_name = moveTo)]
-    pub fn move_to(&self, id: u64, position: Vec3Like, turn: Option<QuatLike>, seconds: Option<f32>) -> Outcome {
+    pub fn move_to(
+        &self,
+        id: u64,
+        position: Vec3Like,
+        turn: Option<QuatLike>,
+        seconds: Option<f32>,
+    ) -> Outcome {
         let (position, turn) = read_pose(&position, turn)?;
         self.inner.change(|inner| {
             let body = body(&inner.world, id)?;
@@ -210,10 +217,8 @@ impl World {
         self.inner.change(|inner| {
             let body = body(&inner.world, id)?;
             let now = inner.world.velocity(body);
-            let velocity = Velocity {
-                linear: linear.unwrap_or(now.linear),
-                angular: angular.unwrap_or(now.angular),
-            };
+            let velocity =
+                Velocity { linear: linear.unwrap_or(now.linear), angular: angular.unwrap_or(now.angular) };
             inner.world.set_velocity(body, velocity);
             Ok(())
         })
@@ -358,8 +363,7 @@ impl World {
             lines.positions.clear();
             lines.colors.clear();
             world.draw(lines);
-            let [positions, colors] =
-                [lines.views[0].of(&lines.positions), lines.views[1].of(&lines.colors)];
+            let [positions, colors] = [lines.views[0].of(&lines.positions), lines.views[1].of(&lines.colors)];
             Ok(object([("positions", positions.into()), ("colors", colors.into())]).unchecked_into())
         })
     }
