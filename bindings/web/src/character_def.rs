@@ -7,7 +7,7 @@ use crate::values::{Options, json_text};
 use js_sys::{Array, Object, Reflect, Uint8Array};
 use sinew::formats::{Error, ReadOptions, no_files, read_gltf, read_ragdoll_settings, write_gltf};
 use sinew::ragdoll::settings::{GarmentSource, SpringSource, Unit};
-use sinew::ragdoll::{AfterSettling, MotionSet, RagdollBodyDef, Settings, Toughness};
+use sinew::ragdoll::{AfterSettling, Locomotion, MotionSet, RagdollBodyDef, Settings, Toughness};
 use std::sync::Arc;
 use wasm_bindgen::prelude::*;
 
@@ -74,8 +74,11 @@ fn adjust(def: &mut sinew::ragdoll::CharacterDef, options: &Options<'_>) -> Outc
             let clips: Vec<&str> = motions.clips.iter().map(|clip| clip.name.as_str()).collect();
             Failure(format!("no clip is called '{looped}'; there are {}", clips.join(", ")))
         })?;
-        let motions = MotionSet { looped: Some(index), ..motions };
-        def.set_motions(motions).map_err(|error| Failure(error.to_string()))?;
+        if motions.looped != Some(index) {
+            let (faster, locomotion) = (Vec::new(), Locomotion::ByClip);
+            let motions = MotionSet { looped: Some(index), faster, locomotion, ..motions };
+            def.set_motions(motions).map_err(|error| Failure(error.to_string()))?;
+        }
     }
     match options.word("afterSettling", &["getUp", "stayDown"])? {
         Some(0) => def.after_settling = AfterSettling::GetUp,

@@ -245,7 +245,7 @@ export interface CharacterOptions {
   springs?: 'file' | 'names' | 'none';
   /** Garments by names of joints, or none. Default none. */
   garments?: 'names' | 'none';
-  /** Name of the clip that loops until something happens. By default a walk, else an idle. */
+  /** Name of the clip that loops until something happens, and by which it goes. By default a walk, else an idle. */
   looped?: string;
   /** What it does once it lies still. Default it gets up, if it has a clip to get up by. */
   afterSettling?: 'getUp' | 'stayDown';

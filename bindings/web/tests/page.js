@@ -81,7 +81,8 @@ export const tests = {
     const physics = await Sinew.create();
     const { scene, camera } = stage();
     const bytes = await bytesOf(name);
-    const hero = physics.character(await gltfOf(bytes), bytes, { name, looped: 'idle' });
+    const hero = physics.character(await gltfOf(bytes), bytes, { name });
+    hero.stand();
     scene.add(hero.object, physics.debug);
     physics.ground();
     const drag = physics.drag(camera, renderer.domElement);
@@ -100,7 +101,8 @@ export const tests = {
     const { scene, camera } = stage();
     const bytes = withBraid(mannequinGlb());
     const gltf = await gltfOf(bytes);
-    const hero = physics.character(gltf, bytes, { name: 'braid.vrm', looped: 'idle' });
+    const hero = physics.character(gltf, bytes, { name: 'braid.vrm' });
+    hero.stand();
     scene.add(hero.object);
     physics.ground();
     const swinging = Array.from(hero.def.springJoints, (joint) => hero.joints[joint]);

@@ -28,6 +28,7 @@ function Hero({ position }) {
   const physics = usePhysics();
   const { bytes, gltf } = use(loaded);
   const hero = useMemo(() => physics.character(gltf, bytes, { position }), []);
+  useEffect(() => hero.stand(), [hero]);
   useEffect(() => () => physics.remove(hero), [hero]);
   return <primitive object={hero.object} onClick={() => hero.hit('chest', [0, 0, 120])} />;
 }

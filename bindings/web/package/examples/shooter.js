@@ -5,7 +5,11 @@ import { crate, hero, stage } from './stage.js';
 const { physics, scene, camera, renderer, drag, run } = await stage({ eye: [0, 1.6, 7] });
 drag.enabled = false;
 const { gltf, bytes } = await hero();
-for (const x of [-2, 0, 2]) scene.add(physics.character(gltf, bytes, { position: [x, 0, 0], looped: 'idle' }).object);
+for (const x of [-2, 0, 2]) {
+  const target = physics.character(gltf, bytes, { position: [x, 0, 0] });
+  target.stand();
+  scene.add(target.object);
+}
 for (let i = 0; i < 6; i++) {
   const box = crate(0.5);
   box.position.set(-3.2, 0.25 + 0.5 * i, -1);

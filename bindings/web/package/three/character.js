@@ -218,6 +218,16 @@ export class SinewCharacter extends EventDispatcher {
     this.core.face(velocity);
   }
 
+  /** Has it stand, by its idle clip, until it is to move. */
+  stand() {
+    this.core.setMove([0, 0, 0]);
+  }
+
+  /** Has it go as its clips go, which it does to begin with. */
+  followClips() {
+    this.core.followClips();
+  }
+
   /** Has it jump, if it has ground. */
   jump() {
     this.core.jump();
