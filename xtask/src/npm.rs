@@ -109,9 +109,6 @@ fn build(out: &Path) -> Result<PathBuf> {
     bind.args(["--target", "web", "--remove-name-section", "--remove-producers-section", "--out-dir"]);
     command::run(bind.arg(&wasm).arg(program))?;
     let program = wasm.join("sinew_web_bg.wasm");
-    let mut optimise = Command::new(tools.join("node_modules/.bin/wasm-opt"));
-    optimise.args(OPTIMISE).arg(&program).arg("-o").arg(&program);
-    command::run(&mut optimise)?;
     types(&package, &tools)?;
     let packed = command::output(Command::new("npm").args(["pack", "--silent"]).current_dir(&package))?;
     fs::create_dir_all(out)?;
@@ -122,18 +119,6 @@ fn build(out: &Path) -> Result<PathBuf> {
     ensure!(bytes < MOST_BYTES, "the program has {bytes} bytes after gzip, more than {MOST_BYTES}");
     Ok(tarball)
 }
-
-/// `-O3`: speed; the level after that is for size alone, and a step is slower by it. Features as the compiler was told them.
-const OPTIMISE: [&str; 8] = [
-    "-O3",
-    "--enable-simd",
-    "--enable-bulk-memory",
-    "--enable-mutable-globals",
-    "--enable-sign-ext",
-    "--enable-nontrapping-float-to-int",
-    "--enable-reference-types",
-    "--enable-multivalue",
-];
 
 /// Checks the package's JavaScript, and writes its types beside it.
 fn types(package: &Path, tools: &Path) -> Result<()> {
@@ -152,9 +137,13 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// What the native library computes and takes for the same scenes.
-fn native(arguments: &[&str]) -> Result<Value> {
-    let mut build = cargo(&["build", "--release", "--example", "native"]);
+/// What the native library computes and takes for the same scenes; `flags` are the compiler's.
+fn native(flags: &str, arguments: &[&str]) -> Result<Value> {
+    let mut build =
+        command::cargo(&["build", "--locked", "--manifest-path", MANIFEST, "--package", "sinew_web"]);
+    // A folder for each, so that neither is built anew for the other.
+    let folder = if flags.is_empty() { target() } else { target().join("narrow") };
+    build.args(["--release", "--example", "native", "--target-dir"]).arg(folder).env("RUSTFLAGS", flags);
     let program = command::build(&mut build, "native")?;
     let mut run = Command::new(program);
     command::output_json(run.arg(rigs()).args(RIGS).args(arguments))
@@ -166,11 +155,16 @@ fn rigs() -> PathBuf {
 }
 
 fn tried(out: &Path, tarball: &Path) -> Result<()> {
-    run_tests("check.mjs", out, tarball, &native(&[])?)
+    let mut clippy = cargo(&["clippy", "--target", targets::BROWSER]);
+    command::run(clippy.args(["--", "-D", "warnings"]))?;
+    run_tests("check.mjs", out, tarball, &native("", &[])?)
 }
 
+/// Times beside those of the native library, as it is and without registers of 256 bits.
 fn measured(out: &Path, tarball: &Path) -> Result<()> {
-    run_tests("measure.mjs", out, tarball, &native(&["--measure"])?)
+    let mut times = native("", &["--measure"])?;
+    times["narrow"] = native("--cfg sinew_narrow", &["--measure"])?["times"].take();
+    run_tests("measure.mjs", out, tarball, &times)
 }
 
 fn run_tests(script: &str, out: &Path, tarball: &Path, native: &Value) -> Result<()> {

@@ -6,6 +6,8 @@ import { fileURLToPath } from 'node:url';
 import { blocks, browse, check, emptyFolder, open, run, serve, told, until, write } from './harness.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
+// Of the front page: a desk's and a phone's.
+const SIZES = [[1280, 720], [390, 844]];
 const pictures = join(told.out, 'pictures');
 const names = Object.keys(told.native.hashes).filter((name) => name !== 'boxes');
 
@@ -145,6 +147,8 @@ async function drags(page, ask) {
   const [x, y] = await ask('stand', 'mannequin');
   await page.mouse.move(x, y);
   await page.mouse.down();
+  check(await page.evaluate(() => !window.drag.isDragging && window.hero.state === 'animated'), 'a press alone takes hold of nothing');
+  await page.mouse.move(x + 10, y);
   check(await page.evaluate(() => window.drag.isDragging), 'the pointer holds the chest');
   await page.mouse.move(x + 150, y - 60, { steps: 8 });
   await until(page, 'it to be dragged', () => window.hero.position.x > 0.25);
@@ -173,8 +177,18 @@ async function examples(browser, folder) {
     page.fine();
     await page.close();
   }
+  for (const [width, height] of SIZES) {
+    const page = await open(browser, `${server.address}/`, { width, height });
+    await until(page, 'the front page', () => window.ready);
+    await new Promise((done) => setTimeout(done, 5000));
+    await page.screenshot({ path: join(pictures, `front_${width}x${height}.png`) });
+    await page.click('#push');
+    await until(page, 'it to be pushed over', () => document.getElementById('state').textContent.startsWith('It falls'));
+    page.fine();
+    await page.close();
+  }
   server.close();
-  console.log('five examples are built and run');
+  console.log('the front page in two sizes and five examples are built and run');
 }
 
 await mkdir(pictures, { recursive: true });

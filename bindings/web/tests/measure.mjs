@@ -1,5 +1,5 @@
 // Measures the package in headless Chromium beside the native library, which `cargo xtask npm --measure` has timed just before. Prints a table.
-import { gzipSync } from 'node:zlib';
+import { brotliCompressSync, gzipSync } from 'node:zlib';
 import { readFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -29,7 +29,7 @@ const ask = async (name, ...values) => {
   return found;
 };
 const rows = [
-  ['program, after gzip', megabytes(gzipSync(program, { level: 9 }).length)],
+  ['program, after gzip; after brotli', `${megabytes(gzipSync(program, { level: 9 }).length)}; ${megabytes(brotliCompressSync(program).length)}`],
   ['JavaScript around it, after gzip', megabytes(gzipSync(text, { level: 9 }).length)],
   ['`init` without warm-up', `${(await ask('started', false)).toFixed(0)} ms`],
   ['`init` with warm-up', `${(await ask('started', true)).toFixed(0)} ms`],
@@ -38,9 +38,11 @@ for (const [name, native] of Object.entries(told.native.times)) {
   const { loaded, copied, spawned, limp, first, second, crowd } = await ask('times', name);
   rows.push([`${name}: definition built`, `${loaded.toFixed(0)} ms`]);
   rows.push([`${name}: a further copy, its model cloned; without model`, `${copied.toFixed(1)}; ${spawned.toFixed(1)} ms`]);
-  rows.push([`${name}: step limp; native; ratio`, `${limp.toFixed(3)}; ${native.limp.toFixed(3)} ms; ${(limp / native.limp).toFixed(2)}`]);
+  const narrow = told.native.narrow[name];
+  const beside = (here, wide, thin, digits) => `${here.toFixed(digits)}; ${wide.toFixed(digits)}; ${thin.toFixed(digits)} ms; ${(here / wide).toFixed(2)}; ${(here / thin).toFixed(2)}`;
+  rows.push([`${name}: step limp; native; native of 128 bits; ratios`, beside(limp, native.limp, narrow.limp, 3)]);
   rows.push([`${name}: first fall beside the second`, (first / second).toFixed(2)]);
-  rows.push([`${name}: step of 30 walking, 10 falling; native; ratio`, `${crowd.toFixed(2)}; ${native.crowd.toFixed(2)} ms; ${(crowd / native.crowd).toFixed(2)}`]);
+  rows.push([`${name}: step of 30 walking, 10 falling; native; native of 128 bits; ratios`, beside(crowd, native.crowd, narrow.crowd, 2)]);
 }
 await browser.close();
 server.close();

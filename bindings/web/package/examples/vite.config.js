@@ -1,5 +1,5 @@
-// Five pages. `npm install && npx vite`, then open /falling.html, /crowd.html, /shooter.html, /cloth.html or /react.html.
-const pages = ['falling', 'crowd', 'shooter', 'cloth', 'react'];
+// `npm install && npx vite` opens the front page; /falling.html, /crowd.html, /shooter.html, /cloth.html and /react.html are the examples.
+const pages = ['index', 'falling', 'crowd', 'shooter', 'cloth', 'react'];
 
 export default {
   build: { target: 'esnext', rollupOptions: { input: Object.fromEntries(pages.map((page) => [page, `${page}.html`])) } },

@@ -1,13 +1,19 @@
 // Dragging with the pointer.
 import { Plane, Raycaster, Vector2, Vector3 } from 'three';
 
+/** Pixels that the pointer moves before it drags: less is a click. */
+const CLICK = 4;
+/** Metres that a body may have moved between the press and the first motion of the pointer. */
+const REACH = 0.5;
+
 /** @import { Camera } from 'three' */
 /** @import { GrabOptions, GrabPoint } from '../index.js' */
-/** @import { Sinew } from '../three.js' */
+/** @import { Picked, Sinew } from '../three.js' */
 
 /**
- * Lets the pointer drag bodies and limbs by a spring with a bounded force. A character that clips move goes limp when it is taken hold of. The
- * pointer's events reach nobody else while something is dragged, so that controls of the camera rest.
+ * Lets the pointer drag bodies and limbs by a spring with a bounded force. A character that clips move goes limp when it is taken hold of, which
+ * is once the pointer moves: a click takes hold of nothing. From where it was pressed on a body the pointer's events reach no other listener of the
+ * element, so that controls of the camera rest; `click` still does.
  */
 export class SinewDrag {
   #raycaster = new Raycaster();
@@ -16,6 +22,8 @@ export class SinewDrag {
   #target = new Vector3();
   /** @type {GrabPoint | undefined} */
   #grab;
+  /** What the pointer was pressed on, and where on the page. @type {{ hit: Picked, x: number, y: number } | undefined} */
+  #pressed;
   /** @type {number | undefined} */
   #pointerId;
 
@@ -53,32 +61,45 @@ export class SinewDrag {
   }
 
   #down = (/** @type {PointerEvent} */ event) => {
-    if (!this.enabled || this.#grab || event.button !== 0) return;
-    const ray = this.#aim(event);
-    const hit = this.physics.pick(ray);
-    if (!hit) return;
-    const limp = hit.character && ['animated', 'flinching', 'gettingUp'].includes(hit.character.state);
-    if (limp) hit.character?.goLimp();
-    // A character that went limp has other bodies.
-    const body = hit.character && hit.bone ? hit.character.core.body(hit.bone) : hit.body;
-    this.#grab = body === undefined ? undefined : this.physics.world.grab(body, hit.point, this.options);
-    if (!this.#grab) return;
-    this.#plane.setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(this.#target), hit.point);
+    if (!this.enabled || this.#pressed || event.button !== 0) return;
+    const hit = this.physics.pick(this.#aim(event));
+    if (!hit || !this.#isMovable(hit)) return;
+    this.#pressed = { hit, x: event.clientX, y: event.clientY };
     this.#pointerId = event.pointerId;
-    this.element.setPointerCapture?.(event.pointerId);
     event.stopImmediatePropagation();
   };
 
+  /** @param {Picked} hit */
+  #isMovable(hit) {
+    return hit.character !== undefined || this.physics.world.kind(hit.body) === 'dynamic';
+  }
+
+  /** Takes hold of what the pointer was pressed on. */
+  #take() {
+    if (!this.#pressed) return;
+    const { hit } = this.#pressed;
+    if (hit.character && ['animated', 'flinching', 'gettingUp'].includes(hit.character.state)) hit.character.goLimp();
+    // A character that went limp has other bodies, and has moved since it was pressed.
+    const body = hit.character && hit.bone ? hit.character.core.body(hit.bone) : hit.body;
+    if (body === undefined || !this.physics.world.hasBody(body)) return;
+    this.#grab = this.physics.world.grab(body, hit.point, { reach: REACH, ...this.options });
+    this.#plane.setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(this.#target), hit.point);
+    this.element.setPointerCapture?.(/** @type {number} */ (this.#pointerId));
+  }
+
   #move = (/** @type {PointerEvent} */ event) => {
-    if (!this.#grab || event.pointerId !== this.#pointerId) return;
+    if (!this.#pressed || event.pointerId !== this.#pointerId) return;
+    event.stopImmediatePropagation();
+    const { x, y } = this.#pressed;
+    if (!this.#grab && Math.hypot(event.clientX - x, event.clientY - y) > CLICK) this.#take();
+    if (!this.#grab) return;
     if (!this.#grab.holds) return this.#release();
     const target = this.#aim(event).intersectPlane(this.#plane, this.#target);
     if (target) this.#grab.setTarget(target);
-    event.stopImmediatePropagation();
   };
 
   #up = (/** @type {PointerEvent} */ event) => {
-    if (!this.#grab || event.pointerId !== this.#pointerId) return;
+    if (!this.#pressed || event.pointerId !== this.#pointerId) return;
     this.#release();
     event.stopImmediatePropagation();
   };
@@ -87,6 +108,7 @@ export class SinewDrag {
     this.#grab?.release();
     this.#grab?.free();
     this.#grab = undefined;
+    this.#pressed = undefined;
   }
 
   /** Lets go and listens no more. */
