@@ -1,4 +1,4 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | web | fuzz | lives | soak`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | npm | web | fuzz | lives | soak`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -12,6 +12,7 @@ mod contract;
 mod fuzz;
 mod golden;
 mod new_user;
+mod npm;
 mod ragdolls;
 mod searches;
 mod sizes;
@@ -55,6 +56,8 @@ enum Task {
     Sizes(sizes::Sizes),
     /// The libraries for C and Python, built, installed and tried as their users have them
     Bindings(bindings::Bindings),
+    /// The npm package `sinew-physics`, built, packed and tried as its users have it
+    Npm(npm::Npm),
     /// The viewer as a page, a folder of static files; and its trial in a browser
     Web(web::Web),
     /// Bytes from nowhere against the readers, and clips against the runtime
@@ -88,6 +91,7 @@ fn run() -> anyhow::Result<ExitCode> {
         Task::Fuzz(fuzz) => fuzz.run()?,
         Task::Lives(lives) => lives.run()?,
         Task::Soak(soak) => soak.run()?,
+        Task::Npm(npm) => npm.run()?,
         Task::Web(web) => web.run()?,
         Task::Bench(bench) => return bench.run(),
     }
