@@ -24,6 +24,9 @@ pub enum Locomotion {
     InPlace,
     /// On and on as the clip takes it, with each lap from where the last one ended. A clip that ends where it began stays in its place.
     ByClip,
+    /// Exactly as the clip has it, at the place where the character was put: the clip is not raised onto its floor, no ground lifts the character,
+    /// and its feet are not moved to the ground. For an animation that was made for this very world.
+    Exact,
     /// The clip walks on the spot; the character advances along its facing at this speed, m/s.
     Forward {
         /// m/s; negative walks backwards.
