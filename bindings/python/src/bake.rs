@@ -1,6 +1,6 @@
 //! Bakes: a stretch of a character's life as arrays, and as a clip in a file.
 
-use crate::arrays::{array, floats, poses, vec3};
+use crate::arrays::{array, floats, poses, push_pose, vec3};
 use crate::collider::{Collider, parted, world_of};
 use crate::drive::{Drive, body_named};
 use crate::errors::{Cancelled, bad, guarded, of_file, refused};
@@ -54,7 +54,7 @@ pub struct Actor {
     place: Transform,
     phase: f32,
     name: String,
-    /// Nothing is done to it that the user named: one that stays upright when it goes limp is pushed over.
+    /// One that stays upright when it goes limp is pushed over, where it is alone.
     topples: bool,
 }
 
@@ -65,7 +65,7 @@ type Hit<'py> = (f32, String, Bound<'py, PyAny>);
 impl Actor {
     /// What is done to a character in a bake.
     #[new]
-    #[pyo3(signature = (character, *, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, pose=None, phase=0.0, name="sinew"))]
+    #[pyo3(signature = (character, *, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, pose=None, phase=0.0, name="sinew"))]
     fn new(
         character: &Character,
         hits: Option<Vec<Hit<'_>>>,
@@ -74,6 +74,7 @@ impl Actor {
         drives: Option<Vec<Py<Drive>>>,
         return_at: Option<f32>,
         return_seconds: f32,
+        topple: Option<bool>,
         pose: Option<&Bound<'_, PyAny>>,
         phase: f32,
         name: &str,
@@ -103,7 +104,7 @@ impl Actor {
             place,
             phase,
             name: name.to_owned(),
-            topples: nothing && return_at.is_none(),
+            topples: topple.unwrap_or(nothing && return_at.is_none()),
         })
     }
 }
@@ -257,8 +258,22 @@ impl Character {
         self.def.rig.joints.iter().map(|joint| joint.name.as_str()).collect()
     }
 
+    /// Pose at which it stands where its file has it, (7,): the file's place times its unit is then the world's.
+    #[getter]
+    fn place_in_file<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        let mut numbers = Vec::new();
+        push_pose(&mut numbers, &self.def.mapping().character_from_model().to_rigid().inverse());
+        PyArray1::from_vec(py, numbers)
+    }
+
+    /// Height by which the looped clip is raised onto its floor, metres.
+    #[getter]
+    fn raised(&self) -> f32 {
+        self.def.raised()
+    }
+
     /// Simulates it: walking, hit, falling, getting up. Where nothing is done to it, it goes limp after half a second.
-    #[pyo3(signature = (*, seconds=10.0, fps=30.0, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, world=None, wind=None, gravity=None, pose=None, phase=0.0, name="sinew", progress=None))]
+    #[pyo3(signature = (*, seconds=10.0, fps=30.0, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, world=None, wind=None, gravity=None, pose=None, phase=0.0, name="sinew", progress=None))]
     fn bake(
         slf: PyRef<'_, Self>,
         py: Python<'_>,
@@ -270,6 +285,7 @@ impl Character {
         drives: Option<Vec<Py<Drive>>>,
         return_at: Option<f32>,
         return_seconds: f32,
+        topple: Option<bool>,
         world: Option<&Bound<'_, PyAny>>,
         wind: Option<&Bound<'_, PyAny>>,
         gravity: Option<&Bound<'_, PyAny>>,
@@ -279,7 +295,7 @@ impl Character {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bake> {
         let actor = Actor::new(
-            &slf, hits, flinch, limp_at, drives, return_at, return_seconds, pose, phase, name,
+            &slf, hits, flinch, limp_at, drives, return_at, return_seconds, topple, pose, phase, name,
         )?;
         let stage = Stage::new(seconds, fps, world, wind, gravity)?;
         let mut baked = stage.bake(py, &[&actor], progress)?;

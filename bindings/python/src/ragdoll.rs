@@ -5,11 +5,14 @@ use crate::errors::{bad, failed, guarded, of_file};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use sinew::formats::{MjcfModel, read_bytes, read_mjcf, read_ragdoll, write_atomic, write_ragdoll};
+use sinew::formats::{
+    MjcfModel, MjcfText, read_bytes, read_mjcf, read_ragdoll, write_atomic, write_mjcf, write_ragdoll,
+};
 use sinew::math::Range;
 use sinew::physics::{JointKind, Shape};
+use sinew::ragdoll::doctor::Finding;
 use sinew::ragdoll::{
-    BuildReport, FallQuality, RagdollBodyDef, RagdollDef, Repair, doctor, drop_test, torque_caps,
+    BuildReport, FallQuality, RagdollBodyDef, RagdollDef, Repair, cure, doctor, drop_test, torque_caps,
 };
 use std::path::PathBuf;
 
@@ -146,6 +149,25 @@ impl Edit {
     }
 }
 
+/// Findings of the doctor: `{"findings": [{"code", "severity", "bones", "cause", "evidence", "fix", "fixed"}]}`.
+fn findings_dict(py: Python<'_>, found: Vec<Finding>) -> PyResult<Bound<'_, PyDict>> {
+    let findings = PyList::empty(py);
+    for finding in found {
+        let dict = PyDict::new(py);
+        dict.set_item("code", finding.code.name())?;
+        dict.set_item("severity", finding.severity.name())?;
+        dict.set_item("bones", &finding.bones)?;
+        dict.set_item("cause", finding.code.cause())?;
+        dict.set_item("evidence", &finding.evidence)?;
+        dict.set_item("fix", &finding.fix)?;
+        dict.set_item("fixed", finding.fixed)?;
+        findings.append(dict)?;
+    }
+    let report = PyDict::new(py);
+    report.set_item("findings", findings)?;
+    Ok(report)
+}
+
 #[pymethods]
 impl Ragdoll {
     /// Names of the rig joints that carry the bodies.
@@ -209,6 +231,26 @@ impl Ragdoll {
         self.repair.def.height
     }
 
+    /// Metres of a unit of the file.
+    #[getter]
+    fn unit_scale(&self) -> f32 {
+        self.repair.def.unit_scale
+    }
+
+    /// A copy with all mended that the doctor mends, and what it found.
+    fn cured<'py>(&self, py: Python<'py>) -> PyResult<(Self, Bound<'py, PyDict>)> {
+        let (repair, found) = py.detach(|| guarded(|| cure(&self.repair)))?;
+        let ragdoll = Self { repair, notes: self.notes.clone(), mean_error: self.mean_error };
+        Ok((ragdoll, findings_dict(py, found)?))
+    }
+
+    /// The definition as a MuJoCo model, and what that cannot hold, a sentence each.
+    #[pyo3(signature = (name="ragdoll"))]
+    fn to_mjcf(&self, py: Python<'_>, name: &str) -> PyResult<(String, Vec<String>)> {
+        let MjcfText { text, notes } = py.detach(|| guarded(|| write_mjcf(&self.repair.def, name)))?;
+        Ok((text, notes))
+    }
+
     /// Report of the build: notes, and the mean distance between skin and shapes in metres, if it was built.
     #[getter]
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -225,20 +267,7 @@ impl Ragdoll {
     /// Findings of the doctor: `{"findings": [{"code", "severity", "bones", "cause", "evidence", "fix"}]}`.
     fn doctor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = py.detach(|| guarded(|| doctor(&self.repair)))?;
-        let findings = PyList::empty(py);
-        for finding in found {
-            let dict = PyDict::new(py);
-            dict.set_item("code", finding.code.name())?;
-            dict.set_item("severity", finding.severity.name())?;
-            dict.set_item("bones", &finding.bones)?;
-            dict.set_item("cause", finding.code.cause())?;
-            dict.set_item("evidence", &finding.evidence)?;
-            dict.set_item("fix", &finding.fix)?;
-            findings.append(dict)?;
-        }
-        let report = PyDict::new(py);
-        report.set_item("findings", findings)?;
-        Ok(report)
+        findings_dict(py, found)
     }
 
     /// Drops it and throws it at a wall: `{"verdict", "reasons", "drop", "wall"}`.

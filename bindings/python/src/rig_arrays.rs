@@ -108,6 +108,18 @@ fn mesh(given: &Bound<'_, PyDict>, index: usize, joint_count: usize) -> PyResult
     if let Some(&vertex) = triangles.iter().find(|&&vertex| vertex as usize >= vertices) {
         return Err(bad(format!("{}: vertex {vertex} of {vertices}", of("triangles"))));
     }
+    let name = match given.get_item("name")? {
+        Some(name) => name.extract()?,
+        None => format!("mesh {index}"),
+    };
+    let primitive = Primitive { positions, indices: triangles, base_color: [0.8, 0.8, 0.8, 1.0], ..Primitive::default() };
+    if let Some(joint) = given.get_item("joint")? {
+        let joint: usize = joint.extract()?;
+        if joint >= joint_count {
+            return Err(bad(format!("{}: joint {joint} of {joint_count}", of("joint"))));
+        }
+        return Ok(RigMesh { name, joint, skin: None, primitives: vec![primitive] });
+    }
     let slots: Vec<u16> = elements(&need("joints")?, &[Some(vertices), Some(INFLUENCES)], &of("joints"))?;
     if let Some(slot) = slots.iter().find(|&&slot| usize::from(slot) >= joint_count) {
         return Err(bad(format!("{}: joint {slot} of {joint_count}", of("joints"))));
@@ -120,17 +132,10 @@ fn mesh(given: &Bound<'_, PyDict>, index: usize, joint_count: usize) -> PyResult
         let sum: f32 = w.iter().sum();
         if sum > 0.0 { [w[0] / sum, w[1] / sum, w[2] / sum, w[3] / sum] } else { [1.0, 0.0, 0.0, 0.0] }
     };
-    let name = match given.get_item("name")? {
-        Some(name) => name.extract()?,
-        None => format!("mesh {index}"),
-    };
     let primitive = Primitive {
-        positions,
         joints: slots.chunks_exact(INFLUENCES).map(|j| [j[0], j[1], j[2], j[3]]).collect(),
         weights: weights.chunks_exact(INFLUENCES).map(even).collect(),
-        indices: triangles,
-        base_color: [0.8, 0.8, 0.8, 1.0],
-        ..Primitive::default()
+        ..primitive
     };
     Ok(RigMesh { name, joint: 0, skin: Some(0), primitives: vec![primitive] })
 }
