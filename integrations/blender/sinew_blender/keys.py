@@ -50,8 +50,8 @@ def write_pose(arm, action, names, frames, worlds, carriers, first, alone=False,
     numbers = [float(first + i) for i in range(len(frames))]
     for n in names:
         bone, rows = arm.pose.bones[n], values[n]
-        turns, path = _turns([q for _, q in rows], bone.rotation_mode)
-        channels = [(path, i, [turn[i] for turn in turns]) for i in range(len(turns[0]))]
+        turned, path = turns([q for _, q in rows], bone.rotation_mode)
+        channels = [(path, i, [turn[i] for turn in turned]) for i in range(len(turned[0]))]
         moves = max(abs(x) for place, _ in rows for x in place) > STILL
         if not arm.data.bones[n].use_connect and (moves or _has(arm, action, bone_path(n, "location"))):
             channels += [("location", i, [place[i] for place, _ in rows]) for i in range(3)]
@@ -69,7 +69,7 @@ def _has(arm, action, path):
     return any(fcurve.data_path == path for fcurve in actions.curves(action, arm))
 
 
-def _turns(quaternions, mode):
+def turns(quaternions, mode):
     """Rotations as a bone's mode has them."""
     if mode == "QUATERNION":
         return quaternions, "rotation_quaternion"

@@ -162,7 +162,7 @@ class SINEW_PT_bone(bpy.types.Panel):
     def draw(self, context):
         layout, settings = self.layout, context.active_pose_bone.sinew
         layout.use_property_split = True
-        layout.prop(settings, "mode")
+        layout.prop(context.active_pose_bone, "sinew_mode")
         layout.prop(settings, "role")
         layout.prop(settings, "ignored")
         if not settings.has_body:

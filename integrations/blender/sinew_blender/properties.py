@@ -39,7 +39,9 @@ def _edited(bone_settings, context):
     if _filling[0]:
         return
     arm = bone_settings.id_data
-    name = bone_settings.path_from_id().split('"')[1].replace("\\\\", "\\")
+    # Blender tells no path from such a value to its bone.
+    here = bone_settings.as_pointer()
+    name = next(bone.name for bone in arm.pose.bones if bone.sinew.as_pointer() == here)
     from . import bodies
 
     bodies.edit(arm, name)
@@ -48,7 +50,6 @@ def _edited(bone_settings, context):
 class BoneSettings(bpy.types.PropertyGroup):
     role: StringProperty(name="Role", description="Part of the body that this bone is, such as leftUpperArm; empty: recognised")
     ignored: BoolProperty(name="No body", description="This bone and all below it are no part of the body: a cape, a flag")
-    mode: EnumProperty(items=MODES, name="Mode", description="What moves this bone; can be keyed over time")
     has_body: BoolProperty()
     has_swing: BoolProperty()
     has_twist: BoolProperty()
@@ -157,9 +158,17 @@ def register():
     for owner, name, cls in POINTERS:
         # What is stored on the data can be overridden where it is linked.
         setattr(owner, name, PointerProperty(type=cls, override={"LIBRARY_OVERRIDABLE"}))
+    # By itself: values within a group of a bone cannot be keyed.
+    bpy.types.PoseBone.sinew_mode = EnumProperty(
+        items=MODES,
+        name="Mode",
+        description="What moves this bone; can be keyed over time",
+        override={"LIBRARY_OVERRIDABLE"},
+    )
 
 
 def unregister():
+    del bpy.types.PoseBone.sinew_mode
     for owner, name, _ in POINTERS:
         delattr(owner, name)
     for cls in reversed(CLASSES):

@@ -349,7 +349,7 @@ def sample(arm, skeleton, first, last, told=None):
             take.frames.append({n: to_sinew(world @ bones[n].matrix) for n in skeleton.names})
             take.worlds.append(world)
             take.carriers.append({n: bones[n].matrix.copy() for n in carried})
-            take.modes.append({n: bones[n].sinew.mode for n in skeleton.names})
+            take.modes.append({n: bones[n].sinew_mode for n in skeleton.names})
             if told is not None:
                 told((frame - first + 1) / (last - first + 1))
     finally:

@@ -1,12 +1,13 @@
 """The whole job on one rig: `python job.py RIG`. The extension is installed by then (install.py)."""
 
 import json
-import math
 import sys
 
 import bpy
 
+import installed
 import rigs
+from installed import addon
 from rigs import FIRST, LAST
 
 HANDOVER, RETURN = 45, 120
@@ -15,11 +16,6 @@ BEFORE, GAP = 1e-3, 1e-3
 # At the return: largest jump of a bone within a frame beyond the user's own motion, metres, and of its speed, m/s.
 POP, POP_SPEED = 0.03, 0.15
 FALLEN = 0.25
-
-
-def addon():
-    """The installed extension's own package."""
-    return sys.modules[type(bpy.context.scene.sinew).__module__.rpartition(".")[0]]
 
 
 def posed(arm, names, first=FIRST, last=LAST):
@@ -142,4 +138,5 @@ def main(name):
 
 
 if __name__ == "__main__":
+    installed.install()
     main(sys.argv[1])

@@ -15,7 +15,8 @@ FPS, FIRST, LAST = 30, 1, 150
 
 
 def empty_scene():
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    # Not the preferences: the extension stays enabled.
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     scene = bpy.context.scene
     scene.render.fps, scene.render.fps_base = FPS, 1.0
     scene.frame_start, scene.frame_end = FIRST, LAST
