@@ -1,8 +1,9 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | web | fuzz | lives | soak`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | blender | web | fuzz | lives | soak`.
 #![forbid(unsafe_code)]
 
 mod bench;
 mod bindings;
+mod blender;
 mod book;
 mod chapters;
 mod check;
@@ -55,6 +56,8 @@ enum Task {
     Sizes(sizes::Sizes),
     /// The libraries for C and Python, built, installed and tried as their users have them
     Bindings(bindings::Bindings),
+    /// The extension for Blender as a zip; and its trial in Blender's module for Python
+    Blender(blender::Blender),
     /// The viewer as a page, a folder of static files; and its trial in a browser
     Web(web::Web),
     /// Bytes from nowhere against the readers, and clips against the runtime
@@ -82,6 +85,7 @@ fn run() -> anyhow::Result<ExitCode> {
         Task::NewUser(user) => user.run()?,
         Task::Sizes(sizes) => sizes.run()?,
         Task::Bindings(bindings) => bindings.run()?,
+        Task::Blender(blender) => blender.run()?,
         Task::Book(book) => book.run()?,
         Task::Ragdolls(ragdolls) => ragdolls.run()?,
         Task::Wild(wild) => wild.run()?,

@@ -58,7 +58,9 @@ impl Corrections {
         let mut settings = self.settings.clone().unwrap_or(beside);
         for (joint, role) in &self.roles {
             let role = role_named(role).map_err(Failure::argument)?;
-            settings.bones.push((joint.clone(), BoneSettings { role: Some(role), ..BoneSettings::default() }));
+            settings
+                .bones
+                .push((joint.clone(), BoneSettings { role: Some(role), ..BoneSettings::default() }));
         }
         settings.ignore.extend(self.ignore.iter().cloned());
         for (bone, has) in &self.bodies {
@@ -179,7 +181,9 @@ impl CharacterFile {
         let failed = |error: &dyn core::fmt::Display| Failure::file(&name, error);
         if let Some(joint) = lost_weights(&document.rig) {
             let bone = joint_name(&document.rig, joint);
-            let what = format!("all vertices hang on one bone, {bone}: the weights of the skin were lost, and it cannot bend");
+            let what = format!(
+                "all vertices hang on one bone, {bone}: the weights of the skin were lost, and it cannot bend"
+            );
             return Err(failed(&what));
         }
         let note = keep_largest(&mut document.rig);
@@ -197,8 +201,7 @@ impl CharacterFile {
         add_ankles(rig, &mut analysis);
         analysis.notes.extend(note);
         let source = settings.springs.unwrap_or_default();
-        rig.springs =
-            settings.springs_of(source, rig, analysis.up_axis).map_err(|error| failed(&error))?;
+        rig.springs = settings.springs_of(source, rig, analysis.up_axis).map_err(|error| failed(&error))?;
         let garments = settings.garments.garments(rig).map_err(|error| failed(&error))?;
         Ok(Self { name, document, analysis, settings, garments })
     }
@@ -243,7 +246,8 @@ impl CharacterFile {
         let mut get_ups = def.get_ups_among(clips);
         get_ups.retain(|&clip| Some(clip) != looped);
         let clips = clips.clone();
-        let own = MotionSet { clips, looped, get_ups, locomotion: motions.locomotion, ..MotionSet::default() };
+        let own =
+            MotionSet { clips, looped, get_ups, locomotion: motions.locomotion, ..MotionSet::default() };
         self.give_motions(&mut def, own, motions.builtin && motions.after_settling == AfterSettling::GetUp)?;
         if motions.after_settling == AfterSettling::StayDown {
             def.after_settling = AfterSettling::StayDown;
@@ -287,9 +291,8 @@ fn keep_largest(rig: &mut Rig) -> Option<String> {
     if all.len() < 2 {
         return None;
     }
-    let is_others = |mesh: usize| {
-        all.iter().any(|meshes| meshes.contains(&mesh)) && !all[largest].contains(&mesh)
-    };
+    let is_others =
+        |mesh: usize| all.iter().any(|meshes| meshes.contains(&mesh)) && !all[largest].contains(&mesh);
     let mut index = 0;
     rig.meshes.retain(|_| {
         index += 1;

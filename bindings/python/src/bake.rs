@@ -82,7 +82,9 @@ impl Actor {
         let hits = hits.unwrap_or_default();
         let hits = hits.iter().map(|hit| character.hit(hit)).collect::<PyResult<Vec<_>>>()?;
         let drives = drives.unwrap_or_default();
-        if let Some(wrong) = [limp_at, return_at, Some(phase)].into_iter().flatten().find(|time| !time.is_finite()) {
+        if let Some(wrong) =
+            [limp_at, return_at, Some(phase)].into_iter().flatten().find(|time| !time.is_finite())
+        {
             return Err(bad(format!("times are finite, not {wrong}")));
         }
         if !(0.0..f32::INFINITY).contains(&return_seconds) {
@@ -295,7 +297,17 @@ impl Character {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bake> {
         let actor = Actor::new(
-            &slf, hits, flinch, limp_at, drives, return_at, return_seconds, topple, pose, phase, name,
+            &slf,
+            hits,
+            flinch,
+            limp_at,
+            drives,
+            return_at,
+            return_seconds,
+            topple,
+            pose,
+            phase,
+            name,
         )?;
         let stage = Stage::new(seconds, fps, world, wind, gravity)?;
         let mut baked = stage.bake(py, &[&actor], progress)?;

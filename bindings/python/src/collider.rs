@@ -28,7 +28,12 @@ fn place(pose: Option<&Bound<'_, PyAny>>) -> PyResult<Transform> {
     })
 }
 
-fn collider(shape: Shape, pose: Option<&Bound<'_, PyAny>>, friction: f32, restitution: f32) -> PyResult<Collider> {
+fn collider(
+    shape: Shape,
+    pose: Option<&Bound<'_, PyAny>>,
+    friction: f32,
+    restitution: f32,
+) -> PyResult<Collider> {
     let at = place(pose)?;
     let material = Material { friction, restitution, ..Material::DEFAULT };
     let def = BodyDef {
@@ -130,7 +135,11 @@ impl Collider {
     }
 
     fn __repr__(&self) -> String {
-        let kind = if self.keys.is_some() { "Keyed" } else { ["Static", "Kinematic", "Dynamic"][self.def.kind as usize] };
+        let kind = if self.keys.is_some() {
+            "Keyed"
+        } else {
+            ["Static", "Kinematic", "Dynamic"][self.def.kind as usize]
+        };
         format!("Collider({} shapes, {})", self.def.shapes.len(), kind.to_lowercase())
     }
 }

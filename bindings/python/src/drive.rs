@@ -39,7 +39,9 @@ impl Drive {
     ) -> PyResult<Self> {
         let numbers = [half_life, hertz, damping_ratio, strength, pin_hertz, pin_force, pin_torque];
         if numbers.iter().any(|number| !(0.0..f32::INFINITY).contains(number)) || strength > 1.0 {
-            return Err(bad("numbers of a drive are not negative, and finite, and its strength is at most 1"));
+            return Err(bad(
+                "numbers of a drive are not negative, and finite, and its strength is at most 1",
+            ));
         }
         if !time.is_finite() {
             return Err(bad(format!("the time of a drive is finite, not {time}")));

@@ -8,9 +8,7 @@ use crate::rig_arrays;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use sinew::formats::{read_ragdoll_settings, write_gltf};
-use sinew::ragdoll::{
-    AfterSettling, BuildOptions, DriveMode, LimitSource, Locomotion, Sex, ShapeChoice,
-};
+use sinew::ragdoll::{AfterSettling, BuildOptions, DriveMode, LimitSource, Locomotion, Sex, ShapeChoice};
 use sinew_bindings::{Corrections, Motions, Wishes};
 use std::collections::HashMap;
 use std::path::PathBuf;

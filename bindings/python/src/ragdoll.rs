@@ -126,7 +126,8 @@ impl Edit {
             body.mass = body.mass.scaled_to(mass);
         }
         let Some(joint) = index.checked_sub(1).map(|joint| &mut def.joints[joint]) else {
-            let any = self.swing_y.or(self.swing_z).or(self.twist).is_some() || self.friction_torque.is_some();
+            let any =
+                self.swing_y.or(self.swing_z).or(self.twist).is_some() || self.friction_torque.is_some();
             return if any { Err(bad("the first body has no joint")) } else { Ok(()) };
         };
         joint.friction_torque = self.friction_torque.unwrap_or(joint.friction_torque);

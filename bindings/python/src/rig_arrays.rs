@@ -36,7 +36,9 @@ pub fn skeleton(
             -1 => None,
             parent if (0..index as i64).contains(&parent) => Some(parent as usize),
             parent => {
-                return Err(bad(format!("parents: joint {index} has parent {parent}; it must come before, or be -1")));
+                return Err(bad(format!(
+                    "parents: joint {index} has parent {parent}; it must come before, or be -1"
+                )));
             }
         };
         let rest = LocalTransform {
@@ -112,7 +114,8 @@ fn mesh(given: &Bound<'_, PyDict>, index: usize, joint_count: usize) -> PyResult
         Some(name) => name.extract()?,
         None => format!("mesh {index}"),
     };
-    let primitive = Primitive { positions, indices: triangles, base_color: [0.8, 0.8, 0.8, 1.0], ..Primitive::default() };
+    let primitive =
+        Primitive { positions, indices: triangles, base_color: [0.8, 0.8, 0.8, 1.0], ..Primitive::default() };
     if let Some(joint) = given.get_item("joint")? {
         let joint: usize = joint.extract()?;
         if joint >= joint_count {
@@ -170,7 +173,8 @@ fn one_clip(rig: &Rig, name: String, given: &Bound<'_, PyDict>) -> PyResult<Clip
         let width = property.width();
         let numbers = floats(&given, &[Some(times.len()), Some(joints), Some(width)], &of(key))?;
         for joint in 0..joints {
-            let rows = numbers.chunks_exact(width * joints).map(|frame| &frame[width * joint..width * (joint + 1)]);
+            let rows =
+                numbers.chunks_exact(width * joints).map(|frame| &frame[width * joint..width * (joint + 1)]);
             let values = match property {
                 Property::Rotation => near(rows, &of(key))?,
                 _ => rows.flatten().copied().collect(),

@@ -1,8 +1,8 @@
 //! One world, with arrays in and out.
 
 use crate::arrays::{array, elements, floats, poses, push_pose, push_velocity, vec3, vectors, velocities};
-use crate::collider::{Collider, parted};
 use crate::bake::Character;
+use crate::collider::{Collider, parted};
 use crate::errors::{SinewError, bad, guarded, refused};
 use crate::live::{LiveCharacter, one_pose};
 use crate::ragdoll::Ragdoll;

@@ -14,7 +14,7 @@ pub(super) struct Actor<'a> {
     pub character: Character,
     pub meter: QualityMeter,
     frames: Frames,
-    /// Where it started, and how far into its looped clip.
+    /// Place where it started, and seconds into its looped clip.
     start: Transform,
     phase: f32,
     /// Not yet done, the latest first.
@@ -58,7 +58,8 @@ impl<'a> Actor<'a> {
         let hits =
             input.hits.iter().map(|hit| (hit.time, Push::Hit { body: hit.body, impulse: hit.impulse }));
         let drives = input.drives.iter().map(|drive| (drive.time, Push::Drive(*drive)));
-        let returns = input.returns.map(|back| (back.time - back.seconds, Push::Return { seconds: back.seconds }));
+        let returns =
+            input.returns.map(|back| (back.time - back.seconds, Push::Return { seconds: back.seconds }));
         let mut pending: Vec<_> = limp.into_iter().chain(drives).chain(hits).chain(returns).collect();
         // Stable, so that pushes at one moment keep their order.
         pending.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -75,7 +76,7 @@ impl<'a> Actor<'a> {
         }
     }
 
-    /// What is due at the start, and the first frame.
+    /// Does what is due at the start, and keeps the first frame.
     pub fn begin(&mut self, world: &mut World) {
         self.push_due(world);
         self.frames.add_until(&self.character, world.time() as f32);

@@ -51,7 +51,7 @@ pub struct BakeDrive<'a> {
     pub time: f32,
     /// Bodies whose drive changes.
     pub part: Part<'a>,
-    /// What moves them from then on.
+    /// Mode of those drives from then on.
     pub mode: DriveMode,
     /// Half of the change is made within so many seconds.
     pub half_life: f32,
@@ -240,8 +240,13 @@ impl BakeInput<'_> {
             self.fps
         );
         assert!(self.hits.iter().all(|hit| hit.time.is_finite()), "hits have a time: {:?}", self.hits);
-        assert!(self.drives.iter().all(|drive| drive.time.is_finite()), "drives have a time: {:?}", self.drives);
-        let is_moment = |back: BakeReturn| back.time.is_finite() && (0.0..f32::INFINITY).contains(&back.seconds);
+        assert!(
+            self.drives.iter().all(|drive| drive.time.is_finite()),
+            "drives have a time: {:?}",
+            self.drives
+        );
+        let is_moment =
+            |back: BakeReturn| back.time.is_finite() && (0.0..f32::INFINITY).contains(&back.seconds);
         assert!(self.returns.is_none_or(is_moment), "a return has a time and a length: {:?}", self.returns);
         self.movers.iter().for_each(BakeMover::check);
     }
