@@ -7,7 +7,7 @@ use crate::ragdoll::Ragdoll;
 use crate::rig_arrays;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use sinew::formats::{read_ragdoll_settings, write_gltf};
+use sinew::formats::{append_clips, read_ragdoll_settings};
 use sinew::ragdoll::{AfterSettling, BuildOptions, DriveMode, LimitSource, Locomotion, Sex, ShapeChoice};
 use sinew_bindings::{Corrections, Motions, Wishes};
 use std::collections::HashMap;
@@ -242,10 +242,9 @@ impl CharacterFile {
         Ok(Character { file: self.file.clone(), def: Arc::new(made.map_err(failed)?) })
     }
 
-    /// The file as a GLB: of arrays, what they were made.
+    /// The file as a GLB, with the files that it names in it; of arrays, the file that they were made.
     fn glb<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let document = &self.file.document;
-        let written = py.detach(|| write_gltf(&document.rig, &document.clips));
+        let written = py.detach(|| append_clips(&self.file.document, &[]));
         Ok(PyBytes::new(py, &written.map_err(|error| of_file(error.with_file(&self.file.name)))?))
     }
 

@@ -29,7 +29,8 @@ class SINEW_PT_ragdoll(Side, bpy.types.Panel):
         column.prop(settings, "springs")
         layout.operator("sinew.build", icon="ARMATURE_DATA", text="Build again" if settings.definition else "Build ragdoll")
         if settings.definition:
-            row = layout.row(align=True, heading="Show")
+            row = layout.row(align=True)
+            row.use_property_split = False
             row.prop(settings, "show_bodies", toggle=True)
             row.prop(settings, "show_limits", toggle=True)
             row.prop(settings, "show_masses", toggle=True)

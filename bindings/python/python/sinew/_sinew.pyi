@@ -167,7 +167,7 @@ class CharacterFile:
         """The character with its motions; `clip` plays until it falls: `exact`ly where the file has it, whatever ground is there, else on the ground. `falling` drives the bodies while it falls."""
 
     def glb(self) -> bytes:
-        """The character as a GLB: rig, skin and clips, without pictures."""
+        """The file as a GLB, with the files that it names in it; of arrays, the file that they were made."""
 
 @final
 class Ragdoll:
