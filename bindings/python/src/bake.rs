@@ -10,7 +10,7 @@ use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use sinew::anim::Rig;
-use sinew::formats::{append_clip, write_atomic, write_gltf};
+use sinew::formats::{UsdInput, UsdText, append_clip, write_atomic, write_gltf, write_usda};
 use sinew::math::{Affine, Transform};
 use sinew::physics::{FieldDef, FieldKind, Wind, WorldDef};
 use sinew::ragdoll::quality::{judge_bake, toppled};
@@ -36,6 +36,7 @@ pub struct Bake {
     file: Arc<CharacterFile>,
     def: Arc<CharacterDef>,
     baked: Baked,
+    fps: f32,
     hits: Vec<BakeHit>,
     verdict: Verdict,
     reasons: Vec<String>,
@@ -201,7 +202,7 @@ impl Stage {
         let made = |(actor, baked): (&&Actor, Baked)| {
             let (verdict, reasons) = judge_bake(&baked.quality);
             let (file, def, hits) = (actor.file.clone(), actor.def.clone(), actor.hits.clone());
-            Bake { file, def, baked, hits, verdict, reasons }
+            Bake { file, def, baked, fps: self.fps, hits, verdict, reasons }
         };
         Ok(actors.iter().zip(baked).map(made).collect())
     }
@@ -328,6 +329,7 @@ impl Character {
             file,
             def,
             baked: fall.baked,
+            fps,
             hits: vec![fall.hit],
             verdict: fall.verdict,
             reasons: fall.reasons,
@@ -470,6 +472,20 @@ impl Bake {
     #[pyo3(signature = (*, mesh=true))]
     fn glb<'py>(&self, py: Python<'py>, mesh: bool) -> PyResult<Bound<'py, PyBytes>> {
         Ok(PyBytes::new(py, &py.detach(|| self.bytes(mesh))?))
+    }
+
+    /// The character, its motion and its ragdoll as USD text (.usda), and what that cannot hold, a sentence each.
+    #[pyo3(signature = (*, physics=true))]
+    fn usda(&self, py: Python<'_>, physics: bool) -> PyResult<(String, Vec<String>)> {
+        let input = UsdInput {
+            rig: &self.def.rig,
+            clip: &self.baked.clip,
+            fps: self.fps,
+            world_from_model: self.baked.world_from_model,
+            ragdoll: physics.then_some(&self.def.ragdoll),
+        };
+        let UsdText { text, notes } = py.detach(|| guarded(|| write_usda(&input)))?;
+        Ok((text, notes))
     }
 
     /// Writes that file, whole or not at all.

@@ -6,7 +6,8 @@ use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use sinew::formats::{
-    MjcfModel, MjcfText, read_bytes, read_mjcf, read_ragdoll, write_atomic, write_mjcf, write_ragdoll,
+    MjcfModel, MjcfText, read_bytes, read_mjcf, read_ragdoll, read_urdf, write_atomic, write_mjcf,
+    write_ragdoll,
 };
 use sinew::math::Range;
 use sinew::physics::{JointKind, Shape};
@@ -30,18 +31,20 @@ pub struct Model {
     pub model: MjcfModel,
 }
 
-/// Reads a ragdoll: a definition (.json), an MJCF model (.xml), or a character, of which it is built.
+/// Reads a ragdoll: a definition (.json), an MJCF or URDF model (.xml, .urdf), or a character, of which it is built.
 #[pyfunction]
 pub fn load_ragdoll(py: Python<'_>, path: PathBuf) -> PyResult<Ragdoll> {
     let repair = py.detach(|| guarded(|| sinew_bindings::load_ragdoll(&path)))?.map_err(failed)?;
     Ok(Ragdoll { repair, notes: Vec::new(), mean_error: None })
 }
 
-/// Reads an MJCF model: bodies, joints, and a floor where it has one.
+/// Reads an MJCF model (.xml) or a URDF (.urdf): bodies, joints, and a floor where it has one.
 #[pyfunction]
 pub fn load_model(py: Python<'_>, path: PathBuf) -> PyResult<Model> {
     let read = || {
-        let model = read_bytes(&path).and_then(|bytes| read_mjcf(&bytes));
+        let is_urdf = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("urdf"));
+        let read = |bytes: Vec<u8>| if is_urdf { read_urdf(&bytes) } else { read_mjcf(&bytes) };
+        let model = read_bytes(&path).and_then(read);
         model.map_err(|error| error.with_file(path.display().to_string()))
     };
     Ok(Model { model: py.detach(|| guarded(read))?.map_err(of_file)? })

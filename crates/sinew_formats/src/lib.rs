@@ -24,6 +24,8 @@ pub mod obj;
 mod parts;
 pub mod ragdoll;
 mod triangles;
+pub mod urdf;
+pub mod usd;
 pub mod world;
 
 pub use bvh::{BvhDocument, BvhEnds, BvhOptions, BvhText, BvhWriteOptions, read_bvh, write_bvh};
@@ -48,4 +50,6 @@ pub use motion::{MotionFile, MotionFormat, MotionOptions, read_motion};
 pub use obj::read_obj;
 pub use ragdoll::settings::read_ragdoll_settings;
 pub use ragdoll::{read_ragdoll, write_ragdoll};
+pub use urdf::read_urdf;
+pub use usd::{UsdInput, UsdText, write_usda};
 pub use world::{read_world, write_world};

@@ -114,10 +114,10 @@ def mannequin() -> CharacterFile:
     """The mannequin that comes with Sinew, 1.75 m, with a walk and two ways to get up."""
 
 def load_ragdoll(path: _Path) -> Ragdoll:
-    """Reads a ragdoll: a definition (.json), an MJCF model (.xml), or a character, of which it is built."""
+    """Reads a ragdoll: a definition (.json), an MJCF or URDF model (.xml, .urdf), or a character, of which it is built."""
 
 def load_model(path: _Path) -> Model:
-    """Reads an MJCF model: bodies, joints, and a floor where it has one."""
+    """Reads an MJCF model (.xml) or a URDF (.urdf): bodies, joints, and a floor where it has one."""
 
 @final
 class CharacterFile:
@@ -488,6 +488,9 @@ class Bake:
 
     def glb(self, *, mesh: bool = True) -> bytes:
         """The file with the clip in it, or the bones alone with the clip if there is to be no mesh."""
+
+    def usda(self, *, physics: bool = True) -> tuple[str, list[str]]:
+        """The character, its motion and its ragdoll as USD text (.usda), and what that cannot hold, a sentence each."""
 
     def save(self, path: _Path, *, mesh: bool = True) -> None:
         """Writes that file, whole or not at all."""
