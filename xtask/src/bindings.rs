@@ -122,7 +122,7 @@ pub fn python() -> Result<()> {
     let wheel = wheel(&builder, &folder.join("wheels"))?;
     let with_extras = format!("sinew[gym,ray] @ file://{}", wheel.display());
     command::run(pip(&user).arg(with_extras))?;
-    command::run(pip(&user).args(["pytest", "mypy", "matplotlib", "nbconvert", "ipykernel"]))?;
+    command::run(pip(&user).args(["pytest", "mypy", "matplotlib", "nbconvert", "ipykernel", "usd-core"]))?;
     let run = |program: &str, arguments: &[&str], place: &Path| {
         command::run(Command::new(user.join("bin").join(program)).args(arguments).current_dir(place))
     };

@@ -3,8 +3,18 @@
 //! Lengths of the stage are metres, +Y is up, time codes are frames. What is under `/Character` is the rig in its file's unit, under a transform that makes
 //! metres of it; what is under `/Physics` are the bodies in the pose of the definition.
 //!
-//! What is lost, and said so in [`UsdText::notes`]: pictures and colours of the skin; hulls, which become the box around them; the joint between swing limits
-//! in between their axes (UsdPhysics limits each axis by itself, a ragdoll's cone is an ellipse); joint friction; rigid meshes that hang on a joint.
+//! What is lost, and said so in [`UsdText::notes`]: pictures and colours of the skin; hulls, which become the box around them; the ellipse of a
+//! cone (UsdPhysics limits each axis by itself); joint friction; rigid meshes that hang on a joint.
+//!
+//! ```
+//! use sinew_formats::{UsdInput, write_usda};
+//!
+//! let def = sinew::mannequin::character();
+//! let world_from_model = def.mapping().character_from_model();
+//! let (rig, clip) = (&def.rig, &def.motions().clips[0]);
+//! let written = write_usda(&UsdInput { rig, clip, fps: 30.0, world_from_model, ragdoll: Some(&def.ragdoll) });
+//! assert!(written.text.starts_with("#usda 1.0") && written.text.contains("PhysicsRigidBodyAPI"));
+//! ```
 
 use crate::error::quoted;
 use core::fmt::Write;
