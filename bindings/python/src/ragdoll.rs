@@ -6,8 +6,8 @@ use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use sinew::formats::{
-    MjcfModel, MjcfText, read_bytes, read_mjcf, read_ragdoll, read_urdf, write_atomic, write_mjcf,
-    write_ragdoll,
+    MjcfModel, MjcfText, read_bytes, read_mjcf, read_physics_gltf, read_ragdoll, read_urdf, write_atomic,
+    write_mjcf, write_ragdoll,
 };
 use sinew::math::Range;
 use sinew::physics::{JointKind, Shape};
@@ -38,12 +38,16 @@ pub fn load_ragdoll(py: Python<'_>, path: PathBuf) -> PyResult<Ragdoll> {
     Ok(Ragdoll { repair, notes: Vec::new(), mean_error: None })
 }
 
-/// Reads an MJCF model (.xml) or a URDF (.urdf): bodies, joints, and a floor where it has one.
+/// Reads an MJCF model (.xml), a URDF (.urdf) or the physics of a glTF (.gltf, .glb): bodies, joints, and a floor where it has one.
 #[pyfunction]
 pub fn load_model(py: Python<'_>, path: PathBuf) -> PyResult<Model> {
     let read = || {
-        let is_urdf = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("urdf"));
-        let read = |bytes: Vec<u8>| if is_urdf { read_urdf(&bytes) } else { read_mjcf(&bytes) };
+        let end = path.extension().map(|end| end.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let read = |bytes: Vec<u8>| match end.as_str() {
+            "urdf" => read_urdf(&bytes),
+            "gltf" | "glb" => read_physics_gltf(&bytes),
+            _ => read_mjcf(&bytes),
+        };
         let model = read_bytes(&path).and_then(read);
         model.map_err(|error| error.with_file(path.display().to_string()))
     };

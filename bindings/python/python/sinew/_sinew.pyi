@@ -117,7 +117,7 @@ def load_ragdoll(path: _Path) -> Ragdoll:
     """Reads a ragdoll: a definition (.json), an MJCF or URDF model (.xml, .urdf), or a character, of which it is built."""
 
 def load_model(path: _Path) -> Model:
-    """Reads an MJCF model (.xml) or a URDF (.urdf): bodies, joints, and a floor where it has one."""
+    """Reads an MJCF model (.xml), a URDF (.urdf) or the physics of a glTF (.gltf, .glb): bodies, joints, and a floor where it has one."""
 
 @final
 class CharacterFile:
