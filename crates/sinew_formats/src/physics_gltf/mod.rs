@@ -72,8 +72,9 @@ pub fn read_physics_gltf(bytes: &[u8]) -> Result<MjcfModel> {
     let shapes = [extension(root, "KHR_implicit_shapes")?, extension(root, "OMI_physics_shape")?];
     let shapes = shapes.into_iter().flatten().next().map_or(Ok(Vec::new()), |of| of.list("shapes"))?;
     let lists = Lists { shapes, materials: list(root, "KHR_physics_rigid_bodies", "physicsMaterials")? };
-    for node in &nodes {
-        read_collider(node, &lists, &mut bodies, &mut notes)?;
+    for (index, node) in nodes.iter().enumerate() {
+        let body = &mut bodies[body_of(&nodes, index)].def;
+        read_collider(node, &lists, body, &mut notes)?;
     }
     weigh(&nodes, &mut bodies)?;
     let joints = read_joints(root, &nodes, &bodies, &mut notes)?;
@@ -224,12 +225,7 @@ fn read_body(nodes: &mut [Node<'_>], index: usize, bodies: &mut Vec<MjcfBody>) -
     Ok(())
 }
 
-fn read_collider(
-    node: &Node<'_>,
-    lists: &Lists<'_>,
-    bodies: &mut [MjcfBody],
-    notes: &mut Notes,
-) -> Result<()> {
+fn read_collider(node: &Node<'_>, lists: &Lists<'_>, body: &mut BodyDef, notes: &mut Notes) -> Result<()> {
     let Some(physics) = physics(node.at)? else { return Ok(()) };
     if physics.get("trigger")?.is_some() {
         notes.left_out("triggers");
@@ -257,7 +253,6 @@ fn read_collider(
         }
         _ => Material::default(),
     };
-    let body = &mut bodies[node.body].def;
     let world_from_body = Transform::new(body.position, body.rotation);
     let body_from_shape = world_from_body.inverse() * rigid(&node.world);
     let body_from_shape = Transform::new(body_from_shape.translation, body_from_shape.rotation.normalize());
@@ -520,7 +515,8 @@ mod tests {
         assert_eq!(model.bodies.len(), 3);
         let bob = &model.bodies[2].def;
         assert_eq!(bob.mass.expect("it is given").mass, 3.0);
-        assert_eq!(bob.shapes[0].shape, Shape::Capsule { half_height: 0.5, radius: 0.1 });
+        let Shape::Capsule { half_height, radius } = bob.shapes[0].shape else { panic!("{:?}", bob.shapes) };
+        assert!((half_height - 0.5).abs() < 1e-6 && (radius - 0.1).abs() < 1e-6, "twice its size");
         let JointKind::Ball { limit: Some(limit) } = model.joints[0].kind else {
             panic!("{:?}", model.joints[0])
         };

@@ -437,7 +437,7 @@ mod tests {
             ("lower=\"-0.5\"", "lower=\"2\"", "above `upper`"),
             ("axis xyz=\"0 1 0\"", "axis xyz=\"0 0 0\"", "an axis has a length"),
             ("type=\"revolute\"", "type=\"planar\"", "planar joints are not read"),
-            ("mass value=\"1\"", "mass value=\"nan\"", "no number"),
+            ("mass value=\"1\"", "mass value=\"nan\"", "not within"),
             ("<parent link=\"base\"/>", "<parent link=\"tip\"/>", "hangs on itself"),
             ("radius=\"0.05\"", "radius=\"0\"", "line"),
         ] {
