@@ -2,7 +2,7 @@
 
 use crate::command::{self, Profile};
 use crate::golden::{self, Coverage};
-use crate::{bench, bindings, contract, new_user, npm, spawns, targets, tidy, web};
+use crate::{bench, bindings, blender, contract, new_user, npm, spawns, targets, tidy, web};
 use anyhow::{Context, Result, anyhow, bail};
 use serde_json::Value;
 use std::fs;
@@ -15,7 +15,7 @@ use std::time::Instant;
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
     /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
-    /// SINEW_WORLDS, as in 100..200); ten minutes of random lives, and ten with characters; definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the viewer's window and its page; the npm package; the plugin for Bevy; the libraries for C and Python; instruction counts; the oldest compiler
+    /// SINEW_WORLDS, as in 100..200); ten minutes of random lives, and ten with characters; definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the viewer's window and its page; the npm package; the plugin for Bevy; the libraries for C and Python; the extension in Blender; instruction counts; the oldest compiler
     #[arg(long)]
     full: bool,
 }
@@ -64,6 +64,7 @@ impl Ci {
             check("new user of bevy", &new_user::bevy);
             check("c", &bindings::c);
             check("python", &bindings::python);
+            check("blender", &blender::check);
             check("counts", &bench::check_counts);
             check("oldest compiler", &oldest_compiler);
         }

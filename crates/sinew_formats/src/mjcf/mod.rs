@@ -36,16 +36,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod bodies;
+pub(crate) mod bodies;
 mod compiler;
 mod defaults;
 mod geom;
 mod joint;
 mod keyframe;
-mod notes;
+pub(crate) mod notes;
 mod ragdoll;
 mod write;
-mod xml;
+pub(crate) mod xml;
 
 pub use ragdoll::MjcfRagdoll;
 pub use write::{MjcfText, write_mjcf};
