@@ -2,7 +2,7 @@
 //!
 #![doc = include_str!("../doc/fall.svg")]
 //!
-//! The crate to add; each module is one of the crates it is made of, [`prelude`] the names that most programs need.
+//! The crate to depend on. Each module is one of its member crates; [`prelude`] has the names that most programs need.
 //!
 //! | feature | brings | default |
 //! |---|---|---|
@@ -33,8 +33,8 @@ pub mod prelude;
 #[cfg(feature = "formats")]
 pub use loaded::{LoadCharacterError, LoadedCharacter, character_of, load_character};
 
-/// Reads a character from a GLB, glTF, VRM or VRMA with the files beside it: rig, clips, and what is needed to write a
-/// clip back into the same file. Pictures are left out.
+/// Reads a character from a GLB, glTF, VRM or VRMA with the files next to it: rig, clips, and the data needed to write
+/// a clip back into the same file. Pictures are left out.
 ///
 /// ```no_run
 /// use sinew::anim::analyze;
@@ -48,13 +48,13 @@ pub use loaded::{LoadCharacterError, LoadedCharacter, character_of, load_charact
 /// ```
 ///
 /// # Errors
-/// Names the file, what is wrong with it, and where; see [`formats::read_gltf`].
+/// Names the file, the problem, and its place; see [`formats::read_gltf`].
 #[cfg(feature = "formats")]
 pub fn load(path: impl AsRef<std::path::Path>) -> formats::Result<formats::Document> {
     formats::load_gltf(path, formats::ReadOptions::default())
 }
 
-/// Runs a step on as many threads as the machine can at once: for `World::step_with`. The result does not depend on it.
+/// Runs a step on all hardware threads: for `World::step_with`. The result does not depend on it.
 #[cfg(feature = "parallel")]
 pub fn all_threads() -> physics::Threads {
     physics::Threads::new(std::thread::available_parallelism().map_or(1, core::num::NonZero::get))

@@ -15,11 +15,11 @@ use std::path::Path;
 /// A character read from a file.
 #[derive(Clone, Debug)]
 pub struct LoadedCharacter {
-    /// Definition for [`Character::spawn`](crate::ragdoll::Character::spawn), which takes it behind an `Arc`.
+    /// Definition for [`Character::spawn`](crate::ragdoll::Character::spawn), which takes it in an `Arc`.
     pub def: CharacterDef,
     /// Roles of its joints, its unit and its axes.
     pub analysis: RigAnalysis,
-    /// Assumptions, chosen clips, and what was not found, one sentence each.
+    /// Assumptions, chosen clips, and missing ones, one sentence each.
     pub notes: Vec<String>,
     /// Remarks of the build on single bodies.
     pub report: BuildReport,
@@ -39,7 +39,7 @@ pub enum LoadCharacterError {
         /// The reason.
         source: NoSkin,
     },
-    /// No ragdoll can be built of it, or the settings beside it do not fit.
+    /// The rig allows no ragdoll, or the settings next to it do not fit.
     #[error("{file}: {source}")]
     Settings {
         /// The file.
@@ -57,10 +57,10 @@ pub enum LoadCharacterError {
     },
 }
 
-/// Makes a character of a GLB, glTF or VRM file: reads it, finds the roles of its joints, builds the ragdoll, and chooses walk, idle and
-/// get-ups among its clips ([`own_motions`]). A human that lacks one of these has the built-in ones
-/// ([`set_motions_with_builtin`]); any other without a way to get up stays down. Of several characters in the file it takes the one with
-/// the most vertices. Settings in `NAME.ragdoll.json` beside the file are followed.
+/// Makes a character from a GLB, glTF or VRM file: reads it, finds the roles of its joints, builds the ragdoll, and
+/// chooses walk, idle and get-ups among its clips ([`own_motions`]). A human that lacks one of these gets the built-in
+/// ones ([`set_motions_with_builtin`]); any other character without a get-up stays down. If the file has several
+/// characters, it takes the one with the most vertices. Settings in `NAME.ragdoll.json` next to the file are applied.
 ///
 /// ```no_run
 /// use sinew::prelude::*;
@@ -78,7 +78,7 @@ pub enum LoadCharacterError {
 /// ```
 ///
 /// # Errors
-/// A file that cannot be read, has no skin, or gives no ragdoll; settings that do not fit; a clip that cannot be played.
+/// A file that cannot be read, has no skin, or gives no ragdoll; settings that do not fit; an unplayable clip.
 pub fn load_character(path: impl AsRef<Path>) -> Result<LoadedCharacter, LoadCharacterError> {
     let path = path.as_ref();
     let document = crate::load(path)?;
@@ -93,8 +93,8 @@ pub fn load_character(path: impl AsRef<Path>) -> Result<LoadedCharacter, LoadCha
     character_of(document, &path.display().to_string(), &settings)
 }
 
-/// Makes a character of a file in memory, as [`load_character`] does of one on disk. `name` is the file's: errors begin with it, and its
-/// words help to tell what the character is.
+/// Makes a character from a file in memory, as [`load_character`] does from one on disk. `name` is the file's: errors
+/// start with it, and its words help to classify the character.
 ///
 /// # Errors
 /// As [`load_character`].
@@ -140,7 +140,7 @@ pub fn character_of(
     Ok(LoadedCharacter { def, analysis, notes, report })
 }
 
-/// Gives a character its own clips and, if it is a human, the built-in ones for what they lack; returns what there is to say of them.
+/// Gives a character its own clips and, if it is a human, the built-in ones for the missing ones; returns notes.
 fn set_motions(
     def: &mut CharacterDef,
     analysis: &RigAnalysis,
@@ -166,7 +166,7 @@ fn set_motions(
     Ok(notes)
 }
 
-/// Leaves out the meshes of all characters but the one with the most vertices; returns a note if there were several.
+/// Removes the meshes of all characters except the one with the most vertices; returns a note if there were several.
 fn keep_largest(rig: &mut Rig) -> Option<String> {
     let all = characters(rig);
     let vertices = |own: &Vec<usize>| -> usize {

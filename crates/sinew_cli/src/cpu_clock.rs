@@ -1,4 +1,4 @@
-//! Cost of work in processor time: other programs on the machine do not count.
+//! Cost of work in processor time, independent of other programs on the machine.
 
 use cpu_time::ProcessTime;
 

@@ -13,19 +13,19 @@ pub type Result<T, E = Failure> = std::result::Result<T, E>;
 pub enum Failure {
     /// A file, or the work on it. Exit code 1.
     File(sinew::formats::Error),
-    /// Use of the program that makes no sense. Exit code 2.
+    /// Invalid use of the program. Exit code 2.
     Usage(String),
-    /// The work was done, and its outcome misses what is expected of it; the report is printed all the same. Exit code 1.
+    /// The work was done, and its result misses an expectation; the report is still printed. Exit code 1.
     Missed {
         /// Report of the work.
         report: Box<Report>,
-        /// Line that says what is missed.
+        /// Line that describes the miss.
         what: String,
     },
 }
 
 impl Failure {
-    /// The work on a file failed for a reason that has no place in it.
+    /// The work on a file failed at no particular place.
     pub fn of_file(file: impl Into<String>, what: impl fmt::Display) -> Self {
         Self::File(sinew::formats::Error::unsupported(what.to_string(), "").with_file(file))
     }
@@ -43,7 +43,7 @@ impl Failure {
         })
     }
 
-    /// JSON that `--json` prints: the file, what is wrong with it, and where. Usage has none of these.
+    /// JSON of `--json`: the file, the problem, and its place. Usage errors have none of these.
     pub fn to_json(&self) -> Option<Value> {
         match self {
             Self::File(error) => {
@@ -60,12 +60,12 @@ impl fmt::Display for Failure {
             Self::File(error) => error.to_string(),
             Self::Usage(what) | Self::Missed { what, .. } => what.clone(),
         };
-        // The system's number of an error says nothing that its words do not.
+        // The system's error number adds nothing to its text.
         let line = match line.find(" (os error ") {
             Some(at) => line[..at].to_owned() + line[at..].split_once(')').map_or("", |(_, rest)| rest),
             None => line,
         };
-        // Names come from files: a line feed in one must not make two lines of this.
+        // Names come from files: a line feed in one must not split this line.
         line.chars().try_for_each(|c| {
             if c.is_control() { write!(f, "{}", c.escape_default()) } else { write!(f, "{c}") }
         })

@@ -1,4 +1,4 @@
-//! A fall: a character, what is done to it, and what became of it. What `bake` and `demo` have in common.
+//! A character's fall and its result, shared by `bake` and `demo`.
 
 use crate::cpu_clock::timed;
 use crate::report::number;
@@ -10,7 +10,7 @@ use sinew::ragdoll::{BakeInput, Baked, Verdict, bake};
 use std::fmt::Write;
 use std::path::Path;
 
-/// A bake and what it cost.
+/// A bake and its cost.
 pub struct Fall<'a> {
     /// Input that was simulated.
     pub input: &'a BakeInput<'a>,
@@ -20,12 +20,12 @@ pub struct Fall<'a> {
     pub realtime_factor: f64,
     /// Verdict on its fitness for use.
     pub verdict: Verdict,
-    /// Reasons for the verdict: what is outside its bar, a sentence each.
+    /// Reasons for the verdict: figures outside their bars, one sentence each.
     pub reasons: Vec<String>,
 }
 
 impl<'a> Fall<'a> {
-    /// Simulates it, and judges it in the light of what is in doubt about the mass.
+    /// Simulates and judges it, taking doubt about the mass into account.
     pub fn simulate(input: &'a BakeInput<'a>, doubt: Option<&Doubt>) -> Self {
         let (baked, cpu_seconds) = timed(|| bake(input));
         let seconds = baked.steps as f64 * input.world.step_nanoseconds as f64 * 1e-9;
@@ -60,7 +60,7 @@ impl<'a> Fall<'a> {
         object.into()
     }
 
-    /// Text of what happened, how well it went, and where it is.
+    /// Text of the events, the quality and the position.
     pub fn to_text(&self, outputs: &[&Path]) -> String {
         let mut text = String::new();
         for (time, what) in story::told(self.input, &self.baked.events) {
@@ -84,7 +84,7 @@ impl<'a> Fall<'a> {
         text
     }
 
-    /// Number of keys of the clip, and the error of leaving out the others, as text.
+    /// Number of the clip's keys, and the error of the key reduction, as text.
     fn keys_text(&self) -> String {
         let (bound, error, [all, keys]) = (self.input.key_bound, self.baked.key_error, self.baked.keys);
         if keys == all {

@@ -1,4 +1,4 @@
-//! One judge for `ragdoll build` and `bake`: the drops, the life that is shown, the skin over both.
+//! Judge shared by `ragdoll build` and `bake`: the drops, the baked life, and the skin in both.
 
 use crate::commands::bake::{Motions, actor, as_in_file};
 use crate::failure::Result;
@@ -12,20 +12,20 @@ use sinew::ragdoll::quality::{Doubt, Fault, faults_of_bake, faults_of_ragdoll, j
 use sinew::ragdoll::{BakeInput, DropReport, RagdollDef, SkinQuality, Verdict};
 use std::sync::Arc;
 
-/// When a character goes limp that nothing hits, seconds.
+/// Time at which a character without hits goes limp, seconds.
 pub const LIMP_AT: f32 = 0.5;
-/// Length of a bake, seconds, where the user does not say it.
+/// Default length of a bake, seconds.
 pub const SECONDS: f32 = 8.0;
 
 /// Findings of the judge.
 pub struct Judgement {
     pub verdict: Verdict,
-    /// Figures outside their bars, a sentence each.
+    /// Figures outside their bars, one sentence each.
     pub reasons: Vec<String>,
     pub skin: SkinReport,
 }
 
-/// Judges drops and life of a character, in the light of what is in doubt about its mass.
+/// Judges drops and life of a character, taking doubt about its mass into account.
 pub fn judge_life(
     character: &CharacterFile,
     tested: &DropReport,
@@ -35,7 +35,7 @@ pub fn judge_life(
     let def = &life.fall.input.character.ragdoll;
     let of_drops = |[drop, wall]: &[_; 2]| {
         let (verdict, mut reasons) = judge(drop, wall);
-        // What was not measured.
+        // Unmeasured figures.
         reasons.pop();
         (verdict, reasons)
     };
@@ -58,7 +58,7 @@ pub fn judge_life(
     Judgement { verdict, reasons, skin }
 }
 
-/// Bakes a character as `bake` does where nothing else is asked for, and hands it over: on a floor, by its own clips or the built-in ones.
+/// Bakes a character with the defaults of `bake` and returns it: on a floor, with its own clips or the built-in ones.
 ///
 /// # Errors
 /// A clip that cannot be played.

@@ -68,7 +68,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// The command, in which `-1` after an option is its value everywhere, so that whoever reads the value says what is wrong with it.
+/// The command, with `-1` after an option accepted as its value everywhere, so that the code that reads the value
+/// reports errors.
 fn with_negative_numbers(command: clap::Command) -> clap::Command {
     let accept = |arg: clap::Arg| {
         let takes = arg.get_action().takes_values();
@@ -77,19 +78,19 @@ fn with_negative_numbers(command: clap::Command) -> clap::Command {
     command.mut_args(accept).mut_subcommands(with_negative_numbers)
 }
 
-/// Prints help or the version to stdout, what is wrong with the arguments to stderr.
+/// Prints help or the version to stdout, argument errors to stderr.
 fn help_or_usage(told: &clap::Error) -> ExitCode {
     let code = ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2));
     written(told.print().and_then(|()| io::stdout().flush()), code)
 }
 
-/// Writes text to stdout; the code is that of the process if all of it is written.
+/// Writes text to stdout; returns the process's exit code if all of it is written.
 fn print(text: &str, code: ExitCode) -> ExitCode {
     let mut out = io::stdout().lock();
     written(out.write_all(text.as_bytes()).and_then(|()| out.flush()), code)
 }
 
-/// Exit code after a write. Whoever reads the output may stop reading; that is no fault of the command.
+/// Exit code after a write. A reader that stops reading is not an error of the command.
 fn written(outcome: io::Result<()>, code: ExitCode) -> ExitCode {
     match outcome {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

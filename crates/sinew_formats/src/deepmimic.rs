@@ -1,9 +1,9 @@
 //! Characters and clips of DeepMimic (Peng et al., "DeepMimic: Example-Guided Deep Reinforcement Learning of
 //! Physics-Based Character Skills", SIGGRAPH 2018): JSON, metres, +Y up, the body faces +X.
 //!
-//! A frame is a row of numbers: its duration; place and orientation (w, x, y, z) of the root; then joint by joint four
-//! numbers for a ball joint, one angle about z for a hinge, none for a joint that is fixed. What the numbers stand for
-//! only the character says, which is a file of its own.
+//! A frame is a row of numbers: its duration; position and orientation (w, x, y, z) of the root; then per joint four
+//! numbers for a ball joint, one angle about z for a hinge, none for a fixed joint. Only the character, a separate
+//! file, defines the joints.
 //!
 //! ```
 //! use sinew_formats::{read_deepmimic, read_deepmimic_character};
@@ -28,7 +28,7 @@ use sinew_math::{EulerOrder, Rotation, Vec3};
 /// Motion of a joint of a DeepMimic character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeepMimicJoint {
-    /// The root: three numbers for its place, four for its orientation.
+    /// The root: three numbers for its position, four for its orientation.
     Root,
     /// A ball: a quaternion w, x, y, z.
     Spherical,
@@ -66,14 +66,14 @@ pub struct DeepMimicCharacter {
 pub struct DeepMimicClip {
     /// The motion.
     pub clip: Clip,
-    /// Meaning of a time outside the clip: the file says whether it starts over.
+    /// Behaviour outside the clip's time range: the file says whether it loops.
     pub wrap: Wrap,
 }
 
-/// Reads a character: joints and where they are attached. Bodies, limits and gains are passed over.
+/// Reads a character: joints and their attachment. Ignores bodies, limits and gains.
 ///
 /// # Errors
-/// Names the place: no JSON, a key that is missing or of another type, a parent that does not come before its child, a
+/// Names the place: invalid JSON, a missing key or one of another type, a parent that does not precede its child, a
 /// joint of an unknown type, no joint, a second root.
 pub fn read_deepmimic_character(bytes: &[u8]) -> Result<DeepMimicCharacter> {
     let json = json::parse(bytes)?;
@@ -131,8 +131,8 @@ fn attached(at: At<'_>) -> Result<Rotation> {
 /// Reads a clip of a character.
 ///
 /// # Errors
-/// Names the place: no JSON, no frame, a row that does not have the character's numbers, a number that is not finite, a
-/// frame but for the last one that does not last.
+/// Names the place: invalid JSON, no frame, a row whose length does not match the character, a non-finite number, a
+/// frame other than the last with no duration.
 pub fn read_deepmimic(bytes: &[u8], character: &DeepMimicCharacter) -> Result<DeepMimicClip> {
     let json = json::parse(bytes)?;
     let root = At::root(&json);
@@ -170,7 +170,7 @@ fn read_rows(frames_at: At<'_>, width: usize) -> Result<Vec<Vec<f32>>> {
     Ok(rows)
 }
 
-/// When each frame begins, seconds. How long the last one lasts matters to nobody.
+/// Start time of each frame, seconds. The last frame's duration is not used.
 fn times(frames_at: At<'_>, rows: &[Vec<f32>]) -> Result<Vec<f32>> {
     let mut times = vec![0.0_f32];
     let mut sum = 0.0;
@@ -184,7 +184,7 @@ fn times(frames_at: At<'_>, rows: &[Vec<f32>]) -> Result<Vec<f32>> {
     Ok(times)
 }
 
-/// Keys of one joint: what moves, and its values frame after frame.
+/// Keys of one joint: its animated properties, and their values frame by frame.
 fn keys(kind: DeepMimicJoint, rest: LocalTransform, part: &[&[f32]]) -> Vec<(Property, Vec<f32>)> {
     let turns = |turn: &dyn Fn(&[f32]) -> Rotation| {
         let mut last = rest.rotation;

@@ -1,4 +1,4 @@
-//! The one error of this crate: what is wrong, in which file, and where in it.
+//! This crate's error: the problem, the file and the place in it.
 
 use core::fmt;
 
@@ -9,19 +9,19 @@ pub enum ErrorKind {
     Io,
     /// The bytes break the rules of their format.
     Malformed,
-    /// A valid file that asks for something this crate does not do.
+    /// A valid file that uses an unsupported feature.
     Unsupported,
 }
 
-/// Why a file could not be read or written. Displays as `FILE: what is wrong (where)`.
+/// Error of reading or writing a file. Displays as `FILE: what is wrong (where)`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{what}{}", Prefix(.file), Suffix(.where_))]
 pub struct Error {
     /// Sort of trouble.
     pub kind: ErrorKind,
-    /// Name of the file as the user gave it, or `""` when only bytes are known.
+    /// Name of the file as the user gave it, or `""` for bytes without a name.
     pub file: String,
-    /// Description of what is wrong, one line.
+    /// One-line description of the problem.
     pub what: String,
     /// Place in the file: a JSON path (`nodes[3].children`), a byte offset, a line; or `""`.
     pub where_: String,
@@ -31,22 +31,22 @@ pub struct Error {
 pub type Result<T, E = Error> = core::result::Result<T, E>;
 
 impl Error {
-    /// The operating system refused. `what` is one line.
+    /// An error of the operating system. `what` is one line.
     pub fn io(what: impl Into<String>) -> Self {
         Self { kind: ErrorKind::Io, file: String::new(), what: what.into(), where_: String::new() }
     }
 
-    /// The bytes are wrong at `place`.
+    /// Invalid bytes at `place`.
     pub fn malformed(what: impl Into<String>, place: impl Into<String>) -> Self {
         Self { kind: ErrorKind::Malformed, file: String::new(), what: what.into(), where_: place.into() }
     }
 
-    /// The file asks at `place` for what is not supported.
+    /// The file needs an unsupported feature at `place`.
     pub fn unsupported(what: impl Into<String>, place: impl Into<String>) -> Self {
         Self { kind: ErrorKind::Unsupported, file: String::new(), what: what.into(), where_: place.into() }
     }
 
-    /// The same error, naming the file it was found in, unless it names one already.
+    /// The same error with the name of its file, unless it has one already.
     #[must_use]
     pub fn with_file(mut self, file: impl Into<String>) -> Self {
         if self.file.is_empty() {
@@ -56,7 +56,7 @@ impl Error {
     }
 }
 
-/// Text from a file, fit for a message: on one line, and not longer than a line.
+/// Text from a file made fit for a message: a single line of limited length.
 pub(crate) fn quoted(text: &str) -> String {
     const LONGEST: usize = 60;
     let mut out: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();

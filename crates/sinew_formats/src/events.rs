@@ -8,8 +8,8 @@
 //!     {"time": 0.5, "name": "hit", "min_weight": 0.9, "fired_by": "leader", "on_interrupt": true}]}]}
 //! ```
 //!
-//! `clip` is a name, or a number from 0 where clips have none; times are seconds. In `extras` there is no list of clips:
-//! `"sinew_events": {"version": 1, "events": […]}`, or the bare list.
+//! `clip` is a name, or an index from 0 if clips have no names; times are seconds. In `extras` there is no list of
+//! clips: `"sinew_events": {"version": 1, "events": […]}`, or the bare list.
 //!
 //! ```
 //! use sinew_anim::ClipEvent;
@@ -37,11 +37,11 @@ const EXTRAS_KEY: &str = "sinew_events";
 const FIRED_BY: [(&str, FiredBy); 3] =
     [("every", FiredBy::Every), ("leader", FiredBy::Leader), ("one_per_group", FiredBy::OnePerGroup)];
 
-/// Reads an events file: for each of `clips` its events by time, `None` for one that the file does not mention.
+/// Reads an events file: for each of `clips` its events by time, `None` for a clip that the file does not mention.
 ///
 /// # Errors
-/// Names the place: no JSON, another kind of file or a newer version, an unknown key, a clip that is not there, is there
-/// more than once or is listed twice, an event without a name or outside of its clip, a weight outside of 0..=1.
+/// Names the place: invalid JSON, another kind of file or a newer version, an unknown key, a clip that does not exist,
+/// is ambiguous or is listed twice, an event without a name or outside its clip, a weight outside 0..=1.
 pub fn read_events(bytes: &[u8], clips: &[Clip]) -> Result<Vec<Option<Vec<ClipEvent>>>> {
     let json = json::parse(bytes)?;
     let root = At::root(&json);
@@ -73,10 +73,10 @@ fn find_clip(at: At<'_>, clips: &[Clip]) -> Result<usize> {
     }
 }
 
-/// Writes what [`read_events`] reads; clips without events are left out.
+/// Writes the format of [`read_events`]; clips without events are left out.
 ///
 /// # Panics
-/// If there are not as many lists of events as clips, or a number is not finite.
+/// If there is not one list of events per clip, or a number is not finite.
 pub fn write_events(clips: &[Clip], events: &[Vec<ClipEvent>]) -> String {
     assert_eq!(clips.len(), events.len(), "a list of events for each clip");
     let is_unique = |name: &str| clips.iter().filter(|clip| clip.name == name).count() == 1;
@@ -89,7 +89,8 @@ pub fn write_events(clips: &[Clip], events: &[Vec<ClipEvent>]) -> String {
     json::to_text(&json!({"sinew": "events", "version": VERSION, "clips": entries}))
 }
 
-/// The `extras` of a glTF animation with these events, for [`append_clip`](crate::append_clip); `None` without any.
+/// The `extras` of a glTF animation with these events, for [`append_clip`](crate::append_clip); `None` if there are
+/// none.
 ///
 /// # Panics
 /// If a number is not finite.
@@ -98,7 +99,7 @@ pub fn events_extras(events: &[ClipEvent]) -> Option<Value> {
     (!events.is_empty()).then(list)
 }
 
-/// Events of a glTF animation that lasts `duration` seconds. `extras` may be anything; what is under our key is ours.
+/// Events of a glTF animation of `duration` seconds. `extras` may be any value; only our key is read.
 pub(crate) fn read_extras(animation: At<'_>, duration: f32) -> Result<Vec<ClipEvent>> {
     let Some(extras) = animation.get("extras")?.filter(|extras| extras.value().is_object()) else {
         return Ok(Vec::new());
@@ -115,7 +116,7 @@ pub(crate) fn read_extras(animation: At<'_>, duration: f32) -> Result<Vec<ClipEv
 fn read_list(list: At<'_>, duration: f32) -> Result<Vec<ClipEvent>> {
     let mut events =
         list.items()?.into_iter().map(|at| read_event(at, duration)).collect::<Result<Vec<ClipEvent>>>()?;
-    // Stable: what happens at one time stays in the file's order.
+    // Stable: events at one time keep the file's order.
     events.sort_by(|a, b| a.time.total_cmp(&b.time));
     Ok(events)
 }
@@ -154,7 +155,7 @@ fn read_policy(at: At<'_>) -> Result<EventPolicy> {
     Ok(policy)
 }
 
-/// Events as JSON; what is as usual is left out.
+/// Events as JSON, without defaults.
 fn write_list(events: &[ClipEvent]) -> Value {
     let usual = EventPolicy::default();
     let write = |event: &ClipEvent| {

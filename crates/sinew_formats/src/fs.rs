@@ -1,4 +1,4 @@
-//! The only file IO of the libraries: read, atomic write, and files beside a file that stay beside it.
+//! The only file IO of the libraries: reading, atomic writing, and reading files next to a file within its folder.
 //!
 //! ```
 //! use sinew_formats::{load_world, write_atomic};
@@ -44,7 +44,7 @@ fn read_regular(path: &Path) -> Result<Vec<u8>, String> {
     fs::read(path).map_err(|e| reason(path, &e))
 }
 
-/// One line for what the operating system said, the same on every system where it matters.
+/// One-line text of an operating-system error, the same on every system where it matters.
 fn reason(path: &Path, error: &io::Error) -> String {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match error.kind() {
@@ -59,8 +59,8 @@ fn reason(path: &Path, error: &io::Error) -> String {
     }
 }
 
-/// Writes a file so that nobody ever sees half of it: into a temporary file in the same folder, then renamed. Of a symbolic
-/// link it is the target that is written. Nothing but a regular file is ever replaced.
+/// Writes a file atomically: into a temporary file in the same folder, then renamed. For a symbolic link it writes the
+/// target. Only regular files are replaced.
 ///
 /// # Errors
 /// Names the file: its folder is missing, full or write-protected; it is a folder, a device, a pipe. The temporary file is
@@ -69,11 +69,11 @@ pub fn write_atomic(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
     write_all_atomic(&[(path, bytes)])
 }
 
-/// Writes files that belong together, each as [`write_atomic`] does; none takes its place before the bytes of all are
-/// on the disk.
+/// Writes files that belong together, each as [`write_atomic`] does; none is renamed before the bytes of all are on
+/// disk.
 ///
 /// # Errors
-/// Names the first file that could not be written. Those that have their place already keep it.
+/// Names the first file that could not be written. Files already renamed stay.
 pub fn write_all_atomic(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)]) -> Result<()> {
     let mut staged = Vec::with_capacity(files.len());
     for (path, bytes) in files {
@@ -88,7 +88,7 @@ fn cannot_write(path: &Path, error: &io::Error) -> Error {
     Error::io(format!("cannot write: {}", reason(path, error))).with_file(path.display().to_string())
 }
 
-/// Place that the bytes of an output go to: the end of its links, and never what is no regular file.
+/// Target path of an output: symbolic links are resolved, and anything but a regular file is refused.
 fn place_of(path: &Path) -> io::Result<PathBuf> {
     // As many as Linux follows.
     const MOST_LINKS: usize = 40;
@@ -110,7 +110,7 @@ fn place_of(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("is a link that leads to a link without end"))
 }
 
-/// A file's bytes under a temporary name beside its place; removed when dropped, if they are still there.
+/// A file's bytes under a temporary name next to the target; deleted on drop if not renamed.
 struct Staged<'a> {
     /// As the user named it.
     path: &'a Path,
@@ -139,15 +139,15 @@ impl<'a> Staged<'a> {
 
 impl Drop for Staged<'_> {
     fn drop(&mut self) {
-        // Published files are gone from here; of others the error to report is the first one, not this.
+        // Renamed files no longer exist here; for others the first error is the one to report, not this one.
         let _ = fs::remove_file(&self.temporary);
     }
 }
 
-/// Reads a GLB, glTF, VRM or VRMA with the files beside it.
+/// Reads a GLB, glTF, VRM or VRMA with the files next to it.
 ///
 /// # Errors
-/// As [`read_gltf`], naming the file; also a URI that leaves the file's folder, by `..` or through a link.
+/// As [`read_gltf`], naming the file; also for a URI that leaves the file's folder, by `..` or through a link.
 pub fn load_gltf(path: impl AsRef<Path>, options: ReadOptions) -> Result<Document> {
     let path = path.as_ref();
     let bytes = read_bytes(path)?;
@@ -156,10 +156,10 @@ pub fn load_gltf(path: impl AsRef<Path>, options: ReadOptions) -> Result<Documen
     read_gltf(&bytes, options, &mut resolve).map_err(|e| e.with_file(path.display().to_string()))
 }
 
-/// Reads any file with clips, and the events file `NAME.events.json` beside it, which counts for the clips it names.
-/// Clips of formats that name none are called like the file.
+/// Reads any file with clips, and the events file `NAME.events.json` next to it, which overrides the events of the
+/// clips it names. Clips of formats without clip names are named after the file.
 ///
-/// A DeepMimic clip without a character in `options` takes the first one by name in the folder that it fits.
+/// Without a character in `options`, a DeepMimic clip uses the first character in its folder, by name, that matches it.
 ///
 /// # Errors
 /// As [`read_motion`] and [`read_events`], naming the file.
@@ -235,7 +235,7 @@ fn characters_beside(path: &Path) -> Vec<(String, DeepMimicCharacter)> {
     files.into_iter().filter_map(read).collect()
 }
 
-/// Reads the triangles of a mesh file: an OBJ by its name, else what [`load_gltf`] reads.
+/// Reads the triangles of a mesh file: an OBJ by its name, else the formats of [`load_gltf`].
 ///
 /// # Errors
 /// As [`load_gltf`] and [`read_obj`], naming the file.
@@ -264,7 +264,7 @@ pub fn load_world(path: impl AsRef<Path>) -> Result<Vec<BodyDef>> {
     read_world(&read_bytes(path)?).map_err(|e| e.with_file(name()))
 }
 
-/// Reads `relative` inside `folder`, refusing links that lead out of it.
+/// Reads `relative` inside `folder`; refuses links that lead out of it.
 fn read_beside(folder: &Path, relative: &str) -> Result<Vec<u8>> {
     let fail = |what: String| Error::io(format!("{}: {what}", quoted(relative)));
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };

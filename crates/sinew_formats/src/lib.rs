@@ -1,8 +1,8 @@
 //! Bytes to plain data and back: glTF, worlds, ragdolls, motion capture, MJCF, ragdolls of Jolt.
 //!
-//! Everything takes bytes, and a closure for the files beside them; only the feature `fs` (on by default) touches the
-//! file system. Bytes are not trusted: whatever they hold, the answer is a value or an [`Error`] with a place, within
-//! memory in proportion to their number, never a panic.
+//! Everything takes bytes, and a closure for external files; only the feature `fs` (on by default) accesses the file
+//! system. Input is untrusted: the result is a value or an [`Error`] with a place, never a panic, and memory is
+//! proportional to the input.
 #![forbid(unsafe_code)]
 
 pub mod bvh;

@@ -1,4 +1,4 @@
-//! Properties of shapes in a world file besides geometry: materials, filters, rules of contacts.
+//! Properties of shapes in a world file besides geometry: materials, filters, contact rules.
 
 use crate::container::json::{At, number, numbers};
 use crate::error::{Result, quoted};
@@ -87,7 +87,7 @@ fn read_bits(at: At<'_>) -> Result<u32> {
     u32::try_from(at.usize()?).map_err(|_| at.malformed("must fit 32 bits"))
 }
 
-/// A material as JSON, without what is the default.
+/// A material as JSON, without defaults.
 pub(crate) fn write_material(material: &Material) -> Value {
     let default = Material::DEFAULT;
     let mut object = Map::new();
@@ -175,7 +175,7 @@ pub(crate) fn read_rule(at: At<'_>) -> Result<ContactRule> {
 /// `None` for the default.
 ///
 /// # Panics
-/// If it names a modifier: a file cannot bring functions.
+/// If it has a modifier: a file cannot hold functions.
 pub(crate) fn write_rule(rule: ContactRule) -> Option<Value> {
     match rule {
         ContactRule::Push => None,

@@ -1,4 +1,4 @@
-//! Render meshes as bare triangles: what `sinew boxes` starts from. From a glTF scene in its rest pose, or an OBJ.
+//! Render meshes as plain triangles, the input of `sinew boxes`: from a glTF scene in its rest pose, or an OBJ.
 //!
 //! ```
 //! use sinew_formats::{ReadOptions, TriangleMesh, no_files, read_gltf, write_gltf};
@@ -19,19 +19,19 @@ use sinew_math::{Affine, Mat3, Vec3};
 /// Triangles in one list of vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
-    /// Vertices in file units: metres in a glTF; an OBJ says nothing about it.
+    /// Vertices in file units: metres in a glTF; undefined in an OBJ.
     pub positions: Vec<Vec3>,
     /// Linear RGB of each vertex, 0..=1, without textures.
     pub colors: Vec<[f32; 3]>,
     /// Vertex indices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Warnings of what was left out and why, a sentence each.
+    /// Warnings of omissions and their reasons, one sentence each.
     pub warnings: Vec<String>,
 }
 
 impl TriangleMesh {
-    /// All meshes of a glTF's scene where its nodes put them, skinned ones in the rest pose. Parts that are mirrored by
-    /// a node keep their outside.
+    /// All meshes of a glTF's scene at their nodes' transforms, skinned ones in the rest pose. Parts mirrored by a node
+    /// keep their outside.
     ///
     /// # Errors
     /// More vertices than an index can name.

@@ -1,4 +1,4 @@
-//! Wavefront OBJ: vertices and faces; materials, normals and texture coordinates are passed over.
+//! Reads Wavefront OBJ: vertices and faces; ignores materials, normals and texture coordinates.
 //!
 //! ```
 //! let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
@@ -16,17 +16,17 @@ use std::borrow::Cow;
 
 /// Most corners of a face: to cut a larger one would take too long.
 const MOST_CORNERS: usize = 1024;
-/// Corners that may be looked at to cut a face, for each corner that it has: enough for any outline that is drawn, and
-/// few enough that a file made of bad ones ends.
+/// Corner tests allowed per corner of a face while cutting it: enough for any real outline, and few enough that a
+/// malicious file ends.
 const WORK: usize = 256;
-/// Colour of a surface of which the file says nothing here.
+/// Colour of surfaces, because materials are not read.
 const GREY: [f32; 3] = [0.6; 3];
 
 /// The triangles of an OBJ file. Faces with more than three corners are cut, concave ones too;
 /// of one so jagged or twisted that this would take too long, the rest is cut as a fan from one corner.
 ///
 /// # Errors
-/// Names the line: a number that is none or not finite, an index out of range, a face with fewer than three corners.
+/// Names the line: an invalid or non-finite number, an index out of range, a face with fewer than three corners.
 pub fn read_obj(bytes: &[u8]) -> Result<TriangleMesh> {
     let text = core::str::from_utf8(bytes).map_err(|error| {
         Error::malformed("not an OBJ file: not text in UTF-8", format!("byte {}", error.valid_up_to()))
@@ -65,7 +65,7 @@ pub fn read_obj(bytes: &[u8]) -> Result<TriangleMesh> {
     Ok(mesh)
 }
 
-/// First words of lines that are passed over.
+/// First words of ignored lines.
 const KNOWN: [&str; 34] = [
     "vt",
     "vn",
@@ -161,12 +161,12 @@ fn read_face<'a>(words: impl Iterator<Item = &'a str>, vertices: usize) -> Resul
     }
 }
 
-/// Cuts a polygon into triangles, ear by ear (Meisters 1975): a corner that turns outward with no other corner in its
-/// triangle. Where a twisted polygon has none left, the next corner is taken all the same; what is left after [`WORK`]
-/// is cut as a fan.
+/// Cuts a polygon into triangles by ear clipping (Meisters 1975): an ear is a convex corner with no other corner in its
+/// triangle. If a twisted polygon has none left, the next corner is taken; after [`WORK`] tests the rest is cut as a
+/// fan.
 fn cut(positions: &[Vec3], mut face: Vec<u32>, triangles: &mut Vec<[u32; 3]>) {
     let at = |i: u32| positions[i as usize];
-    // Newell's normal, from the first corner so that far-away polygons keep their digits.
+    // Newell's normal, relative to the first corner so that far-away polygons keep their digits.
     let origin = at(face[0]);
     let normal: Vec3 =
         (0..face.len()).map(|k| (at(face[k]) - origin).cross(at(face[(k + 1) % face.len()]) - origin)).sum();
@@ -175,7 +175,7 @@ fn cut(positions: &[Vec3], mut face: Vec<u32>, triangles: &mut Vec<[u32; 3]>) {
         let [a, b, c] = around(face, k).map(at);
         !is_left(a, b, c)
     };
-    // No other corners can keep a triangle from being an ear.
+    // Only reflex corners can prevent an ear.
     let mut inward: Vec<u32> = (0..face.len()).filter(|&k| turns_inward(&face, k)).map(|k| face[k]).collect();
     let mut work = WORK * face.len();
     let mut start = 0;

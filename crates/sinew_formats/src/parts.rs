@@ -1,4 +1,4 @@
-//! Parts that world files and ragdoll files have in common: poses, shapes, masses.
+//! Parts shared by world files and ragdoll files: poses, shapes, masses.
 
 use crate::container::json::{At, number, numbers};
 use crate::error::{Result, quoted};
@@ -8,10 +8,10 @@ use sinew_math::{Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{Hull, MassProperties, Shape};
 use std::sync::Arc;
 
-/// Keys of a pose, to be listed among those of the object that has one.
+/// Keys of a pose, for the key list of its object.
 pub(crate) const POSE_KEYS: [&str; 2] = ["position", "rotation"];
 
-/// `position` and `rotation` of an object; none of both is the identity.
+/// `position` and `rotation` of an object; the identity if both are absent.
 pub(crate) fn read_pose(at: At<'_>) -> Result<Transform> {
     let translation = read_vector(at, "position")?;
     let rotation = at.get("rotation")?.map_or(Ok(Rotation::IDENTITY), read_rotation)?;
@@ -41,11 +41,11 @@ fn read_rotation(at: At<'_>) -> Result<Rotation> {
     if (square - 1.0).abs() >= 1e-2 {
         return Err(at.malformed("quaternion must have length 1"));
     }
-    // Numbers that we wrote come back as they were.
+    // Numbers that we wrote read back unchanged.
     Ok(if (square - 1.0).abs() < 1e-6 { rotation } else { rotation.normalize() })
 }
 
-/// Writes what [`read_pose`] reads, the identity as nothing.
+/// Writes the format of [`read_pose`]; nothing for the identity.
 pub(crate) fn write_pose(pose: Transform, object: &mut Map<String, Value>) {
     let r = pose.rotation;
     // Bit by bit: −0 is not 0 in a snapshot.
@@ -152,7 +152,7 @@ fn read_hull(at: At<'_>) -> Result<Hull> {
     Hull::new(&points).map_err(|error| at.malformed(error.to_string()))
 }
 
-/// Writes what [`read_shape`] reads.
+/// Writes the format of [`read_shape`].
 pub(crate) fn write_shape(shape: &Shape, object: &mut Map<String, Value>) {
     let mut put = |key: &str, value: Value| drop(object.insert(key.into(), value));
     match *shape {
@@ -213,7 +213,7 @@ pub(crate) fn read_mass(at: At<'_>) -> Result<MassProperties> {
     })
 }
 
-/// Writes what [`read_mass`] reads.
+/// Writes the format of [`read_mass`].
 pub(crate) fn write_mass(mass: &MassProperties) -> Value {
     let (d, o) = (mass.inertia.diagonal, mass.inertia.off);
     let mut object = Map::new();

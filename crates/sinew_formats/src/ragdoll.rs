@@ -1,4 +1,4 @@
-//! Ragdoll files, version 1 (`NAME.sinew.json`): what `sinew ragdoll build` writes, for people to correct by hand.
+//! Ragdoll files, version 1 (`NAME.sinew.json`), written by `sinew ragdoll build` and editable by hand.
 //!
 //! ```json
 //! {
@@ -44,10 +44,10 @@
 //! ```
 //!
 //! Metres, kilograms; angles in degrees. `position` and `rotation` of a body are those of its frame in character space
-//! at the bind pose (+Y up, facing +Z, feet at y = 0); its shape sits at that frame. Every body but the first has a
-//! `joint` to a `parent` that stands before it. The x axis of the joint's frames is the axis of a hinge and of twist:
+//! at the bind pose (+Y up, facing +Z, feet at y = 0); its shape is at that frame. Every body but the first has a
+//! `joint` to a `parent` that precedes it. The x axis of the joint's frames is the axis of a hinge and of twist:
 //! - `ball`: `limits_deg` of `swing_y`, `swing_z` (zero lies inside) and `twist`;
-//! - `universal`: likewise, `twist` without meaning;
+//! - `universal`: the same, without `twist`;
 //! - `hinge`: `limits_deg` of `twist` only;
 //! - `fixed`: none. Without `limits_deg` a joint is unlimited.
 //!
@@ -77,11 +77,11 @@ const VERSION: usize = 1;
 
 /// Most bodies: those of the largest joint tree. Pairs of bodies grow with the square.
 const MOST_BODIES: usize = 1024;
-/// Farthest place and largest size, metres.
+/// Largest distance and largest size, metres.
 const FARTHEST: f32 = 1e6;
 /// Smallest size, metres.
 const SMALLEST: f32 = 1e-6;
-/// Masses, kg; moments from the square of the one to the other, kg·m².
+/// Range of masses, kg; moments range over its square in kg·m².
 const LIGHTEST: f32 = 1e-9;
 const HEAVIEST: f32 = 1e12;
 
@@ -108,8 +108,8 @@ const JOINT_KEYS: [&str; 7] =
 /// The ragdoll of a ragdoll file. Rig joints are indices that only the rig can check.
 ///
 /// # Errors
-/// Names the place, such as `bodies[3].joint.limits_deg.twist`: no bodies, a parent that does not stand before its
-/// child, limits the wrong way round, sizes and masses that are not positive, unknown keys and names, a later version.
+/// Names the place, such as `bodies[3].joint.limits_deg.twist`: no bodies, a parent that does not precede its child,
+/// reversed limits, sizes and masses that are not positive, unknown keys and names, a later version.
 pub fn read_ragdoll(bytes: &[u8]) -> Result<RagdollDef> {
     let value = json::parse(bytes)?;
     let root = At::root(&value);
@@ -170,7 +170,7 @@ fn read_frame(at: At<'_>) -> Result<Transform> {
     read_pose(at)
 }
 
-/// A pose within [`FARTHEST`]: sums and squares of what a file says must stay finite.
+/// A pose within [`FARTHEST`]: sums and squares of its numbers stay finite.
 fn read_pose(at: At<'_>) -> Result<Transform> {
     let pose = parts::read_pose(at)?;
     if sinew_math::abs3(pose.translation).max_element() > FARTHEST {
@@ -187,7 +187,7 @@ fn read_shape(at: At<'_>) -> Result<Shape> {
         let name = at.need("type")?.str()?;
         return Err(at.malformed(format!("a body of a ragdoll cannot be a {name}")));
     }
-    // Written so that NaN is refused.
+    // This form rejects NaN.
     if !(shape.smallest_extent() >= SMALLEST && shape.bounding_radius() <= FARTHEST) {
         return Err(at.malformed("is smaller than a micrometre or larger than 1,000 km"));
     }
@@ -207,7 +207,7 @@ fn read_mass(at: At<'_>) -> Result<MassProperties> {
     Ok(mass)
 }
 
-/// A length that is taken for a number of the character, so that its square is one too.
+/// A length between positive limits, so that its square is in range too.
 fn read_scale(at: At<'_>) -> Result<f32> {
     let scale = at.positive()?;
     if !(SMALLEST..=FARTHEST).contains(&scale) {
@@ -235,7 +235,7 @@ fn read_body(at: At<'_>) -> Result<RagdollBodyDef> {
     })
 }
 
-/// The joint of the body `child`, whose parent is among the bodies read before it.
+/// The joint of the body `child`, whose parent has been read before it.
 fn read_joint(at: At<'_>, child: usize, bodies: &[RagdollBodyDef]) -> Result<RagdollJointDef> {
     at.only(&JOINT_KEYS)?;
     let parent_at = at.need("parent")?;
@@ -310,14 +310,14 @@ fn read_hinge_range(at: At<'_>) -> Result<Range> {
     read_range(at.need("twist")?)
 }
 
-/// Two angles in degrees, the lower first, within half a turn.
+/// Two angles in degrees, in ascending order, within half a turn.
 fn read_range(at: At<'_>) -> Result<Range> {
     let items = at.items()?;
     let [lo, hi] = items[..] else { return Err(at.malformed("must be [lowest, highest]")) };
     let mut angles = [0.0; 2];
     for (angle, at) in angles.iter_mut().zip([lo, hi]) {
         let degrees = at.f64()?;
-        // A little over: half a turn in f32 radians is not half a turn in degrees.
+        // Slightly more: half a turn in f32 radians is not exactly half a turn in degrees.
         if degrees.abs() > 180.001 {
             return Err(at.malformed("must lie between -180 and 180 degrees"));
         }
@@ -429,13 +429,13 @@ fn write_range(range: Range) -> Value {
     json!([write_degrees(range.lo), write_degrees(range.hi)])
 }
 
-/// The fewest decimals of degrees that read back as the same radians.
+/// The shortest decimal in degrees that reads back as the same radians.
 fn write_degrees(radians: f32) -> Value {
     let exact = f64::from(radians).to_degrees();
     let mut unit = 1.0;
     for _ in 0..9 {
         let rounded = (exact * unit).round() / unit;
-        // Bits are compared, for a −0 that a mirrored limit has is part of what a snapshot holds.
+        // Compares bits, because the −0 of a mirrored limit is part of a snapshot.
         if (rounded.to_radians() as f32).to_bits() == radians.to_bits() {
             return Value::from(rounded);
         }

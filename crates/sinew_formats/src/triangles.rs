@@ -50,7 +50,7 @@ pub(crate) fn read_height_field(at: At<'_>) -> Result<Shape> {
     Ok(Shape::HeightField(Arc::new(field)))
 }
 
-/// Writes what [`read_mesh`] reads.
+/// Writes the format of [`read_mesh`].
 pub(crate) fn write_mesh(mesh: &Mesh, object: &mut Map<String, Value>) {
     let vertices = mesh.vertices().iter().map(|vertex| numbers(&vertex.to_array()));
     let triangles = mesh.triangles().map(|triangle| Value::from(triangle.to_vec()));
@@ -59,7 +59,7 @@ pub(crate) fn write_mesh(mesh: &Mesh, object: &mut Map<String, Value>) {
     object.insert("triangles".into(), triangles.collect());
 }
 
-/// Writes what [`read_height_field`] reads.
+/// Writes the format of [`read_height_field`].
 pub(crate) fn write_height_field(field: &HeightField, object: &mut Map<String, Value>) {
     let HeightFieldDef { columns, rows, spacing, heights, holes } = field.def();
     object.insert("type".into(), "height_field".into());

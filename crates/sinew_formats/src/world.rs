@@ -29,8 +29,8 @@
 //! }
 //! ```
 //!
-//! Metres, kilograms, seconds, +Y up. Of a **body**, only `shapes` has to be there:
-//! - `kind`: `static` (default), `kinematic` or `dynamic`; `name` is for people and not kept.
+//! Metres, kilograms, seconds, +Y up. A **body** requires only `shapes`:
+//! - `kind`: `static` (default), `kinematic` or `dynamic`; `name` is a comment for people.
 //! - `position` (default the origin), `rotation`: a unit quaternion `[x, y, z, w]` or `{ "axis", "degrees" }`.
 //! - `linear_velocity` (m/s), `angular_velocity` (rad/s), `linear_damping`, `angular_damping` (1/s), all 0 by default;
 //!   `gravity_scale`, default 1; `sleeping`, whether it may, default true; `quality`: `fast`, `balanced` or
@@ -43,7 +43,7 @@
 //! `height_field` has `columns` and `rows` of vertices, `spacing` `[x, z]`, `heights`, row after row, and `holes`, cells by
 //! `column + row × (columns − 1)`. Both are surfaces without a mass of their own. Also a
 //! `position` and `rotation` in the body's frame, a `density` (kg/m³, default 1000), a `material` and a `filter`
-//! `{ "layers", "mask", "group" }`. With `"sensor": true` it reports whom it meets and does not push. `contacts` is `"push"`
+//! `{ "layers", "mask", "group" }`. With `"sensor": true` it reports overlaps and does not push. `contacts` is `"push"`
 //! (default), `"ghost"`, or `{ "one_way": { "direction", "tolerance" } }`.
 //!
 //! A **material** is the name of an entry of `materials`, or such an entry itself: `friction` (default 0.6),
@@ -51,7 +51,7 @@
 //! (m/s) and `surface_spin` (rad/s) in the shape's frame, `tag`, a whole number, and `combine`, the rules for
 //! `friction`, `restitution` and `rolling`: `average`, `geometric_mean`, `minimum`, `multiply`, `maximum`.
 //!
-//! A key that is not listed here is an error, so that a typing error does not pass in silence.
+//! A key that is not listed here is an error, so that a typing error is not ignored silently.
 //!
 //! ```
 //! use sinew_formats::{read_world, write_world};
@@ -93,8 +93,8 @@ const SURFACE_KEYS: [&str; 6] = ["density", "material", "filter", "sensor", "con
 /// The bodies of a world file, in file order.
 ///
 /// # Errors
-/// Names the place, such as `bodies[3].shapes[0].half_extents[1]`: sizes that are not positive, numbers that are not
-/// finite, unknown keys, types and materials, a half-space on a body that moves, a later version.
+/// Names the place, such as `bodies[3].shapes[0].half_extents[1]`: sizes that are not positive, non-finite numbers,
+/// unknown keys, types and materials, a half-space on a moving body, a later version.
 pub fn read_world(bytes: &[u8]) -> Result<Vec<BodyDef>> {
     let value = json::parse(bytes)?;
     let root = At::root(&value);
@@ -181,10 +181,10 @@ fn read_shape(at: At<'_>, materials: Option<At<'_>>) -> Result<ShapeDef> {
     })
 }
 
-/// The text of a world file with these bodies; what is default is left out. Reads back as equal bodies.
+/// The text of a world file with these bodies, without defaults. Reads back as equal bodies.
 ///
 /// # Panics
-/// If a number is not finite, or a shape has a modifier: a file cannot bring functions.
+/// If a number is not finite, or a shape has a modifier: a file cannot hold functions.
 pub fn write_world(bodies: &[BodyDef]) -> String {
     let bodies: Vec<Value> = bodies.iter().map(write_body).collect();
     json::to_text(&json!({"sinew": "world", "version": VERSION, "bodies": bodies}))

@@ -3,16 +3,16 @@
 use crate::id::{Handle, Lineage};
 use sinew_math::{ReadError, Reader, Writer};
 
-/// Item of an arena, found by ids of a kind of their own.
+/// Item type of an arena, with its own id type.
 pub(crate) trait Item {
     type Id: Handle;
 }
 
-/// Slots by index. The free list is part of the state: after a restore, new items get the same ids again.
+/// Slots by index. The free list is part of the state: after a restore, new items get the same ids.
 #[derive(Clone, Debug)]
 pub(crate) struct Arena<T> {
     lineage: Lineage,
-    /// Generation of each slot; close together, since queries name many items that they do not look at.
+    /// Generation of each slot; stored contiguously, because queries check many items without reading them.
     generations: Vec<u32>,
     items: Vec<Option<T>>,
     free: Vec<u32>,
@@ -43,7 +43,7 @@ impl<T: Item> Arena<T> {
         self.id(index)
     }
 
-    /// Takes an item out; its id is stale from now on.
+    /// Removes an item; its id is stale from now on.
     pub fn remove(&mut self, id: T::Id) -> Option<T> {
         let index = id.index();
         let item = self.is_current(id).then(|| self.items[index as usize].take())??;
@@ -62,10 +62,10 @@ impl<T: Item> Arena<T> {
         if self.is_current(id) { self.items[id.index() as usize].as_mut() } else { None }
     }
 
-    /// The item of an id that the user gave.
+    /// The item of an id from the user.
     ///
     /// # Panics
-    /// At the caller, with what is wrong, if the id is stale or of another world.
+    /// At the caller's location, with the reason, if the id is stale or from another world.
     #[track_caller]
     pub fn expect(&self, id: T::Id) -> &T {
         match self.get(id) {
@@ -74,20 +74,20 @@ impl<T: Item> Arena<T> {
         }
     }
 
-    /// The item of an id that the user gave, mutable.
+    /// The item of an id from the user, mutable.
     ///
     /// # Panics
-    /// At the caller, with what is wrong, if the id is stale or of another world.
+    /// At the caller's location, with the reason, if the id is stale or from another world.
     #[track_caller]
     pub fn expect_mut(&mut self, id: T::Id) -> &mut T {
         self.expect(id);
         self.at_mut(id.index())
     }
 
-    /// Takes out the item of an id that the user gave; the id is stale from now on.
+    /// Removes the item of an id from the user; the id is stale from now on.
     ///
     /// # Panics
-    /// At the caller, with what is wrong, if the id is stale or of another world.
+    /// At the caller's location, with the reason, if the id is stale or from another world.
     #[track_caller]
     pub fn take(&mut self, id: T::Id) -> T {
         match self.remove(id) {
@@ -115,17 +115,17 @@ impl<T: Item> Arena<T> {
         T::Id::new(index, self.generations[index as usize], self.lineage)
     }
 
-    /// The item at an index that is known to be in use.
+    /// The item at an index known to be in use.
     pub fn at(&self, index: u32) -> &T {
         self.items[index as usize].as_ref().expect("the index is in use")
     }
 
-    /// The item at an index, if there is one.
+    /// The item at an index, if any.
     pub fn try_at(&self, index: u32) -> Option<&T> {
         self.items.get(index as usize)?.as_ref()
     }
 
-    /// The item at an index that is known to be in use, mutable.
+    /// The item at an index known to be in use, mutable.
     pub fn at_mut(&mut self, index: u32) -> &mut T {
         self.items[index as usize].as_mut().expect("the index is in use")
     }
@@ -135,7 +135,7 @@ impl<T: Item> Arena<T> {
         self.free.len() == self.items.len()
     }
 
-    /// The same slots with other items; `item` makes one from id and item.
+    /// The same slots with other items; `item` maps id and item.
     pub fn map<U>(self, mut item: impl FnMut(T::Id, T) -> U) -> Arena<U> {
         let Self { lineage, generations, items, free } = self;
         let slots = items.into_iter().zip(&generations).enumerate();
@@ -188,7 +188,7 @@ impl<T: Item> Arena<T> {
         }
     }
 
-    /// Reads what [`save`](Self::save) wrote; of an unknown lineage, since any world may have written it.
+    /// Reads the format of [`save`](Self::save); the lineage is unknown, because any world may have written it.
     pub fn load<'a, E: From<ReadError>>(
         r: &mut Reader<'a>,
         mut item: impl FnMut(&mut Reader<'a>) -> Result<T, E>,

@@ -2,7 +2,7 @@
 
 use sinew_math::Vec3;
 
-/// Thing that a line stands for; the host chooses the colours.
+/// Meaning of a line; the host chooses the colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawKind {
     /// Outline of a static shape.

@@ -1,26 +1,27 @@
-//! Handles: an index, a generation and a lineage, so that a stale one and one of another world are caught.
+//! Handles: index, generation and lineage, so that stale ids and ids of another world are detected.
 
 use core::fmt;
 use std::hash::{BuildHasher, RandomState};
 
-/// World that an id is of. In neither snapshot nor hash: ids from bits and those of a world that has loaded a snapshot are of an unknown
-/// one, which goes with every world, since whoever loads another world's snapshot goes on using its ids.
+/// World that an id belongs to. Not part of a snapshot or hash. Ids from bits, and ids of a world that has loaded a
+/// snapshot, have an unknown lineage, which matches every world, because a user who loads another world's snapshot
+/// continues to use its ids.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Lineage(u32);
 
 impl Lineage {
-    /// One that no other world of the process has, but for one chance in 2³¹: hashers are seeded anew each time.
+    /// Unique in the process except for a chance of one in 2³¹: hashers are seeded randomly.
     pub fn fresh() -> Self {
         Self(RandomState::new().hash_one(()) as u32 | 1)
     }
 
-    /// True unless both are known and differ.
+    /// True unless both are known and different.
     pub fn goes_with(self, other: Self) -> bool {
         self == other || self == Self::default() || other == Self::default()
     }
 }
 
-/// Id by which an [`Arena`](crate::arena::Arena) finds its items.
+/// Typed id of an item in an [`Arena`](crate::arena::Arena).
 pub(crate) trait Handle: Copy + fmt::Debug {
     fn new(index: u32, generation: u32, lineage: Lineage) -> Self;
     fn index(self) -> u32;
@@ -32,7 +33,7 @@ macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
         ///
-        /// A world panics about the id of something that was removed, and about that of another world, unless it has loaded a
+        /// A world panics for the id of a removed item, and for an id of another world, unless it has loaded a
         /// snapshot. Ids are equal if their [bits](Self::to_bits) are.
         #[derive(Clone, Copy)]
         pub struct $name {
@@ -46,7 +47,7 @@ macro_rules! id {
             pub fn to_bits(self) -> u64 {
                 u64::from(self.generation) << 32 | u64::from(self.index)
             }
-            /// Id from [`to_bits`](Self::to_bits), of whatever world it is used with.
+            /// Id from [`to_bits`](Self::to_bits), usable with any world.
             pub fn from_bits(bits: u64) -> Self {
                 Self { index: bits as u32, generation: (bits >> 32) as u32, lineage: Lineage::default() }
             }

@@ -1,23 +1,23 @@
-//! An island: what hangs together through contacts, joints, particles and attraction.
+//! An island: bodies connected by contacts, joints, particles and attraction.
 
 /// Members of one island, by index, each list ascending.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Island<'a> {
     pub bodies: &'a [u32],
     pub joints: &'a [u32],
-    /// Positions in the contact array. `color` puts those with static bodies last: what cannot move has the last word.
+    /// Positions in the contact array. `color` puts those with static bodies last, so that they are solved last.
     pub contacts: &'a [u32],
-    /// Particle groups that hang on its bodies or may touch them.
+    /// Particle groups that are attached to its bodies or may touch them.
     pub groups: &'a [u32],
     /// It is a body in flight or a strand and has been through this step.
     pub is_flown: bool,
 }
 
-/// Contacts from which on all threads work on an island without joints at once, instead of beside each other on islands.
+/// Number of contacts above which all threads work on one joint-free island together instead of on separate islands.
 const LARGE: usize = 1_024;
 
 impl Island<'_> {
-    /// True if threads work on it together.
+    /// True if all threads work on it together.
     pub fn is_large(&self) -> bool {
         self.joints.is_empty() && self.contacts.len() >= LARGE
     }

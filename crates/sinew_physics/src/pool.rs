@@ -1,8 +1,8 @@
 //! Threads that wait for work, for [`Threads`](crate::runner::Threads).
 //!
-//! A batch lies on the stack of who runs it. Workers reach it by a pointer, which one word guards, the *gate*: it says whether a
-//! batch is open, which one, and how many workers are inside. A worker goes in only by raising that number while the gate is
-//! open, and who runs the batch does not return before it has shut the gate and the number is 0.
+//! A batch is on the stack of its caller. Workers reach it by a pointer guarded by one word, the *gate*, which stores
+//! if a batch is open, its number, and the number of workers inside. A worker enters only by incrementing that number
+//! while the gate is open, and the caller does not return before it has closed the gate and the number is 0.
 #![allow(unsafe_code)]
 
 use core::any::Any;
@@ -12,17 +12,17 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
-/// Looks at the gate before a thread lays itself to sleep: some 10 to 40 µs, which is more than what lies between two batches
-/// of a stage and about what it takes to be woken.
+/// Number of polls of the gate before a thread sleeps: some 10 to 40 µs, which exceeds the gap between two batches of a
+/// stage and is about the cost of waking.
 const SPINS: u32 = 1_000;
 
 /// In the gate: workers inside.
 const INSIDE: u64 = (1 << 30) - 1;
-/// In the gate: who runs the batch sleeps until the last worker is out.
+/// Gate flag: the caller sleeps until the last worker has left.
 const AWAITED: u64 = 1 << 30;
-/// In the gate: a batch is there.
+/// Gate flag: a batch is open.
 const OPEN: u64 = 1 << 31;
-/// In the gate: the number of the batch, above the rest, so that no worker enters the same one twice.
+/// Gate field: the number of the batch, in the upper bits, so that no worker enters the same one twice.
 const ONE_BATCH: u64 = 1 << 32;
 
 /// Calls of one task.
@@ -36,11 +36,11 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    /// Makes calls as long as there are any. A panic ends the batch.
+    /// Takes calls until none are left. A panic ends the batch.
     fn work(&self) {
         while self.begun.fetch_add(1, Ordering::Relaxed) < self.count {
             if let Err(payload) = catch_unwind(AssertUnwindSafe(self.task)) {
-                // Half is as much as no call can add to, and far above every count.
+                // Half the range: increments cannot overflow it, and it exceeds every count.
                 self.begun.store(usize::MAX / 2, Ordering::Relaxed);
                 self.panic.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(payload);
                 return;
@@ -55,7 +55,7 @@ struct Shared {
     gate: AtomicU64,
     /// Pointer to the batch, while the gate is open or workers are inside.
     batch: AtomicPtr<Batch<'static>>,
-    /// A batch is being run: another one, such as a call's own, runs on its caller's thread alone.
+    /// A batch is running: a nested one runs on its caller's thread alone.
     is_busy: AtomicBool,
     /// Workers are to end.
     is_closing: AtomicBool,
@@ -64,7 +64,7 @@ struct Shared {
     /// Mutex that sleepers hold while they look; nothing is in it.
     sleep: Mutex<()>,
     wake: Condvar,
-    /// Mutex for who waits until the last worker is out; nothing is in it.
+    /// Mutex for waiting until the last worker has left; it holds no data.
     wait: Mutex<()>,
     out: Condvar,
 }
@@ -74,15 +74,15 @@ fn lock(mutex: &Mutex<()>) -> MutexGuard<'_, ()> {
 }
 
 impl Shared {
-    /// Lets workers into `batch`, makes calls beside them, and waits until all are out.
+    /// Opens `batch` to workers, takes calls as well, and waits until all have left.
     fn run(&self, batch: &Batch<'_>, workers: usize) {
         self.batch.store(core::ptr::from_ref(batch).cast_mut().cast(), Ordering::Relaxed);
-        // Nobody is inside, and none but us opens.
+        // No thread is inside, and only this one opens.
         let number = self.gate.load(Ordering::Relaxed) & !(OPEN | AWAITED | INSIDE);
-        // SeqCst, as `asleep`: either we see the sleeper or it sees the open gate.
+        // SeqCst, as `asleep`: either this thread sees the sleeper or the sleeper sees the open gate.
         self.gate.store(number.wrapping_add(ONE_BATCH) | OPEN, Ordering::SeqCst);
         if self.asleep.load(Ordering::SeqCst) > 0 {
-            // Who is about to sleep holds it from its last look at the gate on; nobody is to wake into a lock that we hold.
+            // A thread about to sleep holds it from its last poll of the gate on; it must not wake into a held lock.
             drop(lock(&self.sleep));
             for _ in 0..workers.min(batch.count - 1) {
                 self.wake.notify_one();
@@ -124,7 +124,7 @@ impl Shared {
         }
     }
 
-    /// Waits for a batch other than the one of number `last` and goes in; gives its number, or `None` when all is over.
+    /// Waits for a batch with a number other than `last` and enters; returns its number, or `None` at shutdown.
     fn enter_next(&self, last: u64) -> Option<u64> {
         for _ in 0..SPINS {
             if let Some(number) = self.try_enter(last) {
@@ -150,7 +150,7 @@ impl Shared {
         entered
     }
 
-    /// Goes in if the gate is open and the batch is another one than `last`.
+    /// Enters if the gate is open and the batch's number differs from `last`.
     fn try_enter(&self, last: u64) -> Option<u64> {
         let mut gate = self.gate.load(Ordering::SeqCst);
         loop {
@@ -181,7 +181,7 @@ pub(crate) struct Pool {
 }
 
 impl Pool {
-    /// With so many threads beside the caller's, or as many as the system gives.
+    /// With this many threads in addition to the caller's, or as many as the system allows.
     pub fn new(workers: usize) -> Self {
         let shared = Arc::new(Shared::default());
         let start = |number: usize| {
@@ -192,15 +192,15 @@ impl Pool {
         Self { shared, workers }
     }
 
-    /// Threads beside the caller's.
+    /// Threads in addition to the caller's.
     pub fn workers(&self) -> usize {
         self.workers.len()
     }
 
-    /// Calls `task` `count` times. Where the pool is at work already, on this thread alone.
+    /// Calls `task` `count` times. While the pool is busy, on this thread alone.
     ///
     /// # Panics
-    /// If a call does, with what it panicked, when no call runs any more; calls not begun by then are left out.
+    /// If a call panics, with its payload, after all running calls have ended; the remaining calls are skipped.
     pub fn run(&self, count: usize, task: &(dyn Fn() + Sync)) {
         let is_alone = count <= 1 || self.workers.is_empty();
         if is_alone || self.shared.is_busy.swap(true, Ordering::Acquire) {
@@ -221,7 +221,7 @@ impl Drop for Pool {
         drop(lock(&self.shared.sleep));
         self.shared.wake.notify_all();
         for worker in self.workers.drain(..) {
-            // It catches what calls panic with, and nothing else in it does.
+            // It catches panics of calls, and nothing else in it panics.
             let _ = worker.join();
         }
     }

@@ -1,14 +1,14 @@
-//! Threads come from the host: the step only says how many independent tasks there are.
+//! Threads come from the host: the step only states the number of independent tasks.
 
 use crate::pool::Pool;
 use std::sync::Arc;
 
-/// Runs independent tasks, on as many threads as it likes.
+/// Runs independent tasks, on any number of threads.
 ///
-/// How work is split never depends on the number of threads, so every runner gives the same bits.
+/// The division of work never depends on the number of threads, so every runner gives the same bits.
 pub trait TaskRunner: Sync {
-    /// Calls `task` `count` times, on any threads, in any order, and returns when all calls have returned.
-    /// Which call does which piece of work is not the runner's business.
+    /// Calls `task` `count` times, on any threads, in any order, and returns when all calls have returned. The task
+    /// itself decides which work a call does.
     fn run(&self, count: usize, task: &(dyn Fn() + Sync));
 }
 
@@ -27,15 +27,16 @@ impl TaskRunner for Serial {
 /// A fixed number of threads, for hosts without a pool of their own: started once, they wait from one batch to the next,
 /// and end with the last clone.
 ///
-/// One batch at a time: one that begins while another runs, within a task or on another thread of the host's, runs on the
-/// thread that asks for it. A task that panics ends its batch, and the panic goes on in who asked for it.
+/// One batch at a time: one that starts while another runs, within a task or on another host thread, runs on its
+/// caller's thread alone. A panic in a task ends its batch, and continues in the caller.
 #[derive(Clone)]
 pub struct Threads {
     pool: Arc<Pool>,
 }
 
 impl Threads {
-    /// `count` threads, the caller's included; 0 counts as 1. Where the system gives fewer (wasm: none), those are all.
+    /// `count` threads, including the caller's; 0 counts as 1. If the system provides fewer (wasm: none), it uses
+    /// those.
     pub fn new(count: usize) -> Self {
         Self { pool: Arc::new(Pool::new(count.saturating_sub(1))) }
     }

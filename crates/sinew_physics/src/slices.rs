@@ -8,10 +8,10 @@ use sinew_math::lanes::WIDTH;
 
 /// Most items that a thread claims at once. Two threads that claim one by one spend more on the counter than on a light item.
 const MOST_CLAIMED: usize = 32;
-/// Claims into which few items are divided at least, so that no thread waits for another's last one.
+/// Least number of claims that a few items are divided into, so that no thread waits long for another's last one.
 const CLAIMS: usize = 16;
 
-/// The items of a slice, for threads of which each reads and writes its own.
+/// The items of a slice, shared by threads that each access different ones.
 pub(crate) struct SharedRows<'a, T> {
     start: *mut T,
     len: usize,
@@ -43,7 +43,7 @@ impl Places {
     /// Indices into rows of a length.
     ///
     /// # Panics
-    /// If one of them is beyond it.
+    /// If any index is out of range.
     #[inline(always)]
     pub fn new(at: [u32; WIDTH], len: usize) -> Self {
         let mut last = 0;
@@ -56,10 +56,10 @@ impl Places {
 }
 
 impl<'a, T> SharedRows<'a, T> {
-    /// Item at the `k`-th of eight places.
+    /// Item at the `k`-th of eight indices.
     ///
     /// # Panics
-    /// If there are fewer items than the places were made for, or `k` is beyond them.
+    /// If there are fewer items than when the indices were checked, or `k` is out of range.
     #[inline(always)]
     pub fn at(&self, places: &Places, k: usize) -> &T {
         assert!(places.len <= self.len);
@@ -67,10 +67,10 @@ impl<'a, T> SharedRows<'a, T> {
         unsafe { &*self.start.add(places.at[k] as usize) }
     }
 
-    /// Item at the `k`-th of eight places, to be written.
+    /// Item at the `k`-th of eight indices, mutable.
     ///
     /// # Panics
-    /// If there are fewer items than the places were made for, or `k` is beyond them.
+    /// If there are fewer items than when the indices were checked, or `k` is out of range.
     #[inline(always)]
     pub fn at_mut(&mut self, places: &Places, k: usize) -> &mut T {
         assert!(places.len <= self.len);
@@ -84,11 +84,11 @@ impl<'a, T> SharedRows<'a, T> {
         self.len
     }
 
-    /// Shares the items of a slice between copies of what comes of it.
+    /// Shares the items of a slice between copies of the result.
     ///
     /// # Safety
-    /// While copies are in use, no item may be written through one of them while a reference to it from another is alive, be it on
-    /// this thread or on another.
+    /// While copies are in use, no item may be written through one of them while a reference to it from another exists,
+    /// on this thread or another.
     pub unsafe fn new(items: &'a mut [T]) -> Self {
         Self { start: items.as_mut_ptr(), len: items.len(), of: PhantomData }
     }
@@ -104,7 +104,7 @@ impl<'a, T> SharedRows<'a, T> {
         unsafe { &*self.start.add(i) }
     }
 
-    /// Item number `i`, to be written.
+    /// Item number `i`, mutable.
     ///
     /// # Panics
     /// If there are fewer.
@@ -118,7 +118,7 @@ impl<'a, T> SharedRows<'a, T> {
 
 /// Calls `work` once for every item, spread over `runner`'s threads.
 ///
-/// DETERMINISM: which thread takes which item varies, so `work` must depend on its item alone.
+/// DETERMINISM: the thread of an item varies, so `work` must depend on its item alone.
 pub(crate) fn for_each_mut<T: Send>(runner: &dyn TaskRunner, items: &mut [T], work: impl Fn(&mut T) + Sync) {
     let count = items.len();
     let claim = usize::min(usize::max(count / CLAIMS, 1), MOST_CLAIMED);
@@ -143,11 +143,11 @@ pub(crate) fn for_each_mut<T: Send>(runner: &dyn TaskRunner, items: &mut [T], wo
 /// Most items of [`for_each_near`].
 pub(crate) const MOST_NEAR: usize = u64::BITS as usize;
 
-/// Threads that take part in such a list.
+/// Number of threads that take part in such a list.
 const MOST_CALLS: usize = 16;
 
-/// As [`for_each_mut`], for at most [`MOST_NEAR`] items of which neighbours share memory: each thread begins where it began in the
-/// last such list, and goes on with neighbours as long as nobody has taken them.
+/// As [`for_each_mut`], for at most [`MOST_NEAR`] items of which neighbours share memory: each thread starts where it
+/// started in the previous such list, and continues with free neighbours.
 pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], work: impl Fn(&mut T) + Sync) {
     let count = items.len();
     assert!(count <= MOST_NEAR);
@@ -160,7 +160,8 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
         if taken.load(Ordering::Relaxed).count_ones() as usize == count {
             return;
         }
-        // The caller comes first, since the others have to be told; two start at the ends of halves, four at those of quarters.
+        // The caller is first, because the others must be notified; two start at the ends of halves, four at those of
+        // quarters.
         let number = entered.fetch_add(1, Ordering::Relaxed);
         let share = (u64::from(number.reverse_bits()) * count as u64) >> u32::BITS;
         let start = share as usize;
@@ -176,7 +177,7 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
     task();
 }
 
-/// Takes the first items out of what is left.
+/// Takes the first of the remaining items.
 pub(crate) fn split_off<'a, T>(left: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     left.split_off_mut(..count).expect("there is room for each island")
 }

@@ -70,8 +70,8 @@ pub(crate) fn add_scaled(a: &mut Vec6, b: &Vec6, k: f32) {
     }
 }
 
-/// Inverse of the leading `n`×`n` block of a symmetric positive definite matrix by LDLᵀ; the rest is zero.
-/// `None` if a pivot is not safely positive (below 1e-7 of its diagonal entry) or not finite.
+/// Inverse of the leading `n`×`n` block of a symmetric positive definite matrix by LDLᵀ; the rest is zero. `None` if a
+/// pivot is not safely positive (below 1e-7 of its diagonal entry) or not finite.
 #[inline(always)]
 pub(crate) fn spd_inverse(m: &Mat6, n: usize) -> Option<Mat6> {
     match n {
@@ -85,7 +85,7 @@ pub(crate) fn spd_inverse(m: &Mat6, n: usize) -> Option<Mat6> {
     }
 }
 
-/// With loops of known length, which the compiler writes out.
+/// With constant loop bounds, which the compiler unrolls.
 #[inline(always)]
 fn inverse_of<const N: usize>(m: &Mat6) -> Option<Mat6> {
     // L below the diagonal, 1/D on it.

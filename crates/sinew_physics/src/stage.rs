@@ -1,17 +1,17 @@
-//! The stages of a step, by the one name that function, module, profile zone and `docs/step.md` share, and what can be
-//! counted in them.
+//! The stages of a step, under the one name that function, module, profile zone and `docs/step.md` share, and the
+//! quantities counted in them.
 
 /// A stage of the step, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Stage {
-    /// Broad phase: shapes that may meet.
+    /// Broad phase: candidate shape pairs.
     Pairs,
-    /// Narrow phase: manifolds of shapes that meet.
+    /// Narrow phase: manifolds of near shapes.
     Collide,
-    /// Who began and who stopped touching; who wakes.
+    /// Begin and end of touches; waking.
     Touch,
-    /// Islands: bodies that hang together.
+    /// Islands: connected bodies.
     Islands,
     /// In which order an island's contacts are solved.
     Color,
@@ -31,36 +31,37 @@ pub enum Stage {
     Project,
     /// Joints, contacts and limits without bias; friction.
     Relax,
-    /// Bounce of what was hit in the substep.
+    /// Bounce of bodies hit in the substep.
     Restitution,
-    /// Impulses kept for the next step.
+    /// Impulses stored for the next step.
     Store,
     /// Bodies take their new state; numeric trouble is quarantined.
     Finalize,
-    /// Fast bodies are stopped at what they would pass.
+    /// Stops fast bodies that would pass through static ones.
     Continuous,
     /// Islands at rest fall asleep.
     Sleep,
-    /// Who is inside whom.
+    /// Sensor overlaps.
     Sensors,
-    /// Character movers, among bodies that have come to where they are.
+    /// Character movers, among bodies at their new poses.
     Movers,
 }
 
-/// Quantity that a step counts for a [`Profiler`] that asks for it. From [`Bodies`](Self::Bodies) on each is told once for every
-/// island by the thread that solves it, `Bodies` first; of a body in flight, [`BodySubsteps`](Self::BodySubsteps) alone follows.
+/// Quantity that a step counts for a [`Profiler`] that requests it. From [`Bodies`](Self::Bodies) on each is reported
+/// once per island by the thread that solves it, `Bodies` first; a free-flying body only has
+/// [`BodySubsteps`](Self::BodySubsteps) after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Counter {
     /// Shapes of all bodies, awake or not.
     Shapes,
-    /// Pairs of shapes near each other of which one is awake.
+    /// Pairs of near shapes of which one is awake.
     Pairs,
-    /// Pairs of shapes near each other, one of them awake, that have contact points.
+    /// Pairs of near shapes, one of them awake, that have contact points.
     PairsWithPoints,
-    /// Moving bodies of an island: as many calls as there are islands.
+    /// Moving bodies of an island: one call per island.
     Bodies,
-    /// Moving bodies, once for each substep that their island took.
+    /// Moving bodies, once per substep of their island.
     BodySubsteps,
     /// Joints of an island.
     Joints,
@@ -70,33 +71,34 @@ pub enum Counter {
     Points,
     /// Rows of joint limits in the island's last substep.
     LimitRows,
-    /// Manifolds and limit rows of a pass, once for each substep: what one sweep goes through.
+    /// Manifolds and limit rows of a pass, once per substep: the work of one sweep.
     PassRows,
     /// Rows that all sweeps of `solve` went through: over `PassRows`, it is the sweeps of a pass.
     SolveRows,
     /// Rows that all sweeps of `relax` went through.
     RelaxRows,
-    /// Rows that sweeps visited, of all passes: those that lay still were gone through only.
+    /// Rows that sweeps solved, over all passes: inactive rows were only visited.
     Visits,
-    /// Bytes of the solver's arrays for the island, as they are filled: more than the cache holds comes from memory.
+    /// Used bytes of the solver's arrays for the island: more than the cache holds comes from memory.
     ResidentBytes,
-    /// Bytes of these that the step went over: all of them in `prepare`, twice in each substep (poses change) and in `store`,
-    /// and for each visit a row and the velocities of its two bodies. What sweeps push onto other bodies of a tree is not in it.
+    /// Bytes of these that the step accessed: all of them in `prepare`, twice in each substep (poses change) and in
+    /// `store`, and for each solved row the row and the velocities of its two bodies. Excludes what sweeps write to
+    /// other bodies of a tree.
     TouchedBytes,
 }
 
 /// Receives stage times and counts from the step: the library reads no clock itself. Stages inside an island are reported
 /// by the thread that runs it.
 pub trait Profiler: Sync {
-    /// A stage begins.
+    /// A stage starts.
     fn begin(&self, stage: Stage);
-    /// The stage that began last on this thread ends.
+    /// The stage last started on this thread ends.
     fn end(&self, stage: Stage);
-    /// True if it wants counts; else none are made.
+    /// True if it requests counts; else none are made.
     fn is_counting(&self) -> bool {
         false
     }
-    /// There are `by` more of what is counted in this step; only told to one that is counting.
+    /// Adds `by` to a quantity of this step; only called for a counting profiler.
     fn count(&self, _counter: Counter, _by: u64) {}
 }
 

@@ -31,8 +31,8 @@ impl Default for SpeedBound {
     }
 }
 
-/// Velocity of a body that moves from `before` to `after` within `dt` seconds: of its centre of mass (`center` in the
-/// body's frame), and angular. Exact for a motion at constant velocity that turns less than half a turn.
+/// Velocity of a body that moves from `before` to `after` within `dt` seconds: linear at its centre of mass (`center`
+/// in the body's frame), and angular. Exact for motion at constant velocity with a rotation below half a turn.
 ///
 /// # Panics
 /// If `dt` is not positive.
@@ -50,12 +50,12 @@ pub fn body_velocity(
     }
 }
 
-/// [`body_velocity`] of all bodies of a ragdoll: `velocities` is cleared and filled. Whatever came between the two poses
-/// (clips, blends, transitions), bodies that are handed over with them have the momentum of the animated pose: linear, and
-/// angular about any point.
+/// [`body_velocity`] of all bodies of a ragdoll; `velocities` is cleared and filled. Whatever produced the two poses
+/// (clips, blends, transitions), bodies handed over with these velocities have the momentum of the animated pose:
+/// linear, and angular about any point.
 ///
 /// # Panics
-/// If `dt` is not positive, or there is not one pose for each body.
+/// If `dt` is not positive, or there is not one pose per body.
 pub fn body_velocities(
     def: &RagdollDef,
     before: &[Transform],
@@ -72,7 +72,7 @@ pub fn body_velocities(
     );
 }
 
-/// `v`, at most `longest` long; zero if it is not finite.
+/// `v`, shortened to `longest`; zero if it is not finite.
 fn shortened(v: Vec3, longest: f32) -> Vec3 {
     let length = v.length();
     if !v.is_finite() {

@@ -1,4 +1,5 @@
-//! From a rig to a ragdoll, and back to a clip. The only crate that knows physics **and** animation.
+//! Builds ragdolls from rigs and bakes their motion into clips. The only crate that depends on physics **and**
+//! animation.
 //!
 #![doc = include_str!("../doc/ragdoll.svg")]
 #![forbid(unsafe_code)]

@@ -1,12 +1,12 @@
-//! Names by which a world tells of bodies and joints that a character, a ragdoll or a limb keeps.
+//! Names of the owners that a world reports for bodies and joints of characters, ragdolls and severed limbs.
 
 use crate::def::RagdollDef;
 use sinew_physics::{BodyId, BodyKind, Owner, World};
 
-/// Name of a limb that was cut off.
+/// Name of the owner of severed limbs.
 const LIMB: &str = "limb";
 
-/// Kind of what keeps bodies in a world.
+/// Kinds of owner of bodies in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum OwnerKind {
     Character,
@@ -14,7 +14,7 @@ pub(crate) enum OwnerKind {
     Limb,
 }
 
-/// Owner of the bodies of a ragdoll; its parts are the bodies, in their order.
+/// Owner of the bodies of a ragdoll; its parts are the bodies, in order.
 pub(crate) fn owner(def: &RagdollDef, kind: OwnerKind) -> Owner {
     let (name, calls) = match kind {
         OwnerKind::Character => {
@@ -33,12 +33,12 @@ pub(crate) fn owner(def: &RagdollDef, kind: OwnerKind) -> Owner {
     Owner { name: name.into(), calls: calls.into(), parts: def.bodies.iter().map(part).collect() }
 }
 
-/// True if a body is one of a limb that was cut off.
+/// True if a body belongs to a severed limb.
 pub(crate) fn is_limb(world: &World, body: BodyId) -> bool {
     world.body_owner(body).is_some_and(|(owner, _)| owner.name == LIMB)
 }
 
-/// A body that forces move and all such bodies that hang together with it by joints of ragdolls, in order of their distance.
+/// A dynamic body and all dynamic bodies connected to it by ragdoll joints, in order of distance.
 pub(crate) fn together(world: &World, body: BodyId) -> Vec<BodyId> {
     let (mut found, mut next) = (vec![body], 0);
     while let Some(&body) = found.get(next) {

@@ -47,14 +47,15 @@ pub struct BodyState {
 /// Properties that the bodies of a ragdoll have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodySettings {
-    /// Surface. Default: friction 0.7, no bounce, and a rolling resistance of 2 cm, without which round limbs roll for
-    /// ever.
+    /// Surface. Default: friction 0.7, no bounce, and a rolling resistance of 2 cm, without which round limbs roll
+    /// forever.
     pub material: Material,
-    /// Whom the bodies meet. Default: everything, each other too but for the definition's disabled pairs.
+    /// Collision filter of the bodies. Default: everything, including each other except for the definition's disabled
+    /// pairs.
     pub filter: Filter,
     /// 1/s: share of the spin lost per second, which is soft tissue's. Default 0.05.
     pub angular_damping: f32,
-    /// Work that a step does for the ragdoll and what hangs together with it. Default `None`: as the world has it.
+    /// Step quality for the ragdoll's island. Default `None`: the world's setting.
     pub quality: Option<Quality>,
 }
 
@@ -76,19 +77,19 @@ pub struct Ragdoll {
     pub bodies: Vec<BodyId>,
     /// In the order of the definition.
     pub joints: Vec<JointId>,
-    /// Pairs of bodies that collide with each other: no joint, definition or starting pose keeps them from it.
+    /// Colliding pairs of the ragdoll's own bodies: pairs that no joint, definition or starting pose excludes.
     pub colliding: Vec<(BodyId, BodyId)>,
-    /// Bodies that were cut off, by index, ascending. They, and the joints above them, keep their places in the lists and are not its any more.
+    /// Severed bodies, by index, ascending. They and the joints above them keep their list positions but no longer
+    /// belong to the ragdoll.
     pub lost: Vec<usize>,
 }
 
 impl Ragdoll {
-    /// Puts a ragdoll into the world as it is, at `states` (one per body).
+    /// Adds a ragdoll to the world with these `states` (one per body).
     ///
-    /// A pose of an animation need not fit the ragdoll's joints: it may bend a knee sideways, pull a bone out or reach
-    /// beyond a limit, and its limbs may pass through each other. To tear it into place would add energy from nothing;
-    /// so the joints of this instance are fitted to the pose ([`fitted`]), and pairs of bodies that overlap in it pass
-    /// through each other.
+    /// An animated pose need not satisfy the ragdoll's joints: it may bend a knee sideways, pull a bone out or exceed a
+    /// limit, and its limbs may overlap. Correcting that by force would add energy, so the joints of this instance are
+    /// adapted to the pose ([`fitted`]), and pairs of bodies that overlap in it do not collide.
     ///
     /// # Panics
     /// If there is not one finite state per body.
@@ -114,8 +115,8 @@ impl Ragdoll {
         ragdoll
     }
 
-    /// Puts the bodies alone into the world, kinematic and without joints, as what can be hit of a character that its clips
-    /// move; `rule` says how hard they push. [`wake`](Self::wake) makes a ragdoll of them.
+    /// Adds only the bodies to the world, kinematic and without joints, as hit targets for a character moved by its
+    /// clips; `rule` limits how hard they push. [`wake`](Self::wake) turns them into a ragdoll.
     ///
     /// # Panics
     /// As [`spawn`](Self::spawn).
@@ -129,7 +130,7 @@ impl Ragdoll {
         Self::spawn_kinematic_without(world, def, states, body_settings, rule, &[])
     }
 
-    /// [`spawn_kinematic`](Self::spawn_kinematic) of all bodies but some; `gone` has the ids that stand for these.
+    /// [`spawn_kinematic`](Self::spawn_kinematic) without some bodies; `gone` has placeholder ids for these.
     pub(crate) fn spawn_kinematic_without(
         world: &mut World,
         def: &RagdollDef,
@@ -160,11 +161,11 @@ impl Ragdoll {
         bodies
     }
 
-    /// Makes a ragdoll of bodies that were put into the world by [`spawn_kinematic`](Self::spawn_kinematic), as
-    /// [`spawn`](Self::spawn) does of none; their ids stay.
+    /// Turns bodies added by [`spawn_kinematic`](Self::spawn_kinematic) into a ragdoll, as [`spawn`](Self::spawn) does
+    /// with new ones; their ids do not change.
     ///
     /// # Panics
-    /// If there is not one body and one finite state for each of the definition, or a body is no longer there.
+    /// If there is not one existing body and one finite state per body of the definition.
     pub fn wake(
         world: &mut World,
         def: &RagdollDef,
@@ -202,7 +203,7 @@ impl Ragdoll {
         Self::jointed(world, def, bodies.to_vec(), states, lost.to_vec())
     }
 
-    /// Puts all bodies but some into the world, with their joints; `gone` has the ids that stand for the others.
+    /// Adds all bodies except some to the world, with their joints; `gone` has placeholder ids for the others.
     pub(crate) fn spawn_without(
         world: &mut World,
         def: &RagdollDef,
@@ -227,7 +228,7 @@ impl Ragdoll {
         Self::jointed(world, def, bodies, states, lost)
     }
 
-    /// Makes bodies and joints those of a ragdoll or of what has one, so that no other call takes them out.
+    /// Marks bodies and joints as owned by a ragdoll or its owner, so that no other call removes them.
     pub(crate) fn own(&self, world: &mut World, def: &RagdollDef, kind: OwnerKind) {
         let owner = owner(def, kind);
         let (parts, bodies): (Vec<usize>, Vec<BodyId>) = self.own_bodies().unzip();
@@ -236,21 +237,21 @@ impl Ragdoll {
         world.own_joints(&owner, &joints, &parts);
     }
 
-    /// Bodies that were not cut off, with their indices.
+    /// Attached bodies, with their indices.
     pub fn own_bodies(&self) -> impl Iterator<Item = (usize, BodyId)> {
         self.bodies.iter().copied().enumerate().filter(|(index, _)| !self.lost.contains(index))
     }
 
-    /// Joints of bodies that were not cut off, with the indices of these.
+    /// Joints of attached bodies, with the indices of these.
     pub fn own_joints(&self) -> impl Iterator<Item = (usize, JointId)> {
         let children = self.joints.iter().enumerate().map(|(index, &joint)| (index + 1, joint));
         children.filter(|(child, _)| !self.lost.contains(child))
     }
 
-    /// Takes the joints out and leaves the bodies in the world, kinematic: the reverse of [`wake`](Self::wake).
+    /// Removes the joints and leaves the bodies in the world, kinematic: the reverse of [`wake`](Self::wake).
     ///
     /// # Panics
-    /// If a body is no longer there.
+    /// If a body no longer exists.
     pub fn lull(self, world: &mut World, rule: ContactRule) {
         for (_, joint) in self.own_joints() {
             world.disown_joint(joint);
@@ -262,14 +263,14 @@ impl Ragdoll {
         self.set_rule(world, rule);
     }
 
-    /// Sets what becomes of the bodies' contacts.
+    /// Sets the contact rule of the bodies.
     pub(crate) fn set_rule(&self, world: &mut World, rule: ContactRule) {
         for (_, body) in self.own_bodies() {
             world.set_contact_rule(ShapeId { body, shape: 0 }, rule);
         }
     }
 
-    /// Joints between bodies that are there; what overlaps passes through each other.
+    /// Joints between existing bodies; overlapping pairs do not collide.
     fn jointed(
         world: &mut World,
         def: &RagdollDef,
@@ -301,19 +302,19 @@ impl Ragdoll {
         Self { bodies, joints, colliding, lost }
     }
 
-    /// Sets the quality of the step for all bodies of the ragdoll, from the next step on: less for what is far away, more for what is filmed;
-    /// `None`: as the world has it. What touches the ragdoll takes the higher of both.
+    /// Sets the step quality of all bodies of the ragdoll from the next step on: lower for distant ones, higher for
+    /// filmed ones; `None`: the world's setting. A body in contact with the ragdoll uses the higher of both.
     ///
     /// # Panics
-    /// If a body is no longer there.
+    /// If a body no longer exists.
     pub fn set_quality(&self, world: &mut World, quality: Option<Quality>) {
         self.own_bodies().for_each(|(_, body)| world.set_quality(body, quality));
     }
 
-    /// Takes the ragdoll out of the world.
+    /// Removes the ragdoll from the world.
     ///
     /// # Panics
-    /// If a body is no longer there.
+    /// If a body no longer exists.
     pub fn despawn(self, world: &mut World) {
         for (_, body) in self.own_bodies() {
             world.disown_body(body);
@@ -321,7 +322,7 @@ impl Ragdoll {
         }
     }
 
-    /// Poses of the bodies: `poses` is cleared and filled. A body that was cut off has that of the first, the pelvis.
+    /// Poses of the bodies: `poses` is cleared and filled. A severed body gets the pose of the first body, the pelvis.
     pub fn poses(&self, world: &World, poses: &mut Vec<Transform>) {
         poses.clear();
         let is_own = |index: usize| !self.lost.contains(&index);
@@ -334,7 +335,7 @@ impl Ragdoll {
     }
 }
 
-/// Pairs of bodies, by index, that neither a joint nor the definition keeps apart.
+/// Pairs of bodies, by index, that neither a joint nor the definition excludes from collision.
 pub fn colliding_pairs(def: &RagdollDef) -> Vec<(usize, usize)> {
     let same = |pair: (usize, usize), a, b| pair == (a, b) || pair == (b, a);
     let mut pairs = Vec::new();
@@ -382,8 +383,8 @@ pub(crate) fn joint_def(joint: &RagdollJointDef, bodies: &[BodyId]) -> JointDef 
     }
 }
 
-/// The joint as it fits two bodies in the given poses: the anchors meet where the child has its own, rotations that the
-/// joint does not leave free are taken over from the pose, and limits that the pose exceeds are widened to it.
+/// The joint adapted to two bodies in the given poses: the parent's anchor moves to the child's, locked rotations are
+/// taken from the pose, and limits that the pose exceeds are widened to it.
 pub fn fitted(
     joint: &RagdollJointDef,
     world_from_parent: Transform,
@@ -431,7 +432,7 @@ fn holding(limit: SwingTwistLimit, seen: Rotation) -> SwingTwistLimit {
         swing_z: stretched(limit.swing_z, swing.z),
         twist: stretched(limit.twist, twist),
     };
-    // Each axis by itself is wide enough now; the ellipse between them may not be yet.
+    // Each axis alone is wide enough now; the ellipse between them may not be.
     let angle = swing.length();
     let room = if angle > 1e-6 { wide.cone_angle(swing.y / angle, swing.z / angle) } else { angle };
     let factor = if room < angle { 1.001 * angle / room } else { 1.0 };

@@ -23,7 +23,7 @@ use sinew_anim::{JointIdx, Rig};
 /// A body whose bone the rig does not have.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RigMismatch {
-    /// The rig has no joint of this name, or several and none in the old place.
+    /// The rig has no joint of this name, or several and none at the old index.
     #[error("the ragdoll's bone `{bone}` is not in this rig")]
     NoBone {
         /// Its name in the definition.
@@ -61,8 +61,8 @@ impl RigMismatch {
 }
 
 impl RagdollDef {
-    /// The definition with the joint indices of `rig`, by the names of bones: a file that was exported anew may have its
-    /// joints in another order. Where a bone is no longer in its place, joints that moved with it are those below it.
+    /// The definition with the joint indices of `rig`, matched by bone names: a re-exported file may order its joints
+    /// differently. If a bone has another index, its merged joints are the joints below it.
     ///
     /// # Errors
     /// See [`RigMismatch`].
@@ -91,7 +91,7 @@ impl RagdollDef {
                     return Err(RigMismatch::NoJoint { joint, bone: body.bone.clone(), body: index });
                 }
             } else {
-                // Indices of a rig in another order mean nothing; what hangs below rides along by itself.
+                // Indices of a reordered rig mean nothing; joints below the bone follow it anyway.
                 self.bodies[index].merged.clear();
             }
         }

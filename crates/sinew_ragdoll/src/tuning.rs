@@ -1,18 +1,18 @@
-//! Constants of behaviour of building, judging and driving ragdolls: numbers that an engineer would turn.
+//! Behaviour constants for building, judging and driving ragdolls: the numbers an engineer would tune.
 //!
-//! Each says its unit and space, what a larger and a smaller one does, and the tests
-//! (`crates/sinew_ragdoll/tests/it`) where that is to be seen; consequences without a figure are judgement, not measured.
+//! Each comment states the unit and space, the effect of a larger and a smaller value, and the tests
+//! (`crates/sinew_ragdoll/tests/it`) that show it. Effects without a figure are judgement, not measurement.
 
 // build/report.rs
 
 /// Least widening of limits that is worth a note, radians (1°).
 ///
-/// Larger: a bind pose beyond its limits is passed over. Smaller: notes on every rig. Shown by the tests of `build_limits`.
+/// Larger: misses a bind pose beyond its limits. Smaller: notes on every rig. Shown by the tests of `build_limits`.
 pub(crate) const NOTED_WIDENING: f32 = 0.017;
 
 // build/takes.rs
 
-/// Least time between the frames of a clip that a build looks at, seconds.
+/// Least time between the clip frames that a build reads, seconds.
 ///
 /// Larger: quick motions teach no limits. Smaller: slower builds. Shown by the tests of `learned`.
 pub(crate) const FRAME_TIME: f64 = 1.0 / 30.0;
@@ -21,41 +21,41 @@ pub(crate) const FRAME_TIME: f64 = 1.0 / 30.0;
 
 /// Lowest frequency of a drive that is more than nothing, Hz.
 ///
-/// Larger: fading drives let go at once. Smaller: springs that move nothing are solved. Shown by the tests of `drive`.
+/// Larger: fading drives end abruptly. Smaller: springs without effect are solved. Shown by the tests of `drive`.
 pub(crate) const LEAST_HERTZ: f32 = 0.02;
 
-/// Number of half-lives after which a body on its way to its key pose is keyed.
+/// Number of half-lives after which a body becomes keyed.
 ///
 /// Larger: it lags longer. Smaller: it jumps. Shown by the tests of `drive`.
 pub(crate) const KEYED_AFTER: f32 = 5.0;
 
 // drive/mod.rs
 
-/// Speed that a hit must give the whole ragdoll to take all strength from the muscles where it struck, m/s.
+/// Speed that a hit must give the whole ragdoll to remove all strength from the muscles where it hit, m/s.
 ///
-/// Larger: hits leave no trace. Smaller: a touch makes a limb hang. Shown by the tests of `blows`.
+/// Larger: hits leave no trace. Smaller: a touch makes a limb limp. Shown by the tests of `blows`.
 pub(crate) const NUMBING_SPEED: f32 = 0.2;
 
 /// Share of its weakness that one joint hands on to the next, 0 to 1.
 ///
-/// Larger: the whole body gives way. Smaller: only the joint that was struck. Shown by the tests of `blows`.
+/// Larger: the whole body yields. Smaller: only the joint that was hit. Shown by the tests of `blows`.
 pub(crate) const WEAKNESS_FALLOFF: f32 = 0.5;
 
-/// Share of strength, or of a pin's force, below which there is none.
+/// Share of strength, or of a pin's force, below which it counts as zero.
 ///
 /// Larger: fading drives end with a jerk. Smaller: they are solved for longer. Shown by the tests of `drive`.
 pub(crate) const NO_STRENGTH: f32 = 1e-3;
 
 // drive/target.rs
 
-/// Angle kept free before a stop by the target of a motor, radians.
+/// Distance that a motor's target keeps from a stop, radians.
 ///
 /// Larger: poses at a limit are not reached. Smaller: motor and stop fight. Shown by the tests of `drive`.
 pub(crate) const STOP_ROOM: f32 = 0.01;
 
 // drive/torque.rs
 
-/// Torque of a creature's joint over what hangs on it, a ratio.
+/// Torque of a creature's joint over the gravity torque of its subtree, a ratio.
 ///
 /// Larger: stiff creatures. Smaller: they sag under their own weight. Shown by the tests of `drive`.
 pub(crate) const CREATURE_STRENGTH: f32 = 3.0;
@@ -67,12 +67,13 @@ pub(crate) const GRAVITY: f32 = 9.81;
 
 // filter/mod.rs
 
-/// Overlap in the bind pose that is let be, metres: about the solver's slop.
+/// Overlap in the bind pose that is tolerated, metres: about the solver's slop.
 ///
-/// Larger: pairs push each other when limp. Smaller: pairs that only touch stop colliding. Shown by the tests of `filter`.
+/// Larger: pairs push each other when limp. Smaller: pairs that only touch stop colliding. Shown by the tests of
+/// `filter`.
 pub const TOLERATED: f32 = 0.005;
 
-/// Least factor on a shape's cross-section that lets a pair collide, below 1.
+/// Least factor on a shape's cross-section at which a pair still collides, below 1.
 ///
 /// Larger: more pairs pass through each other. Smaller: thin limbs inside thick skin. Shown by the tests of `filter`.
 pub(crate) const LEAST_SCALE: f32 = 0.86;
@@ -84,7 +85,8 @@ pub(crate) const SCALE_STEP: f32 = 0.975;
 
 /// Share of the poses within the limits, 0 to 1, from which on a pair that overlaps in them overlaps always.
 ///
-/// Larger: pairs collide that are never apart, and jitter. Smaller: hands pass through thighs. Shown by the tests of `filter`.
+/// Larger: pairs that always overlap collide and jitter. Smaller: hands pass through thighs. Shown by the tests of
+/// `filter`.
 pub(crate) const ALWAYS: f32 = 0.9;
 
 /// Share of the poses within the limits, 0 to 1, below which a pair that overlaps in the bind pose is only bound so.
@@ -92,28 +94,30 @@ pub(crate) const ALWAYS: f32 = 0.9;
 /// Larger: pairs that mostly overlap collide. Smaller: arms bound at the hips pass through them. Shown by the tests of `filter`.
 pub(crate) const SELDOM: f32 = 0.1;
 
-/// Share of the clips' poses, 0 to 1, in which limbs that are never apart overlap.
+/// Share of the clips' poses, 0 to 1, above which limbs count as always overlapping.
 ///
-/// Larger: limbs that clips hold together fight. Smaller: limbs pass through each other. Shown by the tests of `filter`.
+/// Larger: limbs that clips hold together push each other. Smaller: limbs pass through each other. Shown by the tests
+/// of `filter`.
 pub(crate) const MOSTLY: f32 = 0.5;
 
 /// Share of the clips' poses, 0 to 1, in which other parts may overlap and still collide.
 ///
-/// Their meeting is no sight that a fall needs. Larger: parts fight that clips let overlap. Smaller: one bad frame lets them pass.
-/// Shown by the tests of `filter`.
+/// A fall does not need their contact to look right. Larger: parts that overlap in clips push each other. Smaller: one
+/// bad frame excludes them. Shown by the tests of `filter`.
 pub(crate) const A_FEW: f32 = 0.02;
 
 // fit/frame.rs
 
-/// Cosine of the angle, 35°, between a surface's long axis and its bone within which the bone's direction is taken for the shape.
+/// Cosine of the angle, 35°, between a surface's long axis and its bone up to which the shape uses the bone's
+/// direction.
 ///
 /// A larger angle: shapes askew to their skin. A smaller one: limbs that are not parallel to their bones. Shown by the tests of
 /// `build`.
 pub(crate) const ALONG_BONE: f32 = 0.819;
 
-/// Least ratio of a surface's largest variance to the next that makes a long axis.
+/// Least ratio of a surface's largest variance to the next for which it has a long axis.
 ///
-/// Larger: feet point along their bones. Smaller: axes of round parts by noise. Shown by the tests of `build`.
+/// Larger: feet point along their bones. Smaller: noise decides the axes of round parts. Shown by the tests of `build`.
 pub(crate) const ELONGATED: f32 = 1.5;
 
 /// Largest volume of a trunk's tilted box over the upright one's that is worth tilting it.
@@ -121,7 +125,7 @@ pub(crate) const ELONGATED: f32 = 1.5;
 /// Larger: askew trunks. Smaller: boxes far larger than bent backs. Shown by the tests of `build`.
 pub(crate) const WORTH_TILTING: f32 = 0.75;
 
-/// Largest volume of the box in another frame over that in the preferred one for which the other is taken.
+/// Largest ratio of the box volume in another frame to that in the preferred one at which the other is used.
 ///
 /// Larger: frames change with a vertex. Smaller: loose boxes. Shown by the tests of `build`.
 pub(crate) const CLEARLY_SMALLER: f32 = 0.9;
@@ -133,19 +137,21 @@ pub(crate) const CLEARLY_SMALLER: f32 = 0.9;
 /// Larger: fingers and ears of small figures are clubs. Smaller: thin shapes fall through edges. Shown by the tests of `build`.
 pub(crate) const LEAST_HALF: f32 = 0.0075;
 
-/// Factor on the fitted cross-section, so that contacts lie inside the skin rather than outside.
+/// Factor on the fitted cross-section that keeps contacts inside the skin instead of outside.
 ///
 /// Larger: figures float. Smaller: they sink. Shown by the tests of `skin`.
 pub(crate) const SHRINK: f32 = 0.97;
 
-/// Share of a bone's length by which its shape may pass each of its joints: two neighbours then overlap by at most a quarter of it.
+/// Share of a bone's length by which its shape may extend past each of its joints: two neighbours then overlap by at
+/// most a quarter.
 ///
-/// Larger: neighbours of neighbours meet. Smaller: gaps at knees and elbows. Shown by the tests of `build`.
+/// Larger: second neighbours touch. Smaller: gaps at knees and elbows. Shown by the tests of `build`.
 pub(crate) const PAST_JOINT: f32 = 0.125;
 
 /// Length of a shape over its twin's from which on it has something in it that is not the body's.
 ///
-/// Larger: a sword in a hand is a part of it. Smaller: uneven sculpting is mended away. Shown by the tests of `rig_variants`.
+/// Larger: a sword in a hand becomes part of it. Smaller: smooths away uneven sculpting. Shown by the tests of
+/// `rig_variants`.
 pub(crate) const BURDENED: f32 = 1.6;
 
 /// Distance of the skin of a tail from the shape that is nearest to it, from which on it is a spike, as a share of the character's size.
@@ -153,12 +159,12 @@ pub(crate) const BURDENED: f32 = 1.6;
 /// Larger: spikes in the floor. Smaller: hulls for thick tails. Shown by the tests of `skin`.
 pub(crate) const SPIKED: f32 = 0.04;
 
-/// Ratio of the volumes of twins from which on both get the shape that fits better.
+/// Ratio of the volumes of twins above which both get the better-fitting shape.
 ///
-/// Larger: lopsided bodies. Smaller: what is really different is made alike. Shown by the tests of `build`.
+/// Larger: lopsided bodies. Smaller: equalises parts that really differ. Shown by the tests of `build`.
 pub(crate) const UNLIKE: f32 = 1.3;
 
-/// Factor on the error of a shape that is not of the kind that suits the part.
+/// Factor on the error of a shape whose kind does not suit the part.
 ///
 /// It must be clearly nearer to the skin. Larger: tables decide. Smaller: odd shapes for a few vertices. Shown by the tests of
 /// `build`.
@@ -166,7 +172,7 @@ pub(crate) const UNUSUAL: f32 = 1.0 / 0.6;
 
 /// Factor on the error of a tapered capsule for a limb, which is as easy to live with as a capsule.
 ///
-/// Larger: only capsules. Smaller: tapered ones that are none. Shown by the tests of `build`.
+/// Larger: only capsules. Smaller: tapered capsules for untapered limbs. Shown by the tests of `build`.
 pub(crate) const TAPERED: f32 = 1.0 / 0.9;
 
 /// Factor on the error of a hull: it costs several times a box's collisions.
@@ -178,7 +184,7 @@ pub(crate) const INTRICATE: f32 = 3.0;
 
 /// Number of samples that describe a patch of skin, about.
 ///
-/// Larger: slower fits. Smaller: shapes depend on how the mesh is cut. Shown by the tests of `rig_variants`.
+/// Larger: slower fits. Smaller: shapes depend on the mesh's tessellation. Shown by the tests of `rig_variants`.
 pub(crate) const SAMPLES: f32 = 400.0;
 
 /// Least share of the area that a bone moves, weight by weight, that is all of its flesh, 0 to 1.
@@ -200,85 +206,94 @@ pub(crate) const STEEPEST: f32 = 0.35;
 
 // fit/solid.rs
 
-/// Weight of being far from the middle beside being far out along a direction, and by how much directions are askew, in half sides of
-/// the box.
+/// Weight of the distance from the middle relative to the distance along a direction, and the tilt of the directions,
+/// in half sides of the box.
 ///
-/// All points of a flat side are equally far out along it. The one nearest to a corner stands for them, and of two mirror images
-/// always the same: what decided was the last bit of their places, and the same skin in another unit had a hull of half the volume.
-/// Larger: hulls miss what sticks out. Smaller: rounding decides. Shown by the tests of `rig_variants`.
+/// All points of a flat side are equally far along it. The one nearest to a corner represents them, and always the same
+/// one of two mirror images. Without this, the last bit of their positions decided, and the same skin in another unit
+/// had a hull of half the volume. Larger: hulls miss protruding parts. Smaller: rounding decides. Shown by the tests of
+/// `rig_variants`.
 pub(crate) const TOWARD_CORNERS: f32 = 1e-3;
 
 // fit/surface.rs
 
-/// Least pull of a bone on a triangle for it to be looked at, 0 to 1.
+/// Least weight of a bone on a triangle for the triangle to count, 0 to 1.
 ///
-/// Larger: skin near joints is nobody's. Smaller: slower fits. Shown by the tests of `build`.
+/// Larger: skin near joints belongs to no bone. Smaller: slower fits. Shown by the tests of `build`.
 pub(crate) const LEAST_PULL: f32 = 0.05;
 
-/// Size of the parts into which a triangle that several bones move is cut, as a share of the character's height.
+/// Largest size of the parts of a triangle moved by several bones, as a share of the character's height.
 ///
 /// Larger: coarse meshes give other shapes than fine ones. Smaller: slower fits. Shown by the tests of `rig_variants`.
 pub(crate) const FINEST: f32 = 0.03;
 
 /// Largest number of parts into which a side of a triangle is cut.
 ///
-/// Larger: slow fits of figures with few triangles. Smaller: as a larger [`FINEST`]. Shown by the tests of `rig_variants`.
+/// Larger: slow fits of figures with few triangles. Smaller: as a larger [`FINEST`]. Shown by the tests of
+/// `rig_variants`.
 pub(crate) const MOST_CUTS: f32 = 8.0;
 
 // garments/sheet.rs
 
-/// Number of times that a particle is taken out of the nearest body when a sheet is made: between two legs it takes some.
+/// Number of times that a particle is moved out of the nearest body when a sheet is made: between two legs it needs
+/// several.
 ///
-/// Larger: work for nothing. Smaller: sheets begin within a body, which throws them out. Shown by the tests of `garments`.
+/// Larger: wasted work. Smaller: sheets start inside a body, which pushes them out violently. Shown by the tests of
+/// `garments`.
 pub(crate) const CLEARINGS: usize = 4;
 
-/// Number of parts that a substep of a sheet is moved in, as in scene `cape`.
+/// Number of parts of a sheet's substep, as in scene `cape`.
 ///
 /// Larger: slower, and stiffer. Smaller: it stretches like rubber. Shown by the tests of `garments`.
 pub(crate) const SHEET_ITERATIONS: u32 = 4;
 
 /// Length over the spacing below which a thread has the stiffness of one of that length, a ratio.
 ///
-/// Larger: short threads are soft. Smaller: where columns meet in a point, springs are too stiff to be solved. Shown by the tests of `garments`.
+/// Larger: short threads are soft. Smaller: where columns meet in a point, springs are too stiff for the solver.
+/// Shown by the tests of `garments`.
 pub(crate) const SHORTEST_THREAD: f32 = 0.1;
 
 // garments/mesh.rs
 
-/// Cosine of the angle, 75°, from which on the edge that lies opposite to it in both of its triangles is the diagonal of a cell, a ratio.
+/// Cosine of the angle, 75°, above which the edge opposite it in both of its triangles is the diagonal of a cell, a
+/// ratio.
 ///
-/// Larger: equal triangles are taken for halves of cells, and are soft along one side. Smaller: cells that are not quite square are stiff across. Shown by the
-/// tests of `mesh_garments`.
+/// Larger: equal triangles count as halves of cells and are soft along one side. Smaller: cells that are not quite
+/// square are stiff across. Shown by the tests of `mesh_garments`.
 pub(crate) const SQUARE: f32 = 0.26;
 
-/// Cosine of the angle, 143°, from which on two neighbours of a particle lie opposite each other, a ratio.
+/// Cosine of the angle, 143°, above which two neighbours of a particle count as opposite, a ratio.
 ///
-/// Larger: folds at corners are resisted that are none. Smaller: uneven meshes do not resist bending. Shown by the tests of `mesh_garments`.
+/// Larger: resists folds at false corners. Smaller: uneven meshes do not resist bending. Shown by the tests of
+/// `mesh_garments`.
 pub(crate) const STRAIGHT: f32 = -0.8;
 
 // garments/wear.rs
 
 /// Length of a thread over that at rest, or over half the spacing of its sheet if that is longer, from which the body has caught it, a ratio.
 ///
-/// Larger: a skirt that a clip sits down on stays caught. Smaller: cloth that is only pulled jumps. Shown by the tests of `garments`.
+/// Larger: a skirt that a clip sits down on stays caught. Smaller: stretched cloth jumps. Shown by the tests of
+/// `garments`.
 pub(crate) const CAUGHT: f32 = 1.5;
 
-/// Number of times that a sheet which is put on is pulled to its lengths and taken out of the bodies.
+/// Iterations of restoring lengths and leaving bodies when a sheet is added.
 ///
-/// Larger: work for nothing. Smaller: a sheet that is put on in mid-stride begins with a jerk. Shown by the tests of `garments`.
+/// Larger: wasted work. Smaller: a sheet added in mid-stride starts with a jerk. Shown by the tests of `garments`.
 pub(crate) const DRAPINGS: usize = 8;
 
 // limits/friction.rs
 
-/// Least torque with which a creature's limp joint resists, as a share of that which gravity has on what it carries.
+/// Least resisting torque of a creature's limp joint, as a share of the gravity torque of what it carries.
 ///
-/// The table's torques give human joints 3 % (spine) to 36 % (elbow) of theirs; but they are a human's, and on a fish of four tonnes
-/// half a per cent, with which it stands on its nose and sways for ten seconds. With a tenth a column of nine metres still sways for
-/// five; with a fifth all creatures at hand are asleep 2.2 s after they are calm. Larger: stiff falls. Shown by the tests of `falls`.
+/// The table's torques give human joints 3 % (spine) to 36 % (elbow) of theirs. They are a human's: on a fish of four
+/// tonnes they are half a per cent, so that it stands on its nose and sways for ten seconds. With a tenth a column of
+/// nine metres still sways for five; with a fifth all tested creatures are asleep 2.2 s after they are calm. Larger:
+/// stiff falls. Shown by the tests of `falls`.
 pub(crate) const SHARE_OF_LOAD: f32 = 0.2;
 
 // limits/learned.rs
 
-/// Angle by which twist and hinges may go beyond what was seen, radians (10°).
+/// Angle by which twist and hinges may exceed the observed range, radians (10°).
 ///
 /// Larger: limits of the clips' own are lost. Smaller: a fall is stopped where no clip went by chance. Shown by the tests of
 /// `learned`.
@@ -286,12 +301,12 @@ pub(crate) const TWIST_MARGIN: f32 = 0.174_532_92;
 
 /// Least motion of a joint to learn from, and narrowest range, radians (5°).
 ///
-/// Larger: anatomy decides more often. Smaller: joints lock where clips hold still. Shown by the tests of `learned`.
+/// Larger: anatomy decides more often. Smaller: joints lock where clips do not move. Shown by the tests of `learned`.
 pub(crate) const LEAST_RANGE: f32 = 0.087_266_46;
 
-/// Angle beyond the clips by which anatomical limits are widened for them, radians (1°): half of what a limit may be overshot by.
+/// Angle beyond the clips by which anatomical limits are widened for them, radians (1°): half of the allowed overshoot.
 ///
-/// Larger: limits wider than they need be. Smaller: a character begins beyond its limit. Shown by the tests of `learned`.
+/// Larger: limits wider than needed. Smaller: a character starts beyond its limit. Shown by the tests of `learned`.
 pub(crate) const BEYOND_CLIPS: f32 = 0.017_453_292;
 
 // limits/mod.rs
@@ -301,9 +316,9 @@ pub(crate) const BEYOND_CLIPS: f32 = 0.017_453_292;
 /// Larger: falls like a doll of clay. Smaller: limbs flail. Shown by the tests of `falls`.
 pub(crate) const FRICTION_SHARE: f32 = 0.02;
 
-/// Room that a bind pose has to every limit, radians (2°).
+/// Margin of a bind pose to every limit, radians (2°).
 ///
-/// Larger: wider limits than anatomy's. Smaller: what is bound at a limit overshoots it at once. Shown by the tests of
+/// Larger: limits wider than anatomy's. Smaller: a joint bound at a limit overshoots it at once. Shown by the tests of
 /// `build_limits`.
 pub(crate) const BIND_MARGIN: f32 = 0.034_906_585;
 
@@ -314,27 +329,27 @@ pub(crate) const BENT: f32 = 0.984_8;
 
 /// Cosine of the angle, 50°, from the anatomical axis within which the axis that a bend shows is believed.
 ///
-/// A larger angle: knees that bend sideways. A smaller one: turned-out legs bend askew. Shown by the tests of `build_limits`.
+/// Larger: knees that bend sideways. Smaller: turned-out legs bend askew. Shown by the tests of `build_limits`.
 pub(crate) const BELIEVED: f32 = 0.642_8;
 
 /// Largest half-angle to which a swing is widened, radians (170°).
 ///
-/// Larger: limits that are none. Smaller: odd bind poses lie beyond. Shown by the tests of `build_limits`.
+/// Larger: limits without effect. Smaller: odd bind poses exceed them. Shown by the tests of `build_limits`.
 pub(crate) const WIDEST_SWING: f32 = 2.967;
 
 // limits/sample.rs
 
-/// Half-axes of the square of random swings over those of the ellipse that they stay in: √½, less a margin.
+/// Half-axes of the square of random swings over those of the ellipse that contains them: √½, minus a margin.
 ///
-/// Larger: random poses beyond their limits. Smaller: all near the middle. Shown by the tests of `filter`.
+/// Larger: random poses exceed their limits. Smaller: all are near the middle. Shown by the tests of `filter`.
 pub(crate) const INSCRIBED: f32 = 0.7;
 
 // masses/inertia.rs
 
 /// Largest ratio of a body's principal moments.
 ///
-/// Larger: thin bodies spin up about their long axis faster than a substep resolves. Smaller: limbs turn as heavily as boxes.
-/// Shown by the tests of `build`.
+/// Larger: thin bodies spin up about their long axis faster than a substep resolves. Smaller: limbs rotate as
+/// sluggishly as boxes. Shown by the tests of `build`.
 pub(crate) const LARGEST_MOMENTS: f32 = 8.0;
 
 // masses/mod.rs
@@ -351,8 +366,8 @@ pub(crate) const CAPSULE_FILL: f32 = 0.8;
 
 /// Least share of the total mass for a body, 0 to 1.
 ///
-/// The solver wants ratios below about 1000. Larger: fingers as heavy as hands. Smaller: joints that take more sweeps. Shown by the
-/// tests of `build`.
+/// The solver needs ratios below about 1000. Larger: fingers as heavy as hands. Smaller: joints that need more sweeps.
+/// Shown by the tests of `build`.
 pub(crate) const LEAST_MASS: f32 = 0.001;
 
 /// Least share of the trunk's length for a body of it, 0 to 1.
@@ -362,12 +377,12 @@ pub(crate) const LEAST_TRUNK: f32 = 0.1;
 
 // masses/volume.rs
 
-/// Least share of the lines that meet the skin on which it closes, 0 to 1.
+/// Least share of the sample lines that must cross a closed skin, 0 to 1.
 ///
 /// Larger: figures with open necks weigh by their shapes. Smaller: cloaks enclose air. Shown by the tests of `volume`.
 pub(crate) const CLOSED: f32 = 0.6;
 
-/// Density of what lives, kg/m³: that of water, nearly.
+/// Density of living tissue, kg/m³: about that of water.
 ///
 /// Larger or smaller: creatures weigh more or less. Shown by the tests of `volume`.
 pub(crate) const FLESH: f32 = 1000.0;
@@ -379,62 +394,66 @@ pub(crate) const MACHINE: f32 = 500.0;
 
 // quality/faults.rs
 
-/// Least distance below everything that stands in a world at which a body has fallen out of it, metres; else the character's height.
+/// Least distance below all static geometry at which a body has fallen out of the world, metres; else the character's
+/// height.
 ///
-/// Larger: a fall out of the world is seen later. Smaller: a thin floor that lets an arm through counts. Shown by the tests of
-/// `faults`.
+/// Larger: a fall out of the world is detected later. Smaller: a thin floor that lets an arm through counts. Shown by
+/// the tests of `faults`.
 pub(crate) const FALLEN_OUT: f32 = 2.0;
 
-/// Time limp without lying still once after which it is said that it never does, seconds.
+/// Time limp without lying still after which a character counts as never still, seconds.
 ///
-/// The contract has a drop asleep within 6 s. Larger: jitter is passed over. Smaller: long falls are blamed. Shown by the tests of
+/// The contract has a drop asleep within 6 s. Larger: misses jitter. Smaller: faults long falls. Shown by the tests of
 /// `faults`.
 pub(crate) const NEVER_STILL: f32 = 6.0;
 
-/// Height of the highest part over the floor at rest, as a share of where it was when the body was let go, from which a tall body stays upright.
+/// Height of the highest part over the floor at rest, as a share of its height at release, above which a tall body
+/// counts as still upright.
 ///
-/// Larger: who kneels or leans is said to have fallen. Smaller: who sits is said to stand. Shown by the tests of `faults`.
+/// Larger: kneeling or leaning counts as fallen. Smaller: sitting counts as standing. Shown by the tests of `faults`.
 pub(crate) const STILL_UPRIGHT: f32 = 0.8;
 
-/// Velocities of the highest point by which a limp body that stays upright is pushed over, the weakest first, as shares of √(g h), h its height.
+/// Velocities of the highest point used to push over a limp body that stays upright, weakest first, as shares of √(g
+/// h), h its height.
 ///
-/// A block half as deep as it is tall falls from 0.7 on. Larger: a slender figure flies. Smaller: a broad one stays upright. Shown by the tests of
-/// `faults`.
+/// A block half as deep as it is tall falls from 0.7 on. Larger: a slender figure flies. Smaller: a broad one stays
+/// upright. Shown by the tests of `faults`.
 pub(crate) const TOPPLES: [f32; 3] = [0.35, 0.7, 1.05];
 
-/// Most that a creature weighs over the cube of its longest side, kg/m³: a human has 14, an elephant 20, a bear 40, a cow 50, a pig 60.
+/// Largest ratio of a creature's mass to the cube of its longest side, kg/m³: a human has 14, an elephant 20, a bear
+/// 40, a cow 50, a pig 60.
 ///
-/// Larger: a block of 625 kg at 1.75 m is let pass. Smaller: a pig is doubted. Shown by the tests of `faults`.
+/// Larger: accepts a block of 625 kg at 1.75 m. Smaller: doubts a pig. Shown by the tests of `faults`.
 pub(crate) const CREATURE_BUILD: f32 = 80.0;
 
-/// Mass below which a creature may be as round as it likes, kg: a toad, a chick, a hedgehog.
+/// Mass below which a creature may have any roundness, kg: a toad, a chick, a hedgehog.
 ///
-/// Larger: a hog is let pass. Smaller: a hen is doubted. Shown by the tests of `faults`.
+/// Larger: accepts a hog. Smaller: doubts a hen. Shown by the tests of `faults`.
 pub(crate) const ROUND: f32 = 20.0;
 
-/// Most that a character grows or shrinks between its clip and a get-up, times.
+/// Largest factor by which a character grows or shrinks between its clip and a get-up.
 ///
-/// Larger: a giant that becomes a child for a second is let pass. Smaller: clips that stretch a figure a little are faults. Shown by the tests
-/// of `faults`.
+/// Larger: accepts a giant that becomes a child for a second. Smaller: faults clips that stretch a figure a little.
+/// Shown by the tests of `faults`.
 pub(crate) const OTHER_SIZE: f32 = 1.15;
 
-/// Least distance of two limbs' roots from the middle, as a share of the height, that tells on which side they are.
+/// Least distance of two limbs' roots from the middle, as a share of the height, at which their sides are known.
 ///
-/// Larger: narrow bodies are not looked at. Smaller: noise is a side. Shown by the tests of `faults`.
+/// Larger: skips narrow bodies. Smaller: noise counts as a side. Shown by the tests of `faults`.
 pub(crate) const ON_A_SIDE: f32 = 0.01;
 
 // quality/plausible.rs
 
 /// Least share of the height from the joint of the head up that is not an adult's: a two-year-old has 0.2, an adult 0.12.
 ///
-/// Larger: toys and children are doubted. Smaller: adults in another unit are believed. Shown by the tests of `faults`.
+/// Larger: doubts toys and children. Smaller: believes adults in another unit. Shown by the tests of `faults`.
 pub(crate) const BIG_HEAD: f32 = 0.17;
 
 // ragdoll.rs
 
 /// Largest half-angle to which a swing is widened for the pose in which a ragdoll is spawned, radians (175°).
 ///
-/// Larger: limits that are none. Smaller: a character begins beyond its limit. Shown by the tests of `hand_over`.
+/// Larger: limits without effect. Smaller: a character starts beyond its limit. Shown by the tests of `hand_over`.
 pub(crate) const WIDEST_SPAWNED: f32 = 3.054;
 
 // skin/judge.rs
@@ -450,22 +469,23 @@ pub(crate) const STANDS_OFF: f32 = 0.04;
 /// `skin`.
 pub(crate) const SUNK_RISING: f32 = 0.1;
 
-/// Height of the lowest drawn point over the floor at rest from which on it hangs in the air, as a share of the size, and nothing is left to use.
+/// Height of the lowest drawn point over the floor at rest, as a share of the size, above which the character floats
+/// and is unusable.
 ///
-/// A bear on a box as broad as its arms hangs by a fifth. Larger: that is usable. Smaller: a big head on a round shape is bad. Shown by the tests of
-/// `skin`.
+/// A bear on a box as broad as its arms floats by a fifth. Larger: that is usable. Smaller: a big head on a round shape
+/// is bad. Shown by the tests of `skin`.
 pub(crate) const HANGS: f32 = 0.125;
 
-/// Ratio of a figure of the skin to its bar above which nothing is left to use.
+/// Ratio of a skin figure to its bar above which the character is unusable.
 ///
 /// Larger: torsos torn by half a height are usable. Smaller: a coat that drags is bad. Shown by the tests of `skin`.
 pub(crate) const GROSS: f32 = 3.0;
 
 // skin/mod.rs
 
-/// Least share of a vertex's weight for the vertex to be a body's own, 0 to 1.
+/// Least share of a vertex's weight for a body to own the vertex, 0 to 1.
 ///
-/// Larger: fewer vertices are judged. Smaller: skin between two bodies must be near to both. Shown by the tests of `skin`.
+/// Larger: judges fewer vertices. Smaller: skin between two bodies must be near both. Shown by the tests of `skin`.
 pub(crate) const OWN_WEIGHT: f32 = 0.25;
 
 // skin/sides.rs
@@ -477,48 +497,49 @@ pub(crate) const MIRRORED: f32 = 0.05;
 
 /// Largest distance from the plane of symmetry of a pivot without twin, as a share of the size.
 ///
-/// Larger: narrow legs have none. Smaller: spines are searched for twins. Shown by the tests of `skin`.
+/// Larger: narrow legs have no twins. Smaller: searches spines for twins. Shown by the tests of `skin`.
 pub(crate) const MIDDLE: f32 = 0.02;
 
-/// Farthest that a body whose skin is linked to no other's may be from the one that it hangs on, as a share of the size.
+/// Largest distance of a body whose skin is linked to no other's from its parent, as a share of the size.
 ///
-/// Larger: floating parts are passed over. Smaller: figures of loose parts are torn. Shown by the tests of `skin`.
+/// Larger: misses floating parts. Smaller: figures of loose parts count as torn. Shown by the tests of `skin`.
 pub(crate) const LOOSE: f32 = 0.2;
 
 // skin/stretch.rs
 
 /// Percentile of the stretch of all sides in all poses, as a share: one in a thousand is longer.
 ///
-/// The contract's `edge_stretch_p999`. Larger: single seams decide. Smaller: torn parts are missed. Shown by the tests of `skin`.
+/// The contract's `edge_stretch_p999`. Larger: single seams decide. Smaller: misses torn parts. Shown by the tests of
+/// `skin`.
 pub(crate) const STRETCH_PERCENTILE: f32 = 0.999;
 
 // skin/surface.rs
 
 /// Largest difference of the weights of the two ends of a side that cannot stretch it.
 ///
-/// Larger: sides are missed. Smaller: rounding of files is looked at. Shown by the tests of `skin`.
+/// Larger: misses sides. Smaller: measures rounding of files. Shown by the tests of `skin`.
 pub(crate) const SAME_WEIGHTS: f32 = 1e-3;
 
 // quality/rising.rs
 
-/// Way that a foot may slide while a character gets up, as a share of its height, and the least of it, metres.
+/// Slide of a foot allowed while a character gets up, as a share of its height, and its minimum, metres.
 ///
-/// Larger: skating counts as good. Smaller: rounding is told. Shown by the tests of `rising`.
+/// Larger: skating counts as good. Smaller: reports rounding. Shown by the tests of `rising`.
 pub(crate) const SLIDES: f32 = 0.017;
 /// See [`SLIDES`].
 pub(crate) const SLIDES_LEAST: f32 = 0.03;
 
 /// Jump of a pose in a frame of 1/30 s, as a share of the height.
 ///
-/// Larger: pops count as good. Smaller: what is quick is told. Shown by the tests of `rising`.
+/// Larger: pops count as good. Smaller: reports quick motion. Shown by the tests of `rising`.
 pub(crate) const JUMPS: f32 = 0.03;
 
-/// Height over the floor up to which a point of a sole stands on it, as a share of the character's height.
+/// Height over the floor up to which a sole point counts as standing on it, as a share of the character's height.
 ///
-/// Larger: steps count as slides. Smaller: skating just over the floor is not seen. Shown by the tests of `rising`.
+/// Larger: steps count as slides. Smaller: misses skating just over the floor. Shown by the tests of `rising`.
 pub(crate) const STANDS_NEAR: f32 = 0.008;
 
 /// Cosine of the largest tilt of a foot that stands on its sole.
 ///
-/// Larger: feet that come down are looked at. Smaller: heels of legs that lie are. Shown by the tests of `rising`.
+/// Larger: measures feet that come down. Smaller: measures heels of lying legs. Shown by the tests of `rising`.
 pub(crate) const STANDS_UPRIGHT: f32 = 0.8;

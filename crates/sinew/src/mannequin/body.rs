@@ -1,6 +1,6 @@
-//! The mannequin's surface: an artist's wooden figure, each part a closed loft.
+//! The mannequin's surface: an artist's wooden figure; each part is a closed loft.
 //!
-//! Sections are tables of numbers in metres, read off as a tailor would: where, how wide, how deep.
+//! Sections are tables of measurements in metres: height, width, depth.
 
 use super::loft::{Chain, Loft, Section, mirror};
 use super::skeleton::{Bone, FOREARM, UPPER_ARM, bind_position, left_arm_axes};
@@ -11,7 +11,7 @@ use crate::math::{Vec3, trig};
 const WOOD: [f32; 4] = [0.70, 0.47, 0.27, 1.0];
 /// Linear RGBA of ball joints, neck and waist: dark walnut.
 const JOINT: [f32; 4] = [0.085, 0.050, 0.032, 1.0];
-/// Linear RGBA of shoes, gloves' cuffs and visor: they tell front from back.
+/// Linear RGBA of shoes, cuffs and visor, which distinguish front from back.
 const ACCENT: [f32; 4] = [0.030, 0.170, 0.260, 1.0];
 
 /// The one mesh of the mannequin, carried by the root, a primitive for each colour.
@@ -28,7 +28,7 @@ pub(super) fn mesh() -> RigMesh {
     }
 }
 
-/// A part: its surface and which bones move it.
+/// A part: its surface and the bones that move it.
 type Part = fn() -> (Loft, Chain);
 
 fn primitive(color: [f32; 4], left: &[Part], middle: &[Part]) -> Primitive {

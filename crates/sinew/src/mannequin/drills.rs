@@ -1,4 +1,4 @@
-//! Motions for experiments with animation, beside the mannequin's own clips.
+//! Motions for experiments with animation, in addition to the mannequin's own clips.
 
 use super::gait::{Gait, Path};
 use super::keys::{Key, RATE, between, record};
@@ -11,17 +11,17 @@ use crate::math::Vec3;
 /// A cycle of two steps that gets on: its clip moves the joint above the hips along a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cycle {
-    /// Linear keys at 30 Hz, starting as the left heel strikes.
+    /// Linear keys at 30 Hz, starting at the left heel strike.
     pub clip: Clip,
     /// Path along which the clip moves the character.
     pub path: Path,
     /// Along the path, m/s.
     pub speed: f32,
-    /// When the left and the right heel strike, clip seconds.
+    /// Times of the left and right heel strike, clip seconds.
     pub strikes: [f32; 2],
-    /// From which share of its own cycle a foot's ball stays on its spot, and until which.
+    /// Range of its own cycle in which a foot's ball does not move.
     pub ball_down: [f32; 2],
-    /// Share of its own cycle from which a foot's whole sole stays on its spot, and until which.
+    /// Share of its own cycle from which a foot's whole sole does not move, and until which.
     pub sole_down: [f32; 2],
 }
 
@@ -74,7 +74,7 @@ fn fist(x: f32, y: f32, z: f32) -> Hand {
     Hand { wrist: Vec3::new(x, y, z), flat: 0.0, fingers_out: 0.0, elbow_out: 12.0 }
 }
 
-/// Left foot in front, both fists before the chin.
+/// Left foot in front, both fists in front of the chin.
 fn guard() -> Posture {
     Posture {
         pelvis: Vec3::new(0.0, 0.865 + HIPS_ABOVE_HIP, 0.0),

@@ -6,17 +6,17 @@ use super::skeleton::{ANKLE_HEIGHT, Bone, Side, bind_position};
 use crate::anim::smoothstep;
 use crate::math::{Rotation, Transform, Vec3};
 
-/// Path of a gait, seen from the character as it starts.
+/// Path of a gait, relative to the character at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Path {
     /// Along +Z.
     Straight,
-    /// Round a circle to the left of that radius, metres: its centre is on +X.
+    /// A circle to the left with this radius, metres: its centre is on +X.
     Circle(f32),
 }
 
 impl Path {
-    /// Pose of the character, as seen from where it starts, after a way along the path, metres.
+    /// Pose of the character after a distance along the path, metres, relative to its start.
     pub fn at(self, way: f32) -> Transform {
         match self {
             Self::Straight => Transform::from_translation(Vec3::Z * way),
@@ -36,10 +36,10 @@ pub(super) struct Gait {
     pub frames: usize,
     /// Share of the cycle that a foot is on the ground.
     pub stance: f32,
-    /// Position where the heel lands, metres in front of the hips, and beside the middle.
+    /// Position of the landing heel, metres in front of the hips, and its lateral offset.
     pub heel_strike: f32,
     pub aside: f32,
-    /// Pitch of the foot as it lands, toes up where negative, and as it leaves, heel up; degrees.
+    /// Pitch of the landing foot, toes up if negative, and of the leaving foot, heel up; degrees.
     pub landing_pitch: f32,
     pub leaving_pitch: f32,
     /// Phase at which the sole is down, and at which the heel rises.
@@ -49,10 +49,10 @@ pub(super) struct Gait {
     pub swing: Swing,
 }
 
-/// The way of a foot through the air, at three phases between leaving and landing.
+/// The path of a foot through the air, at three phases between leaving and landing.
 pub(super) struct Swing {
     pub phases: [f32; 3],
-    /// Path of the ankle: distance from the middle, height, way in front of the hips; metres.
+    /// Path of the ankle: lateral offset, height, distance in front of the hips; metres.
     pub aside: f32,
     pub height: [f32; 3],
     pub ahead: [f32; 3],
@@ -65,7 +65,7 @@ pub(super) struct Swing {
 const HEEL: Vec3 = Vec3::new(0.0, -ANKLE_HEIGHT, -0.055);
 
 impl Gait {
-    /// Way in one cycle, metres.
+    /// Distance covered in one cycle, metres.
     pub fn stride(&self) -> f32 {
         self.speed * self.frames as f32 / RATE
     }
@@ -98,7 +98,7 @@ impl Gait {
         Foot { ankle, turn: turn_now, toes: if pitch > 0.0 { pitch } else { 0.0 }, knee_out: 4.0 }
     }
 
-    /// From toe-off to heel strike: smooth between the ends that the stance gives.
+    /// From toe-off to heel strike: interpolates smoothly between the ends of the stances.
     fn swinging(&self, side: Side, phase: f32) -> Foot {
         let (leave, land) = (self.planted(side, self.stance), self.planted(side, 0.0));
         let before = self.planted(side, self.stance - 0.03);
@@ -120,8 +120,8 @@ impl Gait {
     }
 }
 
-/// A foot of a gait straight on, laid on another path: what stood on the ground still does, since both go on as rigid
-/// motions, and a foot goes with the point of the path that its ball is at.
+/// A foot of a straight gait transferred to another path: it stays planted, because the path and the foot are both
+/// extended rigidly, and the foot follows the path point of its ball.
 pub(super) fn laid_on(path: Path, foot: Foot) -> Foot {
     let Path::Circle(radius) = path else { return foot };
     let ball = bind_position(Bone::LeftToes) - bind_position(Bone::LeftFoot);

@@ -1,7 +1,7 @@
 //! Getting up, from the back and from the face: key postures and the curves between them.
 //!
 //! Both end in [`Posture::standing`] at the origin, facing +Z. Lying on the back the feet point along +Z, lying on the
-//! face the head does: so the way the body lies tells which way it will face once it stands.
+//! face the head does, so the lying pose defines the final facing.
 
 use super::keys::{Key, RATE, between, record};
 use super::posture::{Foot, Hand, Hanging, Posture};
@@ -24,7 +24,7 @@ fn clip(name: &str, keys: &[Key], steps: &[Step]) -> Clip {
     })
 }
 
-/// A foot that is set elsewhere: it goes up, over and down, and nothing of it slides.
+/// A foot that is moved elsewhere: it goes up, over and down without sliding.
 struct Step {
     side: Side,
     /// Seconds.
@@ -34,7 +34,7 @@ struct Step {
 
 /// Height by which a step is lifted, metres.
 const STEP_HEIGHT: f32 = 0.05;
-/// Share of a step at each end in which the foot only goes up or down.
+/// Share of a step at each end in which the foot moves only vertically.
 const STRAIGHT_UP: f32 = 0.08;
 
 impl Step {
@@ -49,7 +49,7 @@ fn v(x: f32, y: f32, z: f32) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
-/// A turn that only leans forward.
+/// A rotation that only leans forward.
 fn lean(degrees: f32) -> Vec3 {
     v(degrees, 0.0, 0.0)
 }

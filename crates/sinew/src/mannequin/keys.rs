@@ -8,7 +8,7 @@ use crate::math::Rotation;
 /// Keys per second of the clips.
 pub(super) const RATE: f32 = 30.0;
 
-/// A clip of `frames + 1` linear keys at [`RATE`], each posture asked for by its time in seconds.
+/// A clip of `frames + 1` linear keys at [`RATE`], with postures sampled by time in seconds.
 pub(super) fn record(name: &str, frames: usize, posture_at: impl Fn(f32) -> Posture) -> Clip {
     let times: Vec<f32> = (0..=frames).map(|k| k as f32 / RATE).collect();
     let poses: Vec<Vec<LocalTransform>> = times.iter().map(|&t| posture_at(t).solve()).collect();
@@ -27,7 +27,7 @@ pub(super) fn record(name: &str, frames: usize, posture_at: impl Fn(f32) -> Post
     Clip { name: name.to_owned(), duration: times[frames], channels }
 }
 
-/// Key values of a joint's rotation, each on the hemisphere of the one before.
+/// Key values of a joint's rotation, each on the hemisphere of the previous one.
 fn rotations(poses: &[Vec<LocalTransform>], bone: Bone) -> Vec<f32> {
     let mut last = Rotation::IDENTITY;
     let mut values = Vec::with_capacity(4 * poses.len());
@@ -44,8 +44,8 @@ pub(super) struct Key {
     pub(super) posture: Posture,
 }
 
-/// The posture at `time` between keys in order of time: every number by [`monotone`], so that what holds still between
-/// two keys (a planted hand) holds still exactly.
+/// The posture at `time` between keys in order of time, every number interpolated by [`monotone`], so that equal values
+/// of two keys (a planted hand) stay constant between them.
 pub(super) fn between(keys: &[Key], time: f32) -> Posture {
     let times: Vec<f32> = keys.iter().map(|key| key.at).collect();
     let mut result = keys[0].posture;

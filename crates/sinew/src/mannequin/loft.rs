@@ -23,7 +23,7 @@ impl Section {
         Self { center, u, v, back: 1.0, roundness: 1.0 }
     }
 
-    /// The point at `turn` of the way round, 0..1.
+    /// The point at `turn` of a full revolution, 0..1.
     fn point(&self, turn: f32) -> Vec3 {
         let (sin, cos) = trig::sin_cos(turn * core::f32::consts::TAU);
         let v = if sin < 0.0 { self.v * self.back } else { self.v };
@@ -60,7 +60,7 @@ fn catmull_rom(t: f32) -> [f32; 4] {
     ]
 }
 
-/// Chain of bones that move vertices along an axis: in order, with the zone in which each hands over to the next.
+/// Chain of bones that move vertices along an axis, in order, with the blend zone between neighbours.
 pub(super) struct Chain {
     first: Bone,
     borders: Vec<Border>,
@@ -83,7 +83,7 @@ impl Chain {
         Self { first: bone, borders: Vec::new() }
     }
 
-    /// Beyond the plane through `origin` across `axis`, `next` takes over within ± `half_width` metres.
+    /// Beyond the plane through `origin` perpendicular to `axis`, `next` takes over within ± `half_width` metres.
     pub(super) fn then(mut self, origin: Vec3, axis: Vec3, half_width: f32, next: Bone) -> Self {
         self.borders.push(Border { origin, axis: normalize_or(axis, Vec3::Y), half_width, next });
         self
@@ -119,7 +119,7 @@ pub(super) struct Loft {
     pub(super) rings_per_span: usize,
 }
 
-/// Rings of a dome besides the pole.
+/// Number of rings of a dome without its pole.
 const DOME_RINGS: usize = 3;
 
 impl Loft {
@@ -223,7 +223,7 @@ fn smooth_normals(positions: &[Vec3], triangles: &[[usize; 3]]) -> Vec<Vec3> {
     sums.into_iter().map(|n| normalize_or(n * 1e6, Vec3::Y)).collect()
 }
 
-/// Adds the mirror image of all vertices and triangles in the plane x = 0, left bones becoming right ones.
+/// Adds the mirror image of all vertices and triangles in the plane x = 0; left bones become right ones.
 pub(super) fn mirror(primitive: &mut Primitive) {
     let count = primitive.positions.len();
     let flip = |v: Vec3| Vec3::new(-v.x, v.y, v.z);

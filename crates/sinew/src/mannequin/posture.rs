@@ -1,4 +1,4 @@
-//! Posing the mannequin as an animator does: trunk by turns, hands and feet by where they are.
+//! Poses the mannequin: trunk by rotations, hands and feet by position.
 
 use super::skeleton::{ANKLE_HEIGHT, Bone, HIPS_ABOVE_HIP, Side, bind_offset, bind_position, left_arm_axes};
 use crate::anim::LocalTransform;
@@ -7,7 +7,7 @@ use crate::math::{Mat3, Rotation, Vec3, clamp, normalize_or, trig};
 /// From the middle of the knee to its skin in front, metres.
 const KNEE_RADIUS: f32 = 0.056;
 
-/// A turn in degrees: x leans forward, y turns to the left, z tips to the right. Applied in the order z, x, y.
+/// A rotation in degrees: x leans forward, y turns left, z tips right. Applied in the order z, x, y.
 pub(super) type Turn = Vec3;
 
 /// A whole-body posture in world space (+Y up, floor at y = 0), metres and degrees.
@@ -15,9 +15,9 @@ pub(super) type Turn = Vec3;
 pub(super) struct Posture {
     /// Position of the hips joint.
     pub(super) pelvis: Vec3,
-    /// Turn of the pelvis against the world.
+    /// Rotation of the pelvis relative to the world.
     pub(super) pelvis_turn: Turn,
-    /// Turn of each trunk joint against its parent.
+    /// Rotation of each trunk joint relative to its parent.
     pub(super) spine: Turn,
     pub(super) chest: Turn,
     pub(super) neck: Turn,
@@ -28,12 +28,12 @@ pub(super) struct Posture {
     pub(super) right_hand: Hand,
 }
 
-/// Position and turn of a foot. The leg follows.
+/// Position and rotation of a foot. The leg follows by inverse kinematics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Foot {
     /// Position of the ankle.
     pub(super) ankle: Vec3,
-    /// Turn of the foot against the world; none stands flat and points along +Z.
+    /// Rotation of the foot relative to the world; zero is flat and points along +Z.
     pub(super) turn: Turn,
     /// Toes bent up against the foot.
     pub(super) toes: f32,
@@ -88,7 +88,7 @@ pub(super) fn turn(degrees: Turn) -> Rotation {
     about(Vec3::Y, degrees.y) * about(Vec3::X, degrees.x) * about(Vec3::Z, degrees.z)
 }
 
-/// World position and rotation of each joint, found parent first.
+/// World position and rotation of each joint, computed parent first.
 struct Placed {
     position: [Vec3; Bone::COUNT],
     rotation: [Rotation; Bone::COUNT],
@@ -112,7 +112,7 @@ impl Placed {
 }
 
 impl Posture {
-    /// Upright on both feet, arms hanging: where every clip that ends on its feet ends.
+    /// Upright on both feet, arms hanging: the end of every clip that ends on its feet.
     pub(super) fn standing() -> Self {
         let hand = Hand { wrist: Vec3::ZERO, flat: 0.0, fingers_out: 0.0, elbow_out: 0.0 };
         let posture = Self {
@@ -130,12 +130,12 @@ impl Posture {
         posture.with_arms(Hanging { forward: 2.0, out: 7.0, elbow: 16.0 })
     }
 
-    /// Both arms hanging alike.
+    /// Both arms hanging symmetrically.
     pub(super) fn with_arms(self, hanging: Hanging) -> Self {
         self.with_arm(Side::Left, hanging).with_arm(Side::Right, hanging)
     }
 
-    /// One arm hanging from the chest as it is now.
+    /// One arm hanging from the current chest.
     pub(super) fn with_arm(mut self, side: Side, hanging: Hanging) -> Self {
         let placed = self.place_trunk();
         let (shoulder, _) = placed.at(Bone::LeftUpperArm.on(side));
@@ -150,7 +150,7 @@ impl Posture {
         self
     }
 
-    /// One knee on the floor behind the hip, the shank trailing: ankle `height` above the floor, `x` to the left.
+    /// One knee on the floor behind the hip, the shank behind it: ankle `height` above the floor, `x` to the left.
     pub(super) fn with_knee_down(mut self, side: Side, x: f32, height: f32, pitch: f32, toes: f32) -> Self {
         let hip = self.place_trunk().at(Bone::LeftUpperLeg.on(side)).0;
         let leg = Limb::leg(side);
@@ -262,11 +262,11 @@ fn from_pairs(from: [Vec3; 2], to: [Vec3; 2]) -> Rotation {
     basis(to) * basis(from).inverse()
 }
 
-/// A limb of two bones with a hinge between them, as it is in the bind pose.
+/// A limb of two bones with a hinge, in the bind pose.
 struct Limb {
     upper: Vec3,
     lower: Vec3,
-    /// Turning the lower bone about it by a positive angle bends the limb. Unit, at right angles to both bones.
+    /// A positive rotation of the lower bone about it bends the limb. Unit, perpendicular to both bones.
     hinge: Vec3,
 }
 
@@ -286,14 +286,14 @@ impl Limb {
         })
     }
 
-    /// World rotations of the two bones that bring the limb's end to `target`, given from its root, with the hinge's
-    /// axis as near `hinge` as the way there allows. A target out of reach is approached; the limb never stretches fully.
+    /// World rotations of the two bones that bring the limb's end to `target` (relative to its root), with the hinge's
+    /// axis as near to `hinge` as possible. A target out of reach is approached; the limb never stretches fully.
     fn reach(&self, target: Vec3, hinge: Vec3) -> (Rotation, Rotation) {
         let (a, b) = (self.upper.length(), self.lower.length());
         let along = normalize_or(target, Vec3::NEG_Y);
         let distance = clamp(target.length(), 0.3 * (a + b), 0.999 * (a + b));
         let hinge = normalize_or(hinge - along * hinge.dot(along), Vec3::X);
-        // Law of cosines: how far along the way, and how far off it, the joint between the two bones is.
+        // Law of cosines: distance of the middle joint along the line to the target, and from it.
         let foot = (a * a + distance * distance - b * b) / (2.0 * distance);
         let height = clamp(a * a - foot * foot, 0.0, a * a).sqrt();
         let upper = along * foot + along.cross(hinge) * height;

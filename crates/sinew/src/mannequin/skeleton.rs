@@ -1,7 +1,7 @@
 //! The mannequin's joints: names, parents, where they are in the bind pose.
 //!
 //! Metres, +Y up, facing +Z, left is +X. Every joint's rest rotation is the identity, so a local rotation is the
-//! turn away from the bind pose about the world's axes. Segment lengths are those of de Leva 1996 (J. Biomechanics 29)
+//! rotation from the bind pose about the world's axes. Segment lengths are those of de Leva 1996 (J. Biomechanics 29)
 //! for a man of 1.741 m, joint heights rounded for 1.75 m.
 
 use crate::anim::{Joint, JointIdx, LocalTransform, Rig, Skin};
@@ -65,7 +65,7 @@ const JOINTS: [(Bone, &str, Option<Bone>); Bone::COUNT] = [
 
 impl Bone {
     pub(super) const COUNT: usize = 22;
-    /// Number of places by which right-side joints are behind their left twins in the order above.
+    /// Index offset of right-side joints from their left twins in the order above.
     const MIRROR_STEP: usize = 8;
 
     pub(super) fn index(self) -> JointIdx {
@@ -129,7 +129,7 @@ pub(super) const UPPER_ARM: f32 = 0.2817;
 pub(super) const FOREARM: f32 = 0.2689;
 /// Angle by which the arms of the A-pose hang below the horizontal, radians (40°).
 pub(super) const ARM_DROP: f32 = 0.698_131_7;
-/// Bend of the elbow in the bind pose, radians (8°): tells every rig analyser which way elbows go.
+/// Bend of the elbow in the bind pose, radians (8°): defines the bending direction for rig analysers.
 pub(super) const ELBOW_REST: f32 = 0.139_626_3;
 /// Height of the hips joint above the hip joints, metres.
 pub(super) const HIPS_ABOVE_HIP: f32 = 0.03;
@@ -143,7 +143,7 @@ pub(super) struct ArmAxes {
     pub(super) palm: Vec3,
 }
 
-/// Left arm in the A-pose: palms face the thighs once the arms hang, thumbs point forward, the elbow bends forward.
+/// Left arm in the A-pose: with hanging arms the palms face the thighs, thumbs point forward, the elbow bends forward.
 pub(super) fn left_arm_axes() -> ArmAxes {
     let (sin, cos) = trig::sin_cos(ARM_DROP);
     let upper = Vec3::new(cos, -sin, 0.0);

@@ -53,24 +53,24 @@ pub(super) const RUN: Gait = Gait {
     },
 };
 
-/// One cycle of walking on the spot, starting with the left heel's strike.
+/// One cycle of walking in place, starting at the left heel strike.
 pub(super) fn walk() -> Clip {
     cycle("walk", &WALK, |phase| walking(phase, Path::Straight))
 }
 
-/// The same round a circle, seen from the character.
+/// The same on a circle, relative to the character.
 pub(super) fn walk_along(path: Path) -> Clip {
     cycle("walk", &WALK, |phase| walking(phase, path))
 }
 
-/// One cycle of running on the spot, starting with the left heel's strike.
+/// One cycle of running in place, starting at the left heel strike.
 pub(super) fn run() -> Clip {
     cycle("run", &RUN, running)
 }
 
 fn cycle(name: &str, gait: &Gait, posture: impl Fn(f32) -> Posture) -> Clip {
     record(name, gait.frames, |time| {
-        // The last key is the first one again.
+        // The last key equals the first one.
         let phase = time * RATE / gait.frames as f32;
         posture(if phase > 0.999 { 0.0 } else { phase })
     })

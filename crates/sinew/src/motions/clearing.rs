@@ -1,4 +1,5 @@
-//! Motions on a body of another build: what lies, kneels and rolls over its toes out of the floor, feet that stand on it.
+//! Adapts motions to another body: lifts what lies, kneels or rolls over its toes out of the floor, and puts standing
+//! feet on it.
 
 use crate::anim::cleanup::raise;
 use crate::anim::contact::FootContact;
@@ -10,30 +11,30 @@ use crate::anim::{JointIdx, LocalTransform, RigAnalysis, Role, Side, local_to_mo
 use crate::math::{Affine, Transform, Vec3, clamp, max, min};
 use crate::ragdoll::CharacterDef;
 
-/// Time over which the body is raised and lowered again, seconds of a human's motion.
+/// Duration of raising and lowering the body, seconds of a human's motion.
 const BLEND: f32 = 0.07;
-/// Time over which a foot comes down to where it stands, seconds of a human's motion.
+/// Duration of lowering a foot to its standing position, seconds of a human's motion.
 const TREAD: f32 = 0.1;
-/// A foot that should stand is brought down by no more than this, in lengths of the leg.
+/// Largest distance by which a standing foot is lowered, in leg lengths.
 const REACH: f32 = 0.3;
-/// The body is raised by no more than this, in heights of the character: what is deeper no raising mends.
+/// Largest distance by which the body is raised, in heights of the character: raising does not fix deeper penetration.
 const MOST: f32 = 0.3;
 
-/// A body whose shapes tell how deep it is in the floor.
+/// A body whose shapes measure its depth in the floor.
 pub(super) struct Clearing<'a> {
     def: &'a CharacterDef,
     root: Affine,
     legs: Legs,
     /// Height of the floor in the character's own axes, metres.
     floor: f32,
-    /// Depth of each body in the floor as it stands in the bind pose, metres: for the shape is not quite the skin.
+    /// Depth of each body in the floor in the bind pose, metres: shapes differ slightly from the skin.
     stands: Vec<f32>,
     /// Bodies that the pelvis is raised for: the trunk, the head, thighs and shanks.
     trunk: Vec<usize>,
     /// Bodies of the feet, left and right.
     feet: [Vec<usize>; 2],
     arms: Vec<Arm>,
-    /// Bodies that the rig hangs elsewhere than on the body that carries them.
+    /// Bodies whose rig parent differs from the body that carries them.
     props: Vec<Prop>,
 }
 
@@ -43,7 +44,7 @@ struct Arm {
     bodies: Vec<usize>,
 }
 
-/// A joint that goes with another, and where it is in the axes of that.
+/// A joint that moves with another, and its position in that joint's axes.
 struct Prop {
     joint: JointIdx,
     carrier: JointIdx,
@@ -51,7 +52,7 @@ struct Prop {
 }
 
 impl<'a> Clearing<'a> {
-    /// `None` for a body without two whole legs.
+    /// `None` for a body without two complete legs.
     pub fn new(def: &'a CharacterDef, analysis: &RigAnalysis) -> Option<Self> {
         let bodies = &def.ragdoll.bodies;
         let places: Vec<Transform> = bodies.iter().map(|body| body.character_from_body).collect();
@@ -86,8 +87,8 @@ impl<'a> Clearing<'a> {
         })
     }
 
-    /// Brings props along, raises the body where its trunk, its head or its legs are in the floor, puts the feet back on it and
-    /// not into it, and raises the hands.
+    /// Moves props along, raises the body where its trunk, head or legs are in the floor, puts the feet on the floor,
+    /// and raises the hands.
     pub fn clear(&self, fitted: &mut Retargeted) {
         let (def, most) = (self.def, MOST * self.def.ragdoll.height);
         let mut model = Vec::new();
@@ -121,7 +122,8 @@ impl<'a> Clearing<'a> {
         }
     }
 
-    /// Brings a foot to where it was before the body was raised, as far as it `stands`, then onto the floor, or out of it.
+    /// Moves a foot to its position before the body was raised, by the share `stands`, then onto the floor or out of
+    /// it.
     fn tread(
         &self,
         k: usize,
@@ -170,8 +172,8 @@ impl<'a> Clearing<'a> {
         }
     }
 
-    /// Depth by which the deepest of these bodies is farther in the floor than in the bind pose, metres; negative above it, without
-    /// end where there is none.
+    /// Largest depth of these bodies in the floor beyond their depth in the bind pose, metres; negative above it, −∞
+    /// without bodies.
     fn depth(&self, bodies: &[usize], pose: &[LocalTransform]) -> f32 {
         let (mut model, mut places) = (Vec::new(), Vec::new());
         local_to_model(&self.def.rig, pose, &Affine::IDENTITY, &mut model);
@@ -183,7 +185,7 @@ impl<'a> Clearing<'a> {
     }
 }
 
-/// Share by which a foot stands at a time, 0 to 1, coming to it and leaving within `blend` seconds.
+/// Standing weight of a foot at a time, 0 to 1, with a blend of `blend` seconds at both ends.
 fn standing(contacts: &[FootContact], side: Side, time: f32, blend: f32) -> f32 {
     let own = contacts.iter().filter(|contact| contact.foot == side);
     let share = own.map(|contact| {
@@ -193,7 +195,7 @@ fn standing(contacts: &[FootContact], side: Side, time: f32, blend: f32) -> f32 
     share.fold(0.0, max)
 }
 
-/// Bodies without a human's role whose joint does not hang on that of the body that carries them.
+/// Bodies without a human role whose joint is not a child of the carrying body's joint.
 fn props(def: &CharacterDef, analysis: &RigAnalysis) -> Vec<Prop> {
     let bodies = &def.ragdoll.bodies;
     let strays = def.ragdoll.joints.iter().filter(|joint| {
@@ -209,7 +211,7 @@ fn props(def: &CharacterDef, analysis: &RigAnalysis) -> Vec<Prop> {
     strays.map(|joint| prop((bodies[joint.child].joint, bodies[joint.parent].joint))).collect()
 }
 
-/// The joint farthest from another that hangs on it.
+/// The farthest descendant of a joint.
 fn tip(def: &CharacterDef, analysis: &RigAnalysis, top: JointIdx) -> Option<JointIdx> {
     let place = |joint: JointIdx| analysis.bind_model[joint].translation;
     let away = |joint: &JointIdx| (place(*joint) - place(top)).length();
@@ -217,7 +219,7 @@ fn tip(def: &CharacterDef, analysis: &RigAnalysis, top: JointIdx) -> Option<Join
     hanging.max_by(|a, b| away(a).total_cmp(&away(b))).filter(|&joint| joint != top)
 }
 
-/// True if a joint is `top` or hangs on it.
+/// True if a joint is `top` or its descendant.
 fn hangs(def: &CharacterDef, joint: JointIdx, top: JointIdx) -> bool {
     core::iter::successors(Some(joint), |&i| def.rig.joints[i].parent).any(|i| i == top)
 }

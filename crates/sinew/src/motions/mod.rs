@@ -1,5 +1,5 @@
-//! Motions of a human that come with the crate: the [mannequin](crate::mannequin)'s walk, idling and both ways to get up, on any
-//! humanoid, for files that have none of their own.
+//! Built-in human motions: the [mannequin](crate::mannequin)'s walk, idle and both get-ups, retargeted to any humanoid
+//! whose file lacks them.
 
 mod clearing;
 mod own;
@@ -25,37 +25,37 @@ pub struct BuiltinMotions {
     pub walk_speed: f32,
     /// Footfalls of `walk`: events `footstep` with the payload `left` or `right`.
     pub footsteps: Vec<ClipEvent>,
-    /// Standing and breathing, a cycle that begins as the clips to get up by end.
+    /// Standing and breathing, a cycle that starts at the final pose of the get-ups.
     pub idle: Clip,
-    /// To get up by: from lying on the back, and on the face.
+    /// Get-ups: from lying on the back, and on the face.
     pub get_ups: [Clip; 2],
-    /// Fit of walk, idle and get-ups to the character, in that order.
+    /// Retargeting quality of walk, idle and get-ups on the character, in that order.
     pub fits: [Retargeted; 4],
 }
 
 /// Why a character has not been given the built-in motions.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BuiltinError {
-    /// They are a human's, and it is none.
+    /// They are a human's, and the character is not human.
     #[error("the built-in motions are a human's: {0}")]
     Retarget(#[from] RetargetError),
     /// A clip cannot be played.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// On its body no way to get up comes out well.
+    /// No get-up works on its body.
     #[error(
         "on its build the built-in ways to get up do not come out: {0:.2} m of it, or of what it holds, would be in the floor"
     )]
     InFloor(f32),
 }
 
-/// Depth in the floor from which on a way to get up is left out, as a share of the character's height: what raising and bending limbs does
-/// not mend.
+/// Depth in the floor above which a get-up is rejected, as a share of the character's height: raising and bending limbs
+/// cannot fix it.
 const LEFT_OUT: f32 = 0.2;
 
-/// Carries the built-in motions over to a humanoid, by the roles of its joints; where its bodies would be in the
-/// floor it is raised, or its hands are. The time that they take grows with the root of
-/// the length of the legs (Froude), so that a giant walks as giants do.
+/// Retargets the built-in motions to a humanoid, by the roles of its joints. Where its bodies would be in the floor,
+/// the body or the hands are raised. Durations grow with the square root of the leg length (Froude), so that a giant
+/// walks like a giant.
 ///
 /// ```
 /// use sinew::anim::RigAnalysis;
@@ -68,15 +68,15 @@ const LEFT_OUT: f32 = 0.2;
 /// ```
 ///
 /// # Errors
-/// A body without the roles of a humanoid, without hips or with less than two whole legs.
+/// A body without the roles of a humanoid, without hips or with fewer than two complete legs.
 ///
 /// # Panics
-/// If the analysis is not one of the rig's.
+/// If the analysis does not belong to the rig.
 pub fn builtin_motions(def: &CharacterDef, analysis: &RigAnalysis) -> Result<BuiltinMotions, RetargetError> {
     carried_over(def, analysis, None)
 }
 
-/// [`builtin_motions`], with what rides on the body where a clip of the character `holds` it.
+/// [`builtin_motions`], with props moved along where a clip of the character `holds` them.
 fn carried_over(
     def: &CharacterDef,
     analysis: &RigAnalysis,
@@ -125,9 +125,9 @@ fn carried_over(
 }
 
 impl BuiltinMotions {
-    /// Adds what is missing in a character's own motions: ways to get up, standing still, and where no clip loops, the walk,
-    /// which begins after getting up, for until then the character stands in its rest pose. The walk has events `footstep` with the payload
-    /// `left` or `right`.
+    /// Adds motions that a character's own clips lack: get-ups, idle, and the walk if no clip loops. The walk starts
+    /// after getting up; until then the character stands in its rest pose. The walk has events `footstep` with the
+    /// payload `left` or `right`.
     pub fn fill_in(self, own: MotionSet) -> MotionSet {
         let mut set = own;
         if set.get_ups.is_empty() {
@@ -150,12 +150,12 @@ impl BuiltinMotions {
     }
 }
 
-/// Gives a character motions, and what they lack of the built-in ones: it will get up, and go on as its own looped clip says, or
-/// walk where it has none. A way to get up that would be far in the floor on its body is left out.
+/// Gives a character motions, and adds the missing built-in ones: it will get up, and continue with its own looped
+/// clip, or the walk if it has none. A get-up that would be deep in the floor on its body is left out.
 ///
 /// # Errors
-/// A character that is no humanoid, a clip that cannot be played, or no way to get up that comes out on its body; its motions are then as
-/// they were.
+/// A character that is not humanoid, an unplayable clip, or no get-up that works on its body; its motions are then
+/// unchanged.
 ///
 /// # Panics
 /// As [`CharacterDef::set_motions`].
@@ -184,8 +184,9 @@ pub fn set_motions_with_builtin(
     Ok(())
 }
 
-/// Gives the clips from the `first` on the pose at the start of the looped clip wherever they say nothing: of fingers, a jaw, or a weapon, which
-/// need not be in the hand in the rig's rest pose. Joints that carry something which a clip moves stay as it has them.
+/// Adds to the clips from `first` on the pose at the start of the looped clip for every joint they do not animate:
+/// fingers, a jaw, or a weapon, which need not be in the hand in the rig's rest pose. Joints that carry something which
+/// a clip moves stay unchanged.
 fn hold_as_looped(rig: &Rig, motions: &mut MotionSet, first: usize) {
     let Some(looped) = motions.looped.filter(|&index| index < first) else { return };
     let held = motions.clips[looped].channels.clone();
@@ -199,7 +200,7 @@ fn hold_as_looped(rig: &Rig, motions: &mut MotionSet, first: usize) {
         }
         for channel in held.iter().filter(|channel| !carries[channel.joint]) {
             let width = channel.property.width();
-            // Of three numbers of a cubic key the one in the middle is the value.
+            // The middle one of a cubic key's three numbers is the value.
             let at = if channel.interpolation == Interpolation::CubicSpline { width } else { 0 };
             let values = channel.values[at..at + width].to_vec();
             let interpolation = Interpolation::Linear;
@@ -210,7 +211,7 @@ fn hold_as_looped(rig: &Rig, motions: &mut MotionSet, first: usize) {
 
 /// Frames of the actor a second.
 const RATE: f64 = 30.0;
-/// Number of times that a cycle is played, so that the one in the middle knows what comes before and after it.
+/// Number of repetitions of a cycle, so that the middle one has both neighbours.
 const PLAYED: usize = 3;
 
 /// At the pace of the character, in the actor's own frames.
@@ -239,7 +240,7 @@ fn one_round(mut fitted: Retargeted, clip: &Clip) -> Retargeted {
     fitted
 }
 
-/// A clip of linear keys, so many times one after the other.
+/// A clip of linear keys, repeated this many times.
 fn repeated(clip: &Clip, times: usize) -> Clip {
     let mut whole = Clip { duration: clip.duration * times as f32, ..clip.clone() };
     for (channel, one) in whole.channels.iter_mut().zip(&clip.channels) {

@@ -5,11 +5,11 @@ use crate::anim::{Clip, Interpolation, Rig, RigAnalysis};
 use crate::math::max;
 use crate::ragdoll::{CharacterDef, Locomotion, MotionSet};
 
-/// Words of clip names that are walks, standing, and ways to get up, without case, blanks, `-` and `_`.
+/// Words in names of walks, idles and get-ups, ignoring case, blanks, `-` and `_`.
 const WALK: &str = "walk";
 const IDLE: &str = "idle";
 const FASTER: [&str; 3] = ["jog", "run", "sprint"];
-/// Words of clips that go elsewhere than forward, or do something else besides.
+/// Words of clips that do not go forward, or do something else as well.
 const NOT_AHEAD: [&str; 11] =
     ["back", "left", "right", "strafe", "turn", "stop", "start", "jump", "shoot", "attack", "aim"];
 const GET_UP: [&str; 3] = ["getup", "standup", "gettingup"];
@@ -19,9 +19,9 @@ const BAKED: &str = "sinew";
 /// Motions of a file's own clips.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OwnMotions {
-    /// The clips, and which of them is what.
+    /// The clips, and their purposes.
     pub motions: MotionSet,
-    /// Choices that were made, and what was not found, one sentence each.
+    /// Choices and missing clips, one sentence each.
     pub notes: Vec<String>,
 }
 
@@ -37,7 +37,7 @@ pub struct OwnMotions {
 /// | `locomotion` | by the clip if it gets on; at the speed of its feet if it walks on the spot |
 ///
 /// # Panics
-/// If the analysis or a clip is not one of the character's rig.
+/// If the analysis or a clip does not belong to the character's rig.
 pub fn own_motions(def: &CharacterDef, analysis: &RigAnalysis, clips: Vec<Clip>) -> OwnMotions {
     let looped = looped_among(&def.rig, analysis, &clips);
     let idles = (0..clips.len()).filter(|&clip| plain(&clips[clip].name).contains(IDLE));
@@ -87,7 +87,7 @@ pub fn own_motions(def: &CharacterDef, analysis: &RigAnalysis, clips: Vec<Clip>)
     OwnMotions { motions, notes }
 }
 
-/// Clips that run ahead, one for each word: that with the shortest name.
+/// Clips that go forward, one for each word: the one with the shortest name.
 fn faster_among(clips: &[Clip]) -> Vec<usize> {
     let ahead = |clip: &usize| {
         let name = plain(&clips[*clip].name);
@@ -102,7 +102,7 @@ fn faster_among(clips: &[Clip]) -> Vec<usize> {
     found
 }
 
-/// True if a word of a name begins with `word`: after a sign that is no letter, or with a capital after a small letter.
+/// True if a word of a name starts with `word`: after a non-letter, or with a capital after a lower-case letter.
 fn has_word(name: &str, word: &str) -> bool {
     let mut last = ' ';
     name.char_indices().any(|(at, c)| {
@@ -112,12 +112,12 @@ fn has_word(name: &str, word: &str) -> bool {
     })
 }
 
-/// Index of the clip that a character plays while nothing happens to it: the first that is called a walk and moves (of several the first in
-/// which both feet come down); else the first whose name contains `idle`; else the first that is neither a way to get up
-/// nor a baked fall. `None` if there is none of these.
+/// Index of the clip that a character plays by default: the first one named a walk that moves (preferably one in which
+/// both feet land); else the first whose name contains `idle`; else the first that is neither a get-up nor a baked
+/// fall. `None` if there is none of these.
 ///
 /// # Panics
-/// If the analysis or a clip is not one of the rig's.
+/// If the analysis or a clip does not belong to the rig.
 pub fn looped_among(rig: &Rig, analysis: &RigAnalysis, clips: &[Clip]) -> Option<usize> {
     let names: Vec<String> = clips.iter().map(|clip| plain(&clip.name)).collect();
     let is_get_up = |clip: usize| GET_UP.iter().any(|word| names[clip].contains(word));
@@ -143,7 +143,7 @@ pub fn looped_among(rig: &Rig, analysis: &RigAnalysis, clips: &[Clip]) -> Option
 /// Least change of a key against the first for a clip that moves, as a share of the largest number in the channel.
 const MOVES: f32 = 0.01;
 
-/// True if any joint of a clip moves: a pose that is held is no walk, whatever its name.
+/// True if any joint of a clip moves: a static pose is no walk, whatever its name.
 fn moves(clip: &Clip) -> bool {
     clip.channels.iter().any(|channel| {
         let width = channel.property.width();

@@ -17,7 +17,7 @@ pub struct FootSlideReport {
     pub contacts: usize,
     /// Slide before, and after.
     pub slide: [FootSlide; 2],
-    /// Most that an ankle was shifted, metres.
+    /// Largest shift of an ankle, metres.
     pub shifted: f32,
     /// Largest lowering of the pelvis so that the legs reach, metres.
     pub lowered: f32,

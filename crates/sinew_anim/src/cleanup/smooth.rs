@@ -7,11 +7,11 @@ use sinew_math::{Rotation, Vec3, max, trig};
 /// Change of a take by smoothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SmoothReport {
-    /// Most that a joint was turned, radians.
+    /// Largest rotation of a joint, radians.
     pub largest_turn: f32,
     /// Mean over all joints and frames, radians.
     pub mean_turn: f32,
-    /// Most that a joint was shifted, units of the rig.
+    /// Largest shift of a joint, units of the rig.
     pub largest_shift: f32,
 }
 

@@ -3,7 +3,7 @@
 //! Remaining keys keep time and value; keys that the straight line between their neighbours reproduces are dropped. A
 //! joint's error adds up along the chain above it, so each channel gets a share of the bound, smaller the further its
 //! joint reaches; then the error is measured in the whole pose at all key times, and the shares are adjusted until the
-//! bound is used up but kept.
+//! error reaches the bound without exceeding it.
 
 use crate::clip::sample::{channel_at, write_property};
 use crate::clip::{Channel, Clip, Interpolation, Property};

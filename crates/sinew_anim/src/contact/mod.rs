@@ -235,7 +235,7 @@ pub fn foot_slide(
     slide
 }
 
-/// First and last frame of a contact, inside a take of so many frames.
+/// First and last frame of a contact, inside a take of this many frames.
 pub(crate) fn frames_of(take: &Take, contact: &FootContact, frames: usize) -> [usize; 2] {
     let last = frames.saturating_sub(1);
     [contact.start, contact.end].map(|time| usize::min(take.frames_in(max(time, 0.0)), last))

@@ -13,7 +13,7 @@ pub struct Ways {
 }
 
 impl Ways {
-    /// No starts yet, for so many vertices.
+    /// No starts yet, for this many vertices.
     pub fn new(count: usize) -> Self {
         Self { length: vec![f32::INFINITY; count], from: vec![usize::MAX; count] }
     }

@@ -123,9 +123,9 @@ pub enum RotationMean {
 /// Options of a blend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BlendOptions {
-    /// Sum of weights at a joint below which the rest pose fills up, ≥ 0. With 0, the default, a single track shows in
-    /// full at the least weight, and jumps to the rest pose when that becomes 0; with 0.1 the last tenth of its ramp
-    /// leads there.
+    /// Sum of weights at a joint below which the rest pose is blended in, ≥ 0. With 0, the default, a single track has
+    /// full effect at any positive weight, and jumps to the rest pose when that becomes 0; with 0.1 it blends to the
+    /// rest pose over the last tenth of its ramp.
     pub fill_below: f32,
     /// Definition of the mean of rotations.
     pub mean: RotationMean,

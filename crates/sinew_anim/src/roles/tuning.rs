@@ -153,7 +153,7 @@ pub(crate) const TWIN_AREA: f32 = 0.6;
 
 /// Least distance along a forearm of the nearer of two joints, as a share of the other's, for fingers.
 ///
-/// Larger: a thumb that begins early is none. Smaller: a twist bone is a finger. Shown by the tests of `roles`.
+/// Larger: misses a thumb that begins early. Smaller: a twist bone counts as a finger. Shown by the tests of `roles`.
 pub(crate) const FORKED: f32 = 0.8;
 
 /// Largest spread of the fingers' starts, as a share of their distance from the parent, for which that place is the
@@ -174,7 +174,7 @@ pub(crate) const AS_HIGH: f32 = 0.02;
 
 /// Lowest hips of a figure with a large head, as a share of its height.
 ///
-/// Larger: dolls have no legs. Smaller: feet are legs. Shown by the tests of `roles`.
+/// Larger: the legs of dolls are not recognised. Smaller: feet count as legs. Shown by the tests of `roles`.
 pub(crate) const LOWEST_HIP: f32 = 0.1;
 
 /// Largest distance of the inner end of a limb from the midline, as a share of that of its next joint.
@@ -235,7 +235,7 @@ pub(crate) const PROP_BEYOND: f32 = 0.05;
 
 /// Least share of a prop's vertices that protrude, 0 to 1.
 ///
-/// Larger: a shield held close is none. Smaller: a belt is one. Shown by the tests of `rig_variants` of the ragdolls.
+/// Larger: misses a shield held close. Smaller: a belt counts as a prop. Shown by the tests of `rig_variants` of the ragdolls.
 pub(crate) const PROP_SHARE: f32 = 0.1;
 
 /// Confidence of a prop, 0 to 1.
@@ -247,7 +247,7 @@ pub(crate) const PROP_CONFIDENCE: f32 = 0.5;
 
 /// Farthest that a joint may be from its mirror image, as a share of the size of the skin.
 ///
-/// Larger: planes are found where there are none. Smaller: sculpted figures have none. Shown by the tests of
+/// Larger: finds false planes. Smaller: sculpted figures have none. Shown by the tests of
 /// `creatures`.
 pub(crate) const MIRROR_TOLERANCE: f32 = 0.025;
 

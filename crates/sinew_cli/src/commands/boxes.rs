@@ -1,4 +1,4 @@
-//! `sinew boxes`: a render mesh becomes a world of few boxes.
+//! `sinew boxes`: approximates a render mesh by a world of few boxes.
 
 use crate::failure::{Failure, Result};
 use crate::input::files::{Outputs, must_end_in};
@@ -18,7 +18,7 @@ use sinew_picture::{
 };
 use std::path::{Path, PathBuf};
 
-/// Turn a render mesh into a world of boxes to collide with, and say how far they are from it
+/// Turn a render mesh into a world of boxes to collide with, and report their distance from it
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -37,7 +37,7 @@ pub struct Boxes {
     /// World file to write
     #[arg(short, long, value_name = "WORLD.json")]
     output: PathBuf,
-    /// Also draw it, the boxes beside the mesh: a .gif, .png or .webp file
+    /// Also draw it, the boxes next to the mesh: a .gif, .png or .webp file
     #[arg(long, value_name = "OUT.(gif|png|webp)")]
     picture: Option<PictureFile>,
 }
@@ -148,7 +148,7 @@ fn height(mesh: &TriangleMesh) -> f32 {
     used().fold(f32::MIN, f32::max) - used().fold(f32::MAX, f32::min)
 }
 
-/// Warnings of what was left out, and what was put right.
+/// Warnings of omissions and repairs.
 fn warnings(mesh: &TriangleMesh, cooked: &Cooked) -> Vec<String> {
     let repairs = cooked.repairs;
     let mut warnings = mesh.warnings.clone();
@@ -166,7 +166,7 @@ fn warnings(mesh: &TriangleMesh, cooked: &Cooked) -> Vec<String> {
     warnings
 }
 
-/// The mesh on the left, its boxes on the right, each body in a colour of its own.
+/// The mesh on the left, its boxes on the right, each body in its own colour.
 fn draw(
     mesh: &TriangleMesh,
     bodies: &[BodyDef],
@@ -208,7 +208,7 @@ fn draw(
     movie.finish()
 }
 
-/// Linear RGB that neighbours can be told apart by.
+/// Linear RGB that distinguishes neighbours.
 const COLORS: [[f32; 3]; 7] = [
     [0.55, 0.20, 0.14],
     [0.16, 0.34, 0.52],

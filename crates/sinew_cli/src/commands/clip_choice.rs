@@ -6,8 +6,8 @@ use crate::report::table::shown;
 use sinew::anim::Clip;
 use sinew::ragdoll::settings::instead;
 
-/// The clip of that name, or of that number where no clip is called so; else the only one of this name in another case, of the
-/// same words (less those that all clips have), or with words that begin so.
+/// The clip with that name, or with that index if no clip has the name; else the only clip whose name matches
+/// case-insensitively, has the same words (without those common to all clips), or has words that start so.
 pub fn find_clip(clips: &[Clip], name: &str) -> Result<usize, String> {
     let numbered = || name.parse().ok().filter(|&index: &usize| index < clips.len());
     if let Some(found) = clips.iter().position(|clip| clip.name == name).or_else(numbered) {
@@ -47,7 +47,7 @@ pub fn find_clip(clips: &[Clip], name: &str) -> Result<usize, String> {
     })
 }
 
-/// Words of a name: what stands between other signs, and where small letters turn into capitals or digits.
+/// Words of a name: separated by other characters, and by changes from lower case to capitals or digits.
 fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut last = ' ';
@@ -65,12 +65,12 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// True if each of the wanted words is the beginning of one that is there.
+/// True if each of the wanted words is a prefix of an existing one.
 fn begins_with_all(there: &[String], wanted: &[String]) -> bool {
     wanted.iter().all(|word| there.iter().any(|other| other.starts_with(word.as_str())))
 }
 
-/// The first of a list of names, and how many more there are.
+/// The first names of a list, and the number of the others.
 pub fn few(names: &[String]) -> String {
     const SHOWN: usize = 5;
     let first = names[..names.len().min(SHOWN)].join(", ");
@@ -85,7 +85,7 @@ fn called(index: usize, name: &str) -> String {
     if name.is_empty() { format!("number {index}, which has no name") } else { shown(name) }
 }
 
-/// Indices of the clips that the user named, in that order; of all if none.
+/// Indices of the clips that the user named, in that order; all if none were named.
 pub fn choose_clips(motion: &Motion, wanted: &[String]) -> Result<Vec<usize>> {
     let clips = &motion.file.clips;
     if wanted.is_empty() {
@@ -124,7 +124,7 @@ mod tests {
         }
         let two = "'run' may be 2 clips: Run_Fast, Run_Slow";
         assert_eq!(found(&["Run_Fast", "Run_Slow"], "run"), Err(two.into()));
-        // What all clips have says nothing, and a word may go on.
+        // A word common to all clips distinguishes nothing, and a word may be a prefix.
         assert_eq!(found(&["Rig|Walk", "Rig|Walk_Gun", "Rig|Idle"], "walk"), Ok(0));
         assert_eq!(found(&["Walking_A", "Running_A"], "walk"), Ok(0));
         assert!(found(&["Robot_Walking", "Robot_WalkJump"], "walk").is_err());

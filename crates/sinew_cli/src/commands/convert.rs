@@ -1,4 +1,4 @@
-//! `sinew convert`: clips from one format into another, or from one character onto another.
+//! `sinew convert`: converts clips between formats, or retargets them to another character.
 
 use crate::commands::clip_choice::{choose_clips, few};
 use crate::failure::{Failure, Result};
@@ -51,17 +51,17 @@ pub struct Convert {
     /// Only this clip, by name, or by number from 0 if it has none; repeatable. A BVH holds one
     #[arg(long = "clip", value_name = "NAME")]
     clips: Vec<String>,
-    /// Put the clips on this character (GLB, glTF, VRM or FBX): by the names of joints where the skeletons are the same,
-    /// else by what the joints are, with feet that do not slide
+    /// Put the clips on this character (GLB, glTF, VRM or FBX): matched by joint names if the skeletons are the same,
+    /// else by the joints' roles, without sliding feet
     #[arg(long, value_name = "CHARACTER")]
     onto: Option<PathBuf>,
-    /// Frames per second of what is sampled anew; by default those of the file
+    /// Frames per second of resampled motion; by default the file's
     #[arg(long, value_name = "N", value_parser = rate)]
     fps: Option<f32>,
     /// Metres per unit of a BVH that is written
     #[arg(long, value_name = "METRES", default_value = "0.01", value_parser = metres)]
     unit: f32,
-    /// Metres per unit of a BVH that is read; by default told from the skeleton's size
+    /// Metres per unit of a BVH input; by default inferred from the skeleton's size
     #[arg(long, value_name = "METRES", value_parser = metres)]
     unit_in: Option<f32>,
     /// Axis that points up in a BVH that is written
@@ -70,22 +70,22 @@ pub struct Convert {
     /// Order of the rotations in a BVH that is written
     #[arg(long, value_name = "ORDER", default_value = "zyx")]
     order: Order,
-    /// Begin a BVH that is written with a frame of the rest pose, as tools for retargeting like it
+    /// Start a BVH output with a frame of the rest pose, as retargeting tools expect it
     #[arg(long)]
     rest_frame: bool,
-    /// Keep the rest pose that some captures begin with as a frame of the clip
+    /// Keep the rest pose that some captures start with as a frame of the clip
     #[arg(long)]
     keep_rest_frame: bool,
-    /// Take the rows of a BVH that are there, even if it declares others
+    /// Accept a BVH whose row count differs from its declaration
     #[arg(long)]
     any_rows: bool,
     /// Do not draw bones for a skeleton that has no mesh
     #[arg(long)]
     bare: bool,
-    /// With --onto: how long the motion of a larger body takes
+    /// With --onto: duration of a larger body's motion
     #[arg(long, value_name = "PACE", default_value = "same")]
     pace: PaceArg,
-    /// With --onto: leave the feet where the rotations carry them
+    /// With --onto: do not correct the feet
     #[arg(long)]
     free_feet: bool,
 }
@@ -108,7 +108,7 @@ enum Order {
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum PaceArg {
-    /// As long as in the file
+    /// The file's duration
     Same,
     /// Longer by the root of the ratio of leg lengths, as giants walk
     Froude,
@@ -134,7 +134,7 @@ struct Content {
     events: Vec<Vec<ClipEvent>>,
     /// Frames a second, where the source has some.
     rate: Option<f64>,
-    /// Notes on what is lost or assumed, a sentence each.
+    /// Notes on losses and assumptions, one sentence each.
     notes: Vec<String>,
 }
 
@@ -212,7 +212,7 @@ impl Convert {
         Failure::at(&motion.name, what, "--clip")
     }
 
-    /// The clips on another character: into a copy of its file, or its skeleton as a BVH.
+    /// The clips on another character: in a copy of its file, or on its skeleton as a BVH.
     fn onto(&self, motion: &Motion, character: &Path, target: Target, outputs: &mut Outputs) -> Result<Told> {
         let CharacterFile { name, document, analysis, .. } =
             CharacterFile::load(character, Textures::Skip, WeightSource::File)?;
@@ -347,7 +347,7 @@ impl Convert {
     }
 }
 
-/// The movie of what is written: of the first of its last `new` clips.
+/// The movie of the output: of the first of its last `new` clips.
 fn draw(outputs: &Outputs, new: usize, picture: &PictureFile) -> Result<Vec<u8>> {
     let (path, bytes) = outputs.first().expect("something is written");
     let name = path.display().to_string();
@@ -364,7 +364,7 @@ fn draw(outputs: &Outputs, new: usize, picture: &PictureFile) -> Result<Vec<u8>>
         .map_err(|error| Failure::of_file(picture.path().display().to_string(), error))
 }
 
-/// A line for each clip, and the notes.
+/// A line per clip, and the notes.
 type Told = (Vec<String>, Vec<String>);
 
 fn line_of(clip: &Clip) -> String {
@@ -386,7 +386,7 @@ fn sampled(rig: &Rig, clip: &Clip, rate: f64, file: &str) -> Result<Clip> {
     Ok(take(rig, clip, rate, file)?.to_clip(rig, &clip.name))
 }
 
-/// The clip behind a frame of the rest pose.
+/// The clip preceded by a frame of the rest pose.
 fn with_rest_frame(rig: &Rig, clip: &Clip, rate: f64, file: &str) -> Result<Clip> {
     let mut take = take(rig, clip, rate, file)?;
     take.poses.splice(0..0, rest_pose(rig));

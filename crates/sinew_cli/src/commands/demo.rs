@@ -12,14 +12,14 @@ use sinew_picture::{PictureFormat, Sun};
 use sinew_scenes::cabin::{Prop, Site};
 use std::path::{Path, PathBuf};
 
-/// Time at which the film begins, seconds: the mannequin has stepped out of the door, which hides it before.
+/// Start time of the film, seconds: the mannequin has left the door, which hides it before.
 const FILM_FROM: f32 = 0.6;
-/// Half size of the meadow in the file, metres to each side; the picture shows it up to the haze.
+/// Half size of the meadow in the file, metres per side; the picture shows it up to the haze.
 const MEADOW_HALF_SIZE: f32 = 12.0;
 /// Every second square of the meadow.
 const MOWN: [f32; 3] = [0.19, 0.30, 0.11];
 
-/// See it all at once: a mannequin walks, is hit, falls down the stairs of a cabin, gets up and walks on
+/// Show all features at once: a mannequin walks, is hit, falls down the stairs of a cabin, gets up and walks on
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -29,7 +29,7 @@ Example:
 
 Writes demo.glb (the mannequin with the fall as a clip), demo.gif and report.json.")]
 pub struct Demo {
-    /// Folder to write into; it is made if it is not there
+    /// Folder to write into; created if it does not exist
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// Pixels of the picture across
@@ -66,7 +66,7 @@ impl Demo {
     }
 }
 
-/// The character's rig with the props beside it, so that other programs show what it falls down.
+/// The character's rig with the props, so that other programs show the stairs.
 fn staged(fall: &Fall<'_>, props: &[Prop]) -> Rig {
     let mut rig = fall.input.character.rig.clone();
     let model_from_world = fall.baked.world_from_model.inverse();

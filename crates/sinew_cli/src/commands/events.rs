@@ -1,4 +1,4 @@
-//! `sinew events`: what happens in clips.
+//! `sinew events`: events of clips.
 
 use crate::commands::clip_choice::choose_clips;
 use crate::failure::{Failure, Result};
@@ -28,7 +28,7 @@ impl Events {
     }
 }
 
-/// Propose footstep events: when a foot comes to stand, told by its height and speed
+/// Propose footstep events: times at which a foot lands, detected from its height and speed
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -51,11 +51,11 @@ pub struct Detect {
 
 /// Name of a footstep's event.
 const FOOTSTEP: &str = "footstep";
-/// Footsteps of one foot that are nearer to each other than this are one, seconds.
+/// Footsteps of one foot closer together than this count as one, seconds.
 const SAME_STEP: f32 = 0.15;
 
 impl Detect {
-    /// Reads, looks, writes.
+    /// Reads, detects, writes.
     pub fn run(&self) -> Result<Report> {
         self.output.iter().try_for_each(|output| must_end_in(output, &["json"]))?;
         never_over([self.file.as_path()], self.output.as_deref())?;
@@ -119,7 +119,7 @@ impl Detect {
     }
 }
 
-/// The steps that the clip does not have as events yet, each once.
+/// The steps without an existing event, each once.
 fn new_steps(there: &[ClipEvent], steps: Vec<ClipEvent>) -> Vec<ClipEvent> {
     let mut known: Vec<(String, f32)> = there
         .iter()

@@ -25,7 +25,7 @@ use clap::Subcommand;
 pub enum Command {
     Demo(demo::Demo),
     Bake(Box<bake::Bake>),
-    /// Work on ragdolls: build one from a rigged file, find out what is wrong with one, write it for other engines
+    /// Build a ragdoll from a rigged file, diagnose one, or export one to other engines
     #[command(subcommand)]
     Ragdoll(Ragdoll),
     Boxes(boxes::Boxes),

@@ -1,4 +1,4 @@
-//! `sinew ragdoll build`: a rigged file becomes a ragdoll, with a report on its quality.
+//! `sinew ragdoll build`: builds a ragdoll from a rigged file, with a report on its quality.
 
 use crate::cpu_clock::timed;
 use crate::failure::Result;
@@ -30,32 +30,32 @@ docs/ragdoll.md says what a definition and settings hold.")]
 pub struct RagdollBuild {
     /// A GLB, glTF, VRM or FBX file with a skinned character
     file: PathBuf,
-    /// Definition file to write; without it there is only the report
+    /// Definition file to write; without it only the report is printed
     #[arg(short, long, value_name = "OUT.sinew.json")]
     output: Option<PathBuf>,
-    /// Shapes of the bodies; auto, the default, takes for each bone what fits better
+    /// Shapes of the bodies; auto, the default, picks the better fit for each bone
     #[arg(long, value_enum)]
     shapes: Option<Shapes>,
-    /// Whose distribution of mass over the body; by default male
+    /// Sex whose mass distribution is used; by default male
     #[arg(long, value_enum)]
     sex: Option<SexArg>,
     /// Joint limits: those of anatomy, the default, or learned from the file's clips
     #[arg(long, value_enum)]
     limits: Option<Limits>,
-    /// Also let it fall this many times at random: pose, speed and ground
+    /// Also simulate this many random falls: pose, speed and ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     gate: Option<u32>,
     /// Number of the first of these falls: the report names those that went wrong
     #[arg(long, value_name = "K", default_value_t = 0, requires = "gate")]
     gate_from: u32,
-    /// Threads that the falls are spread over; the report is the same with any number
+    /// Threads for the falls; the report does not depend on the number
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: u16,
     #[command(flatten)]
     settings: SettingsArg,
 }
 
-/// Falls between two looks at the progress bar.
+/// Number of falls between two updates of the progress bar.
 const BATCH: u32 = 64;
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -93,7 +93,7 @@ impl RagdollBuild {
             with_default_life(&character, &def, doubt.as_ref(), |life| {
                 judge_life(&character, &tested, life, doubt.as_ref())
             })?;
-        // What was not measured stands last.
+        // Unmeasured figures are last.
         let not_measured = tested.reasons.pop();
         (tested.verdict, tested.reasons) = (verdict, reasons);
         tested.reasons.extend(not_measured);
@@ -115,7 +115,7 @@ impl RagdollBuild {
         Ok(report.finish())
     }
 
-    /// Random falls, with a bar for who waits for them.
+    /// Random falls, with a progress bar.
     fn gated(&self, def: &RagdollDef, spawns: u32) -> GateReport {
         let threads = Threads::new(usize::from(self.threads));
         let progress = Progress::new("random falls", spawns as usize);
@@ -129,7 +129,7 @@ impl RagdollBuild {
         report
     }
 
-    /// From the file to the definition, with what a person should know.
+    /// From the file to the definition, with notes.
     fn build(&self) -> Result<(CharacterFile, LoadedSettings, RagdollDef, BuildReport)> {
         let (character, mut loaded) = self.settings.load_character(&self.file, Textures::Skip)?;
         self.say(&mut loaded.settings);
@@ -137,7 +137,7 @@ impl RagdollBuild {
         Ok((character, loaded, def, report))
     }
 
-    /// Puts what the command line says over the settings.
+    /// Applies the command line over the settings.
     fn say(&self, settings: &mut Settings) {
         if let Some(shapes) = self.shapes {
             settings.shapes = Some(match shapes {

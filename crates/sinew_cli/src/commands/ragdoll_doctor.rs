@@ -1,4 +1,4 @@
-//! `sinew ragdoll doctor`: what is wrong with a ragdoll, and what mends it.
+//! `sinew ragdoll doctor`: diagnoses a ragdoll and repairs it.
 
 use crate::failure::Result;
 use crate::input::files::{CharacterFile, Outputs, must_end_in, never_over};
@@ -17,7 +17,7 @@ use sinew::ragdoll::settings::SpringSource;
 use sinew::ragdoll::{BuildOptions, Flaw, Repair, cure, doctor, drop_test};
 use std::path::PathBuf;
 
-/// Say why a ragdoll jitters, explodes or looks wrong, with what was measured, and mend it
+/// Explain why a ragdoll jitters, explodes or looks wrong, with measurements, and repair it
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -31,21 +31,21 @@ The file that is examined is never changed. docs/ragdoll.md lists every code.")]
 pub struct RagdollDoctor {
     /// A character (GLB, glTF, VRM, FBX), a definition (.sinew.json) or an MJCF model (.xml)
     file: PathBuf,
-    /// Mend what can be mended, and write the definition that comes of it
+    /// Repair what can be repaired, and write the resulting definition
     #[arg(long, requires = "output")]
     fix: bool,
-    /// File to write the mended definition to
+    /// File for the repaired definition
     #[arg(short, long, value_name = "OUT.sinew.json", requires = "fix")]
     output: Option<PathBuf>,
-    /// The character that a definition belongs to: knows where bones begin, and which have no body
+    /// The character that a definition belongs to: gives its bones and the joints without a body
     #[arg(long, value_name = "CHARACTER")]
     rig: Option<PathBuf>,
     #[command(flatten)]
     settings: SettingsArg,
 }
 
-/// Flaws of the skin of a ragdoll on its rig. A ragdoll that explodes is not dropped, nor one whose bodies are known to be
-/// missing: nothing would be learned of its skin.
+/// Skin flaws of a ragdoll on its rig. A ragdoll that explodes or lacks bodies is not dropped: its skin would show
+/// nothing new.
 fn skin_flaws(repair: &Repair, character: &CharacterFile) -> Vec<Flaw> {
     let is_cause = |finding: &Finding| {
         let is_missing = matches!(finding.code, Code::HeadWithoutBody | Code::LimbWithoutBody);
@@ -67,7 +67,7 @@ fn skin_flaws(repair: &Repair, character: &CharacterFile) -> Vec<Flaw> {
 }
 
 impl RagdollDoctor {
-    /// Reads, examines, mends, writes.
+    /// Reads, examines, repairs, writes.
     pub fn run(&self) -> Result<Report> {
         let character = self.rig.as_deref().unwrap_or(&self.file);
         let settings = self.settings.path_for(character);

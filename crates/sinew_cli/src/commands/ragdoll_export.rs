@@ -26,10 +26,10 @@ pub struct RagdollExport {
     /// khr: glTF with KHR_physics_rigid_bodies and KHR_implicit_shapes (drafts); mjcf: a MuJoCo model
     #[arg(long = "as", value_enum, value_name = "FORMAT")]
     format: Format,
-    /// File to write; by default NAME.khr.glb or NAME.mjcf.xml beside the file
+    /// File to write; by default NAME.khr.glb or NAME.mjcf.xml next to the file
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// A ragdoll of this character from `ragdoll build`, as it is or edited; without it one is built
+    /// A ragdoll of this character from `ragdoll build`, edited or not; by default one is built
     #[arg(long, value_name = "FILE.sinew.json", conflicts_with = "SettingsArg")]
     ragdoll: Option<PathBuf>,
     #[command(flatten)]
@@ -118,7 +118,7 @@ impl RagdollExport {
         Ok((def, text.into_bytes(), notes))
     }
 
-    /// The character with its ragdoll, and what a person should know of it.
+    /// The character with its ragdoll, and notes.
     fn character(&self) -> Result<(CharacterFile, RagdollDef, Vec<String>)> {
         match &self.ragdoll {
             Some(path) => {

@@ -1,4 +1,4 @@
-//! `sinew record`: a scene that runs becomes a recording.
+//! `sinew record`: records a running scene.
 
 use crate::failure::Result;
 use crate::input::files::{Outputs, must_end_in};
@@ -9,7 +9,7 @@ use serde_json::json;
 use sinew_scenes::recording::Recorder;
 use std::path::PathBuf;
 
-/// Record a named scene: what is done before each step, the hash of the state after it, and poses at times
+/// Record a named scene: the inputs before each step, the hash of the state after it, and poses at intervals
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -24,7 +24,7 @@ pub struct Record {
     /// Recording to write
     #[arg(short, long, value_name = "OUT.sinewrec")]
     output: PathBuf,
-    /// Steps of 1/60 s; by default as many as the scene needs to show what it is about
+    /// Number of steps of 1/60 s; by default the scene's own length
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     steps: Option<u32>,
     /// Change a setting of the scene; repeatable
@@ -33,7 +33,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// Runs the scene and writes what became of it.
+    /// Runs the scene and writes the recording.
     pub fn run(&self) -> Result<Report> {
         must_end_in(&self.output, &["sinewrec"])?;
         let (scene, settings) = choose(&self.scene, &self.settings)?;

@@ -1,4 +1,4 @@
-//! `sinew replay`: a recording is played again, and held against what was recorded or against another.
+//! `sinew replay`: replays a recording and compares it with its recorded states or another recording.
 
 use crate::failure::{Failure, Result};
 use crate::input::source::{name, read_bytes};
@@ -9,7 +9,7 @@ use sinew::math::Transform;
 use sinew_scenes::recording::{Difference, Recording, Replay as Player, compare};
 use std::path::{Path, PathBuf};
 
-/// Play a recording again: whether it comes to the same states, and where two recordings part
+/// Replay a recording: check that it reaches the same states, and find where two recordings differ
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -21,10 +21,10 @@ Only the version that made a recording is known to have the same bits.")]
 pub struct Replay {
     /// A recording
     file: PathBuf,
-    /// Fail (exit code 1) at the first step that comes to another state than was recorded
+    /// Fail (exit code 1) at the first step whose state differs from the recorded one
     #[arg(long)]
     verify: bool,
-    /// The first step and body in which it differs from another recording; exit code 1 if there is one
+    /// Report the first step and body that differ from another recording; exit code 1 if there is one
     #[arg(long, value_name = "OTHER.sinewrec")]
     diff: Option<PathBuf>,
 }
@@ -84,7 +84,7 @@ impl Replay {
         Ok(Report { json, text })
     }
 
-    /// The first difference of the recording and another.
+    /// The first difference between the recording and another.
     fn against(&self, recording: &Recording, other: &Path) -> Result<Report> {
         let name = name(&self.file);
         let others = load(other)?;

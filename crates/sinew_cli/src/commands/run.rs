@@ -29,13 +29,13 @@ A scene that misses what it expects ends with exit code 1, its report printed al
 pub struct Run {
     /// Name of the scene
     scene: String,
-    /// Steps of 1/60 s; by default as many as the scene needs to show what it is about
+    /// Number of steps of 1/60 s; by default the scene's own length
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     steps: Option<u32>,
-    /// Threads; the state is the same with any number
+    /// Threads; the state does not depend on the number
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: u16,
-    /// Work that each step does to come nearer to the truth
+    /// Step quality: more work per step is more accurate
     #[arg(long, default_value_t, value_enum)]
     quality: QualityName,
     /// Change a setting of the scene; repeatable
@@ -48,7 +48,7 @@ pub struct Run {
 enum QualityName {
     /// Half of the substeps and sweeps
     Fast,
-    /// As content asks for
+    /// As the content requests
     #[default]
     Balanced,
     /// Twice the substeps and sweeps
@@ -91,7 +91,7 @@ impl Run {
         Err(Failure::Missed { report: Box::new(report), what })
     }
 
-    /// True if the scene is run as it is by default: what it expects is meant for that alone.
+    /// True if the scene runs with its defaults: its expectations apply only then.
     fn is_by_default(&self) -> bool {
         self.settings.is_empty() && self.steps.is_none() && matches!(self.quality, QualityName::Balanced)
     }
@@ -111,7 +111,7 @@ struct StepTimes {
     costs: Vec<Cost>,
 }
 
-/// Cost of a part of the work over all steps.
+/// Cost of one part of the work over all steps.
 struct Cost {
     name: &'static str,
     seconds: f64,
@@ -119,7 +119,7 @@ struct Cost {
     count: u64,
 }
 
-/// Adds to the cost of a part.
+/// Adds to the cost of one part.
 fn spend(costs: &mut Vec<Cost>, part: Part, seconds: f64) {
     let count = u64::from(part.count);
     match costs.iter_mut().find(|cost| cost.name == part.name) {
@@ -162,12 +162,12 @@ struct Outcome<'a> {
     times: StepTimes,
     hash: u64,
     metrics: Vec<Metric>,
-    /// Its figures are held against what the scene expects.
+    /// Compares its figures with the scene's expectations.
     has_bars: bool,
 }
 
 impl Outcome<'_> {
-    /// Figures that miss what the scene expects.
+    /// Figures that miss the scene's expectations.
     fn missed(&self) -> Vec<&'static str> {
         let unmet = self.metrics.iter().filter(|metric| self.has_bars && !metric.is_met());
         unmet.map(|metric| metric.name).collect()
@@ -188,7 +188,7 @@ impl Outcome<'_> {
         })
     }
 
-    /// Microseconds a step for one of each kind, in scenes whose work has parts.
+    /// Microseconds per step per item of each kind, in scenes whose work has parts.
     fn costs(&self) -> Map<String, Value> {
         let parts = self.times.costs.iter().filter(|cost| cost.count > 0);
         let of = |cost: &Cost| (cost.name.to_owned(), json!(cost.seconds * 1e6 / cost.count as f64));

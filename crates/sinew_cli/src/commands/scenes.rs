@@ -1,11 +1,11 @@
-//! `sinew scenes`: what can be run.
+//! `sinew scenes`: lists the scenes.
 
 use crate::failure::Result;
 use crate::report::{Report, number};
 use serde_json::{Value, json};
 use sinew_scenes::scenes::{Scene, registry};
 
-/// List the scenes that 'sinew run' knows, one a line, the name first
+/// List the scenes of 'sinew run', one per line, the name first
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:

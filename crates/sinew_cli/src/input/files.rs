@@ -1,4 +1,4 @@
-//! Reading and writing what commands work on.
+//! Reads and writes the files of commands.
 
 use crate::failure::{Failure, Result};
 use crate::input::kin::units_beside;
@@ -26,7 +26,7 @@ pub enum WeightSource {
     Nearest,
 }
 
-/// A character file: what it holds, and what its joints are.
+/// A character file: its content and the analysis of its joints.
 pub struct CharacterFile {
     /// As the user named it.
     pub name: String,
@@ -34,12 +34,13 @@ pub struct CharacterFile {
     pub document: Document,
     /// Analysis of its joints.
     pub analysis: RigAnalysis,
-    /// Joints of garments that settings list: no part of the body.
+    /// Joints of the garments in the settings: not part of the body.
     pub worn: Vec<JointIdx>,
 }
 
 impl CharacterFile {
-    /// Reads a file that has to hold a skinned character. An FBX becomes a glTF first, to which clips can be added.
+    /// Reads a file that must contain a skinned character. An FBX is converted to a glTF first, to which clips can be
+    /// added.
     pub fn load(path: &Path, textures: Textures, weights: WeightSource) -> Result<Self> {
         let name = source::name(path);
         let options = ReadOptions { textures };
@@ -65,7 +66,7 @@ impl CharacterFile {
         let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let hints = Hints {
             name: stem.unwrap_or_default(),
-            // Readers turn every format so that +Y is up.
+            // Readers convert every format to +Y up.
             up: Some(Vec3::Y),
             exporter: document.generator().to_owned(),
             ..Hints::of_clips(&document.rig, &document.clips)
@@ -73,7 +74,7 @@ impl CharacterFile {
         let analysis =
             analyze_hinted(&document.rig, &hints).map_err(|error| Failure::of_file(&name, error))?;
         let mut file = Self { name, document, analysis, worn: Vec::new() };
-        // A file in metres is taken at its word; of another the others beside it may know more.
+        // A file in metres is trusted; for others the neighbouring files may give more evidence.
         if file.is_in_doubt() && file.analysis.unit_scale != 1.0 {
             let kin = units_beside(path);
             file.hint(&Hints { kin, ..hints })?;
@@ -81,12 +82,12 @@ impl CharacterFile {
         Ok(file)
     }
 
-    /// The rig without the skin of garments, which lies on no body.
+    /// The rig without the skin of garments, which covers no body.
     pub fn body(&self) -> Cow<'_, Rig> {
         Correction { ignored: self.worn.clone(), ..Correction::default() }.seen(&self.document.rig)
     }
 
-    /// True if the file's unit may as well be another.
+    /// True if the file's unit is in doubt.
     pub fn is_in_doubt(&self) -> bool {
         self.analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only)
     }
@@ -102,8 +103,8 @@ impl CharacterFile {
 }
 
 impl CharacterFile {
-    /// Leaves out the meshes of other characters than the `wanted` one, from 1. Where there are several and none is wanted, the one with
-    /// the most vertices is taken, with a note of the analysis.
+    /// Removes the meshes of characters other than the `wanted` one, counted from 1. If there are several and none is
+    /// wanted, keeps the one with the most vertices, with a note.
     pub fn choose(&mut self, wanted: Option<usize>) -> Result<()> {
         let rig = &mut self.document.rig;
         let all = characters(rig);
@@ -154,7 +155,7 @@ pub fn never_over<'a>(
     inputs: impl IntoIterator<Item = &'a Path>,
     outputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<()> {
-    // Both may be named in different ways; what does not exist yet is no input.
+    // Both paths may be spelled differently; a file that does not exist yet is no input.
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     let inputs: Vec<PathBuf> = inputs.into_iter().filter_map(real).collect();
     match outputs.into_iter().find(|output| real(output).is_some_and(|output| inputs.contains(&output))) {
@@ -165,7 +166,7 @@ pub fn never_over<'a>(
     }
 }
 
-/// Refuses an output whose name ends in none of these: a name says what is in a file.
+/// Refuses an output whose extension is none of these: the name decides the format.
 pub fn must_end_in(output: &Path, extensions: &[&str]) -> Result<()> {
     let extension = output.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     if extensions.iter().any(|known| known.eq_ignore_ascii_case(extension)) {
@@ -197,7 +198,7 @@ impl Outputs {
         self.files.iter().map(|(path, _)| path.as_path())
     }
 
-    /// Writes them. Each is there as a whole or not at all; none appears before all are on the disk.
+    /// Writes them atomically; none appears before all are on disk.
     pub fn write(&self) -> Result<()> {
         let mut paths: Vec<&Path> = self.paths().collect();
         paths.sort_unstable();

@@ -1,15 +1,15 @@
-//! Files beside a character's: what unit they are in, it may be in, too.
+//! Files next to a character's file, as evidence for its unit.
 
 use sinew::anim::analyze;
 use sinew::formats::{ReadOptions, Textures, load_gltf};
 use std::path::{Path, PathBuf};
 
-/// Most files that are looked at, and the largest, bytes.
+/// Largest number of files read, and their largest size, bytes.
 const MOST: usize = 6;
 const LARGEST: u64 = 16 << 20;
 
-/// Units, metres, of the files of one kind beside a file in which only one makes a body; the first few by name. What cannot be read
-/// says nothing.
+/// Units, metres, of neighbouring files of the same kind whose unit is unambiguous; the first few by name. Ignores
+/// unreadable files.
 pub fn units_beside(path: &Path) -> Vec<f32> {
     let folder = match path.parent() {
         Some(folder) if folder.as_os_str().is_empty() => Path::new("."),

@@ -1,4 +1,4 @@
-//! Files with clips, whatever they are.
+//! Files with clips, of any format.
 
 use crate::failure::Result;
 use crate::input::kin::units_beside;
@@ -8,18 +8,18 @@ use sinew::anim::{Clip, Hints, RigAnalysis, analyze_hinted};
 use sinew::formats::{Error, MotionFile, MotionFormat, MotionOptions};
 use std::path::Path;
 
-/// A file with clips: what it holds, and what its joints are.
+/// A file with clips: its content and the analysis of its joints.
 pub struct Motion {
     /// As the user named it.
     pub name: String,
     /// Its rig and its clips.
     pub file: MotionFile,
-    /// Analysis of its joints; `None` where there is neither a skin nor a skeleton like a human's.
+    /// Analysis of its joints; `None` without a skin or a humanoid skeleton.
     pub analysis: Option<RigAnalysis>,
 }
 
 impl Motion {
-    /// Reads a file and finds out what its joints are.
+    /// Reads a file and analyses its joints.
     pub fn load(path: &Path, options: &MotionOptions<'_>) -> Result<Self> {
         let file = load_motion(path, options).map_err(helped)?;
         let mut motion = Self::new(name(path), file);
@@ -27,7 +27,7 @@ impl Motion {
         Ok(motion)
     }
 
-    /// Judges a unit that is in doubt by the files beside a glTF, as for its fall.
+    /// Resolves a doubtful unit by the files next to a glTF, as for its fall.
     fn look_beside(&mut self, path: &Path) {
         let Some(analysis) = &self.analysis else { return };
         let in_doubt = analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only);
@@ -43,19 +43,19 @@ impl Motion {
         }
     }
 
-    /// Finds out what the joints of a file of that name are.
+    /// Analyses the joints of a file of that name.
     pub fn new(name: String, file: MotionFile) -> Self {
         let analysis = analyze_any(&file);
         Self { name, file, analysis }
     }
 
-    /// True if a mesh hangs on its joints.
+    /// True if its joints carry a mesh.
     pub fn has_skin(&self) -> bool {
         !self.file.rig.skins.is_empty()
     }
 }
 
-/// An error with the option that gets around it, where there is one.
+/// An error with the option that avoids it, if any.
 fn helped(mut error: Error) -> Error {
     if error.what.starts_with("declares ") && error.what.contains(" frames, has ") {
         error.what += "; 'sinew convert --any-rows' takes those that are there";
@@ -63,8 +63,8 @@ fn helped(mut error: Error) -> Error {
     error
 }
 
-/// By the skin, else as a skeleton in the pose in which it stands best: any few nodes look like some creature, so that
-/// counts for humans only.
+/// From the skin, else as a skeleton in its most upright pose: any few nodes resemble some creature, so the latter
+/// accepts humans only.
 fn analyze_any(file: &MotionFile) -> Option<RigAnalysis> {
     let hints = Hints { exporter: file.generator.clone(), ..Hints::of_clips(&file.rig, &file.clips) };
     if let Ok(analysis) = analyze_hinted(&file.rig, &hints) {

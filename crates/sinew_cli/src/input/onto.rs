@@ -1,4 +1,4 @@
-//! Clips of one file on the character of another.
+//! Retargets clips of one file to the character of another.
 
 use crate::failure::{Failure, Result};
 use crate::input::motion::Motion;
@@ -6,7 +6,7 @@ use crate::report::table::shown;
 use sinew::anim::retarget::{Body, RetargetOptions, Retargeted, retarget};
 use sinew::anim::{Channel, Clip, ClipEvent, JointIdx, LocalTransform, Rig, RigAnalysis};
 
-/// A clip of another rig as one of the character's.
+/// A clip of another rig converted to the character's.
 pub struct Carried {
     /// Clip of the character's joints.
     pub clip: Clip,
@@ -18,17 +18,16 @@ pub struct Carried {
 
 /// Criterion by which joints were matched.
 pub enum By {
-    /// Both skeletons are the same: keys are taken as they are.
+    /// Both skeletons are the same: keys are copied.
     Name {
-        /// Joints that the clip moves and the character has.
+        /// Bones of human bodies of any size.
         matched: usize,
     },
     /// Bones of human bodies, of whatever size.
     Role(Box<Retargeted>),
 }
 
-/// Carries all clips of a file over: by the names of joints where both have the same skeleton, or are no humans; else by
-/// roles.
+/// Retargets all clips of a file: by joint names if both have the same skeleton or are not human; else by roles.
 pub fn carry(
     motion: &Motion,
     rig: &Rig,
@@ -60,21 +59,21 @@ pub fn carry(
     clips.map(by_role).collect()
 }
 
-/// Largest angle between the rest poses of a joint that is the same in two files, radians.
+/// Largest angle between the rest poses of matching joints of two files, radians.
 const SAME_TURN: f32 = 0.02;
-/// Largest difference of the places where it rests, as a share of their distance from the parent.
+/// Largest difference of their rest positions, as a share of their distance from the parent.
 const SAME_PLACE: f32 = 0.05;
 
-/// Joints of a rig by those of another with the same names.
+/// Joints of a rig matched to those of another by name.
 struct Namesakes {
     /// For each joint of the other rig.
     joints: Vec<Option<JointIdx>>,
-    /// True if most of what moves rests alike in both: keys of one fit the other.
+    /// True if most moving joints have the same rest pose in both: keys of one fit the other.
     rest_alike: bool,
 }
 
 impl Namesakes {
-    /// `None` if most of what the clips move has no namesake.
+    /// `None` if most joints that the clips move have no match.
     fn find(other: &Rig, clips: &[Clip], rig: &Rig) -> Option<Self> {
         let find = |name: &str| rig.joints.iter().position(|own| !name.is_empty() && own.name == name);
         let joints: Vec<Option<JointIdx>> = other.joints.iter().map(|joint| find(&joint.name)).collect();
@@ -111,7 +110,7 @@ fn by_name(clip: &Clip, events: &[ClipEvent], same: &[Option<JointIdx>]) -> Opti
 }
 
 impl Carried {
-    /// Line of text that tells how it went.
+    /// Line of text that describes the result.
     pub fn to_text(&self) -> String {
         let name = shown(&self.clip.name);
         match &self.by {

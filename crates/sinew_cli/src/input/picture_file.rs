@@ -4,10 +4,10 @@ use sinew_picture::PictureFormat;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// Longest simulation that is written as a clip or a movie, seconds: what is longer belongs into several.
+/// Longest simulation that may be written as a clip or a movie, seconds.
 const LONGEST: f32 = 600.0;
 
-/// File to which a picture is written, of a kind that its name tells.
+/// File for a picture, of the kind that its extension names.
 #[derive(Clone, Debug)]
 pub struct PictureFile {
     path: PathBuf,
@@ -43,7 +43,7 @@ pub fn seconds(text: &str) -> Result<f32, String> {
     }
 }
 
-/// A length that a movie may have: of a clip of so many seconds.
+/// A length that a movie may have: of a clip of this many seconds.
 pub fn longest(seconds: f32) -> f32 {
     if seconds < LONGEST { seconds } else { LONGEST }
 }
@@ -59,7 +59,7 @@ pub fn rate(text: &str) -> Result<f32, String> {
     }
 }
 
-/// A time that takes a while.
+/// A positive duration.
 pub fn length(text: &str) -> Result<f32, String> {
     let time = seconds(text)?;
     if time > 0.0 { Ok(time) } else { Err("must be above 0".to_owned()) }

@@ -1,4 +1,4 @@
-//! Any file that a ragdoll comes from: a rigged character, a definition of ours, an MJCF model.
+//! Any source of a ragdoll: a rigged character, a Sinew definition, an MJCF model.
 
 use crate::failure::{Failure, Result};
 use crate::input::files::CharacterFile;
@@ -9,22 +9,22 @@ use sinew::formats::{Textures, read_mjcf, read_ragdoll};
 use sinew::ragdoll::{BuildOptions, RagdollDef, Repair};
 use std::path::Path;
 
-/// A ragdoll and what is known of it.
+/// A ragdoll with its source.
 pub struct RagdollFile {
     /// As the user named it.
     pub name: String,
-    /// The ragdoll, its springs, and what its rig says of it.
+    /// The ragdoll, its springs, and data of its rig.
     pub repair: Repair,
-    /// Notes of reading and building for a person, a sentence each.
+    /// Notes of reading and building, one sentence each.
     pub notes: Vec<String>,
     /// The rigged file that it was built from, if it is one.
     pub character: Option<CharacterFile>,
-    /// Garments that its settings ask for.
+    /// Garments requested by its settings.
     pub garments: Vec<Garment>,
 }
 
 impl RagdollFile {
-    /// Settings change a build: of what is built already there is nothing to change.
+    /// Settings change a build; a finished ragdoll has nothing to change.
     pub fn check_settings(&self, settings: &SettingsArg) -> Result<()> {
         if let Some(option) = settings.given().filter(|_| self.repair.reference.is_none()) {
             let what = "changes how a ragdoll is built: name a character, not a definition or a model";
@@ -69,7 +69,7 @@ pub fn is_character(bytes: &[u8]) -> bool {
     matches!(kind_of(bytes), Kind::Character)
 }
 
-/// A definition for a character, whose joints it finds by their names.
+/// A definition for a character, with joints matched by name.
 pub fn read_definition(path: &Path, character: &CharacterFile) -> Result<RagdollDef> {
     let name = name(path);
     let def = read_bytes(path).and_then(|bytes| read_ragdoll(&bytes));
@@ -96,7 +96,7 @@ fn kind_of(bytes: &[u8]) -> Kind {
     }
 }
 
-/// True if an object's first key is `"sinew"`, or one after it and there is no `asset`.
+/// True if an object's first key is `"sinew"`, or a later one is and there is no `asset`.
 fn is_ours(text: &[u8]) -> bool {
     text[1..].trim_ascii_start().starts_with(b"\"sinew\"")
         || text.windows(7).any(|word| word == b"\"sinew\"")

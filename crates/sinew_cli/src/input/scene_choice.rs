@@ -1,4 +1,4 @@
-//! A scene by its name, with what `--set` says.
+//! A scene by its name, with its `--set` values.
 
 use crate::failure::{Failure, Result};
 use sinew::ragdoll::settings::instead;

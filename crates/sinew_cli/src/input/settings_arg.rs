@@ -1,4 +1,4 @@
-//! Settings of a ragdoll: those beside the character's file or in one that was named, and over them what was asked for.
+//! Settings of a ragdoll: those next to the character's file or in a named file, overridden by the command line.
 
 use crate::failure::{Failure, Result};
 use crate::input::files::{CharacterFile, WeightSource};
@@ -20,8 +20,8 @@ const HEADING: &str = "Correcting what is read from the file";
 /// Options by which a user corrects the build of a ragdoll.
 #[derive(clap::Args)]
 pub struct SettingsArg {
-    /// Settings of the ragdoll, a JSON file; by default NAME.ragdoll.json beside the character, if it is there. The options
-    /// below go before it
+    /// Settings of the ragdoll, a JSON file; by default NAME.ragdoll.json next to the character, if it exists. The
+    /// options below override it
     #[arg(help_heading = HEADING, long, value_name = "FILE")]
     settings: Option<PathBuf>,
     /// Number of the character in the file, from 1, where there are several; by default the one with the most vertices
@@ -36,19 +36,20 @@ pub struct SettingsArg {
     /// Axis of the file that points up; by default y, as glTF has it
     #[arg(help_heading = HEADING, long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
     up: Option<Vec3>,
-    /// Weights of the skin; nearest is for a file whose own were lost
+    /// Weights of the skin; nearest is for a file that has lost its own
     #[arg(help_heading = HEADING, long, value_name = "SOURCE", value_enum, default_value_t)]
     weights: WeightSource,
     /// Mass of the whole character, kg; by default from its height or volume
     #[arg(help_heading = HEADING, long, value_name = "KG", value_parser = positive, allow_negative_numbers = true)]
     mass: Option<f32>,
-    /// Say which bone is what, as in hips=Bone_12; 'sinew inspect' lists both; repeatable
+    /// State the role of a bone, as in hips=Bone_12; 'sinew inspect' lists both; repeatable
     #[arg(help_heading = HEADING, long = "role", value_name = "ROLE=BONE")]
     roles: Vec<RoleArg>,
-    /// A bone that is no part of the body, with all below it (a cape, hair, a flag): it goes along; repeatable
+    /// Exclude a bone and everything below it (a cape, hair, a flag) from the body; it moves with its parent;
+    /// repeatable
     #[arg(help_heading = HEADING, long, value_name = "BONE")]
     ignore: Vec<String>,
-    /// A bone, by role or name, that gets a body of its own; repeatable
+    /// Give a bone, by role or name, a body of its own; repeatable
     #[arg(help_heading = HEADING, long, value_name = "BONE")]
     body: Vec<String>,
     /// A bone, by role or name, that moves with its parent's body; repeatable
@@ -82,7 +83,7 @@ fn positive(text: &str) -> Result<f32, String> {
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be above 0".to_owned()) }
 }
 
-/// Key of the whole's mass in settings.
+/// Key of the total mass in settings.
 const MASS: &str = "mass";
 
 /// Units by their names, in metres.
@@ -114,16 +115,16 @@ fn axis(text: &str) -> Result<Vec3, String> {
 /// Settings and where they are from.
 #[derive(Debug, Default)]
 pub struct LoadedSettings {
-    /// The file as a person names it, `""` where there is none.
+    /// The file as the user named it, or `""`.
     pub file: String,
     /// The settings themselves.
     pub settings: Settings,
-    /// Keys in the settings that the command line said, with the option as it was typed.
+    /// Keys of the settings set by the command line, with the option as typed.
     said: Vec<(String, String)>,
 }
 
 impl SettingsArg {
-    /// The first option that asks for something, as it is typed.
+    /// The first option given, as typed.
     pub fn given(&self) -> Option<&'static str> {
         let given = [
             ("--settings", self.settings.is_some()),
@@ -141,7 +142,7 @@ impl SettingsArg {
         given.into_iter().find(|(_, is_given)| *is_given).map(|(option, _)| option)
     }
 
-    /// Path of the settings for a character's file: where the user said, else beside it, whether there are any or not.
+    /// Path of the settings for a character's file: the user's, else next to it, whether or not it exists.
     pub fn path_for(&self, character: &Path) -> PathBuf {
         self.settings.clone().unwrap_or_else(|| settings_path(character))
     }
@@ -159,13 +160,13 @@ impl SettingsArg {
         Ok(loaded)
     }
 
-    /// A character with its settings: its roles and its unit are what they say.
+    /// A character with its settings applied to roles and unit.
     pub fn load_character(&self, path: &Path, textures: Textures) -> Result<(CharacterFile, LoadedSettings)> {
         self.load_into(path, textures, || None, true)
     }
 
-    /// [`Self::load_character`] for a world with doors of a free height (metres) that is asked for if the unit is in doubt; with meshes as the garments that the
-    /// settings list, or as they are.
+    /// [`Self::load_character`] for a world, whose door height (metres) is requested if the unit is in doubt; with or
+    /// without making the listed meshes garments.
     pub fn load_into(
         &self,
         path: &Path,
@@ -182,7 +183,7 @@ impl SettingsArg {
         if character.is_in_doubt()
             && let Some(door) = door()
         {
-            // What the choice of a character has to say is none of the analysis's own.
+            // The note of the choice of a character does not belong to the analysis.
             let notes = character.analysis.notes.clone();
             let hints = Hints { door: Some(door), ..character.analysis.hints.clone() };
             character.hint(&hints)?;
@@ -203,7 +204,7 @@ impl SettingsArg {
         Ok((character, loaded))
     }
 
-    /// Puts what the command line says over what the file says.
+    /// Applies the command line over the file's settings.
     fn say(&self, loaded: &mut LoadedSettings) -> Result<()> {
         let LoadedSettings { settings, said, .. } = loaded;
         for (index, RoleArg { role, bone }) in self.roles.iter().enumerate() {
@@ -255,7 +256,7 @@ pub fn unit_note(guess: &UnitGuess) -> String {
     format!("{}; {flags}", guess.note)
 }
 
-/// Assumptions of the analysis, the unit among them, a sentence each.
+/// Assumptions of the analysis, including the unit, one sentence each.
 pub fn assumed(analysis: &RigAnalysis) -> Vec<String> {
     let unit = analysis.unit_guess.as_ref().map(unit_note);
     unit.into_iter().chain(analysis.notes.iter().cloned()).collect()
@@ -271,7 +272,7 @@ impl LoadedSettings {
         Ok(())
     }
 
-    /// Makes cloth of the meshes that are to be garments, and looks at the character anew, which has more joints now.
+    /// Converts the meshes of garments to cloth, and analyses the character again with the added joints.
     fn lay_sheets(&self, character: &mut CharacterFile) -> Result<()> {
         let nodes = character.document.node_count();
         let rig = &mut character.document.rig;
@@ -286,7 +287,7 @@ impl LoadedSettings {
         Ok(())
     }
 
-    /// The ragdoll of a character and its clips, and what the build says of it.
+    /// The ragdoll of a character and its clips, with notes of the build.
     pub fn build(
         &self,
         character: &CharacterFile,
@@ -319,7 +320,7 @@ impl LoadedSettings {
         garments.map_err(|error| self.failure(&character.name, error))
     }
 
-    /// Doubt about the mass, with what to do; nothing where the user gave it, or the unit that it comes from.
+    /// Doubt about the mass, with advice; empty if the user gave the mass or the unit.
     pub fn doubt(&self, def: &RagdollDef) -> Option<Doubt> {
         let is_given = self.settings.mass.is_some() || self.settings.unit.is_some();
         let mut doubt = Doubt::of(def).filter(|_| !is_given)?;
@@ -327,7 +328,7 @@ impl LoadedSettings {
         Some(doubt)
     }
 
-    /// Names the file of the settings, or the option that said what cannot be.
+    /// Names the settings file, or the option with the invalid value.
     fn failure(&self, character: &str, error: SettingsError) -> Failure {
         match error {
             SettingsError::Build(error @ BuildError::Mass(_)) => {

@@ -1,11 +1,11 @@
-//! A rig as other programs want its skeleton: in metres, with the axis up that they have, without what is no bone.
+//! Prepares a rig's skeleton for other programs: in metres, with their up axis, without non-bone nodes.
 
 use crate::report::table::{counted, shown};
 use sinew::anim::{Channel, Clip, Interpolation, Joint, JointIdx, Property, Rig};
 use sinew::math::{Rotation, Vec3};
 
-/// The joints that a skin or the clip names, and those above and below them, without meshes; the clip on these; and the
-/// names of the joints that were left out.
+/// The joints that a skin or the clip uses, with their ancestors and descendants, without meshes; the clip on these;
+/// and the names of the joints that were left out.
 pub fn bones_only(rig: &Rig, clip: &Clip) -> (Rig, Clip, Vec<String>) {
     let mut kept = vec![rig.skins.is_empty(); rig.joints.len()];
     let named = rig.skins.iter().flat_map(|skin| skin.joints.iter().copied());
@@ -13,7 +13,7 @@ pub fn bones_only(rig: &Rig, clip: &Clip) -> (Rig, Clip, Vec<String>) {
         kept[joint] = true;
     }
     for joint in 0..rig.joints.len() {
-        // Sockets and ends of bones hang below.
+        // Sockets and bone ends are descendants.
         kept[joint] |= rig.joints[joint].parent.is_some_and(|parent| kept[parent]);
     }
     for mesh in &rig.meshes {
@@ -52,7 +52,7 @@ fn keeps_its_size(channel: &Channel, rig: &Rig) -> bool {
         && channel.values.chunks_exact(3).all(near)
 }
 
-/// Notes what a format of bones alone leaves out: meshes, and the nodes of these names.
+/// Notes on what a bones-only format leaves out: meshes, and the nodes with these names.
 pub fn lost_meshes(rig: &Rig, dropped: &[String], notes: &mut Vec<String>) {
     if !rig.meshes.is_empty() {
         let (meshes, skins) =
@@ -67,7 +67,7 @@ pub fn lost_meshes(rig: &Rig, dropped: &[String], notes: &mut Vec<String>) {
     }
 }
 
-/// Turns and scales a whole rig and its clip about the origin.
+/// Rotates and scales a whole rig and its clip about the origin.
 pub fn transform(rig: &mut Rig, clip: &mut Clip, turn: Rotation, scale: f32) {
     let roots: Vec<JointIdx> = (0..rig.joints.len()).filter(|&i| rig.joints[i].parent.is_none()).collect();
     for &root in &roots {
@@ -77,7 +77,7 @@ pub fn transform(rig: &mut Rig, clip: &mut Clip, turn: Rotation, scale: f32) {
         rest.scale *= scale;
     }
     for channel in clip.channels.iter_mut().filter(|channel| roots.contains(&channel.joint)) {
-        // Turning and scaling is linear, so that tangents go the same way.
+        // Rotation and scale are linear, so tangents transform the same way.
         for value in channel.values.chunks_exact_mut(channel.property.width()) {
             match (channel.property, value) {
                 (Property::Rotation, [x, y, z, w]) => {
@@ -94,7 +94,7 @@ pub fn transform(rig: &mut Rig, clip: &mut Clip, turn: Rotation, scale: f32) {
     }
 }
 
-/// Frames a second that the keys of a clip were made at, as near as can be told; 60 where it cannot.
+/// Estimated frame rate of a clip's keys; 60 if it cannot be estimated.
 pub fn frame_rate(clip: &Clip) -> f64 {
     const USUAL: f64 = 60.0;
     let most = clip.channels.iter().filter(|channel| channel.interpolation != Interpolation::Step);

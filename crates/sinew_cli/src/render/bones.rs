@@ -1,19 +1,19 @@
-//! A body for a skeleton that has none, so that it can be seen: an octahedron for each bone.
+//! Draws a skeleton without a skin: an octahedron for each bone.
 
 use sinew::anim::{JointIdx, Primitive, Rig, RigAnalysis, RigMesh, Skin, local_to_model, rest_pose};
 use sinew::math::{Affine, Vec3};
 
 /// Half the width of a bone, as a share of its length.
 const WIDTH: f32 = 0.11;
-/// Place at which a bone is widest, as a share of its length.
+/// Position of a bone's widest section, as a share of its length.
 const WAIST: f32 = 0.2;
-/// Joints nearer to each other than this are in one place, as a share of the farthest joint's distance from the root.
+/// Joints closer together than this coincide, as a share of the farthest joint's distance from the root.
 const COINCIDENT: f32 = 0.005;
 /// Linear RGBA.
 const COLOR: [f32; 4] = [0.60, 0.55, 0.45, 1.0];
 
-/// Adds a skin over all joints, and a mesh of bones from each joint to those that hang on it, bound in the pose in which
-/// the body stands: many captures have a rest pose that is none.
+/// Adds a skin over all joints, and a mesh with a bone from each joint to each child, bound in the body's upright pose,
+/// because many captures have an unusable rest pose.
 pub fn flesh_out(rig: &mut Rig, analysis: Option<&RigAnalysis>) {
     let mut model = Vec::new();
     match analysis {
@@ -39,8 +39,8 @@ pub fn flesh_out(rig: &mut Rig, analysis: Option<&RigAnalysis>) {
     rig.meshes.push(RigMesh { name: "bones".into(), joint: 0, skin, primitives: vec![bones] });
 }
 
-/// For each joint the one that carries its bones: joints right on their parents (the lab of CMU has eleven) leave that to
-/// these, and look like none of their own.
+/// For each joint the one that carries its bones: a joint coincident with its parent (CMU captures have eleven) uses
+/// the parent's.
 fn carriers(rig: &Rig, model: &[Affine]) -> Vec<JointIdx> {
     let reach =
         |from: Vec3| model.iter().map(|joint| (joint.translation - from).length()).fold(0.0, f32::max);
@@ -54,7 +54,7 @@ fn carriers(rig: &Rig, model: &[Affine]) -> Vec<JointIdx> {
     carriers
 }
 
-/// Eight triangles, each with corners of its own so that it looks flat.
+/// Eight triangles with separate corners for flat shading.
 fn add_bone(bones: &mut Primitive, slot: u16, from: Vec3, to: Vec3) {
     let way = to - from;
     let length = way.length();

@@ -16,10 +16,10 @@ use sinew_picture::{
     Renderer, Scene, Sun,
 };
 
-/// Pixels of a film across and down, where nobody asks for others.
+/// Default width and height of a film in pixels.
 pub const FILM_SIZE: [u32; 2] = [640, 360];
 
-/// Pictures a second: a whole number of a GIF's hundredths of a second, and enough to follow a fall.
+/// Pictures per second: a whole number of a GIF's hundredths of a second, and enough to follow a fall.
 const FPS: u32 = 20;
 /// Seconds for which a hit's arrow is shown.
 const ARROW_SECONDS: f32 = 0.35;
@@ -29,9 +29,9 @@ const ARROW_COLOR: [f32; 3] = [0.85, 0.06, 0.03];
 pub struct Film<'a> {
     /// The fall.
     pub fall: &'a Fall<'a>,
-    /// Time at which it begins, seconds.
+    /// Start time, seconds.
     pub from: f32,
-    /// Models of what stands around.
+    /// Models of the static surroundings.
     pub set: Vec<Model>,
     /// From the character to the camera.
     pub direction: Vec3,
@@ -46,12 +46,12 @@ pub struct Film<'a> {
 pub enum View {
     /// A ball of that radius (metres) around the character, which the camera follows.
     Around(f32),
-    /// The character as a whole, all the way, from where least stands before it.
+    /// The whole character over its whole path, from the side with the least occlusion.
     Whole,
 }
 
 impl Film<'_> {
-    /// The bytes of a picture file of so many pixels across and down.
+    /// The bytes of a picture file of this many pixels across and down.
     pub fn shoot(self, format: PictureFormat, [width, height]: [u32; 2]) -> Result<Vec<u8>, EncodeError> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let settings = RenderSettings { width, height, threads, ..RenderSettings::default() };
@@ -75,11 +75,11 @@ enum Shooting {
     Framing(Framing),
 }
 
-/// A film on its way.
+/// A film in progress.
 struct Shots<'a> {
     fall: &'a Fall<'a>,
     scene: Scene,
-    /// Models of the scene that stay from picture to picture; the character's come after them.
+    /// Number of scene models that persist from picture to picture; the character's come after them.
     standing: usize,
     looks: Vec<RenderMaterial>,
     phases: Vec<story::Phase>,
@@ -166,7 +166,7 @@ impl<'a> Shots<'a> {
         self.scene.models.extend(skin::models(&self.fall.input.character.rig, &self.model, &self.looks));
     }
 
-    /// An arrow for each hit that has just happened, its tip where it struck.
+    /// An arrow for each recent hit, its tip at the hit position.
     fn add_arrows(&mut self, time: f32) {
         for hit in self.fall.input.hits {
             let since = time - hit.time;
@@ -178,8 +178,8 @@ impl<'a> Shots<'a> {
     }
 }
 
-/// Side from which least of something that moves through a world is hidden behind what stands: the first such one of the
-/// ways to look at it, by eighths of a turn and then from higher up.
+/// Camera side with the least occlusion of a moving subject: the first best one among directions by eighths of a turn,
+/// then from higher up.
 fn clear_side(bodies: &[BodyDef], framing: &Framing, boxes: &[Aabb], wanted: Vec3) -> Vec3 {
     let mut world = World::new(WorldDef::default());
     for body in bodies.iter().filter(|body| body.kind == BodyKind::Static) {
@@ -204,7 +204,7 @@ fn clear_side(bodies: &[BodyDef], framing: &Framing, boxes: &[Aabb], wanted: Vec
     ways.min_by_key(|&way| hidden(way)).unwrap_or(wanted)
 }
 
-/// Pictures from one for which it is looked whether something is in the way to the next.
+/// Number of pictures between two occlusion tests.
 const LOOK_EVERY: usize = 4;
 
 /// A shaft and a head that end at `tip`, along the unit vector `along`.
@@ -219,11 +219,11 @@ fn arrow(tip: Vec3, along: Vec3) -> [Model; 2] {
     ]
 }
 
-/// Half size of the part of a floor without end that is drawn, metres to each side: as far as the haze lets see.
+/// Half size of the drawn part of an unbounded floor, metres per side: as far as the haze allows.
 pub const FLOOR_HALF_SIZE: f32 = 40.0;
 
-/// The surface of a body of the world in one colour (linear); half-spaces become floors, `half_size` metres to each
-/// side, with a checker of `other`.
+/// The surface of a world body in one colour (linear); half-spaces become floors, `half_size` metres per side, with a
+/// checker of `other`.
 pub fn body_models(body: &BodyDef, half_size: f32, color: [f32; 3], other: [f32; 3]) -> Vec<Model> {
     let world_from_body = Transform::new(body.position, body.rotation);
     let model = |shape: &sinew::physics::ShapeDef| {
@@ -244,7 +244,7 @@ mod tests {
     use sinew_picture::Antialiasing;
     use sinew_scenes::cabin::Site;
 
-    /// The caption of a picture follows what the character does at its time.
+    /// The caption of a picture names the character's state at its time.
     #[test]
     fn captions_follow_the_state() {
         let demo = sinew_scenes::demo::Demo::new(Site::CabinWithStairs);
@@ -279,7 +279,7 @@ mod tests {
             shadow_texels: 16,
             threads: 1,
         });
-        // A picture between one event and the next, and what it must say.
+        // A picture between two events, and its expected caption.
         for (from, to, expected) in [
             (0.0, hit, "walks"),
             (hit, hit + story::HIT_SECONDS, "is hit"),
@@ -296,7 +296,7 @@ mod tests {
         }
     }
 
-    /// A wall before the camera is gone round: what it films is seen the whole way.
+    /// The camera avoids a wall: the subject is visible all the time.
     #[test]
     fn a_wall_before_the_camera_is_gone_round() {
         let block = |center: Vec3, half_extents: Vec3| BodyDef {
@@ -323,7 +323,7 @@ mod tests {
         };
         assert_eq!(hidden(Vec3::Z), boxes.len(), "the wall is in the way");
         assert_eq!(hidden(clear_side(&bodies, &framing, &boxes, Vec3::Z)), 0);
-        // Without a wall it stays where it was asked to be.
+        // Without a wall it stays at the requested position.
         assert_eq!(clear_side(&[], &framing, &boxes, Vec3::Z), Vec3::Z);
     }
 }

@@ -1,27 +1,27 @@
-//! A camera that has all of something in its picture, for as long as it moves.
+//! A camera that keeps a moving subject in the picture.
 
 use sinew::math::{Vec3, max};
 use sinew::physics::boxes::Aabb;
 use sinew_picture::Camera;
 
-/// Time over which the camera's way is smoothed, to each side, seconds.
+/// Smoothing window of the camera's path, to each side, seconds.
 const CALM: f32 = 0.6;
-/// Around what is shown, as a share of its size: hair and hats reach over what their bodies are.
+/// Margin around the subject, as a share of its size: hair and hats extend beyond the bodies.
 const MARGIN: f32 = 0.08;
-/// As long as all that is ever shown is no larger than this many times what is shown at once, the camera stands still.
+/// The camera does not move if the total extent is at most this many times the largest momentary extent.
 const STILL: f32 = 1.7;
 
-/// Views of the camera from picture to picture, always from the same side and as far away.
+/// Camera poses per picture, always from the same side and distance.
 #[derive(Clone, Debug)]
 pub struct Framing {
     centers: Vec<Vec3>,
     half: Vec3,
-    /// From what is shown to the camera, any length.
+    /// From the subject to the camera, any length.
     direction: Vec3,
 }
 
 impl Framing {
-    /// Framing of what is within these boxes, one for each picture (metres, world), `fps` a second.
+    /// Framing of these boxes, one per picture (metres, world), at `fps` pictures per second.
     ///
     /// # Panics
     /// If there is no box.
@@ -52,12 +52,12 @@ impl Framing {
         Self { direction, ..self.clone() }
     }
 
-    /// Half the diagonal of what a picture shows, metres.
+    /// Half the diagonal of a picture's visible area, metres.
     pub fn radius(&self) -> f32 {
         self.half.length()
     }
 
-    /// The camera of a picture; after the last it stays where it is.
+    /// The camera of a picture; after the last one it does not move.
     pub fn camera(&self, frame: usize, aspect: f32) -> Camera {
         let center = self.centers[frame.min(self.centers.len() - 1)];
         let shown = Aabb { min: center - self.half, max: center + self.half };
@@ -69,14 +69,14 @@ impl Framing {
 mod tests {
     use super::*;
 
-    /// A box of a body that walks 12 m and lies down on the way.
+    /// A box of a body that walks 12 m and lies down on its path.
     fn walk(frame: usize) -> Aabb {
         let height = if frame % 100 > 60 { 0.3 } else { 1.8 };
         let at = Vec3::X * (0.06 * frame as f32);
         Aabb { min: at - Vec3::new(0.4, 0.0, 0.4), max: at + Vec3::new(0.4, height, 0.4) }
     }
 
-    /// True if the picture of a camera has all of a box: by the angles at which its corners are seen.
+    /// True if the camera's picture contains a whole box, by the angles of its corners.
     fn shows(camera: &Camera, bounds: &Aabb, aspect: f32) -> bool {
         let back = (camera.position - camera.target).normalize();
         let right = Vec3::Y.cross(back).normalize();
@@ -102,7 +102,7 @@ mod tests {
             for (frame, bounds) in boxes.iter().enumerate() {
                 let camera = framing.camera(frame, 1.6);
                 assert!(shows(&camera, bounds, 1.6), "frame {frame} from {direction}");
-                // Near enough to be seen: it goes along.
+                // Close enough to see: it follows.
                 assert!((camera.position - bounds.center()).length() < 8.0, "frame {frame} from {direction}");
             }
         }

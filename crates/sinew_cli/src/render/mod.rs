@@ -1,4 +1,4 @@
-//! Rendering: pictures and films of what commands work on.
+//! Renders pictures and films for commands.
 
 pub(crate) mod bones;
 pub(crate) mod film;

@@ -15,21 +15,21 @@ use sinew_picture::{
     draw,
 };
 
-/// Pictures a second: a whole number of a GIF's hundredths of a second.
+/// Pictures per second: a whole number of a GIF's hundredths of a second.
 const FPS: u32 = 20;
-/// Half-width of the ground that is drawn, in radii of what stands on it.
+/// Half-width of the drawn ground, in radii of the subject.
 const GROUND: f32 = 30.0;
 const GROUND_COLORS: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
-/// From what is shown to the camera: from its front left.
+/// From the subject to the camera: from its front left.
 const DIRECTION: Vec3 = Vec3::new(0.75, 0.4, 0.75);
 
-/// A rig and what it plays.
+/// A rig and its motion.
 pub struct Show {
     rig: Rig,
     clip: Option<Clip>,
     /// From the file's space to the picture's: metres, +Y up, facing +Z.
     root: Affine,
-    /// Height of the ground there, if the body's soles tell it.
+    /// Height of the ground, if the body's soles define it.
     floor: Option<f32>,
     looks: Vec<RenderMaterial>,
     title: String,
@@ -43,7 +43,7 @@ impl Show {
     pub fn new(motion: Motion, clip: Option<usize>) -> Result<Self> {
         let Motion { name, file, analysis } = motion;
         let mut rig = file.rig;
-        // A mesh beside a body that has no skin does not show it.
+        // A mesh next to a body without skin does not show the body.
         if rig.meshes.is_empty() || rig.skins.is_empty() && analysis.is_some() {
             flesh_out(&mut rig, analysis.as_ref());
         }
@@ -69,7 +69,7 @@ impl Show {
         })
     }
 
-    /// Duration of its motion, seconds; 0 where it does not move.
+    /// Duration of its motion, seconds; 0 if it does not move.
     pub fn seconds(&self) -> f32 {
         self.clip.as_ref().map_or(0.0, |clip| clip.duration)
     }
@@ -96,7 +96,7 @@ impl Show {
     ) -> Result<Vec<u8>, EncodeError> {
         let frames = (seconds * FPS as f32) as usize + 1;
         let time = |frame: usize| frame as f32 / FPS as f32;
-        // Once to see how far everything goes, once to draw it.
+        // The first pass measures the extent, the second draws.
         let outline = skin::outline(&self.rig);
         let boxes: Vec<Aabb> = (0..frames).map(|frame| around(&outline, &self.pose(time(frame)))).collect();
         let whole = boxes.iter().copied().reduce(|a, b| a.merge(&b)).expect("there is a frame");
@@ -111,7 +111,7 @@ impl Show {
         movie.finish()
     }
 
-    /// Places of its joints at a time, in the picture's space.
+    /// Positions of its joints at a time, in the picture's space.
     fn pose(&self, time: f32) -> Vec<Affine> {
         let mut local = rest_pose(&self.rig);
         if let Some(clip) = &self.clip {
@@ -122,12 +122,12 @@ impl Show {
         model
     }
 
-    /// Scene of what is on every picture.
+    /// Static scene of every picture.
     fn scene(&self, framing: &Framing, whole: &Aabb) -> Scene {
         let radius = framing.radius();
         let lowest = self.floor.filter(|floor| *floor <= whole.min.y + 0.5 * radius).unwrap_or(whole.min.y);
         let ground = Transform::from_translation(Vec3::Y * lowest);
-        // A metre where that is seen: of what is much larger or smaller, what is.
+        // A metre if that is visible, else the subject's own scale.
         let tile = if (0.2..10.0).contains(&radius) { 1.0 } else { radius };
         let mut scene = Scene {
             sun: Sun { shadow_radius: 1.3 * radius, ..Sun::default() },
@@ -147,7 +147,7 @@ impl Show {
     }
 }
 
-/// A rig before the camera: what stays the same from picture to picture is made once.
+/// A rig ready to draw, with the parts that do not change.
 struct Stage<'a> {
     show: &'a Show,
     framing: Framing,
@@ -162,7 +162,7 @@ impl<'a> Stage<'a> {
         Self { show, framing, scene, renderer: Renderer::new(settings) }
     }
 
-    /// The picture of a time, the frame of which the framing knows by number.
+    /// The picture at a time; the framing finds its frame by index.
     fn draw(&mut self, time: f32, frame: usize) -> sinew_picture::Image {
         skin::pose(&self.show.rig, &self.show.pose(time), &mut self.scene.models);
         self.scene.captions = vec![Caption::new(self.show.caption(time))];
@@ -172,7 +172,7 @@ impl<'a> Stage<'a> {
     }
 }
 
-/// Around all vertices of an outline that are finite; a cubic metre if there are none.
+/// Around all finite vertices of an outline; a cubic metre if there are none.
 fn around(outline: &Rig, pose: &[Affine]) -> Aabb {
     let (mut bounds, mut positions, mut normals): (Option<Aabb>, _, _) = (None, Vec::new(), Vec::new());
     for (mesh, of) in outline.meshes.iter().enumerate() {

@@ -22,7 +22,7 @@ pub fn models<'a>(
     })
 }
 
-/// Poses what [`models`] gave for the same rig and looks: places and normals alone change.
+/// Updates the result of [`models`] for the same rig and looks: only positions and normals change.
 pub fn pose(rig: &Rig, model: &[Affine], models: &mut [Model]) {
     let parts = rig
         .meshes
@@ -34,7 +34,7 @@ pub fn pose(rig: &Rig, model: &[Affine], models: &mut [Model]) {
     }
 }
 
-/// Directions in which a part of a skin reaches farthest somewhere: along the axes, the edges and the corners of a cube.
+/// Directions in which a skin part can be outermost: along the axes, edges and corners of a cube.
 fn directions() -> impl Iterator<Item = Vec3> {
     let steps = [-1.0, 0.0, 1.0];
     let all = steps
@@ -43,8 +43,8 @@ fn directions() -> impl Iterator<Item = Vec3> {
     all.filter(|way| *way != Vec3::ZERO)
 }
 
-/// The rig with no more of each joint's skin than its outermost vertices, without normals: what tells how far it reaches in any pose,
-/// for a small part of the work.
+/// The rig with only the outermost skin vertices of each joint, without normals: enough to compute its extent in any
+/// pose at a small cost.
 pub fn outline(rig: &Rig) -> Rig {
     let mut rig = Rig { textures: Vec::new(), ..rig.clone() };
     for primitive in rig.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives) {
@@ -94,7 +94,7 @@ fn surface(part: &Primitive, positions: Vec<Vec3>, normals: Vec<Vec3>, material:
 
 /// One material per primitive, in the order of the meshes.
 pub fn looks(rig: &Rig) -> Vec<RenderMaterial> {
-    // A picture that is none leaves its surface in its plain colour.
+    // An undecodable picture leaves its surface in its plain colour.
     let picture = |texture: &sinew::anim::TextureImage| {
         Texture::new(texture.width, texture.height, texture.rgba.clone()).ok().map(Arc::new)
     };

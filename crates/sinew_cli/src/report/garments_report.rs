@@ -1,4 +1,4 @@
-//! Garments of a character, and what names of joints tell of them.
+//! Reports garments of a character, and those inferred from joint names.
 
 use super::number;
 use super::springs_report::listed;
@@ -14,7 +14,7 @@ pub struct GarmentsReport {
     names: Vec<String>,
     bones: usize,
     particles: usize,
-    /// Names of joints that were to be worn and are not.
+    /// Joints of requested garments that are not worn.
     left_out: Vec<String>,
 }
 
@@ -41,7 +41,7 @@ impl GarmentsReport {
         })
     }
 
-    /// Notes for a person, a sentence each.
+    /// Notes, one sentence each.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self.bones > 0 {
@@ -62,7 +62,7 @@ impl GarmentsReport {
     }
 }
 
-/// JSON list of the garments that the names of a rig's joints tell.
+/// JSON list of the garments inferred from a rig's joint names.
 pub fn garments_json(rig: &Rig) -> Value {
     let name = |joint: JointIdx| rig.joints[joint].name.as_str();
     let garment = |garment: &Garment| {
@@ -72,7 +72,7 @@ pub fn garments_json(rig: &Rig) -> Value {
     guess_garments(rig).iter().map(garment).collect()
 }
 
-/// Text of the garments that the names of a rig's joints tell; empty where there are none.
+/// Text of the garments inferred from a rig's joint names; empty without any.
 pub fn garments_text(rig: &Rig) -> String {
     let mut text = String::new();
     for garment in guess_garments(rig) {
@@ -85,7 +85,7 @@ pub fn garments_text(rig: &Rig) -> String {
     text
 }
 
-/// JSON list of garments as settings ask for them.
+/// JSON list of garments requested by settings.
 pub fn worn_json(garments: &[Garment]) -> Value {
     let garment = |garment: &Garment| {
         let sheet = garment.sheet.as_ref();
@@ -112,7 +112,7 @@ fn held(sheet: &MeshSheet) -> usize {
     sheet.held.iter().filter(|held| **held).count()
 }
 
-/// Sentences on garments as settings ask for them, one or two for each.
+/// Sentences on garments requested by settings, one or two for each.
 pub fn worn_notes(garments: &[Garment]) -> Vec<String> {
     garments.iter().enumerate().flat_map(|(index, garment)| worn_note(index, garment)).collect()
 }
@@ -150,11 +150,11 @@ fn worn_note(index: usize, garment: &Garment) -> Vec<String> {
     [format!("{name} is {cloth}; {backstops}")].into_iter().chain(coarse).collect()
 }
 
-/// Longest edge of a mesh over the spacing of its particles from which on one sees that it is drawn coarser than it moves: that of a square cell's diagonal, and a
-/// little.
+/// Ratio of a mesh's longest edge to its particle spacing above which it is visibly drawn coarser than it moves:
+/// slightly more than a square cell's diagonal.
 const DRAWN_COARSER: f32 = 1.5;
 
-/// Garments that a rig could wear by the names of its joints, as advice; nothing where there are none, or bodies of its ragdoll move them.
+/// Advice on garments inferred from joint names; empty if there are none, or ragdoll bodies move them.
 pub fn proposal(rig: &Rig, ragdoll: &RagdollDef) -> Option<String> {
     let has_body = |joint: JointIdx| ragdoll.bodies.iter().any(|body| body.bone == rig.joints[joint].name);
     let garments = guess_garments(rig);

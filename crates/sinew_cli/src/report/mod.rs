@@ -11,7 +11,7 @@ pub(crate) mod table;
 
 use serde_json::Value;
 
-/// The outcome of a command: the same for a script and for a person.
+/// The result of a command, as JSON and as text.
 #[derive(Debug)]
 pub struct Report {
     /// For `--json`: an object with the keys of `docs/contract.md`.
@@ -21,7 +21,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Text that goes to stdout.
+    /// Text for stdout.
     pub fn shown(&self, as_json: bool) -> String {
         if as_json { one_object(&self.json) } else { self.text.clone() }
     }
@@ -32,13 +32,13 @@ pub fn one_object(value: &Value) -> String {
     format!("{value:#}\n")
 }
 
-/// A number with the fewest digits that tell it from its neighbours; null if it is not finite.
+/// The shortest decimal that identifies a number; null if it is not finite.
 pub fn number(x: f32) -> Value {
     // The decimal digits of the f32, not those of the f64 nearest to it.
     x.to_string().parse::<f64>().map_or(Value::Null, Value::from)
 }
 
-/// [`number`] for each.
+/// [`number`] for each element.
 pub fn numbers(xs: &[f32]) -> Value {
     xs.iter().map(|&x| number(x)).collect()
 }

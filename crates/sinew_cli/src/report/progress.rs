@@ -3,10 +3,10 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 
-/// Work shorter than this passes without a bar.
+/// Shorter work shows no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// A bar that shows itself once the work takes over a second, and only on a terminal.
+/// A progress bar that appears once the work takes over a second, on a terminal only.
 pub struct Progress {
     bar: ProgressBar,
     start: Instant,
@@ -34,7 +34,7 @@ impl Progress {
         self.show();
     }
 
-    /// Shows the bar once it is due; it stays hidden where stderr is no terminal.
+    /// Shows the bar when due; it stays hidden if stderr is no terminal.
     fn show(&self) {
         if self.bar.is_hidden() && self.start.elapsed() > PATIENCE {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());

@@ -13,7 +13,7 @@ use sinew::ragdoll::quality::GateReport;
 use sinew::ragdoll::{DropReport, LimitSource, RagdollDef, RagdollJointDef};
 use std::fmt::Write;
 
-/// A ragdoll to be reported.
+/// A ragdoll to report.
 pub struct RagdollReport<'a> {
     /// The file it came from.
     pub file: &'a str,
@@ -27,7 +27,7 @@ pub struct RagdollReport<'a> {
     pub tested: &'a DropReport,
     /// The drawn skin.
     pub skin: &'a SkinReport,
-    /// Random falls, if they were asked for.
+    /// Random falls, if requested.
     pub gated: Option<&'a GateReport>,
 }
 
@@ -140,7 +140,7 @@ impl RagdollReport<'_> {
         object.into()
     }
 
-    /// Why a pair does not collide, or was made thinner.
+    /// Reason why a pair does not collide or was thinned.
     fn overlap_json(&self, overlap: &Overlap) -> Value {
         let (a, b) = overlap.pair;
         let Seen { bind, limits, clips } = overlap.seen;
@@ -242,7 +242,7 @@ fn gate_json(gated: &GateReport) -> Value {
 /// No list of falls is longer.
 const LISTED: usize = 100;
 
-/// Falls in which something that must hold in each did not.
+/// Falls that violate a hard requirement.
 fn failed(gated: &GateReport) -> usize {
     let mut spawns: Vec<u64> = gated.misses.iter().map(|miss| miss.spawn).collect();
     spawns.dedup();

@@ -11,17 +11,17 @@ use sinew::ragdoll::quality::{RisingQuality, measure_rising};
 use sinew::ragdoll::skin::{Phase, Stage};
 use sinew::ragdoll::{DropReport, Flaw, RagdollDef, SkinMeter, SkinQuality, State};
 
-/// Most frames of a bake that are looked at of each state, evenly spread: of a bake of minutes a sample, for memory goes with them.
+/// Largest number of bake frames measured per state, evenly spread; bounds the memory of a long bake.
 const MOST_FRAMES: usize = 256;
 
-/// Figures of the skin, and what is wrong with it.
+/// Figures of the skin, and its flaws.
 pub struct SkinReport {
     pub figures: SkinQuality,
     pub flaws: Vec<Flaw>,
     pub rising: RisingQuality,
 }
 
-/// A character's life as it is shown: a bake, and the height of its floor, metres, where that is the same everywhere.
+/// A character's baked life, and the height of its floor, metres, if that is constant.
 #[derive(Clone, Copy)]
 pub struct Life<'a> {
     pub fall: &'a Fall<'a>,
@@ -29,7 +29,7 @@ pub struct Life<'a> {
 }
 
 impl SkinReport {
-    /// Draws a character as its ragdoll fell in the drops, and over its whole life.
+    /// Draws a character in the poses of its drops and over its whole life.
     pub fn of(
         character: &CharacterFile,
         def: &RagdollDef,
@@ -54,7 +54,7 @@ impl SkinReport {
 }
 
 impl Life<'_> {
-    /// Shows all of it: fall and preparation, what clips do before and after, and where it stands and lies.
+    /// Measures all of it: fall and preparation, clips before and after, standing and lying.
     fn show(&self, meter: &mut SkinMeter<'_>) {
         let frames = &self.fall.baked.frames;
         let is_body = |frame: &&Frame| matches!(frame.state, State::Limp | State::Preparing);
@@ -68,7 +68,8 @@ impl Life<'_> {
         self.lay(meter);
     }
 
-    /// Holds the lowest point against the floor where clips lead: on a level floor all the way, in a world where it starts.
+    /// Compares the lowest point with the floor while clips move the character: always on a level floor, only at the
+    /// start in a world.
     fn stand(&self, meter: &mut SkinMeter<'_>) {
         let Fall { input, baked, .. } = self.fall;
         let fell = baked.frames.iter().position(|frame| frame.state != State::Animated);
@@ -93,7 +94,7 @@ impl Life<'_> {
     fn lay(&self, meter: &mut SkinMeter<'_>) {
         let (Some(floor), baked) = (self.floor, &self.fall.baked) else { return };
         let Some(settled) = baked.quality.settled_s else { return };
-        // Later it may be hit again.
+        // It may be hit again later.
         let mut limp = baked.frames.iter().filter(|frame| frame.state == State::Limp);
         if let Some(frame) = limp.find(|frame| settled <= frame.time) {
             let down = Affine { translation: Vec3::Y * -floor, ..Affine::IDENTITY };

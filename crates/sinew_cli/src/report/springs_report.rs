@@ -1,4 +1,4 @@
-//! Springs of a character, and what a file says of them.
+//! Reports springs of a character and of a file.
 
 use super::number;
 use super::table::{Table, counted, shown};
@@ -40,7 +40,7 @@ impl SpringsReport {
         json!({ "chains": self.chains, "bones": self.bones, "links": self.links, "left_out": self.left_out })
     }
 
-    /// Notes for a person, a sentence each.
+    /// Notes, one sentence each.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self.bones > 0 {
@@ -136,7 +136,7 @@ pub fn links_json(rig: &Rig, links: &[SpringLink]) -> Value {
     links.iter().map(link).collect()
 }
 
-/// Links across strands for people; empty where there are none.
+/// Text of links across strands; empty without any.
 pub fn links_text(rig: &Rig, links: &[SpringLink]) -> String {
     if links.is_empty() {
         return String::new();
@@ -150,8 +150,8 @@ pub fn links_text(rig: &Rig, links: &[SpringLink]) -> String {
     format!("\nLinks of springs\n{}", table.to_text())
 }
 
-/// The springs of a file for people: its chains, with the settings of their joints in the file's units, each as one number or from the least
-/// to the most, and the colliders that they name. `format` is the name of what they are stated in; nothing where that is nothing.
+/// Text of a file's springs: its chains, with the settings of their joints in the file's units, each as one number or a
+/// range, and their colliders. `format` is the name of their format; empty without springs.
 pub fn springs_text(rig: &Rig, format: Option<&str>) -> String {
     let Some(format) = format else { return String::new() };
     let springs = &rig.springs;
@@ -226,7 +226,7 @@ fn colliders_table(rig: &Rig) -> Table {
     table
 }
 
-/// Four digits at most, as few as tell the number; no sign of a zero.
+/// At most four significant digits; no sign for zero.
 fn short(x: f32) -> String {
     let x = if x == 0.0 { 0.0 } else { x };
     format!("{x:.3e}").parse::<f32>().unwrap_or(x).to_string()
@@ -295,8 +295,8 @@ fn indices(list: &[usize]) -> String {
     if text.is_empty() { "-".to_owned() } else { text }
 }
 
-/// Joints that by the names of a rig without springs could swing and that no body of its ragdoll moves, as advice; nothing where there are
-/// none.
+/// Advice on joints that could swing according to their names and that no ragdoll body moves, for a rig without
+/// springs; empty without any.
 pub fn proposal(rig: &Rig, springs: &Springs, ragdoll: &RagdollDef) -> Option<String> {
     let name = |bone: &SpringBone| rig.joints[bone.joint].name.clone();
     let has_body = |bone: &SpringBone| ragdoll.bodies.iter().any(|body| body.bone == name(bone));
@@ -327,7 +327,7 @@ fn angles(kind: LimitKind) -> Vec<f32> {
     }
 }
 
-/// Collider in parts that one shape has and another has not.
+/// Collider in fields that only some shapes have.
 struct Described {
     name: &'static str,
     offset: Vec3,

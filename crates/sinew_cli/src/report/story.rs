@@ -42,7 +42,7 @@ pub fn phases(def: &CharacterDef, events: &[(f32, CharacterEvent)]) -> Vec<Phase
             | CharacterEvent::LetGo { .. } => {}
         }
     }
-    // Stable: of two at one time the later told one counts.
+    // Stable: of two events at one time the later entry counts.
     phases.sort_by(|a, b| a.0.total_cmp(&b.0));
     phases
 }
@@ -72,7 +72,7 @@ pub fn told(input: &BakeInput<'_>, events: &[(f32, CharacterEvent)]) -> Vec<(f32
     for &(time, event) in events {
         let sentence = match event {
             CharacterEvent::Hit { body } => hit_sentence(input, time, body),
-            // A hit says it better, and whoever goes limp on its feet touches the ground at once.
+            // A hit describes it better, and a character that goes limp on its feet touches the ground immediately.
             CharacterEvent::WentLimp if events.iter().any(|other| is_hit_at(other, time)) => continue,
             CharacterEvent::Touched
             | CharacterEvent::Struck { .. }

@@ -34,12 +34,12 @@ impl Table {
     }
 }
 
-/// A number of things.
+/// A count of things.
 pub fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
-/// A name from a file as it may be shown: control characters escaped, `-` for none.
+/// A name from a file fit for display: control characters escaped, `-` for none.
 pub fn shown(name: &str) -> String {
     let escape = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
     if name.is_empty() { "-".to_owned() } else { name.chars().map(escape).collect() }

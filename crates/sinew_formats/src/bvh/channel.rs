@@ -1,8 +1,8 @@
-//! Channels of a joint: each number of a row moves one of them.
+//! Channels of a joint: the meaning of each number in a row.
 
 use sinew_math::Vec3;
 
-/// One of the six ways in which a joint of a BVH file moves.
+/// One of the six degrees of freedom of a BVH joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum BvhChannel {
     /// Along x.
@@ -36,12 +36,12 @@ impl BvhChannel {
     /// The rotation about axis 0, 1 or 2.
     ///
     /// # Panics
-    /// If there is no such axis.
+    /// If the axis does not exist.
     pub fn rotation(axis: usize) -> Self {
         Self::ALL[3 + axis]
     }
 
-    /// The word that stands for it in a file.
+    /// The channel's keyword in a file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Xposition => "Xposition",
@@ -58,7 +58,7 @@ impl BvhChannel {
         Self::ALL.into_iter().find(|channel| channel.name().eq_ignore_ascii_case(name))
     }
 
-    /// True if it turns the joint, and does not shift it.
+    /// True for a rotation, false for a translation.
     pub fn is_rotation(self) -> bool {
         self >= Self::Xrotation
     }

@@ -14,7 +14,7 @@ pub(super) struct FileJoint {
     /// File units.
     pub offset: Vec3,
     pub channels: Vec<BvhChannel>,
-    /// Index in a row at which its numbers begin.
+    /// Index of its first number in a row.
     pub column: usize,
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Hierarchy {
     pub width: usize,
 }
 
-/// Most numbers a joint may have: one of each kind.
+/// Largest number of channels per joint: one of each kind.
 const MOST_CHANNELS: usize = BvhChannel::ALL.len();
 
 impl Hierarchy {
@@ -75,7 +75,7 @@ impl Hierarchy {
         }
     }
 
-    /// Begins a joint, up to and with its `{`.
+    /// Starts a joint, up to and including its `{`.
     fn open(&mut self, words: &mut Words<'_>, parent: Option<usize>, is_end: bool) -> Result<usize> {
         let name = words.rest_of_line();
         if name.is_empty() && !is_end {
@@ -115,7 +115,7 @@ impl Hierarchy {
         Ok(())
     }
 
-    /// The joints as a rig whose rest pose are the offsets.
+    /// The joints as a rig with the offsets as rest pose.
     pub fn rig(&self, metres_per_unit: f32) -> Rig {
         let joint = |(source, joint): (usize, &FileJoint)| Joint {
             name: joint.name.clone(),

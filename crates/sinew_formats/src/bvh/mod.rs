@@ -46,13 +46,13 @@ use motion::Motion;
 use sinew_anim::{Clip, LocalTransform, Rig};
 use words::Words;
 
-/// Treatment of a file that has more or fewer rows than its `Frames:` says.
+/// Handling of a file with more or fewer rows than its `Frames:` line declares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BvhRows {
     /// Refuse it: it may have been cut.
     #[default]
     AsDeclared,
-    /// Take the whole rows that are there, and say so in the notes.
+    /// Read the complete rows and add a note.
     AsPresent,
 }
 
@@ -61,9 +61,9 @@ pub enum BvhRows {
 pub struct BvhOptions {
     /// Length of the file's unit. Default: inferred.
     pub unit: BvhUnit,
-    /// Treatment of a rest pose put before the motion. Default: left out of the clip.
+    /// Handling of a rest pose before the motion. Default: excluded from the clip.
     pub rest_frame: RestFrame,
-    /// Default: refuse a file whose rows are not those it declares.
+    /// Default: refuse a file whose row count differs from its declaration.
     pub rows: BvhRows,
 }
 
@@ -74,7 +74,7 @@ pub struct BvhDocument {
     pub rig: Rig,
     /// One linear channel for every joint's rotations, and one for the translations of each joint with positions.
     pub clip: Clip,
-    /// Seconds from frame to frame, as mended; see [`notes`](Self::notes).
+    /// Frame time in seconds, as repaired; see [`notes`](Self::notes).
     pub frame_time: f64,
     /// Frames in the clip, at least 1.
     pub frames: usize,
@@ -82,18 +82,18 @@ pub struct BvhDocument {
     pub metres_per_unit: f32,
     /// Channels of each joint in file order, for [`BvhWriteOptions::channels`].
     pub channels: Vec<Vec<BvhChannel>>,
-    /// The rest pose that stands as the first frame, where one does: better to tell the body by than the offsets.
+    /// The rest pose in the first frame, if there is one: it identifies the body better than the offsets.
     pub rest_pose: Option<Vec<LocalTransform>>,
-    /// Notes on what was assumed, mended or left out, a sentence each.
+    /// Notes on assumptions, repairs and omissions, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// Reads a BVH file. Memory stays in proportion to its bytes, whatever its numbers claim, and so does the call depth.
+/// Reads a BVH file. Memory and call depth are proportional to its size, whatever its numbers claim.
 ///
 /// # Errors
-/// Names the line, and the joint where there is one: words out of place, braces that do not match, a channel that is
-/// unknown or named twice, a number that is none or not finite, a row that is too long or too short, other rows than
-/// declared (see [`BvhRows`]), no joint, no channel, no frame, a frame time that is not above 0.
+/// Names the line, and the joint if there is one: misplaced words, unbalanced braces, an unknown or repeated channel,
+/// an invalid or non-finite number, a row that is too long or too short, a wrong number of rows (see [`BvhRows`]), no
+/// joint, no channel, no frame, a frame time that is not above 0.
 pub fn read_bvh(bytes: &[u8], options: BvhOptions) -> Result<BvhDocument> {
     let text = String::from_utf8_lossy(bytes);
     let mut words = Words::new(text.strip_prefix('\u{feff}').unwrap_or(&text));

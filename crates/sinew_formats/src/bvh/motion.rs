@@ -1,4 +1,4 @@
-//! The second half of a file: a row of numbers per frame, and what they make of the joints.
+//! The second half of a file: a row of numbers per frame, converted to joint transforms.
 
 use super::BvhRows;
 use super::channel::BvhChannel;
@@ -13,12 +13,12 @@ use sinew_math::{Rotation, Vec3};
 pub(super) struct Motion {
     /// Seconds.
     pub frame_time: f64,
-    /// Row after row, each of the hierarchy's width, file units and degrees.
+    /// Rows of the hierarchy's width, concatenated, file units and degrees.
     pub rows: Vec<f32>,
 }
 
 impl Motion {
-    /// Reads what follows the word `MOTION`. Nothing is set aside for rows that are only claimed.
+    /// Reads the text after the word `MOTION`. Allocates nothing for rows that are only declared.
     pub fn read(
         words: &mut Words<'_>,
         hierarchy: &Hierarchy,
@@ -56,7 +56,7 @@ fn read_count(words: &mut Words<'_>) -> Result<f64> {
     Err(Error::malformed(format!("{declared} is no number of frames"), words.place()))
 }
 
-/// `Frame Time: T`, mended.
+/// `Frame Time: T`, repaired.
 fn read_frame_time(words: &mut Words<'_>, notes: &mut Vec<String>) -> Result<f64> {
     words.expect("Frame")?;
     expect_label(words, "Time")?;
@@ -114,7 +114,7 @@ pub(super) struct Frames {
     translations: Vec<Vec<Vec3>>,
 }
 
-/// Puts the rows together, joint by joint.
+/// Converts the rows to channels, joint by joint.
 pub(super) fn frames(
     hierarchy: &Hierarchy,
     motion: &Motion,
@@ -154,11 +154,11 @@ pub(super) fn frames(
     found
 }
 
-/// The turns of a joint, first channel outermost.
+/// The rotations of a joint, first channel outermost.
 fn rotation(joint: &FileJoint, numbers: &[f32]) -> Rotation {
     let turns = joint.channels.iter().zip(numbers).filter(|(channel, _)| channel.is_rotation());
     let product = turns.fold(Rotation::IDENTITY, |outer, (channel, &degrees)| {
-        // In f64: a file may count its turns, and a thousand degrees lose three digits.
+        // In f64: a file may count whole turns, and a thousand degrees lose three digits.
         let turn = (f64::from(degrees) % 360.0).to_radians() as f32;
         outer * Rotation::from_axis_angle(channel.direction(), turn)
     });
@@ -176,15 +176,15 @@ fn positions(joint: &FileJoint, numbers: &[f32]) -> Vec3 {
     at
 }
 
-/// The part of a vector along axes that have a position channel.
+/// The components of a vector along axes that have a position channel.
 pub(super) fn along_positions(channels: &[BvhChannel], v: Vec3) -> Vec3 {
     let has = |axis: usize| channels.contains(&BvhChannel::POSITIONS[axis]);
     Vec3::from_array(core::array::from_fn(|axis| if has(axis) { v[axis] } else { 0.0 }))
 }
 
-/// Base to which the positions of a joint are added, file units. Along an axis without a channel that is the offset. Along
-/// the others some programs write where the joint is, others how far it is from its offset; the first frame tells
-/// which of the two is meant.
+/// Base to which the positions of a joint are added, file units. Along an axis without a channel it is the offset.
+/// Along the others some programs write the joint's position, others its displacement from the offset; the first frame
+/// decides which.
 fn position_base(joint: &FileJoint, rows: &[f32]) -> (Vec3, bool) {
     let first = positions(joint, &rows[joint.column..joint.column + joint.channels.len()]);
     let shifted = along_positions(&joint.channels, joint.offset);
@@ -192,13 +192,13 @@ fn position_base(joint: &FileJoint, rows: &[f32]) -> (Vec3, bool) {
     (if added { joint.offset } else { joint.offset - shifted }, added)
 }
 
-/// True if a position read at the first frame is meant to be added to the offset.
+/// True if a position in the first frame must be added to the offset.
 pub(super) fn is_added(first: Vec3, offset: Vec3) -> bool {
     (first - offset).length_squared() > first.length_squared()
 }
 
 impl Frames {
-    /// The pose of a frame; what has no channel rests.
+    /// The pose of a frame; components without a channel are at rest.
     pub fn pose(&self, rig: &Rig, frame: usize) -> Vec<LocalTransform> {
         let local = |(i, joint): (usize, &sinew_anim::Joint)| LocalTransform {
             translation: self.translations[i].get(frame).copied().unwrap_or(joint.rest.translation),

@@ -1,20 +1,20 @@
-//! A rest pose put before the motion.
+//! A rest pose before the motion.
 
 use super::hierarchy::Hierarchy;
 use super::motion::Motion;
 
-/// Treatment of a rest pose that stands as the first frame. The BVH files of the CMU library have one: arms out,
-/// legs straight, so that programs can tell what the body looks like at rest.
+/// Handling of a rest pose in the first frame. The BVH files of the CMU library have one (arms out, legs straight), so
+/// that programs know the body at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RestFrame {
-    /// It is not part of the clip. It stays in [`rest_pose`](super::BvhDocument::rest_pose).
+    /// It is not part of the clip; [`rest_pose`](super::BvhDocument::rest_pose) holds it.
     #[default]
     Skip,
     /// It is the first frame of the clip, as in the file.
     Keep,
 }
 
-/// True if the first frame is a rest pose: set by hand, in whole degrees, where the motion after it was measured.
+/// True if the first frame is a rest pose: authored in whole degrees, followed by measured motion.
 pub(super) fn find(
     hierarchy: &Hierarchy,
     motion: &Motion,

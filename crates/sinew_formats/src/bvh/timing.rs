@@ -1,31 +1,31 @@
 //! Frame times that were printed with too few digits.
 
-/// The whole frame rate N whose 1/N is meant by a frame time printed as `printed`, which reads as `stated` seconds;
-/// `None` where it says what it means, or where it could mean several rates.
+/// The whole frame rate N for which 1/N was printed as `printed`, which reads as `stated` seconds; `None` if the value
+/// is exact or fits several rates.
 ///
-/// 1/120 s is printed as `.0083333` by most programs; taken at its word it would lose 14 ms in an hour.
+/// Most programs print 1/120 s as `.0083333`; taken literally it would lose 14 ms in an hour.
 pub(super) fn mended_frame_time(printed: &str, stated: f64) -> Option<u32> {
     let rate = (1.0 / stated).round();
     if !(1.0..=100_000.0).contains(&rate) {
         return None;
     }
     let meant = 1.0 / rate;
-    // One unit of the last place: some programs round, others cut.
+    // One unit of the last digit: some programs round, others truncate.
     let digit = last_place(printed)?;
     let is_cut = stated != meant && (stated - meant).abs() <= digit;
-    // The next rates up and down lie this much away: only one may fit.
+    // Distances to the next rates up and down: only one rate may fit.
     let is_clear = digit < 0.2 * meant * meant;
     (is_cut && is_clear && !is_exact(meant, digit)).then_some(rate as u32)
 }
 
-/// Worth of the last digit of a decimal number; `None` if it has no fraction or is written with an exponent.
+/// Value of the last digit of a decimal number; `None` if it has no fraction or an exponent.
 fn last_place(printed: &str) -> Option<f64> {
     let (_, fraction) = printed.split_once('.')?;
     let is_plain = fraction.bytes().all(|b| b.is_ascii_digit());
     (is_plain && fraction.len() < 15).then(|| (0..fraction.len()).fold(1.0, |place, _| place / 10.0))
 }
 
-/// True if a number of seconds needs no more digits than those printed: then others were meant.
+/// True if a number of seconds needs no more digits than printed: then it is exact.
 fn is_exact(seconds: f64, digit: f64) -> bool {
     let units = seconds / digit;
     (units - units.round()).abs() < 1e-9 * units

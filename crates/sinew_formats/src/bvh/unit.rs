@@ -1,4 +1,4 @@
-//! Length of the unit of a file. The format does not say; the body does.
+//! Length unit of a file. The format does not state it; the body size implies it.
 
 use super::hierarchy::Hierarchy;
 use sinew_math::max;
@@ -11,11 +11,11 @@ pub enum BvhUnit {
     Infer,
     /// That many metres, above 0.
     ///
-    /// [`read_bvh`](super::read_bvh) takes what is not above 0 and finite as 1.
+    /// [`read_bvh`](super::read_bvh) replaces a value that is not finite and above 0 by 1.
     Metres(f32),
 }
 
-/// From toe to fingertip along the bones of an adult, metres: 1.4 times the height, whatever the pose.
+/// Distance from toe to fingertip along the bones of an adult, metres: 1.4 times the height, whatever the pose.
 const SPAN: f32 = 2.4;
 /// Largest factor by which it may be longer or shorter.
 const SLACK: f32 = 1.5;
@@ -63,10 +63,10 @@ fn infer(hierarchy: &Hierarchy, notes: &mut Vec<String>) -> f32 {
     0.01
 }
 
-/// Length of the longest way from one joint to another along the bones, file units. The same in every pose.
+/// Longest path between two joints along the bones, file units. Independent of the pose.
 fn longest_way(hierarchy: &Hierarchy) -> f32 {
     let joints = &hierarchy.joints;
-    // Children come after their parents, so that backwards every joint's reach is known before its parent's.
+    // Children follow their parents, so in reverse order every joint's reach is known before its parent's.
     let mut reach = vec![0.0_f32; joints.len()];
     let mut longest = 0.0;
     for (i, joint) in joints.iter().enumerate().rev() {

@@ -1,8 +1,8 @@
-//! Words of a text with the lines they stand on.
+//! Words of a text with their line numbers.
 
 use crate::error::{Error, Result, quoted};
 
-/// Reads a text word by word; braces are words of their own wherever they stand.
+/// Reads a text word by word; braces are separate words.
 pub(super) struct Words<'a> {
     lines: core::str::Split<'a, char>,
     rest: &'a str,
@@ -10,7 +10,7 @@ pub(super) struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// Old files end their lines in a carriage return alone.
+    /// Old files end their lines with a lone carriage return.
     pub fn new(text: &'a str) -> Self {
         let end = if text.contains('\n') { '\n' } else { '\r' };
         Self { lines: text.strip_suffix(end).unwrap_or(text).split(end), rest: "", line: 0 }
@@ -21,7 +21,7 @@ impl<'a> Words<'a> {
         format!("line {}", self.line)
     }
 
-    /// The next line that has a word on it, and its number. Skips what is left of this one.
+    /// The next non-empty line and its number. Skips the rest of the current one.
     pub fn next_line(&mut self) -> Option<(usize, &'a str)> {
         loop {
             let line = self.lines.next()?.trim();
@@ -33,7 +33,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The next word, on whatever line; `None` at the end.
+    /// The next word, on any line; `None` at the end.
     pub fn next(&mut self) -> Option<&'a str> {
         while self.rest.is_empty() {
             let (_, line) = self.next_line()?;
@@ -59,12 +59,12 @@ impl<'a> Words<'a> {
         name.trim()
     }
 
-    /// The next word, which has to be there.
+    /// The next word, which must exist.
     pub fn need(&mut self, expected: &str) -> Result<&'a str> {
         self.next().ok_or_else(|| Error::malformed(format!("ends where {expected} is due"), self.place()))
     }
 
-    /// The next word, which has to be this one in any case.
+    /// The next word, which must be this one, case-insensitive.
     pub fn expect(&mut self, expected: &str) -> Result<()> {
         let word = self.need(&format!("`{expected}`"))?;
         if word.eq_ignore_ascii_case(expected) {
@@ -73,14 +73,14 @@ impl<'a> Words<'a> {
         Err(Error::malformed(format!("{} stands where `{expected}` is due", quoted(word)), self.place()))
     }
 
-    /// The next word as a finite number. `what` it is, for the complaint.
+    /// The next word as a finite number. `what` names it in the error.
     pub fn number(&mut self, what: &str) -> Result<f64> {
         let word = self.need(what)?;
         parse_number(word).map_err(|wrong| Error::malformed(format!("{what}: {wrong}"), self.place()))
     }
 }
 
-/// A number that is finite as `f32`, or what is wrong with it.
+/// A number that is finite as `f32`, or an error text.
 pub(super) fn parse_number(word: &str) -> Result<f64, String> {
     let number: f64 = word.parse().map_err(|_| format!("{} is not a number", quoted(word)))?;
     if (number as f32).is_finite() { Ok(number) } else { Err(format!("{} is not finite", quoted(word))) }

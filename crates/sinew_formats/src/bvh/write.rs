@@ -13,11 +13,11 @@ use std::fmt::Write as _;
 /// Ends of chains that are written with an End Site.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BvhEnds {
-    /// Joints without a name that end a chain and do not move become End Sites; nothing is added.
+    /// Unnamed joints that end a chain and do not move become End Sites; nothing is added.
     #[default]
     AsInRig,
-    /// Also each joint with a name that ends a chain gets one, half its own bone further on: Blender and others give a joint
-    /// no length without it.
+    /// In addition, each named joint that ends a chain gets an End Site, half its own bone farther on: without it
+    /// Blender and others give the joint no length.
     EveryChain,
 }
 
@@ -30,8 +30,8 @@ pub struct BvhWriteOptions<'a> {
     pub metres_per_unit: f32,
     /// Order of the rotation channels, one of the six with three different axes. Default z, y, x.
     pub rotation_order: EulerOrder,
-    /// Channels joint by joint, as [`BvhDocument::channels`](super::BvhDocument::channels); `None` for
-    /// positions where the clip moves a joint, and rotations in `rotation_order`.
+    /// Channels per joint, as [`BvhDocument::channels`](super::BvhDocument::channels); `None`: positions where the clip
+    /// moves a joint, and rotations in `rotation_order`.
     pub channels: Option<&'a [Vec<BvhChannel>]>,
     /// Default: as in the rig.
     pub ends: BvhEnds,
@@ -45,22 +45,23 @@ impl Default for BvhWriteOptions<'_> {
     }
 }
 
-/// A BVH file, and what it could not hold.
+/// A BVH file, with notes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BvhText {
     /// The file.
     pub text: String,
-    /// Notes on what was changed or left out, a sentence each.
+    /// Notes on changes and omissions, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// Deepest indentation: a chain of very many joints makes no text of its square.
+/// Deepest indentation: keeps the text of a very long chain from growing with its square.
 const MOST_TABS: usize = 40;
 
 /// Writes the motion of a rig whose lengths are metres. The file's joints have the axes of the rig's model space, so
-/// that the rest pose is the one without rotations; a rig that came from a BVH file gets back its own numbers.
+/// that the rest pose has no rotations; a rig read from a BVH file is written with its original numbers.
 ///
-/// Joints without a name that end a chain and do not move become End Sites; see [`BvhEnds`]. Skins and scales are not part of the format.
+/// Unnamed joints that end a chain and do not move become End Sites; see [`BvhEnds`]. Skins and scales are not part of
+/// the format.
 ///
 /// # Errors
 /// A rig without joints, a frame time or unit that is not above 0, an order that names an axis twice, channels that
@@ -106,7 +107,7 @@ fn check(rig: &Rig, options: &BvhWriteOptions<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Data that a joint needs to be written.
+/// Data needed to write a joint.
 struct Line {
     /// Metres, model axes, from the parent.
     offset: Vec3,
@@ -170,7 +171,7 @@ impl<'a> Writer<'a> {
         Self { rig, options, lines, children, notes }
     }
 
-    /// Joints depth first, as the format nests them, each opened and, after all below it, closed; with their depth.
+    /// Joints depth first, as the format nests them, each with an opening and a closing event and its depth.
     fn walk(&self) -> Vec<(Brace, JointIdx, usize)> {
         let mut stack: Vec<(Brace, JointIdx, usize)> = Vec::new();
         let roots = (0..self.rig.joints.len()).filter(|&i| self.rig.joints[i].parent.is_none());
@@ -255,7 +256,7 @@ impl Line {
         self.channels.iter().map(value).collect()
     }
 
-    /// Brings the angles to a rotation, by the shorter of the two ways that lead there, without jumps by whole turns.
+    /// Converts a rotation to angles, choosing the solution nearest to the previous one, without jumps by whole turns.
     fn turn(&mut self, rotation: Rotation) {
         let axes: Vec<usize> = self.channels.iter().filter(|c| c.is_rotation()).map(|c| c.axis()).collect();
         let Some(order) = EulerOrder::ALL.into_iter().find(|order| order.indices()[..] == axes[..]) else {
@@ -277,7 +278,7 @@ impl Line {
     }
 }
 
-/// Channels that a joint is written with: those asked for, completed to three rotations if there is one at all.
+/// Channels that a joint is written with: the requested ones, completed to three rotations if it has any.
 fn channels_of(rig: &Rig, clip: &Clip, options: &BvhWriteOptions<'_>, joint: JointIdx) -> Vec<BvhChannel> {
     let in_order = options.rotation_order.indices().map(BvhChannel::rotation);
     let Some(asked) = options.channels else {

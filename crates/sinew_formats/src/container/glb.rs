@@ -10,16 +10,16 @@ const BIN: u32 = 0x004E_4942;
 pub(crate) struct Glb<'a> {
     pub(crate) json: &'a [u8],
     pub(crate) bin: Option<&'a [u8]>,
-    /// Chunks of other types behind these two, with their headers: kept when the file is written again.
+    /// Further chunks of other types, with their headers: preserved on writing.
     pub(crate) other_chunks: &'a [u8],
 }
 
-/// True if the bytes begin like a GLB.
+/// True if the bytes start like a GLB.
 pub(crate) fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
-/// Takes a GLB apart. Every length is checked against the bytes that are there; nothing is copied.
+/// Splits a GLB into its parts. Checks every length against the available bytes; copies nothing.
 pub(crate) fn parse(bytes: &[u8]) -> Result<Glb<'_>> {
     let header = |offset| u32_at(bytes, offset).ok_or_else(|| truncated("GLB header", bytes.len()));
     match header(4)? {
@@ -83,10 +83,10 @@ fn u32_at(bytes: &[u8], offset: usize) -> Option<u32> {
     bytes.get(offset..)?.first_chunk().map(|b| u32::from_le_bytes(*b))
 }
 
-/// Puts a GLB together: JSON padded with spaces, binary with zeros.
+/// Assembles a GLB: JSON padded with spaces, binary with zeros.
 ///
 /// # Errors
-/// The file would not fit its own 32-bit lengths.
+/// If the file exceeds its 32-bit lengths.
 pub(crate) fn write(json: &[u8], bin: &[u8], other_chunks: &[u8]) -> Result<Vec<u8>> {
     let padded = |length: usize| length.div_ceil(4) * 4;
     let bin_size = if bin.is_empty() { 0 } else { 8 + padded(bin.len()) };

@@ -1,4 +1,4 @@
-//! Reading JSON with a place for every complaint, and writing it so that a person can edit it.
+//! Reads JSON with a path for every error, and writes it in a form that a person can edit.
 
 use crate::error::{Error, Result, quoted};
 use serde_json::Value;
@@ -12,8 +12,8 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Value> {
     })
 }
 
-/// A value inside a JSON document. Its path is found by searching for its address, so that it costs nothing until
-/// there is something to complain about.
+/// A value inside a JSON document. An error finds its path by searching for its address, so the path costs nothing
+/// until then.
 #[derive(Clone, Copy)]
 pub(crate) struct At<'a> {
     root: &'a Value,
@@ -52,12 +52,12 @@ impl<'a> At<'a> {
         Ok(object.get(key).map(|value| At { root: self.root, value }))
     }
 
-    /// The value of a key that has to be there.
+    /// The value of a required key.
     pub(crate) fn need(self, key: &str) -> Result<At<'a>> {
         self.get(key)?.ok_or_else(|| self.malformed(format!("`{key}` is missing")))
     }
 
-    /// Refuses keys that are not among `known`: a typing error would otherwise be a silent default.
+    /// Refuses keys outside `known`: a typing error would otherwise become a silent default.
     pub(crate) fn only(self, known: &[&str]) -> Result<()> {
         let object = self.value.as_object().ok_or_else(|| self.malformed("must be an object"))?;
         match object.keys().find(|key| !known.contains(&key.as_str())) {
@@ -74,7 +74,7 @@ impl<'a> At<'a> {
         Ok(array.iter().map(|value| At { root: self.root, value }).collect())
     }
 
-    /// Elements of the array under an optional key; none if the key is absent.
+    /// Elements of the array under an optional key; empty if the key is absent.
     pub(crate) fn list(self, key: &str) -> Result<Vec<At<'a>>> {
         self.get(key)?.map_or_else(|| Ok(Vec::new()), Self::items)
     }
@@ -109,7 +109,7 @@ impl<'a> At<'a> {
         self.value.as_u64().ok_or_else(|| self.malformed("must be a whole number, 0 or more"))
     }
 
-    /// A whole number below `len`, the length of the list `of`.
+    /// A whole number below `len`, the length of the list named `of`.
     pub(crate) fn index(self, len: usize, of: &str) -> Result<usize> {
         let index = self.usize()?;
         if index >= len {
@@ -169,7 +169,8 @@ impl<'a> At<'a> {
     }
 }
 
-/// Appends the path from `from` to the value at the address of `target`; leaves `path` as it was if it is not there.
+/// Appends the path from `from` to the value at the address of `target`; leaves `path` unchanged if it does not contain
+/// it.
 fn find(from: &Value, target: &Value, path: &mut String) -> bool {
     if core::ptr::eq(from, target) {
         return true;
@@ -190,7 +191,7 @@ fn find(from: &Value, target: &Value, path: &mut String) -> bool {
                 if !path.is_empty() {
                     path.push('.');
                 }
-                // Keys are the file's to choose; a path stays on one line.
+                // The file chooses its keys; a path is one line.
                 path.extend(key.chars().flat_map(char::escape_debug));
                 if find(value, target, path) {
                     return true;
@@ -203,7 +204,7 @@ fn find(from: &Value, target: &Value, path: &mut String) -> bool {
     false
 }
 
-/// A number as its shortest decimals that read back as the same `f32`.
+/// The shortest decimal that reads back as the same `f32`.
 ///
 /// # Panics
 /// If it is not finite: JSON has no such number.
@@ -212,12 +213,12 @@ pub(crate) fn number(x: f32) -> Value {
     Value::from(x.to_string().parse::<f64>().unwrap_or_default())
 }
 
-/// An array of numbers, each as by [`number`].
+/// An array of numbers, each as in [`number`].
 pub(crate) fn numbers(xs: &[f32]) -> Value {
     xs.iter().map(|&x| number(x)).collect()
 }
 
-/// Text for people: what fits on a line stands on one line.
+/// Text for people: short values stay on one line.
 pub(crate) fn to_text(value: &Value) -> String {
     let mut out = String::new();
     write_value(value, 0, &mut out);
@@ -272,7 +273,7 @@ fn one_line(value: &Value) -> String {
     }
 }
 
-/// Checks how every file of ours begins: `{"sinew": kind, "version": version, …}`.
+/// Checks the header of every Sinew file: `{"sinew": kind, "version": version, …}`.
 pub(crate) fn check_header(root: At<'_>, kind: &str, version: usize) -> Result<()> {
     let kind_at = root.need("sinew")?;
     let found = kind_at.str()?;

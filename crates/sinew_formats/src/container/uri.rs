@@ -1,4 +1,4 @@
-//! URIs inside a glTF file: `data:` URIs, and relative ones that may not leave the file's folder.
+//! URIs inside a glTF file: `data:` URIs, and relative ones inside the file's folder.
 
 use crate::error::quoted;
 
@@ -10,7 +10,7 @@ pub(crate) enum Uri {
     Relative(String),
 }
 
-/// Reads a URI as glTF 2.0 §2.8 allows it. Errors have no place; the caller knows it.
+/// Reads a URI as glTF 2.0 §2.8 allows it. Errors have no place; the caller adds it.
 pub(crate) fn parse(uri: &str) -> Result<Uri, String> {
     if let Some(rest) = uri.strip_prefix("data:") {
         return data(rest).map(Uri::Data);
@@ -24,7 +24,7 @@ fn data(rest: &str) -> Result<Vec<u8>, String> {
     if head.ends_with(";base64") { base64(body) } else { percent_decode(body) }
 }
 
-/// A relative path, percent-decoded, that stays inside the folder it is relative to.
+/// A relative path, percent-decoded, that stays inside its base folder.
 ///
 /// # Errors
 /// One line for an absolute path, a scheme (`http:`, `C:`), a `..`, a backslash, a NUL or bad UTF-8.

@@ -6,10 +6,10 @@ use sinew_anim::{Channel, Clip, Interpolation, JointIdx, Property};
 use sinew_math::Rotation;
 use ufbx::{BakeOpts, BakedNode, Scene};
 
-/// Frames a second where the file does not say.
+/// Frame rate of a file that does not state one.
 const RATE: f64 = 30.0;
 
-/// One clip for each stack that moves something, and a note for each that does not.
+/// One clip for each stack that moves something, and a note for each other stack.
 pub(super) fn read_all(scene: &Scene, size: usize) -> Result<(Vec<Clip>, Vec<String>)> {
     let (mut clips, mut notes) = (Vec::new(), Vec::new());
     let rate = scene.settings.frames_per_second;
@@ -42,7 +42,7 @@ pub(super) fn read_all(scene: &Scene, size: usize) -> Result<(Vec<Clip>, Vec<Str
     Ok((clips, notes))
 }
 
-/// Channels of a node. What stays as it is has one key, even where that is the rest pose: clips are blended.
+/// Channels of a node. A constant property has one key, even if it equals the rest pose, because clips are blended.
 fn read_node(node: &BakedNode, joint: JointIdx, clip: &str) -> Result<Vec<Channel>> {
     let vector =
         |key: &ufbx::BakedVec3| (key.time, [key.value.x, key.value.y, key.value.z].map(|x| x as f32));
@@ -68,7 +68,7 @@ fn read_node(node: &BakedNode, joint: JointIdx, clip: &str) -> Result<Vec<Channe
     Ok(channels)
 }
 
-/// Keys as a channel; of keys at one time, as `f32` has it, the last stays.
+/// Keys as a channel; of keys with equal `f32` times, the last stays.
 fn channel<const N: usize>(
     joint: JointIdx,
     property: Property,

@@ -1,4 +1,4 @@
-//! Materials: base colour and its picture, inside the file or beside it.
+//! Materials: base colour and its picture, inside the file or next to it.
 
 use crate::gltf::{MAX_DECODED, Resolver, Textures, decode_picture};
 use sinew_anim::TextureImage;
@@ -6,11 +6,11 @@ use sinew_math::clamp;
 use std::collections::BTreeMap;
 use ufbx::{Material, MeshPart, Node};
 
-/// The pictures of a file, decoded as they are asked for.
+/// The pictures of a file, decoded on demand.
 pub(super) struct Materials<'a, 'r> {
     resolve: &'a mut Resolver<'r>,
     wanted: Textures,
-    /// Index into `textures` per texture of the file; `None` if there is no such picture.
+    /// Index into `textures` per texture of the file; `None` if the picture does not exist.
     known: BTreeMap<u32, Option<usize>>,
     pub textures: Vec<TextureImage>,
     pub notes: Vec<String>,
@@ -21,12 +21,12 @@ impl<'a, 'r> Materials<'a, 'r> {
         Self { resolve, wanted, known: BTreeMap::new(), textures: Vec::new(), notes: Vec::new() }
     }
 
-    /// Linear RGBA of a part, white where no material says anything, and its picture.
+    /// Linear RGBA of a part, white without a material, and its picture.
     pub fn look(&mut self, node: &Node, mesh: &ufbx::Mesh, part: &MeshPart) -> ([f32; 4], Option<usize>) {
         let Some(map) = of_part(node, mesh, part).map(|material| &material.pbr.base_color) else {
             return ([1.0; 4], None);
         };
-        // A picture stands in for the colour, it is not tinted by it.
+        // A picture replaces the colour; the colour does not tint it.
         if let Some(picture) = map.texture.as_ref().and_then(|texture| self.picture(texture)) {
             return ([1.0; 4], Some(picture));
         }
@@ -80,8 +80,8 @@ impl<'a, 'r> Materials<'a, 'r> {
     }
 }
 
-/// Paths beside the file at which a picture is looked for: where it lay when the file was written, and right beside the file. Paths
-/// of other machines, and those that lead elsewhere, are none.
+/// Paths where a picture is looked for: its path when the file was written, and the file's own folder. Skips absolute
+/// paths of other machines and paths outside the folder.
 fn beside(relative: &str, any: &str) -> Vec<String> {
     let relative = relative.replace('\\', "/");
     let is_beside =

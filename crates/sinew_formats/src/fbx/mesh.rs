@@ -10,7 +10,7 @@ use sinew_math::{Vec2, Vec3, normalize_or};
 use std::collections::BTreeMap;
 use ufbx::{MeshPart, Scene, SkinDeformer};
 
-/// Every mesh as often as a node places it. Returns the vertices of skinned ones whose weights are missing.
+/// One mesh per node that places it. Returns the vertices of skinned meshes without weights.
 pub(super) fn read_all(
     scene: &Scene,
     rig: &mut Rig,
@@ -43,7 +43,7 @@ pub(super) fn read_all(
     Ok(without)
 }
 
-/// A skin of the rig, and which of its slots each cluster of the file has.
+/// A skin of the rig, with its slot for each cluster of the file.
 struct Slots<'a> {
     deformer: &'a SkinDeformer,
     skin: usize,
@@ -89,7 +89,7 @@ impl<'a> Slots<'a> {
     }
 }
 
-/// The corners of a mesh's faces on their way to vertices: corners that have all in common become one.
+/// The corners of a mesh's faces, merged into vertices: equal corners become one vertex.
 struct Corners<'a> {
     mesh: &'a ufbx::Mesh,
     skin: Option<&'a Slots<'a>>,
@@ -105,7 +105,7 @@ impl<'a> Corners<'a> {
         Self { mesh, skin, name, known: BTreeMap::new(), out: Primitive::default(), without: Vec::new() }
     }
 
-    /// The primitive, and its vertices whose weights are missing.
+    /// The primitive, and its vertices without weights.
     fn read(mut self, part: &MeshPart) -> Result<(Primitive, Vec<usize>)> {
         let mut corners = vec![0_u32; self.mesh.max_face_triangles * 3];
         for &face in &part.face_indices {
@@ -119,7 +119,7 @@ impl<'a> Corners<'a> {
         Ok((self.out, self.without))
     }
 
-    /// The vertex that a corner becomes.
+    /// The vertex of a corner.
     fn vertex(&mut self, corner: usize) -> Result<u32> {
         let mesh = self.mesh;
         let place = || format!("mesh {:?}, corner {corner}", self.name);

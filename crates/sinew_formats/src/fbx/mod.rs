@@ -1,9 +1,9 @@
 //! FBX, text and binary, through the C library ufbx (feature `fbx`).
 //!
-//! What becomes of the format's many ways: axes are turned to +Y up and lengths into metres in joints, meshes and keys, so
-//! that no root carries a scale; pivots, orders of rotations and scale that is not inherited are resolved into plain
-//! translation, rotation and scale; curves are sampled at the file's frame rate where they are not straight, then reduced to
-//! the keys that are needed. Of materials the base colour and its picture are kept. Morph targets, constraints, cameras and lights are left out.
+//! The format's variants are normalised. Axes become +Y up and lengths metres in joints, meshes and keys, so that no
+//! root carries a scale. Pivots, rotation orders and non-inherited scale become plain translation, rotation and scale.
+//! Curves that are not straight are sampled at the file's frame rate, then reduced to the necessary keys. Materials
+//! keep the base colour and its picture. Morph targets, constraints, cameras and lights are left out.
 //!
 //! ```
 //! # let bytes: &[u8] = b"neither text nor binary";
@@ -31,17 +31,18 @@ const DEEPEST: u32 = 512;
 
 /// Reads an FBX file: every node as a joint, meshes with their skins, one clip for each animation stack.
 ///
-/// Joints rest as the file's nodes stand; skins hold where they were bound. Memory stays within 64 times the bytes plus
-/// 64 MiB, for arrays in the file may be compressed.
+/// Joints rest where the file's nodes are; skins use their bind pose. Memory stays within 64 times the file size plus
+/// 64 MiB, because arrays in the file may be compressed.
 ///
 /// # Errors
-/// Bytes that are no FBX, are cut off, of a version before 3.0, more than that memory, numbers that are not finite.
+/// Bytes that are no FBX, are truncated, have a version before 3.0 or need more than that memory; numbers that are not
+/// finite.
 pub fn read_fbx(bytes: &[u8]) -> Result<MotionFile> {
     read_fbx_with(bytes, ReadOptions::default(), &mut no_files)
 }
 
-/// [`read_fbx`] with pictures that lie beside the file, which `resolve` gives. One that is missing or broken is left out with
-/// a note.
+/// [`read_fbx`] with the pictures next to the file, which `resolve` returns. A missing or broken picture is left out
+/// with a note.
 ///
 /// # Errors
 /// As [`read_fbx`].
@@ -93,13 +94,13 @@ fn load_options(size: usize) -> LoadOpts<'static> {
     }
 }
 
-/// No more memory than so many bytes of a file justify.
+/// Memory limit for a file of this size.
 fn limited(size: usize) -> AllocatorOpts {
     let memory_limit = size.saturating_mul(64).saturating_add(64 << 20);
     AllocatorOpts { memory_limit, ..AllocatorOpts::default() }
 }
 
-/// Places are all that the library tells: how far the file goes, or what it was about.
+/// The library reports only a position: the byte offset, or its current task.
 fn explain(error: &ufbx::Error, size: usize) -> Error {
     use ufbx::ErrorType as Kind;
     let detail = error.info().trim();
@@ -167,7 +168,7 @@ fn not_finite(place: String) -> Error {
     Error::malformed("a number is not finite", place)
 }
 
-/// Parts of the scene that do not become part of a rig, a sentence each.
+/// Parts of the scene that do not become part of a rig, one sentence each.
 fn left_out(scene: &Scene, pictures: Textures) -> Vec<String> {
     let counted = [
         (if pictures == Textures::Skip { scene.textures.len() } else { 0 }, "textures"),

@@ -71,7 +71,7 @@ enum Normalized {
     Yes,
 }
 
-/// Elements at a stride, checked to lie inside their bytes.
+/// Elements at a stride, checked against the available bytes.
 #[derive(Clone, Copy)]
 struct Strided<'a> {
     bytes: &'a [u8],
@@ -159,11 +159,11 @@ impl<'a> Source<'a> {
         accessor.malformed(format!("element {element} holds a number that is not finite"))
     }
 
-    /// As [`floats`](Self::floats), with 0 for what is not finite, and the elements that it was in.
+    /// As [`floats`](Self::floats), with 0 for non-finite numbers, and the indices of the elements that had one.
     pub(super) fn floats_and_holes<const N: usize>(&self, at: At<'a>) -> Result<(Vec<[f32; N]>, Vec<usize>)> {
         let accessor = self.accessor::<N>(at)?;
         let (component, normalized) = (accessor.component, accessor.normalized);
-        // The common case apart, so that its loop is a plain copy.
+        // The common case separately, so that its loop is a plain copy.
         let mut out: Vec<[f32; N]> = match component {
             Component::F32 => accessor.decode(|b| Component::F32.number(b, Normalized::No)),
             _ => accessor.decode(|b| component.number(b, normalized)),
@@ -172,7 +172,7 @@ impl<'a> Source<'a> {
         Ok((out, holes))
     }
 
-    /// By what the integers of the accessor at index `at` are divided; 1 where they are numbers as they stand.
+    /// Divisor of the integers of the accessor at index `at`; 1 if they are not normalised.
     pub(super) fn full_scale(&self, at: At<'a>) -> Result<f32> {
         let accessor = self.accessors[at.index(self.accessors.len(), "accessors")?];
         let normalized = accessor.get("normalized")?.map_or(Ok(false), At::bool)?;
@@ -207,7 +207,7 @@ impl<'a> Source<'a> {
             false => Normalized::No,
         };
         let count = accessor.need("count")?.usize()?;
-        // Decoded components are 4 bytes, whatever they are in the file.
+        // Decoded components are 4 bytes, whatever their size in the file.
         self.spend(accessor, count, N * 4)?;
         let base = match accessor.get("bufferView")? {
             Some(_) => Some(self.strided(accessor, count, N * component.size())?),

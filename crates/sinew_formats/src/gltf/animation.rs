@@ -8,7 +8,7 @@ use sinew_anim::{Channel, Clip, ClipEvent, Interpolation, JointIdx, Property};
 
 type Clips = (Vec<Clip>, Vec<Vec<ClipEvent>>);
 
-/// All animations, and what happens in each.
+/// All animations with their events.
 pub(super) fn read_all(
     source: &Source<'_>,
     joint_of_node: &[Option<JointIdx>],
@@ -26,7 +26,8 @@ pub(super) fn read_all(
     source.root.list("animations")?.into_iter().map(read).collect()
 }
 
-/// Moves a clip whose first key is before 0 s to begin there, as exports of negative frames have it. Returns the shift, seconds.
+/// Shifts a clip whose first key is before 0 s to start at 0, for exports with negative frames. Returns the shift,
+/// seconds.
 fn begin_at_zero(clip: &mut Clip) -> Option<f32> {
     let first = clip.channels.iter().map(|channel| channel.times[0]).fold(0.0, sinew_math::min);
     if first >= 0.0 {
@@ -98,7 +99,7 @@ fn read_channel<'a>(
     Ok(Channel { joint, property, interpolation, times, values })
 }
 
-/// Drops keys at repeated times: the last one of a time stays, so that times strictly increase.
+/// Drops keys at repeated times: the last one at a time stays, so that times strictly increase.
 fn drop_repeated_times(times: Vec<f32>, values: Vec<f32>, per_key: usize) -> (Vec<f32>, Vec<f32>) {
     if times.windows(2).all(|w| w[0] < w[1]) {
         return (times, values);

@@ -1,4 +1,4 @@
-//! Writing a clip into the user's own file: the original JSON is edited as a value, the original bytes stay a prefix.
+//! Appends clips to the user's own file: the original JSON is edited as a value, and the original bytes stay a prefix.
 
 use super::Document;
 use super::source::Buffer;
@@ -10,12 +10,12 @@ use std::collections::BTreeMap;
 
 const FLOAT: u32 = 5126;
 
-/// A clip on its way into a file.
+/// A clip to append.
 #[derive(Clone, Debug)]
 pub struct NewClip<'a> {
     /// Its keys.
     pub clip: &'a Clip,
-    /// Name of the animation; `""` for none.
+    /// Name of the animation; `""` for unnamed.
     pub name: &'a str,
     /// The animation's `extras`, such as those of [`events_extras`](crate::events_extras).
     pub extras: Option<Value>,
@@ -34,29 +34,32 @@ pub fn append_clip(document: &Document, clip: &Clip, name: &str, extras: Option<
 
 /// The user's own file with more animations, as a GLB.
 ///
-/// Everything that was in the JSON stays as it was, in its order, unknown extensions included, and the old binary chunk
-/// is a prefix of the new one. New are, for each clip, one buffer view, the accessors of the keys and the animation, each at
-/// the end of its list. Channels point at the nodes that the joints came from.
+/// The existing JSON is preserved in its order, including unknown extensions, and the old binary chunk is a prefix of
+/// the new one. Each clip adds one buffer view, the accessors of its keys and the animation, each at the end of its
+/// list. Channels target the nodes that the joints came from.
 ///
-/// A rig with sheets of cloth ([`sinew_anim::Rig::sheets`]) brings a node for each of their particles, by which the primitives that became cloth are skinned.
+/// A rig with sheets of cloth ([`sinew_anim::Rig::sheets`]) adds a node per particle, and the primitives that became
+/// cloth are skinned to these.
 ///
-/// What has to change in old entries, and nothing else does:
+/// Only these old entries change:
 /// - `buffers[0].byteLength` grows.
-/// - Primitives whose vertices got other weights when the file was read, since no bone moved them, name the accessors of these.
-/// - A `.gltf` becomes one file that can be moved: `buffers[0]` loses its `uri` and becomes the binary chunk, pictures
-///   in files of their own move into it, further external buffers become data URIs. A picture that was missing when
-///   the file was read keeps its `uri`.
+/// - Primitives whose vertices got other weights on reading, because no bone moved them, reference accessors with
+///   these.
+/// - A `.gltf` becomes a single self-contained file: `buffers[0]` loses its `uri` and becomes the binary chunk,
+///   external pictures are embedded, further external buffers become data URIs. A picture that was missing on reading
+///   keeps its `uri`.
 /// - A node that has a `matrix` and is animated gets `translation`, `rotation` and `scale` instead, as glTF 2.0 §3.5.3
 ///   demands.
 ///
-/// Channels are left out where a node's channels only repeat its rest pose and the format would rather not have them:
-/// the node has a `matrix`, which so can stay, or it carries a skinned mesh, whose own transform does not count.
+/// Channels that only repeat a node's rest pose are left out where the format discourages them: if the node has a
+/// `matrix` (which then can stay), or carries a skinned mesh, whose own transform is ignored.
 ///
 /// # Errors
-/// Nothing to write (no channel of a clip is left), the first buffer is a placeholder without bytes, or the result is over 4 GiB.
+/// If there is nothing to write (no channel of a clip remains), the first buffer is a placeholder without bytes, or the
+/// result exceeds 4 GiB.
 ///
 /// # Panics
-/// If a channel names a joint that the document's rig does not have, or breaks the rules of [`Channel`].
+/// If a channel names a joint that the document's rig does not have, or violates the rules of [`Channel`].
 pub fn append_clips(document: &Document, clips: &[NewClip<'_>]) -> Result<Vec<u8>> {
     let mut editor = Editor::open(document)?;
     editor.embed_external(document)?;
@@ -72,7 +75,7 @@ fn better_left_alone(node: &Value) -> bool {
     node.get("matrix").is_some() || node.get("skin").is_some()
 }
 
-/// Nodes of joints that some channel takes away from their rest pose, with that pose.
+/// Nodes of joints that some channel moves from their rest pose, with that pose.
 fn moved_nodes(channels: &[&Channel], joints: &[Joint]) -> BTreeMap<usize, LocalTransform> {
     let moving = channels.iter().filter(|c| !repeats_rest(c, &joints[c.joint].rest));
     moving.map(|c| (joints[c.joint].source, joints[c.joint].rest)).collect()
@@ -120,7 +123,7 @@ impl Editor {
 
     fn append(&mut self, document: &Document, NewClip { clip, name, extras }: &NewClip<'_>) -> Result<()> {
         let joints = &document.rig.joints;
-        // Joints that were added to the rig for its motions alone are no nodes.
+        // Joints added to the rig only for its motion have no node.
         let (nodes, is_of_sheet) = (document.node_count(), document.rig.is_of_sheet());
         let is_node = |channel: &&Channel| joints[channel.joint].source < nodes || is_of_sheet[channel.joint];
         let own: Vec<&Channel> = clip.channels.iter().filter(is_node).collect();
@@ -142,7 +145,7 @@ impl Editor {
         Ok(())
     }
 
-    /// Takes what lies in files of its own into this one.
+    /// Embeds external files.
     pub(super) fn embed_external(&mut self, document: &Document) -> Result<()> {
         for (i, buffer) in document.buffers.iter().enumerate().skip(1) {
             if let Buffer::External(bytes) = buffer {
@@ -150,7 +153,7 @@ impl Editor {
             }
         }
         for (&i, bytes) in &document.external_images {
-            // A picture in a buffer view must state its type; one of another type stays where it is.
+            // A picture in a buffer view must state its type; one of another type stays external.
             let mime = match bytes.as_slice() {
                 [0x89, b'P', b'N', b'G', ..] => "image/png",
                 [0xFF, 0xD8, 0xFF, ..] => "image/jpeg",
@@ -179,8 +182,8 @@ impl Editor {
         Ok(())
     }
 
-    /// Writes keys into one new buffer view, and `channels` and `samplers` into `animation`. Channels with the same
-    /// key times share them.
+    /// Writes keys into one new buffer view, and `channels` and `samplers` into `animation`. Channels with equal key
+    /// times share them.
     fn write_channels<'c>(
         &mut self,
         channels: impl Iterator<Item = &'c Channel>,
@@ -228,7 +231,8 @@ impl Editor {
         Ok(())
     }
 
-    /// Adds numbers to the `data` of the view-to-be, and an accessor for them. Times carry their bounds, as §3.11 asks.
+    /// Adds numbers to the `data` of the future view, and an accessor for them. Times carry their bounds, as §3.11
+    /// requires.
     fn push_keys(&mut self, view: usize, data: &mut Vec<u8>, numbers: &[f32], kind: &str) -> Result<usize> {
         let width = match kind {
             "SCALAR" => 1,
@@ -254,7 +258,7 @@ impl Editor {
         self.push("bufferViews", view)
     }
 
-    /// The next thing begins at a multiple of 4 bytes.
+    /// The next element starts at a multiple of 4 bytes.
     fn align(&mut self) {
         self.bin.resize(self.bin.len().div_ceil(4) * 4, 0);
     }

@@ -53,11 +53,11 @@ impl<'s, 'a> Attributes<'s, 'a> {
     pub(super) fn integers<const N: usize>(&self, name: &str, at: At<'a>) -> Result<Vec<[u32; N]>> {
         let Some(draco) = self.stream(name)? else { return self.source.integers(at) };
         let numbers = draco.numbers::<N>(self.source, name)?;
-        // From −0 down and NaN to 0: what the stream has of integers is none of them.
+        // Negative numbers and NaN become 0: integer attributes have none.
         Ok(numbers.into_iter().map(|element| element.map(|x| x as u32)).collect())
     }
 
-    /// The corners of the stream's triangles; `None` where they are plain.
+    /// The corners of the stream's triangles; `None` if they are not compressed.
     pub(super) fn triangles(&self) -> Result<Option<Vec<u32>>> {
         self.draco.as_ref().map(|draco| draco.triangles(self.source)).transpose()
     }

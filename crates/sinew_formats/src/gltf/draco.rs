@@ -8,7 +8,7 @@ use draco_core::{DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder};
 /// The name of the extension.
 pub(super) const NAME: &str = "KHR_draco_mesh_compression";
 
-/// Bytes that the decoder works with for each face, at most: its table of corners and what it has of vertices.
+/// Upper bound of the decoder's working memory per face, bytes: its corner table and vertex data.
 const BYTES_PER_FACE: usize = 64;
 
 /// A decoded stream.
@@ -19,7 +19,7 @@ pub(super) struct Decoded<'a> {
 }
 
 impl<'a> Decoded<'a> {
-    /// The primitive's stream; `None` where its vertices are plain, or beside the stream as a fallback.
+    /// The primitive's stream; `None` if its vertices are uncompressed, or an uncompressed fallback exists.
     pub(super) fn of(source: &Source<'a>, primitive: At<'a>, position: At<'a>) -> Result<Option<Self>> {
         let accessor = source.accessors[position.index(source.accessors.len(), "accessors")?];
         let plain = accessor.get("bufferView")?.is_some() || accessor.get("sparse")?.is_some();
@@ -28,7 +28,7 @@ impl<'a> Decoded<'a> {
             return Ok(None);
         };
         let (bytes, _) = source.view(at.need("bufferView")?)?;
-        // What the accessors claim is booked; the stream may not have more than that.
+        // The accessors' sizes are booked; the stream may not exceed them.
         let faces = match primitive.get("indices")? {
             Some(indices) => {
                 let index = indices.index(source.accessors.len(), "accessors")?;
@@ -61,12 +61,12 @@ impl<'a> Decoded<'a> {
         self.mesh.num_points()
     }
 
-    /// True if the stream holds that attribute; others of the primitive are plain.
+    /// True if the stream holds that attribute; others of the primitive are uncompressed.
     pub(super) fn holds(&self, name: &str) -> Result<bool> {
         Ok(self.at.need("attributes")?.get(name)?.is_some())
     }
 
-    /// An attribute's numbers as they are in the stream, `N` for each vertex.
+    /// An attribute's numbers as stored in the stream, `N` per vertex.
     pub(super) fn numbers<const N: usize>(&self, source: &Source<'a>, name: &str) -> Result<Vec<[f32; N]>> {
         let id_at = self.at.need("attributes")?.need(name)?;
         let id = id_at.usize()?;

@@ -18,20 +18,20 @@ const SHAPES: &str = "KHR_implicit_shapes";
 pub struct KhrFile {
     /// A GLB.
     pub bytes: Vec<u8>,
-    /// Notes on what the drafts cannot hold, a sentence each.
+    /// Notes on features that the drafts cannot represent, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// The user's own file with the ragdoll on its joints, as a GLB. What was in the file stays as it was; new are, for each
-/// body, `motion` on its node and a child node with its collider, and for each joint a node on either side where it turns.
+/// The user's own file with the ragdoll on its joints, as a GLB. Existing content is unchanged. Each body adds `motion`
+/// on its node and a child node with its collider; each joint adds a node on either side at its pivot.
 ///
-/// Sizes and places are in the file's unit, masses in kilograms, inertias in kilograms times the unit squared. What the
-/// drafts cannot hold is in `extras.sinew` of the joints: they limit swing by a circle, and by each axis alone, where
-/// a ragdoll's cone is an ellipse; hulls become the box around them. The bind pose (`RigAnalysis::bind_model`) is where
-/// body and bone fit together.
+/// Lengths are in the file's unit, masses in kilograms, inertias in kilograms times the unit squared. `extras.sinew` of
+/// the joints holds data that the drafts cannot represent: the drafts limit swing by a circle or per axis, a ragdoll's
+/// cone is an ellipse. Hulls become their bounding box. Body and bone coincide in the bind pose
+/// (`RigAnalysis::bind_model`).
 ///
 /// # Errors
-/// The file has physics already, or what [`append_clips`](super::append_clips) refuses.
+/// If the file already has physics, and for the errors of [`append_clips`](super::append_clips).
 ///
 /// # Panics
 /// If the definition's joints are not those of the document's rig (see `RagdollDef::for_rig`), or `bind_model` is not
@@ -72,7 +72,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// A frame of a body as its bone sees it, and the length of a metre there.
+    /// A body frame relative to its bone, and the length of a metre there.
     fn seen_from_bone(&self, body: usize, body_from_frame: Transform) -> (Transform, f32) {
         let character = Affine::from(self.def.bodies[body].character_from_body * body_from_frame);
         let bone = self.bind[self.def.bodies[body].joint].inverse();
@@ -137,7 +137,7 @@ impl Writer<'_> {
         (shape, Vec3::ZERO)
     }
 
-    /// One joint: a node on the parent's bone that turns about one on the child's, and what limits it.
+    /// One joint: a node on the parent's bone constrained relative to one on the child's, with limits.
     fn joint(&mut self, index: usize) -> Result<Value> {
         let joint = self.def.joints[index];
         let [parent, child] = [joint.parent, joint.child].map(|body| self.def.bodies[body].bone.as_str());
@@ -253,7 +253,7 @@ fn widest(limit: &SwingTwistLimit) -> f32 {
     max(y, z)
 }
 
-/// Limits of a joint as the draft has them: no translation, and of rotations what is not free.
+/// Limits of a joint in the draft's form: no translation, and the limits of the rotations that are not free.
 fn limits(kind: &JointKind) -> Vec<Value> {
     let about = |axis: usize, range: Range| json!({"angularAxes": [axis], "min": number(range.lo), "max": number(range.hi)});
     let shut = |axes: Value| json!({"angularAxes": axes, "min": 0.0, "max": 0.0});

@@ -11,7 +11,7 @@ use sinew_anim::TextureImage;
 use sinew_math::clamp;
 use std::collections::BTreeMap;
 
-/// Bytes that all decoded pictures of a file may take together.
+/// Memory limit of all decoded pictures of a file together, bytes.
 pub(crate) const MAX_DECODED: usize = 256 << 20;
 
 /// The materials of a file, and the textures decoded so far.
@@ -22,7 +22,7 @@ pub(super) struct Materials<'s, 'a> {
     images: Vec<At<'a>>,
     external_images: &'s BTreeMap<usize, Vec<u8>>,
     wanted: Textures,
-    /// Index into `textures` per image that was asked for; `None` if it could not be decoded.
+    /// Index into `textures` per requested image; `None` if it could not be decoded.
     decoded: BTreeMap<usize, Option<usize>>,
     pub(super) textures: Vec<TextureImage>,
     pub(super) warnings: Vec<String>,
@@ -116,7 +116,7 @@ impl<'s, 'a> Materials<'s, 'a> {
     }
 }
 
-/// A picture where this build decodes none: always an error.
+/// A picture in a build without decoders: always an error.
 #[cfg(not(feature = "pictures"))]
 pub(crate) fn decode_picture(_: &[u8], _: usize) -> Result<TextureImage, String> {
     Err("the feature `pictures` of sinew_formats is off".into())

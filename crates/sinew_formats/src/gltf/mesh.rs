@@ -10,7 +10,7 @@ use sinew_anim::weights::SkinPart;
 use sinew_anim::{Primitive, RigMesh};
 use sinew_math::{Vec2, Vec3, clamp, normalize_or};
 
-/// Every mesh of the scene as often as a node places it, and the vertices of skinned ones whose weights are missing.
+/// One mesh per scene node that places it, and the vertices of skinned meshes without weights.
 pub(super) fn read_all<'a>(
     source: &Source<'a>,
     scene: &Scene,
@@ -41,7 +41,7 @@ pub(super) fn read_all<'a>(
                 primitives.push(read);
             }
         }
-        // Parts without weights in a skinned mesh move with the node, like any rigid mesh.
+        // Parts without weights in a skinned mesh move with the node, like a rigid mesh.
         let (skinned, rigid): (Vec<_>, Vec<_>) = primitives.into_iter().partition(|p| !p.joints.is_empty());
         for (primitives, skin) in [(skinned, skin), (rigid, None)] {
             if !primitives.is_empty() {
@@ -52,7 +52,7 @@ pub(super) fn read_all<'a>(
     Ok((out, without))
 }
 
-/// Record of what is not finite in a primitive and was mended.
+/// Record of repaired non-finite numbers in a primitive.
 struct Mending<'w> {
     warnings: &'w mut Vec<String>,
     /// Vertices without a weight above 0.
@@ -60,9 +60,9 @@ struct Mending<'w> {
 }
 
 impl Mending<'_> {
-    /// Tells of elements that were mended, once a place.
+    /// Reports repaired elements, once per place.
     fn note(&mut self, at: At<'_>, holes: &[usize], of: usize, mended: &str) {
-        // To find a place takes a look at the whole file: only where there is something to tell.
+        // Finding a place searches the whole file, so it happens only when needed.
         if holes.is_empty() {
             return;
         }
@@ -73,7 +73,7 @@ impl Mending<'_> {
     }
 }
 
-/// One primitive; `None` for points, lines, and what has no positions. `slots` is the size of the skin, if any.
+/// One primitive; `None` for points, lines, and primitives without positions. `slots` is the size of the skin, if any.
 fn read_primitive<'a>(
     source: &Source<'a>,
     primitive: At<'a>,
@@ -94,7 +94,7 @@ fn read_primitive<'a>(
         None => read_triangles(source, primitive, mode, count)?,
     };
     let used = |hole: &&usize| indices.iter().any(|&corner| corner as usize == **hole);
-    // Vertices of no triangle do no harm, but must not stretch the body either.
+    // Vertices without a triangle are harmless, but must not enlarge the body.
     if let Some(hole) = holes.iter().take(MOST_UNUSED).find(used).or(holes.get(MOST_UNUSED)) {
         return Err(source.not_finite(position_at, *hole));
     }
@@ -124,10 +124,10 @@ fn read_primitive<'a>(
     }))
 }
 
-/// Positions that are not finite and no triangle's, at most: more are refused unseen.
+/// Largest number of non-finite positions outside triangles that are checked; a file with more is refused.
 const MOST_UNUSED: usize = 64;
 
-/// An optional attribute with one element a vertex; empty if absent. What is not finite is 0.
+/// An optional attribute with one element per vertex; empty if absent. Non-finite numbers become 0.
 fn read_attribute<const N: usize>(
     attributes: &Attributes<'_, '_>,
     name: &str,
@@ -148,7 +148,7 @@ fn check_count(at: At<'_>, there: usize, vertices: usize) -> Result<()> {
     Err(at.malformed(format!("{there} elements for {vertices} vertices")))
 }
 
-/// `COLOR_0` as RGBA in 0..=1; RGB gets alpha 1. What is not finite is white.
+/// `COLOR_0` as RGBA in 0..=1; RGB gets alpha 1. Non-finite colours become white.
 fn read_colors<'a>(
     source: &Source<'a>,
     attributes: &Attributes<'_, 'a>,
@@ -208,8 +208,8 @@ fn read_weights(
     Ok(influences.into_iter().map(strongest_four).unzip())
 }
 
-/// Keeps the four largest weights, in order of size beyond four only, and brings their sum to 1. A vertex without any
-/// weight follows the first slot it names.
+/// Keeps the four largest weights, sorted only if there were more, and normalises their sum to 1. A vertex without any
+/// weight follows its first slot.
 pub(crate) fn strongest_four(mut influences: Vec<(u16, f32)>) -> ([u16; 4], [f32; 4]) {
     if influences.len() > 4 {
         // Stable, so equal weights keep the file's order.
@@ -231,7 +231,7 @@ pub(crate) fn strongest_four(mut influences: Vec<(u16, f32)>) -> ([u16; 4], [f32
     (slots, scaled.map(|w| w / sum))
 }
 
-/// Triangles as a list, whatever the mode: 4 list, 5 strip, 6 fan.
+/// Triangles as a list for every mode: 4 list, 5 strip, 6 fan.
 fn read_triangles<'a>(source: &Source<'a>, primitive: At<'a>, mode: usize, count: usize) -> Result<Vec<u32>> {
     let corners: Vec<u32> = match primitive.get("indices")? {
         Some(at) => {
@@ -247,7 +247,7 @@ fn read_triangles<'a>(source: &Source<'a>, primitive: At<'a>, mode: usize, count
     source.spend(primitive, triangles, if mode == 4 { 4 } else { 12 })?;
     Ok(match mode {
         4 => corners[..corners.len() / 3 * 3].to_vec(),
-        // Every second triangle of a strip is wound the other way (§3.7.2.1).
+        // Every second triangle of a strip has reversed winding (§3.7.2.1).
         5 => (0..triangles)
             .flat_map(|i| [corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]])
             .collect(),

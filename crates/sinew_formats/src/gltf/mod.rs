@@ -1,7 +1,7 @@
-//! glTF 2.0 and its relatives (GLB, VRM 0 and 1, VRMA): a file becomes a rig, clips and the JSON it came from.
+//! Reads glTF 2.0 and its relatives (GLB, VRM 0 and 1, VRMA) as a rig, clips and the source JSON.
 //!
-//! The JSON is read with our own cursor rather than a typed model: every index, range and number is checked where it is
-//! used, errors can name the place, and the same value is what [`append_clip`] edits and writes back.
+//! Reads the JSON with our own cursor instead of a typed model: every index, range and number is checked where it is
+//! used, errors name the place, and [`append_clip`] edits and writes back the same value.
 //!
 //! ```
 //! use sinew_formats::{ReadOptions, append_clip, no_files, read_gltf, write_gltf};
@@ -64,7 +64,7 @@ use std::collections::BTreeMap;
 pub enum Container {
     /// Binary: JSON and one buffer in one file (also VRM and VRMA).
     Glb,
-    /// JSON text; buffers inside as data URIs or beside it.
+    /// JSON text; buffers as data URIs or external files.
     Gltf,
 }
 
@@ -74,7 +74,8 @@ pub enum Textures {
     /// No: [`Rig::textures`] stays empty.
     #[default]
     Skip,
-    /// Yes, PNG and JPEG, by the feature `pictures`; what cannot be decoded, everything without the feature, becomes a warning.
+    /// Yes, PNG and JPEG, with the feature `pictures`; a picture that cannot be decoded becomes a warning, as does
+    /// every picture without the feature.
     Decode,
 }
 
@@ -85,7 +86,7 @@ pub struct ReadOptions {
     pub textures: Textures,
 }
 
-/// A glTF file as plain data, with what is needed to write it back.
+/// A glTF file as plain data, including everything needed to write it back.
 #[derive(Clone, Debug)]
 pub struct Document {
     /// Every node of the default scene (else of the first scene, else every node), with skins and meshes.
@@ -100,7 +101,7 @@ pub struct Document {
     pub bin: Option<Vec<u8>>,
     /// Container that the bytes were wrapped in.
     pub container: Container,
-    /// Warnings of what was left out and why, one line each (a picture that cannot be decoded, a missing file beside it).
+    /// Warnings of omissions and their reasons, one line each (an undecodable picture, a missing external file).
     pub warnings: Vec<String>,
     /// Bytes of the buffers that are not the binary chunk.
     buffers: Vec<Buffer>,
@@ -108,7 +109,7 @@ pub struct Document {
     external_images: BTreeMap<usize, Vec<u8>>,
     /// Further chunks of a GLB.
     other_chunks: Vec<u8>,
-    /// Parts of the skin whose weights are not the file's any more: the mesh's joint, and the primitive among those with weights.
+    /// Parts of the skin with changed weights: the mesh's joint, and the primitive's index among those with weights.
     reweighed: Vec<(JointIdx, usize)>,
 }
 
@@ -129,8 +130,8 @@ impl Document {
         used.into_iter().flatten().filter_map(Value::as_str).collect()
     }
 
-    /// Gives all skins new weights by the nearness of their vertices to the bones, for a file whose own weights were
-    /// [lost](sinew_anim::weights::lost_weights). [`append_clips`] writes them.
+    /// Recomputes the weights of all skins from the distance of their vertices to the bones, for a file whose weights
+    /// were [lost](sinew_anim::weights::lost_weights). [`append_clips`] writes them.
     pub fn weigh_by_nearness(&mut self) {
         let changed = weigh_by_nearness(&mut self.rig);
         self.note_reweighed(&changed);
@@ -148,13 +149,13 @@ impl Document {
         self.reweighed.extend(changed);
     }
 
-    /// Format that the springs of the rig are stated in; `None` where the file states none.
+    /// Format of the rig's springs; `None` if the file has none.
     pub fn spring_format(&self) -> Option<SpringFormat> {
         SpringFormat::of(&self.json)
     }
 }
 
-/// Note of vertices that follow the skin nearest to them; `None` where there are none.
+/// Note on vertices that follow the nearest skin; `None` if there are none.
 pub(crate) fn note_of_loose(changed: &[SkinPart]) -> Option<String> {
     let vertices: usize = changed.iter().map(|part| part.vertices.len()).sum();
     match vertices {
@@ -164,7 +165,8 @@ pub(crate) fn note_of_loose(changed: &[SkinPart]) -> Option<String> {
     }
 }
 
-/// Gives the bytes of a file beside the one being read. The path is relative, decoded, has no `..` and no scheme.
+/// Returns the bytes of a file next to the one being read. The path is relative, decoded, and has no `..` and no
+/// scheme.
 pub type Resolver<'a> = dyn FnMut(&str) -> Result<Vec<u8>> + 'a;
 
 /// A resolver for bytes that have no folder: every external file is missing.
@@ -175,16 +177,16 @@ pub fn no_files(path: &str) -> Result<Vec<u8>> {
     Err(Error::io(format!("{} is not available", quoted(path))))
 }
 
-/// Reads a GLB, glTF, VRM or VRMA; the kind is told by the bytes, not by a name.
+/// Reads a GLB, glTF, VRM or VRMA; the bytes decide the kind, not a name.
 ///
-/// Memory stays in proportion to the bytes: what a length in the file claims is checked before anything is allocated,
-/// and what is decoded may not exceed 64 times the bytes present plus 16 MiB (meshes may be placed by many nodes).
+/// Memory is proportional to the input: lengths in the file are checked before allocation, and decoded data may not
+/// exceed 64 times the input plus 16 MiB (many nodes may place one mesh).
 ///
 /// # Errors
-/// Bytes that are no glTF 2.0, an index or range outside its list, numbers that are not finite, a node that is its own
-/// ancestor, a required extension that is not understood, a compressed view or mesh whose stream is broken, a missing
-/// external buffer, a spring that names what is not there. Numbers that are not finite in normals, texture coordinates and colours, and in weights, are mended
-/// with a warning.
+/// Bytes that are no glTF 2.0, an index or range outside its list, non-finite numbers, a node that is its own ancestor,
+/// an unsupported required extension, a compressed view or mesh with a broken stream, a missing external buffer, a
+/// spring with a dangling reference. Non-finite numbers in normals, texture coordinates, colours and weights are
+/// repaired with a warning.
 pub fn read_gltf(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<'_>) -> Result<Document> {
     let (container, json_bytes, bin, other_chunks) = unwrap_container(bytes)?;
     let json = json::parse(json_bytes)?;
@@ -240,7 +242,7 @@ fn unwrap_container(bytes: &[u8]) -> Result<Unwrapped<'_>> {
     }
 }
 
-/// glTF 2.0 §3.2: the version has to be 2.x, the least version a reader needs at most 2.0.
+/// glTF 2.0 §3.2: the version must be 2.x, and the minimum version at most 2.0.
 fn check_asset(root: At<'_>) -> Result<()> {
     let asset = root.need("asset")?;
     let version = asset.need("version")?;
@@ -285,7 +287,7 @@ fn check_extensions(root: At<'_>) -> Result<()> {
     Ok(())
 }
 
-/// The bytes of every buffer: in the binary chunk, in a data URI, or beside the file.
+/// The bytes of every buffer: from the binary chunk, a data URI, or an external file.
 fn load_buffers(root: At<'_>, bin: Option<&[u8]>, resolve: &mut Resolver<'_>) -> Result<Vec<Buffer>> {
     let mut buffers = Vec::new();
     for (i, buffer) in root.list("buffers")?.into_iter().enumerate() {
@@ -315,7 +317,7 @@ fn load_buffers(root: At<'_>, bin: Option<&[u8]>, resolve: &mut Resolver<'_>) ->
     Ok(buffers)
 }
 
-/// Pictures in files of their own. A missing one does no harm to the motion: a warning.
+/// External pictures. A missing one does not affect the motion: a warning.
 fn load_images(
     root: At<'_>,
     resolve: &mut Resolver<'_>,

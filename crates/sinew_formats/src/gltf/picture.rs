@@ -43,7 +43,7 @@ fn png(bytes: &[u8], budget: usize) -> Result<TextureImage, String> {
             pixels.chunks_exact(2).flat_map(|p| [p[0], p[0], p[0], p[1]]).collect()
         }
         png::ColorType::Grayscale => pixels.iter().flat_map(|&p| [p, p, p, 255]).collect(),
-        // Expanded to one of the others.
+        // Expanded to one of the other formats.
         png::ColorType::Indexed => return Err("a palette that cannot be read".into()),
     };
     Ok(TextureImage { width, height, rgba })
@@ -156,7 +156,7 @@ mod tests {
         let refused = |bytes: &[u8], budget| decode_picture(bytes, budget).unwrap_err();
         assert_eq!(refused(&bytes(RED), 255), "8 x 8 pixels, more than all pictures of a file may take");
         assert_eq!(refused(b"BM", 1000), "neither PNG nor JPEG");
-        // 5000 pixels across, by the header alone.
+        // 5000 pixels across, according to the header alone.
         let mut wide = bytes(RED);
         let frame = wide.windows(2).position(|two| two == [0xff, 0xc0]).unwrap();
         wide[frame + 7..frame + 9].copy_from_slice(&5000_u16.to_be_bytes());

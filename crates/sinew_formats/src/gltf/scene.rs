@@ -8,11 +8,11 @@ use sinew_math::{Affine, Mat3, Rotation, Vec3};
 
 /// The tree of a file's nodes, in the rig's order.
 pub(super) struct Scene {
-    /// Joints and skins; meshes come later.
+    /// Joints and skins; meshes are read later.
     pub(super) rig: Rig,
-    /// The joint that a node became; `None` for nodes outside the scene that no skin needs.
+    /// The joint of a node; `None` for nodes outside the scene that no skin needs.
     pub(super) joint_of_node: Vec<Option<JointIdx>>,
-    /// Joints before this one belong to the scene; those behind it are only there for a skin.
+    /// Joints before this one belong to the scene; later ones exist only for a skin.
     pub(super) shown: usize,
 }
 
@@ -119,7 +119,7 @@ fn read_transform(node: At<'_>) -> Result<LocalTransform> {
     })
 }
 
-/// At length 1. What is there already within rounding stays as it is, so that a file's numbers come through unchanged.
+/// Normalised. A quaternion that is unit within rounding is unchanged, so that a file's numbers are preserved.
 fn unit(rotation: Rotation) -> Rotation {
     if (rotation.dot(rotation) - 1.0).abs() < 1e-6 { rotation } else { rotation.normalize() }
 }
@@ -130,7 +130,7 @@ fn affine(m: &[f32; 16]) -> Affine {
     Affine { linear: Mat3::from_cols(column(0), column(1), column(2)), translation: column(3) }
 }
 
-/// Scale, rotation and translation of a node matrix, which has no shear (§3.5.3). A mirror goes into z.
+/// Scale, rotation and translation of a node matrix without shear (§3.5.3). A mirror becomes a negative z scale.
 fn decompose(m: &Affine) -> LocalTransform {
     let columns = m.linear;
     let mirrored = columns.x_axis.cross(columns.y_axis).dot(columns.z_axis) < 0.0;

@@ -1,4 +1,5 @@
-//! Skins that changed, into the user's own file: meshes that became sheets of cloth (a node for each particle, a longer skin, and other joints and weights), and vertices with other weights than the file's.
+//! Writes changed skins into the user's own file: meshes that became sheets of cloth (a node per particle, a longer
+//! skin, other joints and weights), and vertices with changed weights.
 
 use super::Document;
 use super::append::Editor;
@@ -16,7 +17,7 @@ const FLOAT: u32 = 5126;
 const VERTICES: u32 = 34962;
 
 impl Editor {
-    /// Writes the sheets of the document's rig, of which its JSON does not know yet.
+    /// Writes the sheets of the document's rig, which its JSON does not contain yet.
     pub(super) fn write_sheets(&mut self, document: &Document) -> Result<()> {
         let rig = &document.rig;
         let mut skins: Vec<usize> = Vec::new();
@@ -53,7 +54,7 @@ impl Editor {
         Ok(())
     }
 
-    /// The joints of a skin and their inverse bind matrices, those that were there before as they were.
+    /// The joints of a skin and their inverse bind matrices; existing ones are unchanged.
     fn write_skin(&mut self, rig: &Rig, skin: usize) -> Result<()> {
         let of_rig = &rig.skins[skin];
         let bytes: Vec<u8> = of_rig.inverse_bind.iter().flat_map(matrix).flat_map(f32::to_le_bytes).collect();
@@ -63,7 +64,7 @@ impl Editor {
         });
         let accessor = self.push("accessors", accessor)?;
         let nodes: Vec<usize> = of_rig.joints.iter().map(|&joint| rig.joints[joint].source).collect();
-        // Meshes that had no skin got theirs after all others, in this order.
+        // Meshes without a skin got theirs after all others, in this order.
         if skin == self.list("skins")?.len() {
             self.push("skins", json!({}))?;
         }
@@ -96,7 +97,7 @@ impl Editor {
         let of_mesh = self.entry("meshes", of_file)?.get("primitives").and_then(Value::as_array);
         let read = of_mesh.into_iter().flatten().enumerate().filter(|(_, it)| is_read(it, had_skin));
         let read: Vec<usize> = read.map(|(at, _)| at).collect();
-        // In a mesh that had no skin all parts need weights.
+        // In a mesh without a skin all parts need weights.
         let written = if had_skin { primitives.to_vec() } else { (0..mesh.primitives.len()).collect() };
         for at in written {
             let lost =
@@ -111,7 +112,7 @@ impl Editor {
         Ok(())
     }
 
-    /// The mesh of a node, which no other node has: if one does, it gets a copy.
+    /// The mesh of a node; a mesh shared with other nodes is copied first.
     fn own_mesh(&mut self, node: usize) -> Result<usize> {
         let lost = || Error::malformed("the node has no mesh", format!("nodes[{node}]"));
         let of = |entry: &Value| entry.get("mesh").and_then(Value::as_u64);
@@ -145,14 +146,14 @@ impl Editor {
     }
 }
 
-/// True if the reader makes a primitive with weights of it, or one at all.
+/// True if the reader turns a primitive into one with weights, or into one at all.
 fn is_read(primitive: &Value, with_weights: bool) -> bool {
     let has = |name: &str| primitive["attributes"].get(name).is_some();
     let weighs = has("JOINTS_0") && has("WEIGHTS_0");
     has("POSITION") && (weighs || !with_weights) && primitive["mode"].as_u64().is_none_or(|mode| mode >= 4)
 }
 
-/// Gives a primitive other slots and weights, in place of all that it had.
+/// Replaces a primitive's slots and weights.
 fn hang(primitive: &mut Value, [slots, weights]: &[usize; 2]) -> Option<()> {
     let is_weight = |name: &str| name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_");
     let draco = primitive.pointer_mut("/extensions/KHR_draco_mesh_compression/attributes");

@@ -1,4 +1,4 @@
-//! The lists of a glTF file that everything else refers to, and the budget of what may be decoded from them.
+//! The lists of a glTF file that everything else references, and the budget for decoded data.
 
 use crate::container::json::At;
 use crate::error::Result;
@@ -11,9 +11,9 @@ pub(super) enum Buffer {
     Chunk,
     /// A data URI.
     DataUri(Vec<u8>),
-    /// A file beside this one.
+    /// An external file.
     External(Vec<u8>),
-    /// Neither: a placeholder that nothing may read.
+    /// Neither: a placeholder that must not be read.
     Absent,
 }
 
@@ -27,7 +27,7 @@ impl Buffer {
     }
 }
 
-/// A parsed file, ready to be looked things up in.
+/// A parsed file with lookup.
 pub(super) struct Source<'a> {
     pub(super) root: At<'a>,
     pub(super) nodes: Vec<At<'a>>,
@@ -92,7 +92,7 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// Books `count × size` bytes about to be decoded for `at`.
+    /// Books `count × size` bytes for decoding `at`.
     pub(super) fn spend(&self, at: At<'_>, count: usize, size: usize) -> Result<()> {
         let left = count.checked_mul(size).and_then(|bytes| self.budget.get().checked_sub(bytes));
         let Some(left) = left else {

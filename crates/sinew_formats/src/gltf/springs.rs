@@ -13,11 +13,11 @@ use sinew_math::{Affine, Rotation, Vec3, clamp, normalize_or};
 const VERSION_1: &str = "VRMC_springBone";
 const EXTENDED: &str = "VRMC_springBone_extended_collider";
 const LIMIT: &str = "VRMC_springBone_limit";
-/// Bone that VRM 0 gives to a joint without a child, metres.
+/// Bone length that VRM 0 assumes for a joint without a child, metres.
 const VIRTUAL_TAIL: f32 = 0.07;
-/// Most warnings: each is looked for in the whole file.
+/// Largest number of warnings: each searches the whole file for its place.
 const MOST_WARNINGS: usize = 16;
-/// Bytes that a reference to a collider takes, against the file's size.
+/// Memory of a collider reference in bytes, limited by the file size.
 const REFERENCE: usize = size_of::<usize>();
 
 /// Format that a file states its springs in.
@@ -30,7 +30,7 @@ pub enum SpringFormat {
 }
 
 impl SpringFormat {
-    /// That of a glTF's JSON; `None` where it states no springs. Of both, the newer one is read.
+    /// Format of a glTF's JSON; `None` without springs. If both exist, the newer one is read.
     pub(super) fn of(json: &Value) -> Option<Self> {
         let extensions = json.get("extensions")?;
         let stated = |at: Option<&Value>| at.is_some_and(|at| !at.is_null());
@@ -49,7 +49,7 @@ impl SpringFormat {
     }
 }
 
-/// Springs of a file; `warnings` gets a line for what is left out of them.
+/// Springs of a file; adds a line to `warnings` per omission.
 pub(super) fn read(source: &Source<'_>, scene: &Scene, warnings: &mut Vec<String>) -> Result<Springs> {
     let Some(extensions) = source.root.get("extensions")? else { return Ok(Springs::default()) };
     let mut reader = Reader::new(source, scene);
@@ -69,7 +69,7 @@ struct Reader<'a, 's> {
     scene: &'a Scene,
     /// Rest pose in model space.
     rest: Vec<Affine>,
-    /// Per joint: the first behind it that does not hang on it, for joints stand in the order of a walk down the tree.
+    /// Per joint: end of its subtree, because joints are in depth-first order.
     ends: Vec<JointIdx>,
     /// Joints that a chain has.
     taken: Vec<bool>,
@@ -91,12 +91,12 @@ impl<'a, 's> Reader<'a, 's> {
         Self { source, scene, rest, ends, taken, springs: Springs::default(), warnings: Vec::new() }
     }
 
-    /// Joint of a node; `None` for one that no scene shows.
+    /// Joint of a node; `None` for one outside the scene.
     fn joint(&self, at: At<'_>) -> Result<Option<JointIdx>> {
         Ok(self.scene.joint_of_node[at.index(self.source.nodes.len(), "nodes")?])
     }
 
-    /// As [`joint`](Self::joint), for VRM 0, where −1 is none.
+    /// As [`joint`](Self::joint), for VRM 0, where −1 means none.
     fn joint_or_none(&self, at: Option<At<'_>>) -> Result<Option<JointIdx>> {
         match at {
             Some(at) if at.value().as_f64() != Some(-1.0) => self.joint(at),
@@ -104,7 +104,7 @@ impl<'a, 's> Reader<'a, 's> {
         }
     }
 
-    /// True if one joint hangs on another, directly or not.
+    /// True if one joint is a descendant of another.
     fn is_above(&self, above: JointIdx, below: JointIdx) -> bool {
         above < below && below < self.ends[above]
     }
@@ -117,7 +117,7 @@ impl<'a, 's> Reader<'a, 's> {
 
     fn version_1(&mut self, at: At<'_>) -> Result<()> {
         let colliders = at.list("colliders")?;
-        // Index of each collider among those that are kept.
+        // Index of each collider among the kept ones.
         let mut kept = Vec::with_capacity(colliders.len());
         for &collider in &colliders {
             let joint = self.joint(collider.need("node")?)?;
@@ -170,7 +170,7 @@ impl<'a, 's> Reader<'a, 's> {
         Ok(())
     }
 
-    /// Tip of a bone in VRM 1: the next joint, which hangs on it, directly or not.
+    /// Tip of a bone in VRM 1: the next joint, which is its descendant.
     fn tail_1(&self, joint: JointIdx, next: JointIdx) -> Vec3 {
         let node = &self.scene.rig.joints[next];
         let is_child = node.parent == Some(joint);
@@ -183,7 +183,7 @@ impl<'a, 's> Reader<'a, 's> {
         if seen.is_finite() { seen } else { Vec3::ZERO }
     }
 
-    /// Colliders of the groups that a spring names, each once, in their order.
+    /// Colliders of the groups that a spring names, each once, in order.
     fn colliders(&self, spring: At<'_>, groups: &[Vec<usize>]) -> Result<Vec<usize>> {
         let mut named = Vec::new();
         for at in spring.list("colliderGroups")? {
@@ -251,7 +251,7 @@ impl<'a, 's> Reader<'a, 's> {
         Ok(())
     }
 
-    /// Tip of a bone in VRM 0: the first child, else a place beyond the joint, seen from its parent.
+    /// Tip of a bone in VRM 0: the first child, else a position beyond the joint, relative to its parent.
     fn tail_0(&self, joint: JointIdx, children: &[Vec<JointIdx>]) -> Vec3 {
         if let Some(&child) = children[joint].first() {
             return self.scene.rig.joints[child].rest.translation;
@@ -268,7 +268,7 @@ fn number<'a>(at: At<'a>, key: &str, default: f32, read: impl FnOnce(At<'a>) -> 
     at.get(key)?.map_or(Ok(default), read)
 }
 
-/// Settings of a joint of VRM 1, without the place of its bone.
+/// Settings of a VRM 1 joint, without its bone's position.
 fn bone(at: At<'_>, of_spring: Option<SpringLimit>) -> Result<SpringBone> {
     let usual = SpringBone::default();
     let down = Vec3::from_array(at.numbers_or("gravityDir", [0.0, -1.0, 0.0])?);
@@ -282,7 +282,7 @@ fn bone(at: At<'_>, of_spring: Option<SpringLimit>) -> Result<SpringBone> {
     })
 }
 
-/// Settings of a bone group of VRM 0, which spells stiffness its own way.
+/// Settings of a VRM 0 bone group, which misspells stiffness.
 fn bone_0(at: At<'_>) -> Result<SpringBone> {
     let usual = SpringBone::default();
     let down = unity(at.get("gravityDir")?, -Vec3::Y)?;
@@ -302,7 +302,7 @@ fn unity(at: Option<At<'_>>, default: Vec3) -> Result<Vec3> {
     Ok(Vec3::new(axis("x")?, axis("y")?, -axis("z")?))
 }
 
-/// Shape of a collider: that of the extension, where there is one, for the plain one beside it only stands in for it.
+/// Shape of a collider: the extension's, if present; the plain one is its fallback.
 fn collider_shape(collider: At<'_>) -> Result<ColliderShape> {
     let extended = match collider.get("extensions")? {
         Some(extensions) => match extensions.get(EXTENDED)? {
@@ -350,7 +350,7 @@ fn collider_shape(collider: At<'_>) -> Result<ColliderShape> {
 fn limit(holder: At<'_>) -> Result<Option<SpringLimit>> {
     let Some(extensions) = holder.get("extensions")? else { return Ok(None) };
     let Some(at) = extensions.get(LIMIT)? else { return Ok(None) };
-    // The draft's example leaves out the object that its schema asks for.
+    // The draft's example omits the object that its schema requires.
     let at = at.get("limit")?.unwrap_or(at);
     let angle = |at: At<'_>, key: &str, most: f32| -> Result<f32> {
         Ok(clamp(at.need(key)?.not_negative()?, 0.0, most))

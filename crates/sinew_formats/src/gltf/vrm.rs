@@ -4,8 +4,8 @@ use crate::container::json::At;
 use serde_json::Value;
 use sinew_anim::JointIdx;
 
-/// VRM 1 bone names with their joints, sorted by joint. Entries that name no joint of the scene are left out: bones
-/// are optional in both versions, and some exporters write −1.
+/// VRM 1 bone names with their joints, sorted by joint. Entries without a joint of the scene are left out: bones are
+/// optional in both versions, and some exporters write −1.
 pub(super) fn stated_roles(root: At<'_>, joint_of_node: &[Option<JointIdx>]) -> Vec<(String, JointIdx)> {
     let Some(extensions) = root.value().get("extensions") else { return Vec::new() };
     let joint = |bone: &Value| {
@@ -30,7 +30,7 @@ pub(super) fn stated_roles(root: At<'_>, joint_of_node: &[Option<JointIdx>]) -> 
     roles
 }
 
-/// VRM 1 renamed the thumb: its first bone is the metacarpal, not the proximal phalanx; all else kept its name.
+/// VRM 1 renamed the thumb: its first bone is the metacarpal, not the proximal phalanx; all other names are the same.
 fn version_1_name(version_0: &str) -> String {
     match version_0 {
         "leftThumbProximal" => "leftThumbMetacarpal",

@@ -1,4 +1,4 @@
-//! A rig that came from no file, as a new GLB.
+//! Writes a rig that was not read from a file as a new GLB.
 
 use super::{Document, NewClip, ReadOptions, append_clips, no_files, read_gltf};
 use crate::container::glb;
@@ -12,9 +12,9 @@ const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
-/// A rig made by code, with its clips, as a GLB of its own. Joint `i` becomes node `i`; each mesh gets a node behind
-/// them, a skinned one at the top of the scene, where its own transform cannot be taken to count. For a rig that was
-/// read from a file there is [`append_clips`](super::append_clips), which keeps everything else of that file.
+/// A rig made by code, with its clips, as a new GLB. Joint `i` becomes node `i`. Each mesh gets a node after them; a
+/// skinned one is at the root of the scene, where no ancestor transform can affect it. For a rig read from a file use
+/// [`append_clips`](super::append_clips), which preserves the rest of that file.
 ///
 /// Pictures are not written: a textured surface keeps its base colour.
 ///
@@ -33,7 +33,7 @@ pub fn write_gltf(rig: &Rig, clips: &[Clip]) -> Result<Vec<u8>> {
 /// As [`write_gltf`].
 ///
 /// # Panics
-/// As [`write_gltf`], and if there are not as many lists of events as clips.
+/// As [`write_gltf`], and if there is not one list of events per clip.
 pub fn write_motion(rig: &Rig, clips: &[Clip], events: &[Vec<ClipEvent>]) -> Result<Vec<u8>> {
     assert_eq!(clips.len(), events.len(), "a list of events for each clip");
     let bytes = write_rig(rig)?;
@@ -168,7 +168,7 @@ impl Writer {
         json!({"attributes": attributes, "indices": indices, "material": self.materials.len() - 1})
     }
 
-    /// Skin slots of the vertices; 0 where the weight is 0, as §3.7.3.3 wants it.
+    /// Skin slots of the vertices; 0 where the weight is 0, as §3.7.3.3 requires.
     fn slots(&mut self, part: &Primitive) -> usize {
         let used = part.joints.iter().zip(&part.weights).flat_map(|(slots, weights)| {
             let used = |k: usize| if weights[k] > 0.0 { slots[k] } else { 0 };
@@ -192,7 +192,7 @@ impl Writer {
         self.push(FLOAT, kind, count, numbers.flat_map(f32::to_le_bytes))
     }
 
-    /// A buffer view of its own with an accessor over all of it.
+    /// A separate buffer view with an accessor over all of it.
     fn push(&mut self, component: u32, kind: &str, count: usize, bytes: impl Iterator<Item = u8>) -> usize {
         let start = self.bin.len();
         self.bin.extend(bytes);

@@ -1,12 +1,12 @@
-//! The text object format: classes that the file declares itself, then objects as their members' values, a line each.
+//! The text object format: class declarations, then objects as the values of their members, one per line.
 //!
 //! ```text
 //! TOS 1.00
 //! declare CLASS COUNT          then COUNT lines `  NAME TYPE`
 //! object CLASS ID              then a line for each number, word or vector, in the order of the declaration
 //! ```
-//! A member of type `instance` is either an object in place, whose lines stand further in, or the id of another object: eight
-//! hexadecimal digits, 0 for none. An array begins with its length.
+//! A member of type `instance` is either an inline object, whose lines are indented further, or the id of another
+//! object: eight hexadecimal digits, 0 for none. An array starts with its length.
 
 use crate::error::{Error, Result, quoted};
 use sinew_math::{Rotation, Vec3};
@@ -20,7 +20,7 @@ const DEEPEST: usize = 16;
 /// Type of a member.
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
-    /// Numbers on a line, so many.
+    /// Numbers on a line, this many.
     Numbers(usize),
     /// A number or a truth value.
     Word,
@@ -39,7 +39,7 @@ enum Value {
     Object(Object),
 }
 
-/// A value and the line it begins on.
+/// A value and its first line.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct At {
     line: usize,
@@ -106,7 +106,7 @@ impl Objects {
         self.by_id.values().find(|object| object.class == class)
     }
 
-    /// The object that a member names or is; `None` where it names none.
+    /// The object that a member references or contains; `None` if it references none.
     pub fn follow<'a>(&'a self, at: &'a At) -> Result<Option<&'a Object>> {
         match &at.value {
             Value::Object(object) => Ok(Some(object)),
@@ -152,7 +152,7 @@ impl At {
         Error::malformed(what, place(self.line))
     }
 
-    /// An object that stands in place.
+    /// An inline object.
     pub fn object(&self) -> Option<&Object> {
         match &self.value {
             Value::Object(object) => Some(object),
@@ -189,7 +189,7 @@ impl At {
         }
     }
 
-    /// A unit quaternion, x y z w; one of another length is made one.
+    /// A unit quaternion, x y z w; normalised on reading.
     pub fn rotation(&self) -> Result<Rotation> {
         match &self.value {
             Value::Numbers(n) if n.len() == 4 => {
@@ -263,7 +263,7 @@ struct Values<'a, 'b> {
 }
 
 impl Values<'_, '_> {
-    /// The members of an object, whose lines stand `level` in.
+    /// The members of an object, whose lines have indentation `level`.
     fn object(&mut self, class: &str, line: usize, level: usize, depth: usize) -> Result<Object> {
         let Some(members) = self.classes.get(class) else {
             let what = format!("an object of class {}, which is not declared before", quoted(class));
@@ -319,7 +319,7 @@ impl Values<'_, '_> {
             let before = self.lines.line;
             list.push(self.value(inner, level + STEP, depth)?);
             if self.lines.line == before {
-                // Or a few bytes could ask for any amount of memory.
+                // Otherwise a few bytes could request any amount of memory.
                 return Err(Error::malformed("elements of an array without a line", place(number)));
             }
         }
@@ -348,7 +348,7 @@ impl Values<'_, '_> {
 struct Lines<'a> {
     all: core::iter::Enumerate<core::str::Lines<'a>>,
     ahead: Option<(usize, &'a str)>,
-    /// Number of the last that was taken.
+    /// Number of the last line read.
     line: usize,
 }
 

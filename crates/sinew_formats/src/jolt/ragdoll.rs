@@ -15,30 +15,30 @@ pub struct JoltMotor {
     pub hertz: f32,
     /// 1 is critical.
     pub damping_ratio: f32,
-    /// N·m, infinite where there is no cap.
+    /// N·m, infinite without a cap.
     pub max_torque: f32,
 }
 
 /// A ragdoll of Jolt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JoltRagdoll {
-    /// Its skeleton, at rest where the ragdoll's parts are. It has no skin.
+    /// Its skeleton, resting where the ragdoll's parts are. It has no skin.
     pub rig: Rig,
     /// Body by body as the skeleton's joints.
     pub def: RagdollDef,
-    /// Motor of each body's joint to its parent, that of the swing; `None` of the root.
+    /// Swing motor of each body's joint to its parent; `None` for the root.
     pub motors: Vec<Option<JoltMotor>>,
 }
 
-/// Reads a ragdoll: its skeleton, shapes of one solid each, joints between swing and twist limits with their friction and
-/// motors, and which pairs collide.
+/// Reads a ragdoll: its skeleton, one solid per body, joints with swing and twist limits, friction and motors, and the
+/// pairs that collide.
 ///
-/// Jolt's swing limit is an ellipse in the quaternion's space, ours in that of angles: they agree on both axes, and off them
-/// to a few per cent. What a part weighs follows from its shape and density, or its mass is given.
+/// Jolt's swing limit is an ellipse in quaternion space, ours in angle space: they agree on both axes, and within a few
+/// per cent elsewhere. A part's mass follows from its shape and density, or is given.
 ///
 /// # Errors
-/// Names the line: no text object file, no ragdoll in it, a part that does not come after its parent, a number that is not
-/// finite or makes no sense; a shape or joint of another class, or mass given with inertia, is not supported.
+/// Names the line: no text object file, no ragdoll in it, a part that does not follow its parent, a number that is not
+/// finite or out of range; a shape or joint of another class, or mass given with inertia, is not supported.
 pub fn read_jolt_ragdoll(bytes: &[u8]) -> Result<JoltRagdoll> {
     let objects = Objects::read(bytes)?;
     let Some(settings) = objects.of_class("RagdollSettings") else {
@@ -116,7 +116,7 @@ impl Read {
         Ok(())
     }
 
-    /// A swing-twist constraint: x is its twist axis, z its plane axis, y the normal of both. The cone's half-angle in the
+    /// A swing-twist constraint: x is its twist axis, z its plane axis, y their normal. The cone's half-angle in the
     /// plane is that of the swing about y (Jolt, `SwingTwistConstraint::UpdateLimits`).
     fn constraint(
         &self,
@@ -174,7 +174,7 @@ impl Read {
         Ok((def, motor))
     }
 
-    /// Pairs that a table of the parts' collision groups parts: a bit for each pair, row by row of its lower triangle.
+    /// Pairs that the table of collision groups disables: one bit per pair, row by row of its lower triangle.
     fn filter(&mut self, objects: &Objects, parts: &[At]) -> Result<()> {
         let mut groups = Vec::new();
         for part in parts {
@@ -205,7 +205,7 @@ impl Read {
         Ok(())
     }
 
-    /// Roles and the way it faces, as far as the skeleton tells, and sums.
+    /// Roles and facing, as far as the skeleton identifies them, and sums.
     fn finish(mut self) -> JoltRagdoll {
         let def = &mut self.def;
         let mut turn = Transform::IDENTITY;
@@ -261,7 +261,7 @@ fn mass(part: &Object, solid: &Solid) -> Result<sinew_physics::MassProperties> {
     Ok(mass)
 }
 
-/// `None` for one that has no strength.
+/// `None` for a motor without strength.
 fn motor(objects: &Objects, at: &At) -> Result<Option<JoltMotor>> {
     let settings = objects.need(at)?;
     // Newer files nest the spring.

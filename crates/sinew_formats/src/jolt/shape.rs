@@ -1,4 +1,4 @@
-//! Shapes of Jolt: solids, perhaps several in a body, each moved within it.
+//! Jolt shapes: one or several solids per body, each with an offset.
 
 use super::objects::{Object, Objects};
 use crate::error::{Result, quoted};
@@ -19,8 +19,8 @@ pub(super) struct Solid {
 }
 
 impl Solid {
-    /// Reads a shape: a sphere, box, capsule or tapered capsule, moved or not. Of a compound of several the hull of them all
-    /// collides, and each weighs what it weighs.
+    /// Reads a shape: a sphere, box, capsule or tapered capsule, with or without an offset. A compound collides as its
+    /// convex hull, and each of its solids has its own mass.
     pub fn read(objects: &Objects, object: &Object) -> Result<Self> {
         let mut solids = Vec::new();
         collect(objects, object, Transform::IDENTITY, DEEPEST, &mut solids)?;
@@ -113,7 +113,7 @@ fn primitive(object: &Object) -> Result<Shape> {
     })
 }
 
-/// Rings of points on a solid: corners of a box, else on the balls at both ends.
+/// Sample points on a solid: corners of a box, else rings on the balls at both ends.
 fn outline(shape: &Shape) -> Vec<Vec3> {
     const AROUND: usize = 8;
     let balls = match *shape {

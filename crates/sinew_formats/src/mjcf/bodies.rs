@@ -14,11 +14,11 @@ use std::collections::BTreeMap;
 /// Most bodies of a model: those of the largest joint tree. Pairs of bodies grow with the square.
 pub(crate) const MOST_BODIES: usize = 1024;
 
-/// A body of the file with its place in the tree.
+/// A body of the file with its position in the tree.
 pub(super) struct Link<'a> {
     pub name: String,
     pub element: Element<'a>,
-    /// Index of the body that it hangs on; of the world's, its own.
+    /// Index of the parent body; the world's body has its own index.
     pub parent: usize,
     /// The body, itself or above, up to which nothing moves: 0 for the world.
     pub weld: usize,
@@ -48,11 +48,10 @@ struct Contents<'a> {
 }
 
 impl<'a> Tree<'a> {
-    /// Tree of a document: what is in its `<worldbody>` elements.
+    /// Tree of a document: the content of its `<worldbody>` elements.
     pub fn read(root: Element<'a>, reading: &mut Reading<'a, '_>) -> Result<Self> {
         let mut tree = Self { links: vec![world(root)], by_name: BTreeMap::from([("world", 0)]) };
-        // A list of what is still to be read, the next one last, and no recursion: the depth of the file is not that of
-        // our stack.
+        // Uses an explicit stack instead of recursion, so that a deep file cannot overflow the call stack.
         let mut open = Vec::new();
         for (_, element) in children(root).filter(|(tag, _)| *tag == "worldbody") {
             let contents = reading.contents(element, MAIN)?;
@@ -137,7 +136,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// Body 0: what never moves.
+/// Body 0: static.
 fn world(root: Element<'_>) -> Link<'_> {
     let def = BodyDef { kind: BodyKind::Static, ..BodyDef::default() };
     Link { name: "world".to_owned(), element: root, parent: 0, weld: 0, freedom: Freedom::Welded, def }
@@ -197,7 +196,7 @@ impl<'a> Reading<'a, '_> {
                 [xx, yy, zz, 0.0, 0.0, 0.0]
             }
         };
-        // Seen from our axes: our y is the file's z, our z its −y.
+        // In our axes: our y is the file's z, our z its −y.
         let inertia = Sym3 { diagonal: Vec3::new(xx, zz, yy), off: Vec3::new(-yz, -xy, xz) };
         Ok(MassProperties { mass, center: Vec3::ZERO, inertia }.transformed(&self.pose(element)?))
     }
@@ -228,7 +227,7 @@ impl<'a> Reading<'a, '_> {
 /// Checks that a solid body can have such a mass and inertia.
 pub(crate) fn check_mass(mass: &MassProperties) -> core::result::Result<(), &'static str> {
     let moments = mass.inertia.eigen().0;
-    // Written so that NaN fails.
+    // This form rejects NaN.
     if !(mass.mass > 0.0 && moments.z > 0.0 && mass.mass.is_finite() && moments.is_finite()) {
         return Err("mass and inertia of what moves must be positive, and finite");
     }

@@ -8,7 +8,7 @@ use sinew_math::{Mat3, Rotation, Vec3};
 /// Settings by which the numbers of a file are read.
 pub(super) struct Compiler {
     angle: Angle,
-    /// Axes of Euler angles, in the file's frame, and whether they turn along.
+    /// Axes of Euler angles in the file's frame, intrinsic or extrinsic.
     euler: [(Vec3, Axes); 3],
     /// Rule by which a joint or geom with a range is limited without saying so.
     pub limits: Limits,
@@ -24,12 +24,12 @@ enum Angle {
 /// Axes of Euler angles.
 #[derive(Clone, Copy)]
 enum Axes {
-    /// They turn along with what has been turned.
+    /// Intrinsic: the axes rotate with the preceding rotations.
     Moving,
     Fixed,
 }
 
-/// Rule by which a joint with a range is limited if it does not say so.
+/// Rule that decides if a joint with a range is limited when it does not say so.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Limits {
     ByRange,
@@ -39,7 +39,7 @@ pub(super) enum Limits {
 /// Source of the masses of bodies.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum InertiaFrom {
-    /// From `<inertial>` where it is there, otherwise from geoms.
+    /// From `<inertial>` if present, otherwise from geoms.
     Either,
     Geoms,
     Inertial,
@@ -137,7 +137,7 @@ impl Compiler {
     }
 }
 
-/// Attributes of which one at most says how a thing is turned.
+/// Attributes for a rotation, of which an element may have at most one.
 pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
 fn euler_sequence(value: Value<'_>) -> Result<[(Vec3, Axes); 3]> {
@@ -164,7 +164,7 @@ pub(super) fn quaternion(value: Value<'_>, [w, x, y, z]: [f32; 4]) -> Result<Rot
     Ok(rotation.normalize())
 }
 
-/// A vector of any length but 0, brought to length 1, in the file's axes.
+/// A non-zero vector, normalised, in the file's axes.
 pub(super) fn direction(value: Value<'_>, vector: [f32; 3]) -> Result<Vec3> {
     let vector = Vec3::from_array(vector);
     let length = vector.length();
@@ -174,13 +174,12 @@ pub(super) fn direction(value: Value<'_>, vector: [f32; 3]) -> Result<Vec3> {
     Ok(vector / length)
 }
 
-/// From the file's axes (x forward, y left, z up) to ours (x forward, y up, z right): a quarter turn about x, which is
-/// exact.
+/// From the file's axes (x forward, y left, z up) to ours (x forward, y up, z right): an exact quarter turn about x.
 pub(super) fn y_up(v: Vec3) -> Vec3 {
     Vec3::new(v.x, v.z, -v.y)
 }
 
-/// A rotation seen from our axes.
+/// A rotation converted to our axes.
 pub(super) fn turn_y_up(r: Rotation) -> Rotation {
     Rotation::from_xyzw(r.x, r.z, -r.y, r.w)
 }

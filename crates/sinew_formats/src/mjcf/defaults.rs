@@ -1,10 +1,10 @@
-//! Default classes: attributes that elements of a class have unless they say otherwise.
+//! Default classes: attribute values for elements of a class.
 
 use super::xml::{Element, Value, children, malformed, unsupported};
 use crate::error::{Result, quoted};
 use std::collections::BTreeMap;
 
-/// Deepest nesting of classes, so that looking an attribute up stays quick.
+/// Deepest nesting of classes, which bounds the cost of a lookup.
 const DEEPEST: usize = 32;
 
 /// Kinds of elements whose defaults are read.
@@ -45,8 +45,8 @@ impl<'a> Classes<'a> {
         Ok(classes)
     }
 
-    /// An outermost `<default>` and those within. By a list of what is still to be read, not by recursion: the depth of
-    /// the file is not that of our stack.
+    /// An outermost `<default>` and its descendants. Uses an explicit stack instead of recursion, so that a deep file
+    /// cannot overflow the call stack.
     fn read_nested(&mut self, outermost: Element<'a>) -> Result<()> {
         let mut open = vec![(outermost, MAIN)];
         while let Some((element, index)) = open.pop() {
@@ -57,7 +57,7 @@ impl<'a> Classes<'a> {
                     "geom" => class.geom.extend(entries),
                     "joint" => class.joint.extend(entries),
                     "default" => open.push((child, self.add(child, index)?)),
-                    // Of things that are not read.
+                    // Of elements that are not read.
                     _ => {}
                 }
             }
@@ -86,7 +86,7 @@ impl<'a> Classes<'a> {
         found.ok_or_else(|| value.malformed(format!("no class {}", quoted(value.text()))))
     }
 
-    /// An element with the defaults of its class: the one that it names, or that of the bodies around it.
+    /// An element with the defaults of its class: its own class, or that of the bodies around it.
     pub fn merge(&self, element: Element<'a>, kind: Kind, inherited: usize) -> Result<Merged<'a, '_>> {
         let class = self.named_by(element, "class", inherited)?;
         Ok(Merged { element, kind, class, classes: self })
@@ -108,10 +108,10 @@ impl<'a> Merged<'a, '_> {
         Value::of(self.element, key).or_else(|| self.defaults().find_map(|table| table.get(key).copied()))
     }
 
-    /// The one of these attributes that the element has, or else the innermost class that has any.
+    /// The attribute of these that the element has, else the one that the innermost class has.
     ///
     /// # Errors
-    /// Two of them in the same place, of which only one can hold.
+    /// Two of them at the same level: only one can apply.
     pub fn get_one(&self, keys: &[&str]) -> Result<Option<Value<'a>>> {
         let of_element = keys.iter().filter_map(|key| Value::of(self.element, key)).collect();
         let mut levels = core::iter::once(of_element)

@@ -10,9 +10,9 @@ use sinew_physics::{Filter, MassProperties, Material, Shape, ShapeDef};
 
 /// A geom in the frame of its body.
 pub(super) struct Geom {
-    /// `None` for one that is only there to be seen and of a type that is not read.
+    /// `None` for a visual geom of an unsupported type.
     pub shape: Option<ShapeDef>,
-    /// `None` where it is not known.
+    /// `None` if unknown.
     pub mass: Option<MassProperties>,
 }
 
@@ -24,7 +24,7 @@ struct Segment {
 
 const UNREAD: [&str; 5] = ["solimp", "margin", "gap", "priority", "solmix"];
 
-/// Motion that friction resists by `condim`, as far as it is read.
+/// Motion that friction resists according to `condim`, as far as it is supported.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Resists {
     Sliding,
@@ -115,7 +115,7 @@ fn read_shape(geom: &Merged<'_, '_>, kind: &str, segment: Option<&Segment>) -> R
     Ok(shape)
 }
 
-/// kg/m³, from the mass if that is what is given.
+/// kg/m³, from the mass if that is given.
 fn read_density(geom: &Merged<'_, '_>, shape: &Shape) -> Result<f32> {
     let volume = shape.volume();
     match geom.get("mass") {
@@ -124,7 +124,7 @@ fn read_density(geom: &Merged<'_, '_>, shape: &Shape) -> Result<f32> {
     }
 }
 
-/// Friction of sliding and, if the file asks for it, of rolling; bounce as `solref` has it.
+/// Sliding friction and, if the file enables it, rolling friction; bounce from `solref`.
 fn read_material(geom: &Merged<'_, '_>, notes: &mut Notes) -> Result<Material> {
     let friction = geom.get("friction").map_or(Ok(vec![1.0]), Value::list)?;
     if friction.iter().any(|&coefficient| coefficient < 0.0) {
@@ -146,9 +146,9 @@ fn read_material(geom: &Merged<'_, '_>, notes: &mut Notes) -> Result<Material> {
     })
 }
 
-/// Half a period of the damped spring that `solref` makes of a contact: a point that came in with 1 m/s leaves with
-/// `exp(−πζ/√(1 − ζ²))`, nothing if the damping ratio ζ is 1 or more. Two positive numbers are time constant and ζ, two negative
-/// ones stiffness `k` and damping `b` per mass, with `ζ = b/(2√k)`.
+/// Half a period of the damped spring that `solref` makes of a contact: a point that arrives with 1 m/s leaves with
+/// `exp(−πζ/√(1 − ζ²))`, or zero if the damping ratio ζ is 1 or more. Two positive numbers are time constant and ζ, two
+/// negative ones stiffness `k` and damping `b` per mass, with `ζ = b/(2√k)`.
 fn read_restitution(solref: Value<'_>) -> Result<f32> {
     let (first, second) = match solref.list()?[..] {
         [] => return Ok(0.0),
@@ -156,7 +156,7 @@ fn read_restitution(solref: Value<'_>) -> Result<f32> {
         [first, second, ..] => (first, second),
     };
     let damping = if first > 0.0 { second } else { -second / (2.0 * (-first).sqrt()) };
-    // Written so that NaN is no bounce.
+    // This form treats NaN as no bounce.
     if !(0.0..1.0).contains(&damping) {
         return Ok(0.0);
     }
@@ -164,9 +164,9 @@ fn read_restitution(solref: Value<'_>) -> Result<f32> {
     Ok(sinew_math::trig::exp(-core::f32::consts::PI * share))
 }
 
-/// Two geoms meet if either's `contype` has a bit of the other's `conaffinity`; our two filters must both agree. So each
-/// keeps one word in the lower half and the other in the upper: what one side sees in one half, the other sees in the
-/// other half.
+/// Two geoms collide if either's `contype` shares a bit with the other's `conaffinity`; our two filters must both
+/// agree. Each filter therefore keeps one word in the lower half and the other in the upper: what one side tests in one
+/// half, the other tests in the other half.
 fn read_filter(geom: &Merged<'_, '_>) -> Result<Filter> {
     let bits = |key: &str| match geom.get(key) {
         None => Ok(1),

@@ -9,9 +9,9 @@ use core::f32::consts::PI;
 use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, clamp, max, min};
 use sinew_physics::{AxisMotion, JointKind, SixDof, Softness, Spring};
 
-/// Joints that let a body move in its parent.
+/// Joints between a body and its parent.
 pub(super) enum Freedom {
-    /// Nothing: it is a part of its parent.
+    /// None: the body is fixed to its parent.
     Welded,
     /// All: it has no parent.
     Free,
@@ -23,13 +23,13 @@ pub(super) enum Freedom {
     Hinges(Vec<Pivot>),
 }
 
-/// A `<joint>` of a body, in the body's frame. What depends on its type is in radians, or metres for a slide.
+/// A `<joint>` of a body, in the body's frame. Type-dependent numbers are in radians, or metres for a slide.
 pub(super) struct Pivot {
     name: String,
     anchor: Vec3,
     /// Unit axis of the joint.
     axis: Vec3,
-    /// From the pose of the file; `None`: unlimited.
+    /// Relative to the file's pose; `None`: unlimited.
     range: Option<Range>,
     /// Coordinate in the pose of the file.
     reference: f32,
@@ -48,9 +48,9 @@ enum Measure {
     Length,
 }
 
-/// Cosine of the angle between hinges that are taken to be at right angles: 6° from it.
+/// Cosine of the angle between hinges that count as perpendicular: within 6°.
 const NEARLY_PERPENDICULAR: f32 = 0.1;
-/// Anchors that are farther apart are worth a note, metres.
+/// Anchors farther apart get a note, metres.
 const SAME_ANCHOR: f32 = 1e-3;
 
 const UNREAD: [(&str, &str); 4] = [
@@ -61,7 +61,7 @@ const UNREAD: [(&str, &str); 4] = [
 ];
 
 impl Freedom {
-    /// Adds a `<joint>` to what the body has so far.
+    /// Adds a `<joint>` to the body's joints so far.
     pub fn and_joint(self, joint: &Merged<'_, '_>, compiler: &Compiler, notes: &mut Notes) -> Result<Self> {
         let kind = joint.get("type").map_or("hinge", Value::text);
         let mut read = |measure| Pivot::read(joint, measure, compiler, notes);
@@ -82,7 +82,7 @@ impl Freedom {
         }
     }
 
-    /// Names of its joints, if there are any.
+    /// Names of its joints, if any.
     pub fn name(&self) -> Option<String> {
         match self {
             Self::Welded | Self::Free => None,
@@ -94,7 +94,7 @@ impl Freedom {
         }
     }
 
-    /// Numbers that say where the body is in its parent.
+    /// Numbers of coordinates of the body relative to its parent.
     pub fn coordinates(&self) -> usize {
         match self {
             Self::Welded => 0,
@@ -124,7 +124,7 @@ impl Freedom {
     }
 }
 
-/// MuJoCo turns a body by its hinges in their order, each in the axes that those before it left.
+/// MuJoCo applies a body's hinges in order, each in the axes left by the previous ones.
 fn turned<'a>(hinges: impl Iterator<Item = (&'a Pivot, f32)>) -> Rotation {
     hinges
         .fold(Rotation::IDENTITY, |turn, (hinge, angle)| turn * Rotation::from_axis_angle(hinge.axis, angle))
@@ -189,13 +189,13 @@ fn read_range(joint: &Merged<'_, '_>, limits: Limits) -> Result<Option<[f32; 2]>
     Ok(limited.then_some([lo, hi]))
 }
 
-/// The same range of angles with its middle within ±π.
+/// The same range of angles with its centre within ±π.
 fn whole_turns_off(range: Range) -> Range {
     let turns = (range.center() / (2.0 * PI)).round() * (2.0 * PI);
     Range::new(range.lo - turns, range.hi - turns)
 }
 
-/// The joint that a freedom becomes, as the body sees it.
+/// The joint of a freedom, in the body's frame.
 pub(super) struct BodyJoint {
     /// Joint frame in the body's frame.
     pub frame: Transform,
@@ -210,7 +210,7 @@ impl BodyJoint {
     pub const WELD: Self =
         Self { frame: Transform::IDENTITY, kind: JointKind::Fixed, spring: None, friction: 0.0 };
 
-    /// Joint of a ball, whose one range is that of the whole angle from the pose of the file.
+    /// Joint of a ball, whose single range limits the total angle from the file's pose.
     pub fn of_ball(ball: &Pivot) -> Self {
         let limit = ball.range.map(|range| {
             let within = Range::symmetric(max(range.hi, 0.0));
@@ -229,13 +229,12 @@ impl BodyJoint {
         Self { frame, kind: JointKind::Slider { limit: slide.range }, spring, friction: slide.friction }
     }
 
-    /// Joint of one to three hinges at right angles to each other, the first next to the parent.
+    /// Joint of one to three perpendicular hinges, the first next to the parent.
     ///
-    /// The body turns by `R₁ R₂ R₃`. A swing and a twist are that with the **last** hinge's axis as x: what that hinge
-    /// does is the twist, exactly. With two hinges the first one is all of the swing, exactly. With three, `R₁ R₂` is a
-    /// swing about both other axes and, to second order, a twist of `2 atan(tan ½θ₁ tan ½θ₂)`; and the swings lie within
-    /// an ellipse for each quadrant, not within a rectangle. Hinges of limbs have the widest range last (bending a hip),
-    /// for which this fits best.
+    /// The body rotates by `R₁ R₂ R₃`. With the **last** hinge's axis as x, the last hinge is exactly the twist. With
+    /// two hinges the first one is exactly the swing. With three, `R₁ R₂` is a swing about both other axes and, to
+    /// second order, a twist of `2 atan(tan ½θ₁ tan ½θ₂)`; the swings lie within an ellipse per quadrant instead of a
+    /// rectangle. Hinges of limbs usually have the widest range last (hip flexion), where this approximation is best.
     pub fn of_hinges(hinges: &[Pivot], element: Element<'_>, notes: &mut Notes) -> Result<Self> {
         let axes = joint_axes(hinges, element)?;
         let kind = match hinges {
@@ -279,7 +278,7 @@ fn within(range: Option<Range>) -> AxisMotion {
     range.map_or(AxisMotion::Free, AxisMotion::Limited)
 }
 
-/// The range of a hinge as a swing: no more than half a turn each way, and 0 inside.
+/// The range of a hinge as a swing: at most half a turn each way, and containing 0.
 fn swing(hinge: &Pivot, range: Range, notes: &mut Notes) -> Range {
     if range.lo > 0.0 || range.hi < 0.0 {
         let name = quoted(&hinge.name);
@@ -317,7 +316,7 @@ fn joint_axes(hinges: &[Pivot], element: Element<'_>) -> Result<Rotation> {
     Ok(Rotation::from_mat3(&Mat3::from_cols(x, y, x.cross(y))).normalize())
 }
 
-/// The one point about which the body turns, in its frame.
+/// The common pivot of the body, in its frame.
 fn shared_anchor(hinges: &[Pivot], notes: &mut Notes) -> Vec3 {
     let sum: Vec3 = hinges.iter().map(|hinge| hinge.anchor).sum();
     let apart = hinges.iter().map(|hinge| (hinge.anchor - hinges[0].anchor).length()).fold(0.0, max);

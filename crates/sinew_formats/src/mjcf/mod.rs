@@ -1,4 +1,4 @@
-//! Robot and body models in MuJoCo's format MJCF: the part of it that rigid bodies and joints need.
+//! Reads robot and body models in MuJoCo's format MJCF: the subset for rigid bodies and joints.
 //!
 //! What is read: bodies with their poses (`pos`, and `quat`, `axisangle`, `euler`, `xyaxes` or `zaxis`), geoms of type
 //! plane, sphere, capsule and box (`size`, `fromto`, `density`, `mass`, `friction` of sliding and, with `condim` 6, of rolling,
@@ -6,18 +6,17 @@
 //! free joints, `childclass` and default classes, `<exclude>`, keyframes, and of `<compiler>`: `angle`, `eulerseq`,
 //! `autolimits`, `inertiafromgeom`. Metres, kilograms; the file's z up becomes our y up, its x stays x.
 //!
-//! What has no counterpart is left out and said so in [`MjcfModel::notes`]: rotor inertia of joints, actuators, sensors,
-//! tendons, equalities, softness of contacts and limits. What would make another body of it is an error: files that
-//! include others, meshes that collide, slides together with hinges, `<frame>`, `<replicate>`.
+//! Features without a counterpart are left out with a note in [`MjcfModel::notes`]: rotor inertia of joints, actuators,
+//! sensors, tendons, equalities, softness of contacts and limits. Features that would change the bodies are errors:
+//! included files, colliding meshes, slides together with hinges, `<frame>`, `<replicate>`.
 //!
-//! - **Bodies without joints** are parts of their parent. They stay bodies of their own, with their own name and mass,
-//!   on a fixed joint; as in MuJoCo, contacts are left out between parts of one thing, and between a thing and what is
-//!   jointed to it, unless that is the world.
-//! - **Hinges of one body** become one joint, whose zero is the pose of the file. They must be at right angles to each
-//!   other. One is a hinge; two are a joint that swings about the first and twists about the last, exactly; three are a
-//!   ball whose twist is that of the last, exactly, and whose swings lie within an ellipse for each quadrant where MuJoCo
-//!   has a rectangle. Where their anchors differ, the joint's is in the middle; where their springs differ, it has the
-//!   softest.
+//! - **Bodies without joints** are fixed to their parent. They remain separate bodies with their own name and mass, on
+//!   a fixed joint. As in MuJoCo, parts fixed to each other do not collide, nor does such a group with one jointed to
+//!   it, unless that is the world.
+//! - **Hinges of one body** become one joint, whose zero is the file's pose. They must be perpendicular. One is a
+//!   hinge. Two are a joint that swings about the first and twists about the last, exactly. Three are a ball joint
+//!   whose twist is exactly the last hinge and whose swings lie within an ellipse per quadrant where MuJoCo has a
+//!   rectangle. If their anchors differ, the joint uses the mean; if their springs differ, it uses the softest.
 //! - **Friction** of a pair is the geometric mean here, and the larger in MuJoCo.
 //!
 //! ```
@@ -71,11 +70,11 @@ pub struct MjcfModel {
     pub bodies: Vec<MjcfBody>,
     /// In the order of their children.
     pub joints: Vec<MjcfJoint>,
-    /// Pairs of bodies, by index, that pass through each other though no joint is between them.
+    /// Pairs of bodies without a joint, by index, that do not collide.
     pub excluded_pairs: Vec<(usize, usize)>,
     /// Named poses.
     pub keyframes: Vec<MjcfKeyframe>,
-    /// Notes on what was left out or changed, a sentence each.
+    /// Notes on omissions and changes, one sentence each.
     pub notes: Vec<String>,
 }
 
@@ -91,13 +90,13 @@ pub struct MjcfBody {
 /// A joint of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MjcfJoint {
-    /// Names of the file's joints that it is made of, joined by `+`; of a weld, the body's.
+    /// Names of the file's joints it was made from, joined by `+`; for a weld, the body's name.
     pub name: String,
     /// Index of the body that is nearer to the world.
     pub parent: usize,
     /// Index of the other body.
     pub child: usize,
-    /// Joint frame in the parent's frame. Both agree in the pose of the file.
+    /// Joint frame in the parent's frame. Both frames coincide in the file's pose.
     pub frame_a: Transform,
     /// Joint frame in the child's frame.
     pub frame_b: Transform,
@@ -111,14 +110,14 @@ pub struct MjcfJoint {
     pub collision: JointCollision,
 }
 
-/// A named pose: what is elsewhere than in the pose of the file.
+/// A named pose, as differences from the file's pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MjcfKeyframe {
     /// In the file, or `""`.
     pub name: String,
-    /// Free bodies, by index, and their place in the world.
+    /// Free bodies, by index, and their world poses.
     pub placed: Vec<(usize, Transform)>,
-    /// Joints, by index, and their `frame_b` seen from `frame_a`.
+    /// Joints, by index, and the pose of `frame_b` relative to `frame_a`.
     pub moved: Vec<(usize, Transform)>,
 }
 
@@ -134,9 +133,9 @@ pub struct MjcfInstance {
 /// Reads an MJCF file.
 ///
 /// # Errors
-/// Names line and column: text that is not XML; elements, attributes and values that the format does not have where
-/// they stand; what is not read and would make another model; bodies that move and have no mass; more than 4 MiB, 1,024
-/// bodies or 32 nested default classes.
+/// Names line and column: text that is not XML; elements, attributes and values that the format does not allow there;
+/// unsupported features that would change the model; moving bodies without mass; more than 4 MiB, 1,024 bodies or 32
+/// nested default classes.
 pub fn read_mjcf(bytes: &[u8]) -> Result<MjcfModel> {
     let document = xml::parse(bytes)?;
     let root = document.root_element();
@@ -185,7 +184,7 @@ fn read_gravity(root: Element<'_>) -> Result<Vec3> {
     Ok(y_up(Vec3::from_array(said.map_or(Ok([0.0, 0.0, -9.81]), Value::numbers)?)))
 }
 
-/// Joints between moving bodies and those that they hang on.
+/// Joints between moving bodies and their parents.
 fn read_joints(tree: &Tree<'_>, notes: &mut Notes) -> Result<Vec<MjcfJoint>> {
     let mut joints = Vec::new();
     for (child, link) in tree.links.iter().enumerate() {
@@ -218,8 +217,8 @@ fn read_joints(tree: &Tree<'_>, notes: &mut Notes) -> Result<Vec<MjcfJoint>> {
     Ok(joints)
 }
 
-/// Pairs that do not collide: those that `<exclude>` names, and those that MuJoCo leaves out by itself: parts of one thing,
-/// and things jointed to each other. Pairs with a joint between them have that from the joint.
+/// Pairs that do not collide: those listed in `<exclude>`, and those that MuJoCo excludes itself: parts fixed to each
+/// other, and groups jointed to each other. A joint excludes its own pair.
 fn excluded_pairs(root: Element<'_>, tree: &Tree<'_>, notes: &mut Notes) -> Result<Vec<(usize, usize)>> {
     let mut pairs = Vec::new();
     let contacts = children(root).filter(|(tag, _)| *tag == "contact");
@@ -266,10 +265,10 @@ impl MjcfModel {
         self.bodies.iter().map(|body| Transform::new(body.def.position, body.def.rotation)).collect()
     }
 
-    /// World poses of all bodies in a keyframe: joints hold in it, but a limit may be passed.
+    /// World poses of all bodies in a keyframe: joints are satisfied, but a limit may be exceeded.
     ///
     /// # Panics
-    /// If the keyframe is that of another model.
+    /// If the keyframe belongs to another model.
     pub fn pose(&self, keyframe: &MjcfKeyframe) -> Vec<Transform> {
         let mut pose = self.rest_pose();
         for &(body, place) in &keyframe.placed {
@@ -279,7 +278,7 @@ impl MjcfModel {
         for &(joint, moved) in &keyframe.moved {
             moves[joint] = moved;
         }
-        // Joints are in the order of their children, and parents come before children.
+        // Joints are in the order of their children, and parents precede children.
         for (joint, moved) in self.joints.iter().zip(moves) {
             let placed = pose[joint.parent] * joint.frame_a * moved * joint.frame_b.inverse();
             pose[joint.child] = Transform::new(placed.translation, placed.rotation.normalize());
@@ -292,7 +291,7 @@ impl MjcfModel {
         self.spawn_at(world, &self.rest_pose())
     }
 
-    /// Puts the model into a world, each body at the pose given.
+    /// Adds the model to a world, each body at its given pose.
     ///
     /// # Panics
     /// If there is not one finite pose per body.

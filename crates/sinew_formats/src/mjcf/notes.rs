@@ -1,6 +1,6 @@
-//! Notes on what a reader leaves out or changes, so that nobody has to find out by surprise.
+//! Notes on what a reader leaves out or changes.
 
-/// Collects notes, each once, with the number of times that it applies: memory does not grow with the file.
+/// Collects notes, each once with its count: memory does not grow with the file.
 #[derive(Default)]
 pub(crate) struct Notes {
     left_out: Vec<(&'static str, usize)>,
@@ -11,7 +11,7 @@ pub(crate) struct Notes {
 const MOST_CHANGES: usize = 64;
 
 impl Notes {
-    /// One more thing of that sort is in the file and not in the model.
+    /// Records a feature of the file that the model lacks.
     pub fn left_out(&mut self, what: &'static str) {
         match self.left_out.iter_mut().find(|(known, _)| *known == what) {
             Some((_, count)) => *count += 1,
@@ -19,14 +19,14 @@ impl Notes {
         }
     }
 
-    /// The model says something else than the file.
+    /// Records a difference between the model and the file.
     pub fn changed(&mut self, sentence: String) {
         if self.changed.len() < MOST_CHANGES {
             self.changed.push(sentence);
         }
     }
 
-    /// A sentence each.
+    /// One sentence each.
     pub fn into_sentences(self) -> Vec<String> {
         let left_out = self.left_out.into_iter().map(|(what, count)| format!("left out: {what} ({count})"));
         self.changed.into_iter().chain(left_out).collect()

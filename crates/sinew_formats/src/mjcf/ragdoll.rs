@@ -1,4 +1,4 @@
-//! A model as a ragdoll: one shape a body, joints that only turn.
+//! A model as a ragdoll: one shape per body, joints that only rotate.
 
 use super::{MjcfJoint, MjcfModel};
 use crate::error::{Error, Result, quoted};
@@ -9,7 +9,7 @@ use sinew_physics::{
 };
 use sinew_ragdoll::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 
-/// Density of the ball that stands in for a body without shapes, kg/m³.
+/// Density of the ball that replaces the shape of a body without shapes, kg/m³.
 const FLESH: f32 = 1000.0;
 
 /// A character of an MJCF file as a ragdoll.
@@ -20,15 +20,15 @@ pub struct MjcfRagdoll {
     pub def: RagdollDef,
     /// Springs of the joints, by joint.
     pub springs: Vec<Option<Softness>>,
-    /// Notes on what became something else, a sentence each.
+    /// Notes on changes, one sentence each.
     pub notes: Vec<String>,
 }
 
 impl MjcfModel {
     /// The model's first tree of moving bodies as a ragdoll.
     ///
-    /// A body of several shapes gets their convex hull, one without a shape a ball of its mass; two hinges become a
-    /// universal joint, whose range is an ellipse where theirs is a rectangle.
+    /// A body with several shapes gets their convex hull, one without a shape a ball of its mass; two hinges become a
+    /// universal joint, whose range is an ellipse instead of a rectangle.
     ///
     /// # Errors
     /// Nothing in the model moves; a joint slides or is a rod; a body has no name.
@@ -139,7 +139,7 @@ impl<'a> MjcfBodyShapes<'a> {
     }
 }
 
-/// Points whose hull is the shape, or lies within 4 % of its radius inside it; in the body's frame.
+/// Points whose hull is the shape, or inside it by at most 4 % of its radius; in the body's frame.
 fn outline(shape: &ShapeDef) -> Vec<Vec3> {
     let ball = |center: Vec3, radius: f32| {
         let mut points = Vec::new();
@@ -198,14 +198,14 @@ fn turning(joint: &MjcfJoint, notes: &mut Vec<String>) -> Result<(JointKind, Tra
         AxisMotion::Locked => Range::symmetric(0.0),
     };
     notes.push(format!("the two hinges {} became one joint with an elliptic range", quoted(&joint.name)));
-    // Its y stays the first hinge's, its z becomes the last one's, which was x.
+    // Its y remains the first hinge's axis; its z becomes the last hinge's, which was x.
     let axes = Rotation::from_mat3(&Mat3::from_cols(-Vec3::Z, Vec3::Y, Vec3::X));
     let limit =
         SwingTwistLimit { swing_y: range(swing), swing_z: range(twist), twist: Range::symmetric(0.0) };
     Ok((JointKind::Universal { limit: Some(limit) }, Transform::new(Vec3::ZERO, axes)))
 }
 
-/// The role that a body's name says, else `limb_n_0`.
+/// The role given by a body's name, else `limb_n_0`.
 fn role_of(name: &str, index: usize) -> String {
     let name = name.to_ascii_lowercase();
     let words: Vec<&str> = name.split(|c: char| !c.is_ascii_alphanumeric()).collect();

@@ -11,16 +11,16 @@ use sinew_ragdoll::{RagdollBodyDef, RagdollDef};
 pub struct MjcfText {
     /// The file.
     pub text: String,
-    /// Notes on what the format cannot hold, a sentence each.
+    /// Notes on what the format cannot represent, one sentence each.
     pub notes: Vec<String>,
 }
 
 /// The ragdoll in its bind pose on a plane, facing +x with z up, as MJCF. `name` is that of the model.
 ///
-/// A ball joint becomes three hinges, a universal joint two, each with the range that it has from the bind pose while the
-/// others rest: a box where the ragdoll's limit is an ellipse. Coordinates are 0 in the bind pose, but for hinges, which
-/// keep their own angle (`ref`). Tapered capsules get their mean radius, cones the cylinder and hulls the box around them.
-/// Masses and inertias are written as they are.
+/// A ball joint becomes three hinges, a universal joint two, each with the range that it has from the bind pose while
+/// the others rest: a box where the ragdoll's limit is an ellipse. Coordinates are 0 in the bind pose, except for
+/// hinges, which keep their own angle (`ref`). Tapered capsules get their mean radius, cones become their cylinder and
+/// hulls their bounding box. Masses and inertias are written unchanged.
 ///
 /// # Panics
 /// If the joints are not in the order of the bodies, or a number is not finite.
@@ -56,7 +56,7 @@ pub fn write_mjcf(def: &RagdollDef, name: &str) -> MjcfText {
     MjcfText { text: writer.out, notes: writer.notes }
 }
 
-/// Names of bodies, each once.
+/// Unique names of bodies.
 fn names(def: &RagdollDef) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for body in &def.bodies {
@@ -72,7 +72,7 @@ fn names(def: &RagdollDef) -> Vec<String> {
     names
 }
 
-/// Text as it may stand in an attribute.
+/// Text escaped for an attribute.
 fn escaped(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
@@ -102,7 +102,7 @@ impl Writer<'_> {
         self.out.push('\n');
     }
 
-    /// A body with what hangs on it.
+    /// A body with its descendants.
     fn body(&mut self, index: usize, indent: usize) {
         let body = &self.def.bodies[index];
         let joint = index.checked_sub(1).map(|joint| self.def.joints[joint]);
@@ -164,7 +164,7 @@ impl Writer<'_> {
                 let angle = sinew_math::limits::hinge_angle(bind);
                 vec![hinge("", Vec3::X, limit.map(|range| [range.lo, range.hi]), angle)]
             }
-            // The twist comes last: it is then exactly the last hinge's.
+            // The twist is last: it is then exactly the last hinge.
             JointKind::Ball { limit } => [("_y", Vec3::Y), ("_z", Vec3::Z), ("_x", Vec3::X)]
                 .map(|(suffix, axis)| hinge(suffix, axis, free(axis, limit.is_some()), 0.0))
                 .to_vec(),
@@ -214,12 +214,12 @@ impl Writer<'_> {
     }
 }
 
-/// From the character's axes, +Z ahead, to ours of a file that is read: +x ahead.
+/// From the character's axes (+Z forward) to ours of a file (+x forward).
 fn facing_x() -> Transform {
     Transform::new(Vec3::ZERO, Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_2))
 }
 
-/// The reader's turn from z up to y up, undone.
+/// Inverse of the reader's rotation from z up to y up.
 fn file_axes(v: Vec3) -> Vec3 {
     Vec3::new(v.x, -v.z, v.y)
 }
@@ -230,8 +230,8 @@ fn pose(at: Transform) -> String {
     format!(" pos=\"{place}\" quat=\"{}\"", numbers(&[r.w, r.x, -r.z, r.y]))
 }
 
-/// The inertia, with its smaller moments a little larger if rounding has made their sum less than the largest, which MuJoCo
-/// refuses.
+/// The inertia, with its smaller moments slightly increased if rounding has made their sum less than the largest, which
+/// MuJoCo refuses.
 fn solid(inertia: Sym3) -> Sym3 {
     let (moments, axes) = inertia.eigen();
     let missing = 1.0005 * moments.x - (moments.y + moments.z);

@@ -1,4 +1,4 @@
-//! Elements and attributes of an XML text, with a place for every complaint.
+//! Elements and attributes of an XML text, with a place for every error.
 
 use crate::error::{Error, Result, quoted};
 use roxmltree::{Attribute, Document, Node};
@@ -6,11 +6,11 @@ use roxmltree::{Attribute, Document, Node};
 /// An element. Shares the lifetime of the document and of the text that it was made from.
 pub(crate) type Element<'a> = Node<'a, 'a>;
 
-/// Longest text that is read. Models without meshes are far shorter; the XML parser takes some 20 times that in memory.
+/// Longest text that is read. Models without meshes are far shorter; the XML parser uses about 20 times that in memory.
 const MOST_BYTES: usize = 4 << 20;
-/// Most attributes of an element: the XML parser compares each with each.
+/// Largest number of attributes per element: the XML parser compares each with each.
 const MOST_ATTRIBUTES: usize = 1000;
-/// Largest number that is read, so that sums and squares of numbers stay finite.
+/// Largest number that is read; keeps sums and squares finite.
 const LARGEST: f32 = 1e9;
 
 /// Parses bytes as XML.
@@ -24,7 +24,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Document<'_>> {
     if let Some(at) = text.find("xmlns") {
         return Err(Error::unsupported("XML namespaces are not read", line_of(text, at)));
     }
-    // No `<` is inside a tag, so that what is between two of them holds one tag at most.
+    // A tag contains no `<`, so the text between two of them holds at most one tag.
     for tag in text.split('<') {
         let quotes = tag.bytes().filter(|byte| matches!(byte, b'"' | b'\'')).count();
         if quotes > 2 * MOST_ATTRIBUTES {
@@ -41,7 +41,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Document<'_>> {
     })
 }
 
-/// The message of another, fit to be a part of ours: what it took from the text is on one line, and not longer.
+/// Another parser's message as part of ours: quotes from the text on one line of limited length.
 fn one_line(text: &str) -> String {
     text.chars().take(120).map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
@@ -54,7 +54,7 @@ fn position(row: u32, column: u32) -> String {
     format!("line {row} column {column}")
 }
 
-/// Place of an element in the file: line and column.
+/// Line and column of an element.
 pub(crate) fn place(element: Element<'_>) -> String {
     place_at(element, element.range().start)
 }
@@ -74,7 +74,7 @@ pub(crate) fn malformed(element: Element<'_>, what: impl Into<String>) -> Error 
     Error::malformed(what, place(element))
 }
 
-/// The element asks for what is not read.
+/// The element uses an unsupported feature.
 pub(crate) fn unsupported(element: Element<'_>, what: impl Into<String>) -> Error {
     Error::unsupported(what, place(element))
 }

@@ -1,4 +1,4 @@
-//! Format of a file, told by its bytes.
+//! Format of a file, detected from its bytes.
 
 use crate::error::{Error, Result};
 use crate::{container::glb, container::json};
@@ -22,7 +22,7 @@ pub enum MotionFormat {
     Jolt,
 }
 
-/// Kind of a file that is often given in place of one with clips, in words.
+/// Description of a file kind that users often pass instead of one with clips.
 pub(crate) fn foreign(bytes: &[u8]) -> Option<&'static str> {
     // Elements after an XML header and comments.
     const NEAR: usize = 4096;
@@ -43,7 +43,7 @@ impl MotionFormat {
     /// The format of some bytes.
     ///
     /// # Errors
-    /// They begin like none.
+    /// They match no known format.
     pub fn of(bytes: &[u8]) -> Result<Self> {
         if glb::is_glb(bytes) {
             return Ok(Self::Glb);

@@ -27,13 +27,13 @@ use sinew_anim::{Clip, ClipEvent, LocalTransform, Rig};
 pub struct MotionOptions<'a> {
     /// For a BVH file.
     pub bvh: BvhOptions,
-    /// Whose clip a DeepMimic clip is: it does not say so itself.
+    /// Character of a DeepMimic clip, which the clip itself does not name.
     pub deepmimic: Option<&'a DeepMimicCharacter>,
     /// For a glTF or FBX file.
     pub gltf: ReadOptions,
 }
 
-/// A rig and its clips, whatever the file was.
+/// A rig and its clips, from any format.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionFile {
     /// Format of the file.
@@ -42,34 +42,34 @@ pub struct MotionFile {
     pub generator: String,
     /// Names of the extensions that a glTF uses.
     pub extensions: Vec<String>,
-    /// Format that the springs of the rig are stated in; `None` where the file states none.
+    /// Format of the rig's springs; `None` if the file has none.
     pub spring_format: Option<SpringFormat>,
     /// Joints, with skins and meshes where the format has them.
     pub rig: Rig,
     /// Clips in file order.
     pub clips: Vec<Clip>,
-    /// Events of each clip, by time: those of the file itself, and of the events file where one is beside it.
+    /// Events of each clip, by time: from the file itself, and from the events file next to it.
     pub events: Vec<Vec<ClipEvent>>,
     /// Seconds from frame to frame, where the file was captured or baked at a rate.
     pub frame_time: Option<f64>,
-    /// Metres per unit of the rig, where the file says so or it is inferred; `None` leaves it to the rig's analysis.
+    /// Metres per unit of the rig, if the file states it or it is inferred; `None` leaves it to the rig's analysis.
     pub metres_per_unit: Option<f32>,
-    /// A pose to tell the body by, where the file has one that is not the rig's rest pose: see
+    /// A pose that identifies the body, if the file has one that is not the rig's rest pose: see
     /// [`stand`](sinew_anim::retarget::stand).
     pub rest_pose: Option<Vec<LocalTransform>>,
-    /// Notes on what was assumed, mended or left out, a sentence each.
+    /// Notes on assumptions, repairs and omissions, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// Reads any file with clips; the kind is told by the bytes. `resolve` gives the files beside a glTF,
-/// and the pictures beside an FBX.
+/// Reads any file with clips; the bytes decide the kind. `resolve` returns the files next to a glTF, and the pictures
+/// next to an FBX.
 ///
-/// Formats without names of clips leave them empty. A DeepMimic character is a rig without clips, and so is a ragdoll of
-/// Jolt: [`read_jolt_animation`](crate::read_jolt_animation) reads its clips.
+/// Formats without clip names leave them empty. A DeepMimic character is a rig without clips, and so is a Jolt ragdoll:
+/// [`read_jolt_animation`](crate::read_jolt_animation) reads its clips.
 ///
 /// # Errors
-/// Bytes of no known kind, and as the readers: [`read_gltf`], [`read_bvh`], [`read_deepmimic`]; a DeepMimic clip without
-/// its character; an FBX file where the feature `fbx` is off.
+/// Bytes of no known kind, and the errors of the readers ([`read_gltf`], [`read_bvh`], [`read_deepmimic`]); a DeepMimic
+/// clip without its character; an FBX file without the feature `fbx`.
 pub fn read_motion(
     bytes: &[u8],
     options: &MotionOptions<'_>,

@@ -1,4 +1,4 @@
-//! Settings of a ragdoll, version 1 (`NAME.ragdoll.json` beside `NAME.glb`): what the build shall do otherwise.
+//! Settings of a ragdoll, version 1 (`NAME.ragdoll.json` beside `NAME.glb`): overrides of the build.
 //!
 //! ```json
 //! {
@@ -25,17 +25,19 @@
 //! }
 //! ```
 //!
-//! Every key but the first two may be absent. `shapes` is `box`, `capsule` or `auto`; `mass` kg of the whole; `sex` `m`
-//! or `f`; `limits` are those of `anatomy`, or learned from the file's `clips`; the unit of the rigged file is given by `unit_scale` (metres) or by the `height` that the character shall have;
-//! `up_axis` (`[0, 0, 1]`) is the file's axis that points up. A bone is named by its role, by its role without the side (both
-//! sides; ranges are the left one's, mirrored on the right) or by the name of the rig's joint. Of a bone: the `role` that it has
-//! whatever shape and names say (only by the joint's name), `body` (`keep` or `drop`), `shape` (`box`, `capsule`, `sphere`), `scale` of it, `mass` in kg, `type` and `limits_deg` of the joint to its
-//! parent as in [ragdoll files](super), each range by itself, and `friction_torque` in N·m. Joints that `ignore` names are no part
-//! of the body, with all that hangs below them. `springs` that the character wears are those that the `file` states, where it states
-//! none those that `names` of joints tell of, or `none`; an object says it as `source`, and has `links`: a list, each with the `chains` of joints that lie side by side
-//! and are tied across ([`LinkSettings`]), `closed` (default: if they stand in a ring), the `share` (0.5) and whether it `holds_apart` (false); without it links are
-//! those that come with the springs. `garments` are those that `names` tell of, `none`, or a list: each with the `chains` of joints that
-//! it is sewn of, or the `mesh` that it is, and its cloth ([`Garment`]).
+//! Every key but the first two is optional. `shapes` is `box`, `capsule` or `auto`; `mass` the total in kg; `sex` `m`
+//! or `f`; `limits` `anatomy`, or `clips` to learn them from the file's clips. The unit of the rigged file is
+//! `unit_scale` (metres), or follows from the `height` of the character. `up_axis` (`[0, 0, 1]`) is the file's up axis.
+//! A bone is named by its role, by its role without the side (both sides; ranges are the left one's, mirrored on the
+//! right) or by the name of the rig's joint. Keys of a bone: the `role` that replaces the detected one (only by the
+//! joint's name), `body` (`keep` or `drop`), `shape` (`box`, `capsule`, `sphere`), its `scale`, `mass` in kg, `type`
+//! and `limits_deg` of the joint to its parent as in [ragdoll files](super), each range separately, and
+//! `friction_torque` in N·m. Joints listed in `ignore` and their descendants are not part of the body. `springs` is
+//! `file` (the file's springs, else springs inferred from joint names), `names` (inferred), or `none`; an object states
+//! it as `source`, and has `links`: a list, each with the `chains` of joints that are side by side and linked across
+//! ([`LinkSettings`]), `closed` (default: if they form a ring), the `share` (0.5) and `holds_apart` (false); without it
+//! the springs keep their own links. `garments` is `names` (inferred), `none`, or a list: each with the `chains` of
+//! joints it is sewn from, or its `mesh`, and its cloth ([`Garment`]).
 //!
 //! ```
 //! use sinew_formats::read_ragdoll_settings;
@@ -100,13 +102,13 @@ const GARMENT_KEYS: [&str; 19] = [
     "backstop",
 ];
 
-/// Particles that a sheet may have at most: each is a joint in the file.
+/// Largest number of particles of a sheet: each is a joint in the file.
 const SHEET_PARTICLES: core::ops::RangeInclusive<usize> = 4..=4000;
 
 const BONE_KEYS: [&str; 9] =
     ["comment", "role", "body", "shape", "scale", "mass", "type", "limits_deg", "friction_torque"];
 
-/// The settings of a settings file. Bones are looked for when they are applied to a rig.
+/// The settings of a settings file. Bone names are resolved when the settings are applied to a rig.
 ///
 /// # Errors
 /// Names the place: unknown keys, with the nearest known one; values out of range; both a height and a unit.
@@ -262,10 +264,10 @@ fn read_garment(at: At<'_>) -> Result<GarmentSettings> {
     })
 }
 
-/// A number within a range, `usual` if it is not there.
+/// A number within a range, `usual` if absent.
 fn within(at: At<'_>, key: &str, usual: f32, [least, most]: [f32; 2]) -> Result<f32> {
     let Some(at) = at.get(key)? else { return Ok(usual) };
-    // Below 0 and at it other messages say more.
+    // Other messages explain values of 0 and below better.
     let number = if least > 0.0 { at.positive()? } else { at.not_negative()? };
     if number < least || number > most {
         return Err(at.malformed(format!("must lie between {least} and {most}")));
@@ -281,7 +283,7 @@ fn read_backstop(at: At<'_>) -> Result<Backstop> {
     Ok(Backstop { distance, radius })
 }
 
-/// The mesh that a garment is; `None` if it is of chains.
+/// The mesh of a garment; `None` if it is made of chains.
 fn read_mesh(at: At<'_>) -> Result<Option<MeshSettings>> {
     let Some(mesh) = at.get("mesh")? else {
         for key in ["held", "most_particles"] {
@@ -331,7 +333,7 @@ fn read_pairs(root: At<'_>, key: &str) -> Result<Vec<[String; 2]>> {
     root.list(key)?.into_iter().map(read).collect()
 }
 
-/// Meaning of a word of a list; `None` where the key is absent.
+/// Value of a keyword from a list; `None` if the key is absent.
 fn word<T: Clone>(at: At<'_>, key: &str, words: &[(&str, T)]) -> Result<Option<T>> {
     at.get(key)?.map(|at| one_of(at, words)).transpose()
 }
@@ -346,7 +348,7 @@ fn one_of<T: Clone>(at: At<'_>, words: &[(&str, T)]) -> Result<T> {
     })
 }
 
-/// Refuses keys that are not among `known`, with the nearest of them.
+/// Refuses keys outside `known`, naming the nearest one.
 fn only(at: At<'_>, known: &[&str]) -> Result<()> {
     let object = at.value().as_object().ok_or_else(|| at.malformed("must be an object"))?;
     match object.keys().find(|key| !known.contains(&key.as_str())) {

@@ -99,7 +99,7 @@ impl Default for SeparationCache {
 }
 
 impl SeparationCache {
-    /// They are parted along an axis.
+    /// They are separated along an axis.
     pub(super) fn along(axis: &Axis) -> Self {
         Self { axis: Some(axis.of), gap: axis.separation }
     }

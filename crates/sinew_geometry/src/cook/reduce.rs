@@ -87,7 +87,7 @@ impl<'a> Reduction<'a> {
             let Some(index) = (0..self.candidates.len()).reduce(cheaper) else { break };
             let Candidate { step, cost, seen } = self.candidates[index];
             if seen != self.left {
-                // Much may have changed around it.
+                // Its neighbourhood may have changed: recompute its cost.
                 self.candidates[index] = Candidate { step, cost: self.cost(&step), seen: self.left };
                 continue;
             }

@@ -38,7 +38,7 @@ fn size(bounds: &Aabb) -> f32 {
     max(max(sides.x, sides.y), sides.z)
 }
 
-/// The hull with at most so many points; `None` if it has too many faces.
+/// The hull with at most this many points; `None` if it has too many faces.
 fn with_budget(grid: &Grid, budget: usize) -> Result<Option<Hull>, HullError> {
     let mut corners: Vec<u32> =
         quick::hull(&grid.points, budget)?.iter().flat_map(|triangle| triangle.corners).collect();

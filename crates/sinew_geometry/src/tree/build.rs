@@ -68,7 +68,7 @@ impl Tree {
         }));
     }
 
-    /// A node that has so many levels below it.
+    /// A node that has this many levels below it.
     fn build_node(&mut self, items: &mut [Item], below: usize, parent: Place) -> u32 {
         let index = self.nodes.len() as u32;
         self.nodes.push(Node::EMPTY);

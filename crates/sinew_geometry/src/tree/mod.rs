@@ -148,7 +148,7 @@ impl Tree {
         (self.inserted > 64 && self.inserted > self.len) || used > self.len / 2 + MOST_LEVELS
     }
 
-    /// Reserves memory for so many leaves, however they change.
+    /// Reserves memory for this many leaves, however they change.
     pub fn reserve(&mut self, leaves: usize) {
         let nodes = leaves + MOST_LEVELS;
         self.nodes.reserve(nodes.saturating_sub(self.nodes.len()));

@@ -1,4 +1,4 @@
-//! The bookkeeping against what it follows from, made anew by brute force.
+//! Verifies the bookkeeping against a brute-force recomputation.
 
 use super::Activity;
 use crate::body::Rest;
@@ -7,7 +7,7 @@ use crate::world::World;
 use std::collections::{BTreeMap, BTreeSet};
 
 impl World {
-    /// Panics unless everything that is kept from step to step is what the bodies, joints and contacts say.
+    /// Panics unless the incremental bookkeeping matches the bodies, joints and contacts.
     pub(crate) fn check_bookkeeping(&self) {
         let Activity { joints_of, active, kinematic, next, .. } = &self.activity;
         let bodies = || self.bodies.iter();
@@ -43,7 +43,7 @@ impl World {
         }
     }
 
-    /// Each is in one place, the step's in order, and nothing can happen to those put aside.
+    /// Each contact is in exactly one list, the step's list is ordered, and contacts put aside cannot change.
     fn check_contacts(&self) {
         assert!(self.contacts.is_sorted_by(|p, q| p.key < q.key));
         let keys: BTreeSet<ContactKey> = self.contacts_in_order().map(|contact| contact.key).collect();
@@ -54,8 +54,7 @@ impl World {
         }
     }
 
-    /// Panics unless the islands of the last step are those that contacts and joints make, found by spreading from body to
-    /// body until nothing changes.
+    /// Panics unless the islands of the last step equal those found by flood fill over contacts and joints.
     pub(crate) fn check_islands(&self) {
         let mut label: BTreeMap<u32, u32> = BTreeMap::new();
         for island in self.islands.iter() {
@@ -97,10 +96,10 @@ use crate::{Strength, Velocity};
 use sinew_math::{Random, Reader, Transform, Vec3, Writer};
 
 const STEPS: u32 = 500;
-/// Steps between one thing that is done to a world and the next.
+/// Number of steps between two random changes of a world.
 const PAUSE: usize = 25;
 
-/// A floor, a lift, a sensor over both, and piles that come to rest.
+/// A floor, a lift, a sensor over both, and piles that settle.
 struct Yard {
     world: World,
     random: Random,
@@ -151,7 +150,7 @@ impl Yard {
         self.loose[self.random.index(self.loose.len())]
     }
 
-    /// Whatever a game may do between two steps.
+    /// Random changes that a game may make between two steps.
     fn meddle(&mut self) {
         let id = self.any();
         let up = Vec3::Y * self.random.range(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! Particle groups that sleep: what wakes them, and whom they wake.
+//! Sleeping particle groups: what wakes them, and what they wake.
 
 use super::Activity;
 use crate::arena::Arena;
@@ -10,8 +10,8 @@ use core::ops::ControlFlow;
 use sinew_math::{Vec3, max, normalize_or};
 
 impl Activity {
-    /// Wakes sleeping groups that something comes to or pulls at, or that may not sleep, bodies that sleep with a group that was woken, and
-    /// bodies that lay on particles which have gone.
+    /// Wakes sleeping groups that something approaches or pulls, or that must not sleep; bodies that sleep with a woken
+    /// group; and bodies that rested on removed particles.
     pub fn wake_groups(
         &mut self,
         bodies: &mut Arena<Body>,
@@ -44,7 +44,7 @@ impl Activity {
         }
     }
 
-    /// Wakes bodies that lay on particles which have gone from there by `distance` metres.
+    /// Wakes bodies that rested on particles that have moved away by `distance` metres.
     pub fn wake_borne(
         &mut self,
         bodies: &mut Arena<Body>,
@@ -58,13 +58,13 @@ impl Activity {
         });
     }
 
-    /// Longest way of any point of a body in a step, metres.
+    /// Longest path of any point of a body in a step, metres.
     fn longest_way(&self, bodies: &Arena<Body>, dt: f32) -> f32 {
         self.movers().fold(0.0, |most, index| max(most, bodies.at(index).fastest_point() * dt))
     }
 }
 
-/// True if a body may disturb what it touches: it moves, or the user has changed it.
+/// True if a body may disturb its contacts: it moves, or the user has changed it.
 fn comes(body: &Body) -> bool {
     let leads = body.kind == BodyKind::Kinematic && !body.velocity.is_zero();
     body.is_active() || leads || body.changed
@@ -106,7 +106,7 @@ pub(crate) fn follow(bodies: &Arena<Body>, group: &mut ParticleGroup) {
     }
 }
 
-/// Finds again what sleeping groups know of their surroundings.
+/// Recomputes the surroundings stored for sleeping groups.
 pub(crate) fn lie_down(bodies: &Arena<Body>, groups: &mut Arena<ParticleGroup>) {
     for (_, group) in groups.iter_mut() {
         let Some(island) = group.slept_with() else { continue };

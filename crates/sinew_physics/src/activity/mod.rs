@@ -1,8 +1,7 @@
-//! Bookkeeping of what is awake, what sleeps, and what falls asleep and wakes together: so that a step goes through what is
-//! awake alone.
+//! Bookkeeping of awake and sleeping bodies and their islands, so that a step visits awake ones only.
 //!
-//! All of it follows from the bodies and the contacts, and is no part of the state: a world whose bookkeeping is made anew
-//! has the same future.
+//! All of it derives from the bodies and contacts and is not part of the state: a world with rebuilt bookkeeping has
+//! the same future.
 
 #[cfg(test)]
 mod check;
@@ -26,23 +25,23 @@ use sinew_math::Transform;
 use sleeping_contacts::SleepingContacts;
 use slot_set::SlotSet;
 
-/// Who is awake, what those who are not have put aside, and who holds whom.
+/// Awake bodies, the contacts put aside, and the particles' links.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Activity {
     pub joints_of: Incidence,
     active: SlotSet,
     /// Ascending.
     kinematic: Vec<u32>,
-    /// By slot: the next body of the same sleeping island, in a ring.
+    /// By slot: the next body of the same sleeping island, as a ring.
     next: Vec<u32>,
     aside: SleepingContacts,
-    /// Contacts of what woke or set off, until the step goes through them.
+    /// Contacts of bodies that woke or started moving, until the step visits them.
     returned: Vec<Contact>,
     struck: Vec<u32>,
 }
 
 impl Activity {
-    /// Bookkeeping of a world whose contacts all lie in its own list.
+    /// Bookkeeping of a world whose contacts are all in its own list.
     pub fn new(bodies: &Arena<Body>, joints: &Arena<Joint>) -> Self {
         let mut activity = Self { joints_of: Incidence::new(joints), ..Self::default() };
         let mut sleepers = Vec::new();
@@ -69,19 +68,19 @@ impl Activity {
         &self.kinematic
     }
 
-    /// The other bodies that fell asleep with a sleeping one.
+    /// The other bodies of a sleeping body's island.
     #[cfg(test)]
     fn asleep_with(&self, index: u32) -> impl Iterator<Item = u32> {
         let next = move |&at: &u32| Some(self.next[at as usize]).filter(|&next| next != index);
         core::iter::successors(Some(index), next).skip(1)
     }
 
-    /// All that may move: both of these, each once.
+    /// All movable bodies: both sets, each body once.
     pub fn movers(&self) -> impl Iterator<Item = u32> {
         self.active().chain(self.kinematic.iter().copied())
     }
 
-    /// Takes note of a body that came.
+    /// Records a new body.
     pub fn add(&mut self, index: u32, body: &Body) {
         let slots = index as usize + 1;
         self.active.reserve(slots);
@@ -96,18 +95,18 @@ impl Activity {
         self.note(index, body);
     }
 
-    /// Takes note of an awake body of another kind than before.
+    /// Records that an awake body changed its kind.
     pub fn change_kind(&mut self, index: u32, body: &Body) {
         self.kinematic.retain(|&other| other != index);
         self.add(index, body);
     }
 
-    /// Takes note of whether a body is active.
+    /// Records if a body is active.
     pub fn note(&mut self, index: u32, body: &Body) {
         self.active.set(index, body.is_active());
     }
 
-    /// Forgets a body that is taken out; hands over its contacts, in no order that means anything.
+    /// Removes a body; returns its contacts in unspecified order.
     pub fn remove(&mut self, index: u32, mut part_with: impl FnMut(Contact)) {
         self.active.set(index, false);
         self.kinematic.retain(|&other| other != index);
@@ -115,7 +114,7 @@ impl Activity {
         self.drop_returned(|contact| contact.key.has(index), part_with);
     }
 
-    /// Takes out contacts among those that were recalled since the last step.
+    /// Removes contacts from those recalled since the last step.
     pub fn drop_returned(&mut self, mut goes: impl FnMut(&Contact) -> bool, part_with: impl FnMut(Contact)) {
         self.returned.extract_if(.., |contact| goes(contact)).for_each(part_with);
     }
@@ -138,13 +137,13 @@ impl Activity {
         }
     }
 
-    /// Wakes a body, or keeps it awake for as long as if it had just woken.
+    /// Wakes a body, or restarts its time at rest.
     pub fn disturb(&mut self, bodies: &mut Arena<Body>, index: u32) {
         self.wake(bodies, index);
         bodies.at_mut(index).disturb();
     }
 
-    /// Wakes what particles strike: those that lie on a sleeper are too slow to.
+    /// Wakes bodies that particles hit: particles that rest on a sleeper are too slow to wake it.
     pub fn wake_struck(
         &mut self,
         bodies: &mut Arena<Body>,
@@ -163,7 +162,7 @@ impl Activity {
         }
     }
 
-    /// Wakes sleeping bodies with a shape within bounds that a group meets as `meets` says.
+    /// Wakes sleeping bodies with a shape within the bounds that a group collides with according to `meets`.
     fn wake_met(
         &mut self,
         bodies: &mut Arena<Body>,
@@ -184,7 +183,7 @@ impl Activity {
         self.struck = met;
     }
 
-    /// Puts bodies to sleep that wake together from now on, under a number that no others have.
+    /// Puts bodies to sleep as one island, under a new number.
     pub fn sleep(&mut self, bodies: &mut Arena<Body>, members: &[u32], island: u32) {
         for &index in members {
             let body = bodies.at_mut(index);
@@ -204,12 +203,12 @@ impl Activity {
         }
     }
 
-    /// A contact that nothing can happen to until one of its bodies wakes or sets off.
+    /// A contact that cannot change until one of its bodies wakes or starts moving.
     pub fn put_aside(&mut self, contact: Contact) {
         self.aside.put(contact);
     }
 
-    /// A body may touch something again: its contacts take part in the next step.
+    /// A body can collide again: its contacts take part in the next step.
     pub fn recall(&mut self, index: u32) {
         self.aside.take(index, |contact| self.returned.push(contact));
     }
@@ -231,7 +230,7 @@ impl Activity {
         self.aside.of(body).chain(returned)
     }
 
-    /// All contacts that are not in the world's list, likewise.
+    /// All contacts outside the world's list.
     pub fn contacts(&self) -> impl Iterator<Item = &Contact> {
         self.aside.iter().chain(&self.returned)
     }

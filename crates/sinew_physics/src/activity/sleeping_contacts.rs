@@ -1,9 +1,9 @@
-//! Contacts that nothing can happen to for now, so that a step need not go through them.
+//! Contacts that cannot change for now, so that a step need not visit them.
 
 use crate::contact::{Contact, ContactKey};
 
-/// Contacts of which neither body can touch anything: both sleep or never move. Each is in the lists of both its bodies,
-/// so that it is found, and taken out, by what becomes of either.
+/// Contacts between two bodies that both sleep or never move. Each is in the lists of both bodies, so that a change of
+/// either finds and removes it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SleepingContacts {
     links: Vec<Link>,
@@ -14,7 +14,7 @@ pub(crate) struct SleepingContacts {
 
 #[derive(Clone, Debug)]
 struct Link {
-    /// `None` while the link is free.
+    /// `None` if the link is free.
     contact: Option<Contact>,
     /// Neighbours in the lists of bodies A and B.
     before: [u32; 2],
@@ -29,14 +29,14 @@ fn side(key: ContactKey, body: u32) -> usize {
 }
 
 impl SleepingContacts {
-    /// Makes room for the lists of the bodies below `count`.
+    /// Reserves the lists of the bodies below `count`.
     pub fn reserve(&mut self, count: usize) {
         if self.first.len() < count {
             self.first.resize(count, NONE);
         }
     }
 
-    /// Puts a contact in. There must be room for its bodies.
+    /// Adds a contact. The lists of its bodies must be reserved.
     pub fn put(&mut self, contact: Contact) {
         let bodies = [contact.key.a, contact.key.b];
         let after = bodies.map(|body| self.first[body as usize]);
@@ -60,7 +60,7 @@ impl SleepingContacts {
         }
     }
 
-    /// Takes out all contacts of a body.
+    /// Removes all contacts of a body.
     pub fn take(&mut self, body: u32, mut each: impl FnMut(Contact)) {
         while self.first[body as usize] != NONE {
             each(self.unlink(self.first[body as usize]));
@@ -74,7 +74,7 @@ impl SleepingContacts {
         core::iter::successors(at(self.first[body as usize]), next).filter_map(|link| link.contact.as_ref())
     }
 
-    /// All of them, likewise.
+    /// Removes all contacts.
     pub fn iter(&self) -> impl Iterator<Item = &Contact> {
         self.links.iter().filter_map(|link| link.contact.as_ref())
     }

@@ -1,18 +1,18 @@
 //! Sets of slots of an arena.
 
-/// One bit per slot, so that members come in ascending order whatever the order in which they were put in, and a second
-/// row of bits over the words of the first, so that going through a few members of a million slots costs little.
+/// One bit per slot, so that iteration is in ascending order, and a second level of bits over the words of the first,
+/// so that visiting a few members among a million slots is cheap.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SlotSet {
     members: Vec<u64>,
-    /// Words of `members` that are not 0, one bit each.
+    /// One bit per non-zero word of `members`.
     words: Vec<u64>,
 }
 
 const BITS: u32 = u64::BITS;
 
 impl SlotSet {
-    /// Makes room for the slots below `count`.
+    /// Reserves the slots below `count`.
     pub fn reserve(&mut self, count: usize) {
         let words = count.div_ceil(BITS as usize);
         if words > self.members.len() {
@@ -21,7 +21,7 @@ impl SlotSet {
         }
     }
 
-    /// Puts a slot in, or takes it out. There must be room for it.
+    /// Adds or removes a slot, which must be reserved.
     pub fn set(&mut self, slot: u32, member: bool) {
         let word = slot / BITS;
         let bits = &mut self.members[word as usize];
@@ -41,7 +41,7 @@ fn set_bit(bits: &mut u64, bit: u32, on: bool) {
     *bits = *bits & !(1 << bit) | u64::from(on) << bit;
 }
 
-/// The places of the bits that are set, counted from `first`.
+/// The positions of the set bits, starting at `first`.
 fn ones(first: u32, mut bits: u64) -> impl Iterator<Item = u32> {
     core::iter::from_fn(move || {
         let place = (bits != 0).then(|| first + bits.trailing_zeros());

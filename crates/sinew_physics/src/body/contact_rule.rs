@@ -1,4 +1,4 @@
-//! Rules for a shape's contacts before they are solved: they push, let pass, or are changed.
+//! Rules applied to a shape's contacts before solving: push, ignore, or modify.
 
 use crate::body::Velocity;
 use crate::body::material::{ContactMaterial, Material};
@@ -7,7 +7,7 @@ use crate::id::ShapeId;
 use sinew_geometry::DefError;
 use sinew_math::{Vec3, normalize_or};
 
-/// Rule for the contacts of a shape. Contacts of two shapes push only if both rules let them.
+/// Rule for the contacts of a shape. Contacts of two shapes push only if both rules allow it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(alias = "one-way platform")]
@@ -15,13 +15,14 @@ pub enum ContactRule {
     /// They push. Default.
     #[default]
     Push,
-    /// They are told of, as all contacts are, but do not push.
+    /// Contacts are reported but do not push.
     Ghost,
-    /// They push what comes from one side.
+    /// Contacts push from one side only.
     OneWay(OneWay),
-    /// They push with limited force as long as their body is kinematic: what moves as a clip has it. Movers pass through.
+    /// While the body is kinematic, its contacts push with limited force: for bodies moved by a clip. Movers pass
+    /// through.
     Yields(Yields),
-    /// They push as a function of the user's says.
+    /// A user function decides.
     Modified {
         /// Its number, as [registered](crate::World::register_modifier).
         modifier: u32,
@@ -29,10 +30,10 @@ pub enum ContactRule {
 }
 
 impl ContactRule {
-    /// Checks that the numbers of the rule are valid; the phrase says what is wrong.
+    /// Checks that the numbers of the rule are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// What is wrong, in lower case.
+    /// The problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         match self {
             Self::OneWay(one_way) => one_way.check(),
@@ -42,15 +43,16 @@ impl ContactRule {
     }
 }
 
-/// A platform that is solid from one side and lets pass what comes from the others.
+/// A platform that is solid from one side and open from the others.
 ///
-/// What is decided when two shapes come near each other stays while they touch: what has come from below passes until it
-/// is out, on whichever side, and what lies on top goes on lying there, also when it tips over the edge.
+/// The decision made when two shapes first come near each other lasts while they touch. A body that came from below
+/// passes until it is out on any side; a body resting on top stays there, even if it tips over the edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct OneWay {
-    /// From the platform to what it holds up, in the shape's frame; not 0. Its length does not matter. Default +y.
+    /// Direction from the platform to the bodies it holds up, in the shape's frame; non-zero, of any length. Default
+    /// +y.
     pub direction: Vec3,
     /// Largest angle between the contact's normal and that direction with which the contact is solid, radians, 0 to π.
     /// Default 45°.
@@ -65,7 +67,7 @@ impl Default for OneWay {
 
 impl OneWay {
     fn check(&self) -> Result<(), DefError> {
-        // Written so that NaN fails.
+        // This form rejects NaN.
         let length = self.direction.length();
         if !(length > 0.0 && length < f32::INFINITY) {
             return Err(DefError::new("the direction of a one-way shape must be finite and not 0"));
@@ -78,24 +80,25 @@ impl OneWay {
         Ok(())
     }
 
-    /// True if it is solid against what lies along `normal` from it, in its frame.
+    /// True if it is solid against a body in direction `normal` from it, in its frame.
     pub(crate) fn holds(&self, normal: Vec3) -> bool {
         normalize_or(self.direction, Vec3::Y).dot(normal) >= sinew_math::trig::cos(self.tolerance)
     }
 }
 
-/// Bounds of what a kinematic body does to dynamic ones that it meets; beyond them the two pass through each other until they
-/// are apart. A dynamic body with this rule pushes as any other does.
+/// Limits on the effect of a kinematic body on dynamic ones. Beyond them the two pass through each other until they are
+/// separate. On a dynamic body this rule has no effect.
 ///
-/// What flies into a hand is stopped and thrown back, a ball is kicked, a crate of 50 kg is let be: the hand goes through it.
+/// A hand stops a flying object and throws it back, kicks a ball, and passes through a crate of 50 kg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct Yields {
-    /// Most force with which it shoves what does not come by itself, N: over a step, and as if that were free. Default 150.
+    /// Largest force with which it pushes a body that does not approach by itself, N: averaged over a step, as if that
+    /// body were free. Default 150.
     #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub max_force: f32,
-    /// Most momentum of what comes by itself that it stops, N·s. Default 60.
+    /// Largest momentum of an approaching body that it stops, N·s. Default 60.
     #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub max_impulse: f32,
 }
@@ -108,7 +111,7 @@ impl Default for Yields {
 
 impl Yields {
     fn check(&self) -> Result<(), DefError> {
-        // Written so that NaN fails.
+        // This form rejects NaN.
         if [self.max_force, self.max_impulse].iter().all(|x| (0.0..f32::INFINITY).contains(x)) {
             return Ok(());
         }
@@ -118,12 +121,12 @@ impl Yields {
     }
 }
 
-/// One side of a contact that a modifier looks at.
+/// One side of a contact, as passed to a modifier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSide {
     /// The shape.
     pub shape: ShapeId,
-    /// The user's number on its body.
+    /// The user data of its body.
     pub user_data: u64,
     /// Its material.
     pub material: Material,
@@ -133,23 +136,23 @@ pub struct ContactSide {
     pub center: Vec3,
 }
 
-/// A contact that a modifier looks at, as the step finds it.
+/// A contact as passed to a modifier, at the step's start.
 #[derive(Clone, Copy, Debug)]
 pub struct FoundContact<'a> {
-    /// The two sides; the one with the smaller body index is the first.
+    /// The two sides; the one with the smaller body index is first.
     pub sides: [ContactSide; 2],
     /// From the first to the second, unit length, world axes.
     pub normal: Vec3,
     /// At least one.
     pub points: &'a [ManifoldPoint],
-    /// Steps that the world took before this one.
+    /// Number of steps taken before this one.
     pub step: u64,
 }
 
-/// Function that sets the material of a contact; `None`: it does not push in this step. It is given what the two materials make of it.
+/// Function that sets the material of a contact, given the combined one; `None`: no push in this step.
 ///
-/// A pure function of what it is given, so that a snapshot holds all that decides. A plain function, not a closure: there is
-/// nothing that it could remember. For the same bits everywhere it must be made of `+ − × ÷ √` and `sinew_math`. It is called
-/// in the order of contacts, once for each side that asks for it, the first side's first. An answer that is no valid material
-/// (negative, not finite) is not taken.
+/// A pure function of its arguments, so that a snapshot contains everything that decides. A function pointer instead of
+/// a closure, because it must not have state. For the same bits everywhere it must use only `+ − × ÷ √` and
+/// `sinew_math`. It is called in the order of contacts, once for each side that uses it, the first side first. An
+/// invalid material (negative, not finite) is ignored.
 pub type ContactModifier = fn(&FoundContact<'_>, ContactMaterial) -> Option<ContactMaterial>;

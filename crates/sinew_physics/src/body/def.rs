@@ -1,4 +1,4 @@
-//! Definitions of worlds and bodies: plain data that they are made from.
+//! Definitions of worlds and bodies, as plain data.
 
 use crate::body::shape::{MassProperties, Shape, ShapeDef};
 use crate::boxes::Obb;
@@ -12,34 +12,34 @@ use sinew_math::{Rotation, Vec3};
 pub struct WorldDef {
     /// m/s². Default (0, −9.81, 0).
     pub gravity: Vec3,
-    /// Length of one step, integer nanoseconds, so that time does not drift. Default 1/60 s (16 666 667 ns).
+    /// Length of one step in integer nanoseconds, which avoids drift. Default 1/60 s (16 666 667 ns).
     pub step_nanoseconds: u64,
     /// Substeps per step, at least 1. Default 4.
     pub substeps: u32,
-    /// Work that a step does to come nearer to the truth, of bodies that do not [say otherwise](BodyDef::quality). Default balanced.
+    /// Step quality of bodies without [their own](BodyDef::quality). Default balanced.
     pub quality: Quality,
-    /// Most steps that one [`World::update`](crate::World::update) takes, at least 1: a host that was held up, or steps that
-    /// take longer than they last, must not end in ever longer frames. Default 15, a quarter of a second of default steps.
+    /// Most steps per [`World::update`](crate::World::update), at least 1, so that a delayed host, or steps that take
+    /// longer than they simulate, cannot cause ever longer frames. Default 15, a quarter of a second of default steps.
     pub catch_up_steps: u32,
-    /// Bodies may fall asleep by themselves. Default yes.
+    /// Bodies may fall asleep. Default yes.
     pub sleeping: Sleeping,
     /// Thresholds of motion below which an island is at rest.
     pub sleep_thresholds: SleepThresholds,
-    /// Most that a body moves, m/s: it is held to it when forces act, before joints and contacts. Default 4,000.
+    /// Largest speed of a body, m/s: enforced when forces act, before joints and contacts. Default 4,000.
     pub max_speed: f32,
-    /// Most that a body turns within a substep, radians, likewise. Beyond a quarter of a turn (the default, 377 rad/s at
-    /// 1/60 s and 4 substeps) rows that are linearised at the substep's start mean little; a top may spin faster.
+    /// Largest rotation of a body per substep, radians. Beyond a quarter turn (the default, 377 rad/s at 1/60 s and 4
+    /// substeps) rows linearised at the substep's start are meaningless; a top may spin faster.
     pub max_turn: f32,
-    /// Least speed at which two shapes come in along their contact's normal for [a hit](crate::Hit) to be told of, m/s, ≥ 0. Default 1:
-    /// what lies or rolls about tells of none.
+    /// Least approach speed along the contact normal for which [a hit](crate::Hit) is reported, m/s, ≥ 0. Default 1:
+    /// resting and rolling bodies report none.
     pub hit_speed: f32,
 }
 
-/// Accuracy of a step against its time. Joints hold exactly and contacts are as hard with each: what changes is
-/// the length of substeps and how many sweeps look for the impulses. `docs/performance.md` has a table of what that gives.
+/// Accuracy of a step against its cost. Joints are exact and contacts equally hard at every level; only the substep
+/// length and the number of solver sweeps differ. `docs/performance.md` has a table of the effect.
 ///
-/// An island, which is what hangs together through contacts and joints, takes the highest quality of its bodies. Where particles hang
-/// on it, or the world has [objects](crate::PhysicsObject), all substeps are those of the world, and only sweeps change.
+/// An island (bodies connected by contacts and joints) uses the highest quality of its bodies. With particles, or if
+/// the world has [objects](crate::PhysicsObject), the substeps are the world's, and only sweeps change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quality {
@@ -49,7 +49,7 @@ pub enum Quality {
     /// Half of the world's substeps where many contacts damp all motion, else all of them.
     #[default]
     Balanced,
-    /// Twice the world's substeps, and twice the sweeps: for films, robots and what is measured.
+    /// Twice the world's substeps and twice the sweeps: for films, robots and measurements.
     Exact,
 }
 
@@ -57,29 +57,29 @@ pub enum Quality {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Sleeping {
-    /// Sleep comes to what is at rest. Default.
+    /// Resting bodies fall asleep. Default.
     #[default]
     On,
-    /// It goes on being simulated.
+    /// Resting bodies stay awake.
     Off,
 }
 
-/// Thresholds of rest: an island sleeps when each of its bodies has been in its place for a time. A body that creeps by
-/// more than twice the distance or by the angle within the time does not sleep; one that trembles less far may.
+/// Thresholds of rest: an island sleeps when each of its bodies has stayed in place for a time. A body that creeps by
+/// more than twice the distance or by the angle within the time does not sleep; one that trembles within them may.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct SleepThresholds {
     /// Seconds, not negative. Default 0.5.
     pub time: f32,
-    /// From where the time began, metres, positive. Default 0.003: with the time, nothing sleeps that creeps faster than
-    /// 12 mm/s.
+    /// Distance from the position at the start of that time, metres, positive. Default 0.003: with the time, bodies
+    /// that creep faster than 12 mm/s stay awake.
     pub distance: f32,
-    /// Angle that a body at rest may turn from where the time began, radians, positive. Default 0.025: 0.05 rad/s.
+    /// Rotation from the orientation at the start of that time, radians, positive. Default 0.025: 0.05 rad/s.
     pub angle: f32,
-    /// Speed beyond which a body is not at rest even in its place, m/s, positive. Default 0.2.
+    /// Speed above which a body is not at rest even in place, m/s, positive. Default 0.2.
     pub speed: f32,
-    /// Angular speed beyond which a body is not at rest even in its place, rad/s, positive. Default 1.
+    /// Angular speed above which a body is not at rest even in place, rad/s, positive. Default 1.
     pub spin: f32,
 }
 
@@ -111,12 +111,12 @@ const LONGEST_STEP: u64 = 1_000_000_000_000_000_000;
 const MOST_SUBSTEPS: u32 = 1024;
 
 impl WorldDef {
-    /// Checks that the numbers of the definition are valid; the phrase says what is wrong.
+    /// Checks that the numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// What is wrong, in lower case.
+    /// The problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
-        // Written so that NaN fails.
+        // This form rejects NaN.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         if self.step_nanoseconds == 0 || self.substeps == 0 {
             return Err(DefError::new("a step takes time and has substeps"));
@@ -160,13 +160,13 @@ impl WorldDef {
 pub enum BodyKind {
     /// Moved by nothing.
     Static,
-    /// Moved as its velocity says; nothing pushes it.
+    /// Moves according to its velocity; contacts and forces do not affect it.
     Kinematic,
     /// Moved by forces.
     Dynamic,
 }
 
-/// A body to be made.
+/// Definition of a body.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -179,9 +179,9 @@ pub struct BodyDef {
     pub position: Vec3,
     /// World orientation.
     pub rotation: Rotation,
-    /// Velocity of the centre of mass, m/s, world axes; a static body has none.
+    /// Velocity of the centre of mass, m/s, world axes; ignored for a static body.
     pub linear_velocity: Vec3,
-    /// Angular velocity, rad/s, world axes; a static body has none.
+    /// Angular velocity, rad/s, world axes; ignored for a static body.
     pub angular_velocity: Vec3,
     /// 1/s: share of linear velocity lost per second. Default 0.
     pub linear_damping: f32,
@@ -193,10 +193,9 @@ pub struct BodyDef {
     pub shapes: Vec<ShapeDef>,
     /// Mass, centre and inertia in the body's frame; `None`: from the shapes' densities.
     pub mass: Option<MassProperties>,
-    /// Permission for the body to fall asleep by itself, and with it what it touches and is joined to. Default yes.
+    /// Permission for the body, and its island, to fall asleep. Default yes.
     pub sleeping: Sleeping,
-    /// Work that a step does for this body and what hangs together with it; `None`: as the [world](WorldDef::quality) has it. Default
-    /// `None`.
+    /// Step quality of this body and its island; `None`: that of the [world](WorldDef::quality). Default `None`.
     pub quality: Option<Quality>,
     /// For the user.
     pub user_data: u64,
@@ -222,21 +221,21 @@ impl Default for BodyDef {
     }
 }
 
-/// Short ways to write down what most bodies are: `BodyDef::dynamic(shape).at(position)`. The rest are fields.
+/// Shorthand constructors: `BodyDef::dynamic(shape).at(position)`. All else is fields.
 impl BodyDef {
     /// One that forces move, of one shape, at the world's origin.
     pub fn dynamic(shape: impl Into<ShapeDef>) -> Self {
         Self { shapes: vec![shape.into()], ..Self::default() }
     }
 
-    /// One that moves as its velocity says, of one shape, at the world's origin.
+    /// A kinematic body of one shape, at the world's origin.
     pub fn kinematic(shape: impl Into<ShapeDef>) -> Self {
         Self { kind: BodyKind::Kinematic, ..Self::dynamic(shape) }
     }
 
-    /// Static body that is this box. One for each of [`Cooked::boxes`](crate::cook::Cooked) makes a level: the broad phase
-    /// takes shapes one by one, so a body each costs it nothing, and every question about a body (overlap, neighbours, events)
-    /// then concerns one box alone.
+    /// A static body with this box. One for each of [`Cooked::boxes`](crate::cook::Cooked) makes a level. The broad
+    /// phase stores shapes individually, so one body per box costs nothing extra, and every query about a body
+    /// (overlap, neighbours, events) then concerns a single box.
     pub fn fixed_box(obb: &Obb) -> Self {
         let shape = Shape::Box { half_extents: obb.half_extents };
         Self { position: obb.center, rotation: obb.rotation, ..Self::fixed(shape) }
@@ -247,13 +246,13 @@ impl BodyDef {
         Self { kind: BodyKind::Static, ..Self::dynamic(shape) }
     }
 
-    /// With its origin at a place (world, metres).
+    /// With its origin at a position (world, metres).
     #[must_use]
     pub fn at(self, position: Vec3) -> Self {
         Self { position, ..self }
     }
 
-    /// With its axes turned to where `rotation` brings those of the world.
+    /// With this orientation in the world.
     #[must_use]
     pub fn turned(self, rotation: Rotation) -> Self {
         Self { rotation, ..self }

@@ -1,18 +1,18 @@
-//! Energy that comes into a world within a step: of motors, and of bodies that move by themselves.
+//! Energy added to a world within a step by motors and kinematic bodies.
 
-/// Work done on dynamic bodies within a step, J. What it takes out of them is negative.
+/// Work done on dynamic bodies within a step, J; negative if energy is removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     /// Work of the motors of joints, pins included.
     pub drives: f32,
     /// Work of kinematic bodies, through contacts and joints.
     pub kinematic: f32,
-    /// Work of movers on what they push and stand on.
+    /// Work of movers on the bodies they push and stand on.
     pub movers: f32,
 }
 
 impl Work {
-    /// All together, J.
+    /// Total, J.
     pub fn total(self) -> f32 {
         self.drives + self.kinematic + self.movers
     }

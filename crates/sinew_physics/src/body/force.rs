@@ -1,8 +1,8 @@
-//! Forces, torques and impulses that the user gives bodies: for one step, until changed, or at once.
+//! Forces, torques and impulses applied by the user: for one step, until changed, or at once.
 //!
-//! World axes and SI units, unless said otherwise. A force `F` at a point `p` moves the centre of mass `c` as if it acted
-//! there, and turns the body besides: `a = F/m`, `τ = (p − c) × F`, `α = I⁻¹ τ` (Newton, Euler). Several add up. Only
-//! dynamic bodies feel any of them; a sleeping one wakes.
+//! World axes and SI units unless stated otherwise. A force `F` at a point `p` accelerates the centre of mass `c` as if
+//! it acted there, and also rotates the body: `a = F/m`, `τ = (p − c) × F`, `α = I⁻¹ τ` (Newton, Euler). Forces add up.
+//! They act on dynamic bodies only, and wake sleeping ones.
 
 use crate::body::Body;
 use crate::id::BodyId;
@@ -21,24 +21,23 @@ pub struct Wrench {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ForceFrame {
-    /// The world's: it keeps its direction when the body turns, as a pull from far away does. Default.
+    /// World axes: the direction is constant while the body rotates. Default.
     #[default]
     World,
-    /// The body's: it turns with the body, as a thruster does.
+    /// Body axes: the direction rotates with the body, as for a thruster.
     Body,
 }
 
-/// A force that acts on a body in every substep until it is changed or taken away.
+/// A force that acts on a body in every substep until it is changed or removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct ForceDef {
     /// N, in the axes of `frame`.
     pub force: Vec3,
-    /// N·m, in the axes of `frame`, beside what `force` turns by its lever.
+    /// N·m, in the axes of `frame`, in addition to the torque from `force` at `point`.
     pub torque: Vec3,
-    /// Point at which `force` acts, metres in the body's frame: the point goes along with the body. `None`, the default: at the
-    /// centre of mass.
+    /// Point at which `force` acts, metres in the body's frame. `None`, the default: the centre of mass.
     pub point: Option<Vec3>,
     /// Axes of `force` and `torque`. Default the world's.
     pub frame: ForceFrame,
@@ -137,10 +136,10 @@ impl BodyForces {
     }
 }
 
-/// Change of a velocity by an impulse, with its direction if it is beyond all measure: the next step slows the body to what its world
-/// allows.
+/// Change of a velocity by an impulse; an overflowing change keeps its direction, and the next step limits the speed to
+/// the world's maximum.
 pub(crate) fn finite_change(impulse: Vec3, change: impl Fn(Vec3) -> Vec3) -> Vec3 {
-    // Beyond the first, products with arms and inverse masses may not be finite; beyond the second, squares of sums are not.
+    // Beyond the first, products with arms and inverse masses may overflow; beyond the second, squares of sums may.
     const HUGE: f32 = 1e15;
     const MOST: f32 = 1e30;
     const SCALE: f32 = 1e-20;

@@ -1,7 +1,7 @@
-//! The library: every shape with data that the world was ever given, by the hash of its content (ADR 0014).
+//! The library: every shape with data that the world was given, by content hash (ADR 0014).
 //!
-//! A snapshot names such a shape by kind and hash and finds it here again, so that it stays small and quick. Another
-//! process gets the library itself by [`World::save_shapes`](crate::World::save_shapes).
+//! A snapshot references such a shape by kind and hash and looks it up here on restore, which keeps it small and fast.
+//! [`World::save_shapes`](crate::World::save_shapes) transfers the library to another process.
 
 use crate::body::shape::Shape;
 use core::fmt;
@@ -19,7 +19,8 @@ pub(crate) const ENTRY_BYTES: usize = 5;
 pub enum LoadError {
     /// The bytes are not a snapshot of this version.
     Bytes(ReadError),
-    /// The snapshot names a shape with data that the world was never given: see [`World::load_shapes`](crate::World::load_shapes).
+    /// The snapshot references a shape that this world was never given: see
+    /// [`World::load_shapes`](crate::World::load_shapes).
     UnknownShape {
         /// Offset of the hash.
         at: usize,
@@ -63,7 +64,7 @@ pub(crate) struct ShapeLibrary {
 }
 
 impl ShapeLibrary {
-    /// Takes a shape in, if it has data.
+    /// Adds a shape, if it has data.
     ///
     /// # Panics
     /// If another shape has the same hash.
@@ -74,7 +75,7 @@ impl ShapeLibrary {
         }
     }
 
-    /// The shape whose hash comes next.
+    /// The shape whose hash follows in the bytes.
     ///
     /// # Errors
     /// If the world was never given it.
@@ -85,7 +86,7 @@ impl ShapeLibrary {
     }
 }
 
-/// Writes what a snapshot names a shape with data by. False, and nothing written, of those that are sizes only.
+/// Writes the reference to a shape with data. Returns false, and writes nothing, for shapes without data.
 pub(crate) fn save_name(shape: &Shape, w: &mut Writer) -> bool {
     let Some((kind, hash)) = shape.data_kind().zip(shape.content_hash()) else { return false };
     w.u8(kind.tag());

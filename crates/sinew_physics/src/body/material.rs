@@ -14,20 +14,20 @@ use sinew_math::{Vec3, max, min};
 pub struct Material {
     /// Coulomb coefficient of sliding, ≥ 0. Default 0.6.
     pub friction: f32,
-    /// Coefficient up to which what does not slide holds, no less than `friction`. `None`, the default: the same.
+    /// Static friction coefficient, at least `friction`. `None`, the default: the same.
     pub static_friction: Option<f32>,
     /// Share of the approach speed given back, 0..=1. Default 0.
     pub restitution: f32,
     /// Rolling resistance: lever of the resisting torque, metres. Default 0.
     pub rolling: f32,
-    /// Velocity of the surface along its body, m/s in the shape's frame: a conveyor, a moving walkway. What lies on it is
-    /// carried by friction; the part along the contact's normal does nothing. Default 0.
+    /// Velocity of the surface relative to its body, m/s in the shape's frame: a conveyor, a moving walkway. Friction
+    /// carries bodies along; the normal component has no effect. Default 0.
     pub surface_velocity: Vec3,
     /// Angular velocity of the surface about the shape's origin, rad/s in the shape's frame: a turntable. Default 0.
     pub surface_spin: Vec3,
-    /// Rules by which it combines with the other side's material.
+    /// Rules for combining it with the other side's material.
     pub combine: CombineRules,
-    /// For the user: what it is made of, such as for sounds. Default 0.
+    /// User data: what it is made of, for example for sounds. Default 0.
     pub tag: u32,
 }
 
@@ -44,12 +44,12 @@ impl Material {
         tag: 0,
     };
 
-    /// Checks that the numbers of the material are valid; the phrase says what is wrong.
+    /// Checks that the numbers of the material are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// What is wrong, in lower case.
+    /// The problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
-        // Written so that NaN fails.
+        // This form rejects NaN.
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         let positive = not_negative(self.friction) && not_negative(self.rolling);
         if !(positive && not_negative(self.restitution)) {
@@ -81,8 +81,8 @@ impl Default for Material {
     }
 }
 
-/// Rule by which two numbers become one, later ones before earlier ones: where two surfaces ask for different rules, the later of the
-/// two in this list is taken, whichever side it is on.
+/// Rule that combines two numbers. If two surfaces request different rules, the one later in this list applies,
+/// whichever side it is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Combine {
@@ -110,16 +110,16 @@ impl Combine {
     }
 }
 
-/// Rules that a surface asks for. `None`, the default, leaves the choice to the other side.
+/// Rules requested by a surface. `None`, the default, leaves the choice to the other side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct CombineRules {
-    /// Rule for both coefficients of friction. If neither side says: the geometric mean.
+    /// Rule for both coefficients of friction. If neither side requests one: the geometric mean.
     pub friction: Option<Combine>,
-    /// Rule for restitution. If neither side says: the maximum.
+    /// Rule for restitution. If neither side requests one: the maximum.
     pub restitution: Option<Combine>,
-    /// Rule for rolling resistance. If neither side says: the maximum.
+    /// Rule for rolling resistance. If neither side requests one: the maximum.
     pub rolling: Option<Combine>,
 }
 
@@ -136,29 +136,30 @@ impl CombineRules {
     }
 }
 
-/// Material of a contact: what two materials are where they meet.
+/// Material of a contact: the combination of two materials.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactMaterial {
     /// Coulomb coefficient of sliding.
     pub friction: f32,
-    /// Coefficient up to which what does not slide holds, no less than `friction`.
+    /// Static friction coefficient, at least `friction`.
     pub static_friction: f32,
     /// Share of the approach speed given back.
     pub restitution: f32,
     /// Lever of rolling resistance, metres.
     pub rolling: f32,
-    /// Velocity of B's surface less that of A's where they touch, beside the velocities of the bodies, world axes, m/s:
-    /// friction brings the surfaces to rest on each other, not the bodies. Its part along the normal does nothing.
+    /// Velocity of B's surface minus that of A's at the contact, in addition to the velocities of the bodies, world
+    /// axes, m/s: friction brings the surfaces, not the bodies, to relative rest. The normal component has no effect.
     pub velocity: Vec3,
-    /// Angular velocity of B's surface less that of A's, beside those of the bodies, world axes, rad/s; its part about the normal counts.
+    /// Angular velocity of B's surface minus that of A's, in addition to those of the bodies, world axes, rad/s; its
+    /// normal component counts.
     pub spin: Vec3,
-    /// Speed with which they are to part where they touch, m/s, ≥ 0: a trampoline, a launching pad. Only a
+    /// Separation speed that the contact enforces, m/s, ≥ 0: a trampoline, a launching pad. Only a
     /// [modifier](crate::ContactModifier) sets it.
     pub launch: f32,
 }
 
 impl ContactMaterial {
-    /// Contact material of two materials; no matter which comes first. Velocities depend on the place: they are 0 here.
+    /// Contact material of two materials, in either order. Velocities depend on the contact point: they are 0 here.
     pub fn of(a: &Material, b: &Material) -> Self {
         let [friction, restitution, rolling] = a.combine.with(b.combine);
         Self {
@@ -170,13 +171,13 @@ impl ContactMaterial {
         }
     }
 
-    /// True if it moves what it touches.
+    /// True if its surface moves or launches bodies.
     pub(crate) fn drives(&self) -> bool {
         self.velocity != Vec3::ZERO || self.spin != Vec3::ZERO || self.launch != 0.0
     }
 
     pub(crate) fn is_valid(&self) -> bool {
-        // Written so that NaN fails.
+        // This form rejects NaN.
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         let positive =
             [self.friction, self.restitution, self.rolling, self.launch].into_iter().all(not_negative);

@@ -1,4 +1,4 @@
-//! A body as the world keeps it.
+//! A body as stored by the world.
 
 pub(crate) mod contact_rule;
 pub mod def;
@@ -55,13 +55,13 @@ impl Velocity {
 /// Awake, or asleep with the island it fell asleep with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rest {
-    /// Seconds for which it has been in its place.
+    /// Seconds for which it has stayed in place.
     Awake { rest_time: f32 },
     /// All bodies with the same number wake together.
     Asleep { island: u32 },
 }
 
-/// Change of a body's velocity since it last changed the other way, of which a share is forgotten in each step.
+/// Velocity change since it last reversed, of which a share decays per step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Gain {
     pub velocity: Velocity,
@@ -70,7 +70,8 @@ pub(crate) struct Gain {
 }
 
 impl Gain {
-    /// Adds the change of a step of `dt` seconds and keeps a share of what was there; `arm` (m) weighs turns against ways.
+    /// Adds the change of a step of `dt` seconds and keeps a share of the previous sum; `arm` (m) converts rotations to
+    /// distances.
     pub fn add(&mut self, change: &Velocity, dt: f32, (arm, share): (f32, f32)) {
         let Self { velocity: Velocity { linear, angular }, time } = self;
         let along = linear.dot(change.linear) + arm * arm * angular.dot(change.angular);
@@ -93,13 +94,13 @@ pub(crate) struct BodyShape {
     pub surface: u32,
 }
 
-/// The pose is that of the **principal frame**: origin at the centre of mass, axes along the principal axes of
-/// inertia, so that the inertia is a diagonal everywhere in the solver.
+/// The pose is that of the **principal frame**: origin at the centre of mass, axes along the principal axes of inertia,
+/// so that the inertia is diagonal everywhere in the solver.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     pub kind: BodyKind,
     pub world_from_principal: Transform,
-    /// Before the last step: for interpolation and for what it may have passed.
+    /// Before the last step: for interpolation and continuous collision.
     pub previous: Transform,
     pub velocity: Velocity,
     /// Applied by the user for the next step, N and N·m, world axes.
@@ -112,7 +113,7 @@ pub(crate) struct Body {
     pub mass: f32,
     /// Principal moments, kg·m².
     pub inertia: Vec3,
-    /// Mass and moments that it has as soon as it is dynamic; only of a body that was, or was given some.
+    /// Mass and moments that it has when it becomes dynamic; only for a body that was dynamic or was given some.
     pub laid_by: Option<(f32, Vec3)>,
     pub linear_damping: f32,
     pub angular_damping: f32,
@@ -120,14 +121,14 @@ pub(crate) struct Body {
     pub shapes: Vec<BodyShape>,
     pub surfaces: Surfaces,
     pub rest: Rest,
-    /// Permission for the body to fall asleep by itself.
+    /// Permission for the body to fall asleep.
     pub sleeping: Sleeping,
     /// Instead of the world's.
     pub quality: Option<Quality>,
-    /// Pose at which its time at rest began.
+    /// Pose at which its time at rest started.
     pub place: Transform,
     pub gain: Gain,
-    /// Set when its state became non-finite: it was rolled back and takes no further part.
+    /// Set when its state became non-finite: it was rolled back and is no longer simulated.
     pub quarantined: bool,
     /// The user changed it since the last step.
     pub changed: bool,
@@ -136,8 +137,8 @@ pub(crate) struct Body {
     pub owner: Option<OwnerMark>,
 }
 
-/// Principal moments below this share of the largest make long thin bodies spin wildly at a touch
-/// (`r × n` dominates the effective mass); they are raised to it.
+/// Principal moments below this share of the largest make long thin bodies spin wildly on contact (`r × n` dominates
+/// the effective mass); they are raised to it.
 const SMALLEST_MOMENT: f32 = 1e-3;
 
 /// Panics if a number is not finite, a shape is not valid, or a half-space is to move.
@@ -270,7 +271,7 @@ impl Body {
         self.previous = self.world_from_principal;
     }
 
-    /// Puts the principal frame elsewhere in the body, which stays where it is and goes on as it went.
+    /// Moves the principal frame within the body; the body's pose and motion do not change.
     pub fn set_principal_frame(&mut self, principal_from_body: Transform) {
         let new_from_old = principal_from_body * self.principal_from_body.inverse();
         let old_from_new = new_from_old.inverse();
@@ -316,13 +317,13 @@ impl Body {
         self.surfaces.shrink();
     }
 
-    /// Surface of a shape: what it is besides geometry.
+    /// Surface of a shape: its non-geometric properties.
     pub fn surface(&self, shape: usize) -> &Surface {
         &self.surfaces.as_slice()[self.shapes[shape].surface as usize]
     }
 
-    /// Most bodies have one shape where they are themselves, and levels are bodies at the origin: then there is nothing to
-    /// multiply.
+    /// Most bodies have one shape at their own origin, and levels are bodies at the world's origin: then no
+    /// multiplication is needed.
     pub fn world_from_shape(&self, shape: usize) -> Transform {
         let principal_from_shape = self.shapes[shape].principal_from_shape;
         if principal_from_shape == Transform::IDENTITY {
@@ -351,13 +352,13 @@ impl Body {
         matches!(self.rest, Rest::Awake { .. })
     }
 
-    /// It is awake, and the time for which it has been calm begins anew.
+    /// Wakes it and restarts its time at rest.
     pub fn disturb(&mut self) {
         self.rest = Rest::Awake { rest_time: 0.0 };
         self.place = self.world_from_principal;
     }
 
-    /// Takes part in the step as something that forces move.
+    /// Takes part in the step as a dynamic body.
     pub fn is_active(&self) -> bool {
         self.kind == BodyKind::Dynamic && self.is_awake() && !self.quarantined
     }
@@ -399,13 +400,13 @@ impl Body {
         0.5 * self.mass * self.velocity.linear.length_squared() + 0.5 * (w * self.inertia).dot(w)
     }
 
-    /// Most that a point of it moves at, roughly, m/s.
+    /// Approximate largest speed of a point of it, m/s.
     pub fn fastest_point(&self) -> f32 {
         self.velocity.linear.length() + self.velocity.angular.length() * self.reach()
     }
 
-    /// Largest distance from the centre of mass to the surface, roughly: turns rad/s into m/s. 0 for static bodies,
-    /// which do not turn (and may reach to infinity).
+    /// Approximate largest distance from the centre of mass to the surface: converts rad/s to m/s. 0 for static bodies,
+    /// which do not rotate (and may be infinite).
     pub fn reach(&self) -> f32 {
         let mut reach = 0.0;
         for shape in self.shapes.iter().filter(|_| self.kind != BodyKind::Static) {
@@ -416,8 +417,8 @@ impl Body {
     }
 }
 
-/// Rotation about `v` by its length in radians, as [`Rotation::from_scaled_axis`] is, by the series where that is as exact: what is led turns little in
-/// a step.
+/// Rotation about `v` by its length in radians, like [`Rotation::from_scaled_axis`], by the series where that is
+/// equally exact: a keyed body rotates little per step.
 fn small_turn(v: Vec3) -> Rotation {
     let square = 0.25 * v.length_squared();
     if square.is_nan() || square > 0.02 {
@@ -447,7 +448,7 @@ pub(crate) fn expect_solid(mass: f32, moments: Vec3) {
 pub(crate) fn principal_frame(properties: &MassProperties) -> (Vec3, Transform) {
     let Sym3 { diagonal, off } = properties.inertia;
     if off == Vec3::ZERO {
-        // Keeps the axes of boxes and capsules as they are.
+        // Keeps the axes of boxes and capsules unchanged.
         return (raise(diagonal), Transform::from_translation(properties.center));
     }
     let (moments, rotation): (Vec3, Rotation) = properties.inertia.eigen();

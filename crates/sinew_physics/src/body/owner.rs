@@ -1,9 +1,10 @@
-//! Owners: code above the world, such as a character, that keeps bodies and joints and takes them out itself.
+//! Owners: code above the world, such as a character, that keeps bodies and joints and removes them itself.
 
 use sinew_math::{ReadError, Reader, Writer};
 
-/// Code that keeps bodies and joints of a world: what they are called, and the calls that take them out. [`World::remove_body`](crate::World::remove_body) and
-/// [`World::remove_joint`](crate::World::remove_joint) panic about what has an owner, with these words.
+/// Name of code that keeps bodies and joints of a world, and the calls that remove them.
+/// [`World::remove_body`](crate::World::remove_body) and [`World::remove_joint`](crate::World::remove_joint) panic with
+/// these words for an owned item.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Owner {
     /// Name of the kind of owner: "character".
@@ -21,14 +22,14 @@ pub(crate) struct OwnerMark {
     part: u16,
 }
 
-/// Owners that marks name. Each is there once; none goes.
+/// Registered owners, each once; none is ever removed.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Owners {
     all: Vec<Owner>,
 }
 
 impl Owners {
-    /// Number of an owner, which is added where it is not known yet.
+    /// Number of an owner; adds it if it is unknown.
     pub fn number(&mut self, owner: &Owner) -> u16 {
         let known = self.all.iter().position(|known| known == owner);
         let index = known.unwrap_or_else(|| {
@@ -49,14 +50,14 @@ impl Owners {
         OwnerMark { owner, part: u16::try_from(part).expect("at most 65,536 parts") }
     }
 
-    /// Owner and name of the part that a mark names.
+    /// Owner and name of the part that a mark refers to.
     pub fn of(&self, mark: OwnerMark) -> (&Owner, &str) {
         let owner = &self.all[usize::from(mark.owner)];
         (owner, &owner.parts[usize::from(mark.part)])
     }
 }
 
-/// Owners in a snapshot: each is written where it is first named, so that one without owners is as long as ever.
+/// Owners in a snapshot: each is written at its first use, so that a snapshot without owners is as short as before.
 #[derive(Debug, Default)]
 pub(crate) struct OwnersInOrder {
     /// Numbers in [`Owners`] by the order in which the snapshot names them.

@@ -1,4 +1,4 @@
-//! Shapes as parts of bodies, and whom they meet.
+//! Shapes as parts of bodies, and their filters.
 
 use crate::body::contact_rule::ContactRule;
 use crate::body::material::Material;
@@ -7,7 +7,7 @@ use sinew_math::Transform;
 
 pub use sinew_geometry::{MassProperties, Shape};
 
-/// Two shapes meet if each one's mask holds the other's layer, and they are not in the same negative group.
+/// Two shapes collide if each one's mask contains the other's layer, and they are not in the same negative group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -18,9 +18,9 @@ pub use sinew_geometry::{MassProperties, Shape};
 pub struct Filter {
     /// Bits of the layers it is on. Default 1.
     pub layers: u32,
-    /// Bits of the layers it meets. Default all.
+    /// Bits of the layers it collides with. Default all.
     pub mask: u32,
-    /// Same non-zero group: positive always meets, negative never. Default 0: none.
+    /// Same non-zero group: a positive one always collides, a negative one never. Default 0: none.
     pub group: i32,
 }
 
@@ -31,7 +31,7 @@ impl Default for Filter {
 }
 
 impl Filter {
-    /// True if two shapes meet.
+    /// True if two shapes collide.
     pub fn meets(self, other: Self) -> bool {
         if self.group != 0 && self.group == other.group {
             return self.group > 0;
@@ -39,7 +39,7 @@ impl Filter {
         self.layers & other.mask != 0 && other.layers & self.mask != 0
     }
 
-    /// True if it meets no other shape, whatever that one's filter is.
+    /// True if it collides with no other shape, whatever that one's filter is.
     pub fn meets_none(self) -> bool {
         self.group <= 0 && (self.layers == 0 || self.mask == 0)
     }
@@ -60,7 +60,7 @@ pub struct ShapeDef {
     pub density: f32,
     /// Surface.
     pub material: Material,
-    /// Whom it meets.
+    /// Collision filter.
     pub filter: Filter,
     /// Solid shape or sensor.
     pub sensing: Sensing,
@@ -68,7 +68,7 @@ pub struct ShapeDef {
     pub rule: ContactRule,
 }
 
-/// Effect of a shape on those that it meets.
+/// Effect of a shape on those it touches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(alias = "trigger")]
@@ -83,16 +83,16 @@ pub enum Sensing {
 }
 
 impl ShapeDef {
-    /// Checks that the numbers of the definition are valid; the phrase says what is wrong.
+    /// Checks that the numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// What is wrong, in lower case.
+    /// The problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         self.shape.check()?;
         self.material.check()?;
         self.rule.check()?;
         let placed = self.body_from_shape.is_finite();
-        // Written so that NaN fails.
+        // This form rejects NaN.
         let dense = (0.0..f32::INFINITY).contains(&self.density);
         if placed && dense {
             Ok(())

@@ -162,7 +162,7 @@ fn load_rest(r: &mut Reader<'_>) -> Result<(Rest, Gain), LoadError> {
     Ok((rest, gain))
 }
 
-/// Reads a body; its owner, if it has one, is to be read.
+/// Reads a body; its owner, if any, follows.
 pub(crate) fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadError> {
     let tag = r.u8()?;
     let (number, owner) = (tag & !OWNED, (tag & OWNED != 0).then(OwnerMark::default));
@@ -268,7 +268,7 @@ fn load_surface(r: &mut Reader<'_>) -> Result<Surface, ReadError> {
     if surface.density.is_finite() { Ok(surface) } else { Err(r.error("a density is not finite")) }
 }
 
-/// Reads a list of items that take at least `least` bytes each.
+/// Reads a list of items of at least `least` bytes each.
 fn load_list<'a, T, E: From<ReadError>>(
     r: &mut Reader<'a>,
     least: usize,

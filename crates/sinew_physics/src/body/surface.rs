@@ -1,10 +1,10 @@
-//! Surfaces: what the shapes of a body are besides geometry. Most share it with others of their body, so that it is kept once.
+//! Surfaces: the non-geometric properties of a body's shapes, shared where equal.
 
 use crate::body::contact_rule::ContactRule;
 use crate::body::material::Material;
 use crate::body::shape::{Filter, Sensing, ShapeDef};
 
-/// Everything about a shape but its geometry and place.
+/// Everything about a shape except its geometry and pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Surface {
     /// kg/m³.
@@ -15,12 +15,12 @@ pub(crate) struct Surface {
     pub rule: ContactRule,
 }
 
-/// The different surfaces of a body's shapes, in the order in which they came.
+/// The different surfaces of a body's shapes, in order of first use.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Surfaces(Vec<Surface>);
 
-/// Number of the last surfaces that a new one is compared with: a body with a million different ones must not take the square
-/// of that to be made.
+/// Number of recent surfaces that a new one is compared with, so that a body with a million different ones does not
+/// cost quadratic time.
 const LOOK_BACK: usize = 16;
 
 impl Surface {
@@ -29,7 +29,7 @@ impl Surface {
         Self { density, material, filter, sensing, rule }
     }
 
-    /// True if particles with a filter cannot get through: a one-way shape and one with a modifier are walls to them.
+    /// True if particles with a filter cannot pass: one-way shapes and shapes with a modifier are walls to them.
     pub fn is_wall_to(&self, filter: Filter) -> bool {
         self.sensing == Sensing::Solid && self.rule != ContactRule::Ghost && self.filter.meets(filter)
     }
@@ -41,7 +41,7 @@ impl Surfaces {
         Self(surfaces)
     }
 
-    /// Number of a surface, known or new.
+    /// Number of a surface, added if new.
     pub fn intern(&mut self, surface: &Surface) -> u32 {
         let known = self.0.iter().rev().take(LOOK_BACK).position(|other| other == surface);
         let place = known.map_or(self.0.len(), |back| self.0.len() - 1 - back);
@@ -51,12 +51,12 @@ impl Surfaces {
         place as u32
     }
 
-    /// No more memory than they need.
+    /// Releases excess memory.
     pub fn shrink(&mut self) {
         self.0.shrink_to_fit();
     }
 
-    /// Changes one that no other shape has.
+    /// Changes a surface that no other shape shares.
     pub fn set(&mut self, number: u32, surface: Surface) {
         self.0[number as usize] = surface;
     }

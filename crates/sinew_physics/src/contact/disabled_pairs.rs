@@ -1,32 +1,32 @@
-//! Pairs of bodies that pass through each other.
+//! Pairs of bodies that do not collide.
 
 use crate::arena::Arena;
 use crate::contact::filter::{PairFilter, PairFunctions};
 use crate::contact::ordered;
 use crate::joint::Joint;
 
-/// Disabled pairs: those that the user named, and those of joints whose bodies do not collide.
+/// Disabled pairs: the user's, and those of joints whose bodies do not collide.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DisabledPairs {
     /// By the user: body indices, smaller first, ascending.
     pub disabled: Vec<(u32, u32)>,
-    /// Pairs of the user and of joints together: body indices, smaller first, ascending.
+    /// Union of the user's and the joints' pairs: body indices, smaller first, ascending.
     all: Vec<(u32, u32)>,
     /// `all` misses something.
     stale: bool,
-    /// Number of times that `all` was made.
+    /// Version of `all`.
     version: u64,
-    /// The user's, that part more.
+    /// The user's pairs only.
     pub functions: PairFunctions,
 }
 
 impl DisabledPairs {
-    /// Takes over what a snapshot holds.
+    /// Restores the pairs of a snapshot.
     pub fn restore(&mut self, disabled: Vec<(u32, u32)>, function: Option<u32>) {
         (self.disabled, self.functions.chosen, self.stale) = (disabled, function, true);
     }
 
-    /// Joints came, went, or changed.
+    /// Joints were added, removed or changed.
     pub fn invalidate(&mut self) {
         self.stale = true;
     }
@@ -46,13 +46,13 @@ impl DisabledPairs {
         self.stale = true;
     }
 
-    /// Forgets a body that is taken out.
+    /// Removes the pairs of a removed body.
     pub fn forget(&mut self, body: u32) {
         self.disabled.retain(|&(a, b)| a != body && b != body);
         self.stale = true;
     }
 
-    /// Filter that keeps shapes from meeting, brought up to date.
+    /// The current filter of shape pairs.
     pub fn filter(&mut self, joints: &Arena<Joint>) -> PairFilter<'_> {
         if core::mem::take(&mut self.stale) {
             let jointed = joints.iter().filter(|(_, joint)| joint.parts_bodies());

@@ -1,4 +1,4 @@
-//! Filters of pairs: which shapes may meet by their filters, by pairs that were parted, and by a function of the user's.
+//! Pair filters: by shape filters, by disabled pairs, and by a user function.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -8,14 +8,14 @@ use crate::contact::{ContactKey, ordered};
 use crate::id::ShapeId;
 use crate::registered::Registered;
 
-/// One side of a pair that may meet.
+/// One side of a candidate pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairSide {
     /// The shape.
     pub shape: ShapeId,
     /// Kind of its body.
     pub kind: BodyKind,
-    /// The user's number on its body.
+    /// The user data of its body.
     pub user_data: u64,
     /// Its filter.
     pub filter: Filter,
@@ -23,19 +23,19 @@ pub struct PairSide {
     pub sensing: Sensing,
 }
 
-/// True if two shapes may meet that all other filters let meet; the one with the smaller body index comes first.
+/// User filter for two shapes that pass all other filters; the one with the smaller body index comes first.
 ///
-/// A pure function, so that a snapshot holds all that decides; a plain one, not a closure: there is nothing that it could
-/// remember. It is asked in every step, in no defined order.
+/// A pure function, so that a snapshot contains everything that decides; a function pointer instead of a closure,
+/// because it must not have state. It is called in every step, in unspecified order.
 pub type PairFunction = fn(&PairSide, &PairSide) -> bool;
 
-/// Filter that keeps shapes from meeting.
+/// Filter of shape pairs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairFilter<'a> {
     /// Body indices, smaller first, ascending.
     pub parted: &'a [(u32, u32)],
     pub function: Option<PairFunction>,
-    /// Another one whenever `parted` is another.
+    /// Changes whenever `parted` changes.
     pub version: u64,
 }
 
@@ -69,7 +69,8 @@ fn side(bodies: &Arena<Body>, index: u32, shape: u32) -> PairSide {
     }
 }
 
-/// Contacts push something dynamic. A sensor sees whatever it or the other may move to; two sensors do not see each other.
+/// Contacts require a dynamic body. A sensor detects anything that it or the other may move to; two sensors do not
+/// detect each other.
 pub(crate) fn kinds_meet([a, b]: [(BodyKind, Sensing); 2]) -> bool {
     let either = |kind: BodyKind| a.0 == kind || b.0 == kind;
     match (a.1, b.1) {
@@ -79,7 +80,7 @@ pub(crate) fn kinds_meet([a, b]: [(BodyKind, Sensing); 2]) -> bool {
     }
 }
 
-/// The user's functions, and which of them is asked.
+/// The registered user functions, and the active one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairFunctions {
     pub registered: Registered<PairFunction>,

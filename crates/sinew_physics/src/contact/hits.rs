@@ -1,4 +1,4 @@
-//! Hits: contacts that came in fast, with what it took to stop them.
+//! Hits: fast contacts, with the impulse that stopped them.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -17,11 +17,12 @@ pub struct Hit {
     pub a: ShapeId,
     /// The other.
     pub b: ShapeId,
-    /// Point of the hit, world, metres: the middle of what pushed, weighed by how much; on the surface that stands still, if one does.
+    /// Point of the hit, world, metres: the impulse-weighted mean of the contact points, on the surface of the static
+    /// body, if there is one.
     pub point: Vec3,
     /// From A to B, unit length, world axes.
     pub normal: Vec3,
-    /// Speed at which they came in along the normal, m/s: where they touched first, when the step began.
+    /// Approach speed along the normal, m/s, at the first contact, at the start of the step.
     pub approach: f32,
     /// All that pushed along the normal, N·s: the sum over the points of contact.
     pub impulse: f32,
@@ -31,7 +32,7 @@ pub struct Hit {
     pub materials: [Material; 2],
 }
 
-/// A hit that the step ended in the middle of: it is told of in the next, with all that it took.
+/// A hit in progress at the end of the step: the next step reports it with its whole impulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct OpenHit {
     a: ShapeId,
@@ -43,12 +44,13 @@ struct OpenHit {
     greatest: f32,
 }
 
-/// Hits that go on, in the order of pairs. Part of the snapshot.
+/// Hits in progress, in the order of pairs. Part of the snapshot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct OpenHits {
     list: Vec<OpenHit>,
     next: Vec<OpenHit>,
-    /// Pairs that came in fast in this step, and how fast that is, m/s. Not part of the snapshot: a step begins with them.
+    /// Pairs that approached fast in this step, with their speed, m/s. Not part of the snapshot, because a step clears
+    /// them.
     fast: Vec<ContactKey>,
     threshold: f32,
 }
@@ -60,21 +62,21 @@ impl OpenHit {
 }
 
 impl OpenHits {
-    /// Begins a step with so many contacts, in which hits faster than `threshold` (m/s) are told of.
+    /// Starts a step with this many contacts; hits faster than `threshold` (m/s) are reported.
     pub fn start(&mut self, contacts: usize, threshold: f32) {
         self.threshold = threshold;
         self.fast.clear();
         self.fast.reserve(contacts + self.list.len());
     }
 
-    /// Notes a pair that came in fast.
+    /// Records a fast pair.
     pub fn note(&mut self, pair: &[Contact]) {
         if pair.iter().any(|contact| contact.approach >= self.threshold) {
             self.fast.push(ContactKey { part: 0, ..pair[0].key });
         }
     }
 
-    /// Tells of what was hit in this step, of the pairs that were [noted](Self::note) and those whose hits go on.
+    /// Reports the hits of this step: of [recorded](Self::note) pairs and of hits in progress.
     pub fn tell(&mut self, bodies: &Arena<Body>, contacts: &[Contact], hits: &mut Vec<Hit>) {
         hits.clear();
         self.next.clear();
@@ -132,7 +134,7 @@ impl OpenHits {
     }
 }
 
-/// All parts of a pair's contact as one hit, with what the step before had of it.
+/// All parts of a pair's contact as one hit, including the previous step's share.
 fn hit_of(
     bodies: &Arena<Body>,
     pair: &[Contact],
@@ -147,7 +149,7 @@ fn hit_of(
     }
     for contact in pair {
         approach = max(approach, contact.approach);
-        // The points lie half way between the surfaces: of one that forces move and one that they do not, that one's counts.
+        // The points are half way between the surfaces; between a dynamic and another body, the other's surface counts.
         let on = match [a, b].map(|id| bodies.at(id.body.index).kind == BodyKind::Dynamic) {
             [true, false] => 0.5,
             [false, true] => -0.5,
@@ -175,7 +177,7 @@ fn hit_of(
     }
 }
 
-/// Largest speed at which the points that pushed still come in at the end of the step, m/s.
+/// Largest remaining approach speed of the pushing points at the end of the step, m/s.
 fn closing_speed(bodies: &Arena<Body>, pair: &[Contact]) -> f32 {
     let mut fastest = 0.0;
     for contact in pair {

@@ -1,4 +1,4 @@
-//! Contacts: pairs of shapes that are near each other, with what the solver remembers of them.
+//! Contacts: pairs of nearby shapes, with the solver's stored impulses.
 
 pub(crate) mod disabled_pairs;
 pub(crate) mod events;
@@ -23,8 +23,8 @@ use crate::contact::recycled::Recycled;
 use core::cmp::Ordering;
 use sinew_math::Vec3;
 
-/// Key of a contact: body index and shape number of both shapes, the smaller body index first, and which part of their contact.
-/// Sorting by it is the order in which everything about contacts happens.
+/// Key of a contact: body index and shape number of both shapes, the smaller body index first, and the part of their
+/// contact. Contacts are always processed in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ContactKey {
     pub a: u32,
@@ -51,7 +51,7 @@ impl PartialOrd for ContactKey {
     }
 }
 
-/// First number of the parts that are contacts of two shapes through particles between them.
+/// First part number of contacts between two shapes through particles.
 const THROUGH_PARTICLES: u32 = 1 << 31;
 
 impl ContactKey {
@@ -60,18 +60,18 @@ impl ContactKey {
         Self { part: THROUGH_PARTICLES | number, ..self }
     }
 
-    /// True if particles lie between the shapes: their geometry does not say where its points are.
+    /// True if particles are between the shapes: the shapes' geometry does not define the contact points.
     pub fn is_through_particles(self) -> bool {
         self.part >= THROUGH_PARTICLES
     }
 
-    /// Key of two shapes, each given by body and shape number, in whatever order; part 0.
+    /// Key of two shapes, each given by body and shape number, in either order; part 0.
     pub fn new(p: (u32, u32), q: (u32, u32)) -> Self {
         let (a, b) = if p.0 < q.0 { (p, q) } else { (q, p) };
         Self { a: a.0, b: b.0, shape_a: a.1, shape_b: b.1, part: 0 }
     }
 
-    /// True if it is one of the manifolds of the same two shapes.
+    /// True if both are manifolds of the same two shapes.
     pub fn is_of_pair(&self, other: Self) -> bool {
         Self { part: other.part, ..*self } == other
     }
@@ -95,7 +95,7 @@ pub(crate) fn ordered(a: u32, b: u32) -> (u32, u32) {
 /// Impulses of one manifold point, N·s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PointImpulse {
-    /// Impulses of the last substep and the one before: an impact must not be repeated, so warm starting looks at both.
+    /// Impulses of the last substep and the one before: warm starting uses both, so that an impact is not repeated.
     pub now: f32,
     pub before: f32,
     /// Sum over all substeps of the step.
@@ -119,13 +119,13 @@ pub(crate) struct ContactMemory {
 }
 
 impl ContactMemory {
-    /// With nothing given yet.
+    /// With zero impulses.
     pub fn of_new_step(&self) -> Self {
         let points = self.points.map(|point| PointImpulse { total: 0.0, ..point });
         Self { points, total_friction: Vec3::ZERO, ..*self }
     }
 
-    /// Impulses that last from substep to substep as those of substeps `times` as long; the sums of the step stay.
+    /// Scales the persistent impulses to substeps `times` as long; the sums of the step are unchanged.
     pub fn of_substeps(&self, times: f32) -> Self {
         if times == 1.0 {
             return *self;
@@ -145,9 +145,9 @@ impl ContactMemory {
         }
     }
 
-    /// Memory that a new manifold of the same shapes starts with. Points keep their impulses by feature; those of points that
-    /// are gone go to the new ones in equal parts, since the load stays when the shapes tip from one corner to another.
-    /// Nothing is kept if the normal turned by more than about 25°.
+    /// Stored impulses for a new manifold of the same shapes. Points keep their impulses by feature; the impulses of
+    /// removed points are divided equally among new ones, because the load remains when the shapes tip from one corner
+    /// to another. All are dropped if the normal rotated by more than about 25°.
     pub fn matched(&self, old: &Manifold, new: &Manifold) -> Self {
         if new.count == 0 || old.count == 0 || old.normal.dot(new.normal) < 0.9 {
             return Self::default();
@@ -194,7 +194,7 @@ pub enum Effect {
     Push,
     /// One of the shapes only senses.
     Sense,
-    /// The shapes pass through each other.
+    /// The shapes do not push each other.
     Pass,
 }
 
@@ -204,25 +204,24 @@ pub(crate) struct Contact {
     pub manifold: Manifold,
     pub memory: ContactMemory,
     pub effect: Effect,
-    /// One of the shapes is solid from one side: what is decided stays while they touch.
+    /// One of the shapes is one-way: the decision lasts while they touch.
     pub one_way: bool,
-    /// It pushed in the last step, or the parts before it did.
+    /// It or an earlier part of its pair pushed in the last step.
     pub pushed: bool,
-    /// Its pair was told of as touching, or as one with a sensor.
+    /// Its pair was reported as touching, or as a sensor pair.
     pub touching: bool,
     pub sensed: bool,
-    /// A shape that is solid from one side let the other pass when it was last decided.
+    /// A one-way shape let the other pass at its last decision.
     pub passes: bool,
-    /// Speed at which its points came in when the step began, m/s.
+    /// Approach speed of its points at the start of the step, m/s.
     pub approach: f32,
-    /// Separating axis of the shapes when they were last looked at. Not part of the state: it decides nothing but how soon that is
-    /// found again.
+    /// Last separating axis of the shapes. Not part of the state: it only speeds up the next search.
     pub apart: Option<AxisOf>,
-    /// Gap that surely was between them then, metres, if they had no points. Not part of the state, either.
+    /// Guaranteed gap at that time, metres, if they had no points. Not part of the state.
     pub gap: f32,
     /// One of the shapes is a mesh or a height field.
     pub has_surface: bool,
-    /// It does nothing but push, as long as neither surface is changed. Not part of the state: it follows from them.
+    /// It only pushes, unless a surface changes. Derived from the surfaces and not part of the state.
     pub is_plain: bool,
     pub kept: Recycled,
 }
@@ -248,12 +247,12 @@ impl Contact {
         }
     }
 
-    /// It has no points, and nothing is to be told of it: as good as none.
+    /// It has no points and nothing to report: equivalent to no contact.
     pub fn is_idle(&self) -> bool {
         self.manifold.count == 0 && !self.touching && !self.sensed
     }
 
-    /// Separating axis and gap of its shapes, as far as they are known.
+    /// Separating axis and gap of its shapes, if known.
     pub fn parting(&self) -> SeparationCache {
         SeparationCache { axis: self.apart, gap: self.gap }
     }
@@ -268,18 +267,18 @@ impl Contact {
         self.manifold.points().iter().any(|point| point.separation <= 0.0)
     }
 
-    /// It pushed in the last step in which it was looked at.
+    /// It pushed in the last step that updated it.
     pub fn has_pushed(&self) -> bool {
         self.impulses().any(|(_, impulse)| impulse > 0.0)
     }
 
-    /// World positions of its points, m, and all that each got along the normal in the last step, N·s.
+    /// World positions of its points, m, and the total normal impulse of each in the last step, N·s.
     pub fn impulses(&self) -> impl Iterator<Item = (Vec3, f32)> {
         let points = self.manifold.points().iter().zip(&self.memory.points);
         points.map(|(point, impulse)| (point.position, impulse.total))
     }
 
-    /// Contact material of its two surfaces, as the bodies lie now.
+    /// Contact material of its two surfaces at the bodies' current poses.
     pub fn material(&self, bodies: &Arena<Body>) -> ContactMaterial {
         let sides = [(self.key.a, self.key.shape_a), (self.key.b, self.key.shape_b)];
         let sides = sides.map(|(body, shape)| (bodies.at(body), shape as usize));
@@ -295,14 +294,14 @@ impl Contact {
     }
 }
 
-/// The parts of one pair after those of another.
+/// The first part of the next pair.
 pub(crate) fn pairs_of(contacts: &mut [Contact]) -> impl Iterator<Item = &mut [Contact]> {
     contacts.chunk_by_mut(|one, other| one.key.is_of_pair(other.key))
 }
 
-/// Length that contacts are scaled by: 5 mm, or 2 % of the smallest extent of either shape, so that small props are as
-/// solid as crates. Points are looked for within 4 of it; a fifth of it is left overlapping, so that a contact at rest
-/// keeps touching (a dead zone of all of it lets piles settle deep).
+/// Length scale of contacts: 5 mm, or 2 % of the smallest extent of either shape, so that small props are as firm as
+/// crates. The search margin is 4 times it. A fifth of it remains as overlap, so that a resting contact keeps touching;
+/// a dead zone of the whole length would let piles sink visibly.
 pub(crate) fn slop(smallest_extent: f32) -> f32 {
     sinew_math::min(0.005, 0.02 * smallest_extent)
 }

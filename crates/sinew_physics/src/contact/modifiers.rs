@@ -1,4 +1,4 @@
-//! The user's functions that change contacts, and what they made of those of this step.
+//! User functions that modify contacts, and their results in this step.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -11,12 +11,12 @@ use crate::registered::Registered;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Modifiers {
     pub registered: Registered<ContactModifier>,
-    /// Contacts (by their place) that were changed in this step, ascending, with their materials.
+    /// Contacts (by position) modified in this step, ascending, with their materials.
     changed: Vec<(u32, ContactMaterial)>,
 }
 
 impl Modifiers {
-    /// Lets them change the contacts of this step, or keep them from pushing.
+    /// Calls them for the contacts of this step; they may change the material or disable the push.
     pub fn change(&mut self, bodies: &Arena<Body>, contacts: &mut [Contact], step: u64) {
         self.changed.clear();
         if self.registered.is_empty() {
@@ -31,7 +31,7 @@ impl Modifiers {
         }
     }
 
-    /// Material that they give a contact, which has its `own` else; `None` if they leave it alone, or keep it from pushing.
+    /// Modified material of a contact whose combined material is `own`; `None` if it is unchanged or does not push.
     pub fn ask(
         &self,
         bodies: &Arena<Body>,
@@ -64,12 +64,12 @@ impl Modifiers {
         material
     }
 
-    /// Gives a contact a material for this step; its place is after those of all that were changed before.
+    /// Sets a contact's material for this step; its position follows those set before.
     pub fn set(&mut self, place: u32, material: ContactMaterial) {
         self.changed.push((place, material));
     }
 
-    /// True if they made something of a contact in this step.
+    /// True if any contact of this step was modified.
     pub fn have_changed(&self, place: u32) -> bool {
         self.find(place).is_some()
     }

@@ -1,8 +1,8 @@
-//! Pairs of shapes whose bounds in the trees overlap: candidates, from one step to the next. A shape is looked for anew only
-//! when it left those bounds, or when something was done to it; which candidates are near is tested in every step.
+//! Pairs of shapes whose bounds in the trees overlap: candidates that persist from step to step. A shape is searched
+//! again only when it has left those bounds or was changed; every step tests which candidates are near.
 //!
-//! None of it is part of the state. The bounds depend on how a shape came to where it is, but whatever is near is always among
-//! the candidates, and what is not near has no contact.
+//! None of it is part of the state. The bounds depend on history, but near pairs are always among the candidates, and
+//! other pairs have no contact.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -19,27 +19,27 @@ use sinew_math::max;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearPair {
     pub key: ContactKey,
-    /// Leaves of the trees that hold their bounds, in the order of the key.
+    /// Tree leaves that hold their bounds, in the order of the key.
     pub leaves: [Leaf; 2],
-    /// Gap that surely is left, metres: the gap found last, or that of their bounds, less what they may have moved against
-    /// each other since. Only while they have no contact.
+    /// Guaranteed remaining gap, metres: the last computed gap, or that of their bounds, minus their largest relative
+    /// motion since. Only while they have no contact.
     pub left: f32,
-    /// The axis that parted them then.
+    /// The axis that separated them then.
     axis: PackedAxis,
-    /// Their filters let them meet.
+    /// Their filters let them collide.
     pub meets: bool,
     /// One of them is a mesh or a height field.
     pub has_surface: bool,
 }
 
 impl NearPair {
-    /// That they may meet is still to be [found](Self::met).
+    /// [Not filtered](Self::met) yet.
     fn new(key: ContactKey, leaves: [Leaf; 2]) -> Self {
         let axis = PackedAxis::default();
         Self { key, leaves, left: f32::NEG_INFINITY, axis, meets: false, has_surface: false }
     }
 
-    /// With what the shapes say of whether they meet.
+    /// With the shapes' own filter result.
     fn met(&self, bodies: &Arena<Body>, filter: PairFilter<'_>) -> Self {
         let key = self.key;
         let is_surface =
@@ -52,14 +52,14 @@ impl NearPair {
         SeparationCache { axis: self.axis.unpack(), gap: f32::NEG_INFINITY }
     }
 
-    /// Takes note of how the two moved: whether points may be looked for as far away as they are apart.
+    /// Updates the gap by their motion: reports if points must be searched at their distance.
     pub fn comes_near(&mut self, closing: &Closing) -> bool {
         self.left -= closing.moved;
         let is_far = self.left > max(MARGIN, closing.ahead);
         !is_far
     }
 
-    /// Takes note of a gap between their bounds, metres, if no points are looked for that far away.
+    /// Stores a gap between their bounds, metres, if no points are searched at that distance.
     pub fn is_apart(&mut self, closing: &Closing, gap: f32) -> bool {
         let is_far = !self.has_surface && gap - GAP_ERROR > max(MARGIN, closing.ahead);
         if is_far {
@@ -68,7 +68,7 @@ impl NearPair {
         is_far
     }
 
-    /// They were looked at, and have no points.
+    /// They were tested and have no points.
     pub fn part(&mut self, parting: &SeparationCache) {
         self.left = parting.gap - GAP_ERROR;
         self.axis = PackedAxis::new(parting.axis);
@@ -109,14 +109,14 @@ pub(crate) struct NearPairs {
     pub list: Vec<NearPair>,
     fresh: Vec<NearPair>,
     next: Vec<NearPair>,
-    /// Number that were found of shapes whose bounds were enlarged, and one for each time, since those went that do not overlap any more.
+    /// Number of pairs found for enlarged bounds, plus one per search, since separated pairs were last removed.
     enlarged: usize,
-    /// Version of the filter that was asked last.
+    /// Version of the filter last applied.
     filter_version: u64,
 }
 
 impl NearPairs {
-    /// Brings the list up to date.
+    /// Updates the list.
     pub fn update(&mut self, proxies: &mut Proxies, bodies: &Arena<Body>, filter: PairFilter<'_>) {
         if proxies.has_pending() {
             self.fresh.clear();
@@ -135,7 +135,7 @@ impl NearPairs {
             }
             proxies.clear_pending();
         }
-        // A function of the user's is asked in every step: that is what it was told.
+        // A user function is called in every step; this is its last result.
         let asks = core::mem::replace(&mut self.filter_version, filter.version) != filter.version
             || filter.function.is_some();
         if asks {
@@ -145,7 +145,7 @@ impl NearPairs {
         }
     }
 
-    /// Takes in what was not known. Others stay, although their bounds may not overlap any more.
+    /// Adds new pairs. Others stay, although their bounds may no longer overlap.
     fn add(&mut self, bodies: &Arena<Body>, filter: PairFilter<'_>) {
         self.enlarged += self.fresh.len() + 1;
         let list = &mut self.list;
@@ -156,7 +156,7 @@ impl NearPairs {
         insert_sorted(list, &mut self.fresh, |pair| pair.key);
     }
 
-    /// Pairs of pending shapes go, unless they were found again: then they keep what they know.
+    /// Pairs of pending shapes are removed unless they were found again; these keep their data.
     fn merge(&mut self, proxies: &Proxies, bodies: &Arena<Body>, filter: PairFilter<'_>) {
         let prunes = self.enlarged > 0;
         let only_enlarged = proxies.only_enlarged();
@@ -181,12 +181,12 @@ impl NearPairs {
     }
 }
 
-/// Puts items in their places; both lists are in order of their keys.
+/// Inserts items in order; both lists are sorted by key.
 pub(crate) fn insert_sorted<T: Copy, K: Ord>(list: &mut Vec<T>, new: &mut Vec<T>, key: impl Fn(&T) -> K) {
     let mut left = list.len();
     list.extend_from_slice(new);
     let mut end = list.len();
-    // From the back, where there is room.
+    // From the back, where there is space.
     while let Some(item) = new.pop() {
         let place = list[..left].partition_point(|other| key(other) < key(&item));
         let moved = left - place;
@@ -200,7 +200,7 @@ fn key(p: Owner, q: Owner) -> ContactKey {
     ContactKey::new((p.body, p.shape), (q.body, q.shape))
 }
 
-/// Puts contacts that begin in their places; both lists are in order of their keys.
+/// Inserts new contacts in order; both lists are sorted by key.
 pub(crate) fn bear(contacts: &mut Vec<Contact>, born: &mut Vec<Contact>) {
     insert_sorted(contacts, born, |contact| contact.key);
 }

@@ -1,5 +1,5 @@
-//! In `collide`: pairs that touch in several places at once, a mesh or a height field being one of them. Each of their manifolds
-//! is a contact of its own, a part of the pair.
+//! In `collide`: pairs with several contact regions, one of them a mesh or a height field. Each manifold is a contact
+//! of its own, a part of the pair.
 
 use crate::collide::{Ground, MAX_PARTS, Manifold, Motion, Patch, Scratch, collide_pair};
 use crate::contact::proxies::Owner;
@@ -11,12 +11,12 @@ use crate::slices::for_each_mut;
 use sinew_math::Vec3;
 use std::sync::{Mutex, PoisonError};
 
-/// New manifolds of the pairs with parts; kept between steps for its memory.
+/// New manifolds of the pairs with parts; kept to reuse their memory.
 #[derive(Debug, Default)]
 pub(crate) struct Parts {
     pairs: Vec<Pair>,
     next: Vec<Contact>,
-    /// Lists for as many threads as there were at once.
+    /// One list per thread so far.
     idle: Mutex<Vec<(Scratch, Vec<Owner>)>>,
 }
 
@@ -27,7 +27,7 @@ impl Clone for Parts {
     }
 }
 
-/// A pair with parts: where its contacts are, and what they are to be.
+/// A pair with parts: the range of its contacts, and its new manifolds.
 #[derive(Clone, Copy, Debug)]
 struct Pair {
     first: usize,
@@ -36,8 +36,8 @@ struct Pair {
 }
 
 impl Parts {
-    /// Makes the contacts of such pairs anew. `motion` tells of the first contact of a pair how its bodies move, if it is one
-    /// of them.
+    /// Recomputes the contacts of such pairs. `motion` returns the bodies' motion if its argument is the first contact
+    /// of a pair.
     pub fn update(
         &mut self,
         seams: &Seams<'_>,
@@ -104,8 +104,8 @@ fn find(
     collide_pair(a, b, &pair.motion, around, scratch, &mut pair.patch);
 }
 
-/// The contacts of a pair: those that go on in the order in which they were, then new ones. There is at least one, which may
-/// be empty: it knows whether the pair touches.
+/// The contacts of a pair: persisting ones in their previous order, then new ones. There is at least one, possibly
+/// empty: it stores if the pair touches.
 fn push_parts(old: &[Contact], new: &[Manifold], out: &mut Vec<Contact>) {
     let mut taken = [false; MAX_PARTS];
     let pushed = old.iter().any(|contact| contact.pushed);

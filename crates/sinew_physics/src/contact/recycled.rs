@@ -1,5 +1,5 @@
-//! Manifolds that are kept: as long as two bodies hardly move against each other, the same features touch, and only their
-//! distance is worked out anew, from points that are fixed in the bodies: along the normal of a face, or across two edges.
+//! Recycled manifolds: while two bodies hardly move relative to each other, the same features touch, and only the
+//! distances are recomputed from points fixed in the bodies, along the normal of a face or across two edges.
 
 use crate::body::shape::Shape;
 use crate::body::{Body, BodyShape};
@@ -13,19 +13,19 @@ use sinew_math::{ReadError, Reader, Rotation, Transform, Vec3, Writer, normalize
 /// From this cosine on, a normal is that of a face, or at right angles to two edges, to rounding.
 const ON_FACE: f32 = 0.999_999;
 
-/// A manifold as it was found, in the frames of its bodies. Part of the state.
+/// A manifold as it was computed, in the frames of its bodies. Part of the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Recycled {
-    /// Number of points; none if there is nothing to keep to.
+    /// Number of points; zero if nothing is stored.
     count: usize,
-    /// Rotation of B seen from A when the manifold was found.
+    /// Rotation of B relative to A when the manifold was computed.
     a_from_b: Rotation,
     normal: Normal,
-    /// Within which points were looked for, metres.
+    /// Search distance of the points, metres.
     margin: f32,
     /// Slop of the two shapes, metres.
     slop: f32,
-    /// Places of the points on the surfaces of A and B, in their frames.
+    /// Positions of the points on the surfaces of A and B, in their frames.
     places: Places,
 }
 
@@ -35,7 +35,7 @@ enum Normal {
     /// That of a face of A or of B.
     OfA(Vec3),
     OfB(Vec3),
-    /// At right angles to an edge of A and one of B, of length 1 both.
+    /// Perpendicular to an edge of A and one of B, both of length 1.
     Across([Vec3; 2]),
 }
 
@@ -46,7 +46,8 @@ impl Default for Normal {
 }
 
 impl Normal {
-    /// The normal that a manifold of boxes or hulls follows; `None` if it follows neither a face nor two edges.
+    /// The feature that defines the normal of a manifold of boxes or hulls; `None` if it is neither a face nor two
+    /// edges.
     fn find(shapes: [&BodyShape; 2], poses: [&Transform; 2], manifold: &Manifold) -> Option<Self> {
         let n = manifold.normal;
         let of_face = |side: usize, n: Vec3| {
@@ -68,7 +69,7 @@ impl Normal {
         across.in_world(poses, n).filter(|across| across.dot(n) > ON_FACE).map(|_| across)
     }
 
-    /// The normal at the present poses, world axes, on the side of the one before. `None` where two edges are nearly parallel.
+    /// The normal at the current poses, world axes, on the previous side. `None` for nearly parallel edges.
     fn in_world(&self, poses: [&Transform; 2], before: Vec3) -> Option<Vec3> {
         match *self {
             Self::OfA(normal) => Some(poses[0].rotation * normal),
@@ -104,8 +105,8 @@ impl Normal {
     }
 }
 
-/// Places of four points on two surfaces: rows of x, y and z on A, then of those on B. The last row is there so that eight numbers
-/// can be read from the start of any other.
+/// Positions of four points on two surfaces: rows of x, y and z on A, then on B. The last row is padding, so that eight
+/// numbers can be read from the start of any other row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Places([[f32; MAX_POINTS]; 7]);
 
@@ -121,7 +122,7 @@ impl Places {
             .map(|first| Vec3::new(self.0[first][point], self.0[first + 1][point], self.0[first + 2][point]))
     }
 
-    /// Places on a surface in the first lanes; what others hold means nothing.
+    /// Positions on a surface in the first lanes; the other lanes are undefined.
     #[inline(always)]
     fn on<L: Lanes>(&self, side: usize) -> Vector3<L> {
         let rows = self.0.as_flattened();
@@ -143,8 +144,8 @@ fn is_of_face(shape: &Shape, direction: Vec3) -> bool {
 }
 
 impl Recycled {
-    /// Record of a manifold that was just found. Only of solids with flat faces, where a face or two edges meet: other
-    /// points are found as soon as renewed, and what rolls has others from step to step.
+    /// Stores a new manifold. Only for solids with flat faces, at a face or two edges: other points are as cheap to
+    /// find as to update, and rolling bodies change theirs every step.
     pub fn new([a, b]: [&Body; 2], key: ContactKey, (margin, slop): (f32, f32), manifold: &Manifold) -> Self {
         let shapes = [(a, key.shape_a), (b, key.shape_b)].map(|(body, shape)| &body.shapes[shape as usize]);
         let is_flat = |shape: &Shape| matches!(shape, Shape::Box { .. } | Shape::Hull(_));
@@ -173,8 +174,8 @@ impl Recycled {
         }
     }
 
-    /// Brings a manifold to where the bodies are, if they have hardly moved against each other since it was found; false if it
-    /// has to be found anew, and then it is as it was.
+    /// Updates a manifold to the current poses if the bodies have hardly moved relative to each other since it was
+    /// computed. Returns false, leaving it unchanged, if it must be recomputed.
     pub fn renew(&self, [a, b]: [&Body; 2], margin: f32, manifold: &mut Manifold) -> bool {
         if self.count == 0 || self.count != manifold.count || margin > self.margin {
             return false;
@@ -188,7 +189,7 @@ impl Recycled {
         dispatch::run(Renew { recycled: self, poses: [pose_a, pose_b], normal, margin, manifold })
     }
 
-    /// Least margin within which points are looked for, metres; 0 if there is nothing to keep to.
+    /// Least search distance of the points, metres; 0 if nothing is stored.
     pub fn least_margin(&self) -> f32 {
         if self.count > 0 { SPECULATIVE_SLOPS * self.slop } else { 0.0 }
     }
@@ -230,12 +231,12 @@ impl Recycled {
     }
 }
 
-/// Brings the points of a manifold to where the bodies are, side by side; false, and nothing changed, if one has slipped too far or
-/// is farther than the margin.
+/// Updates the points of a manifold to the current poses with SIMD. Returns false, with no change, if one has slipped
+/// too far or is beyond the margin.
 struct Renew<'a> {
     recycled: &'a Recycled,
     poses: [Transform; 2],
-    /// Normal of the face as it has turned, world axes.
+    /// Current normal of the face, world axes.
     normal: Vec3,
     margin: f32,
     manifold: &'a mut Manifold,
@@ -254,7 +255,7 @@ impl Kernel for Renew<'_> {
         let separation = gap.dot(n);
         let slip = gap - n * separation;
         let most = RECYCLED_SLIP * recycled.slop * (RECYCLED_SLIP * recycled.slop);
-        // Not finite is not within either.
+        // NaN is not within either.
         let holds = L::le(slip.dot(slip), L::splat(most)) & L::le(separation, L::splat(margin));
         let all = u8::MAX >> (WIDTH - recycled.count);
         if holds.bits() & all != all {
@@ -299,8 +300,8 @@ mod tests {
             Transform::new(translation + shift, Rotation::from_scaled_axis(turn) * rotation);
     }
 
-    /// Boxes that lie on each other and are moved a little: points that are kept are as far apart as points found anew. Where
-    /// they are is not compared: edges that are nearly parallel cross somewhere else at once.
+    /// Boxes stacked and slightly moved: recycled points have the same separations as recomputed ones. Positions are
+    /// not compared: nearly parallel edges cross elsewhere after a small motion.
     #[test]
     fn kept_points_are_as_far_apart_as_new_ones() {
         let mut random = Random::new(14);
@@ -319,7 +320,7 @@ mod tests {
                 continue;
             }
             let of = Recycled::new([&a, &b], key, (MARGIN, slop(0.4)), &manifold);
-            // Both together, and B a little, or more than is allowed.
+            // Both together, and B slightly, or more than allowed.
             let (shift, turn) = (random.in_cube(), random.in_cube());
             for body in [&mut a, &mut b] {
                 let around =
@@ -336,7 +337,7 @@ mod tests {
             }
             kept += 1;
             let anew = found([&a, &b]);
-            // The face of the other box may be as good: tilted by up to 3 degrees, with names of its own.
+            // The other box's face may be equally good: tilted by up to 3 degrees, with its own feature names.
             assert!(anew.normal.dot(manifold.normal) > 0.998, "case {case}: {anew:?}, {manifold:?}");
             for point in manifold.points() {
                 if let Some(other) = anew.points().iter().find(|other| other.feature == point.feature) {

@@ -1,4 +1,4 @@
-//! In `collide`: contacts on edges that are none, since another shape that does not move against theirs goes on where they end.
+//! In `collide`: contacts at internal edges, where another fixed shape continues the surface.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -24,7 +24,7 @@ pub(crate) struct Seams<'a> {
     pub filter: PairFilter<'a>,
 }
 
-/// Bounds within which a manifold was looked for.
+/// Bounds of a manifold's search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Search {
     /// Metres.
@@ -44,8 +44,8 @@ struct Sides {
 }
 
 impl Seams<'_> {
-    /// Turns a contact that was just found with an edge or a side of the ground on which it goes on to what the ground is there: a face of the
-    /// shape, or a side that does not push, where the face is another's.
+    /// Rotates the normal of a contact at an edge or side of a ground shape to the surrounding surface: to a face of
+    /// the shape, or to a non-pushing side if the face belongs to another shape.
     pub fn mend(&self, key: ContactKey, search: Search, manifold: &mut Manifold) {
         let Some(sides) = self.sides(key, manifold) else { return };
         let reach = SEAM_SLOPS * search.slop;
@@ -55,7 +55,7 @@ impl Seams<'_> {
         for (around, point) in faces.iter_mut().zip(manifold.points()) {
             let on_ground = point.position - sides.out * (0.5 * point.separation);
             let Some(found) = self.faces(sides.ground, on_ground, reach) else { continue };
-            // Away from the edges it is what it was found to be.
+            // Away from the edges it is unchanged.
             if found.count() < 2 && found.shown(sides.out).is_none_or(|shown| is_as_found(&shown)) {
                 return;
             }
@@ -70,7 +70,7 @@ impl Seams<'_> {
         if shown[..manifold.count].iter().flatten().any(is_as_found) {
             return;
         }
-        // On what of it lies on the shape: of a long one that comes over an edge aslant an end may be beside it.
+        // At the part that is over the shape: one end of a long shape that crosses an edge diagonally may be outside.
         let known = manifold.points().iter().enumerate().filter(|(i, _)| faces[*i].is_some());
         let known = known.map(|(i, point)| (i, *point));
         let deeper = |p: (usize, ManifoldPoint), q: (usize, ManifoldPoint)| {
@@ -88,7 +88,7 @@ impl Seams<'_> {
         }
     }
 
-    /// Shapes of the ground beside a surface within bounds, of which it may be that they go on where it ends.
+    /// Neighbouring ground shapes within bounds that may continue a surface at its edges.
     pub fn beside(&self, ground: Owner, mover: Owner, bounds: &Aabb, list: &mut Vec<Owner>) {
         list.clear();
         if self.bodies.at(ground.body).kind == BodyKind::Dynamic || !self.pushes(ground) {
@@ -102,8 +102,8 @@ impl Seams<'_> {
         });
     }
 
-    /// Normal that a surface and what is beside it show at a point, and the height of the point over the plane with it, metres; `normal` where
-    /// nothing hides the surface, `None` where others hide all of it.
+    /// Normal of the combined surface at a point, and the height of the point over its plane, metres; `normal` if no
+    /// shape hides the surface, `None` if others hide all of it.
     pub fn shown(
         &self,
         ground: Owner,
@@ -121,7 +121,7 @@ impl Seams<'_> {
         if faces.has_hidden() { faces.shown(normal) } else { Some((normal, 0.0)) }
     }
 
-    /// `None` unless one of the two is dynamic and the other, with flat faces, is not, and both push.
+    /// `None` unless one of the two is dynamic, the other is not and has flat faces, and both push.
     fn sides(&self, key: ContactKey, manifold: &Manifold) -> Option<Sides> {
         if manifold.count == 0 {
             return None;
@@ -147,7 +147,7 @@ impl Seams<'_> {
         Faces::around(self.shape(owner), &frame, point, reach)
     }
 
-    /// Hides, around each point, what lies behind other shapes of the ground.
+    /// Hides, around each point, the parts behind other ground shapes.
     fn hide(
         &self,
         sides: &Sides,
@@ -169,13 +169,13 @@ impl Seams<'_> {
         });
     }
 
-    /// True if another shape never moves against one of the ground.
+    /// True if another shape never moves relative to a ground shape.
     fn goes_on(&self, ground: Owner, other: Owner) -> bool {
         let is_static = |owner: Owner| self.bodies.at(owner.body).kind == BodyKind::Static;
         other != ground && (other.body == ground.body || is_static(ground) && is_static(other))
     }
 
-    /// True if a shape always pushes another that comes to it.
+    /// True if a shape always pushes others.
     fn stops(&self, mover: Owner, other: Owner) -> bool {
         let key = ContactKey::new((mover.body, mover.shape), (other.body, other.shape));
         self.pushes(other) && self.filter.lets_meet(self.bodies, key)
@@ -186,7 +186,7 @@ impl Seams<'_> {
         surface.sensing == Sensing::Solid && surface.rule == ContactRule::Push
     }
 
-    /// The contact with a plane of the ground, as far as what comes to it is over the shape, or will be within the step.
+    /// The contact with a ground plane, if the other shape is over the ground shape now or within the step.
     fn put_on(
         &self,
         sides: &Sides,
@@ -224,5 +224,5 @@ impl Seams<'_> {
     }
 }
 
-/// Cosine from which on a normal counts as the one that was found.
+/// Cosine above which a normal counts as the computed one.
 const AS_FOUND: f32 = 0.999_999_9;

@@ -1,4 +1,4 @@
-//! Contact tracking: which shapes touch, from which begin and end events are told.
+//! Contact tracking: touching pairs, for begin and end events.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -9,17 +9,18 @@ use crate::contact::{Contact, ContactKey};
 use crate::id::{BodyId, ShapeId};
 use sinew_math::{ReadError, Reader, Writer};
 
-/// Memory of the world about pairs beside their contacts, which come and go with the broad phase. Part of the snapshot.
+/// The world's state of pairs outside their contacts, which exist only while the broad phase finds them. Part of the
+/// snapshot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactTracking {
     /// Solid shapes.
     pub touching: Touches,
-    /// A sensor and what is in it.
+    /// A sensor and a shape in it.
     pub sensed: Touches,
     pub hits: OpenHits,
-    /// Bodies that were changed since the last step: what they touch is looked for anew even if nothing moves.
+    /// Bodies changed since the last step: their contacts are tested again even if nothing moves.
     pub changed: Vec<u32>,
-    /// No part of the snapshot.
+    /// Not part of the snapshot.
     pub modifiers: Modifiers,
 }
 
@@ -46,7 +47,7 @@ impl ContactTracking {
         Ok(Self { touching, sensed, hits, changed, modifiers: Modifiers::default() })
     }
 
-    /// A contact is dropped: what it told of ends.
+    /// A contact is dropped: its touch ends.
     pub fn part(&mut self, bodies: &Arena<Body>, contact: &Contact) {
         if contact.touching {
             self.touching.gone.push(touch_of(bodies, contact.key));
@@ -56,7 +57,7 @@ impl ContactTracking {
         }
     }
 
-    /// The step has looked at what was changed.
+    /// The step has processed the changes.
     pub fn settle(&mut self, bodies: &mut Arena<Body>) {
         for index in self.changed.drain(..) {
             bodies.at_mut(index).changed = false;
@@ -64,7 +65,7 @@ impl ContactTracking {
     }
 }
 
-/// Two shapes that touch; the one with the smaller body index is A.
+/// Two touching shapes; the one with the smaller body index is A.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Touch {
     pub a: ShapeId,
@@ -96,22 +97,23 @@ fn touch_of(bodies: &Arena<Body>, key: ContactKey) -> Touch {
     Touch { a, b }
 }
 
-/// Who touches whom, or is in which sensor. Contacts know whether their pair did when it was last looked at; here are the pairs
-/// whose contact is gone since, and what one step finds.
+/// Touching pairs and sensor pairs. A contact stores if its pair touched when last tested; this holds the pairs whose
+/// contact was dropped since, and the results of one step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Touches {
-    /// Pairs that touched until their contact was dropped: the next step tells of it. Part of the snapshot.
+    /// Pairs that touched until their contact was dropped: the next step reports their end. Part of the snapshot.
     gone: Vec<Touch>,
-    /// Pairs that touched before this step or do now; only of bodies of which something changed, where nothing is gone.
+    /// Pairs that touched before this step or touch now; without the pairs of bodies that had no change and no dropped
+    /// contact.
     seen: Vec<Seen>,
-    /// Start in `seen` of the pairs of the two bodies at hand, and whether anything changed of them.
+    /// Start in `seen` of the current two bodies' pairs, and if any of them changed.
     first: usize,
     changes: bool,
-    /// Both together, while they are told of.
+    /// Both merged, for reporting.
     noted: Vec<Noted>,
 }
 
-/// A pair of shapes that the step came by.
+/// A pair of shapes visited by the step.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
     key: ContactKey,
@@ -126,14 +128,14 @@ struct Noted {
     is: bool,
 }
 
-/// Lists of what began, or of what ended.
+/// Lists of started or ended touches.
 pub(crate) struct Told<'a> {
     pub bodies: &'a mut Vec<(BodyId, BodyId)>,
     pub shapes: &'a mut Vec<(ShapeId, ShapeId)>,
 }
 
 impl Touches {
-    /// Makes room for the pairs of so many contacts.
+    /// Reserves space for the pairs of this many contacts.
     pub fn start(&mut self, contacts: usize) {
         self.seen.clear();
         self.noted.clear();
@@ -143,7 +145,7 @@ impl Touches {
         self.gone.reserve(contacts);
     }
 
-    /// Notes a pair of shapes: whether it touched when it was last looked at, and whether it does now. Pairs come in order.
+    /// Records if a pair of shapes touched when last tested, and if it touches now. Pairs come in order.
     pub fn note(&mut self, key: ContactKey, was: bool, is: bool) {
         if !was && !is {
             return;
@@ -155,7 +157,7 @@ impl Touches {
         self.seen.push(Seen { key, was, is });
     }
 
-    /// Forgets the pairs of two bodies of which nothing changed: there is nothing to tell, unless a contact is gone.
+    /// Drops the pairs of two bodies without a change: nothing to report, unless a contact was dropped.
     fn forget_unchanged(&mut self) {
         if !self.changes && self.gone.is_empty() {
             self.seen.truncate(self.first);
@@ -163,13 +165,13 @@ impl Touches {
         (self.first, self.changes) = (self.seen.len(), false);
     }
 
-    /// Tells in order what is not as it was.
+    /// Reports the changes in order.
     pub fn tell<'a>(&mut self, bodies: &Arena<Body>, mut begin: Told<'a>, mut end: Told<'a>) {
         self.forget_unchanged();
         let noted = |&Seen { key, was, is }: &Seen| Noted { touch: touch_of(bodies, key), was, is };
         self.noted.extend(self.seen.iter().map(noted));
         self.noted.extend(self.gone.drain(..).map(|touch| Noted { touch, was: true, is: false }));
-        // All of them: how many come at once differs from hit to hit.
+        // Reserves space for all: the number varies from hit to hit.
         let most = self.noted.capacity();
         for Told { bodies, shapes } in [&mut begin, &mut end] {
             bodies.clear();
@@ -219,7 +221,7 @@ enum Change {
     Ends,
 }
 
-/// Change of some pairs taken together, if there is one.
+/// Combined change of some pairs, if any.
 fn change(noted: &[Noted]) -> Option<Change> {
     match (noted.iter().any(|noted| noted.was), noted.iter().any(|noted| noted.is)) {
         (false, true) => Some(Change::Begins),

@@ -1,98 +1,100 @@
-//! Constants of behaviour of contacts and of what looks for them: numbers that an engineer would turn.
+//! Behaviour constants of contacts and their search: the numbers an engineer would tune.
 //!
-//! Each says its unit, why it is what it is, what a larger and a smaller one does, and the scene (`sinew run NAME`) or test
-//! (`crates/sinew_physics/tests/it`) where that is to be seen; consequences without a figure are judgement, not measured. Any change may
-//! move the golden hashes. Tolerances of rounding stand in the formulas that they belong to.
+//! Each comment states the unit, the reason, the effect of a larger and a smaller value, and the scene (`sinew run
+//! NAME`) or test (`crates/sinew_physics/tests/it`) that shows it. Effects without a figure are judgement, not
+//! measurement. Any change may move the golden hashes. Rounding tolerances are in the formulas they belong to.
 
-/// Separation up to which contacts are looked for, beside the motion of the step, metres.
+/// Separation up to which contacts are searched, in addition to the motion of the step, metres.
 ///
-/// Sums of rounding and of what a step may add to a motion must stay below it. Larger: more pairs near each other that never touch. Smaller:
-/// what is pushed within a step arrives without a contact. Shown by the tests of `touches`.
+/// Must exceed the sum of rounding errors and motion added within a step. Larger: more near pairs that never touch.
+/// Smaller: bodies pushed within a step arrive without a contact. Shown by the tests of `touches`.
 pub(crate) const MARGIN: f32 = 0.02;
 
 /// Slops within which shapes of the ground count as abutting, a number.
 ///
-/// Below 1: a step of 5 mm is one. Larger: steps and gaps that are meant do not stop what is small. Smaller: levels put together by hand have
-/// edges between their boxes. Shown by the tests of `seams`.
+/// Below 1, so that a step of 5 mm counts as one. Larger: intended steps and gaps do not stop small bodies. Smaller:
+/// levels assembled by hand have edges between their boxes. Shown by the tests of `seams`.
 pub(crate) const SEAM_SLOPS: f32 = 0.9;
 
-/// Slops by which what comes to the next shape of the ground may be in its plane before it is over it, a number.
+/// Depth below the plane of the next ground shape that a body may have before it is over the shape, in slops.
 ///
-/// Larger: what comes up to the crest of a hill is lifted before. Smaller: what rests lower than its surface falls in before it is over the
-/// next. Shown by the tests of `seams`.
+/// Larger: bodies are lifted before a hill's crest. Smaller: bodies that rest below the surface fall in before the next
+/// shape. Shown by the tests of `seams`.
 pub(crate) const SEAM_REACH: f32 = 1.0;
 
-/// Room that the fat bounds of what moves have beyond what they need, metres.
+/// Margin of the fat bounds of moving shapes, metres.
 ///
-/// What trembles or settles keeps its place in the tree. Larger: more candidate pairs. Smaller: more leaves move. Changes no result but the
-/// order of work; shown by `cargo xtask bench --trace wave_pile`.
+/// Trembling and settling bodies keep their place in the tree. Larger: more candidate pairs. Smaller: more leaves move.
+/// Changes only the order of work; shown by `cargo xtask bench --trace wave_pile`.
 pub(crate) const BOUNDS_ROOM: f32 = 0.04;
 
-/// Room that the fat bounds of small kinematic bodies have beyond what they need, metres: of those of one shape that reach no farther than
-/// twice that.
+/// Margin of the fat bounds of small kinematic bodies, metres: those of one shape with a radius of at most twice the
+/// margin.
 ///
-/// Most of them are parts of characters, which swing to and fro and meet nobody: as long as they stay within this room nothing but their
-/// place is looked at. Larger: more candidate pairs, rays go through more boxes. Smaller: more leaves move. Changes no result but the order of
-/// work; shown by `walkers_step` of `cargo xtask bench --counts`.
+/// Most of them are parts of characters, which swing back and forth without contacts: while they stay within this
+/// margin only their position is tested. Larger: more candidate pairs, and rays test more boxes. Smaller: more leaves
+/// move. Changes only the order of work; shown by `walkers_step` of `cargo xtask bench --counts`.
 pub(crate) const BOUNDS_ROOM_LED: f32 = 0.3;
 
-/// Steps of motion at the present velocity that the fat bounds of small kinematic bodies have room for ahead, a number.
+/// Steps of motion at the current velocity included in the fat bounds of small kinematic bodies, a number.
 ///
 /// Larger: longer bounds, more candidate pairs. Smaller: more leaves move. Shown as [`BOUNDS_ROOM_LED`].
 pub(crate) const BOUNDS_STEPS_LED: f32 = 12.0;
 
-/// Steps of motion at the present velocity that fat bounds have room for ahead, a number.
+/// Steps of motion at the current velocity included in fat bounds, a number.
 ///
-/// Larger: longer bounds, more candidate pairs. Smaller: what moves asks the tree anew more often. Shown by `cargo xtask bench --trace
-/// box_rain`.
+/// Larger: longer bounds, more candidate pairs. Smaller: moving bodies search the tree more often. Shown by
+/// `cargo xtask bench --trace box_rain`.
 pub(crate) const BOUNDS_STEPS: f32 = 3.0;
 
-/// Steps of motion that the fat bounds of what meets nobody have room for, a number.
+/// Steps of motion included in the fat bounds of shapes that collide with nothing, a number.
 ///
-/// Nothing but rays and the like asks for them. Larger: rays go through more boxes. Smaller: the leaves of what flies move more often. Shown
-/// as [`BOUNDS_STEPS`].
+/// Only rays and other queries use them. Larger: rays test more boxes. Smaller: leaves of flying bodies move more
+/// often. Shown as [`BOUNDS_STEPS`].
 pub(crate) const BOUNDS_STEPS_ALONE: f32 = 12.0;
 
-/// Multiple of their room by which fat bounds may exceed those that are needed before they are made smaller, a ratio.
+/// Factor on the margin above which oversized fat bounds are shrunk, a ratio.
 ///
-/// Larger: what has come to rest keeps the long bounds of its flight, and pairs with them. Smaller: bounds of what slows down are made again
-/// and again. Shown as [`BOUNDS_STEPS`].
+/// Larger: bodies at rest keep the long bounds of their flight, and pairs with them. Smaller: bounds of slowing bodies
+/// are rebuilt repeatedly. Shown as [`BOUNDS_STEPS`].
 pub(crate) const BOUNDS_EXCESS: f32 = 3.0;
 
-/// Length by which a gap that was found may be less than it seems, metres.
+/// Error by which a computed gap may be too large, metres.
 ///
-/// Points of manifolds may lie outside of the faces that they are cut to by up to half a millimetre. Larger: pairs that motion cannot close
-/// are looked at sooner. Smaller than that half: a contact may come late. Shown by the tests of `touches`.
+/// Manifold points may be outside their clipping faces by up to half a millimetre. Larger: pairs that motion cannot
+/// close are tested earlier. Smaller than that half: a contact may come late. Shown by the tests of `touches`.
 pub(crate) const GAP_ERROR: f32 = 0.001;
 
-/// Separation up to which points of a manifold are made for what hardly moves, in slops.
+/// Separation up to which a nearly static pair gets manifold points, in slops.
 ///
-/// A box that rocks must find the points of its other edge. Larger: more points that never push. Smaller: what rocks falls onto its edge
-/// before it has a row. Shown by `jenga` and the tests of `stacks`.
+/// A rocking box needs the points of its other edge. Larger: more points that never push. Smaller: a rocking box falls
+/// onto its edge before it has a row. Shown by `jenga` and the tests of `stacks`.
 pub(crate) const SPECULATIVE_SLOPS: f32 = 4.0;
 
-/// Slip of two bodies past each other until their manifold is found anew, in slops: 2 mm of crates.
+/// Slip between two bodies up to which their manifold is recycled, in slops: 2 mm for crates.
 ///
-/// Larger: points stand where the faces no longer meet, and piles creep. Smaller: fewer manifolds are recycled. Shown by `large_pyramid`,
-/// `jenga`.
+/// Larger: points remain where the faces no longer touch, and piles creep. Smaller: fewer manifolds are recycled.
+/// Shown by `large_pyramid`, `jenga`.
 pub(crate) const RECYCLED_SLIP: f32 = 0.4;
 
-/// Cosine of half the turn of one body against the other, 1°, from which on their manifold is found anew.
+/// Cosine of half the relative rotation, 1°, up to which a manifold is recycled.
 ///
-/// A larger turn: what tips over stands on the points of its face. A smaller one: fewer manifolds are recycled. Shown by `dominoes`, `cards`.
+/// A larger angle: a tipping body stands on the points of its face. A smaller one: fewer manifolds are recycled.
+/// Shown by `dominoes`, `cards`.
 pub(crate) const RECYCLED_HALF_TURN: f32 = 0.999_962;
 
-/// Cosine of the turn of a normal, 25°, after which a part of a pair is another one.
+/// Cosine of the normal's rotation, 25°, beyond which a part of a pair is a new one.
 ///
-/// A larger turn: impulses of one slope go on to another. A smaller one: what rolls over a mesh loses its warm start. Shown by `mesh_drop`.
+/// A larger angle: impulses move from one slope to another. A smaller one: bodies rolling over a mesh lose their warm
+/// start. Shown by `mesh_drop`.
 pub(crate) const SAME_PART_COSINE: f32 = 0.9;
 
-/// Share of the speed that a pair came in with above which it has not been stopped yet, a ratio.
+/// Share of its approach speed above which a pair is not yet stopped, a ratio.
 ///
-/// Larger: a hit that takes several steps is told of in parts. Smaller: it is told of late. Shown by the tests of `events`.
+/// Larger: a hit over several steps is reported in parts. Smaller: it is reported late. Shown by the tests of `events`.
 pub(crate) const STILL_COMING: f32 = 0.1;
 
-/// Sine of the angle between two edges up to which their manifold is found anew.
+/// Sine of the angle between two edges up to which their manifold is always recomputed.
 ///
 /// Larger: fewer manifolds are recycled. Smaller: the direction across two edges that are nearly parallel is rounding. Shown by `rocks`.
 pub(crate) const RECYCLED_SINE: f32 = 0.005;

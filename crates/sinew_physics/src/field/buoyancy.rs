@@ -9,15 +9,15 @@ use sinew_math::{Transform, Vec3};
 
 /// A fluid at rest or in uniform flow below a plane.
 ///
-/// *Buoyancy* (Archimedes): the weight of the fluid that is displaced, `−ρ V g`, at the centre of the submerged volume, with
-/// `g` the world's gravity. Volume and centre are those of each shape by itself, in closed form: ball, box, capsule; shapes
-/// that overlap displace twice. A body of density `ρ_b` floats with the share `ρ_b/ρ` of it under water, and rights itself by
-/// the lever between the two centres.
+/// *Buoyancy* (Archimedes): the weight of the displaced fluid, `−ρ V g`, at the centre of the submerged volume, with
+/// `g` the world's gravity. Volume and centre are computed per shape in closed form (ball, box, capsule); overlapping
+/// shapes displace twice. A body of density `ρ_b` floats with the share `ρ_b/ρ` submerged, and the lever between the
+/// two centres rights it.
 ///
-/// *Drag*, in proportion to the share of the shape that is submerged. Linear: the displaced fluid moves along as a body of
-/// the same form, and loses its velocity against the flow, and its spin, at a rate of `damping` per second:
-/// `F = −c ρ V w`, `τ = −c ρ J ω` with `J` the shape's moment of volume. Quadratic: as that of [`Wind`](super::Wind),
-/// `½ ρ C_d A |w|²`. With linear drag alone, what sinks comes to `(ρ_b/ρ − 1) g / c`.
+/// *Drag*, in proportion to the submerged share of the shape. Linear: the displaced fluid moves along as a body of the
+/// same form, and loses its relative velocity and spin at a rate of `damping` per second: `F = −c ρ V w`,
+/// `τ = −c ρ J ω` with `J` the shape's moment of volume. Quadratic: as for [`Wind`](super::Wind), `½ ρ C_d A |w|²`.
+/// With linear drag alone, a sinking body reaches `(ρ_b/ρ − 1) g / c`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -102,7 +102,7 @@ impl Buoyancy {
         }
     }
 
-    /// Energy that it took to push the fluid aside, J: `ρ |g| V` times the depth of its centre.
+    /// Potential energy of the displaced fluid, J: `ρ |g| V` times the depth of its centre.
     pub(super) fn energy(&self, target: &Target<'_>, gravity: Vec3) -> f32 {
         let plane = self.plane();
         let pull = -gravity.dot(plane.normal);

@@ -11,7 +11,7 @@ pub const PARAMETERS: usize = 8;
 /// Input of a user's field function: something that it acts on, and when.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldPoint {
-    /// Centre of mass of a body, or place of a particle, world, metres.
+    /// Centre of mass of a body, or position of a particle, world, metres.
     pub position: Vec3,
     /// m/s.
     pub velocity: Vec3,
@@ -19,16 +19,16 @@ pub struct FieldPoint {
     pub angular_velocity: Vec3,
     /// kg.
     pub mass: f32,
-    /// Steps that the world took before this one.
+    /// Number of steps taken before this one.
     pub step: u64,
     /// Time at the beginning of the step, seconds.
     pub time: f64,
 }
 
-/// Force and torque on something at a point, from the field's parameters: a pure function, so that a snapshot of the
-/// parameters holds all that decides. A plain function, not a closure: there is nothing that it could remember. For the
-/// same bits everywhere it must be made of `+ − × ÷ √` and `sinew_math`. What it returns for a particle is taken without
-/// the torque. A result that is not finite quarantines the body.
+/// Force and torque on an item at a point, from the field's parameters: a pure function, so that a snapshot of the
+/// parameters contains everything that decides. A function pointer instead of a closure, because it must not have
+/// state. For the same bits everywhere it must use only `+ − × ÷ √` and `sinew_math`. The torque is ignored for a
+/// particle. A non-finite result quarantines the body.
 pub type FieldFunction = fn(&FieldPoint, &[f32; PARAMETERS]) -> Wrench;
 
 /// Field functions of a world.

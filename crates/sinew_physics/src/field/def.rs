@@ -7,13 +7,13 @@ use crate::id::FieldId;
 use sinew_geometry::DefError;
 use sinew_math::Transform;
 
-/// A field to be made: what it does, where, and to whom.
+/// Definition of a field: its law, region and filter.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FieldDef {
     /// Kind of the field.
     pub kind: FieldKind,
-    /// Region in which it acts, by the centre of mass of a body and the place of a particle. Default everywhere.
+    /// Region in which it acts, tested at a body's centre of mass and a particle's position. Default everywhere.
     pub region: Region,
     /// Bits of the layers ([`Filter::layers`](crate::Filter)) that it acts on: a body is reached if one of its shapes is on
     /// one of them, or if it has no shape. Default all.
@@ -24,15 +24,15 @@ pub struct FieldDef {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FieldKind {
-    /// The same acceleration everywhere, beside the world's own.
+    /// Uniform acceleration, in addition to the world's own.
     Uniform(UniformGravity),
-    /// Toward a place.
+    /// Attraction toward a point.
     Point(PointGravity),
-    /// Attraction of bodies and particles to each other.
+    /// Mutual attraction of bodies and particles.
     Mutual(MutualGravity),
-    /// Moving air, with drag and lift by exposed area; still air is a wind of no speed.
+    /// Moving air, with drag and lift by exposed area; still air is a wind of zero velocity.
     Wind(Wind),
-    /// Braking by a law in the velocity, whatever the shape.
+    /// Drag by a velocity law, independent of the shape.
     Drag(Drag),
     /// Water below a plane.
     Buoyancy(Buoyancy),
@@ -56,10 +56,10 @@ impl FieldDef {
         Self { kind, region: Region::Everywhere, layers: u32::MAX }
     }
 
-    /// Checks that the numbers of the definition are valid; the phrase says what is wrong.
+    /// Checks that the numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// What is wrong, in lower case.
+    /// The problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         self.region.check()?;
         match &self.kind {

@@ -5,16 +5,16 @@ use super::{Load, Target};
 use sinew_geometry::DefError;
 use sinew_math::Vec3;
 
-/// Resistance of a medium, the same for all that it reaches, whatever its shape: with `w` the velocity against the medium
+/// Resistance of a medium, independent of the shape: with `w` the velocity relative to the medium
 ///
 /// ```text
 /// F = −(linear + quadratic |w|) w        τ = −angular ω
 /// ```
 ///
-/// Linear: slow and small things (Stokes: `6π η r` for a ball in a viscous fluid). Quadratic: fast ones (Newton:
-/// `½ ρ C A`). A ball that falls comes to `v = (√(c² + 4 k m g) − c) / 2k`: `m g / c` without the quadratic part,
-/// `√(m g / k)` without the linear one. For drag by what a body's shapes expose, take [`Wind`](super::Wind). For a body that
-/// loses a share of its velocity per second, `BodyDef::linear_damping`.
+/// Linear: small slow bodies (Stokes: `6π η r` for a ball in a viscous fluid). Quadratic: fast ones (Newton:
+/// `½ ρ C A`). A falling ball reaches `v = (√(c² + 4 k m g) − c) / 2k`: `m g / c` without the quadratic part,
+/// `√(m g / k)` without the linear one. For drag by the exposed area of shapes use [`Wind`](super::Wind). For a body
+/// that loses a share of its velocity per second use `BodyDef::linear_damping`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]

@@ -7,18 +7,18 @@ use crate::body::shape::Shape;
 use sinew_geometry::DefError;
 use sinew_math::{Transform, Vec3, max, normalize_or};
 
-/// A blast: pressure that is over before anything moves, so that all it leaves is an impulse.
+/// A blast: pressure so short that it acts as an impulse.
 ///
-/// Each shape gets `J = impulse × fade(1 − d/radius) × A` along the way from the centre of the blast to its own centre,
-/// and there: `d` is the distance from the blast to the shape's nearest point (0 inside), `A` its shadow seen from the blast
-/// (of a ball `π r²`; of a box the faces that look at it, each by the cosine of its angle; a particle is a ball). What is not
-/// dynamic gets nothing.
+/// Each shape gets `J = impulse × fade(1 − d/radius) × A` at its centre, in the direction from the blast's centre to
+/// its own. `d` is the distance from the blast to the shape's nearest point (0 inside), `A` its area projected from the
+/// blast (for a ball `π r²`; for a box the facing faces times the cosine of their angle; a particle is a ball). Only
+/// dynamic bodies are affected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Explosion {
     /// World, metres.
     pub center: Vec3,
-    /// Beyond it nothing is felt, metres, positive.
+    /// Radius of effect, metres, positive.
     pub radius: f32,
     /// Impulse per area at the centre, N·s/m² (Pa·s), ≥ 0.
     pub impulse: f32,
@@ -37,20 +37,20 @@ pub enum Occlusion {
     /// Nothing. Default.
     #[default]
     None,
-    /// Static bodies: a shape is spared if one lies on the way from the blast to its centre.
+    /// Static bodies: a shape is sheltered if one is between the blast and its centre.
     Static,
 }
 
 impl Explosion {
-    /// Linear fall-off, on all layers, nothing shelters.
+    /// Linear fall-off, on all layers, without shelter.
     pub fn new(center: Vec3, radius: f32, impulse: f32) -> Self {
         Self { center, radius, impulse, fade: Fade::Linear, occlusion: Occlusion::None, layers: u32::MAX }
     }
 
-    /// Checks that the numbers of the explosion are valid; the phrase says what is wrong.
+    /// Checks that the numbers of the explosion are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// What is wrong, in lower case.
+    /// The problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         let valid = self.center.is_finite() && positive(self.radius) && not_negative(self.impulse);
         if valid {

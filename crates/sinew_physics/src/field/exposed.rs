@@ -1,4 +1,4 @@
-//! Panels of a shape's surface that it exposes to a stream, each with an area and where it lies.
+//! Surface panels of a shape exposed to a stream, each with an area and a position.
 
 use crate::body::shape::Shape;
 use crate::hull::Hull;
@@ -10,21 +10,21 @@ use sinew_math::{Transform, Vec3, clamp, max, normalize_or};
 /// Nodes of the two-point Gauss rule on −1..1.
 const GAUSS: [f32; 2] = [-0.577_350_26, 0.577_350_26];
 
-/// A piece of surface that a stream meets.
+/// A surface panel exposed to a stream.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Panel {
     /// World, metres.
     pub point: Vec3,
-    /// m². Of a flat one its own, of a round one what it shows to the stream.
+    /// m². For a flat panel its own area, for a round one its projected area.
     pub area: f32,
-    /// Outward, of a flat one; a round one shows the same area to all sides.
+    /// Outward, for a flat panel; a round one has the same area from all sides.
     pub normal: Option<Vec3>,
 }
 
-/// Calls `visit` with panels that together have the shape's projected area in every direction: the faces of a box,
-/// each at its 2×2 Gauss points, so that spin is braked as well; a ball's disk; a capsule's disk and the strip of its
-/// cylinder that faces `stream` (m/s, world); likewise of a tapered one; the ends of cylinder and cone, and the part of
-/// their side that faces the stream; a hull's faces in triangles, each at three points. Half-spaces, meshes and height
+/// Calls `visit` with panels whose projected areas add up to the shape's in every direction. A box: its faces at 2×2
+/// Gauss points each, so that spin is also damped. A ball: its disk. A capsule: its disk and the strip of its cylinder
+/// that faces `stream` (m/s, world); a tapered one in the same way. A cylinder and a cone: their ends, and the part of the
+/// side that faces the stream. A hull: its faces in triangles at three points each. Half-spaces, meshes and height
 /// fields have none.
 pub(super) fn exposed(shape: &Shape, at: &Transform, stream: Vec3, mut visit: impl FnMut(Panel)) {
     match *shape {
@@ -61,8 +61,8 @@ pub(super) fn exposed(shape: &Shape, at: &Transform, stream: Vec3, mut visit: im
     }
 }
 
-/// The outline seen along the stream is that of two disks and their common tangents: a sector of each disk, and between them
-/// two right trapezoids.
+/// The outline seen along the stream consists of two disks and their common tangents: a sector of each disk, and two
+/// right trapezoids between them.
 fn tapered_panels(tapered: &TaperedCapsule, at: &Transform, stream: Vec3, visit: &mut impl FnMut(Panel)) {
     let axis = at.rotation * Vec3::Y;
     let along = normalize_or(stream, Vec3::ZERO);
@@ -89,8 +89,8 @@ fn tapered_panels(tapered: &TaperedCapsule, at: &Transform, stream: Vec3, visit:
     }
 }
 
-/// The ends, each at four points that integrate squares exactly; and the vector area of that part of the side whose normals
-/// look against the stream.
+/// The ends, each at four points that integrate squares exactly; and the vector area of the part of the side whose
+/// normals face the stream.
 fn truncated_cone_panels(cone: &TruncatedCone, at: &Transform, stream: Vec3, visit: &mut impl FnMut(Panel)) {
     let (up, side_x, side_z) = (at.rotation * Vec3::Y, at.rotation * Vec3::X, at.rotation * Vec3::Z);
     for (radius, end) in [(cone.bottom, -1.0), (cone.top, 1.0)] {
@@ -106,7 +106,7 @@ fn truncated_cone_panels(cone: &TruncatedCone, at: &Transform, stream: Vec3, vis
     let flat = against - up * along_axis;
     let facing = flat.length();
     let out = normalize_or(flat, side_x);
-    // The normal at the angle φ from `out` looks against the stream where `cos φ > −(tan of the slope) × (along / across)`.
+    // The normal at the angle φ from `out` faces the stream where `cos φ > −(tan of the slope) × (along / across)`.
     let half_angle = if facing > 1e-6 {
         acos(clamp(-(side.y * along_axis) / (side.x * facing), -1.0, 1.0))
     } else if side.y * along_axis > 0.0 {
@@ -171,7 +171,8 @@ fn box_panels(half: Vec3, at: &Transform, visit: &mut impl FnMut(Panel)) {
     }
 }
 
-/// Force of a stream on a face of a sheet with that vector area, m², from either side, N, and how it brakes, N·s/m: see [`Wind`](super::Wind).
+/// Force of a stream on a sheet face with this vector area, m², from either side, N, and its damping coefficient,
+/// N·s/m: see [`Wind`](super::Wind).
 pub(super) fn face_force(area: Vec3, stream: Vec3, density: f32, drag: f32, lift: f32) -> (Vec3, f32) {
     let (size, speed) = (area.length(), stream.length());
     if size <= 0.0 || speed <= 0.0 {
@@ -189,7 +190,7 @@ fn sign(x: f32) -> f32 {
     if x < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// Force of a stream on a panel, N, and how it brakes, N·s/m: see [`Wind`](super::Wind).
+/// Force of a stream on a panel, N, and its damping coefficient, N·s/m: see [`Wind`](super::Wind).
 pub(super) fn stream_force(panel: &Panel, stream: Vec3, density: f32, drag: f32, lift: f32) -> (Vec3, f32) {
     let speed = stream.length();
     if speed <= 0.0 {
@@ -197,7 +198,7 @@ pub(super) fn stream_force(panel: &Panel, stream: Vec3, density: f32, drag: f32,
     }
     let along = stream / speed;
     let pressure = 0.5 * density * speed * speed * panel.area;
-    // A full bound of the derivative: every part of the force is a product of two velocities.
+    // An upper bound of the derivative: every term of the force is a product of two velocities.
     let brake = density * speed * panel.area;
     match panel.normal {
         None => (along * (pressure * drag), brake * drag),

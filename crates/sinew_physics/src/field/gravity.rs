@@ -1,11 +1,11 @@
-//! Gravity that nothing answers to: uniform, and toward a place.
+//! External gravity: uniform, and toward a point.
 
 use super::Target;
 use super::def::not_negative;
 use sinew_geometry::DefError;
 use sinew_math::Vec3;
 
-/// The same acceleration for all, beside the world's own gravity: `F = s m a`, with `s` the gravity scale of the body or
+/// Uniform acceleration in addition to the world's own gravity: `F = s m a`, with `s` the gravity scale of the body or
 /// group.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -33,10 +33,10 @@ impl UniformGravity {
     }
 }
 
-/// Attraction of a place, which is itself not moved: a planet that is far heavier than all that flies about it.
+/// Attraction toward a fixed point: a planet far heavier than everything around it.
 ///
 /// Newton's law with Plummer's softening: at `d` from the centre `a = μ d / (d² + ε²)^(3/2)` toward it, scaled by the
-/// gravity scale of the body or group. With ε = 0 what comes to the centre itself feels nothing there.
+/// gravity scale of the body or group. With ε = 0 the force is zero at the centre itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -45,7 +45,7 @@ pub struct PointGravity {
     pub center: Vec3,
     /// `μ = G M`, m³/s². Negative: away from it. Default 0.
     pub strength: f32,
-    /// ε, metres, ≥ 0: within it attraction grows no more. Default 0.
+    /// ε, metres, ≥ 0: limits the attraction within this distance. Default 0.
     pub softening: f32,
 }
 
@@ -73,8 +73,8 @@ impl PointGravity {
     }
 }
 
-/// Acceleration toward what lies at `apart`, m/s². Divided by the distance one power after the other: none of them can
-/// overflow before the quotient is small.
+/// Acceleration toward a mass at `apart`, m/s². Divides by the distance one power at a time, so that no factor
+/// overflows before the quotient is small.
 pub(super) fn attraction(apart: Vec3, strength: f32, softening: f32) -> Vec3 {
     let distance = (apart.length_squared() + softening * softening).sqrt();
     if distance > 0.0 { (apart / distance) * (strength / distance / distance) } else { Vec3::ZERO }

@@ -1,4 +1,4 @@
-//! Loads that fields put on what they act on, and how much of them a substep can bear.
+//! Loads of fields on items, limited to what a substep can integrate stably.
 
 use crate::body::force::Wrench;
 use sinew_math::{Vec3, min};
@@ -26,7 +26,7 @@ impl Load {
         self.spin_resistance += resistance * arm.length_squared();
     }
 
-    /// `share` of another one.
+    /// `share` of another load.
     pub(super) fn add(&mut self, other: &Self, share: f32) {
         self.wrench.force += other.wrench.force * share;
         self.wrench.torque += other.wrench.torque * share;
@@ -34,13 +34,13 @@ impl Load {
         self.spin_resistance += other.spin_resistance * share;
     }
 
-    /// On a particle that `weight` pulls besides: its own part of the sum, held back likewise.
+    /// Load on a particle that is also pulled by `weight`: its own share of the sum, limited in the same way.
     pub fn beside(&self, weight: Vec3, mass: f32, h: f32) -> Vec3 {
         let share = held_back(h * self.resistance, mass);
         self.wrench.force * share + weight * (share - 1.0)
     }
 
-    /// The load of this and of what else acts, held back so far that a substep cannot overshoot: see the module.
+    /// The sum of this and other loads, limited so that a substep cannot overshoot: see the module.
     pub fn with(&self, other: Wrench, mass: f32, least_moment: f32, h: f32) -> Wrench {
         Wrench {
             force: (other.force + self.wrench.force) * held_back(h * self.resistance, mass),
@@ -49,7 +49,7 @@ impl Load {
     }
 }
 
-/// Share of a force that is left when `braking` of the inertia would be braked away.
+/// Share of a force that remains if damping would remove `braking` of the inertia.
 fn held_back(braking: f32, inertia: f32) -> f32 {
     if braking > inertia { inertia / braking } else { 1.0 }
 }

@@ -1,19 +1,18 @@
-//! Fields: what pulls, blows, floats and brakes wherever it reaches.
+//! Fields: gravity, attraction, wind, buoyancy and drag within a region.
 //!
-//! A field acts on dynamic bodies and on particles alike, in every substep, by where they are and how they move in it. It is
-//! plain data ([`FieldDef`]), part of the world's snapshot, and evaluated in `integrate_velocity`, before anything is
-//! solved. Forces of several fields add up. An [`Explosion`] is a field that acts for an instant: see
-//! [`World::explode`](crate::World::explode).
+//! A field acts on dynamic bodies and particles in every substep, by their current position and velocity. It is plain
+//! data ([`FieldDef`]), part of the world's snapshot, and evaluated in `integrate_velocity`, before solving. Forces of
+//! several fields add up. An [`Explosion`] is an instantaneous field: see [`World::explode`](crate::World::explode).
 //!
-//! **Stiffness.** Where a field brakes (wind, drag, water), its force `F` is taken at the velocity with which the substep
-//! begins: the load of wind on a body that something holds is then the right one, and so is every steady speed. That is
-//! stable while `h b < m`, with `b = −∂F/∂v`; where it is more (a leaf of silk in a storm), all force on the body is
-//! divided by `h b / m`, so that it comes near its steady speed within the substep and never passes it. Likewise torque.
+//! **Stiffness.** A damping field (wind, drag, water) is evaluated at the velocity at the start of the substep, so the
+//! load on a held body is exact, and so is every terminal velocity. That is stable while `h b < m`, with `b = −∂F/∂v`.
+//! Where it is not (a leaf of silk in a storm), the total force on the body is divided by `h b / m`, so that it
+//! approaches its terminal velocity within the substep and never passes it. The same holds for torque.
 //!
-//! **Sleep.** A field acts on what is awake. Adding, changing and removing one wakes what it reaches or reached. What lies
-//! still in a field that does not change may fall asleep in it, as under gravity; in one that changes by itself (wind with
-//! gusts, a user's function) it does not. Bodies that attract each other sleep and wake together, and not at all where there are
-//! particles; particles that are attracted do not sleep.
+//! **Sleep.** A field acts on awake items. Adding, changing or removing one wakes everything it reaches or reached. A
+//! body at rest in a constant field may fall asleep, as under gravity; in a field that changes by itself (wind with
+//! gusts, a user function) it may not. Bodies that attract each other sleep and wake together, and never sleep if there
+//! are particles; attracted particles do not sleep.
 //!
 //! A world without fields pays nothing for them.
 
@@ -55,18 +54,18 @@ use crate::body::def::WorldDef;
 use crate::particles::ParticleGroup;
 use sinew_math::Vec3;
 
-/// The fields of a world, as a step sees them.
+/// The fields of a world, for a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fields<'a> {
     pub arena: &'a Arena<FieldDef>,
     pub functions: &'a Functions,
     /// The world's gravity, m/s².
     pub gravity: Vec3,
-    /// Steps taken before this one.
+    /// Number of steps taken before this one.
     pub step: u64,
     /// Time at the beginning of the step.
     pub nanoseconds: u64,
-    /// There are particles.
+    /// True if the world has particles.
     particles: bool,
 }
 
@@ -76,7 +75,7 @@ impl<'a> Fields<'a> {
         Self { arena, functions, gravity: def.gravity, step, nanoseconds, particles: false }
     }
 
-    /// With what is there beside the bodies.
+    /// With the presence of items other than bodies.
     pub fn among(self, groups: &Arena<ParticleGroup>) -> Self {
         Self { particles: groups.iter().next().is_some(), ..self }
     }
@@ -94,7 +93,7 @@ impl<'a> Fields<'a> {
         load
     }
 
-    /// Fields in which bodies attract each other, each with its law.
+    /// Fields with mutual attraction of bodies, each with its law.
     pub fn mutual(&self) -> impl Iterator<Item = (&'a FieldDef, &'a MutualGravity)> {
         self.arena.iter().filter_map(|(_, field)| match &field.kind {
             FieldKind::Mutual(law) => Some((field, law)),
@@ -102,7 +101,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// True if a body lies in a field that changes by itself, or attracts particles.
+    /// True if a body is in a field that changes by itself or attracts particles.
     pub fn keep_awake(&self, body: &Body) -> bool {
         let mut fields = self.arena.iter();
         fields.any(|(_, field)| {
@@ -111,7 +110,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// True if a particle of a group lies in a field that changes by itself, or attracts.
+    /// True if a particle of a group is in a field that changes by itself or attracts.
     pub fn keep_group_awake(&self, group: &ParticleGroup) -> bool {
         let mut fields = self.arena.iter();
         fields.any(|(_, field)| {
@@ -120,7 +119,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// Sleeper that is to wake next, as long as there is one: what attracts and is attracted wakes together.
+    /// Next sleeping body to wake, if any: attracting and attracted bodies wake together.
     pub fn next_to_wake(&self, bodies: &Arena<Body>, activity: &Activity) -> Option<u32> {
         self.mutual().find_map(|(field, _)| {
             let reached =
@@ -133,7 +132,7 @@ impl<'a> Fields<'a> {
 }
 
 impl FieldDef {
-    /// True if it acts on something at all.
+    /// True if it acts on an item at all.
     pub(crate) fn reaches(&self, target: &Target<'_>) -> bool {
         target.is_on(self.layers) && self.region.weight(target.center()) > 0.0
     }
@@ -143,12 +142,12 @@ impl FieldDef {
         (0..group.positions().len()).any(|i| self.reaches(&Target::of_particle(group, i)))
     }
 
-    /// Strength where something is: 0 outside of its region and on other layers, 1 where it is full.
+    /// Strength at an item: 0 outside its region and on other layers, 1 at full strength.
     pub(crate) fn weight(&self, target: &Target<'_>) -> f32 {
         if target.is_on(self.layers) { self.region.weight(target.center()) } else { 0.0 }
     }
 
-    /// Adds what it does to something, but for what couples bodies.
+    /// Adds its load on an item, except mutual attraction.
     pub(crate) fn act(&self, target: &Target<'_>, fields: &Fields<'_>, sum: &mut Load) {
         let weight = self.weight(target);
         if weight <= 0.0 {
@@ -169,7 +168,7 @@ impl FieldDef {
         sum.add(&load, weight);
     }
 
-    /// Energy that something has in it, J, as far as it has one.
+    /// Potential energy of an item in it, J, if it has one.
     pub(crate) fn energy(&self, target: &Target<'_>, gravity: Vec3) -> f32 {
         if self.region != Region::Everywhere || !target.is_on(self.layers) {
             return 0.0;

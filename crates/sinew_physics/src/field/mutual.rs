@@ -9,16 +9,16 @@ use sinew_math::Vec3;
 
 /// Newton's gravitation between all that the field reaches: dynamic bodies, and particles.
 ///
-/// Two masses at distance `d` pull each other with the **same** force `G m₁ m₂ d / (d² + ε²)^(3/2)`, one this way, one
-/// that way (Newton's third law); how far each moves depends on its own mass. It is computed as `m₁ ((G m₂) / d²)` with `m₂` the heavier, so that
-/// masses of stars in kilograms do not overflow; the moment of inertia of such a body would, so give it one, or count in
+/// Two masses at distance `d` pull each other with the **same** force `G m₁ m₂ d / (d² + ε²)^(3/2)` in opposite
+/// directions (Newton's third law). It is computed as `m₁ ((G m₂) / d²)` with `m₂` the heavier, so that masses of stars
+/// in kilograms do not overflow. The moment of inertia of such a body would overflow, so set one explicitly, or use
 /// other units: in astronomical units, solar masses and years `G` is [`ASTRONOMICAL`](Self::ASTRONOMICAL).
 ///
-/// Bodies that attract each other are solved as one island, each substep from where they then are, and each pair's impulse
-/// is given to both: the sum of their momenta stays, up to rounding. Static and kinematic bodies have no mass here; for
-/// one that shall pull and not move there is [`PointGravity`](super::PointGravity). `gravity_scale` has no say: it would
-/// break the third law. In a region that fades, a pair pulls with the product of its strengths at both places. The work
-/// grows with the square of the number of bodies.
+/// Bodies that attract each other form one island. Each substep uses their current positions and applies each pair's
+/// impulse to both, so the sum of momenta is constant up to rounding. Static and kinematic bodies have no mass here;
+/// for a fixed attractor use [`PointGravity`](super::PointGravity). `gravity_scale` is ignored, because it would break
+/// the third law. In a fading region a pair's force is scaled by the product of the strengths at both positions. The
+/// cost is quadratic in the number of bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -35,7 +35,7 @@ impl Default for MutualGravity {
     }
 }
 
-/// Something that takes part.
+/// A participating body or particle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Attractor {
     pub position: Vec3,
@@ -60,7 +60,7 @@ impl MutualGravity {
 
     /// On `a` by `b`, N; that on `b` is the opposite.
     pub(crate) fn force(&self, a: &Attractor, b: &Attractor) -> Vec3 {
-        // The heavier first, so that both sides of a pair have the same bits.
+        // The heavier first, so that both sides of a pair get the same bits.
         let (heavy, light) = if a.mass > b.mass { (a.mass, b.mass) } else { (b.mass, a.mass) };
         let pull = attraction(b.position - a.position, self.constant * heavy, self.softening);
         pull * (light * (a.weight * b.weight))
@@ -71,7 +71,7 @@ impl MutualGravity {
         potential(b.position - a.position, self.constant * b.mass, self.softening) * a.mass
     }
 
-    /// Adds to `forces`, one for each, what each pair does.
+    /// Adds each pair's force to `forces`, which has one entry per item.
     pub(crate) fn attract(&self, attractors: &[Attractor], forces: &mut [Vec3]) {
         for (i, a) in attractors.iter().enumerate() {
             for (j, b) in attractors.iter().enumerate().skip(i + 1) {

@@ -1,10 +1,10 @@
-//! Seeded noise that is smooth in place and time.
+//! Seeded noise that is smooth in space and time.
 
 use sinew_math::{Random, Vec3};
 
-/// Value noise at a place, in cells, and a time, as a cell and how far within it (0..1): each component in −1..=1.
+/// Value noise at a position (in cells) and a time, given as a cell and a fraction (0..1): each component in −1..=1.
 pub(super) fn turbulence(place: Vec3, (time, within): (u64, f32), seed: u64) -> Vec3 {
-    // Places beyond what an integer holds saturate: all the same there, but not undefined.
+    // Positions beyond the integer range saturate: constant there, but not undefined.
     let floor = Vec3::new(place.x.floor(), place.y.floor(), place.z.floor());
     let cell = [floor.x, floor.y, floor.z].map(|x| x as i64 as u64);
     let between = place - floor;
@@ -21,7 +21,7 @@ pub(super) fn turbulence(place: Vec3, (time, within): (u64, f32), seed: u64) -> 
     sum
 }
 
-/// Random vector of a lattice point, uniform in the cube −1..1: each coordinate stirs the state once.
+/// Random vector of a lattice point, uniform in the cube −1..1: hashes each coordinate into the state.
 fn lattice(cell: [u64; 4], seed: u64) -> Vec3 {
     let mut state = seed;
     for x in cell {

@@ -4,7 +4,7 @@ use crate::body::shape::Shape;
 use sinew_geometry::DefError;
 use sinew_math::{Transform, Vec3};
 
-/// Decrease of a field's strength from where it is full to its border, with `u` from 1 to 0 on the way.
+/// Fall-off of a field's strength from full to its border, with `u` from 1 to 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Fade {
@@ -13,7 +13,7 @@ pub enum Fade {
     None,
     /// `u`.
     Linear,
-    /// `u² (3 − 2u)`: without a kink at either end.
+    /// `u² (3 − 2u)`: smooth at both ends.
     Smooth,
     /// `u²`.
     Square,

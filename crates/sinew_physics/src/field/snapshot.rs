@@ -9,18 +9,18 @@ use crate::body::snapshot::{load_geometry, save_geometry};
 use sinew_math::{ReadError, Reader, Writer};
 
 impl FieldDef {
-    /// Writes all of it.
+    /// Writes all fields.
     pub(crate) fn save(&self, w: &mut Writer) {
         w.u32(self.layers);
         save_region(w, &self.region);
         save_kind(w, &self.kind);
     }
 
-    /// Reads what [`save`](Self::save) wrote.
+    /// Reads the format of [`save`](Self::save).
     ///
     /// # Errors
-    /// If the bytes end too early, [`check`](Self::check) finds something wrong, a user's function is not registered, or
-    /// the region's shape is not in the library.
+    /// If the bytes end too early, [`check`](Self::check) rejects a value, a user function is not registered, or the
+    /// region's shape is not in the library.
     pub(crate) fn load(
         r: &mut Reader<'_>,
         functions: &Functions,

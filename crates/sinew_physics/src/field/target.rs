@@ -16,11 +16,11 @@ pub(crate) struct Target<'a> {
     pub form: Form<'a>,
 }
 
-/// Form of a target, as the air and the water meet it.
+/// Geometry of a target for air and water.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Form<'a> {
     Body(&'a Body),
-    /// Ball of a radius, on some layers; to the air the faces of its group that it is a corner of, if there are any.
+    /// Ball of a radius, on some layers; for air also the sheet faces at this particle, if its group has any.
     Particle {
         radius: f32,
         layers: u32,
@@ -64,7 +64,7 @@ impl<'a> Target<'a> {
         self.velocity.at(point - self.center())
     }
 
-    /// On any of these layers. What has no shape is on all.
+    /// On any of these layers. An item without shapes is on all.
     pub(super) fn is_on(&self, layers: u32) -> bool {
         match self.form {
             Form::Body(body) => {

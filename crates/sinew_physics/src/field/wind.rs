@@ -9,28 +9,27 @@ use sinew_math::Vec3;
 
 /// Air that moves, with drag and lift by the area that shapes expose to it.
 ///
-/// Each flat panel (the faces of a box, the strip of a capsule's cylinder) that faces the stream `w`, the air's velocity
-/// less the panel's own, with `ŵ = w/|w|`, outward normal `n`, area `A` and `c = −n·ŵ > 0`:
+/// Each flat panel (the faces of a box, the strip of a capsule's cylinder) that faces the stream `w`, the air's
+/// velocity minus the panel's own, with `ŵ = w/|w|`, outward normal `n`, area `A` and `c = −n·ŵ > 0`:
 ///
 /// ```text
 /// drag  = ½ ρ C_d |w|² A c ŵ        lift = ½ ρ C_l |w|² A c (−n − c ŵ)
 /// ```
 ///
-/// Round ones (a ball, the ends of a capsule, a particle) have drag alone, with `A c = π r²` (Keckeisen et al., "Wind
-/// Effects on Cloth", 2004; the projected areas `A c` of a convex body add up to its shadow, so drag is the engineer's
-/// `½ ρ C_d A |w|²`). Sheltered sides feel nothing, and bodies shelter no others. A force acts where its panel is, so
-/// a plate turns in the wind, and spin is braked. Steady speed of a ball that falls through still air: `√(2 m g / (ρ C_d π
-/// r²))`.
+/// Round panels (a ball, the ends of a capsule, a particle) have only drag, with `A c = π r²` (Keckeisen et al., "Wind
+/// Effects on Cloth", 2004; the projected areas `A c` of a convex body add up to its shadow, so the drag is the
+/// standard `½ ρ C_d A |w|²`). Lee sides get no force, and bodies do not shelter others. A force acts at its panel, so
+/// a plate turns in the wind, and spin is damped. Terminal velocity of a ball in still air: `√(2 m g / (ρ C_d π r²))`.
 ///
-/// A sheet of particles that knows its [faces](crate::particles::GroupDef::faces) is thin: the air presses on either side, along its
-/// normal, by the square of what comes straight at it, and slides along it without friction. With `n` on the lee side
+/// A particle sheet with [faces](crate::particles::GroupDef::faces) is thin: the air presses on either side along its
+/// normal, by the square of the normal velocity, and slides along it without friction. With `n` on the lee side
 ///
 /// ```text
 /// pressure = ½ ρ C_d (w·n)² A n        lift = ½ ρ C_l |w| (w·n) A (n − c ŵ), c = n·ŵ > 0
 /// ```
 ///
-/// of each face in three equal parts, each moving with one of its corners: a flat sheet at rest bears `½ ρ C_d A |w|² cos²θ` in a wind that comes at `θ` from its
-/// normal, and falls flat through still air at `√(2 m g / (ρ C_d A))`.
+/// of each face in three equal parts, each moving with one of its corners: a flat sheet at rest carries
+/// `½ ρ C_d A |w|² cos²θ` in a wind at `θ` from its normal, and falls flat through still air at `√(2 m g / (ρ C_d A))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -43,15 +42,15 @@ pub struct Wind {
     pub drag: f32,
     /// C_l, ≥ 0. Default 0.
     pub lift: f32,
-    /// Gusts that come and go. Default none.
+    /// Time-varying gusts. Default none.
     pub gusts: Option<Gusts>,
 }
 
-/// Gusts: a velocity that is added to the wind's, smooth in place and time, the same for the same seed on every machine.
+/// Gusts: a velocity added to the wind's, smooth in space and time, the same for the same seed on every machine.
 ///
-/// Value noise: random vectors on a lattice of places and times, blended by `u² (3 − 2u)` along each of the four axes. Its
-/// mean is 0; each component is within ± `speed`, with a standard deviation of about a third of it (√(0.743⁴/3)). Time is that of the
-/// step's beginning.
+/// Value noise: random vectors on a lattice of positions and times, blended by `u² (3 − 2u)` along each of the four
+/// axes. Its mean is 0; each component is within ± `speed`, with a standard deviation of about a third of it
+/// (√(0.743⁴/3)). Time is that at the start of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gusts {

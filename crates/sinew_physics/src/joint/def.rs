@@ -4,7 +4,8 @@ use crate::body::Velocity;
 use crate::id::BodyId;
 use sinew_math::{Range, SwingTwistLimit, Transform, Vec3};
 
-/// Kind of a joint: the motions that it leaves free. The joint's frames are `JointDef::frame_a` and `frame_b`; zero is where they agree.
+/// Kind of a joint: its free motions. The joint's frames are `JointDef::frame_a` and `frame_b`; zero is where they
+/// coincide.
 ///
 #[doc = include_str!("kinds.svg")]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,8 +21,8 @@ pub enum JointKind {
         /// Radians, inside −π..=π; `None`: unlimited.
         limit: Option<Range>,
     },
-    /// Two rotations: swing about y and z, no twist about x. At a swing of half a turn twist means nothing, and near it
-    /// is held weakly: limit the swing where that may be reached.
+    /// Two rotations: swing about y and z, no twist about x. Twist is undefined at a swing of half a turn and is weak
+    /// near it: limit the swing if it can get there.
     Universal {
         /// The cone; its twist range is ignored. `None`: unlimited.
         limit: Option<SwingTwistLimit>,
@@ -33,13 +34,13 @@ pub enum JointKind {
         /// Metres; `None`: unlimited.
         limit: Option<Range>,
     },
-    /// All but the distance of the two anchors, which stays within a range: a rod where both ends are equal, a rope
-    /// where the lower one is 0, a spring with [`JointDef::spring`] and a wide range.
+    /// Only the distance of the two anchors is constrained, to a range: a rod if both ends are equal, a rope if the
+    /// lower one is 0, a spring with [`JointDef::spring`] and a wide range.
     Distance {
         /// Metres, at least 0.
         range: Range,
     },
-    /// Each of the six directions as said.
+    /// Each of the six directions separately.
     SixDof(SixDof),
 }
 
@@ -49,11 +50,11 @@ pub enum JointKind {
 pub struct SixDof {
     /// Translation along the axes of frame A, metres.
     pub linear: [AxisMotion; 3],
-    /// Rotation about x, radians, inside −π..=π. Locked beside free swings it is that of [`JointKind::Universal`].
+    /// Rotation about x, radians, inside −π..=π. Locked with free swings it equals [`JointKind::Universal`].
     pub twist: AxisMotion,
-    /// Swing about y, radians, with 0 inside; limits on both swings make an elliptic cone.
+    /// Swing about y, radians, containing 0; limits on both swings make an elliptic cone.
     pub swing_y: AxisMotion,
-    /// Swing about z, likewise.
+    /// Swing about z, with the same rule.
     pub swing_z: AxisMotion,
 }
 
@@ -84,18 +85,18 @@ pub enum AxisMotion {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Softness {
-    /// Whatever the masses.
+    /// Independent of the masses.
     Stiffness {
         /// N/m or N·m/rad.
         stiffness: f32,
         /// N·s/m or N·m·s/rad.
         damping: f32,
     },
-    /// Whatever hangs on the joint: it swings as a damped oscillator whose mass is that of the two sides of the joint,
-    /// each taken as one rigid piece in the pose of the step's beginning, which turns about one axis of the joint while it
-    /// does not about the others; of a joint that closes a loop, that of its two
-    /// bodies. A pin ([`SixDof::FREE`] to a body that no force moves) has that of all bodies that are fewer joints away
-    /// from it than from other pins and from what holds the tree. For limits and soft zones it is what answers to their row while the joints hold.
+    /// Frequency-based: the joint behaves as a damped oscillator whose mass is that of the two sides of the joint, each
+    /// as one rigid piece in the pose at the step's start, rotating about one joint axis. For a joint that closes a
+    /// loop it is that of its two bodies. For a pin ([`SixDof::FREE`] to a kinematic or static body) it is the mass of
+    /// all bodies that are fewer joints away from it than from other pins and from the tree's support. For limits and
+    /// soft zones it is the effective mass of their row while the joints hold.
     Frequency {
         /// Natural frequency, Hz.
         hertz: f32,
@@ -104,14 +105,15 @@ pub enum Softness {
     },
 }
 
-/// Pulls the free directions toward a rest pose. Never tires; see [`Motor`] for one that may. Its rest pose belongs inside
-/// the limits: a stop that a stiff spring has dragged a joint beyond pushes it back no faster than there is energy for.
+/// Pulls the free directions toward a rest pose, with unlimited force; see [`Motor`] for a limited one. Its rest pose
+/// belongs inside the limits: a stop that a stiff spring exceeds pushes back only as fast as the available energy
+/// allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spring {
     /// Stiffness and damping of the spring.
     pub softness: Softness,
-    /// Frame B seen from frame A at rest. For [`JointKind::Distance`] the rest length is its `translation.x`.
+    /// Rest pose of frame B relative to frame A. For [`JointKind::Distance`] the rest length is its `translation.x`.
     pub rest: Transform,
 }
 
@@ -121,7 +123,7 @@ pub struct Spring {
 pub enum Gains {
     /// The target velocity, as exactly as the caps allow.
     Velocity,
-    /// The target pose, and the target velocity by way of damping.
+    /// The target pose, and the target velocity by damping.
     Position(Softness),
 }
 
@@ -133,14 +135,14 @@ pub enum Gains {
 pub struct Motor {
     /// Aim of the motor: velocity, or pose.
     pub gains: Gains,
-    /// Frame B seen from frame A. Of a hinge's rotation only that about x counts, of a slider's translation x.
+    /// Frame B relative to frame A. For a hinge only the rotation about x counts, for a slider only translation x.
     pub target: Transform,
-    /// Target velocity of frame B seen from frame A, in A's axes, m/s and rad/s.
+    /// Target velocity of frame B relative to frame A, in A's axes, m/s and rad/s.
     pub velocity: Velocity,
-    /// Most force along each free axis by itself, N, may be infinite; 0 leaves translations alone.
+    /// Largest force along each free axis, N, may be infinite; 0 disables translations.
     #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub max_force: f32,
-    /// Most torque about each free axis by itself, N·m, may be infinite; 0 leaves rotations alone.
+    /// Largest torque about each free axis, N·m, may be infinite; 0 disables rotations.
     #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub max_torque: f32,
 }
@@ -157,7 +159,7 @@ impl Motor {
         }
     }
 
-    /// Turns a hinge at `speed` (rad/s) with at most `max_torque` (N·m).
+    /// Rotates a hinge at `speed` (rad/s) with at most `max_torque` (N·m).
     pub fn spin(speed: f32, max_torque: f32) -> Self {
         Self {
             gains: Gains::Velocity,
@@ -184,13 +186,14 @@ impl Motor {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SoftZone {
-    /// So far before the stop a spring begins to push back, radians. 5° suits limbs.
+    /// Distance from the stop at which a spring starts to push back, radians. 5° suits limbs.
     pub width: f32,
-    /// Stiffness and damping; damping grows from none at the zone's edge to all of it at the stop. 10 Hz and critical suits limbs.
+    /// Stiffness and damping; damping increases from zero at the zone's edge to its full value at the stop. 10 Hz and
+    /// critical suits limbs.
     pub softness: Softness,
 }
 
-/// When a joint breaks. It is then disabled, and told of in `Events::broken`.
+/// Load at which a joint breaks. It is then disabled, and reported in `Events::broken`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Strength {
@@ -213,7 +216,7 @@ impl Strength {
 pub enum JointCollision {
     /// They collide.
     Enabled,
-    /// They do not collide, as long as the joint is enabled.
+    /// They do not collide while the joint is enabled.
     Disabled,
 }
 
@@ -223,11 +226,11 @@ pub enum JointCollision {
 pub enum JointState {
     /// The joint acts.
     Enabled,
-    /// The joint does nothing, as if it were not there.
+    /// The joint is disabled and has no effect.
     Disabled,
 }
 
-/// A joint to be made.
+/// Definition of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(alias = "constraint")]
@@ -235,7 +238,7 @@ pub enum JointState {
 #[doc(alias = "GenericJoint")]
 #[must_use = "a joint is there once `World::add_joint` has it"]
 pub struct JointDef {
-    /// First body (the parent, where there is one).
+    /// First body (the parent, if there is a hierarchy).
     pub body_a: BodyId,
     /// Second body.
     pub body_b: BodyId,
@@ -243,17 +246,17 @@ pub struct JointDef {
     pub frame_a: Transform,
     /// Joint frame in B's frame.
     pub frame_b: Transform,
-    /// Kind of the joint: the motions that it leaves free.
+    /// Kind of the joint: its free motions.
     pub kind: JointKind,
-    /// Stiffness and damping of the directions that are not free. Default `None`: they hold exactly.
+    /// Stiffness and damping of the locked directions. Default `None`: exact.
     pub weld: Option<Softness>,
     /// Stiffness and damping of the limits. Default `None`: hard stops without bounce.
     pub limit_softness: Option<Softness>,
-    /// Before hard limits of rotations. Default `None`.
+    /// In front of hard limits of rotations. Default `None`.
     pub soft_zone: Option<SoftZone>,
-    /// Pulls what is free. Default `None`.
+    /// Pulls the free directions. Default `None`.
     pub spring: Option<Spring>,
-    /// Drives what is free. Default `None`.
+    /// Drives the free directions. Default `None`.
     pub motor: Option<Motor>,
     /// Torque that resists the free rotations, N·m, and force that resists the free translations, N. Default 0.
     pub friction_torque: f32,
@@ -266,7 +269,7 @@ pub struct JointDef {
 }
 
 impl JointDef {
-    /// A joint whose frames agree in the bodies' present pose: `world_from_joint` is seen from both bodies.
+    /// A joint whose frames coincide in the bodies' current pose, at the world frame `world_from_joint`.
     pub fn new(
         body_a: BodyId,
         body_b: BodyId,
@@ -309,7 +312,7 @@ impl JointDef {
     /// With a range of motion: radians of a hinge, metres of a slider.
     ///
     /// # Panics
-    /// If it is of another kind: the limits of others are fields of their [kinds](JointKind).
+    /// If it is of another kind: other limits are fields of their [kinds](JointKind).
     #[track_caller]
     pub fn limited(self, range: Range) -> Self {
         let limit = Some(range);
@@ -321,8 +324,8 @@ impl JointDef {
         Self { kind, ..self }
     }
 
-    /// A hand that pulls a point of `body_b` toward the origin of `hand`, a static or kinematic body: move the hand, or
-    /// the motor's target. `point` in B's frame; at most `max_force` (N).
+    /// A mouse joint that pulls a point of `body_b` toward the origin of `hand`, a static or kinematic body: move the
+    /// hand, or the motor's target. `point` in B's frame; at most `max_force` (N).
     pub fn drag(hand: BodyId, body_b: BodyId, point: Vec3, softness: Softness, max_force: f32) -> Self {
         let frame_b = Transform::from_translation(point);
         let kind = JointKind::SixDof(SixDof::FREE);
@@ -335,7 +338,8 @@ impl JointDef {
     }
 
     /// # Panics
-    /// If a number is not finite (but for infinite caps and strengths), negative where it may not be, or a range empty.
+    /// If a number is not finite (except caps and strengths, which may be infinite), negative where that is invalid, or
+    /// a range is empty.
     #[track_caller]
     pub(crate) fn check(&self) {
         assert!(

@@ -3,7 +3,7 @@
 use super::Joint;
 use crate::arena::Arena;
 
-/// The joints of each body, ascending. Follows from the joints alone, and so is no part of the state.
+/// The joints of each body, ascending. Derived from the joints, and so not part of the state.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Incidence {
     /// By slot, up to the last body that has any.

@@ -1,4 +1,4 @@
-//! A joint as the world keeps it: its definition and what it remembers.
+//! A joint as stored by the world: its definition and its state.
 
 pub mod def;
 mod incidence;
@@ -21,8 +21,8 @@ pub(crate) use rows::{
 };
 use sinew_math::{Transform, Vec3};
 
-/// Impulse of a limit in the last substep and the one before, N·s or N·m·s, in frame A: as a vector, because the axis of
-/// a cone turns, and an impulse about the old axis must not be handed on about the new one.
+/// Impulse of a limit in the last substep and the one before, N·s or N·m·s, in frame A. A vector, because the axis of a
+/// cone rotates and an impulse about the old axis must not be applied about the new one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct LimitImpulse {
     pub now: Vec3,
@@ -36,7 +36,7 @@ impl LimitImpulse {
     }
 }
 
-/// Parameters of what acts in a joint's directions beside the hard constraint.
+/// Parameters of the soft parts of a joint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointDrive {
     pub weld: Option<Softness>,
@@ -59,7 +59,7 @@ impl JointDrive {
         }
     }
 
-    /// Nothing but friction acts in what the joint leaves open, and its stops are hard.
+    /// The free directions have only friction, and the stops are hard.
     pub fn is_limp(&self) -> bool {
         let Self { weld, limit_softness, soft_zone, spring, motor, friction: _ } = self;
         weld.is_none()
@@ -69,7 +69,7 @@ impl JointDrive {
             && motor.is_none()
     }
 
-    /// True if some row needs to know what mass it moves.
+    /// True if a row depends on the mass it moves.
     pub fn needs_mass(&self) -> bool {
         self.weld.is_some() || self.spring.is_some() || self.motor.is_some()
     }
@@ -151,7 +151,7 @@ impl Joint {
         }
     }
 
-    /// Takes on another definition; what is remembered goes on where it still means the same.
+    /// Applies another definition; stored impulses are kept where their meaning is unchanged.
     pub fn redefine(&mut self, def: &JointDef, principal_from_a: Transform, principal_from_b: Transform) {
         let new = Self::new(def, self.a, self.b, principal_from_a, principal_from_b);
         let new = Self { owner: self.owner, ..new };
@@ -211,23 +211,23 @@ impl Joint {
         locked_count(&self.kind) + if driven { open_directions(self.kind).count() } else { 0 }
     }
 
-    /// True if nothing of it holds or stops: all that it has is springs, motors and friction in all six directions.
+    /// True if it has no locked direction and no stop: only springs, motors and friction in all six directions.
     pub fn leaves_all_free(&self) -> bool {
         self.kind == JointKind::SixDof(SixDof::FREE)
     }
 
-    /// True if the pair of bodies is kept from colliding.
+    /// True if the pair of bodies does not collide.
     pub fn parts_bodies(&self) -> bool {
         self.is_enabled() && self.collision == JointCollision::Disabled
     }
 
-    /// True if the last step loaded it beyond its strength.
+    /// True if the last step exceeded its strength.
     pub fn is_overloaded(&self) -> bool {
         crate::spatial::linear(&self.reaction).length() > self.strength.force
             || crate::spatial::angular(&self.reaction).length() > self.strength.torque
     }
 
-    /// Another motor takes over which way the old one pushed with all it had, if it is of the same kind and has caps.
+    /// A new motor keeps the old one's saturation state, if it is of the same kind and has caps.
     pub fn set_motor(&mut self, motor: Option<Motor>) {
         self.saturated = self.saturation_under(motor);
         self.drive.motor = motor;

@@ -22,7 +22,7 @@ pub(crate) struct JointGeometry {
 /// The joint's frames in the world, and the arms of its anchors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointPose {
-    /// World arm from A's centre of mass to its anchor, likewise B.
+    /// World arm from A's centre of mass to its anchor, and the same for B.
     pub arm_a: Vec3,
     pub arm_b: Vec3,
     /// Anchor of B less anchor of A, world, metres.
@@ -44,12 +44,12 @@ impl JointPose {
         }
     }
 
-    /// Rotation of frame B seen from frame A.
+    /// Rotation of frame B relative to frame A.
     pub fn relative(&self) -> Rotation {
         self.rotation_a.inverse() * self.rotation_b
     }
 
-    /// Frame B seen from frame A.
+    /// Frame B relative to frame A.
     pub fn a_from_b(&self) -> Transform {
         Transform::new(self.rotation_a.inverse() * self.gap, self.relative())
     }
@@ -73,7 +73,7 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// Rate of the anchors' distance along a direction that stands still in the world.
+    /// Rate of the anchors' distance along a direction fixed in the world.
     fn along(direction: Vec3, pose: &JointPose) -> Self {
         Self {
             a: join(-direction, -pose.arm_a.cross(direction)),
@@ -81,7 +81,7 @@ impl Row {
         }
     }
 
-    /// The same along a direction that turns with A.
+    /// The same along a direction that rotates with A.
     fn along_turning(direction: Vec3, pose: &JointPose) -> Self {
         Self {
             a: join(-direction, -(pose.arm_a + pose.gap).cross(direction)),
@@ -89,7 +89,7 @@ impl Row {
         }
     }
 
-    /// Rate of rotation of B about an axis, seen from A.
+    /// Rate of rotation of B relative to A about an axis.
     fn about(axis: Vec3) -> Self {
         Self { a: join(Vec3::ZERO, -axis), b: join(Vec3::ZERO, axis) }
     }
@@ -97,7 +97,8 @@ impl Row {
 
 /// Rows `J_a v_a + J_b v_b` of one joint: those of locked directions first, then those of open ones.
 ///
-/// A row is an axis: along it one of translation measures what the anchors do, about it one of rotation what the frames do.
+/// A row is an axis: a translation row measures the anchors' motion along it, a rotation row the frames' rotation about
+/// it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointRows {
     /// Rows in use.
@@ -127,7 +128,7 @@ impl JointRows {
         direction: [0; DIRECTIONS],
     };
 
-    /// Rows of all locked directions, and of those open ones that are asked for.
+    /// Rows of all locked directions, and of the requested free ones.
     pub fn new(joint: &JointGeometry, pose: &JointPose, open: [bool; DIRECTIONS]) -> Self {
         let kind = &joint.kind;
         let locks = locks(kind);
@@ -163,7 +164,7 @@ impl JointRows {
         self.direction(row) >= TWIST
     }
 
-    /// True if the anchors are held together: the first three rows, along the axes of the world.
+    /// True if the anchors are locked together: the first three rows, along the axes of the world.
     pub fn locks_point(&self) -> bool {
         self.locked >= TWIST && self.direction(TWIST - 1) < TWIST
     }
@@ -183,7 +184,7 @@ impl JointRows {
         if self.turns(row) { join(Vec3::ZERO, axis) } else { join(axis, arm.cross(axis)) }
     }
 
-    /// Sums of the impulses of the rows on B, and with the other sign on A; torques about each one's centre, A's first.
+    /// Sums of the rows' impulses on B, and negated on A; torques about each body's centre, A's first.
     pub fn impulse(&self, of_rows: &Vec6) -> [Vec6; 2] {
         let [x, y, z, ..] = *of_rows;
         let (first, mut force) =
@@ -214,12 +215,12 @@ impl JointRows {
     }
 }
 
-/// True if rows of translation turn with A: those of a point and of a distance stand still.
+/// True if translation rows rotate with A: those of a point and of a distance are fixed.
 fn turns_with_a(kind: &JointKind, locks: &[bool; 6]) -> bool {
     locks[..TWIST] != [true; 3] && !matches!(kind, JointKind::Distance { .. })
 }
 
-/// Position errors of the locked rows alone, in the order of [`JointRows`].
+/// Position errors of the locked rows only, in the order of [`JointRows`].
 pub(crate) fn locked_error(joint: &JointGeometry, pose: &JointPose) -> Vec6 {
     let (mut all, mut count) = (ZERO6, 0);
     each_locked(&joint.kind, &locks(&joint.kind), pose, |_, error, _| {
@@ -229,7 +230,7 @@ pub(crate) fn locked_error(joint: &JointGeometry, pose: &JointPose) -> Vec6 {
     all
 }
 
-/// True for each direction that is held.
+/// True for each locked direction.
 #[inline]
 pub(crate) fn locks(kind: &JointKind) -> [bool; DIRECTIONS] {
     match kind {
@@ -246,7 +247,7 @@ pub(crate) fn locks(kind: &JointKind) -> [bool; DIRECTIONS] {
     }
 }
 
-/// A distance joint knows one translation only.
+/// A distance joint has only one translation.
 fn exists(kind: &JointKind, direction: usize) -> bool {
     !matches!(kind, JointKind::Distance { .. }) || direction == 0
 }
@@ -281,8 +282,8 @@ fn each_locked(kind: &JointKind, locks: &[bool; 6], pose: &JointPose, mut put: i
     }
     let ra = pose.rotation_a;
     if twist {
-        // The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b). C = ½ (1 + x_a·x_b) θ fades where a swing of half a turn leaves
-        // the twist θ undefined, instead of growing beyond all bounds: Ċ = ω · ½ (x_a + x_b + θ x_b × x_a).
+        // The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b). C = ½ (1 + x_a·x_b) θ vanishes where a swing of half a turn
+        // leaves the twist θ undefined, instead of growing without bound: Ċ = ω · ½ (x_a + x_b + θ x_b × x_a).
         let (swing, twist) = pose.relative().swing_twist(Vec3::X);
         let (x_b, angle) = (swing * Vec3::X, twist.twist_angle(Vec3::X));
         let sum = Vec3::X + x_b;
@@ -349,9 +350,9 @@ pub(crate) fn displacement(kind: &JointKind, pose: &JointPose, direction: usize,
     [error.x, error.y, error.z][direction]
 }
 
-/// At most this many stops has a joint: swing, twist below and above, then below and above for x, y, z.
+/// A joint has at most this many stops: swing, twist below and above, then below and above for x, y, z.
 pub(crate) const MAX_STOPS: usize = 9;
-/// Stops that face each other share a memory: swing, twist, x, y, z.
+/// Opposite stops share their stored impulse: swing, twist, x, y, z.
 pub(crate) const MAX_LIMITS: usize = 5;
 
 /// The end of a free motion.
@@ -384,15 +385,15 @@ pub(crate) fn turns(limit: usize) -> bool {
     limit < 2
 }
 
-/// The stops of a joint, each at its own place; those that it does not have are `None`.
+/// The stops of a joint, each in its slot; missing ones are `None`.
 pub(crate) fn stops(kind: &JointKind, pose: &JointPose) -> [Option<Stop>; MAX_STOPS] {
     let mut out = [None; MAX_STOPS];
     each_stop(kind, pose, [f32::INFINITY; 2], |place, stop| out[place] = Some(stop));
     out
 }
 
-/// The stops of a joint in the order of their places, but for those that have no less slack than `reach`, of translation and of
-/// rotation: these may be left out, with what their axes cost.
+/// The stops of a joint in slot order. May omit those with more slack than `reach` (translation and rotation), which
+/// saves computing their axes.
 #[inline]
 pub(crate) fn each_stop(
     kind: &JointKind,
@@ -476,14 +477,14 @@ fn twist_only(twist: Range) -> SwingTwistLimit {
     SwingTwistLimit { swing_y: free, swing_z: free, twist }
 }
 
-/// Largest angle by which a joint is beyond its limits of rotation, radians; 0 inside.
+/// Largest angle beyond a rotation limit, radians; 0 inside.
 pub(crate) fn overshoot(kind: &JointKind, pose: &JointPose) -> f32 {
     let beyond = |stop: &Stop| if turns(stop.limit) { -stop.slack } else { 0.0 };
     let stops = stops(kind, pose);
     stops.iter().flatten().map(beyond).fold(0.0, sinew_math::max)
 }
 
-/// Distance of the anchors from where the joint allows them to be, metres.
+/// Distance of the anchors from their allowed range, metres.
 pub(crate) fn anchor_gap(kind: &JointKind, pose: &JointPose) -> f32 {
     let locks = locks(kind);
     if locks[..TWIST] == [true; 3] {

@@ -40,7 +40,7 @@ impl Joint {
         save_vec6(w, &self.reaction);
     }
 
-    /// Reads what [`save`](Self::save) wrote after the bodies; its owner, if it has one, is to be read.
+    /// Reads the format of [`save`](Self::save) after the bodies; its owner, if any, follows.
     pub fn load(r: &mut Reader<'_>, a: u32, b: u32) -> Result<Self, ReadError> {
         let (frame_a, frame_b) = (r.transform()?, r.transform()?);
         let kind = load_kind(r)?;

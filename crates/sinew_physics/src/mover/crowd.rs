@@ -1,21 +1,21 @@
-//! Movers in order along an axis, so that each looks at those near it alone.
+//! Movers sorted along an axis, so that each tests only nearby ones.
 
 use crate::boxes::Aabb;
 use sinew_math::{Vec3, max, max3, min3};
 
-/// All movers, by where their centres were when the stage began, along the axis on which they lie farthest apart.
+/// All movers, sorted by their centres at the start of the stage, along the axis of their largest extent.
 #[derive(Default)]
 pub(super) struct Crowd {
     axis: usize,
     order: Vec<(f32, u32)>,
     /// Largest half extent of a mover along the axis, metres.
     widest: f32,
-    /// Most that one has moved along the axis since, metres.
+    /// Largest motion of one along the axis since, metres.
     drift: f32,
 }
 
 impl Crowd {
-    /// Puts them in order: the index, centre, and half extents of each.
+    /// Sorts them: the index, centre, and half extents of each.
     pub fn sort<M: Iterator<Item = (u32, Vec3, Vec3)>>(&mut self, movers: impl Fn() -> M) {
         let (mut lo, mut hi, mut widest) = (Vec3::INFINITY, Vec3::NEG_INFINITY, Vec3::ZERO);
         for (_, center, half) in movers() {

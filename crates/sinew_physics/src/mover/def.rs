@@ -20,9 +20,9 @@ pub struct MoverDef {
     pub radius: f32,
     /// Height of the capsule from end to end, metres, at least twice the radius. Default 1.8.
     pub height: f32,
-    /// Mass that it brings into hits and rests on what bears it, kg. Default 80.
+    /// Mass in hits and on its ground, kg. Default 80.
     pub mass: f32,
-    /// Force with which it pushes what it walks into, and holds what lies on it, newtons. Default 800.
+    /// Force with which it pushes obstacles and holds riders, newtons. Default 800.
     pub push_force: f32,
     /// Highest step that it climbs, and how far it follows ground that falls away, metres. Default 0.35.
     pub step_height: f32,
@@ -30,16 +30,16 @@ pub struct MoverDef {
     pub slope_limit: f32,
     /// Change of velocity on the ground, m/s². Default 60.
     pub ground_acceleration: f32,
-    /// Change of velocity in the air, m/s²; without a wish it keeps the velocity that it has. Default 10.
+    /// Acceleration in the air, m/s²; without a wanted velocity it keeps its own. Default 10.
     pub air_acceleration: f32,
     /// Multiple of the world's gravity. Default 1.
     pub gravity_scale: f32,
-    /// Distance that it keeps from what it meets, metres, above 0 and below the radius. Default 5 mm.
+    /// Distance kept from obstacles, metres, above 0 and below the radius. Default 5 mm.
     pub skin: f32,
-    /// Filter of the shapes and other movers that it meets. Default all.
+    /// Filter of the shapes and other movers it collides with. Default all.
     pub filter: Filter,
-    /// Momentum up to which bodies that fly, faster than 2 m/s, pass it, N·s: a character leaves them to its limbs. What a joint ties to a static or
-    /// kinematic body, such as a door, does not fly. Default 0.
+    /// Momentum up to which flying bodies (faster than 2 m/s) pass through it, N·s: a character leaves them to its
+    /// limbs. Bodies jointed to a static or kinematic body, such as a door, do not fly. Default 0.
     pub lets_pass: f32,
     /// Number of the user's. Default 0.
     pub user_data: u64,
@@ -68,17 +68,17 @@ impl Default for MoverDef {
 }
 
 impl MoverDef {
-    /// A mover of the default size with its feet at a place.
+    /// A mover of the default size with its feet at a position.
     pub fn at(position: Vec3) -> Self {
         Self { position, ..Self::default() }
     }
 
-    /// Checks that its numbers make sense; the phrase says what is wrong.
+    /// Checks that its numbers are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// What is wrong, in lower case.
+    /// The problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
-        // Written so that NaN fails.
+        // This form rejects NaN.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         if !self.position.is_finite() {

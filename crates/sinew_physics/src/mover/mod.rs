@@ -1,7 +1,7 @@
 //! Kinematic character movers: capsules that walk, climb steps, ride, push and fall, without a body of their own.
 //!
-//! The stage `movers` is the last of a step: bodies have come to where they are, and each mover in order of its id moves among
-//! them. `docs/mover.md` has the order of a move and the settings by symptom.
+//! The stage `movers` is the last of a step: bodies have their new poses, and the movers move among them in order of
+//! their ids. `docs/mover.md` has the order of a move and the settings by symptom.
 
 mod crowd;
 mod def;
@@ -35,24 +35,25 @@ pub struct Mover {
     position: Vec3,
     /// Feet before the last step, world.
     previous: Vec3,
-    /// Velocity, m/s: on the ground beside the ground's own, in the air in the world.
+    /// Velocity, m/s: relative to the ground while on it, in the world while in the air.
     velocity: Vec3,
-    /// Velocity that is wanted beside the ground's, m/s.
+    /// Wanted velocity relative to the ground, m/s.
     walk: Vec3,
-    /// Radians by which what it stood on turned it.
+    /// Angle by which its ground has rotated it, radians.
     yaw: f32,
-    /// Speed of the jump that is due, m/s; 0: none.
+    /// Speed of the pending jump, m/s; 0: none.
     jump: f32,
     ground: Option<Footing>,
 }
 
-/// Footing of a mover: the surface that bears it.
+/// Footing of a mover: the surface that supports it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Footing {
     on: Bearer,
     point: Vec3,
     normal: Vec3,
-    /// Velocity with which the ground takes the mover along, m/s: that of its surface there at the end of the step, or as near to it as friction comes.
+    /// Velocity with which the ground carries the mover, m/s: that of its surface at the end of the step, as far as
+    /// friction allows.
     velocity: Vec3,
 }
 
@@ -65,15 +66,15 @@ enum Bearer {
 /// Ground under a mover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MoverGround {
-    /// Body and the number of its shape; `None` on another mover.
+    /// Body and shape number; `None` on another mover.
     pub shape: Option<crate::ShapeId>,
     /// The other mover, if it stands on one.
     pub mover: Option<MoverId>,
-    /// Point at which it is borne, world, metres.
+    /// Contact point, world, metres.
     pub point: Vec3,
     /// Unit, from the ground to the mover.
     pub normal: Vec3,
-    /// Velocity of the ground's surface there, of a belt's too, m/s.
+    /// Velocity of the ground's surface there, including that of a belt, m/s.
     pub velocity: Vec3,
     /// Material of the ground; the default on another mover.
     pub material: Material,
@@ -93,7 +94,7 @@ impl Mover {
         }
     }
 
-    /// Its settings; position and height are those it was made with or was given last.
+    /// Its settings; position and height are the last ones set explicitly.
     pub fn def(&self) -> &MoverDef {
         &self.def
     }
@@ -128,17 +129,17 @@ impl Mover {
         self.velocity + self.ground.map_or(Vec3::ZERO, |footing| footing.velocity)
     }
 
-    /// Velocity that it was told to walk with, m/s, beside the ground's.
+    /// Wanted walking velocity, m/s, relative to the ground.
     pub fn walk(&self) -> Vec3 {
         self.walk
     }
 
-    /// Angle by which what it stood on has turned it about up so far, radians.
+    /// Total angle about up by which its ground has rotated it, radians.
     pub fn yaw(&self) -> f32 {
         self.yaw
     }
 
-    /// True if something bears it that is not too steep.
+    /// True if walkable ground supports it.
     pub fn is_grounded(&self) -> bool {
         self.ground.is_some()
     }
@@ -162,7 +163,7 @@ impl Item for Mover {
 }
 
 impl Movers {
-    /// None, of a world.
+    /// An empty set, of a world.
     pub fn new(lineage: Lineage) -> Self {
         Self { all: Arena::new(lineage), ..Self::default() }
     }
@@ -172,7 +173,7 @@ impl Movers {
         Self { all: self.all.clone(), ..Self::default() }
     }
 
-    /// Nobody stands on a body that is taken out.
+    /// Clears footings on a removed body.
     pub fn forget(&mut self, body: BodyId) {
         let stands = |mover: &Mover| {
             mover
@@ -187,7 +188,7 @@ impl Movers {
     }
 }
 
-/// Moves all movers, each in order of its id, among bodies that have come to where they are.
+/// Moves all movers, in order of their ids, among bodies at their new poses.
 pub(crate) fn movers(world: &mut World) {
     if world.movers.all.is_empty() {
         return;
@@ -206,7 +207,7 @@ pub(crate) fn movers(world: &mut World) {
     world.movers = movers;
 }
 
-/// Velocity of a body's surface at a point, of what runs along it too.
+/// Velocity of a body's surface at a point, including the surface's own.
 fn surface_velocity(body: &Body, shape: u32, point: Vec3) -> Vec3 {
     body.velocity.at(point - body.center()) + body.surface_velocity(shape as usize, point).linear
 }

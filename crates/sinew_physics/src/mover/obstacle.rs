@@ -1,4 +1,4 @@
-//! Obstacles around a mover: shapes, triangles and other movers, gathered once a step.
+//! Obstacles around a mover: shapes, triangles and other movers, collected once per step.
 
 use super::Mover;
 use super::segment::axis_to_triangle;
@@ -16,15 +16,15 @@ use crate::world::World;
 use core::ops::ControlFlow;
 use sinew_math::{Rotation, Transform, Vec3, abs3, max3, min3};
 
-/// Who is in the way; ordered, so that gathering has one order.
+/// Identity of an obstacle; ordered, so that collection has a defined order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Owner {
-    /// Body, shape, and which of the triangles near by.
+    /// Body, shape, and triangle index among the nearby ones.
     Shape(u32, u32, u32),
     Mover(u32),
 }
 
-/// Something that a mover may meet in this step.
+/// A possible obstacle of a mover in this step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Obstacle {
     pub owner: Owner,
@@ -54,7 +54,7 @@ impl Obstacle {
     }
 }
 
-/// A mover's capsule, and what is around it.
+/// A mover's capsule, and its obstacles.
 pub(super) struct Surroundings<'a> {
     pub bodies: &'a Arena<Body>,
     pub obstacles: &'a [Obstacle],
@@ -63,7 +63,7 @@ pub(super) struct Surroundings<'a> {
     pub up: Vec3,
     pub half: f32,
     pub radius: f32,
-    /// Body that is not there, while it carries the mover.
+    /// Body to ignore while it carries the mover.
     pub without: Option<u32>,
 }
 
@@ -82,7 +82,7 @@ impl<'a> Surroundings<'a> {
         }
     }
 
-    /// Bounds of the capsule on its way.
+    /// Bounds of the capsule's motion.
     pub fn bounds(&self, center: Vec3, way: Vec3, margin: f32) -> Aabb {
         let half = abs3(self.up * self.half) + Vec3::splat(self.radius + margin);
         let to = center + way;
@@ -98,8 +98,8 @@ impl<'a> Surroundings<'a> {
         self.look(obstacle, center).filter(|(_, hidden)| !hidden).map(|(gap, _)| gap)
     }
 
-    /// From an obstacle to the capsule; and whether that is to the plane of a face alone, since what is nearest is an edge of it
-    /// that is no edge of the surface.
+    /// Distance from an obstacle to the capsule, and if it is to a face plane only because the nearest edge is
+    /// internal.
     pub fn look(&self, obstacle: &Obstacle, center: Vec3) -> Option<(Gap, bool)> {
         let shown = |gap: Gap| (gap, false);
         match &obstacle.form {
@@ -125,7 +125,7 @@ impl<'a> Surroundings<'a> {
     }
 }
 
-/// Gathers what a mover may meet within `region`, of movers those of `others`.
+/// Collects the possible obstacles of a mover within `region`; of movers those of `others`.
 pub(super) fn gather(
     world: &World,
     (movers, others): (&Arena<Mover>, impl Iterator<Item = u32>),
@@ -152,7 +152,7 @@ pub(super) fn gather(
             obstacles.push(Obstacle { owner: Owner::Mover(other), bounds, kind: BodyKind::Kinematic, form });
         }
     }
-    // DETERMINISM: in which order trees show what they hold depends on how they were built.
+    // DETERMINISM: the order in which trees report items depends on their history.
     obstacles.sort_unstable_by_key(|obstacle| obstacle.owner);
 }
 
@@ -202,13 +202,14 @@ fn gather_shape(
     obstacles.push(obstacle);
 }
 
-/// True if a body is fast and light enough to be left to others than the mover.
+/// True if a body is so fast and light that the mover ignores it.
 fn flies_past(body: &Body, mover: &Mover) -> bool {
     let speed = body.velocity.linear.length();
     speed > FLYING_SPEED && speed <= mover.def.lets_pass * body.inverse_mass()
 }
 
-/// True if a joint ties a body to one that is not dynamic: a door's leaf brings more than its own momentum, and comes back.
+/// True if a joint connects a body to a static or kinematic one: a door leaf transfers more than its own momentum, and
+/// returns.
 fn hangs(world: &World, index: u32) -> bool {
     world.activity.joints_of.body(index).iter().any(|&joint| {
         let joint = world.joints.at(joint);
@@ -216,7 +217,7 @@ fn hangs(world: &World, index: u32) -> bool {
     })
 }
 
-/// Bounds of world bounds in another frame.
+/// World bounds as bounds in another frame.
 fn into_frame(bounds: &Aabb, world_from_frame: &Transform) -> Aabb {
     let to_frame = world_from_frame.rotation.inverse();
     let half = bounds.half_extents();

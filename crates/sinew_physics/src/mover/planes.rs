@@ -2,7 +2,7 @@
 
 use sinew_math::Vec3;
 
-/// Most planes that count; the nearest are kept.
+/// Largest number of planes; the nearest are kept.
 pub(super) const MOST: usize = 24;
 
 /// Bound on motion along a direction: `normal · x ≥ least`.
@@ -22,7 +22,7 @@ pub(super) struct Planes {
 /// Rounding that a plane forgives, as a share of the motion's length and in metres.
 const FORGIVEN: f32 = 1e-5;
 const FORGIVEN_LENGTH: f32 = 1e-7;
-/// Two planes whose normals cross in less than this are parallel, three that span less have no corner.
+/// Two planes whose normals' cross product is smaller are parallel; three with a smaller determinant have no corner.
 const PARALLEL: f32 = 1e-3;
 
 impl Planes {
@@ -42,7 +42,7 @@ impl Planes {
         }
     }
 
-    /// From now on nothing may come nearer.
+    /// From now on nothing may approach.
     pub fn stop(&mut self) {
         self.all[..self.count].iter_mut().for_each(|plane| plane.least = 0.0);
     }
@@ -52,8 +52,8 @@ impl Planes {
         self.all[..self.count].iter().all(|plane| plane.normal.dot(x) >= plane.least - forgiven)
     }
 
-    /// The allowed motion closest to `wanted`: free, on one plane, along the crease of two or at the corner of three. `None` if
-    /// the planes contradict each other.
+    /// The allowed motion closest to `wanted`: free, on one plane, along the crease of two or at the corner of three.
+    /// `None` if the planes contradict each other.
     pub fn closest(&self, wanted: Vec3) -> Option<Vec3> {
         let scale = wanted.length();
         if self.allow(wanted, scale) {
@@ -83,7 +83,7 @@ impl Planes {
         best.map(|(_, x)| x)
     }
 
-    /// Closest motion where up counts less than along: what is lost to planes is lost of the climb.
+    /// Closest motion with a smaller weight on the vertical: planes reduce the climb first.
     pub fn closest_level(&self, wanted: Vec3, up: Vec3) -> Option<Vec3> {
         const UP: f32 = 0.03;
         let squeeze = |v: Vec3, by: f32| v + up * (v.dot(up) * (by - 1.0));

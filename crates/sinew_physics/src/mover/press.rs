@@ -28,7 +28,7 @@ enum Push {
     Force(Vec3),
 }
 
-/// A mover as what hits and is hit.
+/// A mover as a collision body.
 struct Hitter {
     velocity: Vec3,
     up: Vec3,
@@ -37,7 +37,7 @@ struct Hitter {
     force: f32,
 }
 
-/// Impulses between a mover at `center` and the dynamic bodies that it meets within the step; gives the change of its velocity.
+/// Impulses between a mover at `center` and the dynamic bodies it touches within the step; returns its velocity change.
 pub(super) fn meet(
     sight: &Surroundings<'_>,
     mover: &Mover,
@@ -82,7 +82,7 @@ pub(super) fn meet(
 }
 
 impl Hitter {
-    /// Impulse with which the two are pushed apart, N·s.
+    /// Impulse that pushes the two apart, N·s.
     fn meet(&mut self, body: &Body, normal: Vec3, point: Vec3, room: f32, dt: f32) -> Option<f32> {
         let arm = point - body.center();
         let (comes, walks) = (body.velocity.at(arm).dot(normal), -self.velocity.dot(normal));
@@ -95,7 +95,7 @@ impl Hitter {
         let turn = body.inverse_inertia_mul(arm.cross(normal)).cross(arm).dot(normal);
         let response = body.inverse_mass() + turn;
         let rise = normal.dot(self.up);
-        // What the ground holds does not yield downward.
+        // A body held by the ground does not yield downward.
         let braced = self.grounded && rise < 0.0;
         let own = if braced { self.inverse_mass * (1.0 - rise * rise) } else { self.inverse_mass };
         let inelastic = |speed: f32| speed / (response + self.inverse_mass);
@@ -107,12 +107,12 @@ impl Hitter {
     }
 }
 
-/// Weight of a mover on what bears it, newtons along its downward direction.
+/// Weight of a mover on its ground, newtons along its down direction.
 fn weight_of(mover: &Mover, gravity: Vec3) -> f32 {
     max(-(gravity * mover.def.gravity_scale).dot(mover.def.up), 0.0) * mover.def.mass
 }
 
-/// Dynamic body that bears a mover, and the point at which it does.
+/// Dynamic body under a mover, and the contact point.
 fn bearer<'a>(bodies: &'a Arena<Body>, mover: &Mover) -> Option<(u32, &'a Body, Vec3)> {
     let footing = mover.ground?;
     let Bearer::Shape { body: id, .. } = footing.on else { return None };
@@ -120,7 +120,8 @@ fn bearer<'a>(bodies: &'a Arena<Body>, mover: &Mover) -> Option<(u32, &'a Body, 
     Some((id.index, body, footing.point))
 }
 
-/// The weight of a mover on what bears it: a force, for an impulse as large would shoot off the hand of somebody who lies.
+/// The weight of a mover on its ground is a force: an equally large impulse would throw the hand of a lying character
+/// away.
 pub(super) fn weigh(
     (bodies, gravity): (&Arena<Body>, Vec3),
     mover: &Mover,
@@ -133,8 +134,8 @@ pub(super) fn weigh(
     }
 }
 
-/// Work (J) that the weight of a mover did in the step just taken, by the way and the turn of the body that bore it: force and torque were the
-/// same all the time.
+/// Work (J) of a mover's weight in the last step, from the displacement and rotation of the supporting body: force and
+/// torque were constant.
 pub(super) fn work_of_weight(bodies: &Arena<Body>, mover: &Mover, gravity: Vec3) -> f32 {
     let Some((_, body, point)) = bearer(bodies, mover) else { return 0.0 };
     let (from, to) = (body.previous, body.world_from_principal);
@@ -144,7 +145,7 @@ pub(super) fn work_of_weight(bodies: &Arena<Body>, mover: &Mover, gravity: Vec3)
         + torque.dot(from.rotation.angular_velocity_to(to.rotation, 1.0))
 }
 
-/// Gives bodies what movers press on them.
+/// Applies the movers' forces and impulses to bodies.
 pub(super) fn apply(world: &mut World, presses: &mut Vec<Press>) {
     for &Press { body: index, push, point, wakes } in presses.iter() {
         let body = world.bodies.at(index);

@@ -12,14 +12,14 @@ pub(super) struct AxisGap {
     pub normal: Vec3,
     /// On the triangle.
     pub point: Vec3,
-    /// Nearest is an edge beyond which the surface goes on, so that the neighbour is nearer or as near. Told is then how the axis
-    /// lies to the plane of the face.
+    /// The nearest feature is an internal edge, so the neighbour is at least as near. The result is then relative to
+    /// the face's plane.
     pub hidden: bool,
 }
 
-/// A direction away from the closest point this near to the face's own counts as it.
+/// A direction from the closest point this near to the face normal counts as the face normal.
 const ALONG_FACE: f32 = 0.9998;
-/// An edge must be nearer than the face by this share to be what is nearest.
+/// An edge is the nearest feature only if it is nearer than the face by this share.
 const NEARER: f32 = 1e-6;
 
 /// The nearest points of the axis from `p` to `q` and a triangle. `None` from behind.
@@ -77,7 +77,7 @@ fn can_be_hit(triangle: &Triangle, part: Part) -> bool {
     }
 }
 
-/// Crossing of the axis and the face: out of it leads the way to the outside.
+/// Crossing of the axis and the face; the exit is through the face's front.
 fn through(triangle: &Triangle, [p, q]: [Vec3; 2], [above_p, above_q]: [f32; 2]) -> Option<AxisGap> {
     let at = p + (q - p) * (above_p / (above_p - above_q));
     let (closest, _) = closest_on_triangle(&triangle.corners, at);
@@ -112,7 +112,7 @@ fn closest_of_segments([p1, q1]: [Vec3; 2], [p2, q2]: [Vec3; 2]) -> (f32, f32) {
     }
 }
 
-/// Unit vector of the part of `v` across `up`, or zero.
+/// Unit vector of the component of `v` perpendicular to `up`, or zero.
 pub(super) fn level(v: Vec3, up: Vec3) -> Vec3 {
     let across = v - up * v.dot(up);
     if across.length_squared() > 1e-12 { normalize_or(across, Vec3::ZERO) } else { Vec3::ZERO }

@@ -7,7 +7,7 @@ use crate::body::snapshot::{load_filter, save_filter};
 use crate::id::{BodyId, MoverId};
 use sinew_math::{ReadError, Reader, Writer};
 
-/// Bit of the ground's number: the momentum that it lets pass follows.
+/// Bit in the ground's number: a pass-through momentum follows.
 const LETS_PASS: u8 = 0x80;
 
 impl Mover {

@@ -1,4 +1,4 @@
-//! Ways of a capsule: until it touches, along what it touches, out of what it is in.
+//! Capsule sweeps, sliding and depenetration.
 
 use super::obstacle::Surroundings;
 use super::planes::{MOST, Planes};
@@ -10,7 +10,7 @@ use crate::mover::tuning::{
 };
 use sinew_math::{Vec3, clamp, min};
 
-/// Place at which the capsule is near an obstacle.
+/// Position of the capsule near an obstacle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     /// Unit, from the obstacle to the capsule.
@@ -48,8 +48,8 @@ impl Touches {
         self.count = end + 1;
     }
 
-    /// Leaves out what lies behind the plane of something nearer: the seam of two boxes that abut, or the edge of the next
-    /// triangle. A way that leads against it is still stopped by it.
+    /// Removes touches behind the plane of a nearer one: the seam of two adjacent boxes, or the edge of the next
+    /// triangle. They still stop a motion against them.
     fn drop_hidden(&mut self, behind: f32) {
         let mut kept = 0;
         for i in 0..self.count {
@@ -67,13 +67,13 @@ impl Touches {
     }
 }
 
-/// Share of a way by which it may lead toward what it slides along.
+/// Share of a motion by which it may approach the surface it slides along.
 const ALONG: f32 = 1e-4;
 const MOST_STEPS: usize = 48;
 const MOST_SLIDES: usize = 8;
 const MOST_PUSHES: usize = 8;
 
-/// Way in which planes turn a motion aside.
+/// Result of planes on a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Course {
     /// By the shortest change: in the air.
@@ -82,7 +82,7 @@ pub(super) enum Course {
     Level,
 }
 
-/// Manner in which a mover slides: its skin, and what is too steep.
+/// Sliding parameters of a mover: its skin, and its slope limit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Manner {
     pub skin: f32,
@@ -117,21 +117,21 @@ impl Surroundings<'_> {
         touches
     }
 
-    /// Touches of the capsule: within its skin, and a little beyond.
+    /// Touches of the capsule: within its skin, and slightly beyond.
     pub fn touches(&self, center: Vec3, skin: f32) -> Touches {
         let mut touches = self.near(center, skin * (1.0 + TOUCH_SKIN));
         touches.drop_hidden(COPLANAR_SKIN * skin);
         touches
     }
 
-    /// Touches that may bear the capsule: a little farther away than what stops it.
+    /// Touches that may support the capsule: slightly farther than those that stop it.
     pub fn bearers(&self, center: Vec3, skin: f32) -> Touches {
         let mut touches = self.near(center, skin * (1.0 + BEARING_SKIN));
         touches.drop_hidden(COPLANAR_SKIN * skin);
         touches
     }
 
-    /// Share of a way until something is at `stop` from the capsule, and what.
+    /// Share of a motion until an obstacle is at distance `stop` from the capsule, and the obstacle.
     pub fn sweep(&self, center: Vec3, way: Vec3, manner: &Manner) -> (f32, Option<Touch>) {
         let length = way.length();
         let (mut first, mut hit) = (1.0, None);
@@ -147,13 +147,13 @@ impl Surroundings<'_> {
             for _ in 0..MOST_STEPS {
                 let Some((gap, hidden)) = self.look(obstacle, center + way * share) else { break };
                 let approach = -way.dot(gap.normal);
-                // What is convex lies behind the plane at its nearest point.
+                // A convex obstacle is behind the plane at its nearest point.
                 if approach <= ALONG * length {
                     break;
                 }
                 let left = gap.distance - manner.stop();
                 if hidden && left <= ARRIVED_SKIN * manner.skin {
-                    // Beside a face, in its plane: the way may yet lead over it.
+                    // Beside a face, in its plane: the motion may still lead over it.
                     share += BESIDE_RADIUS * self.radius / length;
                 } else if left <= ARRIVED_SKIN * manner.skin {
                     let touch = Touch {
@@ -175,15 +175,15 @@ impl Surroundings<'_> {
         (first, hit)
     }
 
-    /// Planes that forbid ways from where the capsule is.
+    /// Planes that restrict motion at the capsule's position.
     pub fn planes(&self, center: Vec3, manner: &Manner) -> Planes {
-        // What a sweep stopped at is left for the skin again: the next of two walls that abut would be met there.
+        // A sweep's stop is ignored within the skin: the next of two adjacent walls would be hit there.
         let away = |touch: &Touch| min(manner.skin - touch.distance, SLIDE_AWAY * manner.skin);
         self.planes_of(center, manner, |touch, wall| if wall.is_some() { 0.0 } else { away(touch) })
     }
 
-    /// Planes of what the capsule touches, with the least that each allows along its normal; what is too steep is a wall besides, whose normal is
-    /// asked for then.
+    /// Planes of the capsule's touches, with the smallest allowed motion along each normal; a slope that is too steep
+    /// is also a wall, with the returned normal.
     pub fn planes_of(
         &self,
         center: Vec3,
@@ -202,7 +202,7 @@ impl Surroundings<'_> {
         planes
     }
 
-    /// Place to which a way leads along what is met.
+    /// End position of a motion that slides along its obstacles.
     pub fn slide(&self, mut center: Vec3, way: Vec3, manner: &Manner) -> Vec3 {
         let mut left = way;
         for _ in 0..MOST_SLIDES {
@@ -211,7 +211,7 @@ impl Surroundings<'_> {
                 Course::Free => planes.closest(left),
                 Course::Level => planes.closest_level(left, self.up),
             };
-            // Between walls that lean apart by a hair the way that keeps the skin free of both is long: it is no way along them.
+            // Between walls that diverge slightly, the motion that keeps the skin clear of both is long and useless.
             let longest = LONGEST_DETOUR * left.length() + manner.skin;
             let turned = turn(&planes).filter(|turned| turned.length() <= longest).or_else(|| {
                 planes.stop();
@@ -231,7 +231,7 @@ impl Surroundings<'_> {
         center
     }
 
-    /// Place of the capsule after it is pushed out of what it is in, by the shortest way that leads into nothing else.
+    /// Position of the capsule after depenetration, by the shortest displacement that leads into nothing else.
     pub fn recover(&self, mut center: Vec3, manner: &Manner) -> Vec3 {
         let (stop, reach) = (manner.stop(), 0.5 * self.radius);
         for _ in 0..MOST_PUSHES {

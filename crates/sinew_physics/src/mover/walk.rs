@@ -14,7 +14,7 @@ use crate::ray::Ray;
 use crate::world::World;
 use sinew_math::{Vec3, clamp, max, min, normalize_or, trig};
 
-/// Surroundings of a move, besides the mover itself.
+/// Surroundings of a move, except the mover itself.
 struct Move<'a> {
     world: &'a World,
     movers: &'a Arena<Mover>,
@@ -41,7 +41,7 @@ pub(super) fn advance(world: &World, movers: &mut Movers, index: u32, dt: f32) {
     *all.at_mut(index) = mover;
 }
 
-/// Gathers what may be met in this step.
+/// Collects the possible obstacles of this step.
 fn look_around(
     world: &World,
     (movers, crowd): (&Arena<Mover>, &Crowd),
@@ -59,15 +59,15 @@ fn look_around(
 }
 
 impl Mover {
-    /// Falls from what bore it, with its velocity.
+    /// Starts a fall from its ground, with the ground's velocity.
     pub(super) fn leave_ground(&mut self) {
         if let Some(footing) = self.ground.take() {
             self.velocity += footing.velocity;
         }
     }
 
-    /// The ground may have been taken out or changed its velocity. A dynamic body takes the mover along by friction: what flies off under it
-    /// slips away, which is what the answer says.
+    /// The ground may have been removed or have changed its velocity. A dynamic body carries the mover by friction; if
+    /// it flies off, it slips away under the mover, and this returns true.
     fn refresh_ground(&mut self, bodies: &Arena<Body>, dt: f32) -> bool {
         let Some(footing) = &mut self.ground else { return false };
         let Bearer::Shape { body, shape } = footing.on else { return false };
@@ -82,7 +82,7 @@ impl Mover {
         slips
     }
 
-    /// Way on which what bears it takes it along in this step; its yaw follows, unless it slips.
+    /// Displacement by the ground in this step; the yaw follows unless it slips.
     fn carried(&mut self, bodies: &Arena<Body>, slips: bool, dt: f32) -> Vec3 {
         let Some(Footing { on: Bearer::Shape { body, shape }, velocity, .. }) = self.ground else {
             return Vec3::ZERO;
@@ -102,7 +102,7 @@ impl Mover {
         moved + runs.linear * dt
     }
 
-    /// Brings the velocity toward the wanted one, and jumps.
+    /// Changes the velocity toward the wanted one, and jumps.
     fn accelerate(&mut self, dt: f32) {
         let up = self.def.up;
         if self.jump > 0.0 && self.ground.is_some() {
@@ -137,7 +137,7 @@ impl<'a> Move<'a> {
         Self { world, movers, sight, manner, dt }
     }
 
-    /// Carried, pushed out, hit, moved, put on the ground: the whole move.
+    /// The whole move: carry, depenetrate, hits, motion, ground snap.
     fn run(mut self, mover: &mut Mover, carried: Vec3, gravity: Vec3, presses: &mut Vec<Press>) {
         let mut center = mover.center();
         let stood = mover.ground.map(|footing| footing.on);
@@ -160,7 +160,7 @@ impl<'a> Move<'a> {
         }
         center = match mover.ground {
             Some(_) => self.walk(mover, center),
-            // Of a step in which it jumps the ground's part of the way is behind it.
+            // In the step of a jump, the ground's displacement is already done.
             None => self.fly(mover, center, (gravity, carried, pushed)),
         };
         mover.put(center);
@@ -197,7 +197,7 @@ impl<'a> Move<'a> {
         found
     }
 
-    /// The footing with the velocity with which it takes a mover along that walks onto it or stays on it.
+    /// The footing with the velocity at which it carries a mover that steps onto it or stays on it.
     fn taken_along(&self, mover: &Mover, footing: Footing) -> Footing {
         let (Some(before), Bearer::Shape { body, .. }) = (mover.ground, footing.on) else { return footing };
         let is_dynamic = self.sight.bodies.at(body.index).kind == BodyKind::Dynamic;
@@ -215,8 +215,8 @@ impl<'a> Move<'a> {
         let (share, _) = self.sight.sweep(blocked, up * step, &self.manner);
         let raised = blocked + up * (step * share);
         let feet = start - up * (0.5 * mover.def.height);
-        // Less than this would not bring it over the edge from where its skin keeps it. Where it would come down on a low flank that is too steep, the
-        // tread may be behind that.
+        // A smaller step would not bring it over the edge from its skin distance. If it would land on a low flank that
+        // is too steep, the tread may be behind it.
         let radius = mover.def.radius;
         for length in [max(length, 2.0 * mover.def.skin), 0.25 * radius, 0.5 * radius] {
             let way = missing * (length / missing.length());
@@ -238,7 +238,7 @@ impl<'a> Move<'a> {
         None
     }
 
-    /// Down to the ground, no farther than a step; what bears the mover there.
+    /// Down to the ground, at most one step height; returns the footing.
     fn snap(&self, mover: &Mover, center: Vec3) -> (Vec3, Option<Footing>) {
         let up = mover.def.up;
         if let Some(footing) = self.ground_at(mover, center, Edges::Bear) {
@@ -249,14 +249,14 @@ impl<'a> Move<'a> {
         if hit.is_none() {
             return (center, None);
         }
-        // Beside what stops it but does not bear it, such as the edge of a riser, it may come lower.
+        // Beside an obstacle that stops it but does not support it, such as the edge of a riser, it may get lower.
         let below = center - up * (depth * share);
         let beside = || self.sight.slide(below, -up * (depth * (1.0 - share)), &self.manner);
         let stands = |at: Vec3| self.ground_at(mover, at, Edges::Bear).map(|footing| (at, Some(footing)));
         stands(below).or_else(|| stands(beside())).unwrap_or((center, None))
     }
 
-    /// Through the air, by gravity. Parts of the way it was carried, or pushed by what came faster than it went.
+    /// Through the air, under gravity. Part of the motion was already done by carrying and by faster bodies.
     fn fly(&self, mover: &mut Mover, start: Vec3, (gravity, carried, pushed): (Vec3, Vec3, Vec3)) -> Vec3 {
         let (dt, up) = (self.dt, mover.def.up);
         let mut wanted = mover.velocity * dt + gravity * (0.5 * dt * dt) - carried;
@@ -284,14 +284,14 @@ impl<'a> Move<'a> {
         center
     }
 
-    /// Velocities that what it touches at a place allows: none toward it, unless it recedes by itself.
+    /// Velocities allowed by the touches at a position: none toward an obstacle, unless it recedes.
     fn stops(&self, center: Vec3) -> Planes {
         self.sight.planes_of(center, &self.manner, |touch, wall| {
             min(self.footing(touch).velocity.dot(wall.unwrap_or(touch.normal)), 0.0)
         })
     }
 
-    /// Footing of a mover at a place: of what it touches the flattest.
+    /// Footing of a mover at a position: the flattest touch.
     fn ground_at(&self, mover: &Mover, center: Vec3, edges: Edges) -> Option<Footing> {
         let touches = self.sight.bearers(center, self.manner.skin);
         let rise = |touch: &Touch| touch.normal.dot(mover.def.up);
@@ -309,7 +309,7 @@ impl<'a> Move<'a> {
         best.map(|touch| self.footing(touch))
     }
 
-    /// True if a mover stands on what it touches: it is flat, or the edge of a tread that is.
+    /// True if a mover stands on a touch: it is flat, or the edge of a flat tread.
     fn bears(&self, touch: &Touch, mover: &Mover, center: Vec3) -> bool {
         let up = mover.def.up;
         let rise = touch.normal.dot(up);
@@ -345,13 +345,13 @@ impl<'a> Move<'a> {
     }
 }
 
-/// Kinds of edges that bear.
+/// Kinds of supporting edges.
 #[derive(Clone, Copy, PartialEq)]
 enum Edges {
     /// Edges of treads: on the ground.
     Bear,
     /// None: in the air.
     Fall,
-    /// All that holds up what cannot fall on.
+    /// Everything that stops a fall.
     Wedge,
 }

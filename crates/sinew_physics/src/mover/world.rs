@@ -1,4 +1,4 @@
-//! Movers of a world: made, steered, asked.
+//! World methods for movers: creation, control, queries.
 
 use super::obstacle::{Surroundings, gather};
 use super::{Bearer, Mover, MoverDef, MoverGround};
@@ -12,7 +12,7 @@ impl World {
     /// Adds a mover. It moves in steps, from the next one on.
     ///
     /// # Panics
-    /// If [`MoverDef::check`] finds something wrong.
+    /// If [`MoverDef::check`] rejects the definition.
     pub fn add_mover(&mut self, def: &MoverDef) -> MoverId {
         if let Err(what) = def.check() {
             panic!("{what}");
@@ -20,7 +20,7 @@ impl World {
         self.movers.all.insert(Mover::new(def))
     }
 
-    /// Takes a mover out.
+    /// Removes a mover.
     #[track_caller]
     pub fn remove_mover(&mut self, id: MoverId) {
         self.movers.all.take(id);
@@ -37,7 +37,7 @@ impl World {
         self.movers.all.expect(id)
     }
 
-    /// True if the id names a mover that is there.
+    /// True if the id names an existing mover.
     pub fn contains_mover(&self, id: MoverId) -> bool {
         self.movers.all.get(id).is_some()
     }
@@ -47,7 +47,7 @@ impl World {
         self.movers.all.ids()
     }
 
-    /// Ground under a mover; `None` in the air and on what is too steep.
+    /// Ground under a mover; `None` in the air and on steep slopes.
     #[track_caller]
     pub fn mover_ground(&self, id: MoverId) -> Option<MoverGround> {
         let footing = self.mover(id).ground?;
@@ -60,7 +60,7 @@ impl World {
         Some(MoverGround { shape, mover, point, normal, velocity, material })
     }
 
-    /// Velocity with which a mover is to walk from now on, m/s, beside that of the ground; its part along up does nothing.
+    /// Sets a mover's walking velocity, m/s, relative to the ground; its vertical component has no effect.
     #[track_caller]
     pub fn set_mover_walk(&mut self, id: MoverId, velocity: Vec3) {
         assert!(velocity.is_finite(), "a velocity is finite, not {velocity:?} ({id:?})");
@@ -76,8 +76,8 @@ impl World {
         mover.velocity = velocity;
     }
 
-    /// Has a mover jump in the next step, if something bears it then, with this speed upward, m/s, beside the ground's. It
-    /// rises by `speed² / 2g`.
+    /// Makes a mover jump in the next step, if it is then supported, with this upward speed, m/s, relative to the
+    /// ground. It rises by `speed² / 2g`.
     #[track_caller]
     pub fn mover_jump(&mut self, id: MoverId, speed: f32) {
         assert!(
@@ -87,7 +87,7 @@ impl World {
         self.expect_mover(id).jump = speed;
     }
 
-    /// Puts a mover with its feet somewhere, at rest. It does not sweep what lies between.
+    /// Teleports a mover's feet to a position, at rest, without a sweep.
     #[track_caller]
     pub fn set_mover_position(&mut self, id: MoverId, position: Vec3) {
         assert!(position.is_finite(), "a mover's position is finite, not {position:?} ({id:?})");
@@ -96,7 +96,7 @@ impl World {
         (mover.ground, mover.velocity) = (None, Vec3::ZERO);
     }
 
-    /// Makes a mover lower or higher, from its feet up. False, and nothing changes, if there is no room to grow.
+    /// Changes a mover's height, keeping its feet. Returns false, with no change, if there is no space to grow.
     ///
     /// # Panics
     /// If the height is less than twice the radius, or not finite.
@@ -112,7 +112,7 @@ impl World {
         true
     }
 
-    /// From now on it meets what this filter meets.
+    /// Sets the collision filter.
     #[track_caller]
     pub fn set_mover_filter(&mut self, id: MoverId, filter: Filter) {
         self.expect_mover(id).def.filter = filter;
@@ -131,7 +131,7 @@ impl World {
         gather(self, (all, all.iter().map(|(other, _)| other)), id.index, &bounds, &mut obstacles);
         let sight = Surroundings::new(&self.bodies, &obstacles, &grown);
         let low = Surroundings::new(&self.bodies, &obstacles, self.mover(id));
-        // What it touches already it may go on touching.
+        // It may keep touching its present touches.
         obstacles.iter().all(|obstacle| {
             let distance = |sight: &Surroundings<'_>, center| {
                 sight.gap(obstacle, center).map_or(skin, |gap| gap.distance)

@@ -1,10 +1,11 @@
-//! Mass that moves along with a body which holds particles: of what lies on it, or hangs on it by joints.
+//! Mass that moves with a body that holds particles: of bodies resting on it or jointed to it.
 //!
-//! Springs are solved before the contacts of bodies are, and see of a plank its own mass. If a box of twenty times that mass lies on it, they would
-//! find out in the next substep only what there is to bear: the plank would hang lower by `g h² M/m`, and stiff ropes would throw both into
-//! the air. So each substep tells what a body did with the impulse `p` that springs gave it: it gained the velocity `d`, and passed on
-//! `w = p − m d`. With `m + w wᵀ/(w·d)`, the symmetric update of rank one of quasi-Newton methods, the mass that answers to `p` with `d` is what the next substep
-//! begins with, and at rest it is the true one. Turns are left out: where a swing turns back, what they pass on is noise.
+//! Springs are solved before body contacts, and see only a plank's own mass. With a box of twenty times that mass on
+//! the plank, the springs would learn of the load one substep late: the plank would hang lower by `g h² M/m`, and stiff
+//! ropes would throw both into the air. So each substep measures the effect of the impulse `p` from the springs: the
+//! body gained the velocity `d`, and passed on `w = p − m d`. With `m + w wᵀ/(w·d)`, the symmetric rank-one update of
+//! quasi-Newton methods, the next substep uses the mass that answers `p` with `d`; at rest this is exact. Rotations are
+//! excluded: where a swing reverses, their ratio is noise.
 
 use super::contact::ObstacleBody;
 use super::tuning::{LEAST_ADDED, MOST_ADDED};
@@ -14,13 +15,13 @@ use sinew_math::{ReadError, Reader, Sym3, Vec3, Writer, max};
 /// Mass added to that of a body along the direction of a push.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct AddedMass {
-    /// Momentum passed on, kg·m/s, and twice the energy of that, `w·d`, J: 0 where nothing moves along.
+    /// Momentum passed on, kg·m/s, and twice its energy, `w·d`, J: 0 if nothing moves along.
     momentum: Vec3,
     power: f32,
 }
 
 impl AddedMass {
-    /// As a body of so many kg shows it that was pushed by an impulse and gained a velocity.
+    /// From the velocity that a body of `mass` kg gained by an impulse.
     pub fn of(mass: f32, pushed: Vec3, gained: Vec3) -> Self {
         let own = gained * mass;
         let momentum = pushed - own;
@@ -59,7 +60,7 @@ impl AddedMass {
         0.5 * along * along / self.power
     }
 
-    /// Velocity that it keeps a body from gaining of an impulse, m/s, by Sherman and Morrison.
+    /// Velocity that the added mass removes from a body's response to an impulse, m/s, by Sherman and Morrison.
     fn kept(&self, body: &ObstacleBody, impulse: Vec3) -> Vec3 {
         if !self.is_some() {
             return Vec3::ZERO;

@@ -1,4 +1,4 @@
-//! Bounds of the places of particles, as whole registers.
+//! Bounds of particle positions, with SIMD.
 
 use super::spread::copy_numbers;
 use crate::boxes::Aabb;
@@ -10,7 +10,7 @@ use sinew_math::lanes::{Lanes, WIDTH};
 pub(super) const NOTHING: Aabb =
     Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
 
-/// Finds the bounds of points.
+/// Computes the bounds of points.
 pub(super) struct Around<'a>(pub &'a [Vec3]);
 
 impl Kernel for Around<'_> {

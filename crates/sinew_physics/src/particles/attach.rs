@@ -1,4 +1,4 @@
-//! Particles that bodies or places in the world hold.
+//! Particles held by bodies or by fixed points of the world.
 
 use super::contact::{Obstacle, ObstacleBody};
 use super::hub::{Hub, Share};
@@ -12,18 +12,19 @@ use sinew_math::{Sym3, Vec3, max};
 pub struct Anchor {
     /// At the end of the substep, world, metres.
     pub position: Vec3,
-    /// With which it has come there, m/s.
+    /// Velocity of the anchor, m/s.
     pub velocity: Vec3,
-    /// Velocity that the forces on the body will add to `velocity` within the next substep, m/s. The springs push for the interval to
-    /// come, so they must know what else pulls in it, or a hung body would hang lower by `g h²`.
+    /// Velocity change of the body from other forces in the next substep, m/s. The springs are solved for the coming
+    /// interval, so they must include it; otherwise a hung body would hang lower by `g h²`.
     pub gained: Vec3,
-    /// Index in the slice of bodies of what is moved there; one of inverse mass 0 is not. Where there is none, it is a place in the world.
+    /// Index of the body in the slice of bodies; one of inverse mass 0 does not move. Without a body, a fixed point of
+    /// the world.
     pub body: Option<u32>,
 }
 
 impl ParticleGroup {
-    /// Puts attached particles where their anchors were, with the velocity that brings them to where those are, and
-    /// with their inertia.
+    /// Places attached particles at their anchors' old positions, with the velocity that moves them to the new ones,
+    /// and with the anchors' inertia.
     pub(super) fn hold(&mut self, part: Part, anchors: &[Anchor]) {
         let [from, to] = part.shares();
         let in_trees = self.forest.has_trees();
@@ -47,7 +48,7 @@ impl ParticleGroup {
                 self.system.points[i] = anchor.position;
                 self.system.hubs[hub].take(&body, gained, &added);
             }
-            // Rows of the net find it with its share of the inertia, so that what all give together is not too much.
+            // Rows of the net use a share of the inertia, so that their sum is not too large.
             let of_body = added.response_at(&body, anchor.position).inverse()
                 * (1.0 / self.forest.hubs()[hub].len() as f32);
             let inertia = self.system.inertia[i] + of_body;
@@ -61,8 +62,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Adds the impulse of each attachment: all that acts on its particle and does not change that one's momentum. The particle
-    /// ends where its anchor is.
+    /// Adds the impulse of each attachment: the sum of everything that acts on its particle without changing its
+    /// momentum. The particle ends at its anchor.
     pub(super) fn let_go(&mut self, part: Part, anchors: &[Anchor]) {
         let (h, [_, to]) = (part.h(), part.shares());
         for (k, (a, anchor)) in self.attachments.iter().zip(anchors).enumerate() {
@@ -79,8 +80,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Brings the particle of an attachment and the point that holds it to one velocity after the substep, where others have pushed the body
-    /// since, as an inelastic impact does; gives the impulse on the body, N·s.
+    /// Makes the velocities of an attached particle and its anchor equal after the substep, if others have pushed the
+    /// body since, by an inelastic impact; returns the impulse on the body, N·s.
     pub(crate) fn join_held(&mut self, k: usize, anchor: &Anchor, body: &mut ObstacleBody) -> Vec3 {
         let i = self.attachments[k].particle as usize;
         let own = 1.0 / self.masses[i];
@@ -93,7 +94,7 @@ impl ParticleGroup {
         impulse
     }
 
-    /// True if it can be solved together with other groups that one body holds: as trees of springs, in one piece.
+    /// True if it can be solved together with other groups attached to the same body: trees of springs, in one part.
     pub(crate) fn is_joinable(&self) -> bool {
         self.forest.has_trees() && self.iterations == 1
     }
@@ -116,14 +117,14 @@ impl ParticleGroup {
         }
     }
 
-    /// Forgets what it and others bring to bodies.
+    /// Clears its own and other groups' contributions to bodies.
     pub(crate) fn forget_shares(&mut self) {
         for hub in &mut self.system.hubs {
             (hub.others, hub.own) = (Share::NONE, Share::NONE);
         }
     }
 
-    /// Takes over what another group brings to the bodies that hold both.
+    /// Copies another group's contributions to shared bodies.
     pub(crate) fn add_shares_of(&mut self, other: &Self) {
         for k in 0..self.forest.hubs().len() {
             let body = self.holder(self.forest.hubs()[k][0]);
@@ -135,20 +136,20 @@ impl ParticleGroup {
         }
     }
 
-    /// Forgets what others bring to its bodies.
+    /// Clears other groups' contributions to its bodies.
     pub(crate) fn forget_others(&mut self) {
         self.system.hubs.iter_mut().for_each(|hub| hub.others = Share::NONE);
     }
 
-    /// Solves again what [`begin_substep`](Self::begin_substep) has, with what others bring to its bodies now; the most by which a velocity of a body has changed,
-    /// over what the springs change it by.
+    /// Solves the first half of the substep again, with other groups' current contributions to its bodies. Returns the
+    /// largest relative change of a body's velocity change.
     pub(crate) fn solve_again(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> f32 {
         self.system.hubs.iter_mut().for_each(Hub::remember);
         self.settle_contacts(h, obstacles, bodies);
         self.system.hubs.iter().map(Hub::change).fold(0.0, max)
     }
 
-    /// Bodies that hold particles of it, each with the mass that moves along.
+    /// Bodies that hold its particles, each with its added mass.
     pub(crate) fn holders(&mut self) -> impl Iterator<Item = (BodyId, &mut AddedMass)> {
         let Self { added, forest, attachments, attachment_of, .. } = self;
         let first = |hub: &Vec<u32>| attachments[attachment_of[hub[0] as usize] as usize].target;

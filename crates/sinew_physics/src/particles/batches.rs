@@ -1,20 +1,23 @@
 //! Springs and bends of a net, eight side by side: rows that share no particle.
 //!
-//! Particles lie in blocks of eight that are far apart in the group: of `8 m` the lanes of block `j` are `j`, `m + j`, `2 m + j` and so
-//! on. Rows that join a particle to the one `o` further on are then **aligned**: eight of them, one in each eighth of the group, join
-//! block `j` to block `j + o`, lane by lane, without a shuffle. In cloth that is made row by row that holds for both threads,
-//! both diagonals and all bends. Rows that cross from one eighth into the next join lanes of block `j` to the next lanes of another: they are **turned**, that is the
-//! lanes of this one move up while they are solved. What irregular meshes have beside these is gathered. Aligned rows that follow each other share no block either, so that none waits for the one before.
+//! Particles are stored in blocks of eight that are far apart in the group: of `8 m` particles the lanes of block `j`
+//! are `j`, `m + j`, `2 m + j` and so on. Rows between a particle and the one `o` further on are then **aligned**:
+//! eight of them, one in each eighth of the group, connect block `j` to block `j + o`, lane by lane, without a shuffle.
+//! In cloth built row by row that covers both threads, both diagonals and all bends. Rows that cross from one eighth
+//! into the next connect lanes of block `j` to the next lanes of another block. They are **turned**: the lanes of that
+//! block are rotated while they are solved. The remaining rows of irregular meshes are gathered. Consecutive aligned
+//! rows share no block, so that none waits for the previous one.
 //!
-//! A projection moves particles within the iteration: what is kept is how far each has come since it began, which gives the velocity
-//! without cancellation. Rows that hold an attached particle are left to `net.rs`.
+//! A projection moves particles within the iteration. The displacement since its start is stored, which gives the
+//! velocity without cancellation. Rows with an attached particle are solved in `net.rs`.
 
 use super::project::Project;
 use super::{BendDef, Resists, SpringDef};
 use sinew_math::lanes::{Block, WIDTH};
 use sinew_math::{Vec3, max};
 
-/// Numbers of a particle: position when the iteration began, way since, which projections change. Three lines of the cache hold eight.
+/// Numbers of a particle: position at the start of the iteration, displacement since, which projections change. Eight
+/// take three cache lines.
 pub(super) const FIELDS: usize = 6;
 pub(super) const WAY: usize = 3;
 /// Numbers of the surface that a particle touches: backing, normal, room before it presses, which projections change.
@@ -22,14 +25,14 @@ pub(super) const SURFACE_FIELDS: usize = 5;
 pub(super) const BACKING: usize = 0;
 pub(super) const NORMAL: usize = 1;
 pub(super) const ROOM: usize = 4;
-/// Kinds among which that of eight rows is looked for.
+/// Number of recent kinds searched for the kind of eight rows.
 const LATEST: usize = 64;
-/// Fewest aligned rows that make a block.
+/// Fewest aligned rows that form a block.
 const LEAST_ALIGNED: usize = 4;
-/// Blocks that a row to be gathered may still go into.
+/// Number of open blocks that a gathered row is tried in.
 const OPEN: usize = 32;
 
-/// Constants of eight rows, none across two lines of the cache. Few kinds serve most rows of a cloth.
+/// Constants of eight rows, aligned to cache lines. Most rows of a cloth share a few kinds.
 #[derive(Clone, Debug, PartialEq)]
 #[repr(align(32))]
 pub(super) struct Kind<const K: usize> {
@@ -43,7 +46,7 @@ pub(super) struct Kind<const K: usize> {
     /// Inverse masses of the particles, 1/kg.
     pub weights: [[f32; WIDTH]; K],
     pub is_damped: bool,
-    /// The particles of each row weigh the same.
+    /// The particles of each row have equal weights.
     pub is_even: bool,
 }
 
@@ -74,22 +77,22 @@ impl<const K: usize> Kind<K> {
     }
 }
 
-/// Rows of `K` particles each, eight by eight, each with the index of its kind.
+/// Rows of `K` particles each, in blocks of eight, each block with the index of its kind.
 #[derive(Clone, Debug)]
 pub(super) struct Rows<const K: usize> {
     pub aligned: Vec<Run<K>>,
     pub turned: Vec<Run<K>>,
-    /// Slots of the particles of rows that are gathered, of each lane.
+    /// Particle slots of gathered rows, per lane.
     pub gathered: Vec<([[u32; WIDTH]; K], u32)>,
     pub kinds: Vec<Kind<K>>,
 }
 
-/// Aligned or turned rows of one kind, one after the other, that share no block.
+/// Consecutive aligned or turned rows of one kind that share no block.
 #[derive(Clone, Debug)]
 pub(super) struct Run<const K: usize> {
     /// Blocks of the particles of the first.
     pub first: [u32; K],
-    /// By how many lanes each particle lies above the first of its row: by none if aligned.
+    /// Lane rotation of each particle relative to the first of its row: zero if aligned.
     pub lanes: [u8; K],
     /// Index of the kind of all.
     pub kind: u32,
@@ -97,7 +100,8 @@ pub(super) struct Run<const K: usize> {
 }
 
 impl<const K: usize> Run<K> {
-    /// True if the blocks of each row follow each other, and those of the next these. Else each end has a stretch of blocks for itself.
+    /// True if the blocks of each row are consecutive, and rows are contiguous. Otherwise each end has its own range of
+    /// blocks.
     #[inline(always)]
     pub fn is_along(&self) -> bool {
         (1..K).all(|k| self.first[k] == self.first[0] + k as u32)
@@ -109,7 +113,7 @@ impl<const K: usize> Run<K> {
         self.first.map(|block| (block + self.step() * row) as usize)
     }
 
-    /// By how many blocks each row follows the one before.
+    /// Number of blocks between consecutive rows.
     #[inline(always)]
     fn step(&self) -> u32 {
         if self.is_along() { K as u32 } else { 1 }
@@ -135,7 +139,7 @@ impl<const K: usize> Rows<K> {
         self.aligned.is_empty() && self.turned.is_empty() && self.gathered.is_empty()
     }
 
-    /// Index of a kind, among the latest if it is there.
+    /// Index of a kind, reused if it is among the latest.
     fn kind(&mut self, kind: Kind<K>) -> u32 {
         let latest = self.kinds.iter().rev().take(LATEST).position(|other| *other == kind);
         let index = latest.map_or(self.kinds.len(), |back| self.kinds.len() - 1 - back);
@@ -146,7 +150,7 @@ impl<const K: usize> Rows<K> {
     }
 }
 
-/// A row as it is defined.
+/// A row of the definition.
 #[derive(Clone, Copy, Debug)]
 struct Row<const K: usize> {
     particles: [u32; K],
@@ -158,7 +162,7 @@ struct Row<const K: usize> {
     least: f32,
 }
 
-/// The rows of a group that are solved eight at a time, and its particles as they need them.
+/// The rows of a group that are solved eight at a time, and its particles in their layout.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Batches {
     pub springs: Rows<2>,
@@ -209,7 +213,7 @@ impl Batches {
         self.particles.is_empty()
     }
 
-    /// Takes in all particles: where they were when an iteration of `h` seconds began, and their velocities since.
+    /// Loads all particles: their positions at the start of an iteration of `h` seconds, and their velocities since.
     pub fn put(&mut self, from: &[Vec3], velocities: &[Vec3], h: f32) {
         let lanes = from.chunks(self.per_lane).zip(velocities.chunks(self.per_lane));
         for (lane, (from, velocities)) in lanes.enumerate() {
@@ -225,7 +229,7 @@ impl Batches {
         }
     }
 
-    /// Takes in where a particle was when the iteration began, and how far it has come since.
+    /// Loads a particle's position at the start of the iteration, and its displacement since.
     pub fn put_way(&mut self, i: usize, from: Vec3, way: Vec3) {
         let (block, lane) = (&mut self.particles[i % self.per_lane].0, i / self.per_lane);
         let numbers = [from.x, from.y, from.z, way.x, way.y, way.z];
@@ -244,7 +248,7 @@ impl Batches {
         Vec3::new(self.number_of(i, field), self.number_of(i, field + 1), self.number_of(i, field + 2))
     }
 
-    /// Takes in the surface that a particle touches, with the impulse onto it after which it presses, N·s².
+    /// Loads the surface that a particle touches, with the impulse onto it after which it presses, N·s².
     pub fn put_surface(&mut self, i: usize, normal: Vec3, backing: f32, room: f32) {
         let (block, lane) = (&mut self.surfaces[i % self.per_lane].0, i / self.per_lane);
         for (field, number) in [backing, normal.x, normal.y, normal.z, room].into_iter().enumerate() {
@@ -252,7 +256,7 @@ impl Batches {
         }
     }
 
-    /// Tells of each particle how far it has come since the iteration began, metres.
+    /// Returns each particle's displacement since the start of the iteration, metres.
     pub fn ways(&self, mut tell: impl FnMut(usize, Vec3)) {
         let mut i = 0;
         for lane in 0..WIDTH {
@@ -263,20 +267,20 @@ impl Batches {
         }
     }
 
-    /// Forgets the surface that a particle touches; gives the room that is left, N·s², negative for what presses.
+    /// Clears the surface that a particle touches; returns its remaining room, N·s², negative if it presses.
     pub fn take_surface(&mut self, i: usize) -> f32 {
         let (block, lane) = (&mut self.surfaces[i % self.per_lane].0, i / self.per_lane);
         block[BACKING][lane] = 0.0;
         block[ROOM][lane]
     }
 
-    /// Projects all rows once, springs first, to be run by `dispatch`.
+    /// Projects all rows once, springs first, to be called through `dispatch`.
     pub fn project(&mut self, h: f32, touching: bool) -> Project<'_> {
         Project { batches: self, h, touching }
     }
 }
 
-/// Aligned and turned rows in blocks by how far apart their particles are, then the others.
+/// Aligned and turned rows in blocks by the distance of their particles, then the others.
 fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) -> Rows<K> {
     let mut keyed: Vec<([i64; K], u32, usize, usize, Row<K>)> = Vec::new();
     let mut others = Vec::new();
@@ -292,7 +296,7 @@ fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) 
             steps[k] = places[k] as i64 - places[k - 1] as i64;
         }
         let block = blocks[0];
-        // Neighbours of a thread along which the blocks lie would wait for each other.
+        // Consecutive rows along a thread would wait for each other.
         let color = if steps[1].abs() == 1 { block % K } else { 0 };
         keyed.push((steps, color as u32, block, order, row));
     }
@@ -327,7 +331,7 @@ fn arrange<const K: usize>(rows: impl Iterator<Item = Row<K>>, per_lane: usize) 
     rows
 }
 
-/// Blocks of rows that share no particle: each row goes into the first that has room for it.
+/// Blocks of rows that share no particle: each row goes into the first block with space for it.
 fn gather<const K: usize>(rows: &[Row<K>], per_lane: usize, out: &mut Rows<K>) {
     let mut open: Vec<Vec<Row<K>>> = Vec::new();
     for &row in rows {
@@ -349,7 +353,7 @@ fn gather<const K: usize>(rows: &[Row<K>], per_lane: usize, out: &mut Rows<K>) {
 
 fn push_gathered<const K: usize>(block: &[Row<K>], per_lane: usize, out: &mut Rows<K>) {
     let mut kind = Kind::empty();
-    // Lanes without a row have a place of their own, after all particles.
+    // Lanes without a row use a dummy particle after all others.
     let mut slots = [core::array::from_fn(|lane| (per_lane * WIDTH + lane) as u32); K];
     for (lane, row) in block.iter().enumerate() {
         kind.set(lane, row);

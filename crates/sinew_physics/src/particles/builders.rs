@@ -1,4 +1,4 @@
-//! Ropes, strands, cloth and blobs: definitions that make groups, and tell which particle is where.
+//! Ropes, strands, cloth and blobs: definitions that create groups, with the indices of their particles.
 
 use super::{
     AttachmentDef, AttachmentTarget, BendDef, GroupDef, ParticleDef, SpringDef, SpringScheme, TetherDef,
@@ -11,7 +11,7 @@ impl GroupDef {
     /// Holds a particle in place, or at a point of a body.
     ///
     /// # Panics
-    /// If there is no such particle.
+    /// If the particle does not exist.
     pub fn hold(&mut self, particle: u32, target: AttachmentTarget) {
         assert!(
             (particle as usize) < self.particles.len(),
@@ -24,7 +24,7 @@ impl GroupDef {
     /// Holds particles where they are in the world.
     ///
     /// # Panics
-    /// If there is no such particle.
+    /// If the particle does not exist.
     pub fn hold_in_world(&mut self, particles: &[u32]) {
         for &particle in particles {
             let place = self.particles[particle as usize].position;
@@ -32,11 +32,11 @@ impl GroupDef {
         }
     }
 
-    /// Makes each particle inside a row resist bending away from its present shape, as a beam of bending stiffness
-    /// `bending` (N·m²), `B/L³` with the mean length `L` of its two sides.
+    /// Makes each particle inside a row resist bending from its current shape, as a beam of bending stiffness `bending`
+    /// (N·m²): `B/L³` with the mean length `L` of its two sides.
     ///
     /// # Panics
-    /// If there is no such particle.
+    /// If a particle does not exist.
     pub fn stiffen(&mut self, row: &[u32], bending: f32) {
         for three in row.windows(3) {
             let [a, b, c] = [0, 1, 2].map(|k| self.particles[three[k] as usize].position);
@@ -49,8 +49,8 @@ impl GroupDef {
         }
     }
 
-    /// Damps every spring at a share of what is critical for its two particles alone, see [`SpringDef::damped`]; those
-    /// that are held now count as infinitely heavy.
+    /// Damps every spring at a share of the critical damping of its two particles alone, see [`SpringDef::damped`];
+    /// currently held particles count as infinitely heavy.
     ///
     /// # Panics
     /// If the ratio is negative or not finite.
@@ -64,8 +64,8 @@ impl GroupDef {
         }
     }
 
-    /// Ties every particle that is not held to the nearest held one, at the distance that they have now: the way through
-    /// flat cloth or along straight hair. Without held particles there is nothing to tie to.
+    /// Tethers every free particle to the nearest held one at their current distance, which is the path length in flat
+    /// cloth or straight hair. Without held particles it does nothing.
     pub fn tether(&mut self) {
         let place = |i: u32| self.particles[i as usize].position;
         let held: Vec<u32> = self.attachments.iter().map(|a| a.particle).collect();
@@ -87,7 +87,7 @@ fn parts(length: f32, [least, most]: [u32; 2]) -> u32 {
     u32::clamp((10.0 * length).round() as u32, least, most)
 }
 
-/// A rope to be made: a row of particles joined by springs that are solved exactly.
+/// Definition of a rope: a row of particles connected by springs that are solved exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RopeDef {
@@ -97,15 +97,15 @@ pub struct RopeDef {
     pub to: Vec3,
     /// Number of springs, at least 1.
     pub links: u32,
-    /// kg, of the whole rope.
+    /// kg, total.
     pub mass: f32,
-    /// N/m, of the whole rope: `force / stretch` between its ends.
+    /// N/m, total: `force / stretch` between its ends.
     pub stiffness: f32,
     /// Metres.
     pub radius: f32,
 }
 
-/// A rope that is not in a world yet.
+/// A rope, not yet in a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rope {
     /// For [`World::add_particles`](crate::World::add_particles). Particles are in order, springs too.
@@ -117,8 +117,8 @@ pub struct Rope {
 }
 
 impl RopeDef {
-    /// A rope of 10 mm nylon between two points (world, metres): 0.1 kg and 40 kN of stiffness a metre, a link every 0.1 m, 4 links at
-    /// least and 64 at most.
+    /// A rope of 10 mm nylon between two points (world, metres): 0.1 kg and 40 kN of stiffness per metre, a link every
+    /// 0.1 m, at least 4 and at most 64 links.
     ///
     /// # Panics
     /// If the points are not finite, or the same.
@@ -159,11 +159,11 @@ impl RopeDef {
     }
 }
 
-/// A strand to be made, of hair or grass: a rope that resists bending, clamped at its root.
+/// Definition of a strand of hair or grass: a rope that resists bending, clamped at its root.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StrandDef {
-    /// Place of the root, and all else that a strand has in common with a rope.
+    /// Position of the root, and the parameters shared with a rope.
     pub rope: RopeDef,
     /// `B` = elastic modulus times the section's second moment of area, N·m², positive. A straight strand that is clamped
     /// level sinks under its weight `w` per length by `w L⁴ / 8B` at its tip.
@@ -176,8 +176,8 @@ impl StrandDef {
         Self { rope, bending }
     }
 
-    /// A straight strand. To clamp its root, hold its first **two** particles, [`Rope::first`] and the one after: they
-    /// give its direction.
+    /// A straight strand. To clamp its root, hold its first **two** particles, [`Rope::first`] and the next one: they
+    /// define its direction.
     ///
     /// # Panics
     /// If there are no links.
@@ -189,36 +189,36 @@ impl StrandDef {
     }
 }
 
-/// A rectangle of cloth to be made: a grid of particles with springs along both threads, across them, and against
-/// bending.
+/// Definition of a rectangle of cloth: a grid of particles with springs along both threads, along the diagonals, and
+/// against bending.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothDef {
     /// The first corner, world, metres.
     pub corner: Vec3,
-    /// From there along the first row, metres.
+    /// Offset from there along the first row, metres.
     pub across: Vec3,
-    /// From there along the first column, metres; at right angles to `across`.
+    /// Offset from there along the first column, metres; perpendicular to `across`.
     pub down: Vec3,
     /// Springs in a row, at least 1.
     pub columns: u32,
     /// Springs in a column, at least 1.
     pub rows: u32,
-    /// kg, of all of it.
+    /// kg, total.
     pub mass: f32,
     /// Stiffness of a square of it against being pulled along a thread, N/m: elastic modulus times thickness.
     pub stretching: f32,
-    /// Stiffness of a square of it against being pulled along a diagonal, N/m, ≥ 0; with 0 there are no springs across.
+    /// Shear stiffness of a square pulled along a diagonal, N/m, ≥ 0; with 0 there are no diagonal springs.
     pub shearing: f32,
     /// Bending stiffness per width, N·m, ≥ 0: `E t³/12` of a plate; with 0 nothing resists bending.
     pub bending: f32,
-    /// Share of its critical damping that each spring has, ≥ 0.
+    /// Share of critical damping of each spring, ≥ 0.
     pub damping_ratio: f32,
     /// Radius of each particle, metres.
     pub radius: f32,
 }
 
-/// Cloth that is not in a world yet.
+/// Cloth, not yet in a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cloth {
     /// For [`World::add_particles`](crate::World::add_particles); projected in two iterations per substep.
@@ -230,7 +230,7 @@ pub struct Cloth {
 }
 
 impl Cloth {
-    /// Index of a particle; columns and rows count from 0 to how many springs there are.
+    /// Index of a particle; columns and rows count from 0 to the number of springs.
     pub fn particle(&self, column: u32, row: u32) -> u32 {
         row * (self.columns + 1) + column
     }
@@ -251,10 +251,10 @@ impl Cloth {
         (0..=self.rows).map(|row| self.particle(column, row)).collect()
     }
 
-    /// Holds particles where they are, and ties all others to the nearest of them.
+    /// Holds particles at their positions, and tethers all others to the nearest of them.
     ///
     /// # Panics
-    /// If there is no such particle.
+    /// If a particle does not exist.
     pub fn hang(&mut self, particles: &[u32]) {
         self.group.hold_in_world(particles);
         self.group.tethers.clear();
@@ -263,8 +263,8 @@ impl Cloth {
 }
 
 impl ClothDef {
-    /// A sheet of cotton from a corner along two sides (world, metres; at right angles): 0.2 kg/m², cells of 0.1 m, at least 4 and at most 32
-    /// along each side.
+    /// A cotton sheet from a corner along two sides (world, metres; perpendicular): 0.2 kg/m², cells of 0.1 m, at least
+    /// 4 and at most 32 along each side.
     ///
     /// # Panics
     /// If the corner or a side is not finite, or a side has no length.
@@ -360,7 +360,7 @@ impl ClothDef {
     }
 }
 
-/// Springs from the given grid places to their neighbours.
+/// Springs from the given grid positions to their neighbours.
 fn join_row(
     cloth: &mut Cloth,
     [right, below]: [u32; 2],
@@ -374,7 +374,7 @@ fn join_row(
     }
 }
 
-/// A ball to be made of a skin with air in it.
+/// Definition of a ball with a skin filled with air.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BlobDef {
@@ -384,23 +384,23 @@ pub struct BlobDef {
     pub radius: f32,
     /// Number of times that the faces of an icosahedron are split in four, 0 to 5: 12, 42, 162, 642, 2,562 or 10,242 particles.
     pub subdivisions: u32,
-    /// kg, of all of it.
+    /// kg, total.
     pub mass: f32,
     /// Stiffness of each spring of the skin, N/m.
     pub stiffness: f32,
-    /// Share of its critical damping that each spring has, ≥ 0.
+    /// Share of critical damping of each spring, ≥ 0.
     pub damping_ratio: f32,
-    /// Bulk modulus of what is inside, Pa, see [`VolumeDef`].
+    /// Bulk modulus of the content, Pa, see [`VolumeDef`].
     pub bulk_modulus: f32,
-    /// Radius of each particle, metres: how thick the skin is to what it touches.
+    /// Radius of each particle, metres: the contact thickness of the skin.
     pub skin: f32,
 }
 
-/// A blob that is not in a world yet.
+/// A blob, not yet in a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Blob {
-    /// For [`World::add_particles`](crate::World::add_particles); projected in four iterations per substep. All particles
-    /// are of the skin, and `volumes[0]` is what it encloses.
+    /// For [`World::add_particles`](crate::World::add_particles); projected in four iterations per substep. All
+    /// particles belong to the skin, and `volumes[0]` is the enclosed volume.
     pub group: GroupDef,
     /// Index of the highest particle (+Y).
     pub top: u32,
@@ -409,7 +409,7 @@ pub struct Blob {
 }
 
 impl BlobDef {
-    /// A soft ball of 162 particles around a centre (world, metres): 100 kg/m³, and filled with air that gives way.
+    /// A soft ball of 162 particles around a centre (world, metres): 100 kg/m³, filled with compressible air.
     ///
     /// # Panics
     /// If the centre is not finite, or the radius is not positive and finite.

@@ -3,10 +3,10 @@
 use super::{BackstopDef, BendDef, GroupDef, ParticleDef, SpringDef, TetherDef, VolumeDef};
 use sinew_geometry::DefError;
 
-/// Parts that a substep may be moved in.
+/// Allowed numbers of parts of a substep.
 const MAX_ITERATIONS: u32 = 64;
 
-// Written so that NaN fails.
+// This form rejects NaN.
 fn positive(x: f32) -> bool {
     x > 0.0 && x < f32::INFINITY
 }
@@ -21,10 +21,10 @@ fn must(holds: bool, what: &'static str) -> Result<(), DefError> {
 }
 
 impl GroupDef {
-    /// Checks that all numbers of the definition make sense; the error is a phrase that says what is wrong.
+    /// Checks that all numbers of the definition are valid; the error phrase names the problem.
     ///
     /// # Errors
-    /// What is wrong, in lower case.
+    /// The problem, in lower case.
     pub fn check(&self) -> Result<(), DefError> {
         let count = self.particles.len();
         self.particles.iter().try_for_each(ParticleDef::check)?;
@@ -43,7 +43,7 @@ impl GroupDef {
             must(finite, "the point of an attachment must be finite")?;
         }
         self.tethers.iter().try_for_each(|t| t.check(&held))?;
-        // What is held, or has one already, takes none.
+        // A held particle, or one with a backstop, cannot have another.
         let mut taken = held;
         self.backstops.iter().try_for_each(|b| b.check(&mut taken))?;
         self.material.check()?;

@@ -1,4 +1,4 @@
-//! Memory of conjugate gradients over the springs of a group: see `elimination.rs`.
+//! Vectors of conjugate gradients over the springs of a group: see `elimination.rs`.
 
 use crate::spatial::{Vec6, ZERO6, add_scaled};
 use sinew_math::Vec3;
@@ -6,16 +6,16 @@ use sinew_math::Vec3;
 /// Vectors of conjugate gradients, by particle and by hub.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Conjugate {
-    /// Momentum that the velocities found so far leave over, kg·m/s.
+    /// Residual momentum of the current velocities, kg·m/s.
     pub residual: Vec<Vec3>,
     /// Velocity that the preconditioner gains by it, m/s.
     pub gain: Vec<Vec3>,
-    /// Direction in which velocities are sought, m/s, and the momentum that the preconditioner takes for it.
+    /// Search direction of the velocities, m/s, and its image under the preconditioner.
     pub direction: Vec<Vec3>,
     pub needed: Vec<Vec3>,
     /// Momentum that closing springs pass from end to end, kg·m/s.
     pub passed: Vec<Vec3>,
-    /// Velocity of each hub, and its direction.
+    /// Velocity of each hub, and its search direction.
     pub hubs: Vec<[Vec6; 2]>,
 }
 
@@ -32,7 +32,7 @@ impl Conjugate {
         }
     }
 
-    /// Starts where hubs have these velocities, with a residual that is what is passed now less what was.
+    /// Starts with these hub velocities; the residual is the new minus the old momentum passed on.
     pub fn start<'a>(&mut self, hubs: impl Iterator<Item = &'a Vec6>) {
         for (residual, passed) in self.residual.iter_mut().zip(&self.passed) {
             *residual = *passed - *residual;
@@ -44,7 +44,7 @@ impl Conjugate {
         self.needed.fill(Vec3::ZERO);
     }
 
-    /// Turns the direction to the gain, also of hubs, with so much of the last one.
+    /// Updates the direction from the gain, also of hubs, with this factor on the old one.
     pub fn turn<'a>(&mut self, carry: f32, hubs: impl Iterator<Item = &'a Vec6>) {
         for i in 0..self.gain.len() {
             self.direction[i] = self.gain[i] + self.direction[i] * carry;
@@ -57,7 +57,7 @@ impl Conjugate {
         }
     }
 
-    /// Goes so far along the direction.
+    /// Moves by this factor along the direction.
     pub fn go(&mut self, by: f32, velocities: &mut [Vec3]) {
         for (i, velocity) in velocities.iter_mut().enumerate() {
             *velocity += self.direction[i] * by;

@@ -1,11 +1,11 @@
-//! Contacts that a particle is in, or comes into within the iteration, as part of the spring solve.
+//! Contacts of particles, present or expected within the iteration, as part of the spring solve.
 //!
-//! Without them the solve would let a particle on an edge fall freely, and a rope bent over the edge would hang with
-//! the wrong tension; the end of a rope that strikes the floor would be put back onto it against its springs, which would
-//! come to hold energy that nobody paid. Each particle that touches a surface sticks to it or slides on it: its velocity, or one
-//! component of it, is given in the linear system, which stays exact and cannot diverge. Impulses read off the
-//! solution tell who must let go, slip or stick; grips are kept from substep to substep, so that at rest one solve is
-//! enough. On bodies that can move, the body's inertia at the point is added instead.
+//! Without them the solve would let a particle on an edge fall freely, and a rope bent over the edge would have the
+//! wrong tension; a rope end that hits the floor would be moved back against its springs, which would gain energy from
+//! nothing. Each particle on a surface sticks to it or slides on it: its velocity, or one component of it, is
+//! prescribed in the linear system, which remains exact and cannot diverge. The impulses of the solution decide which
+//! particles must release, slip or stick. Grips persist from substep to substep, so that one solve suffices at rest. On
+//! movable bodies the body's inertia at the point is added instead.
 
 use super::forest::NO_HUB;
 use super::sweep::{Meeting, sweep_ball};
@@ -17,15 +17,16 @@ use crate::boxes::Aabb;
 use crate::particles::tuning::{DETOUR, NO_SPEED, PINCHING, REACH_SHARE, WALL_GAP};
 use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
-/// Solves per iteration until grips have to be right.
+/// Largest number of solves per iteration to make grips consistent.
 const GRIP_ROUNDS: u32 = 16;
-/// Solves after which surfaces no longer let go, so that grips come to an end, and slow what is about to stop instead of holding it: knots of a stiff
-/// rope would else take turns to slip and to stick, each for what the others did (ADR 0023).
+/// Number of solves after which surfaces no longer release, so that the grips converge, and slow stopping particles
+/// instead of holding them. Otherwise the particles of a stiff rope would alternate between slip and stick, each in
+/// response to the others (ADR 0023).
 const LOOSE_ROUNDS: u32 = 4;
-/// Depth at the end of an iteration below which a contact is left to impacts, metres.
+/// Depth at the end of an iteration below which a contact is left to the impact pass, metres.
 const IMPACT_DEPTH: f32 = 1e-5;
 
-/// The motion of a body that particles may touch. Its velocity changes as they do.
+/// The motion of a body near particles. Its velocity changes with them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ObstacleBody {
     /// Centre of mass at the end of the substep, world, metres.
@@ -58,10 +59,11 @@ impl ObstacleBody {
         Sym3::from_mat3(&Mat3::from_cols(gained(Vec3::X), gained(Vec3::Y), gained(Vec3::Z)))
     }
 
-    /// Inertia that resists a push at `point`, kg, along a unit normal and across it: the inverse of the response there without what a push along
-    /// the one moves along the other.
+    /// Effective inertia at `point`, kg, along a unit normal and tangentially: the inverse of the response there
+    /// without the cross terms.
     ///
-    /// A body that many push from below does not turn; each would take it that its own push does, and slide outward by that.
+    /// A body that many particles push from below does not rotate; each would assume that its own push rotates it, and
+    /// slide outward.
     fn inertia_at(&self, point: Vec3, normal: Vec3) -> Sym3 {
         let whole = self.response_at(point);
         let along = whole * normal;
@@ -70,7 +72,7 @@ impl ObstacleBody {
         (whole - coupling).inverse()
     }
 
-    /// Firmness with which it stands where two bodies leave a particle no room.
+    /// Priority among two bodies that leave a particle no room.
     pub(super) fn firmness(&self) -> Firmness {
         match self.inverse_mass {
             0.0 if self.rests() => Firmness::Rests,
@@ -79,14 +81,14 @@ impl ObstacleBody {
         }
     }
 
-    /// True of what neither moves nor can be moved.
+    /// True if it neither moves nor can be moved.
     pub(super) fn rests(&self) -> bool {
         self.inverse_mass == 0.0 && self.linear_velocity == Vec3::ZERO && self.angular_velocity == Vec3::ZERO
     }
 
     /// Mass, and moments about the centre, kg and kg·m², world axes, of a body that moves.
     pub(super) fn inertia(&self) -> (f32, Sym3) {
-        // One that does not turn has an inverse inertia that has no inverse.
+        // A body that does not rotate has a singular inverse inertia.
         let least = max(1e-9, 1e-6 * self.inverse_inertia.to_mat3().x_axis.length());
         (1.0 / self.inverse_mass, (self.inverse_inertia + Sym3::IDENTITY * least).inverse())
     }
@@ -97,12 +99,12 @@ impl ObstacleBody {
     }
 }
 
-/// Firmness with which a body stands against others: the particles between two give way to the firmer.
+/// Priority of a body against others: particles between two follow the firmer one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Firmness {
     /// Forces move it.
     Yields,
-    /// It moves by itself.
+    /// It is kinematic.
     Led,
     /// It is where it is.
     Rests,
@@ -128,9 +130,9 @@ pub struct Obstacle {
 pub(super) struct Placed {
     pub start: Transform,
     pub end: Transform,
-    /// Way of any of its points at most, metres.
+    /// Largest displacement of any of its points, metres.
     pub way: f32,
-    /// Around all the way from start to end.
+    /// Bounds of its whole motion.
     pub bounds: Aabb,
 }
 
@@ -143,7 +145,7 @@ impl Placed {
         };
         let (start, end) = (at(from), at(to));
         let bounds = o.shape.aabb(&start).merge(&o.shape.aabb(&end));
-        // What turns bulges out of the bounds of its ends by the height of the arc.
+        // A rotating body exceeds the bounds of its end poses by the height of the arc.
         let size = (bounds.max - bounds.min).length();
         let bulge = if turn == 0.0 { 0.0 } else { size * turn * turn / 8.0 };
         let way = if start == end {
@@ -156,7 +158,7 @@ impl Placed {
         Self { start, end, way, bounds: bounds.expand(bulge) }
     }
 
-    /// Way in the iteration of a point that moves along with the shape, metres.
+    /// Displacement in the iteration of a point that moves with the shape, metres.
     fn way_of(&self, point: Vec3) -> f32 {
         if self.way == 0.0 { 0.0 } else { self.displacement(point).length() }
     }
@@ -167,13 +169,13 @@ impl Placed {
     }
 }
 
-/// No more than the distance from a point of what lies in these bounds.
+/// A lower bound of the distance from a point to the contents of these bounds.
 pub(crate) fn distance_at_least(bounds: &Aabb, point: Vec3) -> f32 {
     let beyond = max3(bounds.min - point, point - bounds.max);
     max(max(beyond.x, beyond.y), beyond.z)
 }
 
-/// True if what is so far away, metres, is surely not on the way.
+/// True if an obstacle at this distance, metres, cannot be reached.
 fn is_beyond(clearance: f32, way: Vec3) -> bool {
     clearance > 0.0 && clearance * clearance > DETOUR * DETOUR * way.length_squared()
 }
@@ -199,7 +201,7 @@ pub struct BodyImpulse {
 pub(super) struct Touch {
     pub obstacle: usize,
     pub body: usize,
-    /// Unit, out of the shape.
+    /// Unit, outward.
     pub normal: Vec3,
     /// Gap, metres; negative inside. Before the solve that at the iteration's beginning, after it that at its end.
     pub gap: f32,
@@ -207,18 +209,18 @@ pub(super) struct Touch {
     pub point: Vec3,
     /// Combined material of the pair of surfaces.
     pub material: ContactMaterial,
-    /// Slowest allowed velocity along the normal, m/s: negative while there is a gap to be closed.
+    /// Smallest allowed normal velocity, m/s: negative while a gap remains.
     pub speed_min: f32,
-    /// Factor by which the body is lighter for this particle than it is: where those that touch it outweigh it, each has
-    /// its share of the body's inertia, or their sum would push it too far.
+    /// Factor on the body's mass for this particle: if the touching particles outweigh it, each gets its share of the
+    /// body's inertia, because their sum would otherwise push it too far.
     pub lightness: f32,
-    /// Distance from any other shape that the particle surely has when the iteration begins, less what shapes move in it, metres.
+    /// Lower bound of the distance to other shapes at the start of the iteration, minus the shapes' motion, metres.
     pub beside: f32,
 }
 
 impl Touch {
-    /// The impulse on the particle that keeps it from approaching faster than `speed_min`, rubbed by Coulomb's law,
-    /// if an impulse changes its velocity by `response` alone; the body is pushed the other way.
+    /// The impulse on the particle that keeps its approach above `speed_min`, with Coulomb friction, if an impulse
+    /// changes its velocity by `response` alone; the body gets the opposite.
     pub fn impulse(&self, response: f32, velocity: Vec3, body: &mut ObstacleBody) -> Vec3 {
         let n = self.normal;
         let approach = (velocity - body.velocity_at(self.point)).dot(n) - self.speed_min;
@@ -227,7 +229,7 @@ impl Touch {
         n * normal + self.rub(normal, response, velocity + n * (normal * response), body)
     }
 
-    /// The friction on the particle that goes with an impulse along the normal; the body is pushed the other way.
+    /// The friction impulse on the particle for a normal impulse; the body gets the opposite.
     pub(super) fn rub(&self, normal: f32, response: f32, velocity: Vec3, body: &mut ObstacleBody) -> Vec3 {
         let relative = velocity - self.surface_velocity(body);
         let slip = relative - self.normal * relative.dot(self.normal);
@@ -239,7 +241,7 @@ impl Touch {
         friction
     }
 
-    /// True if a particle on this surface does not give way to that of another body, which is less firm.
+    /// True if a particle on this surface does not yield to that of another, less firm body.
     pub fn pinches(&self, other: &Self, bodies: &[ObstacleBody]) -> bool {
         self.obstacle != other.obstacle
             && bodies[other.body].firmness() < bodies[self.body].firmness()
@@ -269,7 +271,7 @@ pub(super) enum Grip {
     Slow,
     /// In all directions.
     Stick,
-    /// In the corner with another surface, until the iteration ends.
+    /// In the corner with another surface, until the end of the iteration.
     Wedged,
 }
 
@@ -282,9 +284,9 @@ impl ParticleGroup {
         self.placed.extend(obstacles.iter().map(|o| Placed::new(o, shares, turn(o))));
     }
 
-    /// The nearest surface that each particle is on already, or is about to sink to; and how far away all others are.
+    /// The nearest surface that each particle is on or about to enter; and the distance of all others.
     pub(super) fn find_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
-        // Nobody else touched anything in the iteration before.
+        // No particle touched anything in the previous iteration.
         for &i in &self.solved {
             self.touches[i as usize] = None;
         }
@@ -302,14 +304,14 @@ impl ParticleGroup {
         }
     }
 
-    /// Distance from its surface within which a particle looks for what it touches or may come to, metres.
+    /// Contact search distance of a particle from its surface, metres.
     pub(super) fn sight(&self, i: usize, h: f32) -> f32 {
         self.contact_reach(i, h) + DETOUR * (self.velocities[i].length() * h)
     }
 
     /// Gap that a particle may close by sinking, metres.
     fn contact_reach(&self, i: usize, h: f32) -> f32 {
-        // Gravity included, and a share of the other forces.
+        // Includes gravity, and a share of the other forces.
         2.0 * h * h * self.pulls[i] + REACH_SHARE * self.radii[i]
     }
 
@@ -350,7 +352,7 @@ impl ParticleGroup {
         }
         let touch = |(index, meeting)| self.touch(i, h, index, &meeting, obstacles, bodies);
         let mut touch_of_nearest = nearest.map(touch);
-        // What is on a wall stays there, whatever comes to it from the other side: see `pinch`.
+        // A particle on a wall stays there, whatever approaches from the other side: see `pinch`.
         if let (Some(near), Some(wall)) = (&mut touch_of_nearest, wall.map(touch))
             && wall.pinches(near, bodies)
         {
@@ -362,7 +364,7 @@ impl ParticleGroup {
         self.near.note_distance(i, position, distance_now);
     }
 
-    /// The contact of a particle with the plane that it meets, so that it ends the iteration on it at the lowest.
+    /// The contact of a particle with a plane, which it may at most reach at the end of the iteration.
     pub(super) fn touch(
         &self,
         i: usize,
@@ -379,7 +381,7 @@ impl ParticleGroup {
         let touching = placed.end.point(meeting.at - meeting.normal * max(meeting.gap, 0.0));
         let point = touching - normal * (self.radii[i] + min(meeting.gap, 0.0));
         let body = &bodies[o.body as usize];
-        // A backstop is no surface of the body: it neither rubs nor bounces.
+        // A backstop is no surface of the body: no friction, no bounce.
         let is_common = obstacle < self.near.common(obstacles.len());
         let of_pair = is_common.then(|| ContactMaterial::of(&self.material, &o.material));
         let mut material = of_pair.unwrap_or_default();
@@ -403,18 +405,18 @@ impl ParticleGroup {
         }
     }
 
-    /// True if a particle surely meets nothing on its way.
+    /// True if a particle certainly hits nothing on its path.
     pub(super) fn is_clear(&self, i: usize, way: Vec3) -> bool {
         is_beyond(self.clearances[i], way) || self.attachment_of[i] != u32::MAX
     }
 
-    /// True if a particle surely meets nothing on its way but what it touches.
+    /// True if a particle certainly hits nothing on its path except what it touches.
     pub(super) fn is_clear_beside(&self, i: usize, way: Vec3) -> bool {
         self.touches[i].map_or_else(|| self.is_clear(i, way), |touch| is_beyond(touch.beside, way))
     }
 
-    /// The first obstacle on the way of a particle, given by where it begins and ends in the iteration, that it ends deeper
-    /// in than `depth`; `but` one.
+    /// The first obstacle that a particle with these start and end positions ends deeper in than `depth`; ignores
+    /// `but`.
     pub(super) fn first_met(
         &self,
         i: usize,
@@ -441,8 +443,8 @@ impl ParticleGroup {
         first
     }
 
-    /// The surface that a particle would meet within the iteration with the velocity just found; whether there is one that
-    /// the solve does not know of.
+    /// The surface that a particle would hit within the iteration at its new velocity; returns true if the solve does
+    /// not know it.
     fn predict_contact(&mut self, i: usize, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> bool {
         let way = self.velocities[i] * h;
         if self.grips[i] == Grip::Wedged || self.is_clear_beside(i, way) {
@@ -459,7 +461,8 @@ impl ParticleGroup {
         let fixed = |body: usize| bodies[body].inverse_mass == 0.0;
         match self.touches[i] {
             Some(held) if self.grips[i] != Grip::Off => {
-                // Against two walls nothing is left to move along but their edge. A body that yields is left to impacts.
+                // Against two walls a particle can only move along their edge. A yielding body is left to the impact
+                // pass.
                 let wedged = fixed(held.body) && fixed(touch.body);
                 if wedged {
                     self.grips[i] = Grip::Wedged;
@@ -475,8 +478,8 @@ impl ParticleGroup {
         }
     }
 
-    /// First grip of a surface on a particle that comes to it with the velocity just found: if stopping it takes more than
-    /// friction may give, it slides, with the friction of what stops it along the normal.
+    /// Initial grip on a particle that approaches a surface at its new velocity: if stopping it exceeds friction, it
+    /// slides, with the friction of the normal impulse.
     fn first_grip(&mut self, i: usize, touch: &Touch, bodies: &[ObstacleBody]) -> Grip {
         let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
         let normal = max(touch.speed_min - relative.dot(touch.normal), 0.0) * self.masses[i];
@@ -490,7 +493,7 @@ impl ParticleGroup {
         Grip::Slide
     }
 
-    /// Each particle is solved as if it alone pushed the body; whether the share of any has changed.
+    /// Each particle is solved as if it alone pushed the body; returns true if any share has changed.
     fn share_bodies(&mut self, bodies: &[ObstacleBody]) -> bool {
         let mut changed = false;
         self.loads.clear();
@@ -512,7 +515,7 @@ impl ParticleGroup {
         changed
     }
 
-    /// Chooses what is to be solved, and enters bends.
+    /// Chooses the particles to solve, and adds bends.
     pub(super) fn prepare_solve(&mut self, h: f32) {
         self.choose_solved(h);
         if self.bends_ahead() {
@@ -525,11 +528,11 @@ impl ParticleGroup {
         self.forest.has_trees() && !self.bends.is_empty()
     }
 
-    /// Solves for the velocities; repeats while contacts open, close, stick or slip, or are still to come: for all particles where springs
-    /// join them, else for those whose own contacts do.
+    /// Solves for the velocities; repeats while contacts open, close, stick, slip or appear: for all particles
+    /// connected by springs, else for those with changes.
     pub(super) fn settle_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         self.system.load_springs(&self.forest, &self.springs, &self.positions, h);
-        // Those of particles beside the lanes are cleared when they are taken out.
+        // Those of particles outside the lanes are cleared when they are taken out.
         if !self.eights.on {
             self.reactions.fill(Vec3::ZERO);
         }
@@ -594,8 +597,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Lists the particles that the solve is about: all that springs of trees join, those that are held, touch something or may come to.
-    /// The others fly on.
+    /// Lists the particles to solve: all in spring trees, and those held, touching or about to touch something. The
+    /// others fly freely.
     fn choose_solved(&mut self, h: f32) {
         self.solved.clear();
         if self.forest.has_trees() {
@@ -616,7 +619,7 @@ impl ParticleGroup {
             self.solved.push(i as u32);
             self.enter(i, h);
         }
-        // What is free flies on; the solve finds all others' velocities.
+        // Free particles fly on; the solve finds the velocities of the others.
         for at in 0..self.one_by_one() {
             let i = self.one(at);
             if self.attachment_of[i] == u32::MAX {
@@ -625,7 +628,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Finds the backing of each particle that touches a surface, its share of the body's inertia along the normal, and its room before it presses.
+    /// Computes the backing of each touching particle, its share of the body's inertia along the normal, and its room
+    /// before it presses.
     pub(super) fn back_contacts(&mut self, bodies: &[ObstacleBody]) {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
@@ -640,7 +644,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Hands on to bodies what presses particles onto them, and rubs them with it.
+    /// Transmits the pressing impulses to bodies, with friction.
     pub(super) fn press_bodies(&mut self, h: f32, bodies: &mut [ObstacleBody]) {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
@@ -659,12 +663,12 @@ impl ParticleGroup {
         }
     }
 
-    /// Impulse in this iteration of what presses a particle from two sides, N·s.
+    /// Impulse in this iteration that presses a particle from two sides, N·s.
     pub(super) fn pinched_by(&self, i: usize) -> f32 {
         self.pinched.loads[i] * self.span
     }
 
-    /// Turns grips into what the linear system knows: fixed velocities, or the inertia of a body that yields.
+    /// Converts grips for the linear system: prescribed velocities, or the inertia of a yielding body.
     fn apply_grips(&mut self, particles: &[u32], bodies: &[ObstacleBody]) {
         for &i in particles {
             let i = i as usize;
@@ -702,8 +706,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Friction on a particle that slides, as what it adds to its inertia, kg, and momentum, kg·m/s: a force, or a viscosity by Coulomb's law at the
-    /// slip last found, which slows it and never drives it.
+    /// Friction on a sliding particle as additional inertia, kg, and momentum, kg·m/s: a force, or a viscosity by
+    /// Coulomb's law at the last slip, which slows it and never drives it.
     fn rubbing(&self, i: usize, touch: &Touch, body: &ObstacleBody) -> (Sym3, Vec3) {
         let n = touch.normal;
         if self.grips[i] == Grip::Slide {
@@ -717,18 +721,18 @@ impl ParticleGroup {
         (viscosity, viscosity * surface)
     }
 
-    /// The part along the surface of the last contact impulse.
+    /// The tangential part of the last contact impulse.
     fn friction(&self, i: usize, normal: Vec3) -> Vec3 {
         let impulse = self.contact_impulses[i];
         impulse - normal * impulse.dot(normal)
     }
 
-    /// Impulse that the solve gave a particle that a surface holds, N·s.
+    /// Impulse of the solve on a particle that a surface holds, N·s.
     fn contact_impulse(&self, i: usize) -> Vec3 {
         self.velocities[i] * self.masses[i] - self.system.momentum[i] - self.reactions[i]
     }
 
-    /// Reads off the contact impulses of the last solve as they are.
+    /// Stores the contact impulses of the last solve.
     fn keep_grips(&mut self, particles: &[u32]) {
         for &i in particles {
             let i = i as usize;
@@ -737,8 +741,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Reads off the contact impulse of the last solve and decides again how the particle is held, or only whether it is held more; whether
-    /// its grip has changed.
+    /// Stores the contact impulse of the last solve and updates the grip of the particle, or only tightens it; returns
+    /// true if the grip has changed.
     fn change_grip(&mut self, i: usize, may_loosen: bool, bodies: &[ObstacleBody]) -> bool {
         let Some(touch) = self.touches[i] else {
             self.contact_impulses[i] = Vec3::ZERO;
@@ -765,7 +769,7 @@ impl ParticleGroup {
             }
             Grip::Stick => (Grip::Stick, impulse),
             Grip::Slow => (Grip::Slow, impulse),
-            // Friction that drives the motion has stopped it on the way.
+            // Friction that drives the motion has stopped it midway.
             Grip::Slide if limit > 0.0 && slip.dot(friction) > 0.0 => {
                 (if may_loosen { Grip::Stick } else { Grip::Slow }, impulse)
             }
@@ -776,7 +780,7 @@ impl ParticleGroup {
         changed
     }
 
-    /// Pushes bodies back by the impulses that the solve found.
+    /// Applies the solve's reactions to the bodies.
     pub(super) fn push_bodies(&mut self, bodies: &mut [ObstacleBody]) {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
@@ -788,7 +792,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Lists an impulse on a particle as its opposite on the body, if that can move or moves by itself.
+    /// Lists the reaction of an impulse on a particle, if the body can move or is kinematic.
     pub(super) fn report(&mut self, touch: &Touch, on_particle: Vec3, bodies: &[ObstacleBody]) {
         if !bodies[touch.body].rests() && on_particle != Vec3::ZERO {
             let body = touch.body as u32;

@@ -1,4 +1,4 @@
-//! Definitions: plain data that particle groups are made from.
+//! Definitions of particle groups, as plain data.
 
 use crate::body::def::Sleeping;
 use crate::body::material::Material;
@@ -6,7 +6,7 @@ use crate::body::shape::Filter;
 use crate::id::BodyId;
 use sinew_math::Vec3;
 
-/// A particle to be made.
+/// Definition of a particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ParticleDef {
@@ -16,11 +16,11 @@ pub struct ParticleDef {
     pub velocity: Vec3,
     /// kg, positive. To hold a particle in place, attach it.
     pub mass: f32,
-    /// Metres, ≥ 0: it keeps this far from shapes.
+    /// Metres, ≥ 0: distance kept from shapes.
     pub radius: f32,
 }
 
-/// Deformations that a spring resists: stretch alone, or compression, too.
+/// Deformations resisted by a spring: stretch only, or compression as well.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Resists {
@@ -31,7 +31,7 @@ pub enum Resists {
     Stretch,
 }
 
-/// A spring to be made. Force on A toward B: `stiffness × (length − rest_length) + damping × speed of lengthening`.
+/// Definition of a spring. Force on A toward B: `stiffness × (length − rest_length) + damping × lengthening speed`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpringDef {
@@ -55,8 +55,9 @@ impl SpringDef {
         Self { a, b, rest_length, stiffness, damping: 0.0, resists: Resists::Both }
     }
 
-    /// Damped at a share `ratio` (≥ 0) of what is critical for two particles of these masses (kg, infinite for one that is
-    /// held) on this spring alone: `2 ratio √(k m)` with `m = m₁ m₂ / (m₁ + m₂)`. At 1 they come to rest without a swing.
+    /// Damped at a share `ratio` (≥ 0) of the critical damping of two particles of these masses (kg, infinite for a
+    /// held one) on this spring alone: `2 ratio √(k m)` with `m = m₁ m₂ / (m₁ + m₂)`. At 1 they settle without
+    /// oscillation.
     ///
     /// # Panics
     /// If the ratio is negative or not finite, or a mass is not positive.
@@ -72,13 +73,13 @@ impl SpringDef {
     }
 }
 
-/// A bend, which keeps three particles in a row straight, or as curved as they were: a force `stiffness × (c − rest)` along
-/// `x₁ − 2 x₂ + x₃`, whose length is `c`, on the outer two, and twice its opposite on the middle one. A beam of bending
-/// stiffness `B` (N·m²) with a particle each `L` metres has a stiffness of `B/L³`.
+/// A bend keeps three consecutive particles straight, or at their initial curvature: a force `stiffness × (c − rest)`
+/// along `x₁ − 2 x₂ + x₃`, whose length is `c`, on the outer two, and twice its opposite on the middle one. A beam of
+/// bending stiffness `B` (N·m²) with a particle every `L` metres has a stiffness of `B/L³`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BendDef {
-    /// Indices of the particles in their group, the middle one between the others.
+    /// Indices of the particles in their group, the middle one in the middle.
     pub particles: [u32; 3],
     /// `|x₁ − 2 x₂ + x₃|` without force, metres, ≥ 0: 0 is straight.
     pub rest: f32,
@@ -86,8 +87,8 @@ pub struct BendDef {
     pub stiffness: f32,
 }
 
-/// A tether, which keeps a particle from going further from an attached one than cloth or hair allows: long-range attachment (Kim,
-/// Chentanez and Müller 2012). It never pushes.
+/// A tether limits a particle's distance from an attached one: long-range attachment (Kim, Chentanez and Müller 2012).
+/// It never pushes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TetherDef {
@@ -107,8 +108,7 @@ pub struct VolumeDef {
     pub triangles: Vec<[u32; 3]>,
     /// Volume without pressure, m³, positive.
     pub rest_volume: f32,
-    /// Pressure for the volume to shrink by all of itself at the rate at which it begins to, Pa, positive: of a gas at
-    /// pressure `p` that keeps its heat, `1.4 p`.
+    /// Bulk modulus, Pa, positive: of an adiabatic gas at pressure `p`, `1.4 p`.
     pub bulk_modulus: f32,
 }
 
@@ -116,19 +116,21 @@ pub struct VolumeDef {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SpringScheme {
-    /// Solves all springs as one, in an implicit step: for ropes, strands, bridges, and nets that bear what is many times heavier than they are. Work
-    /// in proportion to springs where they form trees; where they close loops, to springs times the width of the net in particles. Default.
+    /// Solves all springs together in an implicit step: for ropes, strands, bridges, and nets with loads many times
+    /// heavier than themselves. The cost is linear in springs for trees; with loops, it is springs times the net's
+    /// width in particles. Default.
     #[default]
     Implicit,
-    /// Projects one spring after the other: for cloth and blobs, at a tenth of the time. What is ten times heavier than the group sinks through it.
+    /// Projects the springs one after the other: for cloth and blobs, at a tenth of the cost. A body ten times heavier
+    /// than the group sinks through it.
     Projected,
 }
 
-/// Point that a particle hangs on.
+/// Point that a particle is attached to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum AttachmentTarget {
-    /// A place in the world, metres.
+    /// A fixed point of the world, metres.
     World(Vec3),
     /// A point of a body.
     Body {
@@ -161,12 +163,13 @@ impl AttachmentDef {
     }
 }
 
-/// A backstop, a ball fixed to a body that one particle touches and nothing else does: cloth sinks no deeper than that into the drawn body, also where no shape
-/// of a body is. It pushes the body back as a shape of it would, but bears nothing between that and the floor, rubs nothing, and does not bounce.
+/// A backstop: a ball fixed to a body that only one particle collides with. It limits how deep cloth sinks into the
+/// drawn body, also where no shape of a body is. It pushes the body back like a shape, but transmits nothing to the
+/// floor, and has neither friction nor bounce.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BackstopDef {
-    /// Index of the particle in its group; it keeps its radius from the ball.
+    /// Index of the particle in its group, which keeps its radius from the ball.
     pub particle: u32,
     /// Body that the ball is fixed to.
     pub body: BodyId,
@@ -176,14 +179,14 @@ pub struct BackstopDef {
     pub radius: f32,
 }
 
-/// Particles and springs that are made, moved and put to sleep together: rope, strand, cloth, blob.
+/// Particles and springs that are created, moved and put to sleep together: rope, strand, cloth, blob.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct GroupDef {
     /// The particles; springs and attachments name them by index.
     pub particles: Vec<ParticleDef>,
-    /// The springs. How they are solved is up to the scheme, see [`particles`](crate::particles).
+    /// The springs. The scheme decides how they are solved, see [`particles`](crate::particles).
     pub springs: Vec<SpringDef>,
     /// Bends, which resist bending; projected after the springs.
     pub bends: Vec<BendDef>,
@@ -191,36 +194,39 @@ pub struct GroupDef {
     pub tethers: Vec<TetherDef>,
     /// Volumes that particles enclose; projected last.
     pub volumes: Vec<VolumeDef>,
-    /// Faces of a sheet, each with three of its particles, in any order, and each at most once: [`Wind`](crate::Wind) presses on them, from either side,
-    /// where it would else find balls. For what encloses a volume leave them out: its lee side would be pressed on as well. Default none.
+    /// Faces of a sheet, each with three of its particles in any order, and at most once: [`Wind`](crate::Wind) acts on
+    /// them from either side, instead of on balls. Leave them empty for a closed volume: its lee side would be pressed
+    /// on as well. Default none.
     pub faces: Vec<[u32; 3]>,
     /// Held particles; each at most once.
     pub attachments: Vec<AttachmentDef>,
-    /// Balls behind single particles; each particle has at most one, and a held one none. They work whatever the filter and `passes` say. Default none.
+    /// Balls behind single particles, at most one per particle, none for a held one. They act whatever the filter and
+    /// `passes` say. Default none.
     pub backstops: Vec<BackstopDef>,
     /// Scheme by which springs are solved. Default implicit.
     pub scheme: SpringScheme,
-    /// Parts that a substep of the world is moved in, 1 to 64: projection is stiffer and loses less energy in shorter ones.
+    /// Number of parts of a world substep, 1 to 64: projection is stiffer and loses less energy with more parts.
     /// Default 1.
     pub iterations: u32,
-    /// Surface of the particles; `rolling` does not matter.
+    /// Surface of the particles; `rolling` is ignored.
     pub material: Material,
     /// Drag in proportion to velocity, 1/s, ≥ 0: share of it lost per second. Default 0.
     pub linear_damping: f32,
     /// Factor on the world's gravity, finite. Default 1.
     pub gravity_scale: f32,
-    /// Thickness for self-collision, metres, ≥ 0: particles that no spring joins keep this far from each other, with the friction of the material.
-    /// Default 0: off.
+    /// Thickness for self-collision, metres, ≥ 0: particles without a common spring keep this distance, with the
+    /// friction of the material. Default 0: off.
     ///
-    /// 1.4 times the grid is good; less than 0.8 lets a sheet through itself, more than twice pushes it apart. Six layers on the ground bear a body of
-    /// 30 times the mass of the particles under it, dropped on them from a hand's breadth (0.4 kg on scene `folded`); 1 kg slides off and
-    /// squeezes through in places. What moves by the thickness within a substep passes. Bodies on a slope creep down on it.
+    /// 1.4 times the grid spacing is good; less than 0.8 lets a sheet pass through itself, more than twice pushes it
+    /// apart. Six layers on the ground carry a body of 30 times the mass of the particles under it, dropped from 10 cm
+    /// (0.4 kg on scene `folded`); 1 kg slides off and squeezes through in places. Particles that move by the thickness
+    /// within a substep pass. Bodies on a slope creep down on it.
     pub thickness: f32,
-    /// Filter of the shapes that it meets.
+    /// Collision filter.
     pub filter: Filter,
-    /// Bodies that it passes through whatever the filter says: arms that swing by the skirt of who wears it. Default none.
+    /// Bodies that it never collides with: arms that swing past the wearer's skirt. Default none.
     pub passes: Vec<BodyId>,
-    /// Permission to fall asleep when it lies still, with all that hangs together with it. Default on.
+    /// Permission to fall asleep with its island. Default on.
     pub sleeping: Sleeping,
 }
 

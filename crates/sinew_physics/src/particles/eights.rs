@@ -1,14 +1,15 @@
-//! Nets on what stands still, eight particles side by side.
+//! Nets on static obstacles, eight particles at a time.
 //!
-//! A net has no trees, so that each of its particles meets what it touches alone. On a ball, a box, a capsule or a half-space that
-//! neither moves nor can be moved, what the solve of `contact.rs` comes to has a closed form: the particle sticks to the plane that
-//! it touches, or slides on it by Coulomb's law. Most particles of a cloth are such: they touch at most one of these, and surely
-//! meet nothing else on their way. They go through the iteration in the lanes of `batches.rs`; the **others** are taken out
-//! of these, solved one by one, and put back (`in_eights.rs`).
+//! A net has no trees, so each of its particles has independent contacts. On a ball, a box, a capsule or a half-space
+//! that neither moves nor can be moved, the solve of `contact.rs` has a closed form: the particle sticks to the plane
+//! that it touches, or slides on it by Coulomb's law. Most particles of a cloth are in this case: they touch at most
+//! one of these, and certainly hit nothing else. They are processed in the lanes of `batches.rs`; the **others** are
+//! taken out of the lanes, solved individually, and put back (`in_eights.rs`).
 //!
-//! Rows move those in lanes as if nothing were there. What this takes through the plane that a particle touches is taken back when the
-//! iteration ends, with friction by as much: at rest the same place and the same press, since what stands still is moved by neither. To
-//! ask for the plane in each row, as `net.rs` must where a body gives way, took most of the time.
+//! Rows move particles in lanes without regard to contacts. At the end of the iteration the motion through the touched
+//! plane is reverted, with the corresponding friction: at rest the position and the normal impulse are the same,
+//! because a static obstacle does not move. Testing the plane in each row, as `net.rs` must for yielding bodies, took
+//! most of the time.
 
 use super::batches::WAY;
 use crate::boxes::Aabb;
@@ -17,8 +18,8 @@ use sinew_math::Vec3;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
-/// Numbers of a particle beside those of `batches.rs`: velocity, height above the plane that it touches when the iteration begins, distance from all else, its
-/// friction and static friction, radius, acceleration, normal of that plane.
+/// Numbers of a particle in addition to those of `batches.rs`: velocity, height above the touched plane at the start of
+/// the iteration, distance from all else, its friction and static friction, radius, acceleration, normal of that plane.
 pub(super) const STRIP: usize = 14;
 const HEIGHT: usize = 3;
 const CLEARANCE: usize = 4;
@@ -28,27 +29,27 @@ const RADIUS: usize = 7;
 pub(super) const ACCELERATION: usize = 8;
 const NORMAL: usize = 11;
 
-/// The lanes' own numbers, and who is in them.
+/// Lane data, and the particles in the lanes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Eights {
     pub strips: Vec<Block<STRIP>>,
-    /// Lanes of each block that hold a particle that is not attached.
+    /// Lanes of each block that hold a free particle.
     pub present: Vec<u8>,
     /// Lanes that go through this iteration as such.
     pub easy: Vec<u8>,
     /// Lanes that touch a solid.
     pub touched: Vec<u8>,
-    /// Lanes of the easy ones that have met something on their way.
+    /// Lanes that may have hit something on their path.
     pub strayed: Vec<u8>,
-    /// Bits of the acceleration of all particles in the strips, m/s², if they have one there.
+    /// Bits of the common acceleration of all particles in the strips, m/s², if there is one.
     pub common_acceleration: Option<[u32; 3]>,
-    /// The substep goes through lanes.
+    /// The substep uses lanes.
     pub on: bool,
     /// Particles that do not, ascending.
     pub others: Vec<u32>,
-    /// Particles of rows that are projected one by one, but for attached ones.
+    /// Particles of rows that are projected individually, except attached ones.
     pub outside: Vec<u32>,
-    /// Solids that stand still.
+    /// Static solids.
     pub solids: Vec<Solid>,
     /// Indices of the other obstacles.
     pub foreign: Vec<u32>,
@@ -56,11 +57,11 @@ pub(super) struct Eights {
     pub foreign_bounds: Vec<Aabb>,
 }
 
-/// A solid that neither moves nor can be moved. Its numbers stand in every lane, as kernels need them.
+/// A solid that neither moves nor can be moved. Its numbers are splatted over all lanes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Solid {
     pub form: Form,
-    /// Place of its frame, world, metres.
+    /// Position of its frame, world, metres.
     pub at: Block<3>,
     /// Its friction and static friction, and 1 if it bounces.
     pub surface: Block<3>,
@@ -80,13 +81,13 @@ pub(super) enum Form {
 /// Eight points in the frame of a box, round its centre.
 struct InBox<L> {
     p: Vector3<L>,
-    /// Ways beyond the faces across each axis, metres, negative inside.
+    /// Distances beyond the faces along each axis, metres, negative inside.
     beyond: Vector3<L>,
-    /// The same where they are outside, else 0.
+    /// The same if outside, else 0.
     outside: Vector3<L>,
     /// Largest of `beyond`.
     deepest: L,
-    /// Distance of what is outside, else 0.
+    /// Distance if outside, else 0.
     distance: L,
 }
 
@@ -127,7 +128,7 @@ impl<L: Lanes> InBox<L> {
     }
 }
 
-/// Outward normal of a ball whose centre is so far away, metres.
+/// Outward normal of a ball whose centre is at this offset, metres.
 #[inline(always)]
 fn round_normal<L: Lanes>(from: Vector3<L>, length: L) -> Vector3<L> {
     let (is_out, one) = (L::gt(length, L::splat(1e-12)), L::splat(1.0));
@@ -163,13 +164,14 @@ impl Eights {
         Self { strips, present, easy, touched, strayed, others, outside, ..Self::default() }
     }
 
-    /// True if a particle goes through this iteration in a lane.
+    /// True if a particle uses a lane in this iteration.
     pub fn is_easy(&self, i: usize) -> bool {
         self.easy[i % self.easy.len()] >> (i / self.easy.len()) & 1 == 1
     }
 }
 
-/// The solid that a particle touches at most, and how far away everything else is. Normal, friction and bounces are those of what is touched.
+/// The solid that a particle touches, if any, and the distance of everything else. Normal, friction and bounce are
+/// those of the touched solid.
 struct Surroundings<L: Lanes> {
     gap: L,
     normal: Vector3<L>,
@@ -180,7 +182,7 @@ struct Surroundings<L: Lanes> {
 }
 
 impl<L: Lanes> Surroundings<L> {
-    /// Looks at all solids; the one that touches is within `reach`, metres.
+    /// Tests all solids; one touches if it is within `reach`, metres.
     #[inline(always)]
     fn look(solids: &[Solid], p: Vector3<L>, radius: L, reach: L) -> Self {
         let (zero, far) = (L::splat(0.0), L::splat(f32::MAX));
@@ -219,7 +221,7 @@ impl<L: Lanes> Surroundings<L> {
         found
     }
 
-    /// Takes in how far away a solid is: whether any may touch it, and to which it is the nearest so far.
+    /// Includes the distance of a solid: records if any may touch, and the nearest so far.
     #[inline(always)]
     fn meet(&mut self, gap: L, reach: L) -> (bool, L::Mask) {
         let nearer = L::lt(gap, self.gap);
@@ -228,7 +230,7 @@ impl<L: Lanes> Surroundings<L> {
         (L::le(gap, reach).any(), nearer)
     }
 
-    /// Takes in the surface of the nearest.
+    /// Includes the surface of the nearest one.
     #[inline(always)]
     fn touch(&mut self, solid: &Solid, normal: Vector3<L>, nearer: L::Mask) {
         let Block([friction, hold, bounces]) = &solid.surface;
@@ -238,7 +240,7 @@ impl<L: Lanes> Surroundings<L> {
         self.bounces = L::select(nearer, L::load(bounces), self.bounces);
     }
 
-    /// The velocity that what touches leaves of a free one, by Coulomb's law for a particle alone.
+    /// The velocity of a free particle after its contact, by Coulomb's law for a particle alone.
     #[inline(always)]
     fn held(&self, free: Vector3<L>, touching: L::Mask, per_second: L) -> Vector3<L> {
         let zero = L::splat(0.0);
@@ -267,7 +269,7 @@ fn select<L: Lanes>(mask: L::Mask, a: Vector3<L>, b: Vector3<L>) -> Vector3<L> {
     Vector3::new(L::select(mask, a.x, b.x), L::select(mask, a.y, b.y), L::select(mask, a.z, b.z))
 }
 
-/// Begins an iteration.
+/// Starts an iteration.
 pub(super) struct Approach<'a> {
     pub eights: &'a mut Eights,
     pub particles: &'a mut [Block<{ super::batches::FIELDS }>],
@@ -332,14 +334,14 @@ fn store<L: Lanes, const F: usize>(vector: Vector3<L>, fields: &mut [[f32; WIDTH
     vector.z.store(&mut fields[first + 2]);
 }
 
-/// True where what is so far away, metres, is surely not on the way.
+/// True where an obstacle at this distance, metres, cannot be reached.
 #[inline(always)]
 fn is_beyond<L: Lanes>(clearance: L, way: Vector3<L>) -> L::Mask {
     L::gt(clearance, L::splat(0.0))
         & L::gt(clearance * clearance, L::splat(DETOUR) * L::splat(DETOUR) * way.dot(way))
 }
 
-/// No more than the distance from a point of what lies in these bounds.
+/// A lower bound of the distance from a point to the contents of these bounds.
 #[inline(always)]
 fn distance_at_least<L: Lanes>(bounds: &Aabb, p: Vector3<L>) -> L {
     let (low, high) = (Vector3::<L>::splat(bounds.min) - p, p - Vector3::splat(bounds.max));
@@ -401,7 +403,7 @@ impl Kernel for Depart<'_> {
     }
 }
 
-/// The way that the plane that one touches leaves of a way: it holds what the net has pressed through it, with friction. And where that ends above it.
+/// The displacement after the touched plane's reaction, with friction, and the height above the plane at its end.
 #[inline(always)]
 fn rubbed<L: Lanes>(way: Vector3<L>, strip: &[[f32; WIDTH]; STRIP]) -> (Vector3<L>, L::Mask) {
     let zero = L::splat(0.0);

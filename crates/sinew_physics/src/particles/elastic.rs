@@ -1,12 +1,12 @@
-//! Energy of what is stretched, bent and compressed.
+//! Elastic energy of springs, bends and volumes.
 
 use super::ParticleGroup;
 use super::net::{enclosed_volume, stretch};
 
 impl ParticleGroup {
-    /// Elastic energy of its springs, `½ k s²` each, its bends likewise, and its volumes, `½ K (V − V₀)²/V₀`, J. Tethers hold
-    /// without energy. A row that is projected counts with the compliance with which it gives back alone, `1/k + h² Σ w`: rows that share
-    /// particles may give back less, or more (ADR 0027).
+    /// Elastic energy of its springs, `½ k s²` each, its bends likewise, and its volumes, `½ K (V − V₀)²/V₀`, J.
+    /// Tethers store none. A projected row counts with the compliance with which it alone returns energy,
+    /// `1/k + h² Σ w`: rows that share particles may return less or more (ADR 0027).
     pub fn elastic_energy(&self) -> f32 {
         let solved = self.forest.solved_springs().map(|index| {
             let s = &self.springs[index as usize];
@@ -39,7 +39,7 @@ impl ParticleGroup {
     /// Volume that the surface of `volumes()[index]` encloses, m³.
     ///
     /// # Panics
-    /// If there is no such volume.
+    /// If the volume does not exist.
     pub fn volume(&self, index: usize) -> f32 {
         enclosed_volume(&self.volumes[index].triangles, &self.positions, |_, _| ())
     }
@@ -47,13 +47,13 @@ impl ParticleGroup {
     /// Stretch of spring `index`: length less rest length, metres; 0 where it is slack.
     ///
     /// # Panics
-    /// If there is no such spring.
+    /// If the spring does not exist.
     pub fn stretch(&self, index: usize) -> f32 {
         stretch(&self.springs[index], &self.positions)
     }
 }
 
-/// Energy of a row with error `c`, its own compliance, and what projection adds to it.
+/// Energy of a row with error `c`, its own compliance, and the compliance added by projection.
 fn energy(c: f32, compliance: f32, added: f32) -> f32 {
     0.5 * c * c / (compliance + added)
 }

@@ -1,10 +1,10 @@
 //! The linear system of a step: elimination along the trees, and conjugate gradients where springs close loops.
 //!
-//! A tree is factored from the leaves to the roots and solved for any momenta in two passes. A spring that closes a loop joins what
-//! elimination holds apart. The trees' factor then has that spring as well, with its other end held, and is the preconditioner of
-//! conjugate gradients (Hestenes and Stiefel 1952; Concus, Golub and O'Leary 1976) over the whole system: `M z = r` leaves of
-//! `A d` no more than what the closing springs pass from end to end, so that the trees are never multiplied. Few loops take few rounds;
-//! nets as many as they are wide.
+//! A tree is factored from the leaves to the roots and solved for any momenta in two passes. A spring that closes a
+//! loop connects nodes that elimination separates. The trees' factor then contains that spring as well, with its other
+//! end held, and is the preconditioner of conjugate gradients (Hestenes and Stiefel 1952; Concus, Golub and O'Leary
+//! 1976) over the whole system: with `M z = r`, `A d` differs only by the terms of the closing springs, so that the
+//! trees are never multiplied. A few loops take a few iterations; nets take as many as they are wide.
 
 use super::SpringDef;
 use super::conjugate::{Conjugate, dot};
@@ -35,7 +35,7 @@ impl System {
         h: f32,
         velocities: &mut [Vec3],
     ) {
-        // What the other ends of closing springs pass on at the velocities at hand, which the first solve takes as it is.
+        // Contributions of the closing springs' other ends at the current velocities, used by the first solve.
         self.load_momenta(forest, springs, h, velocities);
         self.pass_across(forest, velocities, &mut of.passed);
         for (momentum, passed) in self.gathered_momentum.iter_mut().zip(&of.passed) {
@@ -43,7 +43,7 @@ impl System {
         }
         of.residual.copy_from_slice(&of.passed);
         self.substitute::<true>(forest, velocities);
-        // It leaves over by how much that has changed.
+        // The residual is the change of these.
         self.pass_across(forest, velocities, &mut of.passed);
         of.start(self.hubs.iter().map(|hub| &hub.velocity));
         let most = self.conjugate_tolerance(velocities);
@@ -53,7 +53,7 @@ impl System {
             of.turn((found / last) as f32, self.hubs.iter().map(|hub| &hub.velocity));
             self.pass_across(forest, &of.direction, &mut of.passed);
             let taken = dot(&of.needed, &of.direction) - dot(&of.passed, &of.direction);
-            // Also where one is no number.
+            // Also for NaN.
             let goes_on = found > most && taken > 0.0;
             if !goes_on {
                 break;
@@ -74,14 +74,14 @@ impl System {
         energies.sum::<f64>() * CONJUGATE_TOLERANCE
     }
 
-    /// Gains by the preconditioner of what is left over; gives the product of both, J.
+    /// Solves the preconditioner for the residual; returns the product of both, J.
     fn precondition(&mut self, of: &mut Conjugate, forest: &Forest) -> f64 {
         self.gathered_momentum.copy_from_slice(&of.residual);
         self.substitute::<false>(forest, &mut of.gain);
         dot(&of.residual, &of.gain)
     }
 
-    /// Momentum that each end of a closing spring gets from the velocity of the other, kg·m/s.
+    /// Momentum that each end of a closing spring gets from the other's velocity, kg·m/s.
     fn pass_across(&self, forest: &Forest, velocities: &[Vec3], passed: &mut [Vec3]) {
         passed.fill(Vec3::ZERO);
         for &(k, ends) in forest.closings() {
@@ -104,7 +104,7 @@ impl System {
         }
     }
 
-    /// Factors the trees: each parent feels the inertia of what hangs below it.
+    /// Factors the trees: each parent includes the inertia of its descendants.
     fn factor(&mut self, forest: &Forest) {
         for i in 0..self.inertia.len() {
             self.gathered_inertia[i] = self.inertia[i] + self.added_inertia[i];
@@ -160,8 +160,8 @@ impl System {
         }
     }
 
-    /// Velocities for the gathered momenta. `WHOLE`: with the pull of springs along the trees, the velocities of bodies and surfaces, and those that are
-    /// given; else what the momenta alone gain.
+    /// Velocities for the gathered momenta. `WHOLE`: including the pull of tree springs, the velocities of bodies and
+    /// surfaces, and prescribed ones; else the response to the momenta alone.
     fn substitute<const WHOLE: bool>(&mut self, forest: &Forest, velocities: &mut [Vec3]) {
         if !WHOLE {
             velocities.fill(Vec3::ZERO);
@@ -207,7 +207,7 @@ impl System {
         }
     }
 
-    /// Inertia of a child with all that hangs below it, kg: that of a point of its body, if one that moves holds it.
+    /// Inertia of a child with its descendants, kg: if a movable body holds it, that of a point of the body.
     fn below(&self, forest: &Forest, child: usize) -> Sym3 {
         if self.is_in_hub(forest, child) {
             self.hubs[forest.hub_of(child)].seen()
@@ -221,7 +221,8 @@ impl System {
         forest.hub_of(i) != NO_HUB && self.freedom[i] != Freedom::Fixed
     }
 
-    /// Gathers the inertia of what the body of a particle holds, if one that moves does, as that particle sees it; whether there is one.
+    /// Gathers the inertia of the particles on a particle's movable body, as seen by that particle; returns false if
+    /// there is none.
     fn factor_hub(&mut self, forest: &Forest, i: usize) -> bool {
         if !self.is_in_hub(forest, i) {
             return false;
@@ -232,7 +233,7 @@ impl System {
         true
     }
 
-    /// Gathers what pulls at the body of a particle, if one that moves holds it; whether there is one.
+    /// Gathers the loads of a particle's movable body; returns false if there is none.
     fn pull_hub<const WHOLE: bool>(&mut self, forest: &Forest, i: usize) -> bool {
         if !self.is_in_hub(forest, i) {
             return false;
@@ -246,7 +247,7 @@ impl System {
         true
     }
 
-    /// Gives all that the body of a particle holds the velocities of its points.
+    /// Gives all particles of a body the velocities of its points.
     fn move_hub(&self, forest: &Forest, i: usize, velocities: &mut [Vec3]) {
         let hub = forest.hub_of(i);
         for &held in &forest.hubs()[hub] {
@@ -254,10 +255,10 @@ impl System {
         }
     }
 
-    /// Velocity of a particle under the momentum of what hangs below it with an inertia, kg, on a parent that has a velocity, m/s.
+    /// Velocity of a particle under the momentum of its subtree with an inertia, kg, on a parent with a velocity, m/s.
     ///
-    /// The pull of a stiff spring on what moves along with it is many thousand times their momentum, and its rounding would be as large as that: so it is that of
-    /// what they have more than the parent's velocity gives them.
+    /// The pull of a stiff spring exceeds the subtree's momentum many thousand times, and its rounding error would be
+    /// as large. The computation therefore uses the momentum relative to the parent's velocity.
     fn velocity<const WHOLE: bool>(
         &self,
         i: usize,
@@ -280,8 +281,8 @@ impl System {
         }
     }
 
-    /// Momentum that a child hands on to its parent, kg·m/s: the spring's block times the velocity that it has while the parent rests. Of a stiff spring it is what
-    /// the child does not keep.
+    /// Momentum that a child passes to its parent, kg·m/s: the spring's block times its velocity while the parent is at
+    /// rest. For a stiff spring, the momentum the child does not keep.
     fn passed_on<const WHOLE: bool>(
         &self,
         child: usize,
@@ -304,11 +305,11 @@ impl System {
     }
 }
 
-/// The inverse inertia of a particle that gains velocity along the normal only as far as its surface yields, by `c`: `W − W n nᵀ W / (n·W n + c)`
-/// (Sherman and Morrison 1950).
+/// The inverse inertia of a particle whose normal velocity changes only as far as its surface yields, by `c`:
+/// `W − W n nᵀ W / (n·W n + c)` (Sherman and Morrison 1950).
 ///
-/// The sum of both inertias, `W⁻¹ + n nᵀ / c`, is not inverted instead: where the body outweighs the particle by thousands, rounding of 32 bits leaves
-/// nothing of the particle's part across the normal.
+/// Inverting the sum `W⁻¹ + n nᵀ / c` instead fails: if the body outweighs the particle by thousands, 32-bit rounding
+/// destroys the particle's tangential part.
 fn constrained(inverse: &Sym3, freedom: &Freedom) -> Sym3 {
     match freedom {
         Freedom::Free => *inverse,
@@ -320,14 +321,14 @@ fn constrained(inverse: &Sym3, freedom: &Freedom) -> Sym3 {
     }
 }
 
-/// True if a spring's block outweighs the inertia below it, so that this is what is left of their difference.
+/// True if a spring's block outweighs the inertia below it, so that this form is the accurate one.
 fn is_stiff(block: &Sym3, inertia: &Sym3) -> bool {
     let size = |m: &Sym3| m.to_mat3().x_axis.x + m.to_mat3().y_axis.y + m.to_mat3().z_axis.z;
     size(block) > size(inertia)
 }
 
-/// With S the child's inertia, B the spring's block and W its response, the parent gains `B − B W B`. Free, that is
-/// `S (S + B)⁻¹ B`, or `S − S (S + B)⁻¹ S`: whichever of both is the smaller, the other one would cancel itself out.
+/// With S the child's inertia, B the spring's block and W its response, the parent gains `B − B W B`. For a free child
+/// that equals `S (S + B)⁻¹ B`, or `S − S (S + B)⁻¹ S`: the smaller one is used, because the other would cancel.
 fn felt_by_parent(inertia: &Sym3, inverse: &Sym3, block: &Sym3, freedom: &Freedom) -> Sym3 {
     let stiff = is_stiff(block, inertia);
     let free = || {

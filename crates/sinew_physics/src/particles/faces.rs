@@ -1,12 +1,12 @@
-//! Faces of a sheet: triangles between its particles, by which the air finds it.
+//! Faces of a sheet: triangles between its particles, for aerodynamic forces.
 
 use sinew_math::Vec3;
 
-/// Faces of a group, and which of them each particle is a corner of.
+/// Faces of a group, and the faces of each particle.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Faces {
     pub list: Vec<[u32; 3]>,
-    /// Start of each particle's part of `corners`, and its end; none without faces.
+    /// Start of each particle's part of `corners`, and its end; empty without faces.
     starts: Vec<u32>,
     /// The two other corners of each face of each particle, in the order of the face.
     corners: Vec<[u32; 2]>,

@@ -49,13 +49,13 @@ pub(super) enum Holder {
 /// Number of the hub of a particle that no body holds.
 pub(super) const NO_HUB: usize = usize::MAX;
 
-/// True if a spring between what these hold cannot change its length.
+/// True if both ends of a spring are held so that it cannot change its length.
 fn is_rigid([a, b]: [Holder; 2]) -> bool {
     a == b && a != Holder::Nothing
 }
 
 impl Forest {
-    /// All springs projected, none solved: each particle is a tree of its own.
+    /// All springs projected, none solved: each particle is its own tree.
     pub fn without_trees(springs: &[SpringDef], holders: &[Holder]) -> Self {
         let ends = |k: u32| [springs[k as usize].a, springs[k as usize].b].map(|i| holders[i as usize]);
         Self {
@@ -103,7 +103,7 @@ impl Forest {
         let mut reached: Vec<bool> = holders.iter().map(|&holder| holder == Holder::World).collect();
         let mut in_tree = vec![false; springs.len()];
         let mut frontier = Vec::new();
-        // What a body gathers as a root is all that the group brings to it.
+        // The loads that a root body gathers are all that the group contributes to it.
         let first_held: Vec<u32> = forest.hubs.iter().map(|hub| hub[0]).collect();
         for root in first_held.into_iter().chain(0..holders.len() as u32) {
             if reached[root as usize] {
@@ -132,7 +132,7 @@ impl Forest {
         forest
     }
 
-    /// Puts a particle in the frontier of a tree, and those that the same body holds.
+    /// Adds a particle to a tree's frontier, with those that the same body holds.
     fn reach(&self, i: u32, reached: &mut [bool], frontier: &mut Vec<u32>) {
         let alone = [i];
         let node = self.hubs.get(self.hub_of[i as usize]).map_or(&alone[..], |hub| &hub[..]);
@@ -152,7 +152,7 @@ impl Forest {
         self.hub_of[i]
     }
 
-    /// True if there are springs to be solved, so that particles hear of each other.
+    /// True if there are springs to solve, so that particles affect each other.
     pub fn has_trees(&self) -> bool {
         !(self.links.is_empty() && self.ties.is_empty())
     }
@@ -167,7 +167,7 @@ impl Forest {
         &self.roots
     }
 
-    /// Springs to what is held in the world.
+    /// Springs to fixed points of the world.
     pub fn ties(&self) -> &[Tie] {
         &self.ties
     }

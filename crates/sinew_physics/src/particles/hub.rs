@@ -1,13 +1,14 @@
-//! Bodies in the linear system of the springs: particles that one body holds move as it does.
+//! Bodies in the linear system of the springs: particles held by one body move with it.
 //!
-//! Such a body, a **hub**, is one node of a tree with six degrees of freedom: it gathers inertia and momentum of all its particles,
-//! `S = M + Σ Gᵀ Iᵢ G` with `G = (1, −[r]×)`, and the particle by which it hangs on the next one towards the root feels `(G S⁻¹ Gᵀ)⁻¹`. A rope that
-//! goes on from one point of a body to another pulls through it then. Were its points solved one by one, each with its share of the
-//! body's inertia, they would part under the tension within the solve, and a bridge of planks on ropes would stretch and gain energy.
+//! Such a body, a **hub**, is one tree node with six degrees of freedom. It gathers inertia and momentum of all its
+//! particles, `S = M + Σ Gᵀ Iᵢ G` with `G = (1, −[r]×)`, and the particle that connects it to the next node toward the
+//! root sees the inertia `(G S⁻¹ Gᵀ)⁻¹`. A rope that continues from one point of a body to another thus pulls through
+//! it. If its points were solved separately, each with its share of the body's inertia, they would separate under
+//! tension within the solve, and a plank bridge on ropes would stretch and gain energy.
 //!
-//! Several groups that hang on one body are solved as one: each adds to `S` and to the momentum the **shares** that the others gather
-//! there. Of a body that is the root of their trees shares are all that they bring, whatever its velocity, and the solution is exact. Where springs
-//! close loops, shares hold for the velocities that the round before has found.
+//! Several groups attached to one body are solved together: each adds the **shares** of the others to `S` and to the
+//! momentum. If the body is the root of their trees, the shares do not depend on its velocity, and the solution is
+//! exact. If springs close loops, the shares belong to the previous round's velocities.
 
 use super::added_mass::AddedMass;
 use super::contact::ObstacleBody;
@@ -16,18 +17,19 @@ use crate::spatial::{
 };
 use sinew_math::{Mat3, Sym3, Vec3};
 
-/// Inertia and pull that a group's particles bring to a body that holds them: with all that hangs on them, about the body's centre.
+/// Inertia and pull of a group's particles on the body that holds them, including their subtrees, about the body's
+/// centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Share {
     inertia: Mat6,
-    /// Momentum that they give it beyond the velocity that is coming, N·s and N·m·s.
+    /// Momentum relative to the predicted velocity, N·s and N·m·s.
     pull: Vec6,
 }
 
 impl Share {
     pub const NONE: Self = Self { inertia: ZERO66, pull: ZERO6 };
 
-    /// Adds what acts at a point with an inertia, kg, and a momentum beyond the velocity that is coming, N·s.
+    /// Adds a load at a point: inertia, kg, and momentum relative to the predicted velocity, N·s.
     fn add_at(&mut self, arm: Vec3, inertia: Sym3, pull: Vec3) {
         self.add_inertia(arm, inertia);
         add_scaled(&mut self.pull, &wrench(arm, pull), 1.0);
@@ -47,7 +49,7 @@ impl Share {
         add_scaled(&mut self.pull, &other.pull, 1.0);
     }
 
-    /// Part of the energy that the solve makes least at a velocity beyond the one that is coming, J, and the size of its terms.
+    /// Merit function at a velocity relative to the predicted one, J, and the size of its terms.
     fn merit(&self, gained: &Vec6) -> (f32, f32) {
         let mut own = 0.0;
         for (row, along) in self.inertia.iter().zip(gained) {
@@ -68,20 +70,20 @@ pub(super) struct Hub {
     inertia: Sym3,
     /// Inertia that moves along with it.
     added: AddedMass,
-    /// Shares that other groups bring to it, and that this one does.
+    /// Shares from other groups, and from this one.
     pub others: Share,
     pub own: Share,
-    /// At the end of the iteration without springs and particles, and with those that hang below it.
+    /// At the end of the iteration without springs and particles, and with its subtrees.
     coming: Vec6,
     free: Vec6,
     /// Velocity gained per impulse, with the particles below it.
     response: Mat6,
-    /// Inertia of the point by which it hangs on the next node, kg.
+    /// Inertia of the point that connects it to the next node, kg.
     seen: Sym3,
-    /// As the solve found it, and as it was before the last step of Newton's method.
+    /// Result of the solve, and before the last Newton step.
     pub velocity: Vec6,
     pub last_velocity: Vec6,
-    /// As the solve before found it.
+    /// Result of the previous solve.
     found: Vec6,
 }
 
@@ -104,7 +106,7 @@ impl Hub {
         }
     }
 
-    /// Takes in a body that moves; `gained` is the velocity that other forces will add to its own, m/s.
+    /// Adds a movable body; `gained` is its velocity change by other forces, m/s.
     pub fn take(&mut self, body: &ObstacleBody, gained: Vec3, added: &AddedMass) {
         self.center = body.center;
         (self.mass, self.inertia) = body.inertia();
@@ -118,13 +120,13 @@ impl Hub {
         velocity_at(&self.coming, point - self.center)
     }
 
-    /// Velocity of a point of it as the solve found it, m/s.
+    /// Velocity of one of its points after the solve, m/s.
     pub fn velocity_at(&self, point: Vec3) -> Vec3 {
         velocity_at(&self.velocity, point - self.center)
     }
 
-    /// Gathers the inertia of what it holds: point and inertia of each particle with all that hangs below it. One of its points is that by which it hangs on
-    /// the next node.
+    /// Gathers the inertia of its particles: point and inertia of each with its subtree. One of its points connects it
+    /// to the next node.
     pub fn factor(&mut self, particles: impl Iterator<Item = (Vec3, Sym3)>, link: Vec3) {
         let mut whole = ZERO66;
         let turning = self.inertia.to_mat3();
@@ -149,8 +151,8 @@ impl Hub {
         self.seen = Sym3::from_mat3(&Mat3::from_cols(x, y, z)).inverse();
     }
 
-    /// Gathers what pulls at it: point, inertia and momentum of each particle with all that hangs below it. `WHOLE`: beside its own momentum and the shares of
-    /// others.
+    /// Gathers its loads: point, inertia and momentum of each particle with its subtree. `WHOLE`: including its own
+    /// momentum and the shares of others.
     pub fn gather<const WHOLE: bool>(&mut self, particles: impl Iterator<Item = (Vec3, Sym3, Vec3)>) {
         let mut pull = ZERO6;
         for (point, inertia, momentum) in particles {
@@ -169,13 +171,13 @@ impl Hub {
         self.velocity = self.free;
     }
 
-    /// Adds what acts at a point of it with an inertia and a momentum, kg and kg·m/s, to what this group brings.
+    /// Adds a load at a point (kg and kg·m/s) to this group's share.
     pub fn add_at(&mut self, point: Vec3, inertia: Sym3, momentum: Vec3) {
         let arm = point - self.center;
         self.own.add_at(arm, inertia, momentum - inertia * velocity_at(&self.coming, arm));
     }
 
-    /// Inertia of the point by which it hangs on the next node, for what pulls there, kg.
+    /// Inertia of the point that connects it to the next node, for a pull there, kg.
     pub fn seen(&self) -> Sym3 {
         self.seen
     }
@@ -185,7 +187,7 @@ impl Hub {
         self.seen * velocity_at(&self.free, point - self.center)
     }
 
-    /// Moves it as a pull at that point does that brings this to a velocity.
+    /// Moves it as a pull at that point would that gives the point this velocity.
     pub fn follow(&mut self, point: Vec3, velocity: Vec3) {
         let pull = wrench(point - self.center, self.seen * velocity - self.momentum_seen_at(point));
         self.velocity = self.free;
@@ -198,7 +200,8 @@ impl Hub {
         self.found = self.velocity;
     }
 
-    /// Change of its velocity since then, over what has been added to the velocity that was coming; both at the centre and about it, as energies.
+    /// Change of its velocity since then, relative to the change added to the prediction; at the centre and about it,
+    /// as energies.
     pub fn change(&self) -> f32 {
         let energy_from = |from: &Vec6| {
             let mut gained = self.velocity;
@@ -210,7 +213,7 @@ impl Hub {
         if all > 0.0 { (energy_from(&self.found) / all).sqrt() } else { 0.0 }
     }
 
-    /// Part of the energy that the solve makes least, J, and the size of its terms: see `merit` of `system.rs`.
+    /// Merit function, J, and the size of its terms: see `merit` of `system.rs`.
     pub fn merit(&self) -> (f32, f32) {
         let mut gained = self.velocity;
         add_scaled(&mut gained, &self.coming, -1.0);

@@ -1,5 +1,5 @@
-//! Bounces, and what is left of contacts at the end of the iteration: a sweep over the way there, the signed distance at
-//! its end. Each particle answers with its own mass.
+//! Bounces and remaining contacts at the end of the iteration: a sweep along the path, the signed distance at its end.
+//! Each particle reacts with its own mass.
 
 use super::ParticleGroup;
 use super::contact::{Firmness, Obstacle, ObstacleBody, Placed, Touch};
@@ -9,12 +9,12 @@ use crate::particles::tuning::{DETOUR, EXIT_SPEED, IMPACT_SPEED, PINCHING, ROUND
 use core::cmp::Ordering;
 use sinew_math::{Vec3, clamp, max, min, normalize_or};
 
-/// Surfaces that a particle is moved out of, one after the other; after that it stays where it met the next.
+/// Largest number of surfaces that a particle is moved out of; after that it stays where it hit the next one.
 const ROUNDS: usize = 2;
 /// Impulses on bodies per particle and iteration: in the solve, of the net, of its bounce, and of impacts, the last of which may be with two.
 pub(super) const MAX_TOUCHES: usize = 3 + ROUNDS + 2;
 
-/// A particle as the solve has brought it to the end of the iteration.
+/// A particle at the end of the iteration, after the solve.
 struct Came {
     /// World, metres.
     position: Vec3,
@@ -25,7 +25,7 @@ struct Came {
 }
 
 impl ParticleGroup {
-    /// Gives back their share to particles that the solve has stopped.
+    /// Restores the energy share of particles that the solve has stopped.
     pub(super) fn bounce(&mut self, h: f32, bodies: &mut [ObstacleBody]) {
         for at in 0..self.solved.len() {
             let i = self.solved[at] as usize;
@@ -41,8 +41,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Puts particles that are inside a shape, or crossed one, on its surface, on the side they came from. They stop
-    /// or bounce, and rub.
+    /// Moves particles that are inside a shape, or crossed one, to its surface, on the side they came from. They stop
+    /// or bounce, with friction.
     pub(super) fn stop_impacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &mut [ObstacleBody]) {
         for at in 0..self.one_by_one() {
             let i = self.one(at);
@@ -67,7 +67,8 @@ impl ParticleGroup {
                 let Placed { start, end, .. } = self.placed[obstacle];
                 touch.gap = meeting.height(end.inverse_point(ends.1));
                 if bodies[touch.body].firmness() > Firmness::Yields {
-                    // What was in it when the iteration began comes out slowly: at once, it would stretch its springs.
+                    // A particle that was inside at the start of the iteration comes out slowly: an instant move would
+                    // stretch its springs.
                     let goal = min(meeting.height(start.inverse_point(ends.0)) + EXIT_SPEED * h, 0.0);
                     touch.gap = min(touch.gap - goal, 0.0);
                 }
@@ -87,7 +88,7 @@ impl ParticleGroup {
                     self.velocities[i] = touch.surface_velocity(&bodies[touch.body]);
                     break;
                 }
-                // The solve has brought it there as it should.
+                // The solve has moved it there correctly.
                 let known = self.touches[i].is_some_and(|touch| touch.obstacle == obstacle);
                 if !(known && touch.gap > -ROUNDING) {
                     self.respond(i, h, touch, h * (1.0 - meeting.fraction), bodies);
@@ -103,8 +104,9 @@ impl ParticleGroup {
         touch.height(self.positions[i], self.radii[i]) < ROUNDING
     }
 
-    /// A particle between two surfaces that leave it no room, each of which would push it into the other: it comes out of the firmer, midway between
-    /// them where none is, goes with them, and stays free along them, so that its springs take it out and nothing pulls it from them. Whether they leave it none.
+    /// A particle between two surfaces without room, each of which would push it into the other. It moves out of the
+    /// firmer one, or midway if neither is firmer, moves with them, and stays free tangentially, so that its springs
+    /// can pull it out. Returns true if there is no room.
     fn squeeze(
         &mut self,
         i: usize,
@@ -125,7 +127,7 @@ impl ParticleGroup {
         let (speed, opposite_speed) = (body.velocity_at(at), opposite_body.velocity_at(at));
         let across = normalize_or(normal - opposite, normal);
         let most = EXIT_SPEED * h;
-        // How far it comes out of the first, and how far its velocity is that of the first.
+        // How far it moves out of the first, and the first's share in its velocity.
         let (out, share) = match body.firmness().cmp(&opposite_body.firmness()) {
             Ordering::Greater => (-gap, 1.0),
             Ordering::Equal => (0.5 * (opposite_gap - gap), 0.5),
@@ -134,7 +136,7 @@ impl ParticleGroup {
         self.positions[i] = at + across * clamp(out, -most, most);
         let behind = speed * share + opposite_speed * (1.0 - share) - came.velocity;
         self.velocities[i] = came.velocity + across * behind.dot(across);
-        // What pushed it on the way here has felt that, or cannot.
+        // The surface that pushed it here has already felt that, or is fixed.
         let mut kept = came.reported;
         for k in came.reported..self.body_impulses.len() {
             let hit = self.body_impulses[k];
@@ -147,7 +149,7 @@ impl ParticleGroup {
         true
     }
 
-    /// Takes a particle out of all that rests but the two shapes that leave it no room: it has the last word.
+    /// Moves a particle out of all fixed shapes except the two that leave no room; the last one wins.
     fn leave_walls(&mut self, i: usize, but: [usize; 2], obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         let (at, radius) = (self.positions[i], self.radii[i]);
         let way = DETOUR * (at - self.previous[i]).length();
@@ -167,8 +169,9 @@ impl ParticleGroup {
         (self.positions[i], self.velocities[i]) = (out, velocity);
     }
 
-    /// A particle on a wall that a body comes to: it does not leave the wall, and both rub it, the wall last. What the body presses with goes on to the
-    /// wall by a contact of the two where it is nipped; else the body pushes it along the wall out of its way.
+    /// A particle on a wall that a body approaches: it stays on the wall, and both apply friction, the wall last. If it
+    /// is nipped, a contact of the two transmits the body's pressure to the wall; otherwise the body pushes it aside
+    /// along the wall.
     fn pinch(&mut self, i: usize, wall: &Touch, touch: &Touch, left: f32, bodies: &mut [ObstacleBody]) {
         let (own, load, begun) = (1.0 / self.masses[i], self.pinched_by(i), self.velocities[i]);
         let along_wall = |v: Vec3| v - wall.normal * v.dot(wall.normal);
@@ -183,7 +186,7 @@ impl ParticleGroup {
             self.velocities[i] += aside * (own * pushed);
             self.positions[i] -= aside * (touch.gap / aside.length_squared());
         }
-        // What the body gives it along the wall's normal the wall gives back.
+        // The wall returns what the body adds along its normal.
         let back = -pushed * touch.normal.dot(wall.normal);
         for (touch, pressing, push) in
             [(touch, load + pushed, touch.normal * pushed), (wall, back, Vec3::ZERO)]
@@ -195,7 +198,7 @@ impl ParticleGroup {
         self.positions[i] += along_wall(self.velocities[i] - begun) * left;
     }
 
-    /// True if a particle has ended on the convex solid that it touches, and met nothing else.
+    /// True if a particle has ended on the convex solid that it touches, and hit nothing else.
     fn rests(&self, i: usize, obstacles: &[Obstacle]) -> bool {
         self.touches[i].is_some_and(|touch| {
             touch.height(self.positions[i], self.radii[i]) > -ROUNDING
@@ -204,7 +207,7 @@ impl ParticleGroup {
         })
     }
 
-    /// The surface that a particle has come through, or else the one it is deepest in.
+    /// The surface that a particle has crossed, or else the one it is deepest in.
     fn entered(
         &self,
         i: usize,
@@ -238,17 +241,17 @@ impl ParticleGroup {
         deepest
     }
 
-    /// Takes a particle out of a surface that it met when `left` seconds were left.
+    /// Moves a particle out of a surface that it hit with `left` seconds left.
     fn respond(&mut self, i: usize, h: f32, mut touch: Touch, left: f32, bodies: &mut [ObstacleBody]) {
         let approach = (self.velocities[i] - touch.surface_velocity(&bodies[touch.body])).dot(touch.normal);
         touch.speed_min = self.rebound(i, approach, h, &touch);
         let change = self.push_off(i, &touch, bodies);
-        // What friction took from the velocity, the position must not have gained.
+        // The position must not keep the motion that friction removed from the velocity.
         let aside = change - touch.normal * change.dot(touch.normal);
         self.positions[i] += aside * left - touch.normal * touch.gap;
     }
 
-    /// Brings a particle to the least speed of its contact; gives what its velocity gained.
+    /// Raises a particle's normal velocity to its contact's minimum; returns the velocity gained.
     fn push_off(&mut self, i: usize, touch: &Touch, bodies: &mut [ObstacleBody]) -> Vec3 {
         let own = 1.0 / self.masses[i];
         let impulse = touch.impulse(own, self.velocities[i], &mut bodies[touch.body]);
@@ -257,9 +260,9 @@ impl ParticleGroup {
         impulse * own
     }
 
-    /// Normal speed after an impact at `approach` (negative), so that a bounce neither gains nor loses height by the
-    /// length of the iteration. A velocity of symplectic Euler is that of half an iteration ago, and gravity works
-    /// between the surface and where the particle was, or is, when it has that velocity.
+    /// Normal speed after an impact at `approach` (negative), corrected so that a bounce neither gains nor loses height
+    /// due to the iteration's length. A velocity of symplectic Euler belongs to half an iteration ago, and gravity acts
+    /// between the surface and the particle's position at that time.
     fn rebound(&self, i: usize, approach: f32, h: f32, touch: &Touch) -> f32 {
         if approach >= -IMPACT_SPEED || touch.material.restitution == 0.0 {
             return 0.0;

@@ -1,4 +1,4 @@
-//! The way of a group through the lanes of `eights.rs`: in, out of them for what is solved one by one, and back.
+//! Moves a group into the lanes of `eights.rs`, out of them for individually solved particles, and back.
 
 use super::ParticleGroup;
 use super::batches::{FIELDS, WAY};
@@ -11,7 +11,7 @@ use crate::particles::tuning::MOST_SOLIDS;
 use sinew_math::lanes::Block;
 use sinew_math::{Vec3, dispatch};
 
-/// Grips that are looked at in one go.
+/// Number of grips tested at a time.
 const GRIPS: usize = 64;
 
 impl Solid {
@@ -44,7 +44,7 @@ impl Solid {
 }
 
 impl ParticleGroup {
-    /// Decides whether a substep goes through lanes, and brings all particles there.
+    /// Decides if a substep uses lanes, and loads all particles.
     pub(super) fn enter_eights(&mut self, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         self.eights.on = !self.forest.has_trees()
             && !self.batches.is_empty()
@@ -75,7 +75,7 @@ impl ParticleGroup {
             eights.common_acceleration = self.common_acceleration;
         }
         for (at, grips) in self.grips.chunks(GRIPS).enumerate() {
-            // Nearly all hold nothing, which whole registers see where no look ends the next one.
+            // Nearly all grips are empty, which whole registers detect in loops without early exit.
             if grips.iter().fold(false, |any, grip| any | (*grip != Grip::Off)) {
                 let gripped = (at * GRIPS..).zip(grips).filter(|(_, grip)| **grip != Grip::Off);
                 eights.others.extend(gripped.map(|(i, _)| i as u32));
@@ -84,7 +84,7 @@ impl ParticleGroup {
         self.eights = eights;
     }
 
-    /// Brings all particles back at the end of the substep.
+    /// Stores all particles at the end of the substep.
     pub(super) fn leave_eights(&mut self) {
         let Self { positions, velocities, batches, eights, .. } = self;
         let per_lane = eights.strips.len();
@@ -92,7 +92,8 @@ impl ParticleGroup {
         dispatch::run(Collect::<STRIP> { vectors: velocities, blocks: &eights.strips, per_lane });
     }
 
-    /// Begins an iteration of `h` seconds: finds what each particle touches, and its velocity; takes out those that are not solved in lanes.
+    /// Starts an iteration of `h` seconds: finds each particle's contact and velocity; takes out those that lanes
+    /// cannot handle.
     pub(super) fn approach(&mut self, h: f32) {
         let Self { eights, placed, batches, linear_damping, .. } = self;
         eights.foreign_bounds.clear();
@@ -137,7 +138,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Projects the rows, those in lanes and those beside. Surfaces of particles in lanes hold these after it, see `Depart`.
+    /// Projects the rows, in lanes and individually. Surfaces then hold the particles in lanes, see `Depart`.
     pub(super) fn project_in_eights(&mut self, h: f32) {
         let per_second = 1.0 / h;
         let outside = core::mem::take(&mut self.eights.outside);
@@ -167,7 +168,7 @@ impl ParticleGroup {
         (self.eights.outside, self.eights.others) = (outside, others);
     }
 
-    /// Ends the iteration of those in lanes; takes out those that may have met something on their way.
+    /// Ends the iteration of those in lanes; takes out those that may have hit something on their path.
     pub(super) fn depart(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         dispatch::run(Depart { eights: &mut self.eights, particles: &mut self.batches.particles, h });
         let per_lane = self.eights.strips.len();

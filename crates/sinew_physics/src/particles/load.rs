@@ -4,16 +4,16 @@ use super::{Resists, SpringDef};
 use crate::particles::tuning::LENGTH_TOLERANCE;
 use sinew_math::{Sym3, Vec3, max};
 
-/// A spring during one step: with its damping, which is that of its length between the step's ends, a spring again.
+/// A spring during one step: with damping, by its lengths at both ends of the step, it is again a spring.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Load {
-    /// Its length when the step begins, at least the rest length if it resists stretch alone, metres.
+    /// Its length at the start of the step, at least the rest length if it resists stretch only, metres.
     begun: f32,
     /// Damping over the length of the step, N/m.
     rate: f32,
     /// Vector from A to B where the spring is linearised, metres.
     from_a: Vec3,
-    /// Force on A, newtons, extrapolated from there to where the step begins.
+    /// Force on A, newtons, extrapolated linearly from that length.
     pub force: Vec3,
     /// `h² K + h D`, kg.
     pub block: Sym3,
@@ -38,13 +38,13 @@ impl Load {
         if spring.resists == Resists::Stretch { max(tension, 0.0) } else { tension }
     }
 
-    /// Energy that the step pays for that tension, J: its integral over the length, from where there is none.
+    /// Energy of that tension over the step, J: its integral over the length, from zero tension.
     pub fn energy(&self, spring: &SpringDef, from_a: Vec3) -> f64 {
         let tension = f64::from(self.tension(spring, from_a.length()));
         0.5 * tension * tension / f64::from(spring.stiffness + self.rate)
     }
 
-    /// Linearises where B is at `from_a` from A, which velocities have brought about of which A's is `ahead` of B's.
+    /// Linearises at B's offset `from_a` from A, for velocities at which A is `ahead` of B.
     pub fn linearise(&mut self, spring: &SpringDef, from_a: Vec3, ahead: Vec3, h: f32) {
         let length = from_a.length();
         let direction = sinew_math::normalize_or(from_a, Vec3::Y);
@@ -65,7 +65,7 @@ impl Load {
         self.block = stiffness * (h * h);
     }
 
-    /// Impulse on A in a step at whose end A and B move at these velocities.
+    /// Impulse on A in a step that ends with these velocities of A and B.
     pub fn impulse(&self, h: f32, velocity_a: Vec3, velocity_b: Vec3) -> Vec3 {
         self.force * h - self.block * (velocity_a - velocity_b)
     }

@@ -3,15 +3,14 @@
 //! [`ParticleGroup::substep`] moves a group under gravity, springs, attachments and contacts, after the bodies have
 //! moved. It acts back on the bodies that particles are attached to and on those they touch.
 //!
-//! Springs of an implicit group (ropes, strands, bridges, nets that bear) are solved as one, see `system.rs`: the stretch at rest is the exact one,
-//! `m g / k`, for a chain as for a single mass, whatever the
-//! substeps. Those of cloth and blobs are projected, each spring once, see `net.rs`: exact at rest for one mass
-//! on one spring, softer by `h² (w₁ + w₂)` per spring in a net.
-//! Damping acts on the velocity at the start of the substep, before forces.
+//! Springs of an implicit group (ropes, strands, bridges, load-bearing nets) are solved together, see `system.rs`: the
+//! stretch at rest is exact, `m g / k`, for a chain as for a single mass, whatever the substeps. Those of cloth and
+//! blobs are projected, each spring once, see `net.rs`: exact at rest for one mass on one spring, softer by
+//! `h² (w₁ + w₂)` per spring in a net. Damping acts on the velocity at the start of the substep, before forces.
 //!
-//! Contacts are part of the spring solve, or a rope bent over an edge would hang with the wrong tension, and one that
-//! strikes the floor would be compressed by what its end would have sunk in (`contact.rs`). Bounces, and what is left,
-//! are dealt with after it (`impact.rs`).
+//! Contacts are part of the spring solve (`contact.rs`). Otherwise a rope bent over an edge would have the wrong
+//! tension, and one that hits the floor would be compressed by the depth its end would have sunk. Bounces and remaining
+//! contacts follow (`impact.rs`).
 
 mod added_mass;
 mod around;
@@ -76,7 +75,7 @@ use self_collision::SelfCollision;
 use sinew_math::{Sym3, Transform, Vec3, dispatch, max};
 use system::{Freedom, System};
 
-/// Most strides in which the way of a particle is looked along.
+/// Largest number of steps of a conservative advancement along a particle's path.
 const STRIDES: usize = 16;
 
 /// Particles and springs at run time. One array per quantity, by index of the particle.
@@ -101,7 +100,7 @@ pub struct ParticleGroup {
     linear_damping: f32,
     gravity_scale: f32,
     filter: Filter,
-    /// Bodies that it passes through, ascending.
+    /// Bodies that it never collides with, ascending.
     passes: Vec<BodyId>,
     /// Grip of a surface on each particle.
     grips: Vec<Grip>,
@@ -114,7 +113,7 @@ pub struct ParticleGroup {
     drawn_from: Vec<Vec3>,
     sleeping: Sleeping,
     rest: GroupRest,
-    /// Position of each particle when its time of rest began, world, metres.
+    /// Position of each particle at the start of its time at rest, world, metres.
     places: Vec<Vec3>,
     /// Surroundings that it sleeps in, or slept in until it was woken since the last step.
     bed: Option<Bed>,
@@ -123,19 +122,19 @@ pub struct ParticleGroup {
     system: System,
     /// Position of each particle before the iteration, world, metres.
     previous: Vec<Vec3>,
-    /// Inverse mass with which projections move each particle, 1/kg: 0 for those held by what cannot move.
+    /// Inverse mass of each particle in projections, 1/kg: 0 for those held by an immovable anchor.
     weights: Vec<f32>,
-    /// Velocity of each particle when the iteration began, damped.
+    /// Damped velocity of each particle at the start of the iteration.
     begun: Vec<Vec3>,
-    /// Bodies as what they hold has changed them in the iterations so far.
+    /// Bodies as changed by their particles in the iterations so far.
     holders: Vec<ObstacleBody>,
-    /// Mass that moves along with each body that holds particles.
+    /// Added mass of each body that holds particles.
     added: Vec<AddedMass>,
-    /// Directions in which each particle changes a volume, m².
+    /// Volume gradient of each particle, m².
     gradients: Vec<Vec3>,
-    /// Shapes as the iteration finds them.
+    /// Shapes at the start of the iteration.
     placed: Vec<Placed>,
-    /// Shapes that each particle may come to.
+    /// Shapes near each particle.
     near: Near,
     /// Attachment of each particle, or `u32::MAX`.
     attachment_of: Vec<u32>,
@@ -143,24 +142,24 @@ pub struct ParticleGroup {
     body_impulses: Vec<BodyImpulse>,
     /// Impulse of springs, bends, tethers and volumes on each particle in this iteration.
     reactions: Vec<Vec3>,
-    /// Impulse of bends on each particle that the solve of this iteration knew of.
+    /// Impulse of bends on each particle included in this iteration's solve.
     bend_impulses: Vec<Vec3>,
-    /// Pairs of its own particles that keep apart, if it has a thickness.
+    /// Self-collision pairs, if it has a thickness.
     self_collision: Option<SelfCollision>,
-    /// Particles that are held or may see a shape in this iteration.
+    /// Particles that are held or near a shape in this iteration.
     close: Vec<u32>,
     /// Particles that the solve of this iteration is about.
     solved: Vec<u32>,
-    /// Particles of these whose contacts still change from one solve to the next.
+    /// Particles whose contacts still change between solves.
     unsettled: Vec<u32>,
     /// Surface that each particle touches in this iteration.
     touches: Vec<Option<Touch>>,
-    /// Distance to any shape that each particle surely has when the iteration begins, less what the shape moves, metres.
+    /// Lower bound of the distance to any shape at the start of the iteration, minus the shape's motion, metres.
     clearances: Vec<f32>,
-    /// Distance from its surface within which each particle looks for shapes in this iteration, metres.
+    /// Contact search distance of each particle from its surface in this iteration, metres.
     sights: Vec<f32>,
-    /// Share of an impulse against the surface that each particle touches that goes on to the body: its share of the body's
-    /// inertia over that and its own.
+    /// Share of a particle's impulse against its surface that goes to the body: the ratio of its share of the body's
+    /// inertia to the sum of that and its own.
     backings: Vec<f32>,
     /// Rows of the net that hold no attached particle.
     batches: Batches,
@@ -170,23 +169,23 @@ pub struct ParticleGroup {
     held_springs: Vec<u32>,
     /// Bends that hold one.
     held_bends: Vec<u32>,
-    /// Unit normal of the surface that each particle touches, out of it.
+    /// Unit normal of each particle's surface, outward.
     press_normals: Vec<Vec3>,
-    /// Impulse against the surface that brings each particle onto it, N·s; negative for what is pressed onto it already.
+    /// Impulse against the surface that brings each particle onto it, N·s; negative if it already presses.
     rooms: Vec<f32>,
     /// Contacts of shapes through its particles.
     pub(crate) pinched: Pinched,
-    /// Velocities that bring particles into the corner of two surfaces.
+    /// Velocities that move particles into the corner of two surfaces.
     wedges: Vec<Vec3>,
-    /// Mass of the particles that touch each body.
+    /// Mass of the particles on each body.
     loads: Vec<f32>,
-    /// Forces of fields on each particle in the substep to come, N; none without fields.
+    /// Forces of fields on each particle in the coming substep, N; empty without fields.
     outer: Vec<Vec3>,
-    /// Gravity and outer force of the last substep on each particle, over its mass, m/s².
+    /// Acceleration by gravity and external force on each particle in the last substep, m/s².
     accelerations: Vec<Vec3>,
     /// Their lengths, m/s².
     pulls: Vec<f32>,
-    /// Bits of the acceleration of all, m/s², where no outer force makes a difference.
+    /// Bits of the acceleration of all, m/s², if no external force makes a difference.
     common_acceleration: Option<[u32; 3]>,
 }
 
@@ -198,7 +197,7 @@ impl ParticleGroup {
     /// From its definition.
     ///
     /// # Panics
-    /// If [`GroupDef::check`] finds something wrong.
+    /// If [`GroupDef::check`] rejects it.
     pub fn new(def: &GroupDef) -> Self {
         if let Err(what) = def.check() {
             panic!("{what}");
@@ -288,14 +287,14 @@ impl ParticleGroup {
         &self.positions
     }
 
-    /// Positions between the last step (`alpha` 0) and this one (1), for drawing; see [`Update`](crate::Update).
+    /// Positions between the previous step (`alpha` 0) and this one (1), for drawing; see [`Update`](crate::Update).
     pub fn interpolated(&self, alpha: f32) -> impl Iterator<Item = Vec3> {
         let steps = self.drawn_from.iter().zip(&self.positions);
         steps.map(move |(&from, &to)| from * (1.0 - alpha) + to * alpha)
     }
 
-    /// Particles whose state became non-finite in the step stop where they were before it, and contact impulses that did are zero. Returns
-    /// whether there were such particles.
+    /// Particles whose state became non-finite in the step stop at their previous positions, and non-finite contact
+    /// impulses become zero. Returns true if there were such particles.
     pub(crate) fn roll_back(&mut self) -> bool {
         // Without an end in between it is eight at a time.
         let finite = |vectors: &[Vec3]| vectors.iter().fold(true, |all, v| all & v.is_finite());
@@ -317,7 +316,7 @@ impl ParticleGroup {
         any
     }
 
-    /// Takes the present positions as those before the step, for drawing.
+    /// Stores the current positions as the previous ones, for drawing.
     pub(crate) fn begin_step(&mut self) {
         self.drawn_from.copy_from_slice(&self.positions);
         // Between steps shapes change as the user likes.
@@ -389,7 +388,7 @@ impl ParticleGroup {
         self.gravity_scale
     }
 
-    /// Filter of the shapes that it meets.
+    /// Collision filter.
     pub fn filter(&self) -> Filter {
         self.filter
     }
@@ -399,7 +398,7 @@ impl ParticleGroup {
         self.material
     }
 
-    /// Bodies that it passes through, ascending.
+    /// Bodies that it never collides with, ascending.
     pub fn passes(&self) -> &[BodyId] {
         &self.passes
     }
@@ -409,13 +408,12 @@ impl ParticleGroup {
         surface.is_wall_to(self.filter) && self.passes.binary_search(&body).is_err()
     }
 
-    /// Around all particles, with their radii. Empty, with infinite corners the wrong way round, for a group without
-    /// particles.
+    /// Bounds of all particles with their radii. Empty, with inverted infinite corners, for a group without particles.
     pub fn bounds(&self) -> Aabb {
         self.bounds_of(&self.positions)
     }
 
-    /// Around its particles, if they were there.
+    /// Bounds of its particles at these positions.
     fn bounds_of(&self, centers: &[Vec3]) -> Aabb {
         if let Some(radius) = self.common_radius {
             return dispatch::run(Around(centers)).expand(radius);
@@ -435,7 +433,7 @@ impl ParticleGroup {
         self.bounds().expand(fastest * dt + STRIKE_GAP + STRIKE_GAP)
     }
 
-    /// True if a particle comes to a shape at rest within `dt` seconds, and into it faster than `speed` (m/s).
+    /// True if a particle reaches a static shape within `dt` seconds with a normal speed above `speed` (m/s).
     pub(crate) fn strikes(&self, shape: &Shape, at: &Transform, speed: f32, dt: f32) -> bool {
         let mut particles = self.positions.iter().zip(&self.velocities).zip(&self.radii);
         particles.any(|((&position, &velocity), radius)| {
@@ -444,7 +442,7 @@ impl ParticleGroup {
                 return false;
             }
             let mut way = 0.0;
-            // As far as it surely can go without touching, again and again (Hart, "Sphere Tracing", 1996).
+            // Repeatedly as far as it certainly moves without touching (Hart, "Sphere Tracing", 1996).
             for _ in 0..STRIDES {
                 let (distance, outward) = shape.signed_distance(at, position + velocity * (way / whole));
                 let gap = distance - radius;
@@ -452,7 +450,7 @@ impl ParticleGroup {
                     return velocity.dot(outward) < -speed;
                 }
                 way += gap;
-                // The last stride may lead far beyond what it goes in the time.
+                // The last step may be longer than the remaining path.
                 if way > whole * dt {
                     return false;
                 }
@@ -471,7 +469,7 @@ impl ParticleGroup {
         &self.body_impulses
     }
 
-    /// Forces on the particles, one for each or none at all, that the next substep feels and uses up, N, world.
+    /// Forces on the particles in the next substep, one per particle or empty, N, world; cleared by it.
     pub(crate) fn outer_forces(&mut self) -> &mut Vec<Vec3> {
         &mut self.outer
     }
@@ -479,7 +477,7 @@ impl ParticleGroup {
     /// Changes a particle's velocity by an impulse (N·s, world).
     ///
     /// # Panics
-    /// If there is no such particle, or the impulse or what comes of it is not finite.
+    /// If the particle does not exist, or the impulse or the result is not finite.
     pub fn apply_impulse(&mut self, particle: u32, impulse: Vec3) {
         assert!(impulse.is_finite(), "an impulse is finite, not {impulse:?}");
         let i = particle as usize;
@@ -489,20 +487,20 @@ impl ParticleGroup {
         self.wake();
     }
 
-    /// Sets the velocity of a particle, m/s, world. One that is attached takes that of what holds it.
+    /// Sets the velocity of a particle, m/s, world. An attached one keeps its anchor's.
     ///
     /// # Panics
-    /// If there is no such particle, or the velocity is not finite.
+    /// If the particle does not exist, or the velocity is not finite.
     pub fn set_velocity(&mut self, particle: u32, velocity: Vec3) {
         assert!(velocity.is_finite(), "a velocity is finite, not {velocity:?}");
         self.velocities[particle as usize] = velocity;
         self.wake();
     }
 
-    /// Puts a particle somewhere, world, metres, through whatever lies between.
+    /// Teleports a particle, world, metres, without a sweep.
     ///
     /// # Panics
-    /// If there is no such particle, or the position is not finite.
+    /// If the particle does not exist, or the position is not finite.
     pub fn set_position(&mut self, particle: u32, position: Vec3) {
         assert!(position.is_finite(), "a position is finite, not {position:?}");
         self.positions[particle as usize] = position;
@@ -510,10 +508,10 @@ impl ParticleGroup {
         self.wake();
     }
 
-    /// Moves a particle by `by` (m, world), with the velocity that takes it there within `h` seconds.
+    /// Moves a particle by `by` (m, world), with the velocity of that motion within `h` seconds.
     ///
     /// # Panics
-    /// If there is no such particle, or a number is not finite.
+    /// If the particle does not exist, or a number is not finite.
     pub fn correct(&mut self, particle: u32, by: Vec3, h: f32) {
         let velocity = by / h;
         assert!(
@@ -525,10 +523,10 @@ impl ParticleGroup {
         self.wake();
     }
 
-    /// Moves a pin: the place in the world (metres) that attachment `index` holds its particle at.
+    /// Moves a pin: the world position (metres) of attachment `index`.
     ///
     /// # Panics
-    /// If there is no such attachment, it is to a body, or the place is not finite.
+    /// If the attachment does not exist or is to a body, or the position is not finite.
     pub fn move_pin(&mut self, index: usize, to: Vec3) {
         assert!(to.is_finite(), "a place is finite, not {to:?}");
         let AttachmentTarget::World(place) = &mut self.attachments[index].target else {
@@ -540,18 +538,19 @@ impl ParticleGroup {
 
     /// Moves the group by `h` seconds under `gravity` (m/s²), its springs, its attachments and its contacts.
     ///
-    /// `anchors[k]` holds attachment `k`. Anchors that are bodies yield to the springs within the same solve, as whole bodies, so that
-    /// a stiff rope does not shake a light body. What the body gains is in
-    /// [`attachment_impulses`](Self::attachment_impulses), for the caller to apply.
+    /// `anchors[k]` is the anchor of attachment `k`. Anchors on bodies react within the same solve, as whole bodies, so
+    /// that a stiff rope does not shake a light body. [`attachment_impulses`](Self::attachment_impulses) has the
+    /// impulses on the bodies, for the caller to apply.
     ///
-    /// `obstacles` and `bodies` are at the end of the substep; pass those that come near [`bounds`](Self::bounds). Which of
-    /// them each particle may come to is kept from one substep to the next for as long as it holds, so pass them in the
-    /// same order. The last of them are the balls of [`backstops`](Self::backstops), in their order. Bodies are pushed back: their velocities change at once,
-    /// and [`body_impulses`](Self::body_impulses) lists how. Attached particles touch nothing. What lies between two shapes does not keep these
-    /// apart: a [`World`](crate::World) has contacts for that.
+    /// `obstacles` and `bodies` are at the end of the substep; pass those near [`bounds`](Self::bounds). Nearby
+    /// obstacles of each particle are cached between substeps, so pass them in the same order. The last ones are the
+    /// balls of [`backstops`](Self::backstops), in their order. Bodies are pushed back: their velocities change at
+    /// once, and [`body_impulses`](Self::body_impulses) lists the impulses. Attached particles touch nothing. Particles
+    /// between two shapes do not keep these apart: a [`World`](crate::World) has contacts for that.
     ///
     /// # Panics
-    /// If there is not one anchor for each attachment, there are fewer obstacles than backstops, or the body of an anchor or an obstacle is not in `bodies`.
+    /// If there is not one anchor per attachment, there are fewer obstacles than backstops, or the body of an anchor or
+    /// an obstacle is not in `bodies`.
     pub fn substep(
         &mut self,
         h: f32,
@@ -564,7 +563,7 @@ impl ParticleGroup {
         self.end_substep(h, anchors, obstacles, bodies);
     }
 
-    /// The first half of a substep, up to where springs and contacts of its first iteration are solved. Pushes no body yet.
+    /// The first half of a substep, up to the solve of springs and contacts in its first iteration. Pushes no body yet.
     pub(crate) fn begin_substep(
         &mut self,
         h: f32,
@@ -576,7 +575,7 @@ impl ParticleGroup {
         assert_eq!(anchors.len(), self.attachments.len(), "each attachment needs its anchor");
         assert!(obstacles.len() >= self.backstops.len(), "each backstop needs its ball");
         let gravity = gravity * self.gravity_scale;
-        // A zero has a sign, which what a snapshot restores would have and this not.
+        // A zero has a sign, which differs between restored and computed zeros.
         let bits = gravity.to_array().map(f32::to_bits);
         if self.common_acceleration != Some(bits) {
             self.accelerations.fill(gravity);
@@ -625,7 +624,7 @@ impl ParticleGroup {
         if self.eights.on { self.eights.others[at] as usize } else { at }
     }
 
-    /// The first half of a part of the substep: finds velocities.
+    /// The first half of a part of the substep: computes velocities.
     fn begin_iteration(
         &mut self,
         part: Part,
@@ -680,7 +679,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Damping, and what particles bring into the system: all where springs are solved in it, else those that are held.
+    /// Applies damping, and sets up the particles in the system: all if springs are solved in it, else the held ones.
     fn begin(&mut self, h: f32) {
         let damping = 1.0 / (1.0 + h * self.linear_damping);
         self.previous.copy_from_slice(&self.positions);
@@ -726,7 +725,7 @@ impl Part {
         self.whole / self.of as f32
     }
 
-    /// Shares of the substep that have passed when it begins and when it ends.
+    /// Shares of the substep elapsed at its start and end.
     fn shares(self) -> [f32; 2] {
         [self.number, self.number + 1].map(|k| k as f32 / self.of as f32)
     }
@@ -736,7 +735,7 @@ impl Part {
 mod tests {
     use super::*;
 
-    /// Life 48 of the random lives: a particle that lost its number passes it on to what its neighbour is pressed by.
+    /// Regression from random test 48: the index of a non-finite particle carries over to its neighbour's impulse.
     #[test]
     fn contact_impulses_that_are_no_numbers_do_not_stay() {
         let particle = ParticleDef { position: Vec3::ZERO, velocity: Vec3::ZERO, mass: 0.1, radius: 0.01 };

@@ -1,8 +1,8 @@
-//! Obstacles that each particle may come to, so that it need not be tried against all of them.
+//! Cached nearby obstacles of each particle, so that it is not tested against all.
 //!
-//! A list holds as long as its particle and all obstacles stay in the room that it was made for. A particle that leaves its
-//! room is tried against all obstacles; once many have, or an obstacle has left its own, all lists are made anew. What a
-//! list leaves out cannot be met: the results are the bits that trying all gives, so that lists are no part of the state.
+//! A list is valid while its particle and all obstacles stay within the margins for which it was made. A particle
+//! outside its margin is tested against all obstacles; once many are, or an obstacle is, all lists are rebuilt.
+//! Excluded obstacles cannot be hit: the results are the bits of testing all, so lists are not part of the state.
 
 use super::contact::{Grip, Placed, distance_at_least};
 use super::{BackstopDef, ParticleGroup};
@@ -11,44 +11,47 @@ use crate::particles::tuning::DETOUR;
 use crate::particles::tuning::{LIST_ITERATIONS, LIST_ROOM};
 use sinew_math::{Vec3, max};
 
-/// Indices that all lists together have room for, per particle.
+/// Capacity of all lists together, in indices per particle.
 const SHARE: usize = 32;
-/// Lists are made anew when more than one in so many does not hold.
+/// Lists are rebuilt when more than one in this many is invalid.
 const LOST_ONE_IN: usize = 16;
 
 /// The lists of all particles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Near {
-    /// Around each obstacle, with room to move.
+    /// Bounds of each obstacle with a margin.
     fat_bounds: Vec<Aabb>,
-    /// Position of each particle when its list was made, world, metres.
+    /// Position of each particle when its list was built, world, metres.
     origins: Vec<Vec3>,
-    /// Least distance of all that a particle's list leaves out from its surface at its origin, metres; `None` if it has no list.
+    /// Least distance of all excluded obstacles from the particle's surface at that position, metres; `None` without a
+    /// list.
     reaches: Vec<Option<f32>>,
-    /// The same from where each particle is now; 0 or less where its list does not hold.
+    /// The same from each particle's current position; 0 or less if its list is invalid.
     beyond: Vec<f32>,
-    /// Indices of obstacles, the list of one particle after that of another, each ascending.
+    /// Indices of obstacles, one particle's list after another's, each ascending.
     obstacles: Vec<u32>,
     /// End of each particle's list in `obstacles`.
     ends: Vec<usize>,
-    /// Distance of all shapes from each particle's surface at least, metres, when it was measured: minus infinity where it is not known.
+    /// Lower bound of the distance of all shapes from each particle's surface at the last measurement, metres: minus
+    /// infinity if unknown.
     distances: Vec<f32>,
-    /// Place of the particle then, world, metres, and `drift`.
+    /// Position of the particle at that time, world, metres, and `drift`.
     measured_at: Vec<Vec3>,
     drifts: Vec<f32>,
-    /// Way of all shapes in the iterations of this step before this one, each time that of the fastest, metres.
+    /// Displacement of all shapes in this step's previous iterations, metres, each that of the fastest.
     drift: f32,
     /// The same in this iteration.
     way: f32,
-    /// Backstop of each particle, or `u32::MAX`; none at all for a group without. They are the last of all obstacles, and in no list.
+    /// Backstop of each particle, or `u32::MAX`; empty for a group without. They are the last obstacles, and in no
+    /// list.
     backstop_of: Vec<u32>,
     backstops: usize,
-    /// Capacity of `obstacles`; once it is full, or for a list that does not fit, none is made.
+    /// Capacity of `obstacles`; a list that does not fit is not built.
     most: usize,
 }
 
 impl Near {
-    /// Room for the lists of so many particles, none made.
+    /// Space for the lists of this many particles, none built.
     pub fn new(count: usize, backstops: &[BackstopDef]) -> Self {
         let mut backstop_of = vec![u32::MAX; if backstops.is_empty() { 0 } else { count }];
         for (index, backstop) in backstops.iter().enumerate() {
@@ -70,7 +73,8 @@ impl Near {
         }
     }
 
-    /// Obstacles, of `count`, that come within `distance` (m) of a particle's surface, and others, its own backstop too; ascending.
+    /// Indices, among `count` obstacles, of all within `distance` (m) of a particle's surface, and possibly others,
+    /// including its own backstop; ascending.
     pub fn within(&self, i: usize, distance: f32, count: usize) -> impl Iterator<Item = usize> {
         let common = self.common(count);
         let (list, all) = if self.beyond[i] > distance { (self.list(i), 0..0) } else { (&[][..], 0..common) };
@@ -90,24 +94,25 @@ impl Near {
         self.way = 0.0;
     }
 
-    /// Notes how far all obstacles are from a particle's surface at least when an iteration begins, metres.
+    /// Stores the least distance of all obstacles from a particle's surface at the start of an iteration, metres.
     pub fn note_distance(&mut self, i: usize, at: Vec3, distance: f32) {
         (self.distances[i], self.measured_at[i], self.drifts[i]) = (distance, at, self.drift);
     }
 
-    /// Goes on to the next iteration.
+    /// Advances to the next iteration.
     fn drift_on(&mut self, placed: &[Placed]) {
         self.drift += self.way;
         self.way = placed.iter().fold(0.0, |most, placed| max(most, placed.way));
     }
 
-    /// Distance of all obstacles from a particle's surface at least, less what they move in this iteration, metres.
+    /// Lower bound of the distance of all obstacles from a particle's surface, minus their motion in this iteration,
+    /// metres.
     fn clearance(&self, i: usize, at: Vec3) -> f32 {
         let moved = (at - self.measured_at[i]).length() + (self.drift - self.drifts[i]) + self.way;
         self.distances[i] - moved - rounding_at(at)
     }
 
-    /// Least distance from a particle's surface of all that [`within`](Self::within) leaves out, metres.
+    /// Least distance from a particle's surface of all that [`within`](Self::within) excludes, metres.
     pub fn left_out_from(&self, i: usize, distance: f32) -> f32 {
         if self.beyond[i] > distance { self.beyond[i] } else { f32::INFINITY }
     }
@@ -117,7 +122,7 @@ impl Near {
         &self.obstacles[start..self.ends[i]]
     }
 
-    /// True if each obstacle is in its fat bounds.
+    /// True if each obstacle is within its margin.
     fn holds(&self, placed: &[Placed]) -> bool {
         self.fat_bounds.len() == placed.len()
             && self.fat_bounds.iter().zip(placed).all(|(fat, placed)| fat.contains(&placed.bounds))
@@ -131,7 +136,7 @@ impl Near {
         }));
     }
 
-    /// The list of the next particle, of all that comes within `reach` of the surface that it has in `radius` round `at`.
+    /// Builds the next particle's list of everything within `reach` of its surface, for a ball of `radius` at `at`.
     fn push(&mut self, i: usize, at: Vec3, radius: f32, reach: f32) {
         let start = self.obstacles.len();
         self.reaches[i] = (start < self.most).then_some(reach);
@@ -150,7 +155,7 @@ impl Near {
         self.ends[i] = self.obstacles.len();
     }
 
-    /// Finds how far what the list of a particle leaves out is from where it is now.
+    /// Computes the current distance of everything that a particle's list excludes.
     pub fn follow(&mut self, i: usize, at: Vec3) {
         self.beyond[i] = match self.reaches[i] {
             Some(reach) => reach - (at - self.origins[i]).length() - rounding_at(at),
@@ -159,13 +164,14 @@ impl Near {
     }
 }
 
-/// Rounding of a place, metres.
+/// Rounding error of a position, metres.
 fn rounding_at(place: Vec3) -> f32 {
     1e-5 + 1e-6 * (place.x.abs() + place.y.abs() + place.z.abs())
 }
 
 impl ParticleGroup {
-    /// Finds which particles may be close to a shape, and sees to it that most of these have a list that holds for this iteration.
+    /// Finds the particles that may be close to a shape, and ensures that most of these have a valid list for this
+    /// iteration.
     pub(super) fn find_near(&mut self, h: f32) {
         let common = self.near.common(self.placed.len());
         let holds = self.near.holds(&self.placed[..common]);
@@ -195,7 +201,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Lists the particles that are held or may see a shape; the others let go of what they touched.
+    /// Lists the particles that are held or near a shape; the others drop their contacts.
     fn find_close(&mut self, h: f32) {
         self.close.clear();
         for at in 0..self.one_by_one() {
@@ -231,7 +237,7 @@ mod tests {
     const SUBSTEPS: usize = 600;
     const FLOOR: u32 = 0;
 
-    /// Loose balls, and points of which the first is held; springs tie as many of them to it as there are `links`.
+    /// Loose balls, and points of which the first is held; springs connect `links` of them to it.
     fn rain(random: &mut Random, links: u32, iterations: u32) -> GroupDef {
         let mut ball = |radius: f32| ParticleDef {
             position: Vec3::new(random.range(-3.0, 3.0), random.range(1.0, 4.0), random.range(-3.0, 3.0)),
@@ -257,7 +263,7 @@ mod tests {
         }
     }
 
-    /// A floor and boxes, balls and capsules, each of its own body; one in `moving_in` flies about and turns, and half of
+    /// A floor and boxes, balls and capsules, each with its own body; one in `moving_in` moves and rotates, and half of
     /// these yield.
     fn surroundings(random: &mut Random, moving_in: usize) -> (Vec<Obstacle>, Vec<ObstacleBody>) {
         let (mut obstacles, mut bodies) = (Vec::new(), Vec::new());
@@ -325,7 +331,7 @@ mod tests {
 
     #[test]
     fn lists_give_the_bits_that_trying_all_gives() {
-        // Much moves all the time; only particles do; a few bodies go through what has come to rest.
+        // Constant motion; only particles move; a few bodies pass through resting particles.
         for (seed, links, moving_in) in [(0, 19, 5), (1, 19, usize::MAX), (2, 0, 27)] {
             let mut random = Random::new(seed);
             let def = rain(&mut random, links, 1 + seed as u32);

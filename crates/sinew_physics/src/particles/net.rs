@@ -1,15 +1,17 @@
-//! Rows of cloth and blobs, each solved once per iteration: `Δx = −C / (Σ w ∇C² + α/h²) w ∇C` with `α = 1/k` (Macklin et al.,
-//! "Small Steps in Physics Simulation", SCA 2019, without its multipliers). A row alone is a step of implicit Euler. Rows that
-//! share particles are solved one after the other, and those before do not hear of those
-//! after: each spring of a net yields by about `h² (w₁ + w₂)` more.
+//! Rows of cloth and blobs, each solved once per iteration: `Δx = −C / (Σ w ∇C² + α/h²) w ∇C` with `α = 1/k` (Macklin
+//! et al., "Small Steps in Physics Simulation", SCA 2019, without its multipliers). A single row is a step of implicit
+//! Euler. Rows that share particles are solved one after the other, and earlier ones do not see later ones: each spring
+//! of a net is softer by about `h² (w₁ + w₂)`.
 //!
-//! What presses a particle onto a surface moves it with its share of the body's inertia, and is handed on to the body: a ball
-//! in a cloth would else be carried by the cloth's own few grams. A surface only presses: a particle has **room**, the impulse that
-//! brings it from where the solve left it onto the surface, which rows use up before they press, and a later row that pulls it away takes from
-//! the press first. Else rows would pull particles through the surface, or push the body by what no longer presses, and nets would tremble under what
-//! they bear. What stands still asks for none of this: see `eights.rs`.
+//! An impulse that presses a particle onto a surface moves it with its share of the body's inertia, and is transmitted
+//! to the body; otherwise the cloth's own few grams would carry a ball. A surface only presses. A particle has
+//! **room**, the impulse that brings it from the solve's position onto the surface. Rows use up the room before they
+//! press, and a later row that pulls the particle away reduces the press first. Otherwise rows would pull particles
+//! through the surface, or push the body by an impulse that no longer presses, and nets would tremble under loads.
+//! Static obstacles need none of this: see `eights.rs`.
 //!
-//! Rows that hold an attached particle come one by one, since the impulse on it counts; all others eight at a time, see `batches.rs`.
+//! Rows with an attached particle are solved individually, because the impulse on it counts; all others eight at a
+//! time, see `batches.rs`.
 
 use super::batches::Batches;
 use super::eights::Eights;
@@ -17,8 +19,8 @@ use super::{BendDef, ParticleGroup, Resists, SpringDef, TetherDef, VolumeDef};
 use sinew_math::{Vec3, dispatch, max, min};
 
 impl ParticleGroup {
-    /// Tethers, springs that the forest does not solve, bends, volumes, particles that touch each other: coarse first, so that what is fine has the
-    /// last word but on pressure, and on what is not to pass through what.
+    /// Tethers, springs outside the forest, bends, volumes, self-collision: coarse rows first, so that fine ones are
+    /// solved last, except pressure and non-penetration.
     pub(super) fn project_net(&mut self, h: f32) {
         self.project_held(h);
         self.project_batches(h);
@@ -43,7 +45,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Sorts rows into those that hold an attached particle, whose impulses are counted, and batches of the others.
+    /// Divides rows into those with an attached particle, whose impulses are counted, and batches of the others.
     pub(super) fn sort_rows(&mut self) {
         let Self { masses, springs, bends, forest, attachment_of, .. } = self;
         let is_free = |i: u32| attachment_of[i as usize] == u32::MAX;
@@ -99,7 +101,7 @@ impl ParticleGroup {
         }
     }
 
-    /// The part of an impulse along the normal that goes on to the body that a particle touches, N·s.
+    /// The normal component of an impulse that goes to the body that a particle touches, N·s.
     fn handed_on(&self, i: usize, along: f32) -> f32 {
         (min(self.rooms[i] + along, 0.0) - min(self.rooms[i], 0.0)) * self.backings[i]
     }
@@ -118,8 +120,8 @@ impl ParticleGroup {
         )
     }
 
-    /// The impulse that gives a row a speed by forces on its ends of so much for each N·s, and the mobility there, 1/kg. As `on_surfaces` of
-    /// `project.rs`.
+    /// The impulse that gives a row a speed by forces on its ends per N·s, and the mobility there, 1/kg. As
+    /// `on_surfaces` of `project.rs`.
     pub(super) fn row_impulse(
         &self,
         ends: &(impl Iterator<Item = (usize, Vec3)> + Clone),
@@ -167,8 +169,8 @@ impl ParticleGroup {
         let speed = (length - tether.length) / h;
         let (mut impulse, _) = self.row_impulse(&ends.into_iter(), speed, 0.0);
         if self.backings[i] == 1.0 || self.backings[to] == 1.0 {
-            // What is on a surface that nothing moves cannot come through it: it pulls no more than if it were not there, not all that is needed to take
-            // what holds it there.
+            // A particle on a fixed surface cannot pass through it: it pulls as if the surface were not there, not with
+            // the impulse needed to overcome its holder.
             impulse = min(impulse, speed / (self.weights[i] + self.weights[to]));
         }
         if impulse > 0.0 {
@@ -193,7 +195,7 @@ impl ParticleGroup {
         if impulse <= 0.0 {
             return;
         }
-        // Damping of the axial speed that this leaves.
+        // Damping of the remaining axial speed.
         let speed = (self.velocities[b] - self.velocities[a]).dot(pull) - impulse * sum;
         impulse += speed * h * s.damping / (1.0 + h * s.damping * sum);
         self.nudge(a, pull * impulse, h);
@@ -219,7 +221,7 @@ impl ParticleGroup {
         }
     }
 
-    /// A surface that encloses too little is pushed outward, each particle along the area that it carries.
+    /// A surface that encloses too little volume is pushed outward, each particle along its area vector.
     fn project_volume(&mut self, volume: &VolumeDef, h: f32) {
         self.gradients.fill(Vec3::ZERO);
         let enclosed =
@@ -241,8 +243,8 @@ impl ParticleGroup {
     }
 }
 
-/// Volume inside a closed surface, m³: sixths of `a·(b × c)`, seen from a point of the surface. `gradient` is given each
-/// corner of each triangle with what the volume gains as it moves, m².
+/// Volume inside a closed surface, m³: sixths of `a·(b × c)`, relative to a point of the surface. `gradient` gets the
+/// volume derivative at each corner of each triangle, m².
 pub(super) fn enclosed_volume(
     triangles: &[[u32; 3]],
     positions: &[Vec3],

@@ -1,12 +1,13 @@
 //! Projection of rows of a net, eight side by side.
 //!
-//! A row keeps the length `l` of a vector `d` at `r`: `d` is the sum of its particles' positions by their shares `s`, −1 and 1 for a spring. A
-//! particle of weight `w` moves by `Δx = −s w ((1 − r/l) / S + β v·d/l²) d / (1 + β Σ s² w)` with `S = Σ s² w + α/h²`, the damping times the
-//! iteration `β`, and `v`, how far `d` has come since the iteration began. That is a step of implicit Euler for the row alone. Without
-//! damping a single factor for each particle, its **gain** `−s w / S`, stands for all that does not change within a run of rows: eight
-//! springs take 51 instructions of AVX2.
+//! A row keeps the length `l` of a vector `d` at `r`: `d` is the sum of its particles' positions times their shares
+//! `s`, −1 and 1 for a spring. A particle of weight `w` moves by
+//! `Δx = −s w ((1 − r/l) / S + β v·d/l²) d / (1 + β Σ s² w)` with `S = Σ s² w + α/h²`, `β` the damping times the
+//! iteration length, and `v` the change of `d` since the iteration's start. For a single row that is a step of implicit
+//! Euler. Without damping a single factor per particle, its **gain** `−s w / S`, contains everything that is constant
+//! within a run of rows: eight springs take 51 AVX2 instructions.
 //!
-//! Rows on surfaces of bodies that give way find their pull with those (`solve_on_surfaces`).
+//! Rows on surfaces of yielding bodies include these in their pull (`solve_on_surfaces`).
 
 use super::batches::{BACKING, Batches, FIELDS, Kind, NORMAL, ROOM, Rows, Run, SURFACE_FIELDS, WAY};
 use sinew_math::dispatch::Kernel;
@@ -45,7 +46,7 @@ impl Kernel for Project<'_> {
     }
 }
 
-/// Projects each row of `K` particles once, of which some touch surfaces, or none.
+/// Projects each row of `K` particles once; surfaces are optional.
 #[inline(always)]
 fn project<L: Lanes, const K: usize, const TOUCHING: bool>(
     particles: &mut [Block<FIELDS>],
@@ -101,7 +102,7 @@ struct Solver<'a, L, const K: usize> {
     shares: [f32; K],
     /// The iteration, seconds.
     h: f32,
-    /// Length that is kept, metres.
+    /// Target length, metres.
     rest: L,
     /// Error above which a row acts, metres.
     least: L,
@@ -109,8 +110,8 @@ struct Solver<'a, L, const K: usize> {
     inertia: L,
     /// `β` above, kg.
     damping: L,
-    /// Gain of each particle: its way along the vector of its row for each unit of the error, which is in lengths of the row without
-    /// damping, and `(1 − r/l) / S + β v·d/l²`, an impulse, with it.
+    /// Gain of each particle: its displacement along the row's vector per unit of the undamped relative error; with it
+    /// `(1 − r/l) / S + β v·d/l²`, an impulse.
     gains: [L; K],
 }
 
@@ -143,7 +144,7 @@ impl<'a, L: Lanes, const K: usize> Solver<'a, L, K> {
         L::load(&self.kind.compliance) * L::splat(1.0 / (self.h * self.h))
     }
 
-    /// Speed that a row gains by each unit of an impulse along it, without surfaces, 1/kg.
+    /// Speed that a row gains per unit impulse along it, without surfaces, 1/kg.
     #[inline(always)]
     fn mobility(&self) -> L {
         let (shares, weights) = (self.shares, &self.kind.weights);
@@ -167,7 +168,7 @@ impl<'a, L: Lanes, const K: usize> Solver<'a, L, K> {
                 self.solve_free::<DAMPED, EVEN>(&mut ends.each_mut().map(|Block(numbers)| numbers));
             }
         } else if let Ok(sides) = particles.get_disjoint_mut(first.map(|block| block..block + count)) {
-            // As the compiler sees it, too: no index is checked in the loop.
+            // Also in the compiled code: no index check in the loop.
             let mut sides = sides.map(|side| &mut side[..count]);
             for row in 0..count {
                 self.solve_free::<DAMPED, EVEN>(&mut sides.each_mut().map(|side| &mut side[row].0));
@@ -216,8 +217,8 @@ impl<'a, L: Lanes, const K: usize> Solver<'a, L, K> {
         }
     }
 
-    /// Solves eight rows that touch nothing, of a kind that is damped or not. Where particles weigh the same, those of one share go the same way, and
-    /// those of opposite shares the opposite one.
+    /// Solves eight rows without surfaces, damped or not. With equal weights, particles of equal shares move equally,
+    /// and those of opposite shares oppositely.
     #[inline(always)]
     fn solve_free<const DAMPED: bool, const EVEN: bool>(&self, ends: &mut [&mut Numbers<FIELDS>; K]) {
         let way = combined::<L, K>(ends, self.shares, WAY);
@@ -259,8 +260,8 @@ impl<'a, L: Lanes, const K: usize> Solver<'a, L, K> {
         }
     }
 
-    /// Solves eight rows of which some touch surfaces. Pulls are counted in the vector of a row, not in its direction, and errors in squares: one
-    /// division is left.
+    /// Solves eight rows of which some touch surfaces. Pulls are in units of the row's vector instead of its direction,
+    /// and errors are squared: only one division remains.
     #[inline(always)]
     fn solve_on_surfaces(
         &self,
@@ -313,7 +314,7 @@ fn combined<L: Lanes, const K: usize>(
     sum
 }
 
-/// Copies of blocks, each turned so that its lanes meet those of the first, which is not.
+/// Copies of blocks, each rotated so that its lanes match those of the unrotated first one.
 #[inline(always)]
 fn turned<L: Lanes, const K: usize, const F: usize>(
     blocks: &[Block<F>],
@@ -350,7 +351,7 @@ fn turn_back<L: Lanes, const K: usize, const F: usize, const FROM: usize>(
     }
 }
 
-/// Copies of records that each have their block and lane.
+/// Copies of records, each with its own block and lane.
 #[inline(always)]
 fn fetch<const K: usize, const F: usize>(blocks: &[Block<F>], slots: &[[u32; WIDTH]; K]) -> [Numbers<F>; K] {
     let mut ends = [[[0.0; WIDTH]; F]; K];
@@ -390,7 +391,7 @@ fn vector<L: Lanes, const F: usize>(numbers: &Numbers<F>, field: usize) -> Vecto
     Vector3::load(&numbers[field], &numbers[field + 1], &numbers[field + 2])
 }
 
-/// Writes how far eight particles have come.
+/// Writes the displacement of eight particles.
 #[inline(always)]
 fn store<L: Lanes>(way: Vector3<L>, end: &mut Numbers<FIELDS>) {
     way.x.store(&mut end[WAY]);
@@ -408,16 +409,16 @@ fn any_touching<L: Lanes, const K: usize>(beneath: &[&mut Numbers<SURFACE_FIELDS
     L::gt(most, L::splat(0.0)).any()
 }
 
-/// The surface at one end of eight rows, as a pull on it sees it.
+/// The surface at one end of eight rows, seen by a pull on it.
 #[derive(Clone, Copy, Debug)]
 struct Surface<L> {
     /// Room before it presses, N·s².
     room: L,
-    /// Room that the end gains for each unit of the pull.
+    /// Change of the room per unit of the pull.
     gain: L,
-    /// Loss of the row by each N·s² that presses and goes on to the body, in units of its error.
+    /// Loss of the row per N·s² pressed onto the body, in units of its error.
     passed: L,
-    /// Loss by each unit of a pull that presses all the way.
+    /// Loss per unit of a pull that presses completely.
     lacking: L,
 }
 
@@ -431,15 +432,15 @@ impl<L: Lanes> Surface<L> {
     }
 }
 
-/// The error and slope whose quotient is the pull of eight rows. What a pull mends, `slope` for each unit of it without surfaces, changes where a
-/// particle comes to press and where it ceases to. Which do is seen by the slope with which the pull begins: one change is met exactly, as by
-/// two steps of Newton's method.
+/// The error and slope whose quotient is the pull of eight rows. The effect of a pull, `slope` per unit without
+/// surfaces, changes where a particle starts or stops pressing. The initial slope predicts which do: a single change is
+/// exact, as by two Newton steps.
 #[inline(always)]
 fn on_surfaces<L: Lanes, const K: usize>(surfaces: &[Surface<L>; K], error: L, slope: L) -> (L, L) {
     let zero = L::splat(0.0);
     let mut first = slope;
     for s in surfaces {
-        // One that has no room left presses if it is pulled onto the surface.
+        // One without room presses if it is pulled onto the surface.
         let brink = L::splat(f32::MIN_POSITIVE).masked(L::lt(s.gain * error, zero));
         first = first - s.lacking.masked(L::lt(s.room, brink));
     }
@@ -447,7 +448,7 @@ fn on_surfaces<L: Lanes, const K: usize>(surfaces: &[Surface<L>; K], error: L, s
     for s in surfaces {
         let presses = L::lt(s.room * first + s.gain * error, zero);
         last = last - s.lacking.masked(presses);
-        // The part of the pull in which it was not yet so.
+        // The part of the pull before that change.
         error_left = error_left + s.passed * L::max(L::select(presses, s.room, -s.room), zero);
     }
     (error_left, last)

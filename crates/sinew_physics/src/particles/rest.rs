@@ -1,4 +1,4 @@
-//! Rest of a particle group: how long it has lain still, and with whom it sleeps.
+//! Rest of a particle group: its time at rest, and the island it sleeps in.
 
 use super::{AttachmentTarget, ParticleGroup};
 use crate::body::def::{SleepThresholds, Sleeping};
@@ -12,7 +12,7 @@ use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 /// Awake, asleep with the island it fell asleep with, or woken since.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum GroupRest {
-    /// Seconds for which each particle has been in its place.
+    /// Seconds for which each particle has stayed in place.
     Awake { rest_time: f32 },
     /// Bodies that sleep under the same number wake with it.
     Asleep { island: u32 },
@@ -31,7 +31,7 @@ impl Default for GroupRest {
 pub(crate) struct Bed {
     /// A body that fell asleep with it, if any did.
     pub partner: Option<u32>,
-    /// Around all particles, with their radii and some room.
+    /// Bounds of all particles with their radii and a margin.
     pub bounds: Aabb,
 }
 
@@ -41,12 +41,12 @@ impl ParticleGroup {
         !matches!(self.rest, GroupRest::Asleep { .. })
     }
 
-    /// Permission to fall asleep by itself.
+    /// Permission to fall asleep.
     pub fn sleeping(&self) -> Sleeping {
         self.sleeping
     }
 
-    /// Says whether it may fall asleep by itself; it wakes if it may not.
+    /// Sets the permission to fall asleep; the group wakes if it is revoked.
     pub fn set_sleeping(&mut self, sleeping: Sleeping) {
         self.sleeping = sleeping;
         if sleeping == Sleeping::Off {
@@ -54,8 +54,8 @@ impl ParticleGroup {
         }
     }
 
-    /// Wakes it, and in the next step the bodies that it fell asleep with. If it is awake it stays so for as long as if it had just
-    /// woken.
+    /// Wakes the group, and in the next step the bodies it fell asleep with. For an awake group it restarts the time at
+    /// rest.
     pub fn wake(&mut self) {
         self.rest = match self.rest {
             GroupRest::Awake { .. } => GroupRest::default(),
@@ -87,12 +87,12 @@ impl ParticleGroup {
         self.bed = None;
     }
 
-    /// True if it holds bodies, which then rest no sooner than it does.
+    /// True if it holds bodies, which then rest only when it does.
     pub(crate) fn holds_bodies(&self) -> bool {
         self.attachments.iter().any(|a| matches!(a.target, AttachmentTarget::Body { .. }))
     }
 
-    /// Bodies that hold particles of it or that its backstops are fixed to, each as often as they do.
+    /// Bodies that hold its particles or carry its backstops, once for each.
     pub(crate) fn carriers(&self) -> impl Iterator<Item = BodyId> {
         let held = self.attachments.iter().filter_map(|a| match a.target {
             AttachmentTarget::Body { body, .. } => Some(body),
@@ -101,7 +101,7 @@ impl ParticleGroup {
         held.chain(self.backstops.iter().map(|backstop| backstop.body))
     }
 
-    /// Puts it to sleep as it is, under a number that no other islands have.
+    /// Puts the group to sleep under an unused island number.
     pub(crate) fn fall_asleep(&mut self, island: u32, partner: Option<u32>) {
         self.rest = GroupRest::Asleep { island };
         self.velocities.fill(Vec3::ZERO);
@@ -110,7 +110,7 @@ impl ParticleGroup {
         self.lie_down(partner);
     }
 
-    /// Takes note of where it sleeps, or slept until it was woken, and of a body that fell asleep with it.
+    /// Records its island (or former island), and a body that fell asleep with it.
     pub(crate) fn lie_down(&mut self, partner: Option<u32>) {
         self.bed = Some(Bed { partner, bounds: self.bounds_of(&self.places).expand(BED_ROOM) });
     }
@@ -137,12 +137,12 @@ impl ParticleGroup {
         matches!(self.rest, GroupRest::Awake { rest_time } if rest_time > 0.0 && rest_time >= time)
     }
 
-    /// True if a particle is `distance` metres from where its time of rest began.
+    /// True if a particle is `distance` metres from where its time at rest started.
     pub(crate) fn strays(&self, distance: f32) -> bool {
         !all_within(&self.positions, &self.places, distance)
     }
 
-    /// Around what touched the particles where the time of rest of each began.
+    /// Bounds of everything that touched the particles where their time at rest started.
     pub(crate) fn left(&self) -> Aabb {
         self.bounds_of(&self.places).expand(STRIKE_GAP)
     }
@@ -160,7 +160,7 @@ impl ParticleGroup {
         })
     }
 
-    /// Begins the time of rest of each particle that has strayed by `distance` metres anew.
+    /// Restarts the time at rest of each particle that has moved by `distance` metres.
     pub(crate) fn settle(&mut self, distance: f32) {
         for (position, place) in self.positions.iter().zip(&mut self.places) {
             if !is_within(*position, *place, distance) {
@@ -169,7 +169,7 @@ impl ParticleGroup {
         }
     }
 
-    /// True if a shape comes within `reach` metres of a particle that nothing holds.
+    /// True if a shape comes within `reach` metres of a free particle.
     pub(crate) fn is_near(&self, shape: &Shape, at: &Transform, reach: f32) -> bool {
         let bounds = shape.aabb(at);
         (0..self.positions.len()).any(|i| {
@@ -196,7 +196,7 @@ impl ParticleGroup {
                 out.u32(island);
             }
         }
-        // Asleep, each particle is in its place.
+        // Asleep, each particle is in place.
         if !matches!(self.rest, GroupRest::Asleep { .. }) {
             self.places.iter().for_each(|&place| out.vec3(place));
         }
@@ -232,7 +232,7 @@ impl ParticleGroup {
     }
 }
 
-/// True if each point is nearer than `distance` to that of the same index.
+/// True if each point is nearer than `distance` to the one with the same index.
 fn all_within(points: &[Vec3], others: &[Vec3], distance: f32) -> bool {
     points.iter().zip(others).all(|(&point, &other)| is_within(point, other, distance))
 }

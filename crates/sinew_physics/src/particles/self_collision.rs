@@ -1,26 +1,27 @@
-//! Self-collision: particles of a group that no spring joins keep apart by its thickness.
+//! Self-collision: particles of a group without a common spring keep its thickness as distance.
 //!
-//! Pairs come from a list that holds while nobody has moved by half of its room (Verlet 1967). What it holds too much changes nothing, and it is in
-//! the order of its particles, so that results are the bits that trying all gives, and the list is no part of the state. Each pair is a row that only
-//! presses, along the line between its particles, on the side on which they were when the iteration began; what moves by more than their distance
-//! within it passes.
+//! Pairs come from a list that is valid while no particle has moved by half of its margin (Verlet 1967). Excess pairs
+//! have no effect, and the list is in the order of its particles, so the results are the bits of testing all, and the
+//! list is not part of the state. Each pair is a row that only presses along the line between its particles, on the
+//! side at the start of the iteration; particles that move by more than their distance within it pass.
 //!
-//! Layers that bear a load are thousands of times lighter than it: rows that share an impulse by mass let it through. What lies on something that
-//! cannot move is therefore solved from there outward, and a particle gives way to what comes down on it only where what it lies on lets it (shock
-//! propagation: Guendelman, Bridson and Fedkiw, "Nonconvex Rigid Bodies with Stacking", 2003). What is pressed into it goes on, layer by layer, to the
-//! surface at the bottom, and friction between layers knows of all of it. What comes from below is shared by mass as ever: a light particle that does
-//! not give way would push with momentum that it does not have.
+//! Layers that carry a load are thousands of times lighter than the load: rows that share impulses by mass let it
+//! through. Layers on an immovable obstacle are therefore solved from there outward, and a particle yields to a load
+//! from above only as far as its support allows (shock propagation: Guendelman, Bridson and Fedkiw, "Nonconvex Rigid
+//! Bodies with Stacking", 2003). The pressing impulse is passed layer by layer to the surface at the bottom, and
+//! friction between layers uses all of it. Impulses from below are shared by mass: a light particle that did not yield
+//! would push with momentum it does not have.
 
 use super::tuning::{BEARING, SELF_PUSH_SPEED, SELF_ROOM, SELF_SWEEPS};
 use super::{ParticleGroup, SpringDef};
 use sinew_math::{Vec3, max, min, normalize_or};
 
-/// Pairs of particles that may come to touch, and how they are found.
+/// Pairs of particles that may touch, and their search.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SelfCollision {
     /// Distance that pairs keep, metres.
     thickness: f32,
-    /// Particles that each is joined to.
+    /// Particles connected to each one.
     joined: Lists,
     /// Particles within reach of each.
     near: Lists,
@@ -28,23 +29,23 @@ pub(super) struct SelfCollision {
     pairs: Vec<[u32; 2]>,
     /// Particles by their cells, ascending.
     cells: Vec<(u64, u32)>,
-    /// Position of each particle when the pairs were found, world, metres; none if they never were.
+    /// Position of each particle at the pair search, world, metres; empty before the first.
     found_at: Vec<Vec3>,
-    /// Particles in the order in which their pairs are solved: each after what it lies on.
+    /// Particles in the solving order of their pairs: each after its support.
     order: Vec<u32>,
     /// Number of those whose turn has come.
     next: usize,
     /// Turn of each particle.
     turns: Vec<Turn>,
-    /// Direction out of what each particle lies on: unit once its turn has come, before that the sum of those of all that bear it.
+    /// Normal of each particle's support: unit once it is processed, before that the sum over all its supports.
     supports: Vec<Vec3>,
     /// Length of that sum.
     bearing: Vec<f32>,
-    /// Way in the iteration of what bears each particle in the end, metres.
+    /// Displacement in the iteration of each particle's final support, metres.
     ways: Vec<Vec3>,
     /// Coefficient of friction of that.
     grips: Vec<f32>,
-    /// Impulse that is pressed into each particle and goes on to what it lies on, N·s.
+    /// Impulse pressed into each particle and passed on to its support, N·s.
     loads: Vec<f32>,
     /// Pairs that touch, in the order in which they are solved.
     rows: Vec<Row>,
@@ -53,9 +54,9 @@ pub(super) struct SelfCollision {
 /// Turn of a particle among those whose pairs are solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Turn {
-    /// Nothing is known to bear it.
+    /// It has no known support.
     Loose,
-    /// In the order.
+    /// It is in the solving order.
     Listed,
     /// Its pairs are solved.
     Done,
@@ -68,9 +69,9 @@ struct Row {
     above: u32,
     /// Unit, from the one below.
     normal: Vec3,
-    /// Share of what pushes the one below that what it lies on takes, outward.
+    /// Share of an impulse on the lower one that its support takes, outward.
     held: Vec3,
-    /// Distance along the normal that it is brought to, metres.
+    /// Target distance along the normal, metres.
     goal: f32,
     /// N·s.
     impulse: f32,
@@ -85,7 +86,7 @@ struct Lists {
 }
 
 impl Lists {
-    /// From ascending pairs: of each the second goes into the list of the first.
+    /// From ascending pairs: the second of each goes into the first's list.
     fn fill(&mut self, count: usize, pairs: &[[u32; 2]]) {
         self.items.clear();
         self.items.extend(pairs.iter().map(|pair| pair[1]));
@@ -108,7 +109,7 @@ impl Lists {
 }
 
 impl SelfCollision {
-    /// For as many particles with these springs that keep `thickness` metres apart.
+    /// For this many particles with these springs at a distance of `thickness` metres.
     pub fn new(count: usize, thickness: f32, springs: &[SpringDef]) -> Self {
         let mut both: Vec<[u32; 2]> = springs.iter().map(|s| [s.a, s.b]).collect();
         both.extend(both.clone().into_iter().map(|[a, b]| [b, a]));
@@ -122,7 +123,7 @@ impl SelfCollision {
         own
     }
 
-    /// True if no particle has moved by half of the list's room.
+    /// True if no particle has moved by half of the list's margin.
     fn holds(&self, positions: &[Vec3]) -> bool {
         let most = 0.5 * SELF_ROOM * self.thickness;
         let mut ways = self.found_at.iter().zip(positions);
@@ -156,7 +157,7 @@ impl SelfCollision {
             }
         }
         pairs.sort_unstable();
-        // Cells that are far apart may have one number.
+        // Distant cells may share a number.
         pairs.dedup();
         self.near.fill(positions.len(), &pairs);
         self.rows.clear();
@@ -187,7 +188,7 @@ impl SelfCollision {
         self.supports[i] = normalize_or(self.supports[i], Vec3::ZERO);
     }
 
-    /// Notes a pair that touches. If the one below lies on something, it bears the one above.
+    /// Stores a touching pair. If the lower one has a support, it supports the upper one.
     fn bear(&mut self, row: Row) {
         self.rows.push(row);
         let above = row.above as usize;
@@ -210,25 +211,25 @@ fn coordinates(point: Vec3, size: f32) -> [i32; 3] {
     point.to_array().map(|x| (x / size).floor() as i32)
 }
 
-/// Number of a cell: 21 bits of each coordinate.
+/// Hash of a cell: 21 bits per coordinate.
 fn cell(coordinates: [i32; 3]) -> u64 {
     coordinates.into_iter().fold(0, |number, c| number << 21 | u64::from(c as u32 & 0x1f_ffff))
 }
 
 impl ParticleGroup {
-    /// Distance that particles which no spring joins keep from each other, metres; 0 if they do not.
+    /// Distance between particles without a common spring, metres; 0 if there is no self-collision.
     pub fn thickness(&self) -> f32 {
         self.self_collision.as_ref().map_or(0.0, |own| own.thickness)
     }
 
-    /// Pushes particles of the group apart where they would end the iteration in each other.
+    /// Pushes particles of the group apart that would overlap at the end of the iteration.
     pub(super) fn part_particles(&mut self, h: f32) {
         let Some(mut own) = self.self_collision.take() else { return };
         if !own.holds(&self.positions) {
             own.find(&self.positions);
         }
         own.begin();
-        // First what lies on what cannot move, then what is on bodies that can, then the rest.
+        // First those supported by immovable obstacles, then by movable bodies, then the rest.
         for fixed in [true, false] {
             self.list_first(&mut own, fixed);
             self.part_listed(&mut own, h);
@@ -265,7 +266,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Solves the pairs of all particles in the order that have not had their turn, and of those that these bear.
+    /// Solves the pairs of all unprocessed particles in order, and of those that they support.
     fn part_listed(&mut self, own: &mut SelfCollision, h: f32) {
         while let Some(&i) = own.order.get(own.next) {
             own.next += 1;
@@ -279,7 +280,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Pushes a particle off one whose turn came before, and notes whether it lies on it.
+    /// Pushes a particle off an earlier one, and records if it is supported by it.
     fn part(&mut self, own: &mut SelfCollision, below: u32, above: u32, h: f32) {
         let (b, a) = (below as usize, above as usize);
         let apart = self.positions[a] - self.positions[b];
@@ -287,17 +288,18 @@ impl ParticleGroup {
             return;
         }
         let before = self.previous[a] - self.previous[b];
-        // Those that would have passed each other go back to their sides.
+        // Pairs that would have passed each other return to their sides.
         let side = if apart.dot(before) > 0.0 { apart } else { before };
         let normal = normalize_or(side, normalize_or(apart, Vec3::Y));
-        // Only what comes from above meets what does not give way: what comes from below would push with more than it has.
+        // Only loads from above meet an unyielding support: impulses from below would push with more momentum than
+        // there is.
         let way = |i: usize| (self.positions[i] - self.previous[i] - own.ways[b]).dot(normal);
         let (fallen, risen) = (max(-way(a), 0.0), max(way(b), 0.0));
-        // The first take part in what their surface bears.
+        // The first ones share in their surface's load.
         let is_borne = own.bearing[b] > 0.0 && fallen > 0.0;
         let share = if is_borne { fallen / (fallen + risen) } else { 0.0 };
         let held = own.supports[b] * (share * max(normal.dot(own.supports[b]), 0.0));
-        // A body is lifted out of what it has pressed into each other; the rest comes out without a velocity that it would keep.
+        // A body is lifted out by the pressing impulse; the remaining overlap is resolved without lasting velocity.
         let out = if self.lifts(a) { SELF_PUSH_SPEED * h } else { 0.0 };
         let goal = min(own.thickness, before.length() + out);
         let mut row = Row { below, above, normal, held, goal, impulse: 0.0 };
@@ -310,7 +312,7 @@ impl ParticleGroup {
         self.backings[i] > 0.0 && self.backings[i] < 1.0
     }
 
-    /// Brings a pair to its distance, by an impulse that in all never pulls.
+    /// Brings a pair to its distance, by a total impulse that never pulls.
     fn press(&mut self, row: &mut Row, h: f32) {
         let (below, above) = (row.below as usize, row.above as usize);
         let missing = row.goal - (self.positions[above] - self.positions[below]).dot(row.normal);
@@ -323,7 +325,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Hands what presses each particle on to what it lies on.
+    /// Passes each particle's pressing impulse on to its support.
     fn hand_down(&mut self, own: &mut SelfCollision) {
         for row in own.rows.iter_mut().rev() {
             let (below, above) = (row.below as usize, row.above as usize);
@@ -340,7 +342,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Friction of pairs by all that presses them, from what does not move outward.
+    /// Friction of pairs by the total pressing impulse, from the immovable outward.
     fn rub_pairs(&mut self, own: &SelfCollision, h: f32) {
         for row in &own.rows {
             let (below, above) = (row.below as usize, row.above as usize);
@@ -352,7 +354,7 @@ impl ParticleGroup {
             if limit <= 0.0 || weights[1] <= 0.0 {
                 continue;
             }
-            // What the one above brings, the ground takes, as far as the way down there holds.
+            // The ground takes the upper one's impulse, as far as the supports between hold.
             let ground = own.ways[below] / h;
             let brought = max((self.velocities[above] - ground).dot(along), 0.0);
             let met = max((ground - self.velocities[below]).dot(along), 0.0);
@@ -368,7 +370,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Moves what is inside each other out slowly, without a velocity that it would keep.
+    /// Resolves overlaps slowly, without lasting velocity.
     fn push_out(&mut self, own: &SelfCollision, h: f32) {
         for row in &own.rows {
             let (below, above) = (row.below as usize, row.above as usize);

@@ -59,7 +59,7 @@ impl ParticleGroup {
             out.vec3(self.contact_impulses[i]);
             out.u8(match self.grips[i] {
                 Grip::Off => 0,
-                // The next iteration begins with its last friction as a force.
+                // The next iteration starts with its last friction as a force.
                 Grip::Slide | Grip::Slow => 1,
                 // A corner holds for an iteration.
                 Grip::Stick | Grip::Wedged => 2,
@@ -81,7 +81,7 @@ impl ParticleGroup {
         self.save_rest(out);
     }
 
-    /// Writes an attachment; with the first of each body what moves along with that.
+    /// Writes an attachment; the first one of each body includes the added mass.
     fn save_attachment(&self, a: &AttachmentDef, out: &mut Writer) {
         out.u32(a.particle);
         match a.target {
@@ -127,10 +127,10 @@ impl ParticleGroup {
         }
     }
 
-    /// Reads what [`save`](Self::save) wrote. Whether attached bodies and those of backstops exist is for the caller to check.
+    /// Reads the format of [`save`](Self::save). The caller checks that bodies of attachments and backstops exist.
     ///
     /// # Errors
-    /// If the bytes end too early or [`GroupDef::check`] finds something wrong.
+    /// If the bytes end too early or [`GroupDef::check`] rejects them.
     pub fn load(input: &mut Reader<'_>) -> Result<Self, ReadError> {
         let material = load_material(input)?;
         let (linear_damping, gravity_scale) = (input.f32()?, input.f32()?);

@@ -1,10 +1,10 @@
-//! Vectors of particles into lanes and back, as whole registers: particle `i` is in block `i mod n` of `n`, lane `i / n`.
+//! Copies vectors of particles into lanes and back, with SIMD: particle `i` is in block `i mod n` of `n`, lane `i / n`.
 
 use sinew_math::Vec3;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Block, Lanes, WIDTH};
 
-/// Writes vectors, one for each particle, into blocks from field `FIELD` on: eight blocks of eight at a time, as whole registers.
+/// Writes vectors, one per particle, into blocks from field `FIELD` on: eight blocks of eight at a time.
 pub(super) struct Spread<'a, const F: usize, const FIELD: usize> {
     pub vectors: &'a [Vec3],
     pub blocks: &'a mut [Block<F>],
@@ -41,7 +41,7 @@ impl<const F: usize, const FIELD: usize> Kernel for Spread<'_, F, FIELD> {
     }
 }
 
-/// Reads vectors, one for each particle, from the first fields of blocks.
+/// Reads vectors, one per particle, from the first fields of blocks.
 pub(super) struct Collect<'a, const F: usize> {
     pub vectors: &'a mut [Vec3],
     pub blocks: &'a [Block<F>],
@@ -80,7 +80,7 @@ impl<const F: usize> Kernel for Collect<'_, F> {
     }
 }
 
-/// Number of eights of blocks that hold a particle in each lane.
+/// Number of groups of eight full blocks.
 fn whole_eights(count: usize, per_lane: usize) -> usize {
     count.saturating_sub((WIDTH - 1) * per_lane) / WIDTH
 }

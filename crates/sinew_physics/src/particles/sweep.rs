@@ -1,35 +1,35 @@
-//! A ball on a straight way against a shape.
+//! Sweeps a ball along a line against a shape.
 
 use crate::body::shape::Shape;
 use crate::boxes::Aabb;
 use crate::triangles::{Part, Triangle, closest_on_triangle};
 use sinew_math::{Vec3, max, max3, min3};
 
-/// Contact of a ball on its way with a shape, in the shape's frame.
+/// Contact of a swept ball with a shape, in the shape's frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meeting {
-    /// Share of the way before, 0..=1.
+    /// Share of the path before contact, 0..=1.
     pub fraction: f32,
     /// Centre of the ball.
     pub at: Vec3,
-    /// Unit, out of the shape.
+    /// Unit, outward.
     pub normal: Vec3,
-    /// Gap that is still between them, metres; negative where the way begins inside.
+    /// Remaining gap, metres; negative if the sweep starts inside.
     pub gap: f32,
 }
 
 impl Meeting {
-    /// Distance of a point from the plane in which the ball's centre lies when it touches.
+    /// Distance of a point from the plane of the ball's centre at contact.
     pub fn height(&self, point: Vec3) -> f32 {
         self.gap + (point - self.at).dot(self.normal)
     }
 }
 
-/// Each round gains at least as many digits as there are already, but for ways that graze.
+/// Each iteration at least doubles the correct digits, except for grazing paths.
 const ROUNDS: u32 = 32;
 
-/// The first place on the way from `from` to `to` (the shape's frame) where a ball of this radius touches the shape on
-/// approach, `None` if it passes. Of a surface the first of its triangles that it comes to from their outside.
+/// The first position between `from` and `to` (the shape's frame) where a ball of this radius touches the shape while
+/// approaching; `None` if it passes. For a surface, the first triangle hit from outside.
 pub(super) fn sweep_ball(shape: &Shape, radius: f32, from: Vec3, to: Vec3) -> Option<Meeting> {
     let Some(surface) = shape.surface() else {
         return approach(|at| shape.local_distance(at), radius, from, to);
@@ -51,7 +51,7 @@ pub(super) fn sweep_ball(shape: &Shape, radius: f32, from: Vec3, to: Vec3) -> Op
     first
 }
 
-/// True if what a point is nearest to can be met: an edge within the surface is left to the faces on both sides.
+/// True if the nearest feature can be hit: an internal edge is left to its two faces.
 fn is_felt(triangle: &Triangle, at: Vec3) -> bool {
     match closest_on_triangle(&triangle.corners, at).1 {
         Part::Face => true,
@@ -63,7 +63,7 @@ fn is_felt(triangle: &Triangle, at: Vec3) -> bool {
 /// A particle this deep behind a triangle rests on it, metres.
 const SUNK: f32 = 1e-4;
 
-/// Distance from a triangle, negative behind it, and the direction away from it.
+/// Signed distance from a triangle, negative behind it, and the direction away from it.
 fn over_triangle(triangle: &Triangle, at: Vec3) -> (f32, Vec3) {
     let (point, part) = closest_on_triangle(&triangle.corners, at);
     let distance = (at - point).length();
@@ -74,9 +74,9 @@ fn over_triangle(triangle: &Triangle, at: Vec3) -> (f32, Vec3) {
     }
 }
 
-/// [`sweep_ball`] by a convex solid's signed distance and outward normal: all of it lies behind the plane at the closest
-/// point, so the ball can go on to that plane at least (Newton's method on the distance, from the side on which it never goes
-/// too far).
+/// [`sweep_ball`] by a convex solid's signed distance and outward normal. The whole solid is behind the plane at the
+/// closest point, so the ball can advance at least to that plane (Newton's method on the distance, from the side where
+/// it never overshoots).
 fn approach(distance: impl Fn(Vec3) -> (f32, Vec3), radius: f32, from: Vec3, to: Vec3) -> Option<Meeting> {
     let length = (to - from).length();
     if length < 1e-12 {

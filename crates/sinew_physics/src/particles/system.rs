@@ -1,9 +1,10 @@
-//! The linear system of a step over the springs of a group, solved again until springs are where they were foreseen.
+//! The linear system of a step over the springs of a group, solved repeatedly until the springs' linearisation is
+//! consistent.
 //!
-//! Unknown are the velocities at the end of the step: `(M + h² K + h D) v⁺ = M v + h f` (Baraff & Witkin 1998), with
-//! the axial stiffness `k n nᵀ`, the geometric stiffness `k max(0, 1 − L₀/L) (I − n nᵀ)` and the axial damping of
-//! each spring. At rest the right-hand side is
-//! zero, so that a chain hangs exactly where its forces balance, whatever the length of the step.
+//! The unknowns are the velocities at the end of the step: `(M + h² K + h D) v⁺ = M v + h f` (Baraff & Witkin 1998),
+//! with the axial stiffness `k n nᵀ`, the geometric stiffness `k max(0, 1 − L₀/L) (I − n nᵀ)` and the axial damping of
+//! each spring. At rest the right-hand side is zero, so that a chain hangs exactly where its forces balance, whatever
+//! the length of the step.
 
 use super::SpringDef;
 use super::conjugate::Conjugate;
@@ -12,7 +13,7 @@ use super::hub::Hub;
 use super::load::Load;
 use sinew_math::{Sym3, Vec3};
 
-/// Rounds of Newton's method until springs have to be where they were foreseen.
+/// Largest number of Newton iterations.
 const NEWTON_ROUNDS: u32 = 16;
 /// Times that a round is halved.
 const HALVINGS: u32 = 8;
@@ -25,15 +26,15 @@ pub(super) enum Freedom {
     /// Anything.
     #[default]
     Free,
-    /// Anything at right angles to a unit normal; along it, the velocity is that of a surface, which gives way by `yielding` for each
-    /// impulse, 1/kg: 0 where it is given.
+    /// Free perpendicular to a unit normal; along it, the velocity is the surface's, which yields by `yielding` per
+    /// impulse, 1/kg: 0 if it is prescribed.
     Along { normal: Vec3, speed: f32, yielding: f32 },
     /// Nothing: its velocity is given.
     Fixed,
 }
 
 impl Freedom {
-    /// Energy of what a particle with this velocity has pushed its surface with, J.
+    /// Energy transferred to its surface by a particle with this velocity, J.
     fn merit(&self, velocity: Vec3) -> f32 {
         match *self {
             Self::Along { normal, speed, yielding } if yielding > 0.0 => {
@@ -48,7 +49,7 @@ impl Freedom {
 /// Memory of one step's system, by particle and by spring.
 #[derive(Clone, Debug, Default)]
 pub(super) struct System {
-    /// kg: the particle's own, and where nothing is in trees what its anchor adds.
+    /// kg: the particle's own, plus its anchor's if there are no trees.
     pub inertia: Vec<Sym3>,
     /// kg·m/s: momentum at the end of the step without springs and contacts.
     pub momentum: Vec<Vec3>,
@@ -60,18 +61,19 @@ pub(super) struct System {
     pub freedom: Vec<Freedom>,
     /// Bodies that hold particles.
     pub hubs: Vec<Hub>,
-    /// Place of each held particle on its body, world, metres.
+    /// Position of each held particle on its body, world, metres.
     pub points: Vec<Vec3>,
     pub(super) loads: Vec<Load>,
-    /// Velocities and impulses of springs that Newton's method has come from.
+    /// Velocities and spring impulses before the last Newton step.
     last_velocities: Vec<Vec3>,
     last_impulses: Vec<Vec3>,
-    /// Inertia and momentum of each particle with all that hangs below it.
+    /// Inertia and momentum of each particle with its subtree.
     pub(super) gathered_inertia: Vec<Sym3>,
     pub(super) gathered_momentum: Vec<Vec3>,
-    /// Impulse of the spring to its parent on each particle, from where that is linearised, N·s.
+    /// Impulse of the parent spring on each particle, relative to its linearisation, N·s.
     pub(super) tensions: Vec<Vec3>,
-    /// Inverse of its inertia with that spring's, 1/kg, and velocity gained per impulse while the parent keeps its velocity.
+    /// Inverse of its inertia including that spring, 1/kg, and velocity gained per impulse with the parent's velocity
+    /// fixed.
     pub(super) inverses: Vec<Sym3>,
     pub(super) responses: Vec<Sym3>,
     pub(super) conjugate: Conjugate,
@@ -109,12 +111,12 @@ impl System {
         }
     }
 
-    /// Velocities at the end of the step, and the impulses of springs with which they come about, by Newton's method: springs
-    /// are linearised anew where the velocities just found would bring them, until none is there other than foreseen.
+    /// Velocities at the end of the step, and the corresponding spring impulses, by Newton's method: springs are
+    /// linearised again at the positions of the last velocities until they agree.
     ///
-    /// A link of a whip that turns far within the step would else be stretched by that, and hold energy that nobody paid.
-    /// A step of the method is shortened until it lowers the energy of which the end of the step is the least (`merit`), so that none
-    /// makes it worse.
+    /// Otherwise a link of a whip that rotates far within the step would be stretched by the linearisation, and store
+    /// energy from nothing. A Newton step is shortened until it lowers the energy that the step's end minimises
+    /// (`merit`).
     pub fn settle_springs(
         &mut self,
         forest: &Forest,
@@ -156,8 +158,8 @@ impl System {
         }
     }
 
-    /// The energy of which the velocities at the end of the step are the least, J, and the size of its terms:
-    /// `½ v·M v − p·v`, and what springs have there.
+    /// The energy that the velocities at the end of the step minimise, J, and the size of its terms: `½ v·M v − p·v`,
+    /// plus the springs' energy there.
     fn merit(
         &self,
         forest: &Forest,
@@ -189,8 +191,8 @@ impl System {
         (sum, size)
     }
 
-    /// Linearises the springs anew where these velocities would bring them, if any would be there other than foreseen; whether there was
-    /// one.
+    /// Linearises the springs again at the positions of these velocities; returns true if any differs from its
+    /// prediction.
     fn follow_springs(
         &mut self,
         forest: &Forest,
@@ -233,7 +235,7 @@ impl System {
     }
 }
 
-/// Vector from A to B of a spring at the end of the step, and how far the velocity of A is ahead of that of B.
+/// Vector from A to B of a spring at the end of the step, and A's velocity relative to B's.
 fn at_end(s: &SpringDef, positions: &[Vec3], velocities: &[Vec3], h: f32) -> (Vec3, Vec3) {
     let [a, b] = [s.a as usize, s.b as usize];
     let ahead = velocities[a] - velocities[b];

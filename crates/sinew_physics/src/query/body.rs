@@ -16,8 +16,8 @@ impl World {
         bounds.reduce(|a, b| a.merge(&b)).unwrap_or(Aabb { min: place, max: place })
     }
 
-    /// Nearest point of the surface of a body to a point (world), over all its shapes; `None` of a body without shapes. A
-    /// point that several shapes hold is measured in the one that holds it deepest.
+    /// Nearest point on the surface of a body to a point (world), over all its shapes; `None` for a body without
+    /// shapes. A point inside several shapes is measured in the one that contains it deepest.
     #[track_caller]
     pub fn nearest_surface(&self, id: BodyId, point: Vec3) -> Option<SurfacePoint> {
         let of_shape = |(shape, frame): (Shape, Transform)| shape.nearest_surface(&frame, point);
@@ -29,8 +29,8 @@ impl World {
         self.nearest_surface(id, point).is_some_and(|nearest| nearest.distance <= 0.0)
     }
 
-    /// Depth of a point (world) in a body, and direction in which the way out is shortest; `None` if it is outside. The
-    /// way leads out of the shape that holds the point deepest.
+    /// Depth of a point (world) in a body, and the direction of the shortest way out; `None` if it is outside. The way
+    /// leads out of the shape that contains the point deepest.
     #[track_caller]
     pub fn point_penetration(&self, id: BodyId, point: Vec3) -> Option<Penetration> {
         let SurfacePoint { distance, normal, .. } = self.nearest_surface(id, point)?;

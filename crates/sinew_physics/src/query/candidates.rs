@@ -1,4 +1,4 @@
-//! Candidates: shapes that may have an answer. The one place where a question meets the trees.
+//! Candidate shapes of a query: the interface between queries and trees.
 
 use crate::boxes::Aabb;
 use crate::contact::proxies::{Owner, thick};
@@ -12,7 +12,7 @@ use sinew_math::{Vec3, abs3, max, max3, min, min3};
 pub enum Reach {
     /// Their bounds meet a box.
     Box(Aabb),
-    /// Their bounds meet a box while it is moved by a vector, metres.
+    /// Their bounds overlap a box swept by a vector, metres.
     Swept(Aabb, Vec3),
     /// Their bounds are within a distance of a point, metres.
     Near(Vec3, f32),
@@ -21,17 +21,17 @@ pub enum Reach {
 /// Rank beyond which no answer counts; a break ends the search.
 pub(super) type Limit = ControlFlow<(), f32>;
 
-/// Farther than this from the origin nothing is looked for, metres: squares of larger numbers overflow.
+/// Nothing farther from the origin is found, metres: squares of larger numbers overflow.
 pub(super) const FARTHEST: f32 = 1e18;
 
-/// No way is cut off before this share of it.
+/// No sweep is shortened below this fraction.
 const SHORTEST: f32 = 1e-30;
 
-/// Shows every shape within reach, and maybe others, to `visit`, in any order, until it breaks.
+/// Passes every shape within reach, and possibly others, to `visit`, in any order, until it breaks.
 pub(super) fn candidates(world: &World, reach: &Reach, mut visit: impl FnMut(Owner) -> Limit) {
     let proxies = &world.broad.proxies;
     let mut broken = false;
-    // For searches along a line and around a point: what is left, below 0 once it is over.
+    // For searches along a line and around a point: the remaining limit, below 0 after the end.
     let mut search = |owner: Owner| {
         if !broken && let ControlFlow::Continue(limit) = visit(owner) {
             return limit;
@@ -57,13 +57,13 @@ pub(super) fn candidates(world: &World, reach: &Reach, mut visit: impl FnMut(Own
             if largest(point) > FARTHEST {
                 return;
             }
-            // What holds the point is asked about depth, at distance 0.
+            // Shapes that contain the point are ranked by depth, at distance 0.
             proxies.nearest(point, within, |owner| max(min(search(owner), within), 0.0));
         }
     }
 }
 
-/// Sweep of a box that is moved, for the trees; `None` where nothing is looked for.
+/// Sweep of a moving box, for the trees; `None` if nothing is searched.
 pub(super) fn sweep(bounds: &Aabb, direction: Vec3) -> Option<Sweep> {
     let (origin, half_extents) = (bounds.center(), bounds.half_extents());
     let limit = min(FARTHEST / largest(direction), 1.0);
@@ -71,9 +71,9 @@ pub(super) fn sweep(bounds: &Aabb, direction: Vec3) -> Option<Sweep> {
     is_near.then_some(Sweep { origin, direction, half_extents, limit })
 }
 
-/// Fraction beyond which a tree needs not be looked through, if answers beyond `limit` do not count.
+/// Fraction beyond which the tree search may stop, if answers beyond `limit` do not count.
 pub(super) fn what_is_left(sweep: &Sweep, limit: f32) -> f32 {
-    // Of hits right at the start of a very long way the fractions vanish, those of their bounds may not.
+    // For hits at the start of a very long sweep the fractions underflow, those of their bounds may not.
     min(max(limit, SHORTEST), sweep.limit)
 }
 

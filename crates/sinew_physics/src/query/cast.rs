@@ -1,4 +1,4 @@
-//! Questions about what is on a way: that of a ray, or of a shape that is moved.
+//! Sweep queries: rays and moving shapes.
 
 use super::Query;
 use super::candidates::Reach;
@@ -21,21 +21,21 @@ pub struct BodyHit {
     pub body: BodyId,
     /// Number of the shape in its body.
     pub shape: u32,
-    /// Share of the way before the hit, 0..=1; 0 of a start inside.
+    /// Fraction of the sweep before the hit, 0..=1; 0 if it starts inside.
     pub fraction: f32,
-    /// Point where they meet, in the world, metres; of a start inside where the ray starts, or the middle of the overlap.
+    /// Contact point, world, metres; for a start inside, the ray's start or the middle of the overlap.
     pub point: Vec3,
-    /// Unit, out of the shape that is met, in the world; of a start inside opposite to the way.
+    /// Unit outward normal of the hit shape, world; for a start inside, opposite to the sweep.
     pub normal: Vec3,
     /// Depth of a start inside, and the shortest way out; else `None`.
     pub start: Option<Penetration>,
 }
 
 impl BodyHit {
-    /// From what one shape says; `None` if a number is not finite.
+    /// From the answer of one shape; `None` if a number is not finite.
     fn new(id: ShapeId, hit: RayHit, start: Option<Penetration>) -> Option<Self> {
         let RayHit { fraction, point, normal } = hit;
-        // −0 is no place on a way.
+        // Normalises −0.
         let fraction = max(fraction, 0.0);
         let finite = fraction.is_finite() && point.is_finite() && normal.is_finite();
         finite.then_some(Self { body: id.body, shape: id.shape, fraction, point, normal, start })
@@ -52,7 +52,7 @@ impl Reply for BodyHit {
     }
 }
 
-/// Asks for the shapes that the ray meets, from its start to its end; those that are met first come first.
+/// Finds the shapes hit by a ray, from its start to its end; the first hit comes first.
 impl QueryKind for Ray {
     type Answer = BodyHit;
 }
@@ -87,14 +87,14 @@ impl Ask for Ray {
     }
 }
 
-/// Shapes that a probe meets when it is moved without turning; those that are met first come first.
+/// Finds the shapes hit by a probe that moves without rotation; the first hit comes first.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(alias = "sweep test")]
 #[doc(alias = "cast_shape")]
 pub struct ShapeCast {
     /// Probe that is moved, where it starts.
     pub probe: Probe,
-    /// Its way, metres.
+    /// Its displacement, metres.
     pub translation: Vec3,
 }
 

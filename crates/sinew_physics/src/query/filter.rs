@@ -9,14 +9,15 @@ use core::ops::BitOr;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[doc(alias = "layer mask")]
 pub struct QueryFilter<'a> {
-    /// As if the question were a shape with this filter: it meets those that [`Filter::meets`]. Default: on all layers,
-    /// with all layers in its mask, in no group; what has an empty mask is met by nobody, and not by this.
+    /// Treats the query as a shape with this filter: it accepts those that [`Filter::meets`]. Default: on all layers,
+    /// with all layers in its mask, in no group. A shape with an empty mask collides with nothing, and is not found
+    /// either.
     pub meets: Filter,
     /// Kinds of their bodies. Default: all.
     pub kinds: BodyKinds,
     /// Treatment of sensors. Default ignored.
     pub sensors: Sensors,
-    /// Bodies that are left out: a few, since each shape looks through all of them. Default none.
+    /// Excluded bodies: a few, because each shape is compared with all of them. Default none.
     pub except: &'a [BodyId],
 }
 
@@ -32,7 +33,7 @@ impl Default for QueryFilter<'_> {
 }
 
 impl<'a> QueryFilter<'a> {
-    /// Bodies of some kinds alone.
+    /// Restricts the query to some kinds of bodies.
     pub fn of(kinds: BodyKinds) -> Self {
         Self { kinds, ..Self::default() }
     }
@@ -54,7 +55,7 @@ impl<'a> QueryFilter<'a> {
 /// Treatment of sensors in a question.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sensors {
-    /// They are not there. Default.
+    /// Sensors are ignored. Default.
     #[default]
     Ignored,
     /// They answer as solid shapes do.
@@ -68,7 +69,7 @@ pub struct BodyKinds(u8);
 impl BodyKinds {
     /// Static bodies: they never move.
     pub const STATIC: Self = Self(1);
-    /// Kinematic bodies: they move as their velocity says.
+    /// Kinematic bodies: they move according to their velocity.
     pub const KINEMATIC: Self = Self(2);
     /// Dynamic bodies: forces move them.
     pub const DYNAMIC: Self = Self(4);

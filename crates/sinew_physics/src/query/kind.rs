@@ -1,4 +1,4 @@
-//! Questions that can be asked: a question finds out one shape's answer, and orders the answers of several.
+//! Kinds of queries: each finds one shape's answer, and orders the answers of several.
 
 use super::Query;
 use super::candidates::Reach;
@@ -6,13 +6,13 @@ use crate::body::shape::Shape;
 use crate::id::{BodyId, ShapeId};
 use sinew_math::Transform;
 
-/// QueryKind that a [`Query`] can be asked; [the module](super) lists all questions there are.
+/// Kind of a [`Query`]; [the module](super) lists all kinds.
 pub trait QueryKind: sealed::Ask<Found = <Self as QueryKind>::Answer> {
     /// Answer of a shape.
     type Answer: sealed::Reply;
 }
 
-/// Methods that questions have, kept from those who only ask them.
+/// Internal methods of query kinds, hidden from users.
 pub(super) mod sealed {
     use super::{BodyId, Query, Reach, Shape, ShapeId, Transform};
 
@@ -20,13 +20,13 @@ pub(super) mod sealed {
         /// [`QueryKind::Answer`](super::QueryKind::Answer).
         type Found: Reply;
 
-        /// Reach of the question, or `None` if no shape has an answer: a number is not finite.
+        /// Reach of the query, or `None` if no shape can answer: a number is not finite.
         fn reach(&self) -> Option<Reach>;
 
         /// The answer of a placed shape, if it has one. No number in it is NaN or infinite.
         fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<Self::Found>;
 
-        /// The first answer to each of several, for questions that have a quicker way than one after the other.
+        /// The first answer to each of several queries, for kinds with a faster batch algorithm.
         fn first_each<P: Fn(BodyId, u32) -> bool>(
             query: &Query<'_, P>,
             questions: &[Self],
@@ -50,7 +50,7 @@ pub(super) mod sealed {
         /// Shape that answered.
         fn shape(&self) -> ShapeId;
 
-        /// Rank of the answer among others: what is smaller comes first; equal ones go by body and shape.
+        /// Rank of the answer: smaller comes first; equal ones are ordered by body and shape.
         fn rank(&self) -> f32;
     }
 }

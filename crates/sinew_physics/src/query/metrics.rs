@@ -127,7 +127,7 @@ impl World {
     #[track_caller]
     pub fn penetration(&self, id: BodyId) -> f32 {
         self.expect(id);
-        // One that has several contacts is looked at several times, which costs no memory.
+        // A pair with several contacts is processed several times, which needs no memory.
         self.contacts_at(id.index)
             .filter(|contact| contact.pushes())
             .map(|contact| contact.key.other(id.index))

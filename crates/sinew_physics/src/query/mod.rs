@@ -1,6 +1,6 @@
-//! Questions to a world: what a ray meets, what a shape would touch, what is near.
+//! Queries of a world: rays, overlaps, sweeps, nearest points.
 //!
-//! A [`QueryKind`] is plain data. [`World::query`] takes it to the shapes of a world, all of them or those that pass a
+//! A [`QueryKind`] is plain data. [`World::query`] applies it to all shapes of a world, or to those that pass a
 //! [`QueryFilter`] and a predicate:
 //!
 //! ```
@@ -21,46 +21,47 @@
 //! assert!(!world.query().accept(|body, _| body != ball).any(&ContainsPoint(Vec3::Y * 2.0)));
 //! ```
 //!
-//! # What can be asked
+//! # Queries
 //!
-//! | question | asks for | answers, in this order |
+//! | query | finds | answers, in this order |
 //! |---|---|---|
-//! | [`Ray`](crate::ray::Ray) | what is on a stretch of a line | [`BodyHit`], by fraction |
-//! | [`ShapeCast`] | what a shape meets that is moved | [`BodyHit`], by fraction |
-//! | [`OverlapWith`] | what a shape has a point in common with | [`ShapeId`], by body and shape |
-//! | [`PenetrationOf`] | how deep a shape is in those, and the way out of each | [`BodyPenetration`], the deepest first |
-//! | [`ContainsPoint`] | what holds a point | [`ShapeId`], by body and shape |
+//! | [`Ray`](crate::ray::Ray) | shapes on a segment | [`BodyHit`], by fraction |
+//! | [`ShapeCast`] | shapes that a moving shape hits | [`BodyHit`], by fraction |
+//! | [`OverlapWith`] | shapes that share a point with a shape | [`ShapeId`], by body and shape |
+//! | [`PenetrationOf`] | its depth in each of these, and the way out | [`BodyPenetration`], the deepest first |
+//! | [`ContainsPoint`] | shapes that contain a point | [`ShapeId`], by body and shape |
 //! | [`NearestTo`] | surfaces within a distance of a point | [`BodySurface`], the nearest first |
 //! | [`NearestToShape`] | surfaces within a distance of a shape | [`BodySurface`], the nearest first |
 //!
-//! Each of them for its [`first`](Query::first) answer, for [`all`](Query::all), whether there is [`any`](Query::any), and which
-//! [`bodies`](Query::bodies) answer; and likewise slices of them, into room of the caller's: [`first_each`](Query::first_each),
-//! [`all_each`](Query::all_each), [`any_each`](Query::any_each). A shape answers once. Equal answers go by the index of the body,
-//! then by the number of the shape, so that the order is always the same.
+//! Each supports the [`first`](Query::first) answer, [`all`](Query::all) answers, [`any`](Query::any) (whether there is
+//! one), and the [`bodies`](Query::bodies) that answer; and batches of queries, with results in the caller's memory:
+//! [`first_each`](Query::first_each), [`all_each`](Query::all_each), [`any_each`](Query::any_each). A shape answers
+//! once. Equal answers are ordered by body index, then by shape number, so that the order is deterministic.
 //!
 //! # Starts inside
 //!
-//! Shapes are closed sets: their surfaces belong to them, and what touches is inside. So it is for every shape and every question:
+//! Shapes are closed sets: their surfaces belong to them, and touching counts as inside. This holds for every shape and
+//! every query:
 //!
 //! | | apart at the start | touching | inside |
 //! |---|---|---|---|
-//! | [`Ray`](crate::ray::Ray), [`ShapeCast`] | hit where they meet, if they do | hit at fraction 0, wherever the way leads | likewise |
-//! | their [`normal`](BodyHit::normal) | out of the shape | opposite to the way; if it has no length, the way out | likewise |
-//! | their [`start`](BodyHit::start) | `None` | depth 0 | how deep, and the shortest way out |
+//! | [`Ray`](crate::ray::Ray), [`ShapeCast`] | hit at the first contact, if any | hit at fraction 0, in any direction | same as touching |
+//! | their [`normal`](BodyHit::normal) | outward | opposite to the sweep; for zero length, the way out | same as touching |
+//! | their [`start`](BodyHit::start) | `None` | depth 0 | depth, and the shortest way out |
 //! | [`OverlapWith`], [`ContainsPoint`] | no answer | an answer | an answer |
-//! | [`PenetrationOf`] | no answer | depth 0 | how deep, and the shortest way out |
+//! | [`PenetrationOf`] | no answer | depth 0 | depth, and the shortest way out |
 //! | [`NearestTo`], [`NearestToShape`] | distance above 0 | 0 | below 0 |
 //!
-//! A ray that leaves a shape does not hit it again; one without length hits what holds its start.
+//! A ray that leaves a shape does not hit it again; one without length hits the shapes that contain its start.
 //!
-//! Meshes and height fields are surfaces: nothing is inside of them but what touches one of their triangles. They are hit from
-//! the outside of their triangles alone, and no way out leads through a triangle's back; distances from them are never below 0
-//! but for shapes that go through a triangle.
+//! Meshes and height fields are surfaces: only points on their triangles are inside. They are hit from the outside of
+//! their triangles only, and no way out leads through a triangle's back; distances from them are never negative, except
+//! for shapes that cross a triangle.
 //!
 //! # What is not answered
 //!
-//! A number that is not finite, a size or distance below 0: no shape answers such a question. Nor is anything found that is
-//! farther than 10¹⁸ m from the world's origin. No answer holds NaN or infinity.
+//! With a non-finite number, or a negative size or distance, no shape answers. Nothing farther than 10¹⁸ m from the
+//! world's origin is found. No answer contains NaN or infinity.
 
 mod body;
 mod candidates;
@@ -93,7 +94,7 @@ use core::ops::ControlFlow;
 use kind::sealed::{Ask, Reply};
 use sinew_math::Transform;
 
-/// Asks a world, about those of its shapes that pass a filter and a predicate.
+/// Queries a world's shapes that pass a filter and a predicate.
 #[derive(Clone, Copy)]
 #[must_use]
 pub struct Query<'a, P> {
@@ -103,8 +104,8 @@ pub struct Query<'a, P> {
 }
 
 impl World {
-    /// Asks about every shape that is no sensor, until a [`filter`](Query::filter) says something else. The bodies are where
-    /// they are now, whether a step or [`set_transform`](World::set_transform) brought them there, asleep or awake.
+    /// Queries every shape except sensors, unless a [`filter`](Query::filter) is set. Bodies are at their current
+    /// poses, from a step or from [`set_transform`](World::set_transform), asleep or awake.
     #[doc(alias = "raycast")]
     #[doc(alias = "cast_ray")]
     #[doc(alias = "QueryPipeline")]
@@ -115,14 +116,14 @@ impl World {
 }
 
 impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
-    /// Asks about the shapes that pass a filter, instead of the one that was given before.
+    /// Queries the shapes that pass a filter, replacing a previous one.
     pub fn filter(self, filter: QueryFilter<'a>) -> Self {
         Self { filter, ..self }
     }
 
-    /// Asks about those shapes alone that a predicate accepts besides the filter, instead of the predicate that was given
-    /// before. It is asked with the body and the number of the shape, in any order, maybe again, and maybe for
-    /// shapes that do not answer.
+    /// Queries only shapes that a predicate accepts in addition to the filter, replacing a previous predicate. It is
+    /// called with the body and the number of the shape, in any order, possibly repeatedly, and possibly for shapes
+    /// that do not answer.
     pub fn accept<F: Fn(BodyId, u32) -> bool>(self, accept: F) -> Query<'a, F> {
         Query { world: self.world, filter: self.filter, accept }
     }
@@ -143,19 +144,19 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         any
     }
 
-    /// All answers, one for each shape that has one, in the question's order, equal ones by body and shape. `answers` is
-    /// emptied first, and allocates only to grow.
+    /// All answers, one per answering shape, in the query's order, equal ones by body and shape. `answers` is cleared
+    /// first, and allocates only to grow.
     pub fn all<Q: QueryKind>(&self, question: &Q, answers: &mut Vec<Q::Answer>) {
         answers.clear();
         self.answers(question, |answer| {
             answers.push(answer);
             ControlFlow::Continue(f32::INFINITY)
         });
-        // DETERMINISM: no two keys are equal, so that the order in which shapes were found does not matter.
+        // DETERMINISM: no two keys are equal, so the order in which shapes were found has no effect.
         answers.sort_unstable_by(|a, b| key(a).partial_cmp(&key(b)).expect("no rank is NaN"));
     }
 
-    /// The bodies that have an answer, each once, by index. `bodies` is emptied first, and allocates only to grow.
+    /// The bodies that have an answer, each once, by index. `bodies` is cleared first, and allocates only to grow.
     pub fn bodies<Q: QueryKind>(&self, question: &Q, bodies: &mut Vec<BodyId>) {
         bodies.clear();
         self.shapes(question, |id, shape, frame| {
@@ -168,19 +169,19 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         bodies.dedup();
     }
 
-    /// [`first`](Self::first) of each question; many rays are quicker together. It does not allocate.
+    /// [`first`](Self::first) of each query; batches of rays are faster than single ones. It does not allocate.
     ///
     /// # Panics
-    /// If there are not as many answers as questions.
+    /// If the number of answers differs from the number of queries.
     pub fn first_each<Q: QueryKind>(&self, questions: &[Q], answers: &mut [Option<Q::Answer>]) {
         assert_eq!(questions.len(), answers.len(), "one answer for each question");
         Q::first_each(self, questions, answers);
     }
 
-    /// [`any`](Self::any) of each question. It does not allocate.
+    /// [`any`](Self::any) of each query. It does not allocate.
     ///
     /// # Panics
-    /// If there are not as many answers as questions.
+    /// If the number of answers differs from the number of queries.
     pub fn any_each<Q: QueryKind>(&self, questions: &[Q], answers: &mut [bool]) {
         assert_eq!(questions.len(), answers.len(), "one answer for each question");
         for (question, answer) in questions.iter().zip(answers) {
@@ -188,8 +189,8 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         }
     }
 
-    /// [`all`](Self::all) of each question, one after the other: `visit` sees the number of the question and its answers.
-    /// `answers` is room to work in, and allocates only to grow.
+    /// [`all`](Self::all) of each query in turn: `visit` gets the number of the query and its answers. `answers` is
+    /// scratch memory, and allocates only to grow.
     pub fn all_each<Q: QueryKind>(
         &self,
         questions: &[Q],
@@ -202,7 +203,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         }
     }
 
-    /// [`first`](Self::first), for those who answer questions.
+    /// [`first`](Self::first), for internal use.
     fn best<Q: Ask>(&self, question: &Q) -> Option<Q::Found> {
         let mut best = None;
         self.answers(question, |answer| {
@@ -239,12 +240,12 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         });
     }
 
-    /// Shows a shape to `visit`, if it passes.
+    /// Passes a shape to `visit`, if it passes the filter.
     #[inline]
     fn meet<T>(&self, owner: Owner, visit: impl FnOnce(ShapeId, &Shape, &Transform) -> T) -> Option<T> {
         let Owner { body: index, shape: number } = owner;
         let id = ShapeId { body: self.world.bodies.id(index), shape: number };
-        // A body is spread over lines of the cache that a ray would wait for: what stands alone is asked without it.
+        // A body spans cache lines that a ray would wait for: a single-shape static body is queried without it.
         if let Some(placed) = self.world.broad.proxies.lone(index) {
             let Placed { shape, world_from_shape, filter, sensing } = placed;
             return self
@@ -258,7 +259,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
     }
 }
 
-/// Replaces an answer by one that comes before it.
+/// Replaces an answer by a better one.
 fn keep_first<A: Reply>(best: &mut Option<A>, answer: A) {
     if best.as_ref().is_none_or(|best| key(&answer) < key(best)) {
         *best = Some(answer);

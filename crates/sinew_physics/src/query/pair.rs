@@ -1,4 +1,4 @@
-//! A probe against one shape of the world: the one place where questions meet pairs of shapes.
+//! A probe against one shape of the world: the interface between queries and shape pairs.
 
 use super::probe::Probe;
 use super::triangles;
@@ -25,13 +25,13 @@ pub(super) fn overlap(shape: &Shape, world_from_shape: &Transform, probe: &Probe
     penetration(shape, world_from_shape, probe).is_some()
 }
 
-/// The shortest way by which the probe gets out of the shape, if they overlap.
+/// The shortest way of the probe out of the shape, if they overlap.
 pub(super) fn penetration(shape: &Shape, world_from_shape: &Transform, probe: &Probe) -> Option<Penetration> {
     let gap = gap_within(shape, world_from_shape, probe, 0.0)?;
     (gap.distance <= 0.0).then_some(Penetration { depth: -gap.distance, direction: gap.normal })
 }
 
-/// First touch of the probe with the shape on its way.
+/// First touch of a moving probe with the shape.
 pub(super) fn cast(
     shape: &Shape,
     world_from_shape: &Transform,

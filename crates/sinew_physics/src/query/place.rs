@@ -1,4 +1,4 @@
-//! Questions about a place: shapes that hold a point, that a probe overlaps, how deep, and what is nearest.
+//! Position queries: shapes that contain a point, that a probe overlaps, with depth, and the nearest ones.
 
 use super::candidates::Reach;
 use super::kind::QueryKind;
@@ -41,7 +41,7 @@ impl Reply for ShapeId {
     }
 }
 
-/// Shapes that a probe overlaps; what touches overlaps, and so does what is wholly inside. By body and shape.
+/// Shapes that a probe overlaps, including touching and containing ones, by body and shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverlapWith(pub Probe);
 
@@ -61,7 +61,7 @@ impl Ask for OverlapWith {
     }
 }
 
-/// Depth of a probe in the shapes that it overlaps, each by itself; the deepest first.
+/// Depth of a probe in each shape that it overlaps; the deepest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PenetrationOf(pub Probe);
 
@@ -72,10 +72,10 @@ pub struct BodyPenetration {
     pub body: BodyId,
     /// Number of the shape in its body.
     pub shape: u32,
-    /// Metres, ≥ 0; 0 of what only touches.
+    /// Metres, ≥ 0; 0 if it only touches.
     pub depth: f32,
-    /// Unit, in the world: moved by `direction * depth`, the probe only touches the shape. The shortest such way, from
-    /// this shape alone: it may lead into another one.
+    /// Unit, world: moved by `direction * depth`, the probe only touches the shape. The shortest way out of this shape
+    /// alone: it may lead into another one.
     pub direction: Vec3,
 }
 
@@ -129,9 +129,9 @@ pub struct BodySurface {
     pub shape: u32,
     /// On the surface, in the world, metres.
     pub point: Vec3,
-    /// Unit, out of the shape.
+    /// Unit, outward.
     pub normal: Vec3,
-    /// From the surface along the normal to what was asked with, metres; negative inside.
+    /// From the surface along the normal to the query's point or probe, metres; negative inside.
     pub distance: f32,
 }
 

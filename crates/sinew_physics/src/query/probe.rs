@@ -1,13 +1,13 @@
-//! Shapes put somewhere to ask with.
+//! Probes: shapes at a pose, for queries.
 
 use crate::body::shape::Shape;
 use crate::boxes::{Aabb, Capsule, Obb, Sphere};
 use crate::convex::support::Core;
 use sinew_math::{Rotation, Transform, Vec3, normalize_or};
 
-/// A shape that is put somewhere to ask a world with, without being in it.
+/// A shape at a pose, to query a world without being part of it.
 ///
-/// It has to be convex and bounded. Its sizes may be 0: a box without a height is a rectangle, a ball without a radius a point.
+/// It must be convex and bounded. Sizes may be 0: a box without height is a rectangle, a ball without radius a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// Shape of the probe.
@@ -22,19 +22,19 @@ impl Probe {
         Self { shape, world_from_shape }
     }
 
-    /// A shape at a place, not turned.
+    /// A shape at a position, without rotation.
     pub fn at(shape: Shape, position: Vec3) -> Self {
         Self::new(shape, Transform::from_translation(position))
     }
 
-    /// True if its numbers can be asked with: finite, and no size negative.
+    /// True if its numbers are valid for a query: finite, and no size negative.
     ///
     /// # Panics
     /// If the shape is not convex or not bounded: that is no matter of numbers.
     pub(super) fn is_valid(&self) -> bool {
         assert!(Core::of(&self.shape).is_some(), "a probe is convex and bounded");
         let reach = self.shape.bounding_radius();
-        // Written so that NaN fails.
+        // This form rejects NaN.
         self.world_from_shape.is_finite() && self.shape.inner_radius() >= 0.0 && reach < f32::INFINITY
     }
 

@@ -1,6 +1,6 @@
-//! The first hits of many rays. They go through the trees by turns, so that none of them waits alone for memory, and where
-//! they come to boxes eight of them are tested at a time. What such a test lets through the shape itself is asked, so that
-//! the answers are those of single rays.
+//! Batch ray casts for the first hits. The rays traverse the trees in turns, so that memory latencies overlap, and
+//! their leaf boxes are tested eight at a time. Candidates of that test are then tested by the shape itself, so the
+//! answers equal those of single rays.
 
 use super::candidates::{Reach, sweep, what_is_left};
 use super::kind::sealed::{Ask, Reply};
@@ -17,10 +17,10 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Transform, Vec3};
 
-/// Number of rays under way at once: when eight of them have come to boxes, as many still go on.
+/// Number of rays in flight: while eight of them wait at boxes, the others continue.
 const UNDER_WAY: usize = 2 * WIDTH;
 
-/// [`first`](Query::first) of each ray. Fewer than eight go one after the other.
+/// [`first`](Query::first) of each ray. Fewer than eight are cast one after the other.
 pub(super) fn first_each<P: Fn(BodyId, u32) -> bool>(
     query: &Query<'_, P>,
     rays: &[Ray],
@@ -35,7 +35,7 @@ pub(super) fn first_each<P: Fn(BodyId, u32) -> bool>(
     }
 }
 
-/// [`first`](Query::first) of each ray, all together, by what runs the kernel.
+/// [`first`](Query::first) of each ray, as a batch, through the kernel's dispatcher.
 fn first_each_by<P: Fn(BodyId, u32) -> bool>(
     run: impl Fn(Stream<'_, '_, P>),
     query: &Query<'_, P>,
@@ -62,7 +62,7 @@ fn way(ray: &Ray) -> Option<Sweep> {
     }
 }
 
-/// Lets a shape replace the hit of a ray.
+/// Replaces a ray's hit if a shape's is better.
 fn ask<P: Fn(BodyId, u32) -> bool>(query: &Query<'_, P>, owner: Owner, ray: &Ray, hit: &mut Option<BodyHit>) {
     let answer = query.meet(owner, |id, shape, frame| ray.ask(id, shape, frame));
     if let Some(answer) = answer.flatten() {
@@ -70,18 +70,18 @@ fn ask<P: Fn(BodyId, u32) -> bool>(query: &Query<'_, P>, owner: Owner, ray: &Ray
     }
 }
 
-/// Rays that go through one tree, and the best of what they have met so far.
+/// Rays that traverse one tree, with their best hits so far.
 struct Stream<'a, 'w, P> {
     query: &'a Query<'w, P>,
     tree: &'a Tree,
     owners: &'a [Owner],
     rays: &'a [Ray],
     hits: &'a mut [Option<BodyHit>],
-    /// Number that have set out.
+    /// Number of started rays.
     begun: usize,
 }
 
-/// A ray under way.
+/// A ray in flight.
 struct Rider {
     ray: usize,
     sweep: Sweep,
@@ -102,7 +102,7 @@ impl<P: Fn(BodyId, u32) -> bool> Kernel for Stream<'_, '_, P> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
         let mut riders: [Rider; UNDER_WAY] = core::array::from_fn(|_| Rider::idle());
-        // Of the riders, first come those that go on.
+        // The continuing riders are first.
         let mut order: [usize; UNDER_WAY] = core::array::from_fn(|number| number);
         let mut going = UNDER_WAY;
         let mut nodes = [0; UNDER_WAY];
@@ -145,7 +145,7 @@ impl<P: Fn(BodyId, u32) -> bool> Kernel for Stream<'_, '_, P> {
 }
 
 impl<P: Fn(BodyId, u32) -> bool> Stream<'_, '_, P> {
-    /// Has the next ray set out, if there is one.
+    /// Starts the next ray, if there is one.
     #[inline(always)]
     fn begin(&mut self, rider: &mut Rider) -> bool {
         while let Some(ray) = self.rays.get(self.begun) {
@@ -161,7 +161,7 @@ impl<P: Fn(BodyId, u32) -> bool> Stream<'_, '_, P> {
         false
     }
 
-    /// True if a ray that has come to a leaf has to wait until it is tested with others; else it goes on.
+    /// True if a ray at a leaf must wait for a batch test; else it continues.
     #[inline(always)]
     fn arrive(&mut self, rider: &mut Rider, number: usize, leaf: u32, meetings: &mut Meetings) -> bool {
         let (owner, ray) = (self.owners[leaf as usize], &self.rays[rider.ray]);
@@ -180,7 +180,7 @@ impl<P: Fn(BodyId, u32) -> bool> Stream<'_, '_, P> {
         waits == Some(true)
     }
 
-    /// Asks the boxes that rays may meet, by the bits of a mask.
+    /// Tests the boxes that rays may hit, by the bits of a mask.
     fn decide(&mut self, riders: &mut [Rider; UNDER_WAY], possible: u8, meetings: &Meetings) {
         for (place, &(number, owner)) in meetings.who().iter().enumerate() {
             if possible & (1 << place) != 0 {
@@ -191,7 +191,7 @@ impl<P: Fn(BodyId, u32) -> bool> Stream<'_, '_, P> {
         }
     }
 
-    /// Lets a ray end where it hits.
+    /// Shortens a ray to its hit.
     #[inline(always)]
     fn shorten(&self, rider: &mut Rider) {
         if let Some(hit) = &self.hits[rider.ray] {
@@ -204,13 +204,13 @@ fn placed(half_extents: Vec3, frame: &Transform) -> Obb {
     Obb { center: frame.translation, rotation: frame.rotation, half_extents }
 }
 
-/// Rays that have come to boxes, side by side.
+/// Rays waiting at boxes, in lanes.
 struct Meetings {
     boxes: [[f32; WIDTH]; NUMBERS],
     origins: [[f32; WIDTH]; 3],
     directions: [[f32; WIDTH]; 3],
     limits: [f32; WIDTH],
-    /// Rider that has come to each box, and owner of the box.
+    /// Rider at each box, and the box's owner.
     who: [(usize, Owner); WIDTH],
     count: usize,
 }
@@ -245,8 +245,8 @@ impl Meetings {
         self.count += 1;
     }
 
-    /// Rays that may meet their box before their limit, bit by bit: those that do, and those that start so near to it
-    /// that it takes a closer look.
+    /// Bit masks of the rays that may hit their box before their limit: those that do, and those that start so close to
+    /// it that they need an exact test.
     #[inline(always)]
     fn possible<L: Lanes>(&self) -> u8 {
         let [[x, y, z], [u, v, w]] = [&self.origins, &self.directions];
@@ -268,7 +268,7 @@ mod tests {
     use sinew_math::Random;
     use sinew_math::dispatch::{Level, run_at};
 
-    /// Mostly boxes, static and moving, alone and several to a body, some of which a filter leaves out.
+    /// Mostly boxes, static and moving, one or several per body, some of them filtered out.
     fn world(random: &mut Random) -> World {
         let mut world = World::new(WorldDef::default());
         let size = |random: &mut Random| random.range(0.1, 0.8);
@@ -294,7 +294,7 @@ mod tests {
         world
     }
 
-    /// From everywhere to everywhere, along axes too; of no length, of great length, and of numbers that are none.
+    /// Random rays in all directions, including axis-parallel, zero-length, very long and non-finite ones.
     fn ray(random: &mut Random) -> Ray {
         let (origin, mut direction) = (random.in_cube() * 5.0, random.in_cube() * 9.0);
         match random.index(12) {

@@ -1,4 +1,4 @@
-//! A probe against a surface of triangles, one triangle after the other.
+//! A probe against a surface, triangle by triangle.
 
 use super::candidates::FARTHEST;
 use super::probe::Probe;
@@ -10,8 +10,8 @@ use crate::convex::{Gap, ShapeHit, advance, apart_along, closeness, meet};
 use crate::triangles::{Surface, Triangle, normal};
 use sinew_math::{DVec3, Transform, Vec3, max, min};
 
-/// Gap from the triangles within a distance to the probe: that of the deepest or nearest of them. Out of a triangle leads no
-/// way through its back.
+/// Gap from the triangles within a distance to the probe: that of the deepest or nearest of them. No way out leads
+/// through a triangle's back.
 pub(super) fn gap_within(
     surface: &Surface<'_>,
     world_from_surface: &Transform,
@@ -69,7 +69,7 @@ impl<'a> Placed<'a> {
         Some(Self { core, probe, world_from_surface })
     }
 
-    /// Bounds of the probe in the surface's frame, from where it is to where `way` (world) takes it.
+    /// Bounds of the probe in the surface's frame, swept by `way` (world).
     fn region(&self, way: Vec3) -> Aabb {
         let surface_from_probe = self.world_from_surface.inverse() * self.probe.world_from_shape;
         let (start, moved) =
@@ -77,7 +77,7 @@ impl<'a> Placed<'a> {
         thick(&start.merge(&Aabb { min: start.min + moved, max: start.max + moved }))
     }
 
-    /// From a triangle to the probe, once that is moved by `way`.
+    /// From a triangle to the probe moved by `way`.
     fn gap(&self, triangle: &Triangle, way: Vec3) -> Gap {
         let origin = self.probe.world_from_shape.translation;
         let flat = Flat(triangle.corners);

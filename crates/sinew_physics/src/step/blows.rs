@@ -1,5 +1,5 @@
-//! Blows that joints pass on within the step: an impulse moves one body at once, and what hangs on it only when joints are solved, after
-//! `pairs` has looked for what may meet.
+//! Blows transmitted by joints within the step: an impulse moves one body at once, and its jointed bodies only when
+//! joints are solved, after `pairs` has searched.
 
 use super::tuning::{BLOW_PASSES, BLOW_SPEED};
 use crate::activity::Activity;
@@ -13,12 +13,12 @@ use sinew_math::max;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blows {
     reached: Vec<u32>,
-    /// Speed that the blow may bring, m/s, by index of the body; 0 for all between two steps.
+    /// Speed that the blow may cause, m/s, by index of the body; 0 for all between two steps.
     speeds: Vec<f32>,
 }
 
 impl Blows {
-    /// Finds them by the anchors that part: joints left them with one velocity, and something struck one side since.
+    /// Detects them by separating anchors: joints left them with equal velocity, and a hit changed one side since.
     pub fn find(&mut self, bodies: &Arena<Body>, joints: &Arena<Joint>, activity: &Activity) {
         let slots = bodies.slot_count();
         self.speeds.resize(slots, 0.0);
@@ -61,7 +61,7 @@ impl Blows {
         *most = max(*most, speed);
     }
 
-    /// Has points of these bodies looked for as far away as the blow may take them.
+    /// Extends the contact search of these bodies for the blow.
     pub fn widen(&mut self, proxies: &mut Proxies, bodies: &Arena<Body>) {
         for index in self.reached.drain(..) {
             let speed = core::mem::take(&mut self.speeds[index as usize]);
@@ -70,7 +70,7 @@ impl Blows {
     }
 }
 
-/// Speed at which the anchors of a joint that holds them together part, m/s; 0 where it does not.
+/// Separation speed of the anchors of a joint that locks them together, m/s; 0 if they do not separate.
 fn parting_speed(bodies: &Arena<Body>, joint: &Joint) -> f32 {
     let [a, b] = [joint.a, joint.b].map(|index| bodies.at(index));
     if locks(&joint.kind)[..TWIST] != [true; TWIST] {

@@ -1,4 +1,4 @@
-//! `collide`: manifolds of all near pairs, and what they do.
+//! `collide`: manifolds of all near pairs, and their effect.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -65,8 +65,7 @@ pub(crate) fn collide(
     });
 }
 
-/// Brings the manifold of two convex shapes to where they are. Points are looked for within `ahead`
-/// at most because of how fast they are.
+/// Updates the manifold of two convex shapes. Extends the search distance for speed by at most `ahead`.
 fn renew(contact: &mut Contact, (a, b, seams): (&Body, &Body, &Seams<'_>), ahead: Ahead, dt: f32) {
     let is_slow = ahead.most < contact.kept.least_margin();
     if is_slow && contact.kept.renew([a, b], contact.kept.least_margin(), &mut contact.manifold) {
@@ -100,7 +99,7 @@ fn meet(
     collide_again((shape_a, &from_a), (shape_b, &from_b), margin, parting, manifold);
 }
 
-/// A contact of a pair that had none, if it has points now; `ahead` as in [`margin`].
+/// A new contact of a pair, if it has points now; `ahead` as in [`margin`].
 pub(crate) fn ask((a, b, seams): (&Body, &Body, &Seams<'_>), asked: &mut Asked, ahead: Ahead, dt: f32) {
     let (margin, slop) = margin(a, b, asked.key, ahead, dt);
     meet(a, b, asked.key, margin, &mut asked.parting, &mut asked.manifold);
@@ -108,7 +107,7 @@ pub(crate) fn ask((a, b, seams): (&Body, &Body, &Seams<'_>), asked: &mut Asked, 
     asked.kept = Recycled::new([a, b], asked.key, (margin, slop), &asked.manifold);
 }
 
-/// Finds how fast a contact comes in, and what it does.
+/// Computes a contact's approach speed, and its effect.
 fn weigh(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     contact.approach = approach_of(a, b, &contact.manifold);
     if contact.is_plain && !a.changed && !b.changed {
@@ -122,15 +121,15 @@ fn weigh(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     }
 }
 
-/// Margin up to which points of two shapes are looked for, and their slop, metres. Because of how fast the two are it is no
-/// more than `ahead.most`, which may be far too much.
+/// Search distance for points of two shapes, and their slop, metres. Its part for speed is limited to `ahead.most`,
+/// because it may be far too large.
 fn margin(a: &Body, b: &Body, key: ContactKey, ahead: Ahead, dt: f32) -> (f32, f32) {
     let slop = slop(smallest_extent(a, b, key));
     let least = SPECULATIVE_SLOPS * slop;
     if ahead.most < least {
         return (least, slop);
     }
-    // Beside their approach: two that move together may not do so any more once one of them is hit.
+    // In addition to their approach: two bodies that move together may stop doing so once one of them is hit.
     let (va, vb) = (a.velocity.linear, b.velocity.linear);
     let approach = max((va - vb).length(), max(va.length(), vb.length()))
         + a.velocity.angular.length() * a.reach()
@@ -144,7 +143,7 @@ pub(crate) fn smallest_extent(a: &Body, b: &Body, key: ContactKey) -> f32 {
     min(shape_a.smallest_extent(), shape_b.smallest_extent())
 }
 
-/// Motion of a pair of which one is a surface, the other toward the surface; `None` of other pairs, and of those at rest.
+/// Motion of a pair of a surface and another shape relative to the surface; `None` for other pairs, and at rest.
 fn surface_motion(bodies: &Arena<Body>, contact: &Contact, ahead: Ahead, dt: f32) -> Option<Motion> {
     let key = contact.key;
     let (a, b) = (bodies.at(key.a), bodies.at(key.b));
@@ -171,7 +170,7 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, ahead: Ahead, dt: f32
 
 /// Approach speed of the fastest point, m/s; not negative, and at most [`MOST_APPROACH`].
 ///
-/// Bodies are rigid: from one point to another a rate differs by the relative spin times the way between them.
+/// Bodies are rigid: rates at two points differ by the relative spin times their offset.
 pub(super) fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
     let [first, others @ ..] = manifold.points() else { return 0.0 };
     let (p, n) = (first.position, manifold.normal);
@@ -181,13 +180,13 @@ pub(super) fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
     if least.is_finite() { min(max(0.0, -least), MOST_APPROACH) } else { MOST_APPROACH }
 }
 
-/// True if a surface pushes, wherever it is met.
+/// True if a surface pushes, wherever it is touched.
 pub(super) fn is_plain(surface: &Surface) -> bool {
     let pushes = matches!(surface.rule, ContactRule::Push | ContactRule::Modified { .. });
     pushes && surface.sensing == Sensing::Solid
 }
 
-/// Sets what the contact does, as far as its shapes say.
+/// Sets the contact's effect, as far as its shapes define it.
 fn rule(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
     contact.effect = Effect::Push;
@@ -218,7 +217,8 @@ fn rule(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     }
 }
 
-/// True if a kinematic body lets a dynamic one pass, since it would have to push it harder than it may, or did until they part.
+/// True if a kinematic body lets a dynamic one pass, because it would have to push harder than it may, or did until
+/// they separate.
 fn gives_way(yields: Yields, contact: &Contact, [a, b]: [&Body; 2], dt: f32) -> bool {
     let (other, led, out) = match (a.kind, b.kind) {
         (BodyKind::Kinematic, BodyKind::Dynamic) => (b, a, contact.manifold.normal),
@@ -239,7 +239,7 @@ fn gives_way(yields: Yields, contact: &Contact, [a, b]: [&Body; 2], dt: f32) -> 
     let turn = other.inverse_inertia_mul(at.cross(out)).cross(at).dot(out);
     let mass = 1.0 / (other.inverse_mass() + turn);
     let push = yields.max_force * dt;
-    // What stands in its way behind the other body shows in what it took to push it.
+    // The impulse shows if something blocks the other body from behind.
     let took = contact.impulses().fold(0.0, |sum, (_, impulse)| sum + impulse);
     let jammed = contact.touching && closing > 0.0 && shoves > 0.0 && took > push;
     jammed

@@ -1,4 +1,4 @@
-//! `continuous`: what is fast is stopped at what it would pass.
+//! `continuous`: stops fast bodies that would pass through static ones.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
@@ -17,10 +17,10 @@ use crate::step::pairs::BroadPhase;
 use crate::tree::Sweep;
 use sinew_math::{Transform, Vec3, normalize_or};
 
-/// `continuous`: a body without joints whose centre passed through a static shape within the step is put back to where
-/// its core touches. Speculative contacts stop nearly everything before; this is for what they miss. Jointed bodies are
-/// left to the speculative contacts: moving one link would tear its joints. With that all poses are
-/// final, and the trees of bounds follow.
+/// `continuous`: a joint-free body whose centre passed through a static shape within the step is moved back to where
+/// its core touches. Speculative contacts stop nearly everything before; this handles the rest. Jointed bodies rely on
+/// speculative contacts only: moving one link would violate its joints. Afterwards all poses are final, and the trees
+/// are updated.
 pub(crate) fn continuous(
     islands: &Islands,
     bodies: &mut Arena<Body>,
@@ -45,11 +45,12 @@ pub(crate) fn continuous(
             }
         }
     }
-    // What is kinematic went as it was foreseen when the step began.
+    // A kinematic body moved as predicted at the step's start.
     broad.proxies.follow(bodies, activity.active(), context.dt);
 }
 
-/// Radius of the largest ball about the centre of mass that surely lies inside a body of one shape; 0 if none.
+/// Radius of the largest ball about the centre of mass that is guaranteed to lie inside a single-shape body; 0 if there
+/// is none.
 fn core_radius(body: &Body) -> f32 {
     match body.shapes.as_slice() {
         [only] if only.principal_from_shape.translation.length() < 1e-4 => only.shape.inner_radius(),
@@ -86,7 +87,7 @@ fn first_static_hit(
     first
 }
 
-/// True if a shape surely stops what comes along a ray. One that a modifier may open is left to the speculative contacts.
+/// True if a shape certainly stops a body along a ray. A shape that a modifier may open relies on speculative contacts.
 fn stops(s: &Surface, frame: &Transform, ray: &Ray) -> bool {
     let solid = s.sensing == Sensing::Solid;
     solid

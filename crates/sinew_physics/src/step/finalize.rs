@@ -10,8 +10,8 @@ use crate::solver::SolvedBody;
 use crate::step::islands::Islands;
 use sinew_math::{Vec3, max};
 
-/// `finalize`: poses and velocities; a body whose state is not finite keeps its old pose, stops and is quarantined.
-/// Kinematic bodies move as their velocity says; forces of the step are used up.
+/// `finalize`: poses and velocities. A body with a non-finite state keeps its old pose, stops and is quarantined.
+/// Kinematic bodies move according to their velocity; the forces of the step are cleared.
 pub(crate) fn finalize(
     islands: &Islands,
     bodies: &mut Arena<Body>,

@@ -1,4 +1,4 @@
-//! `islands` and `color`: which active bodies hang together through contacts, joints, particles and attraction.
+//! `islands` and `color`: active bodies connected by contacts, joints, particles and attraction.
 
 use crate::arena::Arena;
 use crate::body::external_work::Work;
@@ -13,11 +13,11 @@ use crate::solver::strands::Strands;
 use crate::solver::{Solution, View};
 use crate::step::tasks::{Queue, Task, Workspace, Workspaces};
 
-/// Union-find over the active bodies, then over the slots of particle groups. Everything of one kind lies in one list for
-/// all islands: memory that belonged to an island would have to grow whenever another takes its place.
+/// Union-find over the active bodies, then over the slots of particle groups. Each kind of member is in one list for
+/// all islands: per-island lists would have to grow whenever islands change.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Islands {
-    /// Active bodies, ascending: their places in it are their numbers here.
+    /// Active bodies, ascending: their positions are their numbers here.
     active: Vec<u32>,
     /// By slot: the number of each active body.
     places: Vec<u32>,
@@ -25,7 +25,7 @@ pub(crate) struct Islands {
     holding: Vec<Tie>,
     /// Contacts that push, ascending.
     touching: Vec<Tie>,
-    /// By place in the contact array, of those: whether only one of the bodies is active.
+    /// By position in the contact array, for those: true if only one of the bodies is active.
     is_border: Vec<bool>,
     /// Memory of `color`.
     border: Vec<u32>,
@@ -38,18 +38,18 @@ pub(crate) struct Islands {
     groups: Lists,
     /// Per slot of particle groups.
     neighbors: Vec<Neighbors>,
-    /// Out of the world for the length of the step, island after island.
+    /// Removed from the world during the step, island after island.
     taken: Vec<TakenGroup>,
     solution: Solution,
     /// The solution is of the last step, not of one before a snapshot was loaded.
     is_known: bool,
-    /// True of each island that is a body in flight or a strand and has been through this step.
+    /// True for each island that is a free-flying body or a strand and has already been solved in this step.
     flown: Vec<bool>,
     flight: Flight,
     strands: Strands,
-    /// One for each thread that has worked at the same time as others.
+    /// One for each concurrent thread so far.
     idle: Vec<Workspace>,
-    /// One for each island, where they go in lockstep.
+    /// One for each island, in lockstep mode.
     own: Vec<Workspace>,
 }
 
@@ -85,7 +85,7 @@ impl Islands {
         }
     }
 
-    /// Work of drives and of bodies that move by themselves, island after island.
+    /// Work of drives and kinematic bodies, island after island.
     pub fn work(&self) -> Work {
         self.solution.work[..self.count].iter().fold(Work::default(), |sum, work| sum + *work)
     }
@@ -95,7 +95,7 @@ impl Islands {
         &self.solution
     }
 
-    /// Bodies that forces moved in the last step, each once; `None` if that is not known.
+    /// Bodies moved by forces in the last step, each once; `None` if unknown.
     pub fn moved(&self) -> Option<impl Iterator<Item = u32>> {
         self.is_known.then(|| self.solution.bodies.iter().map(|body| body.index))
     }
@@ -105,7 +105,7 @@ impl Islands {
         self.is_known = false;
     }
 
-    /// Finds the islands and takes the particle groups into them for the length of the step.
+    /// Computes the islands and takes the particle groups out of the world for the step.
     pub fn find(&mut self, view: &View<'_>, groups: &mut Arena<ParticleGroup>) {
         self.is_known = true;
         self.number(view, groups.slot_count());
@@ -145,7 +145,7 @@ impl Islands {
         }));
     }
 
-    /// Lists what is active: bodies get the numbers by which they and the groups are joined, in order of their indices.
+    /// Lists the active bodies and numbers them, in order of their indices, for the union-find.
     fn number(&mut self, view: &View<'_>, groups: usize) {
         let View { bodies, activity, .. } = view;
         for body in self.active.drain(..) {
@@ -169,8 +169,8 @@ impl Islands {
         self.parent.extend(0..(self.active.len() + groups) as u32);
     }
 
-    /// Each joint is found by the later of its active bodies: where joints were made after their bodies, parents before
-    /// children, that is their order.
+    /// The later of its active bodies finds each joint: if joints were created after their bodies, parents first, that
+    /// is their order.
     fn list_joints(&mut self, view: &View<'_>) {
         self.holding.clear();
         for (place, &body) in self.active.iter().enumerate() {
@@ -209,7 +209,7 @@ impl Islands {
         }
     }
 
-    /// All that a field lets attract each other.
+    /// Joins everything that a field makes attract each other.
     fn join_attracted(&mut self, view: &View<'_>, groups: &Arena<ParticleGroup>) {
         for (field, _) in view.fields.mutual() {
             let mut first = None;
@@ -228,7 +228,7 @@ impl Islands {
         }
     }
 
-    /// Gives the groups back.
+    /// Returns the groups.
     pub fn release(&mut self, groups: &mut Arena<ParticleGroup>) {
         for TakenGroup { index, group, near } in self.taken.drain(..) {
             *groups.at_mut(index) = group;
@@ -244,7 +244,7 @@ impl Islands {
         i
     }
 
-    /// The smaller root wins, so that the result does not depend on the order of joining.
+    /// The smaller root wins, so that the result does not depend on the union order.
     fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.parent[u32::max(a, b) as usize] = u32::min(a, b);
@@ -287,8 +287,8 @@ impl Islands {
         }
     }
 
-    /// `color`: contacts between moving bodies first, those with fixed ones last, each by key. With one scalar lane a
-    /// colour is no more than this order.
+    /// `color`: contacts between moving bodies first, those with fixed ones last, each sorted by key. With one scalar
+    /// lane a colour is just this order.
     pub fn color(&mut self) {
         for island in 0..self.count {
             let list = self.contacts.of_mut(island);
@@ -307,7 +307,7 @@ impl Islands {
         }
     }
 
-    /// `flight`: takes bodies that nothing touches or holds through the step, so that [`run`](Self::run) need not.
+    /// `flight`: steps bodies without contacts and joints, so that [`run`](Self::run) need not.
     pub fn fly(&mut self, view: &View<'_>, context: &StepContext<'_>) {
         let mut flight = core::mem::take(&mut self.flight);
         for i in 0..self.count {
@@ -325,7 +325,7 @@ impl Islands {
         }
     }
 
-    /// After a step in lockstep: strands that no object has disturbed go through it as they would without objects.
+    /// After a lockstep step: strands that no object has disturbed are stepped as without objects.
     pub fn fly_undisturbed(&mut self, view: &View<'_>, context: &StepContext<'_>) {
         let own = core::mem::take(&mut self.own);
         self.run_strands(view, context, |island| !own[island].solver.is_disturbed());
@@ -344,14 +344,15 @@ impl Islands {
         self.strands = strands;
     }
 
-    /// Calls `work` once for each island that is not flown, on `runner`'s threads: all that there is to do for it in this step.
+    /// Calls `work` once for each remaining island, on `runner`'s threads, for its whole step.
     pub fn run(&mut self, runner: &dyn TaskRunner, work: impl Fn(&mut Task<'_>) + Sync) {
         let mut idle = core::mem::take(&mut self.idle);
         self.run_in(Workspaces::Idle(&mut idle), runner, work);
         self.idle = idle;
     }
 
-    /// Calls `work` once for each island that is not flown, for a part of its step: each island finds its workspace as the part before left it.
+    /// Calls `work` once for each remaining island, for a part of its step: each island keeps its workspace between
+    /// parts.
     pub fn run_part(&mut self, runner: &dyn TaskRunner, work: impl Fn(&mut Task<'_>) + Sync) {
         let mut own = core::mem::take(&mut self.own);
         if own.len() < self.count {
@@ -393,7 +394,7 @@ impl Islands {
         (self.solution, self.taken) = (solution, taken);
     }
 
-    /// Writes down what has come of the strands.
+    /// Stores the results of the strands.
     fn take_strands(&self, solution: &mut Solution) {
         for strand in self.strands.solved() {
             solution.work[strand.island] = Work::default();
@@ -418,10 +419,10 @@ fn awake(groups: &Arena<ParticleGroup>) -> impl Iterator<Item = (u32, &ParticleG
     groups.iter().filter(|(_, group)| group.is_awake())
 }
 
-/// Ascending lists of numbers, one for each island, one after the other in memory.
+/// Ascending lists of numbers, one per island, contiguous in memory.
 #[derive(Clone, Debug, Default)]
 struct Lists {
-    /// Island and number, as they come.
+    /// Island and number, in the order pushed.
     pairs: Vec<(u32, u32)>,
     numbers: Vec<u32>,
     /// End of each island's list in `numbers`.
@@ -437,8 +438,8 @@ impl Lists {
         self.pairs.push((island, number));
     }
 
-    /// Makes the lists of what was pushed, each in the order in which it came: a counting sort. Makes room for the `most`
-    /// islands that there can be.
+    /// Builds the lists from the pushed items, each in push order, by counting sort. Reserves space for the `most`
+    /// possible islands.
     fn sort(&mut self, islands: usize, most: usize) {
         self.ends.clear();
         self.ends.reserve(most);

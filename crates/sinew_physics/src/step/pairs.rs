@@ -1,4 +1,4 @@
-//! `pairs`: which shapes may meet, found by the trees over their bounds.
+//! `pairs`: candidate shape pairs, from the trees over their bounds.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
@@ -12,24 +12,24 @@ use crate::contact::tracking::ContactTracking;
 use crate::contact::{Contact, ContactKey};
 use crate::step::blows::Blows;
 
-/// The trees, and what pairs are found with.
+/// The trees, and memory for the pair search.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BroadPhase {
     pub proxies: Proxies,
     pub near: NearPairs,
     /// Blows that joints are about to pass on.
     pub blows: Blows,
-    /// Pairs without a contact that are so near that they may have points, in order.
+    /// Pairs without a contact that are near enough to have points, in order.
     pub asked: Vec<Asked>,
-    /// Contacts that begin, in order.
+    /// New contacts, in order.
     pub born: Vec<Contact>,
 }
 
-/// A pair without a contact, and what is found of it.
+/// A pair without a contact, and its search result.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Asked {
     pub key: ContactKey,
-    /// Its place among the near pairs.
+    /// Its position among the near pairs.
     pub pair: usize,
     pub parting: SeparationCache,
     pub manifold: Manifold,
@@ -37,8 +37,8 @@ pub(crate) struct Asked {
 }
 
 impl BroadPhase {
-    /// Brings `contacts` up to date: sorted by key, of pairs that are near. Those to which nothing can happen are put aside;
-    /// what touched and is dropped, `meetings` tell of. Near pairs that have none are to be asked whether they begin one.
+    /// Updates `contacts`: sorted by key, for near pairs. Contacts that cannot change are put aside; dropped touching
+    /// ones are recorded in `meetings`. Near pairs without a contact are then tested for one.
     pub fn update(
         &mut self,
         bodies: &Arena<Body>,
@@ -56,8 +56,8 @@ impl BroadPhase {
         bear(contacts, &mut self.born);
     }
 
-    /// Goes through pairs and contacts side by side: contacts of pairs that are no longer near go, or are put aside where
-    /// nothing about them can have changed.
+    /// Merges pairs and contacts: contacts of pairs that are no longer near are dropped, or put aside if they cannot
+    /// have changed.
     fn sort_out(
         &mut self,
         bodies: &Arena<Body>,
@@ -76,7 +76,7 @@ impl BroadPhase {
             }
             let count = if next == pair.key { keeper.count_of(pair.key) } else { 0 };
             if count == 0 && !pair.meets {
-                // Should it come to meet, it is looked at anew.
+                // If they come near, it is tested again.
                 pair.left = f32::NEG_INFINITY;
                 continue;
             }
@@ -101,7 +101,7 @@ impl BroadPhase {
                     keeper.part(count);
                 }
                 (1, true) if !pair.has_surface && keeper.next_is_idle() => {
-                    // It had no points in the last step: from now on the pair knows why.
+                    // It had no points in the last step: from now on the pair stores the gap.
                     let parting = keeper.forget();
                     pair.part(&parting);
                     if pair.comes_near(&self.proxies.closing(pair.key)) {
@@ -117,7 +117,7 @@ impl BroadPhase {
         keeper.finish();
     }
 
-    /// Takes over what was found of the pairs that were asked.
+    /// Stores the search results of the tested pairs.
     pub fn answer(&mut self, contacts: &mut Vec<Contact>, weigh: impl Fn(&mut Contact)) {
         self.born.clear();
         for asked in &self.asked {
@@ -146,10 +146,10 @@ impl Asked {
     }
 }
 
-/// The contacts of the last step, each of which is kept, or goes.
+/// The contacts of the last step, each of which is kept or dropped.
 struct Keeper<'a> {
     contacts: &'a mut Vec<Contact>,
-    /// The first that is not decided, and where the next that is kept will be.
+    /// The first undecided one, and the position for the next kept one.
     from: usize,
     to: usize,
     bodies: &'a Arena<Body>,
@@ -158,7 +158,7 @@ struct Keeper<'a> {
 }
 
 impl Keeper<'_> {
-    /// The pair of the next one; beyond all others if there is none.
+    /// The pair of the next one; the maximum if there is none.
     fn next_pair(&self) -> ContactKey {
         let end = ContactKey { a: u32::MAX, b: u32::MAX, shape_a: u32::MAX, shape_b: u32::MAX, part: 0 };
         self.contacts.get(self.from).map_or(end, |contact| ContactKey { part: 0, ..contact.key })
@@ -170,7 +170,7 @@ impl Keeper<'_> {
         rest.iter().take_while(|contact| contact.key.is_of_pair(key)).count()
     }
 
-    /// True if the next one had no points, and nothing is to be told of it.
+    /// True if the next one has no points and nothing to report.
     fn next_is_idle(&self) -> bool {
         self.contacts[self.from].is_idle()
     }
@@ -183,7 +183,7 @@ impl Keeper<'_> {
         self.to += count;
     }
 
-    /// Drops one that is idle, and tells what parted its shapes.
+    /// Drops an idle one, and returns the separation of its shapes.
     fn forget(&mut self) -> SeparationCache {
         self.from += 1;
         self.contacts[self.from - 1].parting()
@@ -200,7 +200,7 @@ impl Keeper<'_> {
             if !lies_still(contact.key.a) || !lies_still(contact.key.b) {
                 self.meetings.part(self.bodies, &contact);
             } else if !contact.is_idle() {
-                // What it came in with was not of the step in which it comes back.
+                // Its approach speed is not that of the step in which it returns.
                 self.activity.put_aside(Contact { approach: 0.0, ..contact });
             }
         }
@@ -215,7 +215,7 @@ impl Keeper<'_> {
 
 #[cfg(test)]
 mod tests {
-    //! Pairs against trying every shape with every other.
+    //! Pairs compared with testing every shape against every other.
 
     use super::*;
     use crate::body::def::{BodyDef, BodyKind, WorldDef};
@@ -234,7 +234,7 @@ mod tests {
         if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
     }
 
-    /// The bounds within which contacts of a shape are looked for, written down once more.
+    /// The bounds of the contact search of a shape, computed independently.
     fn grown(body: &Body, shape: usize, dt: f32) -> Aabb {
         let speed = body.velocity.linear.length() + body.velocity.angular.length() * body.reach();
         let motion = if body.kind == BodyKind::Static { 0.0 } else { speed * dt };
@@ -329,7 +329,7 @@ mod tests {
         }
     }
 
-    /// Checks that the next step will find the pairs that there are to find. Gives their number.
+    /// Checks that the next step will find all pairs. Returns their number.
     fn check(world: &mut World, case: usize) -> usize {
         let dt = world.def.dt();
         let PairFilter { parted, version, .. } = world.parted.filter(&world.joints);
@@ -346,7 +346,7 @@ mod tests {
         tried.len()
     }
 
-    /// Checks that queries between two steps come by every shape where it is.
+    /// Checks that queries between two steps find every shape at its pose.
     fn check_bounds(world: &World, case: usize) {
         for (index, body) in world.bodies.iter() {
             for shape in (0..body.shapes.len()).filter(|&i| body.shapes[i].shape != Shape::HalfSpace) {
@@ -395,7 +395,7 @@ mod tests {
         assert!(found > case, "{found} pairs in {case} cases say little");
     }
 
-    /// Steps a heap of all kinds of shapes, and asks in each the pairs that are not looked at after all: how many there were.
+    /// Steps a heap of all kinds of shapes and returns the number of near pairs that were skipped.
     fn skipped(random: &mut Random, steps: usize) -> usize {
         let mut world = World::new(WorldDef::default());
         let far = [0.0, 30.0, 3e4][random.index(3)];

@@ -1,12 +1,12 @@
-//! The stages that an island goes through by itself, by phases.
+//! The stages that an island executes independently, by phases.
 
 use crate::context::StepContext;
 use crate::solver::View;
 use crate::stage::{Stage, zone};
 use crate::step::tasks::{Task, Workspace};
 
-/// A part of a step that an island does by itself. Where there are objects they act between two of them, and so all
-/// islands do the same one at a time; else a task does one after the other without barriers.
+/// A part of a step that an island executes independently. With objects, which act between two parts, all islands
+/// execute the same part at a time; otherwise a task executes all parts without barriers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Phase {
     Prepare,
@@ -25,13 +25,13 @@ impl Phase {
             .chain(core::iter::once(Self::Store))
     }
 
-    /// Phases of so many substeps of an island, in order, after [`Prepare`](Self::Prepare) and before [`Store`](Self::Store).
+    /// Phases of this many substeps of an island, after [`Prepare`](Self::Prepare) and before [`Store`](Self::Store).
     pub fn of_substeps(substeps: u32) -> impl Iterator<Item = Self> {
         (0..substeps).flat_map(|substep| [Self::Move(substep), Self::Relax(substep)])
     }
 }
 
-/// A part of an island's step, which goes on where the part before ended.
+/// A part of an island's step, which continues where the previous part ended.
 pub(crate) fn solve(phase: Phase, task: &mut Task<'_>, view: &View<'_>, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
     let Task { island, groups, solution, workspace: Workspace { solver, surroundings }, .. } = task;

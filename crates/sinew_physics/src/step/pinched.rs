@@ -1,9 +1,10 @@
-//! Contacts of two shapes through particles that lie between them: cloth under a foot, a rope under a wheel.
+//! Contacts of two shapes through particles between them: cloth under a foot, a rope under a wheel.
 //!
-//! A massless ball between two surfaces is pushed by each along the line through the two places where it touches, which lies in the
-//! middle of their normals: it stays there if that line is within both cones of friction (the angle of nip of roller mills), and what comes
-//! from the one surface goes on to the other. So such particles are points of a contact of the two shapes, with that line as its normal and the
-//! gaps of both as its separation. These contacts live in the world's list from after `touch` until `store`; in between, their group keeps them.
+//! A massless ball between two surfaces is pushed by each along the line through its two touch points, which bisects
+//! their normals. It stays there if that line is within both friction cones (the nip angle of roller mills), and each
+//! surface's push is transmitted to the other. Such particles are therefore points of a contact of the two shapes, with
+//! that line as normal and the sum of both gaps as separation. These contacts are in the world's list from after
+//! `touch` until `store`; at other times their group stores them.
 
 use crate::activity::{Activity, follow};
 use crate::arena::Arena;
@@ -24,12 +25,12 @@ use core::cmp::Ordering;
 use core::ops::ControlFlow;
 use sinew_math::{Transform, Vec3, max, min};
 
-/// Contacts through particles that a step has found, and memory to find them.
+/// Contacts through particles found in a step, and memory to find them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pinches {
     /// Number of contacts of the world before those through particles.
     own: usize,
-    /// Index of each group that has contacts, and how many.
+    /// Index of each group with such contacts, and their number.
     groups: Vec<(u32, usize)>,
     /// Speed of the fastest point of all that moves, m/s.
     fastest: f32,
@@ -57,14 +58,14 @@ struct Between {
     point: ManifoldPoint,
 }
 
-/// Surface near a particle: its distance from that of the particle, metres, and its outward normal, world.
+/// Surface near a particle: its distance from the particle's surface, metres, and its outward normal, world.
 #[derive(Clone, Copy, Debug)]
 struct Facing {
     gap: f32,
     outward: Vec3,
 }
 
-/// Shapes of the world, and which of them may meet.
+/// Shapes of the world, and their pair filter.
 pub(crate) struct Around<'a> {
     pub bodies: &'a Arena<Body>,
     pub proxies: &'a Proxies,
@@ -110,7 +111,7 @@ impl Pinches {
         }
     }
 
-    /// Takes the contacts back, as the step has left them.
+    /// Stores the contacts after the step.
     pub fn store(&mut self, groups: &mut Arena<ParticleGroup>, contacts: &mut Vec<Contact>) {
         let mut solved = contacts.drain(self.own..);
         for &(index, count) in &self.groups {
@@ -120,7 +121,7 @@ impl Pinches {
         }
     }
 
-    /// Lists the shapes that a group may come to within the step.
+    /// Lists the shapes that a group may touch within the step.
     fn list_near(&mut self, group: &ParticleGroup, &Around { bodies, proxies, .. }: &Around<'_>, dt: f32) {
         let around = group.bounds().expand(MARGIN + (group.fastest() + self.fastest) * dt);
         self.near.clear();
@@ -130,7 +131,7 @@ impl Pinches {
             if !body.quarantined && group.meets(bodies.id(index), surface) && is_plain(surface) {
                 let world_from_shape = body.world_from_shape(shape as usize);
                 let bounds = body.shapes[shape as usize].shape.aabb(&world_from_shape);
-                // What the trees know is no part of the state.
+                // The trees' content is not part of the state.
                 if bounds.overlaps(&around) {
                     let is_active = body.is_active();
                     self.near.push(Near { body: index, shape, bounds, world_from_shape, is_active });
@@ -141,7 +142,7 @@ impl Pinches {
         self.near.sort_unstable_by_key(|near| (near.body, near.shape));
     }
 
-    /// Lists the particles of a group that are between two shapes, one of which is active, or come between them within the step.
+    /// Lists the particles of a group that are between two shapes, one of which is active, now or within the step.
     fn find_between(&mut self, group: &ParticleGroup, &Around { bodies, filter, .. }: &Around<'_>, dt: f32) {
         self.found.clear();
         let reach = MARGIN + 2.0 * self.fastest * dt;
@@ -149,7 +150,7 @@ impl Pinches {
             for i in 0..group.positions().len() {
                 let Some(facing) = near.facing(bodies, group, i, reach) else { continue };
                 for (other_at, other) in self.near.iter().enumerate() {
-                    // A pair of active ones is found once.
+                    // A pair of active shapes is found once.
                     if other.body == near.body || other.is_active && other_at < at {
                         continue;
                     }
@@ -166,7 +167,7 @@ impl Pinches {
         self.found.sort_unstable_by_key(|between| (between.key, between.particle));
     }
 
-    /// Makes contacts of what was found, up to [`MOST_PINCHED`] of a pair, and finds the load of each particle.
+    /// Makes contacts of the listed particles, up to [`MOST_PINCHED`] per pair, and computes the load of each particle.
     fn join(
         &mut self,
         group: &mut ParticleGroup,
@@ -184,7 +185,7 @@ impl Pinches {
             for number in 0..MOST_PINCHED {
                 let Some(deepest) = rest.iter().copied().min_by(Between::deeper) else { break };
                 let is_part = |normal: Vec3| normal.dot(deepest.normal) >= SAME_PART_COSINE;
-                // Those of the part come first, in order of particles.
+                // The part's own come first, in order of particles.
                 rest.sort_unstable_by_key(|between| (!is_part(between.normal), between.particle));
                 let count = rest.partition_point(|between| is_part(between.normal));
                 let (part, others) = core::mem::take(&mut rest).split_at_mut(count);
@@ -211,7 +212,7 @@ impl Between {
         self.point.separation.total_cmp(&other.point.separation)
     }
 
-    /// Height of it over another, metres: the difference of their separations.
+    /// Height above another one, metres: the difference of their separations.
     fn above(&self, deepest: &Self) -> f32 {
         self.point.separation - deepest.point.separation
     }
@@ -232,7 +233,7 @@ impl Near {
     }
 }
 
-/// A particle as it lies between two shapes, if it is nipped between them or will be within the step.
+/// A particle between two shapes, if it is nipped between them now or within the step.
 fn between(
     bodies: &Arena<Body>,
     group: &ParticleGroup,
@@ -282,8 +283,8 @@ fn between(
     Some(Between { key, particle: i as u32, normal: normal * sign, point })
 }
 
-/// Points far from each other among those of a part, the deepest first: each as far as may be from those that are chosen, less what it is less deep; points
-/// of the step before have precedence.
+/// Selects distant points of a part, the deepest first: each as far as possible from the selected ones, minus its lack
+/// of depth; the previous step's points are preferred.
 fn spread(part: &[Between], deepest: &Between, known: Option<&Contact>) -> Manifold {
     let mut manifold = Manifold { normal: deepest.normal, count: 1, ..Manifold::default() };
     manifold.points[0] = deepest.point;
@@ -302,7 +303,7 @@ fn spread(part: &[Between], deepest: &Between, known: Option<&Contact>) -> Manif
         else {
             break;
         };
-        // One that was chosen is no way away from itself.
+        // A selected one has distance zero.
         if score <= KEPT_POINT {
             break;
         }
@@ -312,7 +313,7 @@ fn spread(part: &[Between], deepest: &Between, known: Option<&Contact>) -> Manif
     manifold
 }
 
-/// Shares the force that a contact bore lately among the particles that bear it.
+/// Distributes the recent force of a contact over its particles.
 fn share_load(part: &[Between], deepest: &Between, memory: &ContactMemory, h: f32, loads: &mut [f32]) {
     let force = memory.points.iter().fold(0.0, |sum, point| sum + point.lasting) / h;
     let bearing = || part.iter().filter(|between| between.above(deepest) < BEARING_GAP);
@@ -320,7 +321,7 @@ fn share_load(part: &[Between], deepest: &Between, memory: &ContactMemory, h: f3
     bearing().for_each(|between| loads[between.particle as usize] += share);
 }
 
-/// Material of two surfaces that rub on particles between them: it holds no better than the slipperier of the two does.
+/// Material of two surfaces with particles between them: friction is that of the more slippery one.
 fn material(bodies: &Arena<Body>, particles: Material, contact: &Contact) -> ContactMaterial {
     let key = contact.key;
     let [a, b] = [(key.a, key.shape_a), (key.b, key.shape_b)].map(|(body, shape)| {

@@ -13,33 +13,33 @@ use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear, wrench};
 use crate::step::tuning::{HEAVY_LOAD, JOINT_CHANGE, JOINT_ROUNDS};
 use sinew_math::{Sym3, Transform, Vec3, max};
 
-/// Bodies as a particle group sees them.
+/// Bodies as seen by a particle group.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surroundings {
     obstacles: Vec<Obstacle>,
     anchors: Vec<Anchor>,
     bodies: Vec<ObstacleBody>,
     seen: Vec<Seen>,
-    /// Poses of the island's moving bodies when the substep began.
+    /// Poses of the island's moving bodies at the start of the substep.
     starts: Vec<Transform>,
     /// Impulses on the bodies of the island, by local index.
     impulses: Vec<Vec6>,
-    /// Number of groups that hang on each of them, and of those that can be solved together.
+    /// Number of groups attached to each of them, and of those that can be solved together.
     hung_on: Vec<u32>,
     joinable: Vec<u32>,
-    /// Velocities of the island's moving bodies before groups pushed them, and what these gave them since, N·s.
+    /// Velocities of the island's moving bodies before the groups' impulses, and these impulses, N·s.
     untouched: Vec<Vec6>,
     pushed: Vec<Vec3>,
 }
 
-/// A body as particles see it: where it is now, and where to put what they do to it.
+/// A body for particles: its current pose, and where to store the impulses on it.
 #[derive(Clone, Debug)]
 struct Seen {
-    /// When the substep began.
+    /// At the start of the substep.
     start: Transform,
     pose: Transform,
     velocity: Vec6,
-    /// Velocity that the forces of the coming substep will add.
+    /// Velocity change from the forces of the coming substep.
     coming: Vec3,
     inverse_mass: f32,
     inverse_inertia: Sym3,
@@ -96,7 +96,8 @@ fn moved(pose: &Transform, velocity: &Velocity, h: f32) -> Transform {
 }
 
 impl Surroundings {
-    /// Reserves memory that only islands with particles need, also for one that has none: it goes on to the next, which may have some.
+    /// Reserves memory that only islands with particles need, even for one that has none, because the workspace is
+    /// reused.
     pub fn make_room(&mut self, island: &Island<'_>) {
         self.impulses.clear();
         self.impulses.reserve(island.bodies.len());
@@ -112,8 +113,8 @@ impl Surroundings {
         self.pushed.reserve(island.bodies.len());
     }
 
-    /// Moves the groups of an island by one substep. Bodies get what springs and contacts push them with through their
-    /// trees.
+    /// Moves the groups of an island by one substep. The impulses of springs and contacts reach the bodies through
+    /// their trees.
     pub fn project(
         &mut self,
         groups: &mut [TakenGroup],
@@ -143,12 +144,12 @@ impl Surroundings {
         }
     }
 
-    /// True if groups that hang on a body are not all solved together.
+    /// True if the groups attached to a body are not all solved together.
     fn is_pushed_apart(&self, local: usize) -> bool {
         self.hung_on[local] > 1 && self.joinable[local] < self.hung_on[local]
     }
 
-    /// True if a group is solved together with others, which hang on the same body.
+    /// True if a group is solved together with others attached to the same body.
     fn is_joined(&self, group: &ParticleGroup, solver: &IslandSolver) -> bool {
         let shared = |id: BodyId| {
             local_of(solver.moving_bodies(), id.index).is_some_and(|local| self.joinable[local] > 1)
@@ -156,11 +157,12 @@ impl Surroundings {
         group.is_joinable() && group.bodies().any(shared)
     }
 
-    /// Begins the substep of groups that hang on one body, as one system: each is solved with the inertia and the pull that the others bring to the body, in
-    /// turns, until its velocity stays. Where one body is all that they share, each brings what the others' velocities do not change, and the first round is the
-    /// solution but for springs that turn or close loops.
+    /// Starts the substep of groups attached to one body, as one system. Each is solved with the inertia and pull of
+    /// the others, in turns, until the body's velocity converges. If they share a single body, the contributions do not
+    /// depend on the others' velocities, and the first round is exact except for springs that rotate or close loops.
     ///
-    /// One after the other, each would find the whole body turn about its corner as if nothing else held it, and the one rope take from the other what it gave.
+    /// Solved one after the other without this, each group would rotate the whole body about its own corner, and one
+    /// rope would undo the other.
     fn solve_together(
         &mut self,
         groups: &mut [TakenGroup],
@@ -202,8 +204,9 @@ impl Surroundings {
         }
     }
 
-    /// Gives particles of a group the velocity of a body that other groups hang on as well: these have pushed it since. If they went on without, it
-    /// would learn of their inertia one substep late, and what hangs on two ropes would gain energy.
+    /// Gives particles of a group the velocity of a body that other groups are attached to as well, because these have
+    /// pushed it since. Otherwise the body would feel their inertia one substep late, and a body on two ropes would
+    /// gain energy.
     fn join_held(
         &mut self,
         taken: &mut TakenGroup,
@@ -225,7 +228,7 @@ impl Surroundings {
         self.push(solver);
     }
 
-    /// Gives bodies the impulses that are listed.
+    /// Applies the listed impulses to the bodies.
     fn push(&mut self, solver: &mut IslandSolver) {
         for (pushed, impulse) in self.pushed.iter_mut().zip(&self.impulses) {
             *pushed += linear(impulse);
@@ -233,7 +236,7 @@ impl Surroundings {
         solver.apply_impulses(&self.impulses);
     }
 
-    /// Takes note of bodies before groups push them, and of how many hold each.
+    /// Records the bodies' velocities before the groups' impulses, and the number of groups per body.
     fn look_at_bodies(&mut self, groups: &mut [TakenGroup], solver: &mut IslandSolver, h: f32) {
         let moving = solver.moving_bodies();
         self.starts.clear();
@@ -264,8 +267,8 @@ impl Surroundings {
         solver.bears_by_springs = bears;
     }
 
-    /// Finds what moves along with the bodies that groups hold, by what these gained until the end of the substep of what they were given. Groups that
-    /// hold one together and are not solved together take their turns, and each finds it as the others have left it.
+    /// Estimates the added mass of the bodies that groups hold, from their velocity gain until the end of the substep.
+    /// Groups that share a body and are not solved together take turns, each after the previous one.
     pub fn find_added(&self, groups: &mut [TakenGroup], solver: &IslandSolver) {
         let moving = solver.moving_bodies();
         for (id, added) in groups.iter_mut().flat_map(|taken| taken.group.holders()) {

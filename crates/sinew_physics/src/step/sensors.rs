@@ -1,4 +1,4 @@
-//! `sensors`: who is inside whom, and who was hit, as events.
+//! `sensors`: sensor events and hits.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -6,8 +6,7 @@ use crate::contact::events::Events;
 use crate::contact::tracking::{ContactTracking, Told};
 use crate::contact::{Contact, Effect, pairs_of};
 
-/// Compares the sensor pairs with those of the step before, and tells of hits. All that the
-/// user changed since has been looked at now.
+/// Compares the sensor pairs with those of the previous step, and reports hits. Clears the user's change marks.
 pub(crate) fn sensors(
     bodies: &mut Arena<Body>,
     contacts: &mut [Contact],

@@ -1,5 +1,5 @@
-//! `sleep`: an island in which every body has stayed in its place for a while stops being simulated. It is displacement
-//! that counts: a body held between others may tremble and still sleep, one that creeps on may not.
+//! `sleep`: an island whose bodies have all stayed in place for a while is no longer simulated. Displacement counts: a
+//! body squeezed between others may tremble and still sleep, a creeping one may not.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
@@ -11,8 +11,8 @@ use crate::step::islands::Islands;
 use crate::step::tuning::{CREEP, GAINED, HANGING_SPEED, HANGING_SPIN, PUSHED_SPEED};
 use sinew_math::Vec3;
 
-/// Counts the calm time of every body and particle group and puts islands to sleep. `sleepers` numbers them; `of_groups` permits
-/// groups to sleep. A group keeps bodies awake that it holds; what it touches may rest before it.
+/// Updates the rest time of every body and particle group and puts islands to sleep. `sleepers` numbers them;
+/// `of_groups` permits groups to sleep. A group keeps the bodies it holds awake; bodies it touches may rest before it.
 pub(crate) fn sleep(
     islands: &Islands,
     (bodies, groups): (&mut Arena<Body>, &mut Arena<ParticleGroup>),
@@ -80,8 +80,8 @@ fn count(body: &mut Body, calm: bool, dt: f32) -> f32 {
     }
 }
 
-/// True if what acts on a body moves it ever faster, or turns it round: a ball at the top of its way up a slope is slow for a second. Not asked of bodies
-/// with joints, which sag for seconds against the friction in them.
+/// True if the net load accelerates the body steadily or reverses it: a ball at the turning point on a slope is slow
+/// for a second. Not tested for bodies with joints, which sag for seconds against joint friction.
 fn gains(body: &Body, thresholds: &SleepThresholds) -> bool {
     let Gain { velocity: Velocity { linear, angular }, time } = body.gain;
     let is_fast = |gain: Vec3, threshold: f32| gain.length() >= GAINED * threshold / thresholds.time;
@@ -95,13 +95,13 @@ fn stays(body: &Body, thresholds: &SleepThresholds) -> bool {
         && is.rotation.angle_to(was.rotation) < thresholds.angle
 }
 
-/// True if a slow body went on all the same in this step.
+/// True if a slow body moved in this step anyway.
 fn is_pushed_out(body: &Body, dt: f32) -> bool {
     (body.world_from_principal.translation - body.previous.translation).length() > PUSHED_SPEED * dt
 }
 
-/// True if what hangs on particles went next to no way in this step. Its velocity says less: springs push for the substep to come, which leaves
-/// it with what its weight will take.
+/// True if a body on particles hardly moved in this step. Its velocity is less meaningful: springs push for the coming
+/// substep and leave it with the velocity that its weight will cancel.
 fn hangs_still(body: &Body, dt: f32) -> bool {
     let (was, is) = (body.previous, body.world_from_principal);
     (is.translation - was.translation).length() < HANGING_SPEED * dt

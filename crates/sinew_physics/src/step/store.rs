@@ -1,4 +1,4 @@
-//! `store`: the world takes the impulses that the islands computed.
+//! `store`: writes the islands' impulses to the world.
 
 use crate::arena::Arena;
 use crate::contact::Contact;
@@ -11,8 +11,8 @@ use crate::particles::ParticleGroup;
 use crate::solver::SolvedJoint;
 use crate::step::islands::Islands;
 
-/// `store`: impulses and joint forces that the next step starts from; particle groups return to the world, where what is not
-/// finite is rolled back; joints that were loaded too much break.
+/// `store`: impulses and joint forces for the next step; particle groups return to the world, where non-finite ones are
+/// rolled back; overloaded joints break.
 pub(crate) fn store(
     islands: &mut Islands,
     joints: &mut Arena<Joint>,

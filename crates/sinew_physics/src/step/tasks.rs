@@ -10,8 +10,8 @@ use crate::step::phase::{Phase, solve};
 use crate::step::project::Surroundings;
 use std::sync::{Mutex, PoisonError};
 
-/// Memory in which islands are solved, one after the other: it comes to be as large as the largest needs it, and stays warm
-/// in the cache. Nothing in it lasts from one island to the next.
+/// Memory for solving islands one after the other: it grows to the largest island's size and stays in the cache.
+/// Nothing in it persists between islands.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace {
     pub solver: IslandSolver,
@@ -20,9 +20,9 @@ pub(crate) struct Workspace {
 
 /// Workspaces in which islands are solved.
 pub(crate) enum Workspaces<'a> {
-    /// Wherever there is room: nothing is to last.
+    /// In any free workspace: nothing persists.
     Idle(&'a mut Vec<Workspace>),
-    /// Each in its own, where it goes on with what is there, in the order of islands.
+    /// Each in its own workspace, in the order of islands, with its content preserved.
     Own(&'a mut [Workspace]),
 }
 
@@ -60,8 +60,8 @@ pub(crate) struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// All of the island's step, in the substeps that it takes: where long ones overreach, from the beginning once more in those of the
-    /// world.
+    /// The island's whole step, in its own number of substeps; if long substeps overreach, again from the start with
+    /// the world's number.
     pub fn solve(&mut self, view: &View<'_>, context: &StepContext<'_>) {
         if !self.take_substeps(view, context) {
             let of_world = Pace { grading: Grading::None, ..view.pace };
@@ -70,7 +70,7 @@ impl Task<'_> {
         solve(Phase::Store, self, view, context);
     }
 
-    /// Takes all substeps from the beginning of the step, up to one that overreaches. Gives whether none did.
+    /// Runs all substeps from the start of the step, up to one that overreaches. Returns true if none did.
     fn take_substeps(&mut self, view: &View<'_>, context: &StepContext<'_>) -> bool {
         solve(Phase::Prepare, self, view, context);
         Phase::of_substeps(self.workspace.solver.substeps()).all(|phase| {
@@ -80,7 +80,7 @@ impl Task<'_> {
     }
 }
 
-/// Islands that are still to be solved, with the room for what will come of them.
+/// Islands still to solve, with space for their results.
 pub(crate) struct Queue<'a, I> {
     islands: core::iter::Enumerate<I>,
     /// It hands out the large ones, or all others.
@@ -91,7 +91,7 @@ pub(crate) struct Queue<'a, I> {
 }
 
 impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
-    /// `groups` and `solution` hold what belongs to the islands in their order.
+    /// `groups` and `solution` hold the islands' data in their order.
     pub fn new(
         (islands, is_of_large): (I, bool),
         groups: &'a mut [TakenGroup],
@@ -103,7 +103,7 @@ impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
 
     /// Calls `work` once for each of the `count` islands, spread over `runner`'s threads.
     ///
-    /// DETERMINISM: which thread takes which island, and in which workspace, varies, so `work` must depend on neither.
+    /// DETERMINISM: the thread and workspace of an island vary, so `work` must depend on neither.
     pub fn run(self, runner: &dyn TaskRunner, count: usize, work: impl Fn(&mut Task<'_>) + Sync) {
         let queue = Mutex::new(self);
         let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);

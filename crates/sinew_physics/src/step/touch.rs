@@ -1,4 +1,4 @@
-//! `touch`: who began and stopped touching, and who wakes.
+//! `touch`: begin and end of touches, and waking.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
@@ -15,8 +15,8 @@ use crate::step::collide::smallest_extent;
 use crate::step::tuning::LINGER;
 use sinew_math::min;
 
-/// `touch`: what contacts do, events, and waking of what an awake body touches, presses through particles or attracts, or a moving
-/// kinematic one holds. What wakes comes with its contacts.
+/// `touch`: contact effects, events, and waking of bodies that an awake body touches, presses through particles or
+/// attracts, or that a moving kinematic one holds. Woken bodies return with their contacts.
 pub(crate) fn touch(
     bodies: &mut Arena<Body>,
     joints: &Arena<Joint>,
@@ -47,7 +47,7 @@ pub(crate) fn touch(
         Told { bodies: &mut events.begin, shapes: &mut events.shapes_begin },
         Told { bodies: &mut events.end, shapes: &mut events.shapes_end },
     );
-    // Who has pressed another through particles has touched it.
+    // Pressing through particles counts as touching.
     let groups = groups.iter().map(|(_, group)| group).filter(|group| group.is_awake());
     let pinched = groups.flat_map(|group| &group.pinched.contacts);
     for contact in pinched.filter(|contact| contact.has_pushed()) {
@@ -83,7 +83,7 @@ fn wake_touched(bodies: &mut Arena<Body>, activity: &mut Activity, pair: &[Conta
     }
 }
 
-/// True if two shapes lie deeper in each other than what rests does.
+/// True if two shapes overlap by more than resting ones do.
 fn is_deep(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
     let key = pair[0].key;
     let deep = -slop(smallest_extent(bodies.at(key.a), bodies.at(key.b), key));
@@ -106,9 +106,9 @@ fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Act
     }
 }
 
-/// True if two shapes overlap, or pushed each other in the last step and are still near: what bears a load may do so from a
-/// thousandth of a millimetre away, and what bounced has met although it is gone by now. What touched goes on touching until
-/// there is a gap that is none by rounding.
+/// True if two shapes overlap, or pushed each other in the last step and are still near: a contact may carry a load at
+/// a gap of a thousandth of a millimetre, and a bounced body has touched although it is gone by now. A touch continues
+/// until the gap exceeds rounding.
 fn touches(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
     let Contact { key, touching, .. } = pair[0];
     let nearest = points_of(pair).fold(f32::INFINITY, |least, point| min(point.separation, least));
@@ -122,8 +122,8 @@ fn points_of(pair: &[Contact]) -> impl Iterator<Item = &ManifoldPoint> {
     pair.iter().flat_map(|contact| contact.manifold.points())
 }
 
-/// All parts of a pair of shapes do the same: what touched a one-way shape goes on as it did, anything else passes if any
-/// part of it comes from another side.
+/// All parts of a pair of shapes have the same effect. A shape that touched a one-way shape keeps its state; otherwise
+/// it passes if any part of it approaches from another side.
 fn agree(pair: &mut [Contact]) {
     if !pair[0].one_way || pair[0].effect == Effect::Sense {
         return;

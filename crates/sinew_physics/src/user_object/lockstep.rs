@@ -1,4 +1,4 @@
-//! A step with objects: all islands go substep by substep, and between the parts the objects see the world as it is.
+//! A step with objects: all islands run substep by substep, and objects see a consistent world between the parts.
 
 use super::{Corrections, Forces, Objects, Substep};
 use crate::activity::Activity;
@@ -12,12 +12,12 @@ use crate::stage::{Stage, zone};
 use crate::step::islands::Islands;
 use crate::step::phase::{Phase, solve};
 
-/// Places of bodies and particle groups in the course of a step, by their slots in the world.
+/// Slots to islands: bodies and particle groups during a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Places {
-    /// Island and local index of what moves.
+    /// Island and local index of a moving body.
     bodies: Vec<Option<(u32, u32)>>,
-    /// Position among the groups that were taken out of the world.
+    /// Position among the groups taken out of the world.
     groups: Vec<u32>,
 }
 
@@ -50,7 +50,7 @@ impl Places {
     }
 }
 
-/// A sleeping body that was pushed: it wakes when the step is over, with what it was given.
+/// A sleeping body that was pushed: it wakes after the step, with its impulses.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Roused {
     /// In the world.
@@ -59,8 +59,8 @@ pub(super) struct Roused {
     pub change: Vec6,
 }
 
-/// All islands phase by phase. Objects act before the two phases of each substep. Strands on which none has acted are solved again as
-/// what they are: an object that does nothing changes nothing.
+/// All islands phase by phase. Objects act before the two phases of each substep. Strands that no object touched are
+/// solved again as strands, so an object that does nothing changes nothing.
 pub(crate) fn lockstep(
     objects: &mut Objects,
     islands: &mut Islands,
@@ -111,7 +111,7 @@ impl Objects {
         }
     }
 
-    /// When the substeps are over: wakes what was pushed in its sleep.
+    /// After the substeps: wakes the bodies that were pushed in their sleep.
     pub fn rouse(&mut self, bodies: &mut Arena<Body>, activity: &mut Activity) {
         for Roused { index, change } in self.roused.drain(..) {
             activity.wake(bodies, index);

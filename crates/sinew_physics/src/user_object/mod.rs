@@ -1,11 +1,11 @@
 //! Kinds of the user's own: objects that push bodies and particles, and hold them where the world's own shapes and
 //! joints cannot.
 //!
-//! An object is asked twice in each substep, on one thread, in the order of ids: for forces before anything moves, and
-//! for corrections when everything has moved, before velocities are relaxed. It may have state, which goes into
-//! snapshots and so into [`World::hash`], and comes back with [`World::reset`].
+//! An object is called twice in each substep, on one thread, in the order of ids: for forces before anything moves, and
+//! for corrections after everything has moved, before velocities are relaxed. It may have state, which is part of
+//! snapshots and so of [`World::hash`], and is restored by [`World::reset`].
 //!
-//! A world without objects takes the way that it would take if there were no such thing.
+//! A world without objects executes exactly as if the feature did not exist.
 //!
 //! ```
 //! use sinew_math::{ReadError, Reader, Vec3, Writer};
@@ -66,23 +66,23 @@ use core::any::Any;
 use lockstep::{Places, Roused};
 use sinew_math::{ReadError, Reader, Writer};
 
-/// Behaviour in a world of a kind of the user's own. See [the module](self) for when it is asked, and for an example.
+/// User-defined behaviour in a world. See [the module](self) for the call order and an example.
 ///
-/// The same bits everywhere are the object's own business as well: it computes with `sinew_math`, reads no clock, and
-/// keeps what decides its future in what it [`save`](Self::save)s. A number that is not finite panics where it is handed
-/// to the world.
+/// The object itself must ensure the same bits everywhere: it computes with `sinew_math`, reads no clock, and
+/// [`save`](Self::save)s everything that decides its future. Passing a non-finite number to the world panics.
 pub trait PhysicsObject: Any + Send + Sync {
-    /// Name of the kind, the same in every build: it goes into snapshots. Two kinds in a world have two names.
+    /// Name of the kind, the same in every build: it is part of snapshots. Two kinds in a world must have different
+    /// names.
     fn kind(&self) -> &'static str;
 
-    /// When it is added to a world, before anything else: makes the bodies and joints that it needs. Not called when a
-    /// snapshot is loaded: those are in it. Default: nothing.
+    /// Called when it is added to a world, before anything else, to create its bodies and joints. Not called when a
+    /// snapshot is loaded: the snapshot contains them. Default: nothing.
     fn init(&mut self, _world: &mut World) {}
 
-    /// At the beginning of each substep: pushes. Default: nothing.
+    /// Applies forces, at the start of each substep. Default: nothing.
     fn add_forces(&mut self, _forces: &mut Forces<'_>) {}
 
-    /// In each substep when bodies and particles have moved: puts right what must not be as it is. Default: nothing.
+    /// Applies corrections in each substep, after bodies and particles have moved. Default: nothing.
     fn satisfy_constraints(&mut self, _corrections: &mut Corrections<'_>) {}
 
     /// Draws itself, as part of [`World::draw`]. Default: nothing.
@@ -91,22 +91,22 @@ pub trait PhysicsObject: Any + Send + Sync {
     /// Writes the state that decides its future.
     fn save(&self, w: &mut Writer);
 
-    /// Brings back what [`save`](Self::save) wrote, all of it; how many bytes that were is known, so that a mistake
-    /// here breaks nothing else.
+    /// Restores everything [`save`](Self::save) wrote. The number of bytes is stored separately, so that a mistake here
+    /// corrupts nothing else.
     ///
     /// # Errors
-    /// If the bytes are none that `save` writes. The state may be anything then: the world puts it back.
+    /// If `save` could not have written the bytes. The state is then unspecified: the world restores it.
     fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError>;
 }
 
-/// Makes an object of some kind, for a snapshot to be loaded into.
+/// Creates an object of some kind, to load a snapshot into.
 type Make = fn() -> Box<dyn PhysicsObject>;
 
 /// The objects of a world.
 #[derive(Default)]
 pub(crate) struct Objects {
     pub(crate) arena: Arena<Box<dyn PhysicsObject>>,
-    /// Kinds that snapshots may bring.
+    /// Kinds that snapshots may contain.
     pub(crate) kinds: Vec<(&'static str, Make)>,
     places: Places,
     roused: Vec<Roused>,
@@ -117,17 +117,17 @@ impl Item for Box<dyn PhysicsObject> {
 }
 
 impl Objects {
-    /// None, of a world.
+    /// An empty set, of a world.
     pub fn new(lineage: Lineage) -> Self {
         Self { arena: Arena::new(lineage), ..Self::default() }
     }
 
-    /// Objects of the same kinds and world, none yet.
+    /// An empty set with the same kinds and world.
     pub fn without_any(&self) -> Self {
         Self { kinds: self.kinds.clone(), ..Self::default() }
     }
 
-    /// They act in every substep of the world's, so that with any all islands take those.
+    /// They act in every substep of the world, so with objects all islands use the world's substeps.
     pub fn grading(&self) -> Grading {
         if self.is_empty() { Grading::ByContent } else { Grading::None }
     }

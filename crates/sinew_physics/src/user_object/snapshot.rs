@@ -24,12 +24,12 @@ impl Objects {
         });
     }
 
-    /// Reads what [`save`](Self::save) wrote: into the objects that are still there, or else into new ones of registered
-    /// kinds. Objects that the snapshot does not have go.
+    /// Reads the format of [`save`](Self::save) into the existing objects, or into new ones of registered kinds.
+    /// Removes objects that the snapshot does not have.
     ///
     /// # Errors
-    /// If the bytes are not valid, an object does not take its state, or one is not there whose kind is not registered;
-    /// the objects are then as they were.
+    /// If the bytes are invalid, an object rejects its state, or an object is missing and its kind is not registered;
+    /// the objects are then unchanged.
     pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
         let saved = Arena::load(r, |r| Ok(Saved { kind: r.text()?, state: r.block()? }))?;
         let before = self.states();
@@ -80,7 +80,7 @@ impl Objects {
     }
 
     /// # Panics
-    /// If an object does not take what it wrote itself.
+    /// If an object rejects its own saved state.
     fn take_back(&mut self, states: &Writer) {
         let mut r = Reader::new(states.as_bytes());
         for (_, object) in self.arena.iter_mut() {

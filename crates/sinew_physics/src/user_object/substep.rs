@@ -1,4 +1,4 @@
-//! Access of an object to a substep: what it sees, and what it may do.
+//! Access of an object to a substep: queries and actions.
 
 use super::lockstep::{Places, Roused};
 use crate::body::def::BodyKind;
@@ -26,9 +26,9 @@ pub struct Substep<'a> {
     taken: &'a mut [TakenGroup],
     places: &'a Places,
     roused: &'a mut Vec<Roused>,
-    /// When the step began, seconds.
+    /// Start time of the step, seconds.
     start: f64,
-    /// Substeps after which things are where they are.
+    /// Number of substeps completed at the current state.
     moved: u32,
 }
 
@@ -50,8 +50,7 @@ impl<'a> Substep<'a> {
         self.view.pace.h
     }
 
-    /// Simulated time at which things are where they are, seconds: the substep's beginning for forces, its end for
-    /// corrections.
+    /// Simulated time of the current state, seconds: the substep's start for forces, its end for corrections.
     pub fn time(&self) -> f64 {
         self.start + f64::from(self.moved) * f64::from(self.view.pace.h)
     }
@@ -66,7 +65,7 @@ impl<'a> Substep<'a> {
         self.view.bodies.ids()
     }
 
-    /// True if the id names a body that is there.
+    /// True if the id names an existing body.
     pub fn contains(&self, id: BodyId) -> bool {
         self.view.bodies.get(id).is_some()
     }
@@ -104,11 +103,11 @@ impl<'a> Substep<'a> {
         }
     }
 
-    /// Response of a body at a world point: the speed that the point gains in a direction (of length 1) per impulse in
-    /// it, 1/kg, with the joints that hold the body, but for those that close loops. 0 of what nothing moves: static,
-    /// kinematic and sleeping bodies.
+    /// Response of a body at a world point: the speed gained in a direction (of length 1) per impulse in it, 1/kg,
+    /// including the joints that hold the body, except those that close loops. 0 for static, kinematic and sleeping
+    /// bodies.
     ///
-    /// Costs a pass through all bodies that hang together with it.
+    /// Costs a pass through all connected bodies.
     pub fn response(&mut self, id: BodyId, point: Vec3, direction: Vec3) -> f32 {
         let row = self.at(id, direction, point);
         self.moving_mut(id).map_or(0.0, |(solver, local)| solver.response_along(local, &row))
@@ -119,7 +118,7 @@ impl<'a> Substep<'a> {
         &self.taken[self.place(id)].group
     }
 
-    /// A particle group, to be pushed.
+    /// A particle group, mutable.
     pub fn particles_mut(&mut self, id: GroupId) -> &mut ParticleGroup {
         let place = self.place(id);
         &mut self.taken[place].group
@@ -166,7 +165,7 @@ impl<'a> Substep<'a> {
         join(force, (point - self.center_of_mass(id)).cross(force))
     }
 
-    /// Gives an impulse to a body: by `give`, if it moves; if it sleeps, it wakes with it.
+    /// Applies an impulse to a moving body by `give`, or stores it for a sleeping one, which then wakes.
     fn give(&mut self, id: BodyId, impulse: &Vec6, give: impl FnOnce(&mut IslandSolver, usize, &Vec6)) {
         if let Some((solver, local)) = self.moving_mut(id) {
             give(solver, local, impulse);
@@ -189,8 +188,8 @@ impl<'a> Substep<'a> {
 
 /// A substep's beginning: nothing has moved in it.
 ///
-/// What is applied to a body that sleeps wakes it when the step is over; an impulse goes with it, a force counts from the
-/// next step on, as gravity does for it. Zero wakes nothing. Static and kinematic bodies are not moved.
+/// Actions on a sleeping body wake it after the step; an impulse takes effect then, a force from the next step on, like
+/// gravity. Zero wakes nothing. Static and kinematic bodies are not moved.
 pub struct Forces<'a>(pub(super) Substep<'a>);
 
 impl Forces<'_> {
@@ -211,8 +210,7 @@ impl Forces<'_> {
         self.add(id, &join(Vec3::ZERO, torque));
     }
 
-    /// Impulse (N·s) at a world point: changes the velocity at once. What joints make of it comes when the substep is
-    /// solved.
+    /// Impulse (N·s) at a world point: changes the velocity at once. Joints respond when the substep is solved.
     pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
         let impulse = self.at(id, impulse, point);
         self.give(id, &impulse, IslandSolver::push_loose);
@@ -227,10 +225,10 @@ impl Forces<'_> {
     }
 }
 
-/// A substep's end: everything has moved, and velocities are about to be relaxed.
+/// A substep's end: everything has moved, and velocities have not been relaxed yet.
 ///
-/// What is applied goes through the joints at once; so each call costs a pass through all bodies that hang together. A
-/// body that sleeps wakes when the step is over.
+/// Actions take effect through the joints at once, so each call costs a pass through all connected bodies. A sleeping
+/// body wakes after the step.
 pub struct Corrections<'a>(pub(super) Substep<'a>);
 
 impl Corrections<'_> {
@@ -240,12 +238,12 @@ impl Corrections<'_> {
         self.give(id, &impulse, IslandSolver::push_held);
     }
 
-    /// Impulse (N·s) at a world point that changes velocities, and poses to what they would be if it had acted all through
-    /// the substep: by `h` times the change of velocity. So an impulse of `−C / (h w)` along the gradient of an error `C`
-    /// (m), with the [`response`](Substep::response) `w`, removes the error (Müller et al., "Detailed Rigid Body
-    /// Simulation with Extended Position Based Dynamics", SCA 2020).
+    /// Impulse (N·s) at a world point that changes velocities, and poses as if it had acted through the whole substep:
+    /// by `h` times the change of velocity. An impulse of `−C / (h w)` along the gradient of an error `C` (m), with the
+    /// [`response`](Substep::response) `w`, removes the error (Müller et al., "Detailed Rigid Body Simulation with
+    /// Extended Position Based Dynamics", SCA 2020).
     ///
-    /// Poses should change by little: contacts and particles are looked for where bodies may come within a step.
+    /// Pose changes should be small: contacts and particles are only searched within the predicted motion.
     pub fn correct(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
         let impulse = self.at(id, impulse, point);
         self.give(id, &impulse, IslandSolver::correct);

@@ -1,4 +1,4 @@
-//! A body to be asked, without its id at each question.
+//! A reference to a body, for queries without repeating its id.
 
 use crate::body::Velocity;
 use crate::body::def::{BodyKind, Sleeping};
@@ -9,7 +9,7 @@ use crate::world::World;
 use core::fmt;
 use sinew_math::{Transform, Vec3};
 
-/// A body of a world, to be asked: what [`World::get`] finds.
+/// A body of a world for queries, from [`World::get`].
 #[derive(Clone, Copy)]
 pub struct BodyRef<'a> {
     world: &'a World,
@@ -50,7 +50,7 @@ impl World {
     }
 }
 
-/// Each is as the method of [`World`] with its name.
+/// Each method does the same as the [`World`] method with its name.
 impl<'a> BodyRef<'a> {
     /// Its id.
     pub fn id(self) -> BodyId {
@@ -98,7 +98,7 @@ impl<'a> BodyRef<'a> {
         self.world.is_awake(self.id)
     }
 
-    /// Permission to fall asleep by itself.
+    /// Permission to fall asleep.
     pub fn sleeping(self) -> Sleeping {
         self.world.sleeping(self.id)
     }

@@ -8,10 +8,11 @@ use crate::world::World;
 use sinew_math::Vec3;
 
 impl World {
-    /// Makes a body static, kinematic or dynamic; it wakes, and so does what touches it or hangs on it. Pose and velocity
-    /// stay, but that a static body has none: what comes back to forces goes on as fast as it was led. While it is not
-    /// dynamic its mass is 0; what it has when it is so again is that of before or what [`set_mass`](Self::set_mass) gave
-    /// it since, or else what its shapes weigh by their densities. Joints between two bodies that no force moves do nothing.
+    /// Makes a body static, kinematic or dynamic; it wakes, with its touching and jointed bodies. Pose and velocity do
+    /// not change, except that a static body has none: a kinematic body that becomes dynamic keeps its velocity. While
+    /// it is not dynamic its mass is 0. When it becomes dynamic, it has its previous mass, or the one set by
+    /// [`set_mass`](Self::set_mass) since, or else that of its shapes' densities. Joints between two non-dynamic bodies
+    /// have no effect.
     ///
     /// ```
     /// use sinew_physics::{BodyDef, BodyKind, Shape, World, WorldDef};
@@ -26,7 +27,7 @@ impl World {
     /// ```
     ///
     /// # Panics
-    /// If a body with a half-space is to move, or one without mass to be dynamic.
+    /// If a body with a half-space shall move, or one without mass shall be dynamic.
     #[doc(alias = "set_body_type")]
     #[doc(alias = "motion type")]
     #[track_caller]

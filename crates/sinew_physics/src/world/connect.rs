@@ -6,7 +6,7 @@ use crate::world::World;
 use core::ops::BitOr;
 use sinew_math::{Range, Rotation, Transform, Vec3};
 
-/// World axes along and about which a body does not move: for [`World::axis_locks`].
+/// World axes along and about which a body cannot move: for [`World::axis_locks`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LockedAxes(u8);
 
@@ -25,9 +25,9 @@ impl LockedAxes {
     pub const ROTATION_Z: Self = Self(1 << 5);
     /// No motion along any axis.
     pub const TRANSLATIONS: Self = Self(0b111);
-    /// No turning at all: a body that stays upright.
+    /// No rotation: a body that stays upright.
     pub const ROTATIONS: Self = Self(0b111 << 3);
-    /// Motion in the world's xy plane alone.
+    /// Motion in the world's xy plane only.
     pub const PLANE_XY: Self = Self(Self::TRANSLATION_Z.0 | Self::ROTATION_X.0 | Self::ROTATION_Y.0);
 
     /// True if all axes of `other` are among these.
@@ -48,8 +48,8 @@ impl BitOr for LockedAxes {
     }
 }
 
-/// Joints where the bodies are now, from points and axes in the world. What is to be other than the defaults is a field of the
-/// definition, or is changed later by [`World::set_joint`].
+/// Joints at the bodies' current poses, from points and axes in the world. Change the returned definition's fields for
+/// non-default values, or call [`World::set_joint`] later.
 ///
 /// ```
 /// use sinew_math::{Range, Vec3};
@@ -69,7 +69,7 @@ impl BitOr for LockedAxes {
 /// # Panics
 /// If an id is stale, a number not finite, or an axis zero.
 impl World {
-    /// Ball joint: the bodies share a world point (metres) and turn about it freely.
+    /// Ball joint: the bodies share a world point (metres) and rotate about it freely.
     #[doc(alias = "SphericalJoint")]
     #[doc(alias = "point to point")]
     #[track_caller]
@@ -77,7 +77,7 @@ impl World {
         self.joint_at(a, b, anchor, Vec3::X, JointKind::Ball { limit: None })
     }
 
-    /// Hinge: the bodies share a world point (metres) and turn about a world axis of any length.
+    /// Hinge: the bodies share a world point (metres) and rotate about a world axis of any length.
     #[doc(alias = "RevoluteJoint")]
     #[track_caller]
     pub fn hinge(&self, a: BodyId, b: BodyId, anchor: Vec3, axis: Vec3) -> JointDef {
@@ -91,22 +91,22 @@ impl World {
         self.joint_at(a, b, anchor, axis, JointKind::Universal { limit: None })
     }
 
-    /// Slider: the bodies move along a world axis of any length through a world point (metres), and do not turn.
+    /// Slider: the bodies move along a world axis of any length through a world point (metres), without rotation.
     #[doc(alias = "PrismaticJoint")]
     #[track_caller]
     pub fn slider(&self, a: BodyId, b: BodyId, anchor: Vec3, axis: Vec3) -> JointDef {
         self.joint_at(a, b, anchor, axis, JointKind::Slider { limit: None })
     }
 
-    /// Fixed joint: the bodies keep their present pose to each other. Its torque is about B's centre of mass.
+    /// Fixed joint: the bodies keep their current relative pose. Its torque is about B's centre of mass.
     #[doc(alias = "weld joint")]
     #[track_caller]
     pub fn fixed(&self, a: BodyId, b: BodyId) -> JointDef {
         self.joint_at(a, b, self.center_of_mass(b), Vec3::X, JointKind::Fixed)
     }
 
-    /// Distance joint: a world point of each body (metres), whose distance stays within a range (metres): a rope from 0 to its
-    /// length, a rod where both ends are equal.
+    /// Distance joint between a world point (metres) of each body; the distance stays within a range (metres): a rope
+    /// from 0 to its length, a rod if both ends are equal.
     #[doc(alias = "RopeJoint")]
     #[doc(alias = "rod")]
     #[track_caller]
@@ -117,8 +117,8 @@ impl World {
         JointDef::between(a, b, frame_a, frame_b, JointKind::Distance { range })
     }
 
-    /// Locks that keep a body from moving along and turning about world axes, as a joint to a static body: `ground`, which they
-    /// collide with as before. Turning is locked at the present orientation; about one axis alone, as by a
+    /// Locks a body's motion along and rotation about world axes, by a joint to a static body `ground`; they still
+    /// collide. Rotation is locked at the current orientation; about a single axis, as by a
     /// [universal joint](Self::universal).
     ///
     /// ```
@@ -142,7 +142,7 @@ impl World {
     #[track_caller]
     pub fn axis_locks(&self, ground: BodyId, body: BodyId, locks: LockedAxes) -> JointDef {
         let turns = |axis: &usize| locks.motion(LockedAxes::ROTATION_X, *axis) == AxisMotion::Free;
-        // The axis that is unlike the other two becomes the frames' x axis, the twist.
+        // The axis that differs from the other two becomes the frames' x axis, the twist.
         let free = (0..3).filter(turns).count();
         let unlike = (0..3).find(|axis| turns(axis) == (free == 1)).unwrap_or(0);
         let axis = |i: usize| (i + unlike) % 3;
@@ -153,7 +153,7 @@ impl World {
             swing_y: turning(1),
             swing_z: turning(2),
         };
-        // X to Y to Z: a third of a turn about the diagonal.
+        // X to Y to Z: a rotation by a third of a turn about the diagonal.
         let cycle = Rotation::from_xyzw(0.5, 0.5, 0.5, 0.5);
         let rotation = [Rotation::IDENTITY, cycle, cycle.inverse()][unlike];
         let world_from_joint = Transform::new(self.center_of_mass(body), rotation);

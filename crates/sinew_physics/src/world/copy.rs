@@ -1,10 +1,10 @@
-//! A world beside a world.
+//! Copies of a world.
 
 use crate::world::World;
 use sinew_math::{Reader, Writer};
 
-/// A copy has the same future, bit for bit, and takes the same ids. Shapes with data are shared, not copied. Where a snapshot is
-/// enough, [`World::save`] is smaller.
+/// A copy has the same future, bit for bit, and the same future ids. Shapes with data are shared, not copied.
+/// [`World::save`] is smaller if a snapshot suffices.
 ///
 /// ```
 /// use sinew_physics::{BodyDef, Shape, World, WorldDef};
@@ -18,8 +18,8 @@ use sinew_math::{Reader, Writer};
 /// ```
 ///
 /// # Panics
-/// If the world has an object of a kind that is not [registered](World::register_kind), or one that does not take the state
-/// that it wrote itself: objects are copied by their state.
+/// If the world has an object of an [unregistered](World::register_kind) kind, or one that rejects its own saved state:
+/// objects are copied by their state.
 impl Clone for World {
     fn clone(&self) -> Self {
         let mut copy = Self {

@@ -5,7 +5,8 @@ use crate::stage::{Counter, Profiler};
 use crate::world::World;
 
 impl World {
-    /// Tells the counts of the step just taken, as it left the contacts: those of what fell asleep in it are put aside by now.
+    /// Reports the counts of the last step from its final contacts; those of bodies that fell asleep in it have been
+    /// put aside by now.
     pub(crate) fn tell_counts(&self, profiler: &dyn Profiler) {
         if !profiler.is_counting() {
             return;

@@ -1,11 +1,12 @@
-//! Snapshots as values, and what changed from one to another.
+//! Snapshots as values, and deltas between them.
 
 use crate::body::library::LoadError;
 use crate::world::World;
 use sinew_math::hash::hash_bytes;
 use sinew_math::{ReadError, Reader, Writer};
 
-/// State of a world as bytes, of which a later one may be stored as what changed: for rollback over a link, late joiners and replays.
+/// State of a world as bytes, against which a later one can be stored as a delta: for network rollback, late joiners
+/// and replays.
 ///
 /// ```
 /// use sinew_physics::{BodyDef, Shape, Snapshot, World, WorldDef};
@@ -29,7 +30,7 @@ pub struct Snapshot {
 
 /// First bytes of a delta; the last is its version.
 const MAGIC: &[u8; 8] = b"sinew-d\x01";
-/// Bytes that are looked for elsewhere in the earlier snapshot, as a piece that moved, and the least that is worth naming.
+/// Length of a byte sequence that is searched elsewhere in the earlier snapshot, and the shortest match worth storing.
 const PIECE: usize = 16;
 const WORTH: usize = 6;
 
@@ -41,14 +42,14 @@ impl Snapshot {
         snapshot
     }
 
-    /// Takes the state of a world, in the memory that is there.
+    /// Stores the state of a world, reusing the memory.
     pub fn take(&mut self, world: &World) {
         let mut w = Writer::reuse(core::mem::take(&mut self.bytes));
         world.save(&mut w);
         self.bytes = w.into_bytes();
     }
 
-    /// From bytes that were written before, by a world or by whatever else keeps its state so.
+    /// From bytes written before, by a world or other code with the same format.
     pub fn from_bytes(bytes: Vec<u8>) -> Self {
         Self { bytes }
     }
@@ -58,7 +59,7 @@ impl Snapshot {
         &self.bytes
     }
 
-    /// Brings a world back to the state.
+    /// Restores the state of a world.
     ///
     /// # Errors
     /// As [`World::load`].
@@ -66,7 +67,8 @@ impl Snapshot {
         world.load(&mut Reader::new(&self.bytes))
     }
 
-    /// Bytes from which this snapshot can be made again where the earlier one is: what did not change is named, not stored.
+    /// Bytes from which this snapshot can be rebuilt if the earlier one is available: unchanged parts are referenced,
+    /// not stored.
     pub fn delta(&self, earlier: &Self) -> Vec<u8> {
         let (old, new) = (&earlier.bytes[..], &self.bytes[..]);
         let mut w = Writer::new();
@@ -75,7 +77,7 @@ impl Snapshot {
         w.u64(hash_bytes(new));
         number(&mut w, new.len());
         let pieces = Pieces::of(old);
-        // `at` has been told up to `told`; the byte of the old that goes with it is at `with`.
+        // `at` has been written up to `told`; the corresponding byte of the old snapshot is at `with`.
         let (mut at, mut told, mut with) = (0, 0, 0);
         while at < new.len() {
             let here = common(&old[usize::min(with, old.len())..], &new[at..]);
@@ -94,7 +96,7 @@ impl Snapshot {
         w.into_bytes()
     }
 
-    /// The snapshot that a delta was made of.
+    /// The snapshot of a delta.
     ///
     /// # Errors
     /// If the bytes are no delta of this version, are damaged, or were made against another snapshot.
@@ -133,7 +135,7 @@ impl Snapshot {
     }
 }
 
-/// Bytes that are new, then a copy from so far beyond their place in the old.
+/// Literal bytes, then a copy from an offset relative to their position in the old snapshot.
 fn change(w: &mut Writer, fresh: &[u8], step: i64, copied: usize) {
     number(w, fresh.len());
     w.raw(fresh);
@@ -156,7 +158,7 @@ fn read_number(r: &mut Reader<'_>) -> Result<usize, ReadError> {
         let byte = r.u8()?;
         value |= u64::from(byte & 0x7f) << shift;
         if byte < 0x80 {
-            // No length or way is longer than what a snapshot may have.
+            // Lengths and offsets are at most the snapshot's length.
             return Some(value)
                 .filter(|&value| value < 1 << 40)
                 .and_then(|value| usize::try_from(value).ok())
@@ -166,16 +168,16 @@ fn read_number(r: &mut Reader<'_>) -> Result<usize, ReadError> {
     Err(r.error("a number is too long"))
 }
 
-/// Equal bytes at the beginning of both.
+/// Length of the common prefix of both.
 fn common(p: &[u8], q: &[u8]) -> usize {
     let words = p.chunks_exact(8).zip(q.chunks_exact(8)).take_while(|(p, q)| p == q).count();
     let rest = p[8 * words..].iter().zip(&q[8 * words..]).take_while(|(p, q)| p == q).count();
     8 * words + rest
 }
 
-/// Places of pieces of a snapshot by their bytes.
+/// Index of a snapshot's byte sequences.
 struct Pieces {
-    /// Place plus one of a piece whose hash ends so; 0: none.
+    /// Position plus one of a sequence with this hash; 0: none.
     places: Vec<u32>,
 }
 
@@ -196,7 +198,7 @@ impl Pieces {
         (mixed >> 32) as usize & (size - 1)
     }
 
-    /// A place where the next bytes are, and how many; 0 if there is none.
+    /// Position and length of a match for the next bytes; length 0 if there is none.
     fn find(&self, old: &[u8], new: &[u8]) -> (usize, usize) {
         if new.len() < PIECE {
             return (0, 0);

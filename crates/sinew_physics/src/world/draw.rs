@@ -9,11 +9,11 @@ use sinew_math::{Transform, Vec3, trig};
 
 /// Straight pieces of a full circle.
 const SEGMENTS: usize = 16;
-/// Half the side of the square that stands for a half-space, metres.
+/// Half the side of the square that represents a half-space, metres.
 const PLANE_SIZE: f32 = 10.0;
 
 impl World {
-    /// Draws shapes, joints, springs, contacts, and what objects draw of themselves.
+    /// Draws shapes, joints, springs, contacts, and objects.
     #[doc(alias = "debug render")]
     #[doc(alias = "gizmos")]
     pub fn draw(&self, out: &mut dyn DebugDraw) {
@@ -114,7 +114,7 @@ fn draw_capsule(half_height: f32, radius: f32, line: &mut dyn FnMut(Vec3, Vec3))
         for y in [-half_height, half_height] {
             line(Vec3::new(c0, y, s0), Vec3::new(c1, y, s1));
         }
-        // The upper half of the outline is lifted, the lower one lowered; the straight sides follow where they meet.
+        // The upper half of the outline is raised, the lower one lowered; straight sides connect them.
         let lift = if s0 + s1 > 0.0 { half_height } else { -half_height };
         line(Vec3::new(c0, s0 + lift, 0.0), Vec3::new(c1, s1 + lift, 0.0));
         line(Vec3::new(0.0, s0 + lift, c0), Vec3::new(0.0, s1 + lift, c1));

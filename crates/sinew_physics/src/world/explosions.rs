@@ -10,10 +10,10 @@ use crate::world::World;
 use sinew_math::Vec3;
 
 impl World {
-    /// Sets off an explosion: what it reaches has its new velocity at once, and wakes.
+    /// Applies an explosion: affected bodies and particles get their new velocity at once, and wake.
     ///
     /// # Panics
-    /// If [`Explosion::check`] finds something wrong.
+    /// If [`Explosion::check`] rejects it.
     pub fn explode(&mut self, explosion: &Explosion) {
         if let Err(what) = explosion.check() {
             panic!("{what}");

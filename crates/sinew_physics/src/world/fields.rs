@@ -1,4 +1,4 @@
-//! The fields of a world: made, changed, asked.
+//! World methods for fields: creation, changes, queries.
 
 use crate::body::def::BodyKind;
 use crate::body::force::Wrench;
@@ -10,10 +10,10 @@ use crate::world::World;
 use sinew_math::Vec3;
 
 impl World {
-    /// Adds a field; what it reaches wakes.
+    /// Adds a field; everything in its reach wakes.
     ///
     /// # Panics
-    /// If [`FieldDef::check`] finds something wrong, or a user's function is not registered.
+    /// If [`FieldDef::check`] rejects it, or a user function is not registered.
     pub fn add_field(&mut self, def: &FieldDef) -> FieldId {
         self.check_field(def);
         self.keep_region(def);
@@ -21,10 +21,10 @@ impl World {
         self.fields.insert(def.clone())
     }
 
-    /// Gives a field another definition; what it reached and what it reaches now wakes.
+    /// Gives a field another definition; everything in its old or new reach wakes.
     ///
     /// # Panics
-    /// If [`FieldDef::check`] finds something wrong, or a user's function is not registered.
+    /// If [`FieldDef::check`] rejects it, or a user function is not registered.
     #[track_caller]
     pub fn set_field(&mut self, id: FieldId, def: &FieldDef) {
         self.check_field(def);
@@ -35,14 +35,14 @@ impl World {
         *self.fields.expect_mut(id) = def.clone();
     }
 
-    /// Takes a field out; what it reached wakes.
+    /// Removes a field; everything in its reach wakes.
     #[track_caller]
     pub fn remove_field(&mut self, id: FieldId) {
         let before = self.fields.take(id);
         self.wake_reached(&before);
     }
 
-    /// A field as it is now.
+    /// A field's current definition.
     #[track_caller]
     pub fn field(&self, id: FieldId) -> &FieldDef {
         self.fields.expect(id)
@@ -53,22 +53,22 @@ impl World {
         self.fields.ids()
     }
 
-    /// True if the id names a field that is there.
+    /// True if the id names an existing field.
     pub fn contains_field(&self, id: FieldId) -> bool {
         self.fields.get(id).is_some()
     }
 
-    /// Registers a function for [`FieldKind::Custom`] under a number of the user's choice, in place of the one that had it.
+    /// Registers a function for [`FieldKind::Custom`] under a number chosen by the user, replacing a previous one.
     ///
-    /// A snapshot holds the number and the parameters, not the code: before a snapshot is loaded into a world, the functions
-    /// that it names must be registered in it, else loading fails. Register the same function under the same number, or
-    /// what comes is another future.
+    /// A snapshot contains the number and the parameters, not the code. Before a snapshot is loaded into a world, its
+    /// functions must be registered there, otherwise loading fails. Register the same function under the same number,
+    /// or the future differs.
     pub fn register_field(&mut self, number: u32, function: FieldFunction) {
         self.functions.set(number, function);
     }
 
-    /// Force and torque about the centre of mass that a field has on a body as it is now, N and N·m, world axes; 0 on what
-    /// is not dynamic.
+    /// Force and torque about the centre of mass that a field currently applies to a body, N and N·m, world axes; 0 for
+    /// bodies that are not dynamic.
     #[track_caller]
     pub fn field_force(&self, id: FieldId, body: BodyId) -> Wrench {
         let (field, it) = (self.field(id), self.expect(body));
@@ -83,10 +83,10 @@ impl World {
         load.wrench
     }
 
-    /// Force that a field has on a particle as it is now, N.
+    /// Force that a field currently applies to a particle, N.
     ///
     /// # Panics
-    /// If there is no such particle.
+    /// If the particle does not exist.
     #[track_caller]
     pub fn field_force_on_particle(&self, id: FieldId, group: GroupId, particle: u32) -> Vec3 {
         let field = self.field(id);
@@ -100,8 +100,8 @@ impl World {
         load.wrench.force
     }
 
-    /// Velocity of the air at a place, m/s, world: that of all winds there, each as strong as its region has it there; 0 without
-    /// any. For what is no body and no particle of the world.
+    /// Velocity of the air at a position, m/s, world: the sum of all winds, each scaled by its region; 0 without any.
+    /// For effects outside the simulation.
     pub fn air_velocity(&self, point: Vec3) -> Vec3 {
         let nanoseconds = self.fields_now().nanoseconds;
         self.fields.iter().fold(Vec3::ZERO, |sum, (_, field)| match &field.kind {
@@ -110,9 +110,9 @@ impl World {
         })
     }
 
-    /// Energy of all that is in a field that acts everywhere, J: uniform and point gravity, attraction, and what it took to
-    /// push water aside. Others have none: those that brake take it, and a user's function may have none. Nor has a field in a
-    /// region.
+    /// Potential energy in all fields that act everywhere, J: uniform and point gravity, attraction, and displaced
+    /// water. Other fields have none: drag dissipates, and a user function may not be conservative. Fields in a region
+    /// have none either.
     #[track_caller]
     pub fn field_energy(&self, id: FieldId) -> f32 {
         let field = self.field(id);
@@ -132,7 +132,7 @@ impl World {
         sum
     }
 
-    /// On `body` by all others. One at the very same place, the body itself among them, pulls nowhere.
+    /// Attraction on `body` by all others. Coincident ones, including the body itself, add nothing.
     fn attraction_of_all(&self, field: &FieldDef, law: &MutualGravity, body: BodyId) -> Vec3 {
         let own = attractor(field, &Target::of_body(self.expect(body)));
         self.attractors(field).map(|other| law.force(&own, &other)).sum()

@@ -38,8 +38,8 @@ impl World {
         body.velocity.angular += finite_change(impulse, |impulse| body.inverse_inertia_mul(impulse));
     }
 
-    /// Force (N) at a world point, constant over the next step and gone after it. The torque is that about the centre of
-    /// mass as it lies now.
+    /// Force (N) at a world point, constant over the next step and cleared after it. The torque is about the centre of
+    /// mass at its current position.
     #[track_caller]
     pub fn apply_force(&mut self, id: BodyId, force: Vec3, point: Vec3) {
         assert!(
@@ -73,8 +73,8 @@ impl World {
         }
     }
 
-    /// Gives a body a force that lasts until it is changed or taken away; the body wakes. A body that stays where it is
-    /// all the same may sleep under it.
+    /// Adds a force that acts on a body until changed or removed; the body wakes. A body that still does not move may
+    /// sleep under it.
     ///
     /// # Panics
     /// If a number is not finite.
@@ -93,7 +93,7 @@ impl World {
     /// Changes a lasting force; the body wakes.
     ///
     /// # Panics
-    /// If a number is not finite, or the force is not there.
+    /// If a number is not finite, or the force does not exist.
     pub fn set_force(&mut self, id: ForceId, def: &ForceDef) {
         assert!(def.is_finite(), "a force is finite, not {def:?} ({id:?})");
         self.wake_body(id.body().index);
@@ -102,10 +102,10 @@ impl World {
         forces.list[place].1 = *def;
     }
 
-    /// Takes a lasting force away; the body wakes.
+    /// Removes a lasting force; the body wakes.
     ///
     /// # Panics
-    /// If the force is not there.
+    /// If the force does not exist.
     pub fn remove_force(&mut self, id: ForceId) {
         self.wake_body(id.body().index);
         let forces = &mut self.expect_mut(id.body()).forces;
@@ -113,40 +113,39 @@ impl World {
         forces.list.remove(place);
     }
 
-    /// A lasting force as it is now.
+    /// A lasting force's current definition.
     ///
     /// # Panics
-    /// If the force is not there.
+    /// If the force does not exist.
     pub fn force(&self, id: ForceId) -> ForceDef {
         let forces = &self.expect(id.body()).forces;
         forces.list[forces.place(id)].1
     }
 
-    /// The lasting forces of a body, in the order in which they came.
+    /// The lasting forces of a body, in the order of creation.
     #[track_caller]
     pub fn forces_of(&self, body: BodyId) -> impl Iterator<Item = ForceId> {
         self.expect(body).forces.list.iter().map(move |&(number, _)| ForceId::new(body, number))
     }
 
-    /// A bullet of `mass` (kg) and `velocity` (m/s) strikes a body at a world point and lodges there: gives the impulse
-    /// (N·s) that it left in the body.
+    /// A bullet of `mass` (kg) and `velocity` (m/s) hits a body at a world point and stays in it: returns the impulse
+    /// (N·s) on the body.
     ///
-    /// The hit is perfectly inelastic: afterwards bullet and struck point move with one velocity. With `r` from the centre
-    /// of mass to the point and `u` the point's velocity before, the velocity that the pair gains against each other by a
-    /// unit impulse is `K = (1/m + 1/M) 1 − [r]× I⁻¹ [r]×`, and the impulse is
+    /// The hit is perfectly inelastic: afterwards bullet and hit point have the same velocity. With `r` from the centre
+    /// of mass to the point and `u` the point's velocity before, the relative velocity gained per unit impulse is
+    /// `K = (1/m + 1/M) 1 − [r]× I⁻¹ [r]×`, and the impulse is
     ///
     /// ```text
     /// J = K⁻¹ (velocity − u)        through the centre: J = m M / (m + M) (velocity − u)
     /// ```
     ///
-    /// (Mirtich, "Impulse-based Dynamic Simulation", 1996, §3.3, without rebound). It is less than `mass × velocity`: what
-    /// is missing is the momentum that the bullet keeps, since it flies on with the body. Body and bullet together have the
-    /// momentum that they had before, so a free block leaves at `m v / (m + M)`.
+    /// (Mirtich, "Impulse-based Dynamic Simulation", 1996, §3.3, without rebound). It is less than `mass × velocity`,
+    /// because the bullet keeps a part of its momentum and moves on with the body. The total momentum is conserved, so
+    /// a free block leaves at `m v / (m + M)`.
     ///
-    /// **The bullet's mass does not join the body**: from then on the body weighs what it weighed. Where it should, count
-    /// the bullet by a body of its own, held by a fixed joint. Joints of the body spread the blow in the next step; they do
-    /// not make it heavier here. Nothing happens to static and kinematic bodies: the impulse given back is then what
-    /// stops the bullet.
+    /// **The bullet's mass is not added to the body.** If it should be, model the bullet as a body with a fixed joint.
+    /// Joints of the body transmit the blow in the next step; they do not increase its mass here. Static and kinematic
+    /// bodies do not react: the returned impulse is then the one that stops the bullet.
     ///
     /// # Panics
     /// If a number is not finite, or the mass not positive.
@@ -164,7 +163,7 @@ impl World {
         let arm = point - body.center();
         let turn = skew(arm);
         let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|e| body.inverse_inertia_mul(turn * e));
-        // K times the mass that it would be through the centre: of the size of 1, whatever the masses.
+        // K times the effective mass of a central hit: of order 1, whatever the masses.
         let reduced = 1.0 / (1.0 / mass + body.inverse_mass());
         let gained = Mat3::IDENTITY - turn * Mat3::from_cols(columns[0], columns[1], columns[2]) * reduced;
         let impulse = Sym3::from_mat3(&gained).inverse() * (velocity - body.velocity.at(arm)) * reduced;

@@ -1,4 +1,4 @@
-//! The joints of a world: made, changed, asked.
+//! World methods for joints: creation, changes, queries.
 
 use crate::body::def::BodyKind;
 use crate::id::{BodyId, JointId};
@@ -43,17 +43,17 @@ impl World {
         id
     }
 
-    /// Takes a joint out; both bodies wake.
+    /// Removes a joint; both bodies wake.
     ///
     /// # Panics
-    /// If it has an [owner](Self::own_joints): a character's limbs come off by its own calls.
+    /// If it has an [owner](Self::own_joints): a character detaches its limbs by its own calls.
     #[track_caller]
     pub fn remove_joint(&mut self, id: JointId) {
         self.expect_own_joint(id);
         self.take_joint(id);
     }
 
-    /// Takes a joint out, whoever keeps it.
+    /// Removes a joint, whoever owns it.
     pub(super) fn take_joint(&mut self, id: JointId) {
         self.joint_changed(id);
         let joint = self.joints.take(id);
@@ -73,7 +73,7 @@ impl World {
         self.activity.joints_of.body(body.index).iter().map(id)
     }
 
-    /// True if the id names a joint that is there.
+    /// True if the id names an existing joint.
     pub fn contains_joint(&self, id: JointId) -> bool {
         self.joints.get(id).is_some()
     }
@@ -86,7 +86,7 @@ impl World {
         (id(joint.a), id(joint.b))
     }
 
-    /// A joint's definition as it is now.
+    /// A joint's current definition.
     #[track_caller]
     pub fn joint(&self, id: JointId) -> JointDef {
         let joint = self.expect_joint(id);
@@ -123,8 +123,7 @@ impl World {
         self.joint_changed(id);
     }
 
-    /// Gives a joint another motor, or none; both bodies wake, unless it is the motor that it has. Cheap enough for every
-    /// step.
+    /// Sets a joint's motor, or none; both bodies wake if it changes. Cheap enough for every step.
     ///
     /// # Panics
     /// If a number is not valid.
@@ -140,8 +139,8 @@ impl World {
         }
     }
 
-    /// Gives a joint another friction, N·m ([`JointDef::friction_torque`]); both bodies wake, unless it is the one that it
-    /// has. Cheap enough for every step.
+    /// Sets a joint's friction, N·m ([`JointDef::friction_torque`]); both bodies wake if it changes. Cheap enough for
+    /// every step.
     ///
     /// # Panics
     /// If it is negative or not finite.
@@ -157,7 +156,7 @@ impl World {
         }
     }
 
-    /// Lets a joint act, or not; both bodies wake. One that broke acts again, with the gap that it has.
+    /// Enables or disables a joint; both bodies wake. A broken joint acts again, with its current gap.
     #[track_caller]
     pub fn set_joint_state(&mut self, id: JointId, state: JointState) {
         self.expect_joint_mut(id).state = state;
@@ -176,28 +175,29 @@ impl World {
         JointPose::new(&joint.geometry(), pose(joint.a), pose(joint.b))
     }
 
-    /// Frame B of a joint seen from its frame A: angles and travel.
+    /// Frame B of a joint relative to its frame A: angles and travel.
     #[track_caller]
     pub fn joint_transform(&self, id: JointId) -> Transform {
         self.joint_pose(self.expect_joint(id)).a_from_b()
     }
 
-    /// Distance of the joint's anchors from where it allows them to be, metres: of a ball joint that of the two anchors.
+    /// Distance of the joint's anchors from their allowed range, metres: for a ball joint the distance of the two
+    /// anchors.
     #[track_caller]
     pub fn joint_gap(&self, id: JointId) -> f32 {
         let joint = self.expect_joint(id);
         anchor_gap(&joint.kind, &self.joint_pose(joint))
     }
 
-    /// Angle by which the joint is beyond its limits of rotation, radians; 0 inside.
+    /// Angle beyond the joint's rotation limits, radians; 0 inside.
     #[track_caller]
     pub fn joint_overshoot(&self, id: JointId) -> f32 {
         let joint = self.expect_joint(id);
         overshoot(&joint.kind, &self.joint_pose(joint))
     }
 
-    /// Energy that a joint's spring and its weld hold, and its soft limits where their stiffness is given, J. Of a spring
-    /// given by its frequency it is known from the first step on.
+    /// Potential energy of a joint's spring, its weld, and its soft limits with given stiffness, J. For a spring given
+    /// by its frequency it is known from the first step on.
     #[track_caller]
     pub fn joint_energy(&self, id: JointId) -> f32 {
         let joint = self.expect_joint(id);

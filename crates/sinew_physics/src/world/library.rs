@@ -1,4 +1,4 @@
-//! The library of shapes as bytes, for other processes.
+//! The shape library as bytes, for other processes.
 
 use crate::body::library::{ENTRY_BYTES, MAGIC};
 use crate::body::shape::Shape;
@@ -7,7 +7,7 @@ use sinew_geometry::DataKind;
 use sinew_math::{ReadError, Reader, Writer};
 
 impl World {
-    /// Writes every shape with data that this world was ever given: what another process loads before a snapshot.
+    /// Writes every shape with data that this world was given, for another process to load before a snapshot.
     pub fn save_shapes(&self, w: &mut Writer) {
         w.raw(MAGIC);
         w.count(self.library.shapes.len());
@@ -18,10 +18,10 @@ impl World {
         }
     }
 
-    /// Takes in what [`save_shapes`](Self::save_shapes) wrote, beside the shapes that are there.
+    /// Adds the shapes written by [`save_shapes`](Self::save_shapes) to the existing ones.
     ///
     /// # Errors
-    /// If the bytes are not a library of this version or one of its shapes is not valid; the world is then as it was.
+    /// If the bytes are not a library of this version or one of its shapes is invalid; the world is then unchanged.
     pub fn load_shapes(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
             return Err(ReadError { at: 0, what: "is not a library of shapes of this version" });

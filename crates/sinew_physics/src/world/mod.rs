@@ -73,7 +73,7 @@ pub struct World {
     pub(crate) def: WorldDef,
     pub(crate) bodies: Arena<Body>,
     pub(crate) joints: Arena<Joint>,
-    /// Contacts of what is awake or moves, in order of their keys; `activity` has the others.
+    /// Contacts of awake or moving bodies, in order of their keys; `activity` has the others.
     pub(crate) contacts: Vec<Contact>,
     pub(crate) activity: Activity,
     pub(crate) groups: Arena<ParticleGroup>,
@@ -93,9 +93,9 @@ pub struct World {
     /// Number of islands that fell asleep so far.
     pub(crate) sleepers: u32,
     pub(crate) steps: u64,
-    /// Time that `update` was given and no step has used yet, nanoseconds.
+    /// Time passed to `update` and not yet simulated, nanoseconds.
     pub(crate) pending_nanoseconds: u64,
-    /// Work of the last step; no part of the state.
+    /// External work of the last step; not part of the state.
     pub(crate) work: Work,
     /// Memory of `wake_neighbors`; it holds nothing from one call to the next.
     pub(crate) around: Vec<u32>,
@@ -106,7 +106,7 @@ impl World {
     /// An empty world.
     ///
     /// # Panics
-    /// If [`WorldDef::check`] finds something wrong.
+    /// If [`WorldDef::check`] rejects it.
     pub fn new(def: WorldDef) -> Self {
         if let Err(what) = def.check() {
             panic!("{what}");
@@ -165,16 +165,17 @@ impl World {
         self.broad.proxies.add(index, self.bodies.at(index));
         let senses = def.shapes.iter().any(|shape| shape.sensing == Sensing::Sensor);
         if senses || def.kind == BodyKind::Kinematic || self.sleepers > 0 {
-            // It may be around what does not move by itself.
+            // It may overlap static bodies.
             self.look_anew(id);
         }
         id
     }
 
-    /// Takes a body out, with its joints; what it touched wakes.
+    /// Removes a body with its joints; touching bodies wake.
     ///
     /// # Panics
-    /// If particles are attached to it or have a backstop there, or it has an [owner](Self::own_bodies): a character's are taken out by its own calls.
+    /// If particles are attached to it or have a backstop on it, or it has an [owner](Self::own_bodies): a character
+    /// removes its bodies by its own calls.
     #[track_caller]
     #[doc(alias = "despawn")]
     #[doc(alias = "destroy")]
@@ -202,11 +203,12 @@ impl World {
         self.broad.proxies.remove(id.index);
     }
 
-    /// Adds particles with their springs; bodies that they hang on or have backstops at wake. Groups sleep with what hangs together with them. A body that sleeps is
-    /// a wall to them, unless one strikes it faster than [`SleepThresholds::speed`](crate::SleepThresholds): then it wakes.
+    /// Adds particles with their springs; bodies that hold them or carry their backstops wake. Groups sleep with their
+    /// islands. A sleeping body is a wall to them, unless one hits it faster than
+    /// [`SleepThresholds::speed`](crate::SleepThresholds): then it wakes.
     ///
     /// # Panics
-    /// If the definition is not valid or names a body that is not there.
+    /// If the definition is invalid or names a body that does not exist.
     pub fn add_particles(&mut self, def: &GroupDef) -> GroupId {
         let group = ParticleGroup::new(def);
         group.carriers().for_each(|body| _ = self.expect(body));
@@ -214,7 +216,7 @@ impl World {
         self.groups.insert(group)
     }
 
-    /// Takes a particle group out; what slept with it or lay on it wakes.
+    /// Removes a particle group; bodies that slept with it or rested on it wake.
     #[track_caller]
     pub fn remove_particles(&mut self, id: GroupId) {
         let group = self.groups.take(id);
@@ -230,7 +232,7 @@ impl World {
         self.groups.expect(id)
     }
 
-    /// A particle group, to be pushed.
+    /// A particle group, mutable.
     #[track_caller]
     pub fn particles_mut(&mut self, id: GroupId) -> &mut ParticleGroup {
         self.groups.expect_mut(id)
@@ -249,7 +251,7 @@ impl World {
         self.step_with(&Serial, &NoProfiler);
     }
 
-    /// One step with the host's threads and stage times. The result does not depend on either.
+    /// One step with the host's threads and profiler. The result does not depend on either.
     pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
         let (dt, substeps) = (self.def.dt(), self.def.substeps);
         let h = dt / substeps as f32;
@@ -276,9 +278,9 @@ impl World {
         &self.events
     }
 
-    /// Energy that came in during the last step; nothing after [`load`](Self::load), until a step is taken. The energy of the
-    /// bodies ([`energy`](Self::energy)) rises by no more than this beside what the user's forces, fields, surfaces that
-    /// move and impulses between steps do.
+    /// Energy added during the last step; zero after [`load`](Self::load), until a step is taken. The energy of the
+    /// bodies ([`energy`](Self::energy)) rises by at most this, plus the work of the user's forces, fields, moving
+    /// surfaces and impulses between steps.
     pub fn work(&self) -> Work {
         self.work
     }
@@ -288,7 +290,7 @@ impl World {
         self.bodies.ids()
     }
 
-    /// True if the id names a body that is there.
+    /// True if the id names an existing body.
     pub fn contains(&self, id: BodyId) -> bool {
         self.bodies.get(id).is_some()
     }
@@ -311,8 +313,8 @@ impl World {
         between * body.principal_from_body
     }
 
-    /// Puts a body somewhere; it wakes, and so does what touched it there or hangs on it. It does not sweep what lies
-    /// between.
+    /// Teleports a body; it wakes, and so do the bodies that touched it there or are jointed to it. It does not sweep
+    /// the space between.
     #[track_caller]
     #[doc(alias = "teleport")]
     #[doc(alias = "set_position")]
@@ -320,7 +322,7 @@ impl World {
         assert!(world_from_body.is_finite(), "a body's pose is finite, not {world_from_body:?} ({id:?})");
         self.expect_mut(id).set_world_from_body(world_from_body);
         self.mark_changed(id);
-        // What it bore where it was says nothing of where it is.
+        // Its contact impulses do not apply at the new position.
         let returned = self.activity.returned_mut();
         for contact in self.contacts.iter_mut().chain(returned).filter(|contact| contact.key.has(id.index)) {
             contact.memory = contact.memory.of_new_step();
@@ -342,7 +344,7 @@ impl World {
         self.expect(id).velocity
     }
 
-    /// Sets the velocity of a dynamic or kinematic body; it wakes. A static body has none, whatever is asked.
+    /// Sets the velocity of a dynamic or kinematic body; it wakes. Ignored for a static body.
     #[track_caller]
     #[doc(alias = "set_linvel")]
     #[doc(alias = "set_angvel")]
@@ -358,7 +360,7 @@ impl World {
         let stops = velocity.is_zero() && !body.velocity.is_zero();
         body.velocity = velocity;
         match body.kind {
-            // Where it has come to nothing has looked yet.
+            // The contacts at its new position are not known yet.
             BodyKind::Kinematic if stops => self.mark_changed(id),
             _ => self.wake_body(id.index),
         }

@@ -1,4 +1,4 @@
-//! Poses that bodies are to be at: the velocities that take them there, one by one or eight side by side.
+//! Velocities that move bodies to target poses, individually or with SIMD.
 
 use crate::body::Velocity;
 use crate::body::def::BodyKind;
@@ -10,9 +10,9 @@ use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Rotation, Transform, Vec3};
 
 impl World {
-    /// Gives a body the velocity with which it is at a pose (world) in `seconds`: for platforms and other kinematic bodies that are to be
-    /// somewhere, and push what is in the way. It goes on at that velocity until it is told otherwise; call it before each step
-    /// with the length of the step, [`WorldDef::dt`](crate::WorldDef::dt). It turns the short way.
+    /// Gives a body the velocity that reaches a pose (world) in `seconds`: for platforms and other kinematic bodies
+    /// that shall be at a given pose and push obstacles. It keeps that velocity until changed; call it before each step
+    /// with the length of the step, [`WorldDef::dt`](crate::WorldDef::dt). It rotates the short way.
     ///
     /// ```
     /// use sinew_math::{Transform, Vec3};
@@ -56,12 +56,13 @@ impl World {
         self.go_on(id, velocity);
     }
 
-    /// Gives many bodies the velocities with which they go on as they went: body `i`, which is led from `before[i]` to `now[i]` within
-    /// `seconds`, is to be where the same motion takes it from there after as many more. As [`move_to`](Self::move_to) to that pose, with the same
-    /// bits at less than half of the cost: for characters whose bodies follow a pose, of which the next is not known yet.
+    /// Gives many bodies the velocities that continue their motion: body `i` moved from `before[i]` to `now[i]` within
+    /// `seconds`, and shall continue that motion for as long again. Equivalent to [`move_to`](Self::move_to) with the
+    /// extrapolated pose, bit for bit, at less than half the cost: for characters whose bodies follow a pose before the
+    /// next one is known.
     ///
     /// # Panics
-    /// If there are not as many poses as bodies, or where `move_to` would.
+    /// If there is not one pose per body, or `move_to` would panic.
     #[track_caller]
     pub fn lead_all(&mut self, ids: &[BodyId], before: &[Transform], now: &[Transform], seconds: f32) {
         let all = ids.len() == before.len() && ids.len() == now.len();
@@ -94,7 +95,7 @@ impl World {
         }
     }
 
-    /// Gives a body a velocity. Of a kinematic one that went before and goes on nothing else changes.
+    /// Sets a body's velocity. For a kinematic body that keeps moving nothing else changes.
     fn go_on(&mut self, id: BodyId, velocity: Velocity) {
         let body = self.bodies.at_mut(id.index);
         if body.kind == BodyKind::Kinematic && !body.velocity.is_zero() && !velocity.is_zero() {
@@ -105,13 +106,14 @@ impl World {
     }
 }
 
-/// Pose that a body comes to that goes on as it went.
+/// Extrapolated pose of a body that continues its motion.
 fn ahead(before: &Transform, now: &Transform) -> Transform {
     let turn = now.rotation * before.rotation.inverse();
     Transform::new(now.translation + (now.translation - before.translation), turn * now.rotation)
 }
 
-/// Numbers of a body that is led: its principal frame in the world, its own frame in that, and where that was to be before and now.
+/// Numbers of a keyed body: its principal frame in the world, its own frame in that, and the targets of the latter
+/// before and now.
 const NUMBERS: usize = 4 * 7;
 
 /// Velocities of eight bodies with which they go on in `seconds`.
@@ -124,7 +126,7 @@ struct FindVelocities<'a> {
 struct Velocities {
     linear: [[f32; WIDTH]; 3],
     angular: [[f32; WIDTH]; 3],
-    /// Bit `k`: that of lane `k` is finite, and its turn short enough for the series.
+    /// Bit `k`: lane `k` is finite, and its rotation is small enough for the series.
     plain: u8,
 }
 

@@ -4,9 +4,9 @@ use crate::id::BodyId;
 use crate::world::World;
 
 impl World {
-    /// Bodies that the last step moved, each once, in no order that means anything: what a renderer has to look at, however many
-    /// rest or sleep. Those that fell asleep in it are among them, for the last time. Bodies that
-    /// [`set_transform`](Self::set_transform) puts somewhere are not, and nothing is known after [`load`](Self::load), until
+    /// Bodies moved by the last step, each once, in unspecified order: the ones a renderer must update, however many
+    /// rest or sleep. Bodies that fell asleep in it are included for the last time. Bodies teleported by
+    /// [`set_transform`](Self::set_transform) are not included, and the list is empty after [`load`](Self::load), until
     /// a step is taken.
     ///
     /// ```

@@ -1,4 +1,4 @@
-//! The objects of a world: made, asked, taken out.
+//! World methods for objects: adding, queries, removal.
 
 use crate::draw::DebugDraw;
 use crate::id::ObjectId;
@@ -13,7 +13,7 @@ impl World {
         self.objects.arena.insert(object)
     }
 
-    /// Takes an object out and gives it back; bodies that it made remain.
+    /// Removes an object and returns it; the bodies it created remain.
     #[track_caller]
     pub fn remove_object(&mut self, id: ObjectId) -> Box<dyn PhysicsObject> {
         self.objects.arena.take(id)
@@ -30,7 +30,7 @@ impl World {
         object.downcast_ref().unwrap_or_else(|| panic!("{id:?} is no {}", core::any::type_name::<T>()))
     }
 
-    /// An object, to be changed.
+    /// An object, mutable.
     ///
     /// # Panics
     /// If it is of another type.
@@ -46,7 +46,7 @@ impl World {
         self.objects.arena.ids()
     }
 
-    /// True if the id names an object that is there.
+    /// True if the id names an existing object.
     pub fn contains_object(&self, id: ObjectId) -> bool {
         self.objects.arena.get(id).is_some()
     }
@@ -57,8 +57,8 @@ impl World {
         }
     }
 
-    /// Lets [`load`](Self::load) make objects of a kind that it finds in a snapshot and the world does not have: in a
-    /// new world, or when an object was taken out since. A kind that is told again replaces the one told before.
+    /// Allows [`load`](Self::load) to create objects of this kind if a snapshot contains one that the world does not
+    /// have: in a new world, or after an object was removed. A repeated registration replaces the previous one.
     pub fn register_kind(&mut self, make: fn() -> Box<dyn PhysicsObject>) {
         let kind = make().kind();
         self.objects.kinds.retain(|&(known, _)| known != kind);

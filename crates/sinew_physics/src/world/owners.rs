@@ -1,13 +1,14 @@
-//! Owners of bodies and joints: what a user may not take out by calls of the world.
+//! Owners of bodies and joints, which the user cannot remove by world calls.
 
 use crate::body::owner::Owner;
 use crate::id::{BodyId, JointId};
 use crate::world::World;
 
 impl World {
-    /// Makes bodies those of an owner, `bodies[i]` its part `parts[i]`: from now on [`remove_body`](Self::remove_body) panics about them, and
-    /// says what to call instead. For code that keeps bodies and cannot do without them, as characters do; it gives them up by
-    /// [`disown_body`](Self::disown_body) before it takes them out. It changes nothing in a step, and is in the snapshot.
+    /// Assigns bodies to an owner, `bodies[i]` as its part `parts[i]`. From then on [`remove_body`](Self::remove_body)
+    /// panics for them and names the call to use instead. For code that depends on its bodies, such as characters; it
+    /// releases them by [`disown_body`](Self::disown_body) before it removes them. Ownership does not affect a step,
+    /// and is part of snapshots.
     ///
     /// ```should_panic
     /// use sinew_physics::{BodyDef, Owner, Shape, World, WorldDef};
@@ -24,7 +25,7 @@ impl World {
     /// ```
     ///
     /// # Panics
-    /// If the lists are not as long as each other, or the owner has no such part.
+    /// If the lists differ in length, or the owner has no such part.
     #[track_caller]
     pub fn own_bodies(&mut self, owner: &Owner, bodies: &[BodyId], parts: &[usize]) {
         assert_eq!(bodies.len(), parts.len(), "each body is a part");
@@ -34,10 +35,11 @@ impl World {
         }
     }
 
-    /// Makes joints those of an owner, `joints[i]` holding its part `parts[i]`, as [`own_bodies`](Self::own_bodies) does bodies.
+    /// Assigns joints to an owner, `joints[i]` holding its part `parts[i]`, as [`own_bodies`](Self::own_bodies) does
+    /// with bodies.
     ///
     /// # Panics
-    /// If the lists are not as long as each other, or the owner has no such part.
+    /// If the lists differ in length, or the owner has no such part.
     #[track_caller]
     pub fn own_joints(&mut self, owner: &Owner, joints: &[JointId], parts: &[usize]) {
         assert_eq!(joints.len(), parts.len(), "each joint holds a part");
@@ -47,19 +49,19 @@ impl World {
         }
     }
 
-    /// Leaves a body without an owner.
+    /// Releases a body from its owner.
     #[track_caller]
     pub fn disown_body(&mut self, body: BodyId) {
         self.expect_mut(body).owner = None;
     }
 
-    /// Leaves a joint without an owner.
+    /// Releases a joint from its owner.
     #[track_caller]
     pub fn disown_joint(&mut self, joint: JointId) {
         self.joints.expect_mut(joint).owner = None;
     }
 
-    /// Owner of a body, and the name of the part that the body is of it; `None`: the user's.
+    /// Owner of a body, and the name of its part; `None`: the user's.
     #[track_caller]
     pub fn body_owner(&self, body: BodyId) -> Option<(&Owner, &str)> {
         self.expect(body).owner.map(|mark| self.owners.of(mark))

@@ -1,4 +1,4 @@
-//! Pairs that may not meet, and functions of the user's that part pairs or change contacts.
+//! World methods for disabled pairs, pair functions and contact modifiers.
 
 use crate::body::contact_rule::{ContactModifier, ContactRule};
 use crate::contact::Contact;
@@ -7,21 +7,21 @@ use crate::id::BodyId;
 use crate::world::World;
 
 impl World {
-    /// Registers a function for [`set_pair_function`](Self::set_pair_function) under a number of the user's choice, in place
-    /// of the one that had it.
+    /// Registers a function for [`set_pair_function`](Self::set_pair_function) under a number chosen by the user,
+    /// replacing a previous one.
     ///
-    /// A snapshot holds the number, not the code: before a snapshot is loaded into a world, the functions that it names must
-    /// be registered in it, else loading fails. Register the same function under the same number, or what comes is another
-    /// future.
+    /// A snapshot contains the number, not the code. Before a snapshot is loaded into a world, its functions must be
+    /// registered there, otherwise loading fails. Register the same function under the same number, or the future
+    /// differs.
     pub fn register_pair_function(&mut self, number: u32, function: PairFunction) {
         self.parted.functions.registered.set(number, function);
     }
 
-    /// From now on the registered function of this number is asked whether two shapes may meet that filters let meet;
-    /// `None`, as at the start: none is. All bodies wake.
+    /// From now on the registered function with this number decides about shape pairs that pass the other filters;
+    /// `None`, the initial state: no function. All bodies wake.
     ///
     /// # Panics
-    /// If there is no such function.
+    /// If the function is not registered.
     pub fn set_pair_function(&mut self, number: Option<u32>) {
         if let Some(number) = number {
             assert!(self.parted.functions.registered.has(number), "pair function {number} is registered");
@@ -34,12 +34,12 @@ impl World {
         }
     }
 
-    /// The function that is asked, by number.
+    /// Number of the active function.
     pub fn pair_function(&self) -> Option<u32> {
         self.parted.functions.chosen
     }
 
-    /// From now on two bodies pass through each other; if they touch, both wake.
+    /// From now on two bodies do not collide; if they touch, both wake.
     #[track_caller]
     #[doc(alias = "ignore collision")]
     pub fn disable_pair(&mut self, a: BodyId, b: BodyId) {
@@ -52,7 +52,7 @@ impl World {
         self.parted.disable(a.index, b.index);
     }
 
-    /// Undoes [`disable_pair`](Self::disable_pair); they wake. Joints between them may still keep them from colliding.
+    /// Reverts [`disable_pair`](Self::disable_pair); both wake. Joints between them may still disable their collision.
     #[track_caller]
     pub fn enable_pair(&mut self, a: BodyId, b: BodyId) {
         self.expect(a);
@@ -61,7 +61,7 @@ impl World {
         self.parted.enable(a.index, b.index);
     }
 
-    /// Has the next step look anew at a pair: by what wakes of it, or else by one of them.
+    /// Makes the next step test a pair again, through one of its bodies that wakes, or else one of them.
     fn wake_pair(&mut self, a: BodyId, b: BodyId) {
         self.wake_body(a.index);
         self.wake_body(b.index);
@@ -72,12 +72,11 @@ impl World {
 }
 
 impl World {
-    /// Registers a function for [`ContactRule::Modified`] under a number of the user's choice, in place of the one that had
-    /// it.
+    /// Registers a function for [`ContactRule::Modified`] under a number chosen by the user, replacing a previous one.
     ///
-    /// A snapshot holds the number, not the code: before a snapshot is loaded into a world, the functions that its shapes
-    /// name must be registered in it, else loading fails. Register the same function under the same number, or what comes is
-    /// another future.
+    /// A snapshot contains the number, not the code. Before a snapshot is loaded into a world, the functions of its
+    /// shapes must be registered there, otherwise loading fails. Register the same function under the same number, or
+    /// the future differs.
     pub fn register_modifier(&mut self, number: u32, modifier: ContactModifier) {
         self.meetings.modifiers.registered.set(number, modifier);
     }

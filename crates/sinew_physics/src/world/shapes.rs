@@ -1,4 +1,4 @@
-//! Shapes of a body, added, replaced and taken away while the world runs.
+//! World methods that add, replace and remove shapes of a body.
 
 use crate::body::def::BodyKind;
 use crate::body::shape::{Shape, ShapeDef};
@@ -12,10 +12,10 @@ use sinew_math::{Transform, Vec3};
 /// Mass of a body after a change of its shapes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MassUpdate {
-    /// Mass, centre and inertia are what the shapes then have by their densities. Default.
+    /// Mass, centre and inertia are recomputed from the shapes' densities. Default.
     #[default]
     FromShapes,
-    /// They stay as they are.
+    /// They do not change.
     Keep,
 }
 
@@ -23,8 +23,8 @@ pub enum MassUpdate {
 type Weight = (f32, Vec3, Transform);
 
 impl World {
-    /// Adds a shape to a body, as its last; the body wakes, and so does what touches it or hangs on it. The next step tells of
-    /// what it touches.
+    /// Adds a shape to a body, as its last; the body wakes, with touching and jointed bodies. The next step reports its
+    /// touches.
     ///
     /// ```
     /// use sinew_math::{Transform, Vec3};
@@ -57,8 +57,8 @@ impl World {
         id
     }
 
-    /// Gives a body another shape in place of one that it has, under the same id; the body wakes, and so does what touches it
-    /// or hangs on it. What it touched and no longer does is told of by the next step, what it still touches is not.
+    /// Replaces a shape of a body, keeping its id; the body wakes, with touching and jointed bodies. The next step
+    /// reports ended touches, and not those that continue.
     ///
     /// # Panics
     /// If the body has no such shape, the new one is not valid, is a half-space on a body that is not static, or names a
@@ -76,8 +76,8 @@ impl World {
         self.reshape(id, mass, change, |shape| shape == id.shape);
     }
 
-    /// Takes a shape from a body; the body wakes, and so does what touched it or hangs on it. Those after it move up: their
-    /// ids count one less from now on. The next step tells that what touched it does no longer.
+    /// Removes a shape from a body; the body wakes, with touching and jointed bodies. The following shapes move up:
+    /// their numbers decrease by one. The next step reports its ended touches.
     ///
     /// # Panics
     /// If the body has no such shape, or would be dynamic without mass.
@@ -108,7 +108,7 @@ impl World {
         body.principal_from_body.inverse() * body.shapes[id.shape as usize].principal_from_shape
     }
 
-    /// A shape's definition as it is now.
+    /// A shape's current definition.
     #[track_caller]
     pub fn shape_def(&self, id: ShapeId) -> ShapeDef {
         let body_from_shape = self.body_from_shape(id);
@@ -187,7 +187,7 @@ impl World {
     }
 }
 
-/// Weight that a body with changed shapes gets; `None`: what it has, or none, stays.
+/// Mass for a body with changed shapes; `None`: its mass, if any, does not change.
 #[track_caller]
 fn weight(body: &Body, mass: MassUpdate) -> Option<Weight> {
     if mass == MassUpdate::Keep || body.kind != BodyKind::Dynamic && body.laid_by.is_none() {

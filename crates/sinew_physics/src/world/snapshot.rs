@@ -24,7 +24,7 @@ const MAGIC: &[u8; 8] = b"sinew-w\x0a";
 const MOST_STEPS: u64 = 1 << 53;
 
 impl World {
-    /// Writes the state: what [`load`](Self::load) brings back, bit for bit.
+    /// Writes the state, which [`load`](Self::load) restores bit for bit.
     #[doc(alias = "serialize")]
     #[doc(alias = "snapshot")]
     #[doc(alias = "rollback")]
@@ -43,7 +43,7 @@ impl World {
             joint.save(w);
             joint.owner.into_iter().for_each(|mark| owners.save(&self.owners, mark, w));
         });
-        // Which pairs have none depends on how they came to where they are.
+        // The set of pairs without points depends on history.
         let contacts: Vec<_> = self.contacts_in_order().filter(|contact| !contact.is_idle()).collect();
         w.count(contacts.len());
         contacts.into_iter().for_each(|contact| save_contact(w, contact));
@@ -60,19 +60,17 @@ impl World {
         self.objects.save(w);
     }
 
-    /// Brings back a saved state. Events are those of no step.
+    /// Restores a saved state. The events are then empty.
     ///
-    /// Objects of the user's own take their state where they are: the one that the snapshot was taken of, if it is still
-    /// there, or else a new one of a kind that [`register_kind`](Self::register_kind) was told. Objects that were added
-    /// since are dropped.
+    /// User objects restore their state in place: the object that was saved, if it still exists, or else a new one of a
+    /// [registered](Self::register_kind) kind. Objects added since are dropped.
     ///
     /// # Errors
-    /// If the bytes are not a snapshot of this version, a shape with data is named that the world was never given, a field, a
-    /// shape or the world names a function that is not registered, or an object is not there whose kind was not registered;
-    /// the world is then as it was.
+    /// If the bytes are not a snapshot of this version, a shape with data is missing in the library, a function is not
+    /// registered, or an object is missing and its kind is not registered; the world is then unchanged.
     ///
     /// # Panics
-    /// If an object does not take the state that it wrote itself.
+    /// If an object rejects its own saved state.
     pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), LoadError> {
         if r.raw(MAGIC.len())? != MAGIC {
             return Err(ReadError { at: 0, what: "is not a world snapshot of this version" }.into());
@@ -156,20 +154,19 @@ impl World {
         sinew_math::hash::hash_bytes(w.as_bytes())
     }
 
-    /// Marks the present state as the one that [`reset`](Self::reset) returns to: all that [`save`](Self::save) writes.
+    /// Marks the current state (everything [`save`](Self::save) writes) for [`reset`](Self::reset).
     pub fn mark(&mut self) {
         let mut w = Writer::reuse(core::mem::take(&mut self.marked));
         self.save(&mut w);
         self.marked = w.into_bytes();
     }
 
-    /// Returns to the marked state, exactly: what follows has the same bits as what followed the mark, ids of what is
-    /// added included. What was added since is gone, what was taken out is back; [`events`](Self::events) are those of no
-    /// step. Settings that are not part of the state (threads, kinds) stay.
+    /// Returns to the marked state exactly: the following steps have the same bits as those after the mark, including
+    /// new ids. Items added since are removed, removed ones return, and [`events`](Self::events) are empty. Settings
+    /// outside the state (threads, kinds) do not change.
     ///
     /// # Panics
-    /// If no state was marked, or an object was taken out since whose kind was not
-    /// [registered](Self::register_kind).
+    /// If no state was marked, or an object of an [unregistered](Self::register_kind) kind was removed since.
     pub fn reset(&mut self) {
         assert!(!self.marked.is_empty(), "a state was marked");
         let marked = core::mem::take(&mut self.marked);

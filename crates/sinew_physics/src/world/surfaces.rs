@@ -1,4 +1,4 @@
-//! Surfaces of a world's shapes, asked and changed while it runs, and what touches what.
+//! World methods for surfaces of shapes and for contacts.
 
 use crate::body::contact_rule::ContactRule;
 use crate::body::material::{ContactMaterial, Material};
@@ -11,7 +11,7 @@ use crate::id::{BodyId, ShapeId};
 use crate::world::World;
 use sinew_math::Vec3;
 
-/// A contact of two shapes, as the last step left it. A pair may have several.
+/// A contact of two shapes after the last step. A pair may have several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyContact {
     /// The shape of the body with the smaller index.
@@ -24,14 +24,14 @@ pub struct BodyContact {
     pub effect: Effect,
     /// Contact material of the two shapes, before a modifier.
     pub material: ContactMaterial,
-    /// All that friction gave B in the step, N·s, world axes; A got the opposite.
+    /// Total friction impulse on B in the step, N·s, world axes; A got the opposite.
     pub friction: Vec3,
     points: [ContactPoint; MAX_POINTS],
     count: usize,
 }
 
 impl BodyContact {
-    /// Points where the shapes touch or are near each other, at least one.
+    /// Contact points, touching or near, at least one.
     pub fn points(&self) -> &[ContactPoint] {
         &self.points[..self.count]
     }
@@ -45,23 +45,23 @@ impl BodyContact {
 /// A point of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactPoint {
-    /// Between the surfaces, world, metres: where it was when it was last looked for.
+    /// Midpoint between the surfaces, world, metres, at the last update.
     pub position: Vec3,
     /// Gap along the normal then, metres; negative if they overlapped.
     pub separation: f32,
-    /// All that it gave along the normal in the step, N·s.
+    /// Total normal impulse in the step, N·s.
     pub impulse: f32,
 }
 
 impl World {
-    /// Contacts of a body with others, near ones that do not touch among them, in the order of pairs.
+    /// Contacts of a body, including near ones that do not touch, in the order of pairs.
     #[track_caller]
     pub fn contacts_of(&self, id: BodyId) -> impl Iterator<Item = BodyContact> {
         self.expect(id);
         self.contacts().filter(move |contact| contact.a.body == id || contact.b.body == id)
     }
 
-    /// All contacts, near ones that do not touch among them, in the order of pairs.
+    /// All contacts, including near ones that do not touch, in the order of pairs.
     pub fn contacts(&self) -> impl Iterator<Item = BodyContact> {
         let near = |contact: &&Contact| contact.manifold.count > 0;
         self.contacts_in_order().filter(near).map(|contact| self.body_contact(contact))
@@ -98,13 +98,13 @@ impl World {
         self.expect_surface(id).material
     }
 
-    /// Whom a shape meets.
+    /// Collision filter of a shape.
     #[track_caller]
     pub fn filter(&self, id: ShapeId) -> Filter {
         self.expect_surface(id).filter
     }
 
-    /// Effect of a shape on those that it meets: solid or sensor.
+    /// Effect of a shape on those it touches: solid or sensor.
     #[track_caller]
     pub fn sensing(&self, id: ShapeId) -> Sensing {
         self.expect_surface(id).sensing
@@ -116,10 +116,10 @@ impl World {
         self.expect_surface(id).rule
     }
 
-    /// Makes a shape of something else, from the next step on. Its body and what it touches wake; its mass stays.
+    /// Changes a shape's material from the next step on. Its body and touching bodies wake; its mass does not change.
     ///
     /// # Panics
-    /// If [`Material::check`] finds something wrong.
+    /// If [`Material::check`] rejects it.
     #[track_caller]
     pub fn set_material(&mut self, id: ShapeId, material: Material) {
         if let Err(what) = material.check() {
@@ -128,24 +128,24 @@ impl World {
         self.change_surface(id, |surface| surface.material = material);
     }
 
-    /// Lets a shape meet others than before, from the next step on, which also tells of what it no longer touches. Its body
-    /// and what it touches wake.
+    /// Changes a shape's filter from the next step on, which also reports ended touches. Its body and touching bodies
+    /// wake.
     #[track_caller]
     pub fn set_filter(&mut self, id: ShapeId, filter: Filter) {
         self.change_surface(id, |surface| surface.filter = filter);
     }
 
-    /// Lets a shape push or only sense, from the next step on; what touches it ends and begins anew as the other kind of
-    /// event. Its body and what it touches wake.
+    /// Makes a shape solid or a sensor from the next step on; its touches end and restart as the other kind of event.
+    /// Its body and touching bodies wake.
     #[track_caller]
     pub fn set_sensing(&mut self, id: ShapeId, sensing: Sensing) {
         self.change_surface(id, |surface| surface.sensing = sensing);
     }
 
-    /// Changes what becomes of a shape's contacts, from the next step on. Its body and what it touches wake.
+    /// Changes a shape's contact rule from the next step on. Its body and touching bodies wake.
     ///
     /// # Panics
-    /// If [`ContactRule::check`] finds something wrong, or a modifier is not registered.
+    /// If [`ContactRule::check`] rejects it, or a modifier is not registered.
     #[track_caller]
     pub fn set_contact_rule(&mut self, id: ShapeId, rule: ContactRule) {
         if let Err(what) = rule.check() {
@@ -171,14 +171,14 @@ impl World {
         self.broad.proxies.refresh(id.body.index, self.bodies.at(id.body.index));
     }
 
-    /// Has the next step look anew at what a body touches, whatever moves; it and its neighbours wake.
+    /// Makes the next step test a body's contacts again even if nothing moves; it and its neighbours wake.
     #[track_caller]
     pub(crate) fn mark_changed(&mut self, id: BodyId) {
         self.look_anew(id);
         self.wake_neighbors(id.index);
     }
 
-    /// Has the next step look anew at what a body touches, whatever moves; nobody wakes.
+    /// Makes the next step test a body's contacts again even if nothing moves; wakes no body.
     #[track_caller]
     pub(crate) fn look_anew(&mut self, id: BodyId) {
         let body = self.expect_mut(id);

@@ -1,4 +1,4 @@
-//! Time: frames of any length become whole steps.
+//! Converts frame times to whole steps.
 
 use crate::world::World;
 use core::time::Duration;
@@ -11,15 +11,14 @@ pub struct Update {
     /// Time that waits for the next step, as a share of a step, 0..1: for [`World::interpolated`] and
     /// [`ParticleGroup::interpolated`](crate::particles::ParticleGroup::interpolated).
     pub alpha: f32,
-    /// Time for which no steps were taken, since there would have been more of them than
-    /// [`WorldDef::catch_up_steps`](crate::WorldDef::catch_up_steps): the world is late by so much for good. Zero as long as
-    /// the host keeps up.
+    /// Time dropped because it needed more than [`WorldDef::catch_up_steps`](crate::WorldDef::catch_up_steps) steps:
+    /// the permanent delay of the world. Zero as long as the host keeps up.
     pub dropped: Duration,
 }
 
 impl World {
-    /// Runs the whole steps that `time` more and what waited before hold, on the calling thread. Time is counted in whole
-    /// nanoseconds, so the state after step k is the same at any frame rate.
+    /// Runs the whole steps in the given and the stored time, on the calling thread. Time is counted in whole
+    /// nanoseconds, so the state after step k does not depend on the frame rate.
     ///
     /// A frame as floating-point seconds is `Duration::from_secs_f32(seconds)`, which panics if they are negative or not
     /// finite.
@@ -40,9 +39,9 @@ impl World {
         self.update_with(time, World::step)
     }
 
-    /// Runs the same steps as [`update`](Self::update), made by `step`: for threads and stage times ([`step_with`](Self::step_with)), for forces that
-    /// every step is to feel, not only a frame's first, and for the [`events`](Self::events) of every step, not only of its
-    /// last.
+    /// Runs the same steps as [`update`](Self::update), each by a call of `step`: for threads and profiling
+    /// ([`step_with`](Self::step_with)), for forces in every step instead of a frame's first only, and for the
+    /// [`events`](Self::events) of every step instead of the last only.
     ///
     /// ```
     /// # use core::time::Duration;
@@ -73,7 +72,7 @@ impl World {
     }
 }
 
-/// A whole number of them; what no duration holds is its longest.
+/// A whole number of them; saturates at the longest duration.
 fn nanoseconds(count: u128) -> Duration {
     const SECOND: u128 = 1_000_000_000;
     u64::try_from(count / SECOND).map_or(Duration::MAX, |s| Duration::new(s, (count % SECOND) as u32))

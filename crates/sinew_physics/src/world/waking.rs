@@ -1,4 +1,4 @@
-//! Sleep as a user sees it: asked, and changed by hand.
+//! World methods for sleep: queries and control.
 
 use crate::body::def::{Quality, Sleeping};
 use crate::boxes::Overlap;
@@ -15,7 +15,7 @@ impl World {
         self.expect(id).is_awake()
     }
 
-    /// Wakes a body and its island. One that is awake stays so for as long as if it had just woken.
+    /// Wakes a body and its island. For an awake body it restarts the time at rest.
     #[track_caller]
     #[doc(alias = "wake_up")]
     #[doc(alias = "activate")]
@@ -24,9 +24,9 @@ impl World {
         self.wake_body(id.index);
     }
 
-    /// Puts a body to sleep at once, and with it all that it hangs together with by joints and by contacts of the last step,
-    /// whether it may fall asleep by itself or not. What wakes sleepers wakes them as well: a moving kinematic body that
-    /// one of them touches does so in the next step. Nothing happens to what sleeps already, or is not dynamic.
+    /// Puts a body and its island (by joints and by contacts of the last step) to sleep at once, whatever their
+    /// permissions. The usual causes wake them: a moving kinematic body that touches one of them does so in the next
+    /// step. No effect on sleeping or non-dynamic bodies.
     #[track_caller]
     #[doc(alias = "sleep")]
     #[doc(alias = "deactivate")]
@@ -35,18 +35,18 @@ impl World {
             let island = self.island_of(id.index);
             self.activity.sleep(&mut self.bodies, &island, self.sleepers);
             self.sleepers = self.sleepers.wrapping_add(1);
-            // Where the last step has brought them nothing has looked yet.
+            // The contacts after the last step's motion are not known yet.
             island.into_iter().for_each(|index| self.look_anew(self.bodies.id(index)));
         }
     }
 
-    /// Permission of a body to fall asleep by itself.
+    /// Permission of a body to fall asleep.
     #[track_caller]
     pub fn sleeping(&self, id: BodyId) -> Sleeping {
         self.expect(id).sleeping
     }
 
-    /// Says whether a body may fall asleep by itself; it wakes if it may not.
+    /// Sets a body's permission to fall asleep; it wakes if that is revoked.
     #[track_caller]
     pub fn set_sleeping(&mut self, id: BodyId, sleeping: Sleeping) {
         self.expect_mut(id).sleeping = sleeping;
@@ -55,24 +55,24 @@ impl World {
         }
     }
 
-    /// Quality of the step for a body and what hangs together with it; `None`: as the world has it.
+    /// Step quality of a body and its island; `None`: the world's.
     #[track_caller]
     pub fn quality(&self, id: BodyId) -> Option<Quality> {
         self.expect(id).quality
     }
 
-    /// Sets the quality of the step for a body and what hangs together with it, from the next step on; `None`: as the world has it.
+    /// Sets the step quality of a body and its island from the next step on; `None`: the world's.
     #[track_caller]
     pub fn set_quality(&mut self, id: BodyId, quality: Option<Quality>) {
         self.expect_mut(id).quality = quality;
     }
 
-    /// Sets the quality of the step for all bodies that have none of their own, from the next step on.
+    /// Sets the step quality of all bodies without their own, from the next step on.
     pub fn set_world_quality(&mut self, quality: Quality) {
         self.def.quality = quality;
     }
 
-    /// Sets the world's gravity, m/s²; everything wakes, if it is another than before.
+    /// Sets the world's gravity, m/s²; everything wakes if it changes.
     ///
     /// # Panics
     /// If it is not finite.
@@ -90,7 +90,7 @@ impl World {
         self.activity.disturb(&mut self.bodies, index);
     }
 
-    /// The active bodies that hang together with one, ascending.
+    /// The active bodies of a body's island, ascending.
     fn island_of(&self, index: u32) -> Vec<u32> {
         let pushing = self.contacts.iter().chain(self.activity.contacts()).filter(|contact| contact.pushes());
         let holding = self.joints.iter().filter(|(_, joint)| joint.is_enabled());
@@ -110,7 +110,7 @@ impl World {
         island.into_iter().collect()
     }
 
-    /// Wakes a body and all that touches it, or hangs on it by a joint: something about it is to change that they may feel.
+    /// Wakes a body with its touching and jointed bodies, before a change that may affect them.
     pub(crate) fn wake_neighbors(&mut self, index: u32) {
         let mut others = core::mem::take(&mut self.around);
         others.clear();
@@ -126,7 +126,7 @@ impl World {
         self.wake_groups_around(index);
     }
 
-    /// Wakes particle groups that sleep where a body is, or hang on it.
+    /// Wakes particle groups that sleep at a body or are attached to it.
     fn wake_groups_around(&mut self, index: u32) {
         let (id, body) = (self.bodies.id(index), self.bodies.at(index));
         for (_, group) in self.groups.iter_mut() {
@@ -147,7 +147,7 @@ impl World {
         own.chain(self.activity.contacts_of(index))
     }
 
-    /// All contacts, in order of their keys: those of the step are, and those aside, few or none, are sorted and merged in.
+    /// All contacts, in order of their keys: those of the step are sorted; the few others are sorted and merged in.
     pub(crate) fn contacts_in_order(&self) -> impl Iterator<Item = &Contact> {
         let mut aside: Vec<&Contact> = self.activity.contacts().collect();
         aside.sort_unstable_by_key(|contact| contact.key);

@@ -9,9 +9,9 @@ use crate::world::World;
 use sinew_math::Transform;
 
 impl World {
-    /// Gives a body another mass (kg), centre of mass (metres) and inertia (kg·m² about the centre), both in the body's frame.
-    /// It stays where it is, its points go on as fast as they went, and it wakes, with what touches it or hangs on it. A
-    /// body that is not dynamic has them from when it [becomes](Self::set_kind) so.
+    /// Sets a body's mass (kg), centre of mass (metres) and inertia (kg·m² about the centre), both in the body's frame.
+    /// Its pose and the velocities of its points do not change; it wakes, with touching and jointed bodies. A
+    /// non-dynamic body has them from when it [becomes](Self::set_kind) dynamic.
     ///
     /// ```
     /// use sinew_physics::{BodyDef, MassProperties, Shape, World, WorldDef};
@@ -46,8 +46,7 @@ impl World {
         self.put_principal_frame(id, body_from_principal.inverse());
     }
 
-    /// Gives a body the mass, centre and inertia that its shapes have by their densities, as
-    /// [`set_mass`](Self::set_mass) would.
+    /// Gives a body the mass, centre and inertia of its shapes' densities, as [`set_mass`](Self::set_mass) would.
     ///
     /// # Panics
     /// If they have no mass.
@@ -57,7 +56,7 @@ impl World {
         self.set_mass(id, self.expect(id).mass_of_shapes());
     }
 
-    /// Puts the principal frame of a body that is awake elsewhere; what is kept in that frame follows.
+    /// Moves the principal frame of an awake body; data stored in that frame is converted.
     pub(super) fn put_principal_frame(&mut self, id: BodyId, principal_from_body: Transform) {
         let index = id.index;
         let body = self.bodies.at_mut(index);
@@ -72,7 +71,7 @@ impl World {
             let frame = if joint.a == index { &mut joint.frame_a } else { &mut joint.frame_b };
             *frame = new_from_old * *frame;
         }
-        // Manifolds are kept in the frames of their bodies.
+        // Manifolds are stored in the frames of their bodies.
         let returned = self.activity.returned_mut();
         for contact in self.contacts.iter_mut().chain(returned).filter(|contact| contact.key.has(index)) {
             contact.kept = Recycled::default();
@@ -80,7 +79,7 @@ impl World {
         self.renew_bounds(id);
     }
 
-    /// Works out anew where the shapes of a body are in the trees.
+    /// Recomputes the bounds of a body's shapes in the trees.
     pub(super) fn renew_bounds(&mut self, id: BodyId) {
         self.broad.proxies.remove(id.index);
         self.broad.proxies.add(id.index, self.bodies.at(id.index));
@@ -124,7 +123,7 @@ impl World {
         self.expect(id).gravity_scale
     }
 
-    /// Sets the factor on the world's gravity for a body, without unit; it wakes, if it is another than before. 0 lets it float.
+    /// Sets the factor on the world's gravity for a body, without unit; it wakes if it changes. 0 disables gravity.
     ///
     /// # Panics
     /// If it is not finite.
@@ -136,7 +135,7 @@ impl World {
         }
     }
 
-    /// Sets the user's number on a body: room for an index or an entity's bits. It is part of snapshots.
+    /// Sets the user data of a body: space for an index or an entity's bits. Part of snapshots.
     #[track_caller]
     pub fn set_user_data(&mut self, id: BodyId, user_data: u64) {
         self.expect_mut(id).user_data = user_data;

@@ -462,7 +462,7 @@ impl Character {
         self.events.push(CharacterEvent::Up);
     }
 
-    /// Starts a transition of so many seconds to a pose no deeper than `to`, from the shown pose.
+    /// Starts a transition of this many seconds to a pose no deeper than `to`, from the shown pose.
     fn pass(&mut self, to: super::clearance::Depths, seconds: f32) {
         let from = self.feet.shown_depths(&self.def, &self.figure, &mut self.scratch.model);
         self.feet.pass(&self.def, from, to, seconds);

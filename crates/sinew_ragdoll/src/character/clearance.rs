@@ -55,7 +55,7 @@ pub(super) struct Step {
 }
 
 impl Passage {
-    /// Allowed depths after so many seconds more.
+    /// Allowed depths after this many seconds more.
     pub fn allowed(&self, later: f32) -> Depths {
         let share = if self.seconds > 0.0 { smoothstep((self.age + later) / self.seconds) } else { 1.0 };
         core::array::from_fn(|part| self.from[part] + (self.to[part] - self.from[part]) * share)

@@ -55,7 +55,7 @@ pub enum CharacterEvent {
         body: usize,
         /// The other.
         other: BodyId,
-        /// False: they parted.
+        /// False: they separated.
         begins: bool,
     },
     /// It released a held body, or that was torn off.

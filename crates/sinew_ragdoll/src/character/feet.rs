@@ -156,7 +156,7 @@ impl Feet {
         (depths, [0, 1].map(ankle))
     }
 
-    /// Starts a transition of so many seconds to a pose no deeper than `to`, from the shown pose.
+    /// Starts a transition of this many seconds to a pose no deeper than `to`, from the shown pose.
     pub fn pass(&mut self, def: &CharacterDef, (from, ankles): Depth, to: Depths, seconds: f32) {
         self.passage = match def.ground_contact {
             GroundContact::Enforced => Passage { from, to, ankles, far: [0.0; 2], age: 0.0, seconds },

@@ -22,7 +22,7 @@ pub(super) struct Rising {
 pub(super) enum Way {
     /// By this track.
     ByClip(TrackId),
-    /// By the looped clip alone, for so many seconds more.
+    /// By the looped clip alone, for this many seconds more.
     Without(f32),
 }
 

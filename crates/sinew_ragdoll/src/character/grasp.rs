@@ -57,7 +57,7 @@ impl Default for Grab {
 pub(super) struct Grasp {
     /// Target of the hold.
     pub goal: Vec3,
-    /// Offset from there to the current hold, world axes: what is pulled to a hand from afar does not rotate with it.
+    /// Offset from there to the current hold, world axes: a body pulled from afar does not rotate with it.
     pub off: Vec3,
     /// Anchors on the hand's body and on the held one, in their frames.
     anchors: [Vec3; 2],

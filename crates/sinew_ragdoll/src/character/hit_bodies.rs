@@ -135,8 +135,8 @@ impl Physique {
 }
 
 /// Impulse of a hit on one of its bodies by another, `way` being the direction from that to it, N·s: at most what the
-/// striker could give to the whole character, `whole` kg, and to a led body only what comes by itself. A foot that
-/// comes down on a hand presses it to the ground however hard it is led.
+/// striker could give to the whole character, `whole` kg, and to a keyed body only the striker's own momentum. A foot
+/// that comes down on a hand presses it to the ground however strongly it is keyed.
 fn taken(world: &World, hit: &Hit, [own, other]: [BodyId; 2], way: Vec3, whole: f32) -> Strike {
     let Velocity { linear, angular } = world.velocity(own);
     let led = linear + angular.cross(hit.point - world.center_of_mass(own));

@@ -174,7 +174,7 @@ impl Planting {
         follow(&mut self.slopes[foot], &mut self.slope_rates[foot], goal.slope, quickness, dt);
     }
 
-    /// After so many seconds more at the present rates.
+    /// After this many seconds more at the present rates.
     pub fn ahead(&self, seconds: f32) -> Self {
         let at = |x: [f32; 2], rate: [f32; 2]| [0, 1].map(|foot| x[foot] + rate[foot] * seconds);
         Self { heights: at(self.heights, self.rates), slopes: at(self.slopes, self.slope_rates), ..*self }

@@ -45,7 +45,7 @@ pub(super) struct Clearing {
 pub(super) struct Lain {
     /// The first of its bodies touched something.
     pub touched: bool,
-    /// It has lain still for so many seconds.
+    /// It has lain still for this many seconds.
     pub settled: Option<f32>,
 }
 

@@ -29,8 +29,7 @@ pub(crate) const LEGS_WEAKEN: f32 = 0.2;
 
 /// Speed at which a led body yields to slow, hard pressure, m/s; faster only to faster bodies.
 ///
-/// Larger: treading on somebody kicks. Smaller: a foot stays pressed on what it treads on. Shown by the tests of
-/// `grab`.
+/// Larger: treading on a body kicks it. Smaller: a foot stays pressed on a trodden body. Shown by the tests of `grab`.
 pub(crate) const GIVES_WAY: f32 = 3.0;
 
 /// Ratio of the blow that fells a character still near the ground to the one that fells a standing one.
@@ -180,7 +179,7 @@ pub(crate) const STANCE_SPEED: f32 = 0.8;
 
 /// Rate at which a foot in the air returns to its clip, 1/s.
 ///
-/// Larger: it flicks. Smaller: it comes down beside. Shown by the tests of `feet`.
+/// Larger: it flicks. Smaller: it lands beside its target. Shown by the tests of `feet`.
 pub(crate) const RELEASES: f32 = 12.0;
 
 /// Offset of a foot that is not corrected, metres: a mover's speed lags the clips' by a step.
@@ -190,7 +189,7 @@ pub(crate) const SMALL_WAY: f32 = 4e-3;
 
 /// Least mass of a dynamic body that is ground, over that of the character.
 ///
-/// Larger: feet pass through crates. Smaller: they step onto what they would kick. Shown by the tests of `in_world`.
+/// Larger: feet pass through crates. Smaller: they step onto crates they should kick. Shown by the tests of `in_world`.
 pub(crate) const LEAST_TREAD: f32 = 0.05;
 
 /// Largest distance of a planted foot from its clip, over body height.
@@ -407,7 +406,7 @@ pub(crate) const SUNK: f32 = 5e-3;
 
 /// Largest distance of a joint from the mirror image of its counterpart in the bind pose, as a share of the body's height.
 ///
-/// Larger: mirrored clips look askew. Smaller: there are none. Shown by the tests of `character`.
+/// Larger: mirrored clips look askew. Smaller: no clip is mirrored. Shown by the tests of `character`.
 pub(crate) const MIRROR_TOLERANCE: f32 = 0.03;
 
 /// Distance from its rest place beyond which a joint counts as translated, as a share of its distance from its parent.
@@ -510,7 +509,7 @@ pub(crate) const ROLL_HERTZ: f32 = 2.0;
 
 /// Largest rolling torque on each part of the trunk, over weight times height: 90 N·m for a man.
 ///
-/// Larger: it throws off what lies on it. Smaller: it stays as it lies. Shown by the tests of `character`.
+/// Larger: it throws off its load. Smaller: it stays lying. Shown by the tests of `character`.
 pub(crate) const ROLL_STRENGTH: f32 = 0.07;
 
 // character/stumble/mod.rs

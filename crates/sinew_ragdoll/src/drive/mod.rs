@@ -2,12 +2,12 @@
 //! limp, muscle, pin to a world pose, or keyed by the animation. Modes blend over time, and strengths are limited to
 //! human ones.
 //!
-//! | mode | what acts | what it can do |
+//! | mode | acting | effect |
 //! |---|---|---|
-//! | limp | friction of the joint | fall |
-//! | powered | a motor in the joint, toward the pose and at its speed, no stronger than the muscles there | hold a pose, not a place |
-//! | pinned | the same, and a spring from the world to the body | hold a place; the force that this took is told |
-//! | keyed | nothing: the body goes where the animation has it | push what is in its way, carry what hangs on it |
+//! | limp | friction of the joint | falls |
+//! | powered | a motor in the joint, toward the pose and at its speed, limited by the muscles' torque | holds a pose, not a position |
+//! | pinned | the same, and a spring from the world to the body | holds a position; the force is reported |
+//! | keyed | nothing: the body follows the animation | pushes obstacles, carries attached bodies |
 //!
 //! Changes are exponential with a half-life, so they do not depend on the step length: `x += (goal − x)(1 − 2^(−dt/T))`
 //! for each number of a spring (stiffness, damping, cap).
@@ -147,7 +147,7 @@ impl Drives {
         Self::with_torques(def, torque_caps(def))
     }
 
-    /// All limp. `torques`: most that the muscles of the joint between a body and its parent can do, N·m, body by body; that
+    /// All limp. `torques`: largest muscle torque of the joint between a body and its parent, N·m, body by body; that
     /// of the first means nothing.
     ///
     /// # Panics

@@ -70,8 +70,8 @@ pub enum Symmetry {
 }
 
 impl Patch {
-    /// The surface of a bone: triangles of weight ≥ 0.5, or ≥ 0.3 where those are too little or flat, or those where the
-    /// bone has the most weight. `None` if it has none.
+    /// The surface of a bone: triangles of weight ≥ 0.5, or ≥ 0.3 if those are too few or flat, or those where the bone
+    /// has the most weight. `None` if there are none.
     pub fn select(shares: &[Share], symmetry: Symmetry) -> Option<Self> {
         let choices =
             [Selection::Weight(0.5), Selection::Weight(0.3), Selection::Most, Selection::Weight(0.05)];

@@ -1,4 +1,4 @@
-//! Backstops of a sheet: balls behind the places that its particles have at rest, each fixed to the part of the body that is nearest there.
+//! Backstops of a sheet: balls behind the rest positions of its particles, each fixed to the nearest body.
 
 use crate::def::RagdollDef;
 use sinew_anim::Garment;
@@ -16,8 +16,9 @@ pub(super) struct Backing {
     pub radius: f32,
 }
 
-/// Backstops of the particles of a sheet at rest (character space), but for those that are held, and where the sheet is crumpled to a point; none for a garment
-/// without. Bodies that pass through it have none, since they do not go with it.
+/// Backstops of a sheet's particles at rest (character space), except held particles and places where the sheet has no
+/// area; empty for a garment without backstops. Bodies that pass through the sheet get none, because the sheet does not
+/// move with them.
 pub(super) fn backings(
     garment: &Garment,
     group: &GroupDef,
@@ -35,7 +36,7 @@ pub(super) fn backings(
         let place = group.particles[particle].position;
         let (body, outward) = nearest(ragdoll, passed, place)?;
         let normal = direction(normal)?;
-        // Sheets are wound either way, and a lining lies the other way round.
+        // Sheets have either winding, and a lining faces the other way.
         let outward = if normal.dot(outward) < 0.0 { -normal } else { normal };
         let center = place - outward * (backstop.distance + backstop.radius + garment.radius);
         let center = ragdoll.bodies[body].character_from_body.inverse_point(center);
@@ -44,7 +45,7 @@ pub(super) fn backings(
     normals.iter().enumerate().filter(|(particle, _)| !is_held[*particle]).filter_map(back).collect()
 }
 
-/// The body that is nearest to a place, of those that do not pass through the sheet, and the direction away from it.
+/// The body nearest to a position, among those that do not pass through the sheet, and the direction away from it.
 fn nearest(ragdoll: &RagdollDef, passed: &[usize], place: Vec3) -> Option<(usize, Vec3)> {
     let mut nearest: Option<(f32, usize, Vec3)> = None;
     for (index, body) in ragdoll.bodies.iter().enumerate().filter(|(body, _)| !passed.contains(body)) {

@@ -5,7 +5,7 @@ use sinew_math::{Vec3, max};
 /// Line of particles from the seam to the hem: on a column, or between two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Line {
-    /// Column to its left, and how far it is on the way to the next, 0..1.
+    /// Column to its left, and the fraction of the distance to the next column, 0..1.
     pub column: usize,
     pub share: f32,
 }
@@ -18,16 +18,18 @@ pub(super) struct Grid {
     pub columns: usize,
     /// Steps from the seam to the hem.
     pub rows: usize,
-    /// The last line is beside the first.
+    /// The last line is next to the first.
     pub closed: bool,
 }
 
-/// Most lines between two columns, and most rows: who asks for more has a spacing for another size of character.
+/// Largest number of lines between two columns, and of rows. A spacing that needs more was made for a character of
+/// another size.
 const MOST_SPLITS: usize = 16;
 const MOST_ROWS: usize = 64;
 
 impl Grid {
-    /// A grid on columns (each a way from the seam to the hem, metres), no two particles beside each other farther apart than `spacing`.
+    /// A grid on columns (each a polyline from the seam to the hem, metres) whose neighbouring particles are at most
+    /// `spacing` apart.
     pub fn new(columns: &[Vec<Vec3>], closed: bool, spacing: f32) -> Self {
         let parts = |length: f32, most: usize| ((length / spacing).ceil() as usize).clamp(1, most);
         let longest = columns.iter().map(|column| length(column)).fold(0.0, max);
@@ -54,7 +56,7 @@ impl Grid {
         line * (self.rows + 1) + row
     }
 
-    /// Lines beside a line: the one before, and the one after it; those at an edge are beside themselves.
+    /// Lines next to a line: the one before and the one after. A line at an edge counts as its own neighbour.
     pub fn beside(&self, line: usize) -> [usize; 2] {
         let last = self.lines.len() - 1;
         if self.closed {
@@ -70,7 +72,7 @@ impl Grid {
         if share < 0.5 { column } else { (column + 1) % self.columns }
     }
 
-    /// Places of all particles, on columns that are each a way from the seam to the hem, metres.
+    /// Positions of all particles on columns, each a polyline from the seam to the hem, metres.
     pub fn places(&self, columns: &[Vec<Vec3>], out: &mut Vec<Vec3>) {
         out.clear();
         for line in &self.lines {
@@ -87,7 +89,7 @@ impl Grid {
         }
     }
 
-    /// Place on a line, at a share of the way from its seam to its hem, where particles are at `places`.
+    /// Position on a line at a fraction of its length from seam to hem, for particles at `places`.
     pub fn on_line(&self, places: &[Vec3], line: usize, share: f32) -> Vec3 {
         let at = share * self.rows as f32;
         let row = usize::min(at as usize, self.rows - 1);
@@ -96,12 +98,12 @@ impl Grid {
     }
 }
 
-/// Length of a way through points, metres.
+/// Length of a polyline, metres.
 pub(super) fn length(way: &[Vec3]) -> f32 {
     way.windows(2).map(|pair| (pair[1] - pair[0]).length()).sum()
 }
 
-/// Place at a share of a way through points.
+/// Position at a fraction of a polyline's length.
 fn along(way: &[Vec3], share: f32) -> Vec3 {
     let mut left = share * length(way);
     for pair in way.windows(2) {

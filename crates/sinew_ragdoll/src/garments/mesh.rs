@@ -1,4 +1,4 @@
-//! Sheets of meshes: what joins their particles, and how the joints turn that the particles are.
+//! Sheets made from meshes: the connections of their particles, and the rotation of each particle's joint.
 
 use super::sheet::{Sheet, particles, unsprung};
 use crate::tuning::{SHORTEST_THREAD, SQUARE, STRAIGHT};
@@ -14,9 +14,10 @@ pub(super) struct Grain {
     pub node: usize,
     pub sheet: usize,
     pub particle: usize,
-    /// Corners of its triangles, each with the next two.
+    /// Corners of the sheet's triangles, each with the next two.
     around: Vec<[u32; 3]>,
-    /// Particles beside it, with their shares of its direction x, 1/m: `Σ share (place − own)` is along it at rest.
+    /// Neighbour particles with their coefficients for the direction x, 1/m: `Σ coefficient (place − own)` points along
+    /// x at rest.
     beside: Vec<(u32, f32)>,
     /// Rotation of the bone in the frame of the sheet about it, at rest.
     pub frame_from_bone: Rotation,
@@ -27,9 +28,9 @@ pub(super) struct Grain {
 /// Surroundings of all particles of a sheet.
 pub(super) struct Around {
     places: Vec<Vec3>,
-    /// Triangles of each particle, each from that on.
+    /// Triangles of each particle: start index of each particle's entries.
     faces: Vec<Vec<[u32; 3]>>,
-    /// Particles beside each.
+    /// Neighbours of each particle.
     beside: Vec<Vec<u32>>,
 }
 
@@ -52,7 +53,7 @@ impl Around {
 }
 
 impl Grain {
-    /// A particle of a sheet, whose joint is turned so in the bind pose.
+    /// A particle of a sheet whose joint has this rotation in the bind pose.
     pub fn new(
         node: usize,
         number: usize,
@@ -84,7 +85,7 @@ impl Grain {
             grain.frame_from_bone = back * bone;
             grain.moved_out = back * grain.moved_out;
         } else {
-            // Without a frame at rest it never has one: it moves, and does not turn.
+            // Without a frame at rest the particle never has one: it moves and does not rotate.
             grain.around.clear();
             grain.moved_out = Vec3::ZERO;
         }
@@ -99,7 +100,8 @@ impl Grain {
         direction(self.around.iter().map(|&face| area(face)).sum())
     }
 
-    /// Rotation of the sheet about it: z along the normal, x along its neighbours as at rest. `None` if it is crumpled to a point.
+    /// Rotation of the sheet at the particle: z along the normal, x along its neighbours as at rest. `None` where the
+    /// sheet has no area.
     fn frame(&self, places: &[Vec3]) -> Option<Rotation> {
         let z = self.normal(places)?;
         let own = places[self.particle];
@@ -109,7 +111,7 @@ impl Grain {
         Some(Rotation::from_mat3(&Mat3::from_cols(x, z.cross(x), z)))
     }
 
-    /// Place where it is drawn, and rotation of the sheet about it, where the particles are at `places`.
+    /// Position where the particle is drawn, and rotation of the sheet there, for particles at `places`.
     pub fn drawn(&self, places: &[Vec3]) -> (Vec3, Option<Rotation>) {
         let frame = self.frame(places);
         let out = frame.map_or(Vec3::ZERO, |frame| frame * self.moved_out);
@@ -117,7 +119,8 @@ impl Grain {
     }
 }
 
-/// The group of a mesh's sheet with its springs, bends and tethers, and the strand of each particle: the held one that it hangs from.
+/// The particle group of a mesh's sheet with its springs, bends and tethers, and each particle's strand: the held
+/// particle it hangs from.
 pub(super) fn weave(garment: &Garment, mesh: &MeshSheet, places: &[Vec3]) -> (GroupDef, Vec<usize>) {
     let weave = Weave { garment, mesh, places };
     let mut group = unsprung(garment, particles(garment, places, &mesh.areas));
@@ -149,9 +152,9 @@ impl Weave<'_> {
         a.dot(b) < SQUARE
     }
 
-    /// Springs along edges, each with the stiffness that the triangles beside it have along it (Van Gelder, "Approximate Simulation of Elastic Membranes",
-    /// 1998), and weaker ones from corner to corner across them. The diagonal of a cell between threads is as weak as its other one, and there is none across the
-    /// threads of such cells.
+    /// Springs along edges, each with the stiffness that the adjacent triangles have along it (Van Gelder, "Approximate
+    /// Simulation of Elastic Membranes", 1998), and weaker springs across the edges from corner to corner. In a cell
+    /// between threads both diagonals are equally weak, and no spring crosses the threads of such cells.
     fn join_all(&self, group: &mut GroupDef) {
         let mut beside: BTreeMap<[u32; 2], Vec<usize>> =
             self.mesh.links.iter().map(|&link| (link, Vec::new())).collect();
@@ -182,7 +185,7 @@ impl Weave<'_> {
                 edge,
                 match faces.as_slice() {
                     _ if diagonal => shear,
-                    // What is beside no triangle is a thread all the same.
+                    // An edge without a triangle is also a thread.
                     [] => self.garment.stretching,
                     _ => self.garment.stretching * area / (length * length),
                 },
@@ -199,7 +202,7 @@ impl Weave<'_> {
     }
 
     fn join(&self, group: &mut GroupDef, ends: [u32; 2], stiffness: f32) {
-        // Nothing moves between what is held.
+        // Held particles do not move relative to each other.
         let is_free = ends.iter().any(|&end| !self.mesh.held[end as usize]);
         if is_free && stiffness > 0.0 && stiffness.is_finite() {
             let mass = |at: u32| {
@@ -211,7 +214,7 @@ impl Weave<'_> {
         }
     }
 
-    /// Bends through each particle, between those neighbours that lie opposite each other about it.
+    /// Bends through each particle, between neighbours on opposite sides of it.
     fn stiffen(&self, group: &mut GroupDef, areas: &[f32]) {
         if self.garment.bending <= 0.0 {
             return;
@@ -242,7 +245,8 @@ impl Weave<'_> {
         group.bends.retain(|bend| bend.stiffness > 0.0 && bend.stiffness.is_finite());
     }
 
-    /// Tethers every particle to the held one that is nearest along the edges, as long as the way there; gives that of each.
+    /// Tethers each particle to the nearest held particle along the edges, with that distance as its length; returns
+    /// the held particle of each.
     fn tether(&self, group: &mut GroupDef) -> Vec<usize> {
         let (way, from) = ways_from_held(self.mesh, self.places);
         for particle in (0..way.len()).filter(|&particle| way[particle] > 0.0 && way[particle].is_finite()) {
@@ -253,7 +257,8 @@ impl Weave<'_> {
     }
 }
 
-/// Length of the way along the edges from each particle to the nearest that is held, metres, and which that is; itself where there is no way.
+/// Distance along the edges from each particle to the nearest held one, metres, and the index of that one; the particle
+/// itself if there is no path.
 pub(super) fn ways_from_held(mesh: &MeshSheet, places: &[Vec3]) -> (Vec<f32>, Vec<usize>) {
     let count = places.len();
     let mut beside: Vec<Vec<(usize, f32)>> = vec![Vec::new(); count];

@@ -1,7 +1,8 @@
 //! Garments that a character wears: capes, skirts and coats as cloth in the world.
 //!
-//! The chains of a [`Garment`](sinew_anim::Garment) are sewn side by side into **one sheet**: a grid of particles, fine enough for no limb to come between two of
-//! them, whose first row a body of the ragdoll holds. It moves in the world's step, with all that is in it, and bears on the wearer as the wearer bears it.
+//! The chains of a [`Garment`](sinew_anim::Garment) become **one sheet**: a grid of particles, fine enough that no limb
+//! fits between two of them. A body of the ragdoll holds the first row. The sheet is simulated in the world's step with
+//! two-way coupling to the wearer.
 //!
 //! ```text
 //!   seam    ●───○───●───○───●    held by a body          ● particle on a column
@@ -11,8 +12,9 @@
 //!   hem     ●───○───●───○───●
 //! ```
 //!
-//! Each joint turns as the sheet under its bone does: along the column, and about it by the columns beside it. Where the rest pose has the sheet within a
-//! body, the sheet is made outside of it; joints turn from rest as the sheet turns from there, so that what is drawn is at rest what the artist made.
+//! Each joint rotates with the sheet under its bone: along the column, and about it by the neighbouring columns. Where
+//! the rest pose has the sheet inside a body, the sheet is moved outside. Joints rotate relative to rest, so the drawn
+//! garment at rest is as the artist made it.
 //!
 //! ```
 //! use sinew_math::{Transform, Vec3};

@@ -1,4 +1,4 @@
-//! Garments as they are worn: sheets, and the joints that turn with them, parents first.
+//! Garments ready to be simulated: sheets, and the joints that follow them, parents first.
 
 use super::mesh::{Around, Grain};
 use super::sheet::Sheet;
@@ -8,7 +8,7 @@ use sinew_anim::garments::MeshSheet;
 use sinew_anim::{Garment, JointIdx, Rig};
 use sinew_math::{Affine, Mat3, Rotation, Vec3, any_orthonormal, direction};
 
-/// Joint that garments hang on, or that turns with one.
+/// Joint that garments attach to or that follows a sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Node {
     pub joint: JointIdx,
@@ -21,30 +21,30 @@ pub(super) struct Node {
 /// Reason for which a joint moves with a garment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Moves {
-    /// It does not.
+    /// Does not follow a sheet.
     Nothing,
-    /// It turns: index of the bone that it is.
+    /// Follows a sheet: index of its bone.
     Bone(usize),
     /// It is a particle: index of the grain.
     Particle(usize),
 }
 
-/// Nodes that a sheet lies on.
+/// Nodes that follow a sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Hanging {
     Columns(Vec<Column>),
-    /// One for each particle.
+    /// One per particle.
     Particles(Vec<usize>),
 }
 
-/// Bone that lies in a sheet.
+/// Bone that follows a sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bone {
     pub node: usize,
     pub sheet: usize,
     /// Line of the sheet that its column is.
     pub line: usize,
-    /// Shares of the way from the seam to the hem at which it begins and ends.
+    /// Start and end of the bone, as shares of the distance from seam to hem.
     pub from: f32,
     pub to: f32,
     /// Rotation of the bone in the frame of the sheet under it, at rest.
@@ -55,24 +55,24 @@ pub(super) struct Bone {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Column {
     pub nodes: Vec<usize>,
-    /// Place of the hem in the space of the last joint, if that is not at the hem itself.
+    /// Position of the hem in the last joint's space, unless the last joint is at the hem.
     pub tip: Option<Vec3>,
 }
 
-/// Garments of a kind of character, ready to be worn. Immutable.
+/// Garments of a kind of character, ready to be simulated. Immutable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GarmentRig {
     source: Vec<Garment>,
     pub(super) nodes: Vec<Node>,
     /// By node, ascending.
     pub(super) bones: Vec<Bone>,
-    /// One for each garment that has one.
+    /// One per garment that has a sheet.
     pub(super) sheets: Vec<Sheet>,
     /// Particles that are joints, by node, ascending.
     pub(super) grains: Vec<Grain>,
     /// Nodes of each sheet.
     pub(super) hung: Vec<Hanging>,
-    /// Joints that turn, parents first.
+    /// Joints that follow sheets, parents first.
     turning: Vec<JointIdx>,
     left_out: Vec<JointIdx>,
 }
@@ -83,17 +83,19 @@ struct Hung<'a> {
     tip: Option<Vec3>,
     /// Body that holds it.
     body: usize,
-    /// Places of its joints and hem, character space, metres.
+    /// Positions of its joints and hem, character space, metres.
     way: Vec<Vec3>,
 }
 
 impl GarmentRig {
-    /// Garments of a rig with a ragdoll, `bind_model` its bind pose in model space. Columns are left out ([`left_out`](Self::left_out)) that no body
-    /// carries, that have no length, or a joint of which moves a body or is in another column; so are garments of less than two, and sheets of a mesh
-    /// that holds a particle which no body carries. Free particles that none carries hang from the body of the held one that is nearest.
+    /// Garments of a rig with a ragdoll; `bind_model` is its bind pose in model space. Columns are left out
+    /// ([`left_out`](Self::left_out)) that no body carries, that have no length, or that contain a joint that moves a
+    /// body or belongs to another column. Garments with fewer than two columns are left out, and mesh sheets with a
+    /// held particle that no body carries. A free particle that no body carries hangs from the body of the nearest held
+    /// one.
     ///
     /// # Panics
-    /// If a joint is named that is not there, or a number of a garment makes no sense.
+    /// If a garment names a joint that does not exist, or one of its numbers is invalid.
     pub fn new(
         rig: &Rig,
         ragdoll: &RagdollDef,
@@ -145,7 +147,7 @@ impl GarmentRig {
         it
     }
 
-    /// Says for each node why it moves.
+    /// Records for each node why it moves.
     fn finish(&mut self) {
         let it = self;
         it.bones.sort_by_key(|bone| bone.node);
@@ -212,7 +214,7 @@ impl GarmentRig {
         hung
     }
 
-    /// Nodes: the joints that are needed, and all above them. Gives the node of every joint.
+    /// Nodes: the required joints and all their ancestors. Returns the node of every joint.
     fn add_nodes(&mut self, rig: &Rig, joints: impl Iterator<Item = JointIdx>) -> Vec<Option<usize>> {
         let mut needed = vec![false; rig.joints.len()];
         joints.for_each(|joint| needed[joint] = true);
@@ -230,7 +232,7 @@ impl GarmentRig {
         node_of
     }
 
-    /// Bones of a sheet: each joint but a last one at the hem.
+    /// Bones of a sheet: every joint except a last one at the hem.
     fn add_bones(
         &mut self,
         sheet: &Sheet,
@@ -265,12 +267,12 @@ impl GarmentRig {
         }
     }
 
-    /// Garments that this was made from.
+    /// Garments this was made from.
     pub fn source(&self) -> &[Garment] {
         &self.source
     }
 
-    /// Joints that turn, parents first.
+    /// Joints that follow sheets, parents first.
     pub fn joints(&self) -> impl ExactSizeIterator<Item = JointIdx> {
         self.turning.iter().copied()
     }
@@ -296,8 +298,8 @@ impl GarmentRig {
     }
 }
 
-/// Bodies that the particles of a mesh hang from, that of the held one where no body carries a free one; `None` if no body carries what is held, or one moves
-/// a body or is in another garment.
+/// Bodies that the particles of a mesh hang from. A free particle that no body carries uses the body of its held one.
+/// `None` if no body carries a held particle, or if a particle moves a body or belongs to another garment.
 fn holders(
     rig: &Rig,
     mapping: &Mapping,
@@ -320,8 +322,8 @@ fn holders(
 }
 
 impl Bone {
-    /// Rotation of the sheet under it, where its particles are at `places`: y along the bone, x across, as far as there is a width. `None` if it is
-    /// crumpled to a point.
+    /// Rotation of the sheet under the bone, for particles at `places`: y along the bone, x across where the sheet has
+    /// a width. `None` where the sheet has no area.
     pub fn frame(&self, sheet: &Sheet, places: &[Vec3]) -> Option<Rotation> {
         let grid = sheet.grid.as_ref()?;
         let on = |line: usize, share: f32| grid.on_line(places, line, share);

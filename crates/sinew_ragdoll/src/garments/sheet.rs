@@ -1,4 +1,4 @@
-//! The sheet of a garment: its particles at rest, and what joins them.
+//! The sheet of a garment: its particles at rest and their connections.
 
 use super::backing::{Backing, backings};
 use super::grid::Grid;
@@ -11,22 +11,24 @@ use sinew_math::{Transform, Vec3, max};
 use sinew_physics::particles::{GroupDef, ParticleDef, SpringDef, SpringScheme, TetherDef};
 use sinew_physics::{Material, Shape};
 
-/// Sheet of a garment. Particles of a grid stand line by line, from the seam to the hem, those of a mesh in the order of its joints.
+/// Sheet of a garment. Grid particles are ordered line by line from seam to hem, mesh particles in the order of their
+/// joints.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sheet {
-    /// Lines and rows, if it hangs on columns.
+    /// Lines and rows, for a sheet on columns.
     pub grid: Option<Grid>,
-    /// Particles at rest outside of the bodies, character space, metres, with springs, bends and tethers; nothing holds them yet.
+    /// Particles at rest outside the bodies, character space, metres, with springs, bends and tethers; nothing holds
+    /// them yet.
     pub group: GroupDef,
-    /// Way out of the bodies that each particle was taken at rest, character space, metres.
+    /// Offset that moved each particle out of the bodies at rest, character space, metres.
     pub moved_out: Vec<Vec3>,
-    /// Most distance between particles beside each other, metres.
+    /// Largest distance between neighbouring particles, metres.
     pub spacing: f32,
     /// Particles that bodies hold.
     pub is_held: Vec<bool>,
-    /// Body that holds each particle, or that it hangs from.
+    /// Body that holds each particle or that it hangs from.
     pub held_by: Vec<usize>,
-    /// Number of what each particle hangs in: its line, or those that hang from one held particle.
+    /// Strand of each particle: its line, or the index of the held particle it hangs from.
     pub strand: Vec<usize>,
     /// Bodies of the wearer that pass through it, ascending.
     pub passed: Vec<usize>,
@@ -35,7 +37,8 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    /// A sheet of a garment on `columns` (ways from the seam to the hem in the bind pose, character space, metres), each held by a body of the ragdoll.
+    /// The sheet of a garment on `columns` (polylines from the seam to the hem in the bind pose, character space,
+    /// metres), each held by a body of the ragdoll.
     pub fn new(garment: &Garment, columns: &[Vec<Vec3>], held_by: &[usize], ragdoll: &RagdollDef) -> Self {
         let passed = passed(garment, held_by, ragdoll);
         let grid = Grid::new(columns, garment.closed, garment.spacing);
@@ -53,7 +56,8 @@ impl Sheet {
         Self { grid: Some(grid), group, moved_out, spacing, is_held, held_by, strand, passed, backings }
     }
 
-    /// A sheet of a mesh, whose particles are drawn at these places in the bind pose, character space, metres; each hangs from a body of the ragdoll.
+    /// A sheet of a mesh whose particles have these positions in the bind pose, character space, metres; each hangs
+    /// from a body of the ragdoll.
     pub fn of_mesh(
         garment: &Garment,
         mesh: &MeshSheet,
@@ -82,7 +86,7 @@ impl Sheet {
     }
 }
 
-/// Places of particles outside of the bodies that they meet, but for those that are held.
+/// Positions of particles outside the bodies they collide with; held particles keep theirs.
 fn places_outside(
     drawn: &[Vec3],
     is_held: &[bool],
@@ -111,7 +115,8 @@ pub(super) fn unsprung(garment: &Garment, particles: Vec<ParticleDef>) -> GroupD
 
 /// Particles of cloth, each with the mass of its area (m²).
 pub(super) fn particles(garment: &Garment, places: &[Vec3], areas: &[f32]) -> Vec<ParticleDef> {
-    // No particle is a hundred times lighter than the mean: where columns meet in a point, cells have no area.
+    // No particle is more than a hundred times lighter than the mean: where columns meet in a point, cells have no
+    // area.
     let least = 0.01 * areas.iter().sum::<f32>() / areas.len() as f32;
     let particle = |(&position, &area): (&Vec3, &f32)| ParticleDef {
         position,
@@ -122,7 +127,7 @@ pub(super) fn particles(garment: &Garment, places: &[Vec3], areas: &[f32]) -> Ve
     places.iter().zip(areas).map(particle).collect()
 }
 
-/// Bodies of the wearer that pass through a garment: arms, unless it meets them.
+/// Bodies of the wearer that pass through a garment: arms, unless the garment collides with them.
 fn passed(garment: &Garment, held_by: &[usize], ragdoll: &RagdollDef) -> Vec<usize> {
     let role = |body: usize| ragdoll.bodies[body].role.as_str();
     let is_arm = |body: &usize| ["Shoulder", "Arm", "Hand"].iter().any(|part| role(*body).ends_with(part));
@@ -131,7 +136,7 @@ fn passed(garment: &Garment, held_by: &[usize], ragdoll: &RagdollDef) -> Vec<usi
     (0..ragdoll.bodies.len()).filter(is_arm).filter(|_| !meets_arms).collect()
 }
 
-/// Place out of bodies by `radius`, as near as it is soon found.
+/// Position at least `radius` outside the bodies, near the given one.
 pub(super) fn cleared<'a>(
     place: Vec3,
     radius: f32,
@@ -154,7 +159,7 @@ pub(super) fn cleared<'a>(
     place
 }
 
-/// A sheet as it is woven.
+/// A sheet built from a grid.
 struct Weave<'a> {
     garment: &'a Garment,
     grid: &'a Grid,
@@ -199,7 +204,7 @@ impl Weave<'_> {
         (self.place(to) - self.place(from)).length()
     }
 
-    /// Particles, each with the mass of a quarter of every cell that it is a corner of.
+    /// Particles, each with a quarter of the mass of each adjacent cell.
     fn particles(&self) -> Vec<ParticleDef> {
         let grid = self.grid;
         let mut areas = vec![0.0; self.places.len()];
@@ -215,7 +220,7 @@ impl Weave<'_> {
         particles(self.garment, self.places, &areas)
     }
 
-    /// Two triangles for each cell.
+    /// Two triangles per cell.
     fn faces(&self) -> Vec<[u32; 3]> {
         let grid = self.grid;
         let cells = (0..grid.lines.len()).flat_map(|line| (0..grid.rows).map(move |row| (line, row)));
@@ -229,7 +234,7 @@ impl Weave<'_> {
         cells.flat_map(split).collect()
     }
 
-    /// A spring, whose stiffness is `strip` (N) over its length.
+    /// A spring with the stiffness `strip` (N) divided by its length.
     fn join(&self, group: &mut GroupDef, ends: [[usize; 2]; 2], strip: f32) {
         let length = self.span(ends[0], ends[1]);
         let stiffness = strip / max(length, SHORTEST_THREAD * self.garment.spacing);
@@ -272,11 +277,11 @@ impl Weave<'_> {
                 group.stiffen(&across, bending * high);
             }
         }
-        // Where particles lie in one place, nothing says what a bend is.
+        // Coincident particles define no bend.
         group.bends.retain(|bend| bend.stiffness > 0.0 && bend.stiffness.is_finite());
     }
 
-    /// Tethers of a line's particles to its seam, as long as the way there.
+    /// Tethers a line's particles to its seam, with the distance along the line as length.
     fn tethers(&self, line: usize) -> impl Iterator<Item = TetherDef> {
         let mut length = 0.0;
         let tether = move |row: usize| {

@@ -1,4 +1,4 @@
-//! Sheets in the world: put on, shown, taken off.
+//! Adds sheets to the world, shows them and removes them.
 
 use super::rig::{Column, GarmentRig, Hanging, Moves};
 use super::sheet::{Sheet, cleared};
@@ -9,26 +9,26 @@ use sinew_math::{Affine, ReadError, Reader, Rotation, Transform, Vec3, Writer, m
 use sinew_physics::particles::{AttachmentDef, AttachmentTarget, BackstopDef, GroupDef, SpringDef};
 use sinew_physics::{BodyId, GroupId, Shape, World};
 
-/// Garments as one character wears them. Default: none are on.
+/// Garments worn by one character. Default: none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Worn {
-    /// Particles of each sheet; empty while none are on.
+    /// Particles of each sheet; empty while no garment is worn.
     pub groups: Vec<GroupId>,
-    /// Local rotation of every bone and every particle's joint, as it is shown.
+    /// Local rotation of every bone and every particle's joint, as shown.
     pub turns: Vec<Rotation>,
-    /// Local place of every particle's joint, file units.
+    /// Local position of every particle's joint, file units.
     pub places: Vec<Vec3>,
 }
 
 impl Worn {
-    /// Takes them out of the world.
+    /// Removes the sheets from the world.
     pub fn take_off(&mut self, world: &mut World) {
         self.groups.drain(..).for_each(|group| world.remove_particles(group));
         self.turns.clear();
         self.places.clear();
     }
 
-    /// Places and velocities of all particles, sheet by sheet.
+    /// Positions and velocities of all particles, sheet by sheet.
     pub fn lie(&self, world: &World) -> Vec<(Vec<Vec3>, Vec<Vec3>)> {
         let there = self.groups.iter().filter(|&&id| world.group_ids().any(|known| known == id));
         let lie = |&id: &GroupId| {
@@ -49,7 +49,7 @@ impl Worn {
         }
     }
 
-    /// Takes them along to where their wearer was put, as they are.
+    /// Moves the sheets with a wearer that was teleported, without changing their shape.
     pub fn carry(&self, world: &mut World, moved: Transform) {
         for &id in &self.groups {
             let group = world.particles_mut(id);
@@ -61,7 +61,7 @@ impl Worn {
         }
     }
 
-    /// Writes what is in the world, and what is shown.
+    /// Writes the simulated and the shown state.
     pub fn save(&self, w: &mut Writer) {
         w.count(self.groups.len());
         self.groups.iter().for_each(|group| w.u64(group.to_bits()));
@@ -70,10 +70,10 @@ impl Worn {
         self.places.iter().for_each(|&place| w.vec3(place));
     }
 
-    /// Garments of the same rig as they were saved.
+    /// Restores garments of the same rig.
     ///
     /// # Errors
-    /// If they are of another rig, or the bytes end too early.
+    /// If they belong to another rig, or the bytes end too early.
     pub fn load(rig: &GarmentRig, r: &mut Reader<'_>) -> Result<Self, ReadError> {
         let mut worn = Self::default();
         for _ in 0..r.count(8)? {
@@ -99,7 +99,7 @@ impl Worn {
     }
 }
 
-/// Who wears garments: pose and bodies of the same moment.
+/// The wearer: pose and bodies at the same time.
 #[derive(Clone, Copy)]
 pub(crate) struct Wearer<'a> {
     pub rig: &'a GarmentRig,
@@ -114,7 +114,7 @@ pub(crate) struct Wearer<'a> {
 }
 
 impl Wearer<'_> {
-    /// Puts a group of particles into the world for each sheet, where the pose has it and out of the bodies.
+    /// Adds a group of particles to the world for each sheet, at the pose's positions moved out of the bodies.
     pub fn put_on(&self, world: &mut World) -> Vec<GroupId> {
         let nodes = self.nodes();
         let mut groups = Vec::with_capacity(self.rig.sheets.len());
@@ -125,7 +125,7 @@ impl Wearer<'_> {
         groups
     }
 
-    /// True if these groups are in the world and have the particles of the sheets: a snapshot may be of another world.
+    /// True if these groups exist in the world and have the sheets' particles: a snapshot may come from another world.
     fn fits(&self, world: &World, groups: &[GroupId]) -> bool {
         let is_there = |&id: &GroupId| world.group_ids().any(|known| known == id);
         let fits = |(sheet, &id): (&Sheet, &GroupId)| {
@@ -134,7 +134,7 @@ impl Wearer<'_> {
         groups.len() == self.rig.sheets.len() && self.rig.sheets.iter().zip(groups).all(fits)
     }
 
-    /// Places of a sheet's particles in the world as the pose has them, with the nodes there.
+    /// World positions of a sheet's particles in the pose, with the nodes at these positions.
     fn places(&self, sheet: usize, nodes: &[Affine]) -> Vec<Vec3> {
         let way = |column: &Column| {
             let mut way: Vec<Vec3> = column.nodes.iter().map(|&node| nodes[node].translation).collect();
@@ -156,8 +156,8 @@ impl Wearer<'_> {
         }
     }
 
-    /// Brings back to the pose the lines of which the bodies have caught a thread, so that it is far too long. A clip that folds the body on its skirt may
-    /// leave a part of it on the other side.
+    /// Returns lines to the pose if bodies have caught one of their threads, which is then far too long. A clip that
+    /// folds the body onto its skirt may leave a part of it on the wrong side.
     pub fn mend(&self, world: &mut World, groups: &[GroupId]) {
         if !self.fits(world, groups) {
             return;
@@ -191,7 +191,7 @@ impl Wearer<'_> {
         }
     }
 
-    /// Shapes of the wearer that a sheet meets, where they are in the world.
+    /// Shapes of the wearer that a sheet collides with, at their world poses.
     fn shapes(&self, world: &World, sheet: &Sheet) -> Vec<(&Shape, Transform)> {
         let bodies = self.ragdoll.bodies.iter().zip(self.bodies).enumerate();
         let met = bodies.filter(|(body, _)| !sheet.passed.contains(body) && self.has(*body));
@@ -203,7 +203,7 @@ impl Wearer<'_> {
         self.lost.iter().all(|&(lost, _)| lost != body)
     }
 
-    /// The nearest body above one that was cut off; the body itself if it was not.
+    /// The nearest attached ancestor of a severed body; the body itself if it is attached.
     fn left_of(&self, body: usize) -> usize {
         let mut at = body;
         while !self.has(at) {
@@ -212,7 +212,7 @@ impl Wearer<'_> {
         at
     }
 
-    /// Pose of a body in the world; of one that was cut off, where it would be at rest.
+    /// World pose of a body; for a severed body, the pose where it would be at rest.
     fn frame(&self, world: &World, body: usize) -> Transform {
         let left = self.left_of(body);
         let bind = |body: usize| self.ragdoll.bodies[body].character_from_body;
@@ -234,7 +234,7 @@ impl Wearer<'_> {
             let body = sheet.held_by[index];
             let frame = self.frame(world, body);
             if sheet.is_held[index] && self.has(body) {
-                // Where it was in the bind pose, whatever the clip does: joints of bodies do not stretch.
+                // Its bind-pose offset, whatever the clip does: joints of bodies do not stretch.
                 let point = bind(body).inverse_point(particle.position);
                 let target = AttachmentTarget::Body { body: self.bodies[body], point };
                 group.attachments.push(AttachmentDef { particle: index as u32, target });
@@ -263,7 +263,7 @@ impl Wearer<'_> {
         world.add_particles(&group)
     }
 
-    /// Takes a sheet that is held out of the bodies, and pulls it to its lengths.
+    /// Moves a held sheet out of the bodies and restores its lengths.
     fn drape(&self, world: &World, sheet: &Sheet, group: &mut GroupDef) {
         let shapes = self.shapes(world, sheet);
         let is_held = |particle: usize| sheet.is_held[particle];
@@ -285,8 +285,9 @@ impl Wearer<'_> {
         }
     }
 
-    /// Local rotations of the joints that turn, in the order of [`GarmentRig::joints`], and local places of those that are particles, as their sheets lie in
-    /// the world. If there are no such sheets in it, none are on any more, and the next step puts them on.
+    /// Local rotations of the following joints, in the order of [`GarmentRig::joints`], and local positions of those
+    /// that are particles, from the sheets in the world. If the sheets do not exist in it, the garments are no longer
+    /// worn and the next step adds them again.
     pub fn turns(&self, world: &World, worn: &mut Worn) {
         let Worn { groups, turns, places } = worn;
         turns.clear();
@@ -322,7 +323,7 @@ impl Wearer<'_> {
                         local.rotation =
                             (above.inverse() * frame * grain.frame_from_bone).normalize().toward(rest);
                     }
-                    // Under a joint that a clip scales to nothing there is no such place.
+                    // Under a joint that a clip scales to zero no such position exists.
                     let at = above_frame.inverse().point(place);
                     if at.is_finite() {
                         local.translation = at;
@@ -336,7 +337,7 @@ impl Wearer<'_> {
         }
     }
 
-    /// Places of the nodes in the world.
+    /// World positions of the nodes.
     fn nodes(&self) -> Vec<Affine> {
         let mut nodes: Vec<Affine> = Vec::with_capacity(self.rig.nodes.len());
         for node in &self.rig.nodes {

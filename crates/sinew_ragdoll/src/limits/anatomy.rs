@@ -1,9 +1,10 @@
-//! Rotation of each bone of a bind pose from the anatomical pose.
+//! Rotation of each bone in the bind pose relative to the anatomical pose.
 //!
-//! Ranges of motion are measured from a person who stands with arms hanging. Rigs are bound in a T, an A or something
-//! else, and their joints' own axes follow no rule. What can be relied on is where the bones lie: each bone is taken
-//! to have come from its anatomical direction by the shortest way from its parent. For arms that is right in a T pose
-//! (palms down) and in an A pose (palms inward), because raising a hanging arm sideways turns the palm down.
+//! Ranges of motion are measured from a person who stands with arms hanging. Rigs are bound in a T pose, an A pose or
+//! another pose, and their joint axes follow no rule; only the positions of the bones are reliable. Each bone is
+//! therefore assumed to come from its anatomical direction by the shortest rotation relative to its parent. For arms
+//! this is correct in a T pose (palms down) and in an A pose (palms inward), because raising a hanging arm sideways
+//! turns the palm down.
 //!
 //! ```
 //! # use sinew_anim::roles::{Role, Side};
@@ -49,7 +50,7 @@ pub fn bind_from_anatomical(bones: &Bones, middles: &[Vec3]) -> Vec<Rotation> {
     turned
 }
 
-/// A level foot that points where `direction` does, seen from above; `None` if that is straight up or down.
+/// A level foot that points along `direction` seen from above; `None` if that is vertical.
 fn level_heading(direction: Vec3) -> Option<Rotation> {
     let forward = Vec3::new(direction.x, 0.0, direction.z);
     let length = forward.length();

@@ -21,7 +21,7 @@ use crate::tuning::{GRAVITY, SHARE_OF_LOAD};
 use sinew_math::{Vec3, max, min};
 use sinew_physics::MassProperties;
 
-/// Friction torque of each joint, N·m. `plans` have the table's, for the mass of the whole.
+/// Friction torque of each joint, N·m. `plans` hold the table's torques for the total mass.
 pub fn friction_torques(
     bones: &Bones,
     fits: &[Fit],
@@ -40,14 +40,14 @@ pub fn friction_torques(
     }
 }
 
-/// The most torque that gravity has at a bone's joint, N·m: on what hangs below it, or on all the rest, which is as well
-/// carried by the joint, whichever is less.
+/// Largest gravity torque at a bone's joint, N·m: of the subtree below it or of the rest of the body, which the joint
+/// carries equally, whichever is less.
 fn load(bones: &Bones, fits: &[Fit], masses: &[MassProperties], bone: usize) -> f32 {
     let pivot = bones.list[bone].head;
     let mut below = vec![false; bones.list.len()];
     let (mut hanging, mut rest) = (Vec3::ZERO, Vec3::ZERO);
     for body in 0..bones.list.len() {
-        // Parents come first.
+        // Parents precede their children.
         below[body] = body == bone || bones.list[body].parent.is_some_and(|parent| below[parent]);
         let center = fits[body].character_from_body.point(masses[body].center);
         let moment = (center - pivot) * masses[body].mass;

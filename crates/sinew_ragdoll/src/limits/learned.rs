@@ -1,8 +1,8 @@
-//! Limits read from what the character does, within what its anatomy allows.
+//! Limits learned from the character's clips, within its anatomical limits.
 //!
-//! Of each joint its rotations in all frames give a centre, an ellipse of swing and a range of twist that hold 99.5 % of
-//! them, and a margin. Beyond the anatomical limits there is no margin: only as much as the clips show, by their frames or
-//! by the ellipse about them.
+//! The rotations of each joint in all frames give a centre, a swing ellipse and a twist range that contain 99.5 % of
+//! them, plus a margin. Beyond the anatomical limits there is no margin: they are exceeded only as far as the clips'
+//! frames or the ellipse around them do.
 //!
 //! ```
 //! use sinew_ragdoll::build::takes;
@@ -29,16 +29,17 @@ use sinew_math::limits::{hinge_angle, wrap};
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min, trig};
 use sinew_physics::JointKind;
 
-/// Swings beyond what was seen, as a factor, tried from the widest on.
+/// Factors on the observed swing, tried from the widest on.
 const SWING_FACTORS: [f32; 4] = [1.15, 1.1, 1.05, 1.0];
-/// One copy of the bind pose to so many frames: twice what the coverage leaves out, so that the limits hold it.
+/// One copy of the bind pose per this many frames: twice the share that the coverage excludes, so that the limits
+/// contain it.
 const FRAMES_PER_BIND: usize = 100;
 /// Directions in which a cone is held against the anatomical one.
 const DIRECTIONS: usize = 16;
 
-/// The joint with limits from the clips; `None` if they show too little of it. What its twin on the other side does counts
-/// as its own, mirrored: a motion that only one arm makes is no sign that the other could not. `fits` and `poses` as the
-/// plan's bodies: poses in character space, one transform per body.
+/// The joint with limits from the clips; `None` if they show too little of its motion. The mirrored motion of its twin
+/// counts too: a motion that only one arm makes does not mean that the other cannot. `fits` and `poses` are ordered as
+/// the plan's bodies; poses are in character space, one transform per body.
 pub fn learned(
     plan: &JointPlan,
     twin: Option<&JointPlan>,
@@ -85,7 +86,7 @@ fn turn(joint: &RagdollJointDef, pose: &dyn Fn(usize) -> Transform) -> Rotation 
     (parent.inverse() * (pose(joint.child).rotation * joint.frame_child.rotation)).normalize()
 }
 
-/// The same turn on the other side: swing about z and twist have the other sign there, and a hinge bends the same way.
+/// The same rotation on the other side: swing about z and twist change sign, and a hinge bends in the same direction.
 fn mirrored(kind: JointKind, turn: Rotation) -> Rotation {
     match kind {
         JointKind::Hinge { .. } => turn,
@@ -98,7 +99,7 @@ fn shows_enough(limit: &LearnedLimit) -> bool {
     limit.hinge.is_some() || max(y, z) >= LEAST_RANGE || limit.twist.hi - limit.twist.lo >= 2.0 * LEAST_RANGE
 }
 
-/// Range of a human's hinge as its motion shows it, with a margin as far as its anatomy goes.
+/// Range of a human's hinge from its motion, with a margin limited by its anatomy.
 fn hinge_range(anatomical: Range, turns: &[Rotation], bind: f32) -> Option<Range> {
     let middle = anatomical.center();
     let angle = |&turn: &Rotation| middle + wrap(hinge_angle(turn) - middle);
@@ -110,7 +111,7 @@ fn hinge_range(anatomical: Range, turns: &[Rotation], bind: f32) -> Option<Range
     })
 }
 
-/// A creature's joint that turns about one axis alone becomes a hinge about it.
+/// A creature's joint that rotates about only one axis becomes a hinge about it.
 fn hinged(
     joint: &RagdollJointDef,
     learned: &LearnedLimit,
@@ -119,7 +120,7 @@ fn hinged(
 ) -> RagdollJointDef {
     let onto_axis = Rotation::from_arc(Vec3::X, hinge.axis);
     let (parent, child) = (learned.center * onto_axis, onto_axis);
-    // A hinge has nothing but its angle; what else the bind pose has is part of the frame.
+    // A hinge has only its angle; the rest of the bind rotation becomes part of the frame.
     let seen = parent.inverse() * bind * child;
     let (swing, twist) = seen.swing_twist(Vec3::X);
     let range = wider(hinge.range, TWIST_MARGIN);
@@ -129,7 +130,7 @@ fn hinged(
     turned(joint, parent * swing, child, kind)
 }
 
-/// The joint with its frames turned, each in its own axes.
+/// The joint with its two frames rotated, each in its own axes.
 fn turned(joint: &RagdollJointDef, parent: Rotation, child: Rotation, kind: JointKind) -> RagdollJointDef {
     let turn =
         |frame: Transform, by: Rotation| Transform::new(frame.translation, (frame.rotation * by).normalize());
@@ -141,7 +142,7 @@ fn turned(joint: &RagdollJointDef, parent: Rotation, child: Rotation, kind: Join
     }
 }
 
-/// A joint that swings, and what its anatomy allows in its own frames.
+/// A joint that swings, and its anatomical limits in its own frames.
 struct Cone<'a> {
     joint: &'a RagdollJointDef,
     anatomical: SwingTwistLimit,
@@ -166,8 +167,8 @@ impl Cone<'_> {
         turned(self.joint, parent, child, kind)
     }
 
-    /// The widest of the learned cones that goes no further beyond the anatomical one than what the clips do: their
-    /// frames, and the cone about them without a margin.
+    /// The widest learned cone that exceeds the anatomical one no further than the clips do, measured by their frames
+    /// and by the cone around them without a margin.
     fn limit(&self, learned: &LearnedLimit, turns: &[Rotation]) -> SwingTwistLimit {
         let mut beyond: Vec<f32> = turns.iter().map(|&turn| self.beyond(turn)).collect();
         beyond.sort_unstable_by(f32::total_cmp);
@@ -178,7 +179,7 @@ impl Cone<'_> {
         widest.into_iter().find(|limit| self.farthest(learned, limit) <= shown).unwrap_or(bare)
     }
 
-    /// Angle by which a rotation is beyond the anatomical limits, radians.
+    /// Angle by which a rotation exceeds the anatomical limits, radians.
     fn beyond(&self, turn: Rotation) -> f32 {
         match self.twisting {
             Twist::Free => self.anatomical.overshoot(turn),
@@ -202,7 +203,7 @@ impl Cone<'_> {
     }
 }
 
-/// Cone that was learned, with margins: `factor` on the swing, and as much of the twist's margin as there is of the swing's.
+/// Learned cone with margins: `factor` on the swing, and the same share of the twist margin as of the swing margin.
 fn cone(learned: &LearnedLimit, factor: f32) -> SwingTwistLimit {
     let [y, z] =
         learned.swing.map(|half| Range::symmetric(min(max(half * factor, LEAST_RANGE), WIDEST_SWING)));

@@ -1,4 +1,4 @@
-//! Joints: where they are, which way their axes point, how far they go.
+//! Joints: positions, axes and limits.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -43,12 +43,12 @@ pub enum LimitSource {
     Clips,
 }
 
-/// A joint, and what had to be done to it.
+/// A joint, and the corrections made to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointPlan {
     /// The joint, in the frames of the two bodies.
     pub def: RagdollJointDef,
-    /// Angle by which the bind pose was beyond the table's limits, radians; they were widened by it. 0 for most.
+    /// Angle by which the bind pose exceeded the table's limits, radians; they were widened by it. 0 for most joints.
     pub widened: f32,
 }
 
@@ -63,7 +63,7 @@ pub fn joints(bones: &Bones, fits: &[Fit], total_mass: f32) -> Vec<JointPlan> {
             let entry = entry(bones, child);
             let mut directions = [parent, child].map(|bone| bones.direction(bone, Some(middles[bone])));
             if bones.list[child].part == Part::Toes {
-                // From ankle to toes a foot slopes down; toes are straight when they lie level with the sole.
+                // A foot slopes down from ankle to toes; toes are straight when they are level with the sole.
                 directions[0] = turned[parent] * Vec3::Z;
             }
             let seen =
@@ -93,8 +93,8 @@ struct Seen {
 }
 
 impl Seen {
-    /// The joint's frame as the parent and as the child carries it (character axes), what is free, and by how much a
-    /// limit was widened.
+    /// The joint's frame on the parent and on the child (character axes), its free axes, and the angle by which a limit
+    /// was widened.
     fn joint(&self, entry: &Entry, anatomy: Anatomy) -> ([Rotation; 2], JointKind, f32) {
         match entry.motion {
             Motion::Ball(cone) => {
@@ -105,7 +105,7 @@ impl Seen {
             }
             Motion::Universal(cone) => {
                 let [parent, child] = self.cone_frames(entry.axes, cone);
-                // What twist the bind pose has is the joint's zero: a universal joint has none to give.
+                // The bind pose's twist is the joint's zero: a universal joint has no twist.
                 let (_, twist) = (parent.inverse() * child).swing_twist(Vec3::X);
                 let frames = [parent, child * twist.inverse()];
                 let joint = frames[0].inverse() * frames[1];
@@ -119,7 +119,7 @@ impl Seen {
                 let range = Range::degrees(lo, hi);
                 let limit =
                     Range::new(min(range.lo, angle - BIND_MARGIN), max(range.hi, angle + BIND_MARGIN));
-                // A straight limb at its stop is how everybody stands: only what is beyond the table counts.
+                // A straight limb at its stop is the normal standing pose: only the angle beyond the table counts.
                 (frames, JointKind::Hinge { limit: Some(limit) }, range.excess(angle))
             }
         }
@@ -127,7 +127,7 @@ impl Seen {
 
     /// Joint axes in the anatomical pose, as columns.
     fn basis(&self, axes: Axes) -> Rotation {
-        // Mirroring in x keeps the x part of an axis of rotation and turns its other parts round.
+        // Mirroring in x keeps the x component of a rotation axis and negates the other two.
         let mirror = if self.side == Side::Right { -1.0 } else { 1.0 };
         let (x, y) = match axes {
             Axes::Upright => (Vec3::Y, Vec3::X),
@@ -143,7 +143,7 @@ impl Seen {
         Rotation::from_mat3(&Mat3::from_cols(x, y, x.cross(y)))
     }
 
-    /// Frames whose agreement is the middle of the cone.
+    /// Frames whose alignment is the middle of the cone.
     fn cone_frames(&self, axes: Axes, cone: Cone) -> [Rotation; 2] {
         let basis = self.basis(axes);
         if axes == Axes::Bind {
@@ -154,7 +154,7 @@ impl Seen {
         [self.turned[0] * basis * center, self.turned[1] * basis]
     }
 
-    /// −1 on the right: swing about z and twist have the other sign there.
+    /// −1 on the right: swing about z and twist change sign there.
     fn mirror(&self) -> f32 {
         if self.side == Side::Right { -1.0 } else { 1.0 }
     }
@@ -188,7 +188,8 @@ enum Twist {
     Locked,
 }
 
-/// The limit with room for the joint rotation `joint` (the bind pose), and how far it was beyond it, radians.
+/// The limit extended to include the joint rotation `joint` (the bind pose), and the angle by which that exceeded it,
+/// radians.
 fn widened_cone(limit: SwingTwistLimit, joint: Rotation, twisting: Twist) -> (SwingTwistLimit, f32) {
     let mut wide = limit;
     let (swing, twist) = SwingTwistLimit::angles(joint);

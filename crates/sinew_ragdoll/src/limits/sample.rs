@@ -1,4 +1,4 @@
-//! Random turns of joints within their limits.
+//! Random joint rotations within their limits.
 //!
 //! ```
 //! use sinew_math::{Random, Range};
@@ -18,14 +18,13 @@ use crate::tuning::INSCRIBED;
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Vec3};
 use sinew_physics::JointKind;
 
-/// Range of a joint without limits that random turns use, radians.
+/// Range used by random rotations for a joint without limits, radians.
 const FREE: Range = Range::symmetric(1.0);
 
-/// A joint rotation (joint frame of the parent to that of the child) that uses at most `share` of each range, about its
-/// middle.
+/// A joint rotation (joint frame of the parent to that of the child) within `share` of each range, about its middle.
 ///
 /// # Panics
-/// If the joint does more than turn.
+/// If the joint also translates.
 pub fn random_turn(kind: JointKind, random: &mut Random, share: f32) -> Rotation {
     let within = |random: &mut Random, range: Range| {
         range.center() + 0.5 * (range.hi - range.lo) * share * random.range(-1.0, 1.0)

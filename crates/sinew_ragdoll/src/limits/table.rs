@@ -1,5 +1,5 @@
-//! Ranges of motion by joint, degrees: clinical ranges (AAOS and the sources that agree with it within 10°) cast into
-//! what a joint can express. Left side; the right is its mirror image.
+//! Ranges of motion by joint, degrees: clinical ranges (AAOS and the sources that agree with it within 10°), expressed
+//! in the joint's axes. Left side; the right side is its mirror image.
 //!
 //! ```
 //! # use sinew_anim::roles::{Role, Side};
@@ -42,19 +42,19 @@ pub struct Cone {
     pub twist: [f32; 2],
 }
 
-/// Directions of a joint's axes in the anatomical pose, on the left side: x along the child bone, y the axis about
-/// which it flexes, z = x × y.
+/// Directions of a joint's axes in the anatomical pose, left side: x along the child bone, y the flexion axis, z = x ×
+/// y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
     /// x up, y to the left: forward is +y.
     Upright,
-    /// x down, y to the right: forward (flexion) is +y, inward is +z, inward turn is +x.
+    /// x down, y to the right: forward (flexion) is +y, inward is +z, inward rotation is +x.
     Hanging,
     /// x down, y back: toward the palm is +y, toward the little finger is +z.
     Palm,
     /// x down the shank, y to the left: plantar flexion is +y, sole outward is +z.
     Sole,
-    /// As the bones lie in the bind pose.
+    /// Directions of the bones in the bind pose.
     Bind,
 }
 
@@ -77,7 +77,7 @@ const SHOULDER: Entry = ball(Axes::Hanging, [45.0, -60.0], [95.0, 80.0], [-80.0,
 const SHOULDER_UNDER_CLAVICLE: Entry = ball(Axes::Hanging, [40.0, -40.0], [75.0, 65.0], [-80.0, 80.0], 100.0);
 const CLAVICLE: Entry = ball(Axes::Bind, [0.0; 2], [25.0, 20.0], [-10.0, 10.0], 100.0);
 const ELBOW: Entry = Entry { axes: Axes::Hanging, motion: Motion::Hinge(0.0, 145.0), torque: 60.0 };
-/// The elbow is a hinge, so the forearm's turn (palm up to palm down) is the wrist's twist.
+/// The elbow is a hinge, so the wrist's twist represents the forearm's rotation (palm up to palm down).
 const WRIST: Entry = ball(Axes::Palm, [0.0, 6.0], [75.0, 30.0], [-85.0, 85.0], 20.0);
 const HIP: Entry = ball(Axes::Hanging, [50.0, -8.0], [72.0, 37.0], [-45.0, 40.0], 200.0);
 const KNEE: Entry = Entry { axes: Axes::Sole, motion: Motion::Hinge(-2.0, 142.0), torque: 150.0 };
@@ -128,14 +128,14 @@ fn count(bones: &Bones, parts: &[Part]) -> f32 {
     bones.list.iter().filter(|bone| is(bone.part) && bone.side == Side::Middle).count() as f32
 }
 
-/// The whole spine flexes 83, extends 30, leans 35 and turns 45 degrees; each of `n` joints has an equal part of it,
-/// and a fifth more of swing, as they never all reach their ends together.
+/// The whole spine flexes 83, extends 30, leans 35 and twists 45 degrees. Each of `n` joints has an equal part, plus a
+/// fifth more swing, because they never reach their ends together.
 fn spine(n: f32) -> Entry {
     let half = [1.2 * 0.5 * (83.0 + 30.0) / n, 1.2 * 35.0 / n];
     ball(Axes::Upright, [0.5 * (83.0 - 30.0) / n, 0.0], half, [-45.0 / n, 45.0 / n], 200.0)
 }
 
-/// The whole neck nods 48, leans 40 and turns 70 degrees; shared as the spine's.
+/// The whole neck nods 48, leans 40 and twists 70 degrees, divided like the spine's.
 fn neck(n: f32) -> Entry {
     let more = if n > 1.0 { 1.2 } else { 1.0 };
     let twist = if n > 1.0 { 76.0 / n } else { 70.0 };

@@ -1,4 +1,4 @@
-//! Joints that carry root motion: those just below the nodes that stay in their rest pose.
+//! Joints that carry root motion: the children of the nodes that stay in their rest pose.
 
 use super::{Mapping, with_scale_of};
 use crate::def::RagdollDef;
@@ -34,7 +34,7 @@ fn chain(rig: &Rig, joint: JointIdx, local: impl Fn(JointIdx) -> LocalTransform)
     model
 }
 
-/// True for each joint that moves skin, is among `others`, or has one of these somewhere below it.
+/// True for each joint that moves skin, is among `others`, or has such a descendant.
 fn with_what_is_below(rig: &Rig, others: impl Iterator<Item = JointIdx>) -> Vec<bool> {
     let mut counts = vec![false; rig.joints.len()];
     let skinned = rig.skins.iter().flat_map(|skin| skin.joints.iter().copied());
@@ -47,14 +47,15 @@ fn with_what_is_below(rig: &Rig, others: impl Iterator<Item = JointIdx>) -> Vec<
     counts
 }
 
-/// True for each joint that carries skin or something that goes with a body: not for a floor, a lamp or a camera of the file.
+/// True for each joint that carries skin or an object that moves with a body; false for a floor, lamp or camera in the
+/// file.
 pub(crate) fn carries_character(rig: &Rig, def: &RagdollDef) -> Vec<bool> {
     let merged = def.bodies.iter().flat_map(|body| body.merged.iter().copied().chain([body.joint]));
     with_what_is_below(rig, merged)
 }
 
-/// The pelvis, or the highest joint above it that moves skin with a body, and every other child of a node above that which has skin or a
-/// body somewhere below it. Skin above the pelvis would stay behind if its joint were at rest.
+/// The pelvis, or its highest ancestor that moves skin with a body, and every other child of a node above it with skin
+/// or a body among its descendants. Skin above the pelvis would stay behind if its joint were at rest.
 pub(super) fn find(rig: &Rig, def: &RagdollDef) -> Vec<Head> {
     let merged = |joint: JointIdx| def.bodies.iter().any(|body| body.merged.contains(&joint));
     let above = core::iter::successors(rig.joints[def.bodies[0].joint].parent, |&at| rig.joints[at].parent);
@@ -92,8 +93,8 @@ pub(super) fn carriers(rig: &Rig, heads: &[Head]) -> Vec<JointIdx> {
 }
 
 impl Mapping {
-    /// Moves what a clip does to the nodes above the pelvis into the heads, so that those nodes are at rest and every
-    /// joint below is where it was in model space.
+    /// Moves a clip's motion of the nodes above the pelvis into the heads: those nodes are then at rest, and every
+    /// joint below keeps its model-space transform.
     pub fn flatten(&self, rig: &Rig, pose: &mut [LocalTransform]) {
         if self.carriers.iter().all(|&joint| pose[joint] == rig.joints[joint].rest) {
             return;
@@ -108,8 +109,8 @@ impl Mapping {
         }
     }
 
-    /// Re-expresses a flat pose of a character at `from` (world from character) for one that stands at `to`: every
-    /// joint stays where it is in the world.
+    /// Converts a flat pose of a character at `from` (world from character) to a character at `to`: every joint keeps
+    /// its world transform.
     pub fn reframe(&self, pose: &mut [LocalTransform], from: Transform, to: Transform) {
         if from == to {
             return;

@@ -3,9 +3,9 @@
 //! Three spaces: the **model** space of the file (file units, its own up axis), the **character** space of the ragdoll
 //! (metres, +Y up, facing +Z) and the world. A body keeps the offset to its bone that it had in the bind pose.
 //!
-//! Root motion must end up in one place, or a clip that moves a root node above the pelvis and a ragdoll that moves the
-//! pelvis could not be blended. So all poses here are **flat**: nodes above the pelvis stay in their rest pose, and the
-//! *heads* below them (the pelvis, as a rule alone) carry all motion.
+//! Root motion must be stored in one place; otherwise a clip that moves a root node above the pelvis could not blend
+//! with a ragdoll that moves the pelvis. So all poses here are **flat**: nodes above the pelvis stay in their rest
+//! pose, and the *heads* below them (usually only the pelvis) carry all motion.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -35,16 +35,16 @@ pub(crate) use heads::carries_character;
 use sinew_anim::{JointIdx, LocalTransform, Rig};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
-/// Way in which a joint with a body follows it.
+/// Manner in which a joint follows its body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Follow {
-    /// It turns with the body; its place is given by its parent, because joints do not stretch.
+    /// Rotation from the body; position from the parent, because joints do not stretch.
     Turn,
-    /// It turns and moves with the body: the pelvis, and what the rig hangs elsewhere than the anatomy does.
+    /// Rotation and position from the body: the pelvis, and joints that the rig parents differently from the anatomy.
     Move,
 }
 
-/// Body that a rig joint follows, and what it takes from it.
+/// Body that a rig joint follows, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Driven {
     body: usize,
@@ -57,12 +57,12 @@ pub struct Mapping {
     /// Model space (file units) to character space (metres).
     character_from_model: Affine,
     model_from_character: Affine,
-    /// The rigid part of that, metres, and metres per file unit.
+    /// The rigid part of that transform, metres, and the scale in metres per file unit.
     place_of_model: Transform,
     unit_scale: f32,
     /// Per body: its joint, and the body's frame in the bone's rigid frame, metres.
     bones: Vec<(JointIdx, Transform)>,
-    /// Joints with a body, and all above them, ascending, each with its parent.
+    /// Joints with a body and all their ancestors, ascending, each with its parent.
     bearing: Vec<(JointIdx, Option<JointIdx>)>,
     /// Per joint of the rig.
     driven: Vec<Option<Driven>>,
@@ -70,9 +70,9 @@ pub struct Mapping {
     heads: Vec<Head>,
     /// Nodes above the heads, ascending.
     carriers: Vec<JointIdx>,
-    /// Joints that no body moves and that move none themselves.
+    /// Joints that no body moves and that have no driven descendant.
     free: Vec<JointIdx>,
-    /// Per joint of the rig: a body moves it, or one that hangs on it.
+    /// Per joint of the rig: true if a body moves it or one of its descendants.
     moves_bodies: Vec<bool>,
 }
 
@@ -80,8 +80,8 @@ impl Mapping {
     /// From a rig, its ragdoll, and the bind pose in model space (`RigAnalysis::bind_model`).
     ///
     /// # Panics
-    /// If the definition has no body or names joints that the rig does not have, or `bind_model` is not as long as the
-    /// rig has joints.
+    /// If the definition has no body or names joints that the rig does not have, or `bind_model` does not have one
+    /// entry per joint.
     pub fn new(rig: &Rig, def: &RagdollDef, bind_model: &[Affine]) -> Self {
         assert_eq!(bind_model.len(), rig.joints.len(), "the bind pose has one transform per joint");
         assert!(!def.bodies.is_empty(), "a ragdoll has bodies");
@@ -124,8 +124,8 @@ impl Mapping {
         self.heads.iter().map(|head| head.joint)
     }
 
-    /// Joints that no body moves and that move no body: fingers, face, helpers at the ends of limbs. A limp character's go on
-    /// as its clips have them; toes do not, for what a walk does with them makes no sense lying down.
+    /// Joints that no body moves and that move no body: fingers, face, end helpers. On a limp character they keep
+    /// playing their clips, except toes, whose walking motion makes no sense in a lying pose.
     pub fn free(&self) -> &[JointIdx] {
         &self.free
     }
@@ -135,7 +135,7 @@ impl Mapping {
         self.carriers.binary_search(&joint).is_ok()
     }
 
-    /// True if a body moves the joint, or one that hangs on it: what it does is physics.
+    /// True if a body moves the joint or one of its descendants: physics determines it.
     pub fn moves_bodies(&self, joint: JointIdx) -> bool {
         self.moves_bodies[joint]
     }
@@ -168,9 +168,10 @@ impl Mapping {
         }));
     }
 
-    /// World pose of every body for local transforms of all joints, as [`bodies_from_model`](Self::bodies_from_model) has it but for rounding, at
-    /// a quarter of its cost: `bodies` is cleared and filled. False, and nothing useful in it, if a joint that bodies hang on is not scaled
-    /// alike along all axes. `frames` is memory.
+    /// World pose of every body for the local transforms of all joints: equal to
+    /// [`bodies_from_model`](Self::bodies_from_model) up to rounding, at a quarter of its cost. `bodies` is cleared and
+    /// filled. Returns false, with undefined contents, if an ancestor joint of a body has a non-uniform scale. `frames`
+    /// is scratch memory.
     ///
     /// # Panics
     /// If `pose` is shorter than the rig has joints.
@@ -205,7 +206,7 @@ impl Mapping {
         (self.character_from_model * *model).to_rigid()
     }
 
-    /// A rigid motion in character space as the affine map of model space that looks the same.
+    /// A rigid motion in character space as the equivalent affine map of model space.
     fn in_model(&self, motion: Transform) -> Affine {
         self.model_from_character * Affine::from(motion) * self.character_from_model
     }
@@ -217,7 +218,7 @@ pub fn character_from_model(def: &RagdollDef) -> Affine {
     Affine::from_scale_rotation_translation(Vec3::splat(def.unit_scale), turn.rotation, turn.translation)
 }
 
-/// The local transform of `local_affine` that keeps the scale of `like`: shear has no place in a rig's local transform.
+/// The local transform of `local_affine` with the scale of `like`: a rig's local transforms cannot hold shear.
 fn with_scale_of(like: &LocalTransform, local_affine: &Affine) -> LocalTransform {
     let s = like.scale;
     let unscaled = |column: Vec3, scale: f32| if scale.abs() > 1e-12 { column / scale } else { column };
@@ -235,7 +236,7 @@ fn with_scale_of(like: &LocalTransform, local_affine: &Affine) -> LocalTransform
     }
 }
 
-/// Joints with a body, and all above them, ascending, each with its parent.
+/// Joints with a body and all their ancestors, ascending, each with its parent.
 fn bearing(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, Option<JointIdx>)> {
     let mut bears = vec![false; rig.joints.len()];
     for body in &def.bodies {
@@ -250,7 +251,7 @@ fn bearing(rig: &Rig, def: &RagdollDef) -> Vec<(JointIdx, Option<JointIdx>)> {
         .collect()
 }
 
-/// Body that each joint of the rig follows, and what it takes from it; `None` for a joint without one.
+/// Body that each joint of the rig follows, and how; `None` for a joint without one.
 fn driven(rig: &Rig, def: &RagdollDef) -> Vec<Option<Driven>> {
     let mut driven: Vec<Option<Driven>> = vec![None; rig.joints.len()];
     let body_of = |joint: JointIdx| def.bodies.iter().position(|body| body.joint == joint);
@@ -269,7 +270,7 @@ fn driven(rig: &Rig, def: &RagdollDef) -> Vec<Option<Driven>> {
         let follow =
             if parent.is_some() && above(bone.joint) == parent { Follow::Turn } else { Follow::Move };
         driven[bone.joint] = Some(Driven { body, follow });
-        // A merged joint below its body rides along by itself; elsewhere in the rig it must be carried.
+        // A merged joint below its body follows as its child; elsewhere in the rig it must be moved explicitly.
         for &merged in &bone.merged {
             if above(merged) != Some(body) && body_of(merged).is_none() {
                 driven[merged] = Some(Driven { body, follow: Follow::Move });
@@ -279,7 +280,7 @@ fn driven(rig: &Rig, def: &RagdollDef) -> Vec<Option<Driven>> {
     driven
 }
 
-/// True per joint if it, or one that hangs on it, is driven.
+/// True per joint if it or one of its descendants is driven.
 fn moves_bodies(rig: &Rig, driven: &[Option<Driven>]) -> Vec<bool> {
     let mut moves: Vec<bool> = driven.iter().map(Option::is_some).collect();
     for joint in (0..moves.len()).rev() {
@@ -290,7 +291,7 @@ fn moves_bodies(rig: &Rig, driven: &[Option<Driven>]) -> Vec<bool> {
     moves
 }
 
-/// Joints that no body moves and that no driven joint hangs on, but for those of feet, and but for what `keeps` says.
+/// Joints that no body moves and that have no driven descendant, except those of feet and those that `keeps` excludes.
 fn free(
     rig: &Rig,
     def: &RagdollDef,

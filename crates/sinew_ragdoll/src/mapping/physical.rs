@@ -4,8 +4,8 @@ use super::{Follow, Mapping, with_scale_of};
 use sinew_anim::{LocalTransform, Rig, local_to_model};
 use sinew_math::{Affine, Transform, max};
 
-/// Turns body poses into poses of the rig, on top of the pose that the character had when its bodies took over. Keeps
-/// its buffers from step to step.
+/// Converts body poses into poses of the rig, based on the character's pose when its bodies took over. Reuses its
+/// buffers.
 #[derive(Clone, Debug, Default)]
 pub struct Physical {
     base: Vec<LocalTransform>,
@@ -18,8 +18,8 @@ pub struct Physical {
 }
 
 impl Physical {
-    /// Takes a flat pose as the base: joints that no body drives keep it, and driven joints keep their scale, and but
-    /// for the pelvis their translation.
+    /// Sets a flat pose as the base: joints that no body drives keep it, driven joints keep its scale and, except the
+    /// pelvis, its translation.
     pub fn rebase(&mut self, mapping: &Mapping, rig: &Rig, base: &[LocalTransform]) {
         self.base.clear();
         self.base.extend_from_slice(base);
@@ -35,9 +35,9 @@ impl Physical {
         &self.base
     }
 
-    /// Pose of all joints for bodies at `world_from_body`, seen by a character at `world_from_character`. Gives the
-    /// hidden stretch: the largest distance between where a body has its bone and where the pose, whose bones cannot
-    /// stretch, has it; metres.
+    /// Pose of all joints for bodies at `world_from_body`, relative to a character at `world_from_character`. Returns
+    /// the hidden stretch, metres: the largest distance between a bone's position on its body and in the pose, whose
+    /// bones cannot stretch.
     ///
     /// # Panics
     /// If there is no base pose, or not one pose per body.
@@ -55,8 +55,8 @@ impl Physical {
         stretch
     }
 
-    /// [`pose`](Self::pose), with what the bodies do not give taken from `resting` in the place of the base pose: one that has
-    /// gone on a little since, whose bones are still as long.
+    /// [`pose`](Self::pose) with the undriven joints from `resting` instead of the base pose: a later pose of the same
+    /// bone lengths.
     ///
     /// # Panics
     /// As [`pose`](Self::pose), and if `resting` is not as long.

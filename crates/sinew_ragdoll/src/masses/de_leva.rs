@@ -10,7 +10,7 @@
 //! assert!((thigh - 10.3).abs() < 0.1, "{thigh} kg");
 //! ```
 
-/// Whose proportions are taken.
+/// Choice of body proportions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sex {
     /// 73.0 kg at 1.741 m.
@@ -40,7 +40,7 @@ const fn segment(mass: f32, center: f32, sagittal: f32, transverse: f32, longitu
     }
 }
 
-/// The table of one sex. Limb segments are counted once: both sides are alike.
+/// The table of one sex. Limb segments appear once: both sides are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Table {
     /// Mass of the reference body, kg.
@@ -65,10 +65,10 @@ pub struct Table {
     pub foot: Segment,
 }
 
-/// Share of the neck in head and neck: 1.2 % of the body's mass. The table has them as one; the neck is cut off as a cylinder
-/// 11 cm wide and 10 cm high.
+/// Share of the neck in head and neck: 1.2 % of the body's mass. The table combines them; the neck is separated as a
+/// cylinder 11 cm wide and 10 cm high.
 pub const NECK_OF_HEAD: f32 = 0.17;
-/// Share of each shoulder girdle in the upper trunk, where it is a body of its own.
+/// Share of each shoulder girdle in the upper trunk, if it is a separate body.
 pub const GIRDLE_OF_UPPER_TRUNK: f32 = 0.10;
 /// Share of the toes in the foot, where they are a body of their own.
 pub const TOES_OF_FOOT: f32 = 0.2;

@@ -10,18 +10,18 @@ pub fn of_shape(shape: &Shape, mass: f32) -> Vec3 {
     unit.inertia.diagonal * (mass / unit.mass)
 }
 
-/// Principal moments made fit for a solver: the smallest at least an eighth of the largest, and none above the sum of
-/// the others, which no real body has.
+/// Principal moments adjusted for a solver: the smallest at least an eighth of the largest, and none above the sum of
+/// the other two, which no real body exceeds.
 pub fn conditioned(principal: Vec3) -> Vec3 {
     let largest = max(principal.x, max(principal.y, principal.z));
     let i = max3(principal, Vec3::splat(largest / LARGEST_MOMENTS));
     let need = |a: f32, b: f32, c: f32| max(0.0, 0.5 * (c - a - b));
-    // Half of what is missing on each of the two smaller ones; at most one of the three conditions can fail.
+    // Half of the deficit goes to each of the two smaller ones; at most one of the three conditions can fail.
     let (x, y, z) = (need(i.y, i.z, i.x), need(i.x, i.z, i.y), need(i.x, i.y, i.z));
     i + Vec3::new(y + z, x + z, x + y)
 }
 
-/// The point, moved to within nine tenths of the shape if it lies further out.
+/// The point, moved to within nine tenths of the shape if it lies farther out.
 pub fn inside(shape: &Shape, p: Vec3) -> Vec3 {
     let reach = match *shape {
         Shape::Box { half_extents } => half_extents,

@@ -1,8 +1,8 @@
 //! Masses, centres and inertias of the bodies.
 //!
-//! Humans: shares of the whole by de Leva's table, never from the volumes of the shapes, whose sum is 1.3 to 2.2 times
-//! a body's (measured). Creatures: there is no table, so that the whole weighs what the skin encloses, and parts of it go by the
-//! volumes of the shapes.
+//! Humans: shares of the total by de Leva's table, never from shape volumes, whose sum is 1.3 to 2.2 times the body's
+//! (measured). Creatures have no table: the total comes from the volume the skin encloses, and the parts share it by
+//! shape volume.
 //!
 //! ```
 //! use sinew_ragdoll::Sex;
@@ -28,15 +28,16 @@ use sinew_physics::{MassProperties, Shape};
 /// Options by which a character is weighed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MassOptions {
-    /// Mass of the whole, kg; `None`: [`default_mass`].
+    /// Total mass, kg; `None`: [`default_mass`].
     pub total: Option<f32>,
     /// Whose table.
     pub sex: Sex,
-    /// Mass of what the skin encloses, kg, for creatures; where it is not known, or has nothing to do with the shapes, these tell.
+    /// Mass of the skin's enclosed volume, kg, for creatures; if it is unknown or does not match the shapes, the shapes
+    /// decide.
     pub enclosed: Option<f32>,
 }
 
-/// The enclosed mass is believed within these shares of what the shapes would weigh.
+/// The enclosed mass is accepted within these shares of the shapes' mass.
 const BELIEVED: core::ops::Range<f32> = 0.1..2.0;
 
 /// Mass of a person of this height at the body mass index of the table's reference body (male 24.1, female 20.6
@@ -47,7 +48,7 @@ pub fn default_mass(height: f32, sex: Sex) -> f32 {
     table.reference_mass * ratio * ratio
 }
 
-/// Mass, centre and inertia of every body, in the body's frame. Their sum is the total asked for.
+/// Mass, centre and inertia of every body, in the body's frame. The masses add up to the requested total.
 pub fn distribute(bones: &Bones, fits: &[Fit], options: MassOptions) -> Vec<MassProperties> {
     let shares = match bones.anatomy {
         Anatomy::Human => human_shares(bones, table(options.sex)),
@@ -61,7 +62,7 @@ pub fn distribute(bones: &Bones, fits: &[Fit], options: MassOptions) -> Vec<Mass
     let shares: Vec<_> = shares.iter().map(|share| max(share / sum, LEAST_MASS)).collect();
     let sum: f32 = shares.iter().sum();
     let mut masses: Vec<_> = shares.iter().map(|share| total * share / sum).collect();
-    // What rounding left over goes to the pelvis, which feels it least.
+    // The rounding remainder goes to the pelvis, where it matters least.
     let rest = total - masses.iter().sum::<f32>();
     masses[0] += rest;
     (0..fits.len()).map(|body| properties(bones, &fits[body], body, masses[body], options.sex)).collect()
@@ -73,7 +74,7 @@ fn flesh(shape: &Shape) -> f32 {
     FLESH * fill * shape.volume()
 }
 
-/// Share of the body's mass per bone. What a rig lacks goes to the bone that would carry it.
+/// Share of the total mass per bone. The mass of a bone the rig lacks goes to the bone that would carry it.
 fn human_shares(bones: &Bones, table: &Table) -> Vec<f32> {
     let mut shares = vec![0.0; bones.list.len()];
     let carrier = |chain: &[Part], side: Side| {
@@ -111,7 +112,7 @@ fn human_shares(bones: &Bones, table: &Table) -> Vec<f32> {
     shares
 }
 
-/// Several neck bones have the neck's mass in equal parts.
+/// Several neck bones share the neck's mass equally.
 fn share_necks(bones: &Bones, shares: &mut [f32], neck: f32) {
     let necks: Vec<_> = (0..bones.list.len()).filter(|&b| bones.list[b].part == Part::Neck).collect();
     for &bone in &necks {
@@ -119,8 +120,8 @@ fn share_necks(bones: &Bones, shares: &mut [f32], neck: f32) {
     }
 }
 
-/// The trunk's mass over the pelvis and the spine: each bone takes what the table has between its own pivot and the
-/// next, measured from the hips to the neck.
+/// Distributes the trunk's mass over the pelvis and the spine: each bone takes the table's mass between its own pivot
+/// and the next, measured from the hips to the neck.
 fn share_trunk(bones: &Bones, shares: &mut [f32], table: &Table, girdles: f32) {
     let mut chain = vec![0];
     while let Some(next) = bones.continuation(chain[chain.len() - 1]) {
@@ -181,7 +182,7 @@ fn share_others(bones: &Bones, shares: &mut [f32]) {
     }
 }
 
-/// The de Leva segment of a limb bone with joints at both its ends.
+/// The de Leva segment of a limb bone with joints at both ends.
 fn limb_segment(part: Part, table: &Table) -> Option<Segment> {
     match part {
         Part::UpperArm => Some(table.upper_arm),
@@ -199,7 +200,7 @@ fn properties(bones: &Bones, fit: &Fit, body: usize, mass: f32, sex: Sex) -> Mas
         Anatomy::Human => limb_segment(bones.list[body].part, table(sex)).zip(bones.tail(body)),
         Anatomy::Creature => None,
     };
-    // Trunk, head, hands and feet: how they are cut differs from rig to rig, so the shape knows best.
+    // Trunk, head, hands and feet: rigs divide them differently, so the shape gives the centre.
     let Some((segment, tail)) = segment else {
         let inertia = Sym3::from_diagonal(conditioned(shape_inertia));
         return MassProperties { mass, center: Vec3::ZERO, inertia };
@@ -213,8 +214,9 @@ fn properties(bones: &Bones, fit: &Fit, body: usize, mass: f32, sex: Sex) -> Mas
         let radius = g * length;
         mass * radius * radius
     });
-    // Radii about the two cross axes differ by a few per cent only; which way a limb's bind pose has turned them is
-    // not known, so both take the mean. Thick cartoon limbs are held to half their shape's inertia about the axis.
+    // Radii about the two cross axes differ by a few per cent only, and the bind pose's rotation of a limb about its
+    // axis is unknown, so both take the mean. Thick cartoon limbs get at least half their shape's inertia about the
+    // axis.
     let across = 0.5 * (sagittal + transverse);
     let principal = conditioned(Vec3::new(across, max(longitudinal, 0.5 * shape_inertia.y), across));
     MassProperties {

@@ -1,4 +1,4 @@
-//! Volume that a skin encloses, and what fills it.
+//! Volume that a skin encloses, and its density.
 //!
 //! ```
 //! use sinew_math::Vec3;
@@ -14,14 +14,14 @@ use crate::tuning::{CLOSED, FLESH, MACHINE};
 use sinew_anim::Rig;
 use sinew_math::{Vec3, clamp, max, max3, min, min3};
 
-/// Lines along each axis on which the skin is crossed, a side.
+/// Number of sample lines along each axis, per side.
 const LINES: usize = 64;
 /// Position of the lines in their cells, as shares of a cell: not in the middle, where symmetric meshes have their edges.
 const OFF_MIDDLE: [f32; 2] = [0.513_7, 0.487_1];
 
-/// Volume that triangles enclose, m³: what several of them enclose counts once, and so does what is turned inside out. Lines go
-/// through it along each axis; a hole makes its lines tell nothing, and the others stand for them. `None` where most lines do so along
-/// every axis.
+/// Volume that triangles enclose, m³: overlapping volumes count once, and so do inverted ones. Sample lines cross the
+/// volume along each axis; a line through a hole is ignored, and the others stand in for it. `None` if most lines along
+/// every axis are ignored.
 pub fn enclosed(triangles: &[[Vec3; 3]]) -> Option<f32> {
     let corners = || triangles.iter().flatten().copied();
     let low = corners().reduce(min3)?;
@@ -31,7 +31,7 @@ pub fn enclosed(triangles: &[[Vec3; 3]]) -> Option<f32> {
     volumes.get(volumes.len() / 2).copied()
 }
 
-/// Crossings of one line with the skin: where, and whether it goes out.
+/// Crossings of one line with the skin: position, and whether it leaves the volume.
 type Crossings = Vec<(f32, bool)>;
 
 fn along(triangles: &[[Vec3; 3]], low: Vec3, high: Vec3, axis: usize) -> Option<f32> {
@@ -42,7 +42,7 @@ fn along(triangles: &[[Vec3; 3]], low: Vec3, high: Vec3, axis: usize) -> Option<
     }
     let mut lines: Vec<Crossings> = vec![Vec::new(); LINES * LINES];
     for corners in triangles {
-        // In cells of the grid, so that lines stand at whole numbers.
+        // In grid cells, so that lines are at integer coordinates.
         let flat = corners.map(|corner| {
             [
                 (corner[across] - low[across]) / step[0] - OFF_MIDDLE[0],
@@ -63,7 +63,7 @@ fn along(triangles: &[[Vec3; 3]], low: Vec3, high: Vec3, axis: usize) -> Option<
     is_closed.then(|| sum * step[0] * step[1] * met as f32 / closed as f32)
 }
 
-/// Adds the crossings of a triangle with the lines at whole numbers.
+/// Adds the crossings of a triangle with the lines at integer coordinates.
 fn cross(flat: [[f32; 2]; 3], heights: [f32; 3], lines: &mut [Crossings]) {
     let [a, b, c] = flat;
     let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
@@ -78,7 +78,7 @@ fn cross(flat: [[f32; 2]; 3], heights: [f32; 3], lines: &mut [Crossings]) {
     for row in range(1) {
         for column in range(0) {
             let p = [column as f32, row as f32];
-            // Twice the area on the far side of each edge; an edge belongs to one of its two triangles.
+            // Twice the area on the far side of each edge; an edge belongs to exactly one of its two triangles.
             let side = |from: [f32; 2], to: [f32; 2]| {
                 (to[0] - from[0]) * (p[1] - from[1]) - (p[0] - from[0]) * (to[1] - from[1])
             };
@@ -91,7 +91,7 @@ fn cross(flat: [[f32; 2]; 3], heights: [f32; 3], lines: &mut [Crossings]) {
     }
 }
 
-/// Length of a line within the skin; `None` where it does not come out as often as it goes in.
+/// Length of a line within the skin; `None` if it enters and leaves a different number of times.
 fn inside(line: &mut Crossings) -> Option<f32> {
     line.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut depth, mut length) = (0_i32, 0.0);

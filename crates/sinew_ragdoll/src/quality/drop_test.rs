@@ -1,4 +1,4 @@
-//! Eight falls and a crash: what every ragdoll must survive.
+//! Eight drops and a wall hit that every ragdoll must pass.
 
 use super::meter::CALM;
 use super::{FallQuality, QualityMeter, Verdict, judge};
@@ -18,7 +18,7 @@ const WALL_SECONDS: f32 = 3.0;
 /// Result of [`drop_test`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropReport {
-    /// The worst of the 8 drops, figure by figure; a time is `None` if any drop never came to it.
+    /// The worst value of each figure over the 8 drops; a time is `None` if any drop never reached it.
     pub drop: FallQuality,
     /// Each drop.
     pub drops: Vec<FallQuality>,
@@ -28,14 +28,14 @@ pub struct DropReport {
     pub falls: Vec<Fallen>,
     /// Verdict on the ragdoll.
     pub verdict: Verdict,
-    /// Why, a sentence each.
+    /// Reasons, one sentence each.
     pub reasons: Vec<String>,
 }
 
 /// Course of a drop onto the plane y = 0: poses of the bodies, and time in the air.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fallen {
-    /// World poses of the bodies, four times a second from the release on, and at last as they lay.
+    /// World poses of the bodies, four times a second from the release on, and the final ones.
     pub poses: Vec<Vec<Transform>>,
     /// Time after the first calm (every body below 0.3 m/s after something touched the floor) in which no body was within 1 cm of
     /// the floor, seconds.
@@ -76,7 +76,7 @@ impl Fallen {
 /// Drops the ragdoll from 1 m in eight orientations and throws it at a wall at 15 m/s.
 ///
 /// # Panics
-/// If the definition is not one that `build` gives: no bodies, masses that are not positive.
+/// If `build` could not have produced the definition: no bodies, masses that are not positive.
 pub fn drop_test(def: &RagdollDef) -> DropReport {
     let (drops, falls): (Vec<_>, Vec<_>) =
         releases().into_iter().map(|(turn, spin)| drop_once(def, turn, spin)).unzip();
@@ -87,8 +87,8 @@ pub fn drop_test(def: &RagdollDef) -> DropReport {
 }
 
 /// Orientations and angular velocities (rad/s) of the eight drops: standing, on the face, on the back, on each side, on
-/// the head, and two that tumble. That on the head is a little askew: upright, a symmetric body with a large head balances on it
-/// for seconds, which says nothing of how it comes to rest.
+/// the head, and two that tumble. The drop on the head is slightly tilted: a symmetric body with a large head can
+/// balance upright on it for seconds, which says nothing about how it settles.
 fn releases() -> [(Rotation, Vec3); 8] {
     let turned = |axis, degrees: f32| Rotation::from_axis_angle(axis, degrees.to_radians());
     let askew = turned(Vec3::Z, 40.0) * turned(Vec3::X, 25.0);
@@ -124,7 +124,7 @@ fn wall_hit(def: &RagdollDef) -> FallQuality {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
     let half_extents = Vec3::new(4.0, 3.0, 0.25);
-    // Half a metre before whatever sticks out farthest, so that long creatures do not start in the wall.
+    // Half a metre in front of the farthest point, so that long creatures do not start inside the wall.
     let pivot = def.bodies[0].character_from_body.translation;
     let front = def
         .bodies
@@ -179,7 +179,7 @@ pub(super) fn measure(world: &mut World, def: &RagdollDef, ragdoll: &Ragdoll, se
     measure_seen(world, def, ragdoll, seconds, |_, _| ())
 }
 
-/// [`measure`], and shows the world after each step, with the step's number.
+/// [`measure`] that also passes the world and the step number to a callback after each step.
 fn measure_seen(
     world: &mut World,
     def: &RagdollDef,

@@ -9,12 +9,12 @@ use sinew_anim::{LocalTransform, Rig, local_to_model};
 use sinew_math::{Affine, Transform, Vec3, max, min};
 use sinew_physics::{BodyKind, World, WorldDef};
 
-/// Joints with skin from which on one body is no ragdoll: few figures of one part have as many.
+/// Number of joints with skin above which a single body is not a ragdoll: few one-part figures have as many.
 const MANY_JOINTS: usize = 8;
-/// Joints with skin up to which one body is what there is to have.
+/// Number of joints with skin up to which a single body is correct.
 const FEW_JOINTS: usize = 2;
 
-/// Something that is wrong, and the best verdict that it leaves.
+/// A fault, and the best verdict it allows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
     /// The best verdict on a ragdoll that has it.
@@ -28,14 +28,14 @@ impl Fault {
         Self { at_most, reason }
     }
 
-    /// Lowers a verdict to what these faults leave, and adds their reasons.
+    /// Lowers a verdict to what these faults allow, and adds their reasons.
     pub fn weigh(faults: &[Self], verdict: &mut Verdict, reasons: &mut Vec<String>) {
         *verdict = faults.iter().map(|fault| fault.at_most).fold(*verdict, Verdict::min);
         reasons.extend(faults.iter().map(|fault| fault.reason.clone()));
     }
 }
 
-/// Faults of a ragdoll, however it falls: a rig of many joints in one body, left and right on one side.
+/// Faults independent of the fall: a rig of many joints with one body, left and right on the same side.
 ///
 /// # Panics
 /// If the definition has no body.
@@ -61,7 +61,7 @@ fn one_body(rig: &Rig, def: &RagdollDef) -> Option<Fault> {
     Some(Fault::new(at_most, reason))
 }
 
-/// Roots of limbs of a human that lie on each other's side, or both on one.
+/// Limb roots of a human that lie on each other's side, or both on one.
 fn sides(def: &RagdollDef) -> Option<Fault> {
     let place = |role: &str| {
         let body = def.bodies.iter().position(|body| body.role == role)?;
@@ -95,17 +95,18 @@ fn sides(def: &RagdollDef) -> Option<Fault> {
     found.into_iter().next()
 }
 
-/// Faults of what became of a character: out of the world, never still, still upright, drawn in another size while it gets up.
+/// Faults of a baked character: out of the world, never still, still upright, drawn at another size while it gets up.
 ///
 /// # Panics
-/// If the bake is not one of the input's.
+/// If the bake does not belong to the input.
 pub fn faults_of_bake(input: &BakeInput<'_>, baked: &Baked) -> Vec<Fault> {
     let fault = fell_out(input, baked).or_else(|| never_still(input, baked));
     let fault = fault.or_else(|| stays_upright(input, baked));
     fault.into_iter().chain(changes_size(input, baked)).collect()
 }
 
-/// A character that is drawn in another size while it gets up than by the clip before: the clip scales its bones, and the get-up does not.
+/// A character drawn at another size while it gets up than in the clip before: the clip scales its bones and the get-up
+/// does not.
 fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let first = &input.character.ragdoll.bodies[0];
     let mut model = Vec::new();
@@ -115,7 +116,7 @@ fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     };
     let by_clip = baked.frames.iter().find(|frame| frame.state == State::Animated)?;
     let by_clip = size(&by_clip.pose);
-    // The size of the pose before dies away in the first frames: what is farthest from it counts.
+    // The size of the previous pose fades out in the first frames, so the frame farthest from it counts.
     let rising = baked.frames.iter().filter(|frame| frame.state == State::GettingUp);
     let times = rising.map(|frame| size(&frame.pose) / by_clip);
     let off = |times: f32| max(times, 1.0 / times);
@@ -132,7 +133,7 @@ fn changes_size(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     })
 }
 
-/// A body far below everything that stands.
+/// A body far below all static geometry.
 fn fell_out(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let floor = lowest_of(input)?;
     let (rig, def) = (&input.character.rig, &input.character.ragdoll);
@@ -142,7 +143,7 @@ fn fell_out(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
         local_to_model(rig, &frame.pose, &Affine::IDENTITY, &mut model);
         let mapping = input.character.mapping();
         mapping.bodies_from_model(&model, input.world_from_character, &mut bodies);
-        // What is no number is out, too.
+        // NaN counts as out of the world too.
         let is_in = |y: f32| y >= least;
         let is_out = |place: &Transform| !is_in(place.translation.y);
         if let Some(body) = bodies.iter().position(is_out) {
@@ -157,7 +158,7 @@ fn fell_out(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     None
 }
 
-/// Height of the lowest point of all that stands, metres; `None` where nothing does.
+/// Height of the lowest point of all static geometry, metres; `None` without any.
 fn lowest_of(input: &BakeInput<'_>) -> Option<f32> {
     let mut world = World::new(WorldDef::default());
     let standing =
@@ -183,11 +184,11 @@ fn never_still(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     })
 }
 
-/// The input of a bake with the weakest [push](BakeInput::topple) forward that fells the character, if that stays upright when it goes limp and
-/// there is one.
+/// If the character stays upright when it goes limp, the input of a bake with the weakest forward
+/// [push](BakeInput::topple) that fells it, if one exists.
 ///
 /// # Panics
-/// If the bake is not one of the input's.
+/// If the bake does not belong to the input.
 pub fn toppled<'a>(input: &BakeInput<'a>, baked: &Baked) -> Option<BakeInput<'a>> {
     stays_upright(input, baked)?;
     let speed = (input.world.gravity.length() * input.character.ragdoll.height).sqrt();
@@ -199,7 +200,7 @@ pub fn toppled<'a>(input: &BakeInput<'a>, baked: &Baked) -> Option<BakeInput<'a>
     })
 }
 
-/// A body taller than wide whose highest part is, when it lies still, about as high as when it was let go.
+/// A body taller than wide whose highest part at rest is about as high as at release.
 fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let def = &input.character.ragdoll;
     let floor = input.world_from_character.translation.y;
@@ -216,7 +217,7 @@ fn stays_upright(input: &BakeInput<'_>, baked: &Baked) -> Option<Fault> {
     let top = (0..start.len()).reduce(|a, b| if start[b].y > start[a].y { b } else { a })?;
     let [begins, ends] = [&start, &end].map(|places| places[top].y - floor);
     let flat = |a: Vec3, b: Vec3| Vec3::new(a.x - b.x, 0.0, a.z - b.z).length();
-    // By what it stands on: how far it holds out its arms is no matter. Where nothing is low, by all of it.
+    // Measured by its footprint: outstretched arms do not count. If no part is low, by the whole body.
     let is_low = |at: &&Vec3| at.y - floor < 0.5 * begins;
     let low: Vec<Vec3> = end.iter().filter(is_low).copied().collect();
     let stance = if low.is_empty() { &end } else { &low };

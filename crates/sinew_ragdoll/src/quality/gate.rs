@@ -25,21 +25,21 @@ pub struct GateReport {
     pub verdicts: [usize; 3],
     /// The worst of all, figure by figure.
     pub worst: FallQuality,
-    /// Number of the first fall with the worst verdict, for a look at it alone.
+    /// Number of the first fall with the worst verdict, to replay it.
     pub worst_spawn: u64,
-    /// Why that fall has its verdict, a sentence each; empty if it is good.
+    /// Reasons for that fall's verdict, one sentence each; empty if it is good.
     pub worst_reasons: Vec<String>,
     /// Numbers of the falls that are bad, ascending.
     pub bad: Vec<u64>,
-    /// Misses of what must hold in every fall, by fall.
+    /// Violations of the hard requirements, by fall.
     pub misses: Vec<Miss>,
     lowest: Verdict,
 }
 
-/// A fall that breaks what must hold in every one of them.
+/// A fall that violates a hard requirement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Miss {
-    /// Number of the fall: [`random_fall`] shows it alone.
+    /// Number of the fall: [`random_fall`] replays it.
     pub spawn: u64,
     /// Bar that is missed.
     pub bar: Bar,
@@ -59,7 +59,7 @@ pub enum Bar {
 }
 
 impl Bar {
-    /// All of them.
+    /// All falls.
     pub const ALL: [Self; 3] = [Self::Finite, Self::EnergyGain, Self::JointGap];
 
     /// The figure's key in reports.
@@ -71,7 +71,7 @@ impl Bar {
         }
     }
 
-    /// The figure, and whether it is on the right side of the bar; a figure that is no number is not.
+    /// The figure, and whether it meets the bar; NaN does not.
     fn of(self, quality: &FallQuality) -> (f32, Side) {
         let (value, holds) = match self {
             Self::Finite => (quality.nan as f32, quality.nan == 0),
@@ -90,7 +90,7 @@ enum Side {
 }
 
 impl Default for GateReport {
-    /// Report of no fall at all.
+    /// Report of zero falls.
     fn default() -> Self {
         Self {
             spawns: 0,
@@ -106,7 +106,7 @@ impl Default for GateReport {
 }
 
 impl GateReport {
-    /// Both as one; `later` has the higher numbers.
+    /// Merges both; `later` has the higher numbers.
     pub fn and(mut self, later: Self) -> Self {
         if later.spawns == 0 {
             return self;
@@ -129,7 +129,7 @@ impl GateReport {
     }
 
     fn of_fall(spawn: u64, quality: FallQuality) -> Self {
-        // A fall has no wall hit; its own figures stand for both.
+        // A fall has no wall hit, so its own figures serve for both.
         let (verdict, reasons) = judge(&quality, &quality);
         let is = |wanted: Verdict| usize::from(verdict == wanted);
         let misses = Bar::ALL.into_iter().filter_map(|bar| match bar.of(&quality) {
@@ -149,18 +149,18 @@ impl GateReport {
     }
 }
 
-/// Lets the ragdoll fall `spawns` times; fall `k` is the same whatever `spawns` is.
+/// Simulates `spawns` falls; fall `k` does not depend on `spawns`.
 pub fn gate(def: &RagdollDef, spawns: usize) -> GateReport {
     gate_on(def, 0..spawns as u64, &Serial)
 }
 
-/// The falls of these numbers, on the threads of `runner`. The report is the same with any.
+/// The falls with these numbers, on the threads of `runner`. The report does not depend on the runner.
 pub fn gate_on(def: &RagdollDef, spawns: core::ops::Range<u64>, runner: &dyn TaskRunner) -> GateReport {
     let count = usize::try_from(spawns.end.saturating_sub(spawns.start)).unwrap_or(usize::MAX);
     let queue = Mutex::new(spawns);
     let fallen = Mutex::new(Vec::new());
     runner.run(count, &|| {
-        // Whichever thread is free takes the next: some falls last three times as long as others.
+        // A free thread takes the next fall: some last three times as long as others.
         loop {
             let next = queue.lock().unwrap_or_else(PoisonError::into_inner).next();
             let Some(spawn) = next else { break };
@@ -174,7 +174,7 @@ pub fn gate_on(def: &RagdollDef, spawns: core::ops::Range<u64>, runner: &dyn Tas
     fallen.into_iter().fold(GateReport::default(), |sum, (_, report)| sum.and(report))
 }
 
-/// One random fall: number `seed` of a [`gate`], for a look at it alone.
+/// One random fall: number `seed` of a [`gate`].
 pub fn random_fall(def: &RagdollDef, seed: u64) -> FallQuality {
     let mut random = Random::new(seed);
     let mut world = World::new(WorldDef::default());
@@ -186,8 +186,7 @@ pub fn random_fall(def: &RagdollDef, seed: u64) -> FallQuality {
     measure(&mut world, def, &ragdoll, SECONDS)
 }
 
-/// A floor, and on it nothing, a slope, a stair, or scattered boxes: static bodies, none higher than 1.1 m but for slopes, which lean out
-/// of the floor.
+/// A floor with nothing, a slope, stairs, or scattered boxes on it: static bodies, at most 1.1 m high except slopes.
 pub fn random_ground(random: &mut Random) -> Vec<BodyDef> {
     let fixed = |position: Vec3, rotation: Rotation, shape: Shape| BodyDef {
         kind: BodyKind::Static,
@@ -222,7 +221,7 @@ pub fn random_ground(random: &mut Random) -> Vec<BodyDef> {
     ground
 }
 
-/// A random pose within the limits, place and motion.
+/// A random pose within the limits, with a random position and motion.
 fn posed(def: &RagdollDef, random: &mut Random) -> Vec<BodyState> {
     let turn = random.rotation();
     let (spin, speed) = (random.in_cube() * 6.0, random.in_cube() * 5.0);

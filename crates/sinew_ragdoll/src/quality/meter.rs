@@ -28,7 +28,7 @@ pub struct QualityMeter {
 }
 
 impl QualityMeter {
-    /// For falls of about `seconds` of one ragdoll, so that memory is there from the start.
+    /// Reserves memory for falls of about `seconds` of one ragdoll.
     pub fn new(def: &RagdollDef, seconds: f32) -> Self {
         let samples = (max(seconds, 0.0) * 60.0) as usize * def.joints.len();
         // The estimate is the caller's; a wrong one must cost time, not memory.
@@ -46,7 +46,7 @@ impl QualityMeter {
         }
     }
 
-    /// A ragdoll takes over; call it when it has been spawned, before the step.
+    /// Call when a ragdoll has been spawned, before the step.
     pub fn went_limp(&mut self) {
         self.calm_steps = 0;
         self.calm_since = None;
@@ -58,7 +58,7 @@ impl QualityMeter {
         self.quality.work_in_j += work;
     }
 
-    /// The character is animated again.
+    /// Call when the character is animated again.
     pub fn got_up(&mut self, world: &World) {
         self.quality.up_s.get_or_insert(world.time() as f32);
     }
@@ -68,7 +68,7 @@ impl QualityMeter {
         self.before = world.energy();
     }
 
-    /// After a step, with the bodies still there.
+    /// Call after a step, with the bodies still in the world.
     pub fn after_step(&mut self, world: &World, ragdoll: &Ragdoll) {
         self.measure_motion(world, ragdoll);
         self.measure_rest(world, ragdoll, world.time() as f32);
@@ -79,7 +79,7 @@ impl QualityMeter {
         self.measure_motion(world, ragdoll);
     }
 
-    /// Joints, overlaps and energy. What sleeps is as it was when it fell asleep.
+    /// Joints, overlaps and energy. Sleeping bodies keep the values from when they fell asleep.
     fn measure_motion(&mut self, world: &World, ragdoll: &Ragdoll) {
         let slept = core::mem::replace(&mut self.asleep, all_sleep(world, ragdoll));
         if slept && self.asleep {
@@ -105,7 +105,7 @@ impl QualityMeter {
 
     fn measure_energy(&mut self, world: &World) {
         let after = world.energy();
-        // Differences of each kind by itself: their sums are large and lose digits.
+        // Difference per kind of energy: the sums are large and would lose digits.
         let work = world.work().total();
         self.quality.work_in_j += work;
         let rise = (after.kinetic - self.before.kinetic) + (after.potential - self.before.potential) - work;

@@ -1,4 +1,4 @@
-//! Quality of a fall: the figures of the contract, from queries to the world alone.
+//! Fall quality: the contract's figures, computed from queries to the world only.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -28,11 +28,12 @@ pub use plausible::Doubt;
 pub use rising::{RisingQuality, measure_rising};
 pub use verdict::{Verdict, judge, judge_bake};
 
-/// Figures of a character's falls, see the fields. Times are seconds of the world.
+/// Figures of a character's falls. Times are seconds of world time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FallQuality {
-    /// Largest rise of kinetic and potential energy of all dynamic bodies within one step (pushes come between steps
-    /// and do not count), less the work of motors, pins and kinematic bodies in it, as a share of the kinetic energy before it, or of 1 J per kg of the character if that is more.
+    /// Largest rise of kinetic and potential energy of all dynamic bodies within one step, minus the work of motors,
+    /// pins and kinematic bodies in it, as a share of the kinetic energy before it, or of 1 J per kg of the character
+    /// if that is more. Pushes happen between steps and do not count.
     pub energy_gain_max: f32,
     /// Work of the pushes, of motors, pins and kinematic bodies, J.
     pub work_in_j: f32,
@@ -40,7 +41,7 @@ pub struct FallQuality {
     pub joint_gap_max_m: f32,
     /// 99th percentile over joints and steps, metres.
     pub joint_gap_p99_m: f32,
-    /// Farthest beyond a joint limit, degrees.
+    /// Largest angle beyond a joint limit, degrees.
     pub limit_overshoot_max_deg: f32,
     /// 99th percentile over joints and steps, degrees.
     pub limit_overshoot_p99_deg: f32,
@@ -50,11 +51,11 @@ pub struct FallQuality {
     pub penetration_rest_max_m: f32,
     /// Deepest overlap of two bodies of the character that are meant to collide and that no joint connects, metres.
     pub nonadjacent_overlap_max_m: f32,
-    /// First contact with the world after going limp.
+    /// First contact with the world after the character went limp.
     pub first_contact_s: Option<f32>,
     /// Start of the first half second in which every body is below 0.05 rad/s and 2 cm/s.
     pub settled_s: Option<f32>,
-    /// First time that it was animated again.
+    /// First time the character was animated again.
     pub up_s: Option<f32>,
     /// Fastest spin of a body once settled, rad/s.
     pub settled_omega_max: Option<f32>,
@@ -62,6 +63,6 @@ pub struct FallQuality {
     pub asleep_s: Option<f32>,
     /// From the first moment when every body was below 0.3 m/s to sleep, seconds.
     pub calm_to_asleep_s: Option<f32>,
-    /// Bodies whose state became non-finite, counted once per step.
+    /// Number of bodies with a non-finite state, counted once per step.
     pub nan: u32,
 }

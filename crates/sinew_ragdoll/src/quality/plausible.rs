@@ -7,26 +7,26 @@ use sinew_math::{max, max3, min, min3, trig};
 
 /// Mass that a human may have, kg.
 const HUMAN: core::ops::RangeInclusive<f32> = 3.0..=300.0;
-/// Mass of a human over its height squared, kg/m²: from a starved adult's to that of the heaviest known.
+/// Mass of a human over the square of its height, kg/m²: from a starved adult to the heaviest known.
 const HUMAN_BUILD: core::ops::RangeInclusive<f32> = 10.0..=80.0;
-/// Height that a human may have who is built as an adult, metres.
+/// Height range of a human with adult proportions, metres.
 const ADULT: core::ops::RangeInclusive<f32> = 0.9..=2.6;
-/// Mass that a creature may have, kg: from a small bird's to that of a bull or a bear of the largest kind. Above it are elephants, whales
-/// and what the file's author drew in another unit, which is far more common: a wolf of 2.5 t, a wasp of 1.6 t.
+/// Mass range of a creature, kg: from a small bird to a bull or the largest bears. Heavier ones are elephants, whales
+/// and, far more often, files drawn in another unit: a wolf of 2.5 t, a wasp of 1.6 t.
 const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=1000.0;
 
-/// Doubt about a mass that was guessed: hardly any body weighs that. Where the size of a file's unit is guessed, that is what is wrong
-/// as a rule, and a verdict on the ragdoll says little.
+/// Doubt about an estimated mass: hardly any body has it. If the file's unit is guessed, the unit is usually wrong, and
+/// a verdict on the ragdoll means little.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
     /// Why, a sentence.
     pub reason: String,
-    /// Size at which the heaviest of its kind would weigh as much, as a share of its own, at most 1.
+    /// Scale at which the heaviest of its kind would have this mass, at most 1.
     size: f32,
 }
 
 impl Doubt {
-    /// Doubt about a ragdoll's mass or size; `None` if there are such bodies.
+    /// Doubt about a ragdoll's mass or size; `None` if such bodies exist.
     pub fn of(def: &RagdollDef) -> Option<Self> {
         let (kind, range) = kin(def);
         if range.contains(&def.total_mass) {
@@ -85,10 +85,11 @@ impl Doubt {
         Some(Self { reason, size: 1.0 })
     }
 
-    /// Verdict and reasons on the falls of a ragdoll in doubt, drops and bakes alike: `judge` is who judges these figures where there is
-    /// no doubt. At most `usable`, and the doubt is the first reason. The bars are metres and seconds for bodies that there are: a heavier
-    /// one is judged as it would be at the size at which the heaviest would weigh as much, at which lengths shrink with the size and times
-    /// with its root. What is outside its bar as it is stands among the reasons all the same.
+    /// Verdict and reasons for a ragdoll in doubt, from drops or bakes: `judge` judges the figures of a ragdoll without
+    /// doubt. The verdict is at most `usable`, and the doubt is the first reason. The bars are in metres and seconds
+    /// for real bodies, so a heavier ragdoll is judged at the scale where the heaviest real body would have its mass:
+    /// lengths scale with the size and times with its square root. Figures that miss their bar unscaled are still
+    /// listed among the reasons.
     pub fn judge<const N: usize>(
         &self,
         figures: [FallQuality; N],
@@ -101,7 +102,7 @@ impl Doubt {
     }
 }
 
-/// The figures of a fall that is like this one, of a body so many times as large.
+/// The figures of the same fall scaled to a body `size` times as large.
 fn at_size(quality: FallQuality, size: f32) -> FallQuality {
     let time = |seconds: Option<f32>| seconds.map(|seconds| seconds * size.sqrt());
     FallQuality {
@@ -116,7 +117,7 @@ fn at_size(quality: FallQuality, size: f32) -> FallQuality {
     }
 }
 
-/// Name of what a ragdoll is taken for, and the masses that such bodies have.
+/// Name of the kind a ragdoll is taken for, and the mass range of such bodies.
 fn kin(def: &RagdollDef) -> (&'static str, core::ops::RangeInclusive<f32>) {
     let human = def.bodies.iter().any(|body| body.role == "hips");
     if human { ("human", HUMAN) } else { ("creature", CREATURE) }
@@ -178,13 +179,13 @@ mod tests {
         };
         assert_eq!(judge(&deep(0.042), &calm).0, Verdict::Bad);
         assert_eq!(verdict(24_000.0, deep(0.042)), Verdict::Usable);
-        // A little above 1 t the size is what it is; 50 cm are deep at any.
+        // Slightly above 1 t the size is plausible; a depth of 50 cm is deep at any size.
         assert_eq!(verdict(1050.0, deep(0.042)), Verdict::Bad);
         assert_eq!(verdict(24_000.0, deep(0.5)), Verdict::Bad);
         assert_eq!(verdict(24_000.0, deep(f32::NAN)), Verdict::Bad);
         assert_eq!(verdict(24_000.0, FallQuality { nan: 1, ..calm }), Verdict::Bad);
         assert_eq!(verdict(24_000.0, FallQuality { asleep_s: None, ..calm }), Verdict::Bad);
-        // Nothing is good whose mass is in doubt, and the small are held to the bars as they are.
+        // A ragdoll with a doubtful mass is never good, and small ones are judged unscaled.
         assert_eq!(verdict(24_000.0, FallQuality { asleep_s: Some(3.0), ..calm }), Verdict::Usable);
         assert_eq!(verdict(0.013, deep(0.0)), Verdict::Usable);
         assert_eq!(verdict(0.013, deep(0.042)), Verdict::Bad);

@@ -7,20 +7,21 @@ use crate::tuning::{JUMPS, SLIDES, SLIDES_LEAST, STANDS_NEAR, STANDS_UPRIGHT};
 use sinew_anim::local_to_model;
 use sinew_math::{Affine, Vec3, max, min};
 
-/// Figures of getting up, metres; `None` where a character does not get up, or has no feet with skin.
+/// Figures of getting up, metres; `None` if a character does not get up, or has no feet with skin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RisingQuality {
-    /// Longest way that a foot slides over the floor while it stands flat on it, over the stances of all get-ups. Only on a level floor.
+    /// Largest slide of a foot over the floor while it stands flat on it, over the stances of all get-ups. Level floors
+    /// only.
     pub foot_slide_m: Option<f32>,
-    /// Farthest that a body goes in the frame of a hand-over beyond what it does in the frames before and after: from bodies to a clip, and
-    /// from a get-up to what follows.
+    /// Largest motion of a body in the frame of a hand-over beyond its motion in the frames before and after: from
+    /// bodies to a clip, and from a get-up to the next clip.
     pub pose_jump_m: Option<f32>,
 }
 
-/// Measures all get-ups of a bake; `floor` is the height of the level floor (metres), where there is one.
+/// Measures all get-ups of a bake; `floor` is the height of the level floor (metres), if any.
 ///
 /// # Panics
-/// If the bake is not one of the input's.
+/// If the bake does not belong to the input.
 pub fn measure_rising(input: &BakeInput<'_>, baked: &Baked, floor: Option<f32>) -> RisingQuality {
     let def = &*input.character;
     RisingQuality {
@@ -30,12 +31,12 @@ pub fn measure_rising(input: &BakeInput<'_>, baked: &Baked, floor: Option<f32>) 
 }
 
 impl RisingQuality {
-    /// Figures that are beyond their bars, of a character so high (metres).
+    /// Figures that miss their bars, for a character of this height (metres).
     pub fn faults(&self, height: f32) -> Vec<Fault> {
         let mut faults = Vec::new();
         let help = "--clips FILE brings a clip to get up by that is made for this body";
         let mut hold = |figure: Option<f32>, bar: f32, what: &str| {
-            // A figure that is no number is beyond it.
+            // NaN misses the bar.
             if let Some(figure) = figure.filter(|figure| *figure > bar || figure.is_nan()) {
                 let cm = 100.0 * figure;
                 let reason =
@@ -77,7 +78,7 @@ fn foot_slide(def: &CharacterDef, baked: &Baked, floor: f32) -> Option<f32> {
             if let Some((before, sum)) = stance {
                 let both = before.iter().zip(&places).filter(|(a, b)| is_on(**a) && is_on(**b));
                 let ways = both.map(|(a, b)| ((b.x - a.x) * (b.x - a.x) + (b.z - a.z) * (b.z - a.z)).sqrt());
-                // A foot that rolls or turns has a point that stays.
+                // A foot that rolls or rotates has a point that does not move.
                 slide = sum + ways.reduce(min).unwrap_or(0.0);
             }
             farthest = Some(max(farthest.unwrap_or(0.0), slide));

@@ -3,10 +3,10 @@
 use super::FallQuality;
 use super::drop_test::worse;
 
-/// Verdict on whether a ragdoll is fit for use.
+/// Verdict on a ragdoll's fitness for use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// Some figure is beyond use.
+    /// Some figure is unusable.
     Bad,
     /// Nothing breaks, but some figure is outside its limit.
     Usable,
@@ -30,7 +30,7 @@ struct Limit {
     what: &'static str,
     value: Option<f32>,
     good: f32,
-    /// Beyond it the ragdoll is bad; infinite if the figure alone never makes it so.
+    /// Beyond this value the ragdoll is bad; infinite if the figure alone never makes it bad.
     usable: f32,
 }
 
@@ -40,7 +40,7 @@ impl Limit {
     }
 }
 
-/// Judges drops and a 15 m/s wall hit together. The reasons name each figure outside its limit, and each that was not
+/// Judges drops and a 15 m/s wall hit together. The reasons name each figure beyond its limit, and each that was not
 /// measured.
 pub fn judge(drop: &FallQuality, wall: &FallQuality) -> (Verdict, Vec<String>) {
     let timed = |what, value, good, usable| Limit { what, value, good, usable };
@@ -64,8 +64,9 @@ pub fn judge(drop: &FallQuality, wall: &FallQuality) -> (Verdict, Vec<String>) {
     (verdict, reasons)
 }
 
-/// Judges whatever became of a character: hits, a travelling clip, any world. The limits are those of [`judge`], but for the
-/// times until it sleeps and the spin once settled, which hang on where it falls and on what is done to it then. The reasons name each figure outside its limit.
+/// Judges a character in any world: hits, a travelling clip. The limits are those of [`judge`], except the times to
+/// sleep and the spin after settling, which depend on the world and on later events. The reasons name each figure
+/// beyond its limit.
 pub fn judge_bake(quality: &FallQuality) -> (Verdict, Vec<String>) {
     let [broken, ajar, open, p99, overshoot] = of_joints(quality);
     verdict_of([

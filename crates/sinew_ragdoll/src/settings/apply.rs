@@ -1,4 +1,4 @@
-//! Settings that change what the stages of the build give: shapes, masses, limits, pairs.
+//! Settings that change results of the build stages: shapes, masses, limits, pairs.
 
 use super::bodies::{named, no_bone};
 use super::{BoneSettings, JointWish, Settings, SettingsError, ShapeWish};
@@ -14,7 +14,7 @@ use sinew_anim::{Rig, Take};
 use sinew_math::{Range, SwingTwistLimit};
 use sinew_physics::{JointKind, Shape};
 
-/// Builds with what is wanted otherwise; the analysis has been settled.
+/// Builds with the settings applied; the analysis is final.
 pub(super) fn build(
     rig: &Rig,
     analysis: &RigAnalysis,
@@ -61,7 +61,7 @@ impl<'a> Wishes<'a> {
         let mut wishes = Self { names, bodies: vec![BoneSettings::default(); names.len()] };
         for (name, bone) in &settings.bones {
             let place = format!("bones.{name}");
-            // A bone without a body has nothing more to be said about, and a role may be that of one.
+            // A setting for a bone without a body has no effect, and its role may belong to a body.
             let only_a_role = BoneSettings { role: bone.role, ..BoneSettings::default() } == *bone;
             if bone.body == Some(super::BodyWish::Drop) || only_a_role && bone.role.is_some() {
                 continue;
@@ -115,7 +115,7 @@ impl<'a> Wishes<'a> {
         Ok(())
     }
 
-    /// The shape of a body: `fit` is that of the build, `other` gives that of another kind.
+    /// The shape of a body: `fit` is the build's, `other` computes that of another kind.
     fn shape(&self, body: usize, fit: Fit, other: &dyn Fn(ShapeChoice) -> Fit) -> Fit {
         let wish = &self.bodies[body];
         let mut fit = match wish.shape {
@@ -135,13 +135,13 @@ impl<'a> Wishes<'a> {
         fit
     }
 
-    /// Masses as they are wanted; with a total the others make up for it.
+    /// Masses from the settings; with a total, the other bodies share the rest.
     fn weigh(&self, def: &mut RagdollDef, total: Option<f32>) {
         let wanted = |body: usize| self.bodies[body].mass;
         let given: f32 = (0..def.bodies.len()).filter_map(wanted).sum();
         let free: f32 =
             (0..def.bodies.len()).filter(|&b| wanted(b).is_none()).map(|b| def.bodies[b].mass.mass).sum();
-        // Bodies that are given more than the whole leave the others what they have.
+        // If the given masses exceed the total, the other bodies keep theirs.
         let rest = total.map(|total| (total - given) / free).filter(|rest| *rest > 0.0).unwrap_or(1.0);
         let rest = if given > 0.0 { rest } else { 1.0 };
         for body in 0..def.bodies.len() {
@@ -196,11 +196,11 @@ fn kind(kind: JointKind, wish: &BoneSettings) -> JointKind {
     }
 }
 
-/// Merges two settings of a bone: what is said later wins. With `mirror` ranges are those of the left, seen from the right:
-/// swing about z and twist have the other sign there.
+/// Merges two settings of a bone: the later one wins. With `mirror`, ranges are the left side's applied to the right:
+/// swing about z and twist change sign.
 fn merged(old: BoneSettings, new: &BoneSettings, mirror: bool) -> BoneSettings {
     let turned = |range: Range| if mirror { Range::new(-range.hi, -range.lo) } else { range };
-    // A hinge bends the same way on both sides.
+    // A hinge bends in the same direction on both sides.
     let bends = new.joint == Some(JointWish::Hinge) || new.swing_y.is_none() && new.swing_z.is_none();
     let twist = if bends { new.twist } else { new.twist.map(turned) };
     BoneSettings {

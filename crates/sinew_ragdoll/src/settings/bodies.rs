@@ -1,4 +1,4 @@
-//! Settings that change what the analysis says: unit, axis, which bones get bodies.
+//! Settings that change the analysis: unit, axis, the set of bones with bodies.
 
 use super::{BodyWish, Settings, SettingsError, Unit, instead};
 use crate::build::joint_name;
@@ -46,11 +46,11 @@ pub(super) fn settled(
     Ok(analysis)
 }
 
-/// Turns the character so that `up` of the file is up; it faces as before as nearly as that goes.
+/// Rotates the character so that `up` of the file is up; its facing changes as little as possible.
 fn stand_along(rig: &Rig, analysis: &mut RigAnalysis, up: Vec3) {
     let before = analysis.character_from_model.rotation;
     let seen = before * up;
-    // About its own left: neither side becomes the other.
+    // About its own left axis: the sides are not swapped.
     let turn = if seen.y < -0.9 {
         Rotation::from_axis_angle(Vec3::X, core::f32::consts::PI)
     } else {
@@ -74,13 +74,13 @@ fn stand_along(rig: &Rig, analysis: &mut RigAnalysis, up: Vec3) {
     }
 }
 
-/// Index of the kept bones of that name: by role, by role of both sides, or by the name of the joint.
+/// Indices of the kept bones with that name: a role, a role of both sides, or a joint name.
 fn kept_named(rig: &Rig, analysis: &RigAnalysis, name: &str) -> Vec<usize> {
     let is = |bone: &KeptBone| named(name, &bone.role.name(), &joint_name(rig, bone.joint));
     (0..analysis.kept.len()).filter(|&index| is(&analysis.kept[index])).collect()
 }
 
-/// True if a setting's name means a bone of this role and name: `upperArm` means both sides.
+/// True if a setting's name refers to a bone of this role and name: `upperArm` means both sides.
 pub(super) fn named(name: &str, role: &str, bone: &str) -> bool {
     let without_side = ["left", "right"].iter().find_map(|side| role.strip_prefix(side));
     let both = without_side.is_some_and(|part| {
@@ -99,7 +99,7 @@ fn drop(rig: &Rig, analysis: &mut RigAnalysis, name: &str, place: &str) -> Resul
     if found.is_empty() {
         return Err(unknown(rig, analysis, name, place));
     }
-    // From behind, so that indices stay.
+    // From the end, so that indices stay valid.
     found.reverse();
     for index in found {
         let Some(parent) = analysis.kept[index].parent else {
@@ -151,7 +151,7 @@ fn keep(rig: &Rig, analysis: &mut RigAnalysis, name: &str, place: &str) -> Resul
     Ok(())
 }
 
-/// Makes a bone of its own of a joint that another carried, with what hangs below it.
+/// Makes a separate bone of a joint that another bone carried, with its descendants.
 fn insert(rig: &Rig, analysis: &mut RigAnalysis, joint: JointIdx, carrier: usize) {
     let is_below = |mut at: JointIdx| loop {
         if at == joint {
@@ -203,7 +203,7 @@ fn unknown(rig: &Rig, analysis: &RigAnalysis, name: &str, place: &str) -> Settin
     no_bone(name, &known, place)
 }
 
-/// No bone has that name; `known` are those that are there.
+/// No bone has that name; `known` are the existing ones.
 pub(super) fn no_bone(name: &str, known: &[String], place: &str) -> SettingsError {
     let instead = instead(name, known.iter().map(String::as_str));
     SettingsError::at(place, format!("no bone or role `{}`; {instead}", name.escape_debug()))

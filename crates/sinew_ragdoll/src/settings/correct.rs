@@ -1,4 +1,4 @@
-//! Settings that say what the analysis could not see: roles, and what is no part of the body.
+//! Settings that supply what the analysis cannot infer: roles, and joints that are not part of the body.
 
 use super::bodies::placed;
 use super::{Settings, SettingsError, instead};
@@ -6,7 +6,7 @@ use crate::build::joint_name;
 use sinew_anim::roles::{Correction, CorrectionError, RigAnalysis, analyze_corrected};
 use sinew_anim::{JointIdx, Rig};
 
-/// The correction that the settings ask for. Of what is said twice the later counts.
+/// The correction that the settings request. If something is set twice, the later one wins.
 pub(super) fn correction(rig: &Rig, settings: &Settings) -> Result<Correction, SettingsError> {
     let mut correction = Correction::default();
     for (name, bone) in &settings.bones {
@@ -26,7 +26,7 @@ fn place_of_role(bone: &str) -> String {
     format!("bones.{bone}.role")
 }
 
-/// The analysis of what is seen of the rig, with its roles, axis and unit as they are wanted.
+/// The analysis of the rig with the requested roles, axis and unit.
 pub(super) fn corrected(
     rig: &Rig,
     seen: &Rig,

@@ -1,4 +1,4 @@
-//! Garments that settings ask for: of which chains, of what cloth.
+//! Garments requested by settings: their chains and their cloth.
 
 use super::{SettingsError, instead};
 use crate::build::joint_name;
@@ -11,10 +11,10 @@ use sinew_math::{Affine, Rotation, Vec3};
 /// Source of the garments that a character wears.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum GarmentSource {
-    /// None. Default: no file states any.
+    /// None. Default: files do not declare garments.
     #[default]
     None,
-    /// Garments that names of joints tell ([`guess_garments`]).
+    /// Garments inferred from joint names ([`guess_garments`]).
     Names,
     /// These.
     Listed(Vec<GarmentSettings>),
@@ -23,12 +23,12 @@ pub enum GarmentSource {
 /// Garment as settings describe it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GarmentSettings {
-    /// Names of the joints that its chains start at, side by side; one that ends in `*` stands for all joints whose names begin so and that do not hang on
-    /// another such, in the order in which they lie side by side.
+    /// Names of the first joints of its chains, side by side. A name that ends in `*` stands for all joints with that
+    /// prefix that do not hang on another such joint, in spatial order.
     pub chains: Vec<String>,
     /// Mesh that it is, instead of chains.
     pub mesh: Option<MeshSettings>,
-    /// True: the last chain is sewn to the first. `None`: if they stand in a ring.
+    /// True: the last chain is sewn to the first. `None`: sewn if they form a ring.
     pub closed: Option<bool>,
     /// Name and cloth; its columns do not matter.
     pub cloth: Garment,
@@ -46,7 +46,7 @@ pub struct MeshSettings {
 }
 
 impl MeshSettings {
-    /// A mesh, as far as nothing else is said.
+    /// A mesh, with defaults for everything else.
     pub fn new(name: &str) -> Self {
         Self { name: name.to_owned(), held: None, most_particles: MOST_PARTICLES }
     }
@@ -58,18 +58,20 @@ impl GarmentSource {
         matches!(self, Self::Listed(listed) if listed.iter().any(|garment| garment.mesh.is_some()))
     }
 
-    /// Leaves meshes as they are: those that it lists are no garments any more.
+    /// Removes the garments that are made from meshes.
     pub fn leave_meshes(&mut self) {
         if let Self::Listed(listed) = self {
             listed.retain(|garment| garment.mesh.is_none());
         }
     }
 
-    /// Makes sheets of the meshes that it lists ([`Rig::sheets`]), with one joint more for each particle: before the rig is analysed for the build. `analysis`
-    /// is of the rig as it is now, with its unit and axis as they are wanted; nodes of its file have numbers below `nodes`.
+    /// Makes sheets of its meshes ([`Rig::sheets`]), with one new joint per particle. Call it before the rig is
+    /// analysed for the build. `analysis` belongs to the current rig, with the requested unit and axis; nodes of its
+    /// file have indices below `nodes`.
     ///
     /// # Errors
-    /// Names that the rig does not have, with the nearest ones, and meshes that cannot be cloth: with the place.
+    /// For names that the rig does not have, with the nearest ones, and meshes that cannot be cloth; with the setting's
+    /// key.
     pub fn lay_sheets(
         &self,
         rig: &mut Rig,
@@ -77,7 +79,7 @@ impl GarmentSource {
         nodes: usize,
     ) -> Result<(), SettingsError> {
         let Self::Listed(listed) = self else { return Ok(()) };
-        // Joints that come in have no bind pose yet, and none of them moves what is still to be laid.
+        // New joints have no bind pose yet, and none of them moves the remaining meshes.
         for (index, garment) in listed.iter().enumerate() {
             let Some(mesh) = &garment.mesh else { continue };
             let said = |error: SheetError| mesh.error(rig, index, &error);
@@ -97,7 +99,7 @@ impl GarmentSource {
         Ok(())
     }
 
-    /// Joints of garments, which are no part of the body: those of the chains that it lists, and of all sheets.
+    /// Joints of garments, which are not part of the body: those of the listed chains and of all sheets.
     ///
     /// # Errors
     /// As [`garments`](Self::garments).
@@ -113,10 +115,11 @@ impl GarmentSource {
         Ok(garments.iter().flat_map(Garment::joints).chain(of_sheets).collect())
     }
 
-    /// Garments of a rig, whose sheets have been laid ([`lay_sheets`](Self::lay_sheets)).
+    /// Garments of a rig whose sheets exist ([`lay_sheets`](Self::lay_sheets)).
     ///
     /// # Errors
-    /// Names that the rig does not have, with the nearest ones, less than two chains, and a mesh that is no sheet: with the place.
+    /// For names that the rig does not have, with the nearest ones, fewer than two chains, and a mesh without a sheet;
+    /// with the setting's key.
     pub fn garments(&self, rig: &Rig) -> Result<Vec<Garment>, SettingsError> {
         match self {
             Self::None => Ok(Vec::new()),
@@ -170,7 +173,7 @@ impl MeshSettings {
     }
 }
 
-/// From the space of the model to metres with +Y up, somewhere.
+/// Transform from model space to metres with +Y up, at any position.
 fn metres_from_model(analysis: &RigAnalysis) -> Affine {
     Affine::from_scale_rotation_translation(
         Vec3::splat(analysis.unit_scale),
@@ -179,14 +182,14 @@ fn metres_from_model(analysis: &RigAnalysis) -> Affine {
     )
 }
 
-/// Chains that a name stands for, side by side, at least one.
+/// Chains that a name matches, side by side, at least one.
 pub(super) fn columns(rig: &Rig, name: &str, place: &str) -> Result<Vec<GarmentColumn>, SettingsError> {
     let tops = tops(rig, name, place)?;
     let below: Vec<GarmentColumn> = tops.iter().map(|&top| GarmentColumn::below(rig, top)).collect();
     Ok(if name.ends_with('*') { side_by_side(rig, &below) } else { below })
 }
 
-/// Joints that a name of a chain stands for, at least one.
+/// Joints that a chain name matches, at least one.
 fn tops(rig: &Rig, name: &str, place: &str) -> Result<Vec<JointIdx>, SettingsError> {
     let names: Vec<String> = (0..rig.joints.len()).map(|joint| joint_name(rig, joint)).collect();
     let fits = |joint: JointIdx| match name.strip_suffix('*') {

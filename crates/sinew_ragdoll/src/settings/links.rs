@@ -1,4 +1,4 @@
-//! Links across strands that settings ask for.
+//! Links across strands requested by settings.
 
 use super::garments::columns;
 use super::{Settings, SettingsError, SpringSource};
@@ -9,24 +9,25 @@ use sinew_math::Vec3;
 /// Links across strands as settings describe them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinkSettings {
-    /// Names of the joints that the strands start at, side by side; one that ends in `*` stands for several, as it does in the chains of a
-    /// [garment](super::GarmentSettings::chains).
+    /// Names of the first joints of the strands, side by side. A name that ends in `*` stands for several, as in the
+    /// chains of a [garment](super::GarmentSettings::chains).
     pub chains: Vec<String>,
-    /// True: the last strand is linked to the first. `None`: if they stand in a ring.
+    /// True: the last strand is linked to the first. `None`: linked if they form a ring.
     pub closed: Option<bool>,
-    /// Share and what it holds; its joints do not matter.
+    /// Share of the link and its bounds; its joints are ignored.
     pub link: SpringLink,
 }
 
 impl Settings {
-    /// Springs that a character shall wear: those of `source` (an option may say another than [`springs`](Self::springs) does), with the
-    /// [links](Self::spring_links) that are asked for. `up` is the axis of the rig that points up, unit.
+    /// Springs that a character shall wear: those of `source` (an option may override [`springs`](Self::springs)), with
+    /// the requested [links](Self::spring_links). `up` is the rig's up axis, unit.
     ///
     /// # Errors
-    /// Names that the rig does not have, with the nearest ones; less than two strands; strands that do not swing: with the place.
+    /// For names that the rig does not have, with the nearest ones; fewer than two strands; strands that do not swing;
+    /// with the setting's key.
     pub fn springs_of(&self, source: SpringSource, rig: &Rig, up: Vec3) -> Result<Springs, SettingsError> {
         let mut springs = source.springs(rig, up);
-        // Who asks for no springs asks for no links.
+        // Without springs there are no links.
         let listed = self.spring_links.as_ref().filter(|_| source != SpringSource::None);
         let Some(listed) = listed else { return Ok(springs) };
         let links = listed.iter().enumerate().map(|(index, links)| links.on(rig, &springs, index));
@@ -55,7 +56,7 @@ impl LinkSettings {
         }
         let closed = self.closed.unwrap_or_else(|| is_ring(rig, &strands));
         let mut links = self.link.across(&strands, closed);
-        // The end of a strand that nobody knows the length of.
+        // The end of a strand of unknown length.
         links.retain(|link| link.joints.iter().all(|&joint| springs.swings(joint)));
         Ok(links)
     }

@@ -1,5 +1,5 @@
-//! Settings: what a user wants otherwise than the build does it, kept beside the rig, so that they survive when the rig is exported
-//! anew: by role or by bone, never by index.
+//! Settings: a user's overrides of the build, stored beside the rig. They name bones by role or joint name, never by
+//! index, so that they survive a re-export of the rig.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -42,32 +42,33 @@ use sinew_math::{Range, Vec3};
 /// Changes that are wanted to the build. The default changes nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
-    /// Kind of all shapes; `None`: that of the options.
+    /// Kind of all shapes; `None`: the option's.
     pub shapes: Option<ShapeChoice>,
-    /// Mass of the whole, kg; `None`: that of the options.
+    /// Total mass, kg; `None`: the option's.
     pub mass: Option<f32>,
-    /// Whose distribution of mass; `None`: that of the options.
+    /// Mass distribution; `None`: the option's.
     pub sex: Option<Sex>,
-    /// Source of joint limits; `None`: what the options say.
+    /// Source of joint limits; `None`: the option's.
     pub limits: Option<LimitSource>,
     /// Length of the file's unit.
     pub unit: Option<Unit>,
     /// The file's axis that points up: unit, along an axis.
     pub up_axis: Option<Vec3>,
-    /// Bones, by role, by role without its side (both sides), or by the name of the rig's joint; later ones win.
+    /// Bones, by role, by role without its side (both sides), or by joint name; later entries win.
     pub bones: Vec<(String, BoneSettings)>,
-    /// Bones that are no part of the body, with all that hangs below them, by the name of the rig's joint: they go along, and
-    /// their skin shapes nothing.
+    /// Bones that are not part of the body, with all their descendants, by joint name: they follow their parents, and
+    /// their skin does not affect shapes.
     pub ignore: Vec<String>,
     /// Pairs of bones that shall not collide.
     pub disable: Vec<[String; 2]>,
-    /// Pairs of bones that shall collide, whatever the build thinks.
+    /// Pairs of bones that must collide, whatever the build decides.
     pub enable: Vec<[String; 2]>,
-    /// Source of the springs that the character wears; `None`: what the file states. The build of bodies does not ask for it.
+    /// Source of the springs that the character wears; `None`: the file's. The build of bodies ignores it.
     pub springs: Option<SpringSource>,
-    /// Links across strands of those springs; `None`: those that come with them.
+    /// Links across strands of those springs; `None`: the springs' own.
     pub spring_links: Option<Vec<LinkSettings>>,
-    /// Garments that the character wears. Their bones are no part of the body, as if [`ignore`](Self::ignore) named them. Default none.
+    /// Garments that the character wears. Their bones are not part of the body, as if [`ignore`](Self::ignore) named
+    /// them. Default none.
     pub garments: GarmentSource,
 }
 
@@ -77,14 +78,14 @@ pub enum SpringSource {
     /// Springs that the file states. Default.
     #[default]
     File,
-    /// Springs that the file states, and where it states none what names of joints tell ([`guess_springs`]).
+    /// Springs that the file declares, else springs inferred from joint names ([`guess_springs`]).
     Names,
     /// None.
     None,
 }
 
 impl SpringSource {
-    /// Springs of a rig whose axis `up` points up, unit.
+    /// Springs of a rig whose up axis is `up`, unit.
     pub fn springs(self, rig: &Rig, up: Vec3) -> Springs {
         match self {
             Self::None => Springs::default(),
@@ -99,22 +100,22 @@ impl SpringSource {
 pub enum Unit {
     /// Metres.
     Scale(f32),
-    /// So that the character has this height in its bind pose, metres.
+    /// Scales the character to this height in its bind pose, metres.
     Height(f32),
 }
 
 /// Changes that are wanted to the build of one bone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BoneSettings {
-    /// Part of the body that it is. Only for a bone by the name of its joint, for roles are what this changes.
+    /// Body part of the bone. Only for a bone selected by joint name, because this changes roles.
     pub role: Option<Role>,
-    /// Wish for a body of its own, or for none; `None`: as the build decides.
+    /// Forces or forbids a body of its own; `None`: the build decides.
     pub body: Option<BodyWish>,
     /// Kind of its shape.
     pub shape: Option<ShapeWish>,
     /// Factor on the fitted shape.
     pub scale: Option<f32>,
-    /// kg. Where the mass of the whole is given too, the other bodies make up for it.
+    /// kg. If the total mass is also given, the other bodies share the rest.
     pub mass: Option<f32>,
     /// Kind of its joint to the parent.
     pub joint: Option<JointWish>,
@@ -128,10 +129,10 @@ pub struct BoneSettings {
     pub friction_torque: Option<f32>,
 }
 
-/// Wish for a body of a bone, or for none.
+/// Forces or forbids a body for a bone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyWish {
-    /// It gets one, though the build would merge it into another.
+    /// The bone gets a body, even if the build would merge it into another.
     Keep,
     /// It moves with its parent's body.
     Drop,
@@ -153,26 +154,26 @@ pub enum ShapeWish {
 pub enum JointWish {
     /// Swings and twists.
     Ball,
-    /// Turns about one axis.
+    /// Rotates about one axis.
     Hinge,
     /// Swings.
     Universal,
-    /// Does not turn.
+    /// Does not rotate.
     Fixed,
 }
 
 /// Why settings cannot be followed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {
-    /// The rig cannot be built at all.
+    /// The rig cannot be built.
     #[error(transparent)]
     Build(#[from] BuildError),
     /// A setting that this rig does not allow.
     #[error("{what}")]
     Setting {
-        /// Description of what is wrong, one line.
+        /// One-line description of the problem.
         what: String,
-        /// The key that says it, such as `bones.leftHand`.
+        /// Key of the setting, such as `bones.leftHand`.
         place: String,
     },
 }
@@ -183,11 +184,11 @@ impl SettingsError {
     }
 }
 
-/// [`build`](crate::build()) with settings. What both say, the options' `None` leaves to the settings.
+/// [`build`](crate::build()) with settings. If an option is `None`, the setting applies.
 ///
 /// # Errors
-/// What `build` refuses; names that are no bone of this rig, with the nearest one; a pelvis that shall be dropped; pairs
-/// that shall collide though a joint ties them.
+/// The errors of `build`; names that match no bone of this rig, with the nearest one; a dropped pelvis; colliding pairs
+/// that a joint connects.
 pub fn build_with(
     rig: &Rig,
     analysis: &RigAnalysis,
@@ -197,14 +198,14 @@ pub fn build_with(
     build_moving(rig, analysis, &[], options, settings)
 }
 
-/// [`build_with`] for a character whose motion is known, as [`takes`](crate::build::takes()) gives it from clips: shapes
-/// that overlap in it are dealt with, and limits may be learned from it.
+/// [`build_with`] for a character whose motion is known, as [`takes`](crate::build::takes()) returns it from clips:
+/// shapes that overlap in it are corrected, and limits may be learned from it.
 ///
 /// # Errors
-/// As `build_with`; where limits are to be learned and no take moves a joint, [`BuildError::NoClips`].
+/// The errors of `build_with`; if limits are to be learned and no take moves a joint, [`BuildError::NoClips`].
 ///
 /// # Panics
-/// If a take is not one of the rig's.
+/// If a take does not belong to the rig.
 pub fn build_moving(
     rig: &Rig,
     analysis: &RigAnalysis,
@@ -219,11 +220,11 @@ pub fn build_moving(
     apply::build(&seen, &analysis, options, settings, takes)
 }
 
-/// An analysis as settings correct it: roles, what is ignored, unit and axis. Which bones get bodies is left to the build,
-/// which asks for this by itself.
+/// An analysis corrected by the settings: roles, ignored joints, unit and axis. The build decides which bones get
+/// bodies; it calls this itself.
 ///
 /// # Errors
-/// Names that the rig does not have, with the nearest ones; roles that cannot be.
+/// For names that the rig does not have, with the nearest ones, and impossible roles.
 pub fn analyze_with(
     rig: &Rig,
     analysis: &RigAnalysis,

@@ -2,17 +2,17 @@
 
 use sinew_anim::roles::{HUMANOID_ROLES, Role};
 
-/// The name among `known` that is nearest to `name`, if it is near: at most a third of its letters differ.
+/// The name in `known` nearest to `name`, if at most a third of its letters differ.
 pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let close = |&(distance, _): &(usize, &str)| distance <= name.chars().count().div_ceil(3);
     known.map(|other| (distance(name, other), other)).filter(close).min_by_key(|&(d, _)| d).map(|(_, n)| n)
 }
 
-/// The three names among `known` that are nearest to `name`, the nearest first, however far they are: those that hold it as
-/// a part, or are a part of it, before others.
+/// The three names in `known` nearest to `name`, nearest first, however far: names that contain it or are contained in
+/// it come before others.
 pub fn nearest_three<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let wanted = name.to_lowercase();
-    // One letter is a part of nearly everything.
+    // Almost every name contains a single letter.
     let is_part = |part: &str, whole: &str| part.chars().count() > 1 && whole.contains(part);
     let mut ranked: Vec<(bool, usize, &str)> = Vec::new();
     for other in known {
@@ -27,7 +27,7 @@ pub fn nearest_three<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Ve
     ranked.into_iter().map(|(_, _, other)| other).collect()
 }
 
-/// Difference of two names: as a whole, or a little more where one word of the other, or its beginning, is meant.
+/// Distance of two names: as a whole, or slightly more if `name` matches one word of the other, or its beginning.
 fn unlike(wanted: &str, other: &str) -> usize {
     let length = wanted.chars().count();
     let of_word = |word: &str| {
@@ -38,7 +38,7 @@ fn unlike(wanted: &str, other: &str) -> usize {
     words.map(of_word).fold(distance(wanted, other), usize::min)
 }
 
-/// The end of a sentence that says what there is instead of `name`: all of it if it is little, else the three nearest.
+/// The end of an error sentence that lists the existing names: all if few, else the three nearest.
 pub fn instead<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let mut known: Vec<&str> = known.collect();
     let mut seen = std::collections::BTreeSet::new();
@@ -58,7 +58,7 @@ pub fn instead<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// The role of that name, whatever its case.
+/// The role of that name, case-insensitive.
 ///
 /// # Errors
 /// No role has it: a line with the nearest three.
@@ -73,7 +73,7 @@ pub fn role_named(name: &str) -> Result<Role, String> {
     })
 }
 
-/// Levenshtein's distance, letters without case; two neighbours that changed places count as one.
+/// Levenshtein distance, case-insensitive; a swap of two neighbours counts as one edit.
 fn distance(a: &str, b: &str) -> usize {
     let lower = |text: &str| -> Vec<char> { text.chars().flat_map(char::to_lowercase).take(64).collect() };
     let (a, b) = (lower(a), lower(b));

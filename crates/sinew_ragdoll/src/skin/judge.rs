@@ -1,7 +1,7 @@
-//! From figures of the skin to what is wrong with it.
+//! Judges the figures of the skin.
 //!
-//! The bars were tuned on 43 open rigs (`docs/ragdoll.md` has their figures): each lies in the gap between rigs that look right
-//! when they lie and rigs that do not.
+//! The bars were tuned on 43 open rigs (figures in `docs/ragdoll.md`): each lies in the gap between rigs that look
+//! right at rest and rigs that do not.
 
 use super::{Phase, SkinQuality, Stage};
 use crate::def::RagdollDef;
@@ -9,26 +9,26 @@ use crate::quality::Verdict;
 use crate::tuning::{GROSS, HANGS, STANDS_OFF, SUNK_RISING};
 use sinew_math::max;
 
-/// Least share of vertices that are near their body.
+/// Least share of vertices near their body.
 const COVERED: f32 = 0.95;
-/// Largest stretch, as a share of the size: 99.9th percentile and worst. Sound rigs reach 8 % and 16 %, torn ones begin at 15 %
-/// and 24 %.
+/// Largest stretch, as a share of the size: 99.9th percentile and worst. Sound rigs reach 8 % and 16 %; torn ones start
+/// at 15 % and 24 %.
 const STRETCH: [f32; 2] = [0.10, 0.20];
-/// Stretch that is let pass because the file's own clips have it, times theirs: 99.9th percentile and worst.
+/// Stretch tolerated because the file's own clips have it, as a multiple of theirs: 99.9th percentile and worst.
 const STRETCH_OF_CLIPS: [f32; 2] = [1.5, 3.0];
-/// Largest difference of two sides, as a share of the size. Of 136 characters that were looked at, 20 differ by 2 to 4 % (a holster, a scar,
-/// an odd weight) and look alike on both sides; what looks wrong begins at 5.6 %.
+/// Largest difference between left and right, as a share of the size. Of 136 characters that were inspected, 20 differ
+/// by 2 to 4 % (a holster, a scar, an odd weight) and look symmetric; visible defects start at 5.6 %.
 const ASYMMETRY: f32 = 0.045;
 /// Largest difference of the drawn and the bound height, as a share of the size.
 const HEIGHT: f32 = 0.02;
-/// Largest depth of the lowest drawn point in the floor, as a share of the size: shapes lie inside the skin, so that noses, hair
-/// and fingers sink in.
+/// Largest depth of the lowest drawn point in the floor, as a share of the size: shapes lie inside the skin, so noses,
+/// hair and fingers sink in.
 const SUNK: f32 = 0.06;
-/// Largest height of that point above the floor, as a share of the size: there is no reason but a shape outside the skin.
+/// Largest height of that point above the floor, as a share of the size: only a shape outside the skin causes it.
 const RAISED: f32 = 0.02;
-/// Neither counts below this, metres.
+/// Smaller depths and heights do not count, metres.
 const LEAST_OFF: f32 = 0.01;
-/// Longest time in the air after calm, seconds: six steps, in which what fell asleep askew may tip over.
+/// Longest time in the air after calm, seconds: six steps, in which a body that fell asleep askew may tip over.
 const AIRBORNE: f32 = 0.1;
 
 /// Kind of trouble with the skin.
@@ -40,9 +40,9 @@ pub enum FlawKind {
     Torn,
     /// Left and right differ.
     Lopsided,
-    /// A part hangs on what it does not grow from.
+    /// A part is attached to something that it is not connected to.
     Apart,
-    /// The character is drawn in another size than it was bound in.
+    /// The character is drawn at another size than in the bind pose.
     Resized,
     /// The skin lies in the floor, or above it.
     OffFloor,
@@ -74,7 +74,7 @@ impl core::fmt::Display for Flaw {
 }
 
 impl SkinQuality {
-    /// Everything that keeps the skin from being good, with the bodies of the definition that it was measured on.
+    /// Everything that keeps the skin from being good; `definition` is the one the skin was measured on.
     ///
     /// # Panics
     /// If the figures are of a definition with more bodies.
@@ -97,7 +97,7 @@ impl SkinQuality {
         .collect()
     }
 
-    /// A verdict on bodies and skin together, of one on bodies: at most what the worst flaw leaves.
+    /// Combined verdict of bodies and skin: that on the bodies, limited by the worst skin flaw.
     pub fn verdict(flaws: &[Flaw], of_bodies: Verdict) -> Verdict {
         flaws.iter().map(|flaw| flaw.at_most).fold(of_bodies, Verdict::min)
     }
@@ -229,7 +229,8 @@ impl SkinQuality {
         Some(Flaw { at_most, ..who.flaw(FlawKind::OffFloor, said, remedy, self.worst.lowest.as_slice()) })
     }
 
-    /// The lowest point of the skin is far from the floor while the character is led by clips: in it, or, standing, above it.
+    /// While clips move the character, the lowest point of the skin is far from the floor: in it, or, if standing,
+    /// above it.
     fn stands_off(&self, who: &Who<'_>, stage: Stage) -> Option<Flaw> {
         let (height, what) = match stage {
             Stage::Standing => (self.standing_height_m, "standing before the fall"),
@@ -239,7 +240,7 @@ impl SkinQuality {
         let height = height?;
         let is_rising = stage == Stage::Rising;
         let bar = max(if is_rising { SUNK_RISING } else { STANDS_OFF } * self.size, LEAST_OFF);
-        // What flies, swims or creeps may well be above the floor.
+        // A creature that flies, swims or crawls may be above the floor.
         let may_be_above = is_rising || who.0.bodies[0].role != "hips";
         if height >= -bar && (height <= bar || may_be_above) {
             return None;
@@ -278,13 +279,13 @@ impl SkinQuality {
 struct Who<'a>(&'a RagdollDef);
 
 impl Who<'_> {
-    /// Role and bone, the latter where it says something else.
+    /// Role and bone, the bone only where it differs.
     fn name(&self, body: usize) -> String {
         let body = &self.0.bodies[body];
         if body.role == body.bone { body.role.clone() } else { format!("{} ({})", body.role, body.bone) }
     }
 
-    /// Advice where skin is far from a body: one for the joint that moves it, or a larger shape where there is none such.
+    /// Advice for skin far from a body: give its joint a body, or enlarge the shape if it has one.
     fn body_or_shape(&self, body: Option<usize>, joint: Option<&str>) -> String {
         match (body, joint.filter(|joint| !joint.is_empty())) {
             (_, Some(joint)) => {

@@ -1,8 +1,8 @@
-//! Quality of the drawn skin as it follows the bodies: what a person sees, where [`crate::quality`] measures what is computed.
+//! Quality of the drawn skin on the bodies: the visible result, where [`crate::quality`] measures the simulation.
 //!
-//! A ragdoll may rest quietly and still look broken: a limb without a body stays behind and tears the mesh, a hat sinks into the
-//! floor, a figure that was scaled twice floats. So the skin is drawn as a viewer would draw it, in the poses of the eight
-//! drops, and held against the bodies, against the floor, and against what the file's own clips do to it.
+//! A ragdoll may rest quietly and still look broken: a limb without a body stays behind and tears the mesh, a hat sinks
+//! into the floor, a figure scaled twice floats. The skin is therefore posed as a viewer would draw it, in the poses of
+//! the eight drops, and compared with the bodies, the floor, and the stretch in the file's own clips.
 //!
 //! ```
 //! # let rig = sinew::mannequin::mannequin().rig;
@@ -32,7 +32,7 @@ use sinew_math::{Affine, Transform, Vec3, max, max3, min3};
 use stretch::{Stretch, Stretched};
 use surface::{Side, Surface, may_stand};
 
-/// Most poses of clips that are looked at, evenly spread over all of them.
+/// Largest number of clip poses measured, evenly spread over all clips.
 const MOST_CLIP_POSES: usize = 64;
 
 /// Figures of the drawn skin. Metres, except where a field says otherwise.
@@ -41,35 +41,35 @@ pub struct SkinQuality {
     /// Share of the skin's vertices that are, in the bind pose, no farther than [`tolerance`](Self::tolerance) outside the shape of
     /// a body that moves them: 0..=1.
     pub covered_share: f32,
-    /// Growth of sides of the skin's triangles over the drops, beyond their length as bound: 99.9th percentile over sides and
-    /// poses, as a share of [`size`](Self::size).
+    /// Growth of triangle sides over the drops beyond their bind length: 99.9th percentile over sides and poses, as a
+    /// share of [`size`](Self::size).
     pub edge_stretch_p999: f32,
-    /// The same, largest.
+    /// The same, maximum.
     pub edge_stretch_max: f32,
-    /// The same over the file's clips; `None` where it has none.
+    /// The same over the file's clips; `None` without clips.
     pub clips_stretch_p999: Option<f32>,
-    /// The same over the file's clips, largest.
+    /// Maximum over the file's clips.
     pub clips_stretch_max: Option<f32>,
     /// Largest difference between a body and its mirror image, as a length.
     pub symmetry_error_m: f32,
-    /// Height of the drawn skin as it was bound.
+    /// Height of the drawn skin in the bind pose.
     pub bind_height_m: f32,
-    /// Height of the skin as it is drawn where the bodies are in the bind pose, by the nodes' own transforms.
+    /// Height of the skin drawn with the bodies in the bind pose, by the nodes' own transforms.
     pub drawn_height_m: f32,
-    /// Height of the drawn skin's lowest point above the floor, at the end of the drop where it is farthest from it: negative in
-    /// the floor; `None` where it never lay on one.
+    /// Height of the drawn skin's lowest point above the floor, at the end of the drop where it is farthest from it.
+    /// Negative inside the floor; `None` if it never lay on one.
     pub rest_height_m: Option<f32>,
-    /// True if every body is near the one that it hangs on, and every part of a limb hangs on that limb.
+    /// True if every body is near its parent, and every part of a limb descends from that limb.
     pub contiguous: bool,
-    /// Height of the drawn skin's lowest point above the floor while the character stands before its fall, lowest over the frames;
-    /// negative in the floor; `None` where that was not looked at.
+    /// Lowest height of the drawn skin above the floor while the character stands before its fall. Negative inside the
+    /// floor; `None` if not measured.
     pub standing_height_m: Option<f32>,
-    /// The same while it gets up, lowest over the frames.
+    /// The same while it gets up.
     pub rising_height_m: Option<f32>,
-    /// The same once it is up again, lowest over the frames.
+    /// The same once it is up again.
     pub up_height_m: Option<f32>,
-    /// Longest time of a drop that no body was near the floor after the ragdoll had been calm, seconds;
-    /// `None` where that was not looked at.
+    /// Longest time in a drop without a body near the floor after the ragdoll had become calm, seconds; `None` if not
+    /// measured.
     pub airborne_s: Option<f32>,
     /// Length that heights and stretches are shares of: the height of a human, of a creature the longest side of its skin's box.
     pub size: f32,
@@ -77,16 +77,17 @@ pub struct SkinQuality {
     pub worst: Worst,
 }
 
-/// Bodies of a definition, by index, that have the worst of each figure; `None` where nothing is wrong or no body is to blame.
+/// Bodies of a definition, by index, with the worst of each figure; `None` if nothing is wrong or no body is
+/// responsible.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Worst {
     /// Has the most vertices that are not covered.
     pub uncovered: Option<usize>,
-    /// Name of the joint that moves most of these, where it has no body of its own.
+    /// Name of the joint that moves most of these vertices, if it has no body of its own.
     pub uncovered_joint: Option<String>,
-    /// Vertices that no body moves at all, of a thousand.
+    /// Vertices that no body moves, per thousand.
     pub adrift: u32,
-    /// Moves an end of the side that is stretched most; the other end's stands second.
+    /// Moves one end of the most stretched side; the body of the other end is second.
     pub torn: Option<(usize, usize)>,
     /// Stage in which that side is stretched most.
     pub torn_in: Phase,
@@ -94,15 +95,15 @@ pub struct Worst {
     pub lowest_in: [Option<usize>; 3],
     /// Differs most from its mirror image.
     pub unlike: Option<usize>,
-    /// Is apart from its parent.
+    /// Is separate from its parent.
     pub apart: Option<usize>,
     /// Moves the lowest point at rest.
     pub lowest: Option<usize>,
-    /// Name of the joint that moves it, where that has no body of its own.
+    /// Name of the joint that moves it, if that has no body of its own.
     pub lowest_joint: Option<String>,
 }
 
-/// Part of a life in which the skin is measured.
+/// Phase of a life in which the skin is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phase {
     /// It falls in one of the drops of a [`drop_test`](crate::drop_test).
@@ -126,7 +127,8 @@ pub enum Stage {
 }
 
 impl SkinQuality {
-    /// Distance from its body at which a vertex still counts as covered, metres: 3 cm, or 5 % of the size where that is more.
+    /// Distance from its body at which a vertex still counts as covered, metres: 3 cm, or 5 % of the size if that is
+    /// more.
     pub fn tolerance(&self) -> f32 {
         tolerance(self.size)
     }
@@ -136,10 +138,11 @@ fn tolerance(size: f32) -> f32 {
     max(0.03, 0.05 * size)
 }
 
-/// Measures the skin of a rig on its ragdoll over the drops of a [`drop_test`](crate::drop_test); see [`SkinMeter::new`].
+/// Measures the skin of a rig on its ragdoll over the drops of a [`drop_test`](crate::drop_test); see
+/// [`SkinMeter::new`].
 ///
 /// # Panics
-/// As [`SkinMeter::new`], and if the falls are of another ragdoll.
+/// As [`SkinMeter::new`], and if the falls belong to another ragdoll.
 pub fn measure_skin(
     rig: &Rig,
     def: &RagdollDef,
@@ -152,7 +155,7 @@ pub fn measure_skin(
     meter.figures()
 }
 
-/// Measures a character's drawn skin pose by pose. Of large meshes and long clips a sample, always the same.
+/// Measures a character's drawn skin pose by pose. Samples large meshes and long clips deterministically.
 pub struct SkinMeter<'a> {
     rig: &'a Rig,
     surface: Surface,
@@ -170,12 +173,12 @@ pub struct SkinMeter<'a> {
 }
 
 impl<'a> SkinMeter<'a> {
-    /// Measures what does not hang on a fall: cover, sides, heights, and what the file's clips do. `bind_model` is the bind pose
-    /// (`RigAnalysis::bind_model`), `takes` are the clips.
+    /// Measures what does not depend on a fall: cover, sides, heights, and stretch in the file's clips. `bind_model` is
+    /// the bind pose (`RigAnalysis::bind_model`), `takes` are the clips.
     ///
     /// # Panics
-    /// If the definition is not one of the rig: it has no body, or names joints that the rig does not have; or if `bind_model`
-    /// or a take is not as long as the rig has joints.
+    /// If the definition does not belong to the rig: it has no body, or names joints that the rig does not have; or if
+    /// `bind_model` or a take does not have one entry per joint.
     pub fn new(rig: &'a Rig, def: &RagdollDef, bind_model: &[Affine], takes: &[Take]) -> Self {
         let surface = Surface::of(rig, def);
         let mapping = Mapping::new(rig, def, bind_model);
@@ -235,10 +238,10 @@ impl<'a> SkinMeter<'a> {
         (self.skin.clips_stretch_p999, self.skin.clips_stretch_max) = (Some(p999 / size), Some(max / size));
     }
 
-    /// The poses of drops onto a floor at y = 0, and where each ends.
+    /// The poses of drops onto a floor at y = 0, and the index where each ends.
     ///
     /// # Panics
-    /// If the falls are of another ragdoll.
+    /// If the falls belong to another ragdoll.
     pub fn follow_drops(&mut self, falls: &[Fallen]) {
         let to_world = self.to_character;
         let mut drawn = Drawn::new(self.rig, &self.mapping);
@@ -254,16 +257,17 @@ impl<'a> SkinMeter<'a> {
         }
     }
 
-    /// A pose that is shown, local transforms: how far it stretches the skin. Keeps up to 16 KiB a pose, for the percentile.
+    /// Measures the stretch of a shown pose, in local transforms. Keeps up to 16 KiB per pose, for the percentile.
     ///
     /// # Panics
-    /// If the pose is not as long as the rig has joints.
+    /// If the pose does not have one transform per joint.
     pub fn show(&mut self, phase: Phase, pose: &[LocalTransform]) {
         self.draw(pose);
         self.stretch[phase as usize].add(&self.surface, &self.palette);
     }
 
-    /// A pose above a floor at the height `floor` (metres) of the world, at a stage of the character's life: keeps the lowest point.
+    /// Measures a pose above a floor at height `floor` (metres) of the world, in a phase of the character's life: keeps
+    /// the lowest point.
     ///
     /// # Panics
     /// As [`show`](Self::show).
@@ -284,7 +288,7 @@ impl<'a> SkinMeter<'a> {
         }
     }
 
-    /// Height of the lowest point of the skin as it is drawn, and its vertex, of those whose body counts.
+    /// Height and index of the lowest drawn vertex whose body counts.
     fn lowest(&self, to_world: &Affine, counts: impl Fn(Option<usize>) -> bool) -> (f32, usize) {
         let mut lowest = (f32::INFINITY, 0);
         for &vertex in self.surface.sample.iter().filter(|&&vertex| counts(self.surface.owner(vertex))) {
@@ -351,13 +355,13 @@ impl Drawn {
         Self { physical, pose }
     }
 
-    /// Poses the rig for bodies at these world poses, of a character that stands at the world's origin.
+    /// Poses the rig for bodies at these world poses, for a character at the world's origin.
     fn pose_by(&mut self, rig: &Rig, mapping: &Mapping, world_from_body: &[Transform]) {
         self.physical.pose(mapping, rig, Transform::IDENTITY, world_from_body, &mut self.pose);
     }
 }
 
-/// Least and greatest corner of the skin in a pose, character space; of no skin at all the origin.
+/// Minimum and maximum corner of the skin in a pose, character space; the origin without skin.
 fn bounds(surface: &Surface, palette: &[Affine], to_character: &Affine) -> (Vec3, Vec3) {
     let places = surface.sample.iter().map(|&vertex| to_character.point(surface.place(palette, vertex)));
     let corners = places.filter(|place| place.is_finite()).fold(None, |corners, place| {
@@ -391,8 +395,8 @@ fn without_body(
     (joint != def.bodies[body].joint).then(|| rig.joints[joint].name.clone())
 }
 
-/// Writes which share of the skin is near its body, and who has most of the rest; gives that rest: the body that moves each vertex
-/// and the joint.
+/// Writes the share of the skin near its body and who moves most of the rest. Returns the rest: the body and the joint
+/// that move each vertex.
 fn cover(
     skin: &mut SkinQuality,
     surface: &Surface,

@@ -1,4 +1,4 @@
-//! Left against right, and whether limbs hang together: what the definition alone tells.
+//! Compares left with right and checks that limbs are connected, from the definition alone.
 
 use crate::build::bones::Bones;
 use crate::build::part::Part;
@@ -11,10 +11,10 @@ use sinew_physics::convex::gap;
 
 /// The largest difference of two sides, metres, and the body that has it.
 ///
-/// Compared are lengths that do not depend on the pose: from the pivot to the body's middle, the shape's bounding radius, and what
-/// the masses differ by as a length (a third of their relative difference, times the radius: a mass goes by the cube of a
-/// length). A human's part whose twin has no body differs by all of its radius. Creatures' twins are found by their pivots, and
-/// what has none is not compared: a body with one claw is no fault, nor is a sword in one hand.
+/// The compared lengths do not depend on the pose: pivot to body centre, the shape's bounding radius, and the mass
+/// difference as a length (a third of the relative difference, times the radius, because mass grows with the cube of a
+/// length). A human's part whose twin has no body differs by its whole radius. Creatures' twins are matched by their
+/// pivots, and parts without a twin are not compared: a body with one claw or a sword in one hand is no fault.
 pub(super) fn symmetry_error(def: &RagdollDef, bones: &Bones, size: f32) -> (f32, Option<usize>) {
     let mut worst = (0.0, None);
     for body in (1..def.bodies.len()).filter(|&body| !bones.list[body].is_prop) {
@@ -66,19 +66,20 @@ fn difference(def: &RagdollDef, bones: &Bones, body: usize, twin: usize) -> f32 
     max(max((away(body) - away(twin)).abs(), (radius(body) - radius(twin)).abs()), masses)
 }
 
-/// True if a hand is so much larger than the other that there is something in it, which its shape goes around.
+/// True if a hand is so much larger than the other that it must hold something that its shape encloses.
 fn holds(def: &RagdollDef, bones: &Bones, hand: usize, other: usize) -> bool {
     let radius = |body: usize| def.bodies[body].shape.bounding_radius();
     bones.list[hand].part == Part::Hand && radius(hand) > BURDENED * radius(other)
 }
 
-/// Joints between a body and what most of its skin runs into: of a thigh whose skin runs into the tail by way of two parts of the
-/// hip, four. Feet that hang on the root are five from their shanks.
+/// Number of joints between a body and the body that most of its skin continues into: four for a thigh whose skin
+/// continues into the tail across two hip parts. Feet attached to the root are five from their shanks.
 const NEAR: usize = 4;
 
-/// The first body that hangs on what it does not grow from: most sides of triangles between its skin, with that of all that hangs
-/// on it, and other skin lead to a body more than four joints away; or, where there are none, its shape is far from its
-/// parent's; or a part of a limb hangs on none of that limb. `links` are the bodies at both ends of such sides.
+/// The first body attached to something it is not connected to: most triangle sides that link its skin (with its
+/// descendants') to other skin lead to a body more than four joints away; or, without such sides, its shape is far from
+/// its parent's; or a part of a limb is attached to no part of that limb. `links` are the bodies at both ends of such
+/// sides.
 pub(super) fn apart(def: &RagdollDef, bones: &Bones, links: &[(usize, usize)], size: f32) -> Option<usize> {
     let is_apart = |joint: &&RagdollJointDef| {
         let far = match neighbour(bones, links, joint.child) {
@@ -90,7 +91,7 @@ pub(super) fn apart(def: &RagdollDef, bones: &Bones, links: &[(usize, usize)], s
     def.joints.iter().find(is_apart).map(|joint| joint.child)
 }
 
-/// The body outside that most links of a body and all below it lead to.
+/// The body outside a subtree that most links of the subtree lead to.
 fn neighbour(bones: &Bones, links: &[(usize, usize)], body: usize) -> Option<usize> {
     let mut below = vec![false; bones.list.len()];
     below[body] = true;
@@ -112,11 +113,11 @@ fn neighbour(bones: &Bones, links: &[(usize, usize)], body: usize) -> Option<usi
 fn is_loose(def: &RagdollDef, joint: &RagdollJointDef, size: f32) -> bool {
     let (parent, child) = (&def.bodies[joint.parent], &def.bodies[joint.child]);
     let gap = gap(&parent.shape, &parent.character_from_body, &child.shape, &child.character_from_body);
-    // What cannot be measured is no bridge.
+    // A side that cannot be measured is no bridge.
     !gap.is_some_and(|gap| gap.distance <= LOOSE * size)
 }
 
-/// True if a part of a limb hangs on that limb, where it has a part nearer to the trunk.
+/// True if a part of a limb is attached to that limb, where the limb has a part nearer to the trunk.
 fn in_order(bones: &Bones, parent: usize, child: usize) -> bool {
     use Role::{Foot, Hand, LimbSegment, LowerArm, LowerLeg, TailSegment, UpperArm, UpperLeg};
     let is = |role| move |other: Role| other == role;

@@ -4,7 +4,7 @@ use super::surface::{Side, Surface};
 use crate::tuning::STRETCH_PERCENTILE;
 use sinew_math::{Affine, max};
 
-/// Growth of sides beyond their length as bound, metres.
+/// Growth of sides beyond their bind length, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Stretched {
     /// 99.9th percentile over the sides of all triangles and all poses.
@@ -37,7 +37,7 @@ impl Stretch {
     pub fn add(&mut self, surface: &Surface, palette: &[Affine]) {
         for (index, side) in surface.sides.iter().enumerate() {
             let longer = length(surface, palette, side) * self.unit_scale - self.bound[index];
-            // What is not finite is as long as can be.
+            // A side that is not finite counts as infinitely long.
             let longer = if longer.is_finite() { max(longer, 0.0) } else { f32::INFINITY };
             self.longer.push(longer);
             if longer > self.worst.max {
@@ -50,7 +50,7 @@ impl Stretch {
     pub fn take(&mut self, surface: &Surface) -> Stretched {
         let mut longer = core::mem::take(&mut self.longer);
         let worst = core::mem::take(&mut self.worst);
-        // The sides that no pose stretches rank below the others.
+        // Sides that no pose stretches rank below the others.
         let share = 1.0 - (1.0 - STRETCH_PERCENTILE) / max(surface.stretchable, 1e-6);
         if longer.is_empty() || share <= 0.0 {
             return worst;

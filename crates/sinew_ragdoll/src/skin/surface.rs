@@ -1,4 +1,5 @@
-//! The drawn skin of a character as plain vertices: what moves each of them, and between which it may tear.
+//! The drawn skin of a character as plain vertices: the bodies that move each one, and the sides along which it may
+//! tear.
 
 use crate::def::RagdollDef;
 use crate::fit::surface::carried;
@@ -7,9 +8,9 @@ use sinew_anim::roles::{HUMANOID_ROLES, Role};
 use sinew_anim::{JointIdx, Primitive, Rig, RigMesh};
 use sinew_math::{Affine, Mat3, Vec3};
 
-/// Most vertices that are looked at: of larger meshes every so many.
+/// Largest number of vertices measured: of larger meshes every n-th.
 const MOST_VERTICES: usize = 8192;
-/// Most sides of triangles that are looked at, of those that a pose can stretch.
+/// Largest number of triangle sides measured, of those that a pose can stretch.
 const MOST_SIDES: usize = 4096;
 
 /// A joint that moves vertices, and where they were when they were bound to it.
@@ -20,7 +21,7 @@ struct Slot {
     inverse_bind: Affine,
 }
 
-/// A vertex in mesh space with what moves it: indices of slots and their weights.
+/// A vertex in mesh space with slot indices and weights.
 #[derive(Clone, Copy, Debug)]
 struct Vertex {
     position: Vec3,
@@ -28,20 +29,20 @@ struct Vertex {
     weights: [f32; 4],
 }
 
-/// A side of a triangle, whose ends different joints move.
+/// A triangle side whose ends are moved by different joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Side(pub usize, pub usize);
 
-/// The drawn skin: meshes with a skin, and those without one that hang on a body's bone. Deterministic samples of large ones.
+/// The drawn skin: meshes with a skin, and rigid meshes attached to a body's bone. Deterministic samples of large ones.
 #[derive(Clone, Debug)]
 pub(crate) struct Surface {
     slots: Vec<Slot>,
     vertices: Vec<Vertex>,
-    /// Body that carries each slot; `None` for what hangs on no body.
+    /// Body that carries each slot; `None` if no body does.
     owners: Vec<Option<usize>>,
-    /// Vertices that stand for all.
+    /// Sampled vertices.
     pub sample: Vec<usize>,
-    /// Sides that a pose can stretch, or as many of them as stand for all.
+    /// Sides that a pose can stretch, sampled.
     pub sides: Vec<Side>,
     /// Share of all sides that a pose can stretch, 0..=1.
     pub stretchable: f32,
@@ -61,7 +62,7 @@ impl Surface {
         Self { slots: raw.slots, vertices: raw.vertices, owners, sample, sides, stretchable }
     }
 
-    /// These vertices alone, with the slots that move them; no sides.
+    /// Only these vertices, with the slots that move them; no sides.
     pub fn part(&self, vertices: &[usize]) -> Self {
         let mut part = Self {
             slots: Vec::new(),
@@ -98,7 +99,7 @@ impl Surface {
         palette.extend(self.slots.iter().map(|slot| model[slot.joint] * slot.inverse_bind));
     }
 
-    /// Position of a vertex, in the space that the matrices of `palette` lead to.
+    /// Position of a vertex in the target space of the matrices in `palette`.
     pub fn place(&self, palette: &[Affine], vertex: usize) -> Vec3 {
         let Vertex { position, slots, weights } = self.vertices[vertex];
         // Most of a figure's vertices follow one joint.
@@ -116,7 +117,8 @@ impl Surface {
         sum.point(position)
     }
 
-    /// Bodies that move a vertex, and how much: at most four, each once; what no body carries is left out.
+    /// Bodies that move a vertex, with weights: at most four, each once; without weights of joints that no body
+    /// carries.
     pub fn pulls(&self, vertex: usize) -> impl Iterator<Item = (usize, f32)> {
         let Vertex { slots, weights, .. } = self.vertices[vertex];
         let mut pulls = [(0_usize, 0.0_f32); 4];
@@ -134,13 +136,13 @@ impl Surface {
         pulls.into_iter().take(count)
     }
 
-    /// Bodies at both ends of the sides whose ends different bodies move.
+    /// Bodies at both ends of the sides whose ends are moved by different bodies.
     pub fn links(&self) -> Vec<(usize, usize)> {
         let link = |&Side(a, b): &Side| Some((self.owner(a)?, self.owner(b)?));
         self.sides.iter().filter_map(link).filter(|(a, b)| a != b).collect()
     }
 
-    /// The joint on a body that moves a vertex most; `None` where none does.
+    /// The joint with a body that moves a vertex most; `None` without one.
     pub fn mover(&self, vertex: usize) -> Option<JointIdx> {
         let Vertex { slots, weights, .. } = self.vertices[vertex];
         let on_bodies = slots
@@ -151,13 +153,13 @@ impl Surface {
         most.map(|(slot, _)| self.slots[slot as usize].joint)
     }
 
-    /// The body that moves a vertex most; `None` where none does.
+    /// The body that moves a vertex most; `None` without one.
     pub fn owner(&self, vertex: usize) -> Option<usize> {
         self.pulls(vertex).reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(body, _)| body)
     }
 }
 
-/// Everything before samples are taken.
+/// The full surface before sampling.
 #[derive(Default)]
 struct Raw {
     slots: Vec<Slot>,
@@ -177,14 +179,14 @@ impl Raw {
         self.slots.push(Slot { joint: mesh.joint, inverse_bind: Affine::IDENTITY });
         for primitive in &mesh.primitives {
             let is_skinned = mesh.skin.is_some() && !primitive.joints.is_empty();
-            // Scenery in the file is no part of the character.
+            // Scenery in the file is not part of the character.
             if is_skinned || carried[mesh.joint].is_some() {
                 self.add_primitive(primitive, is_skinned.then_some(first), rigid);
             }
         }
     }
 
-    /// Vertices and sides of a part; `first` is the slot that the part's slot 0 is, `rigid` that of a part without weights.
+    /// Vertices and sides of a part; `first` is the slot of the part's slot 0, `rigid` that of a part without weights.
     fn add_primitive(&mut self, primitive: &Primitive, first: Option<usize>, rigid: usize) {
         let base = self.vertices.len();
         for (index, &position) in primitive.positions.iter().enumerate() {
@@ -213,7 +215,7 @@ impl Raw {
     }
 }
 
-/// True if the same joints move both with the same weights.
+/// True if the same joints move both with equal weights.
 fn alike(a: &Vertex, b: &Vertex) -> bool {
     let weight = |of: &Vertex, slot: u32| -> f32 {
         of.slots.iter().zip(of.weights).filter(|(at, _)| **at == slot).map(|(_, weight)| weight).sum()
@@ -222,14 +224,14 @@ fn alike(a: &Vertex, b: &Vertex) -> bool {
     slots.all(|&slot| (weight(a, slot) - weight(b, slot)).abs() <= SAME_WEIGHTS)
 }
 
-/// At most `most` of the indices below `count`, evenly spread, the first among them.
+/// At most `most` of the indices below `count`, evenly spread, including the first.
 fn strided(count: usize, most: usize) -> Vec<usize> {
     let used = usize::min(count, most);
-    // Of a count that fits in memory the product does not overflow on 64 bits; on 32 it is taken wide.
+    // For a count that fits in memory the product does not overflow in 64 bits; 32-bit targets widen it.
     (0..used).map(|k| (k as u64 * count as u64 / used as u64) as usize).collect()
 }
 
-/// Per body whether a character may stand on its skin: not on a human's hands and forearms, nor on what they hold.
+/// Per body, true if a character may stand on its skin: false for a human's hands and forearms and what they hold.
 pub(crate) fn may_stand(def: &RagdollDef) -> Vec<bool> {
     let is_human = def.bodies[0].role == "hips";
     let may = |role: &str| {

@@ -5,7 +5,7 @@ use sinew_anim::springs::{ColliderShape, Side};
 use sinew_math::{Affine, Mat3, Vec3, clamp, max, normalize_or};
 use sinew_physics::{BodyId, NearestTo, Probe, Shape, ShapeCast, World};
 
-/// Way out of a collider: unit direction, and how far the surface of a ball is from it, metres; negative: so deep in it.
+/// Exit direction from a collider, unit, and signed distance of the surface of a ball from it, metres; negative inside.
 #[derive(Clone, Copy)]
 pub(super) struct Gap {
     pub direction: Vec3,
@@ -16,7 +16,7 @@ pub(super) struct Gap {
 /// largest axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Placed {
-    /// A ball, or a capsule whose other end is `along` from here.
+    /// A ball, or a capsule whose other end is at offset `along`.
     Round {
         head: Vec3,
         along: Vec3,
@@ -51,7 +51,7 @@ impl Placed {
         }
     }
 
-    /// Gap between it and a ball that is in it; `None` for one that is clear of it.
+    /// Gap between it and a ball that overlaps it; `None` if they are separate.
     #[inline]
     pub fn touch(&self, center: Vec3, radius: f32) -> Option<Gap> {
         match *self {
@@ -85,14 +85,14 @@ impl Placed {
 }
 
 impl Placed {
-    /// Place to which a ball comes that goes so far that it could pass through, and would: along the surface that it meets first. Places are those in the
-    /// collider's own motion. `None` if it meets nothing.
+    /// End position of a fast ball that would pass through the collider: along the first surface it hits. Positions are
+    /// relative to the collider's own motion. `None` if it hits nothing.
     #[inline]
     pub fn stop(&self, from: Vec3, to: Vec3, radius: f32) -> Option<Vec3> {
         let Self::Round { head, along, radius: own, keeps: Side::Outside } = *self else { return None };
         let way = to - from;
         let reach = own + radius;
-        // A shorter way ends in it, and on this side.
+        // A shorter motion ends inside it, on this side.
         if way.length_squared() <= reach * reach {
             return None;
         }
@@ -116,7 +116,7 @@ impl Placed {
     }
 }
 
-/// The end of a way that has met a surface at a place, without what leads into it.
+/// The end of a motion that hit a surface at a position, without the component into the surface.
 fn along_surface(met: Vec3, to: Vec3, normal: Vec3) -> Option<Vec3> {
     let into = (to - met).dot(normal);
     (into < 0.0).then(|| to - normal * into)
@@ -135,7 +135,7 @@ fn scale(m: &Affine) -> f32 {
     max(m.x_axis.length(), max(m.y_axis.length(), m.z_axis.length()))
 }
 
-/// The world with the character's own bodies in it, which are no part of it to the character's springs.
+/// The world with the character's own bodies, which the character's springs ignore.
 #[derive(Clone, Copy)]
 pub(super) struct Surroundings<'a> {
     pub world: &'a World,
@@ -143,19 +143,19 @@ pub(super) struct Surroundings<'a> {
 }
 
 impl Surroundings<'_> {
-    /// True if anything is within `reach` of a place, metres.
+    /// True if anything is within `reach` of a position, metres.
     pub fn are_near(&self, center: Vec3, reach: f32) -> bool {
         let question = NearestTo { point: center, within: reach };
         self.world.query().accept(|body, _| !self.own.contains(&body)).any(&question)
     }
 
-    /// Place to which a ball comes that goes so far that it could pass through something thin, and would.
+    /// End position of a fast ball that would pass through a thin obstacle.
     pub fn stop(&self, from: Vec3, to: Vec3, radius: f32) -> Option<Vec3> {
         let translation = to - from;
         if translation.length() <= max(radius, THIN) {
             return None;
         }
-        // Half of it, so that one that slides on something does not meet it.
+        // Half of it, so that a ball that slides on a surface does not hit it.
         let ball = Shape::Sphere { radius: 0.5 * radius };
         let question = ShapeCast { probe: Probe::at(ball, from), translation };
         let hit = self.world.query().accept(|body, _| !self.own.contains(&body)).first(&question)?;
@@ -165,7 +165,7 @@ impl Surroundings<'_> {
         along_surface(from + translation * hit.fraction, to, hit.normal)
     }
 
-    /// Gap between a ball and what is deepest in it.
+    /// Deepest gap between a ball and the world.
     pub fn touch(&self, center: Vec3, radius: f32) -> Option<Gap> {
         let question = NearestTo { point: center, within: radius };
         let near = self.world.query().accept(|body, _| !self.own.contains(&body)).first(&question)?;

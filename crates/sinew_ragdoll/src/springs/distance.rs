@@ -1,4 +1,4 @@
-//! Springs that are seen from afar: they ease to the pose, then cost nothing, and come back with the pose's own motion.
+//! Level of detail of springs: distant ones ease to the pose, then cost nothing, and resume with the pose's own motion.
 
 use super::step::Mode;
 use super::tuning::{EASE, GONE};
@@ -7,11 +7,12 @@ use sinew_anim::LocalTransform;
 use sinew_math::{Affine, Rotation, Vec3, trig};
 
 impl SpringSwing {
-    /// Takes the springs a step nearer to the pose, instead of [`step`](Self::step): what every bone is turned from it falls to 1/e in 0.3 s. Once nothing of that is left,
-    /// nothing is computed any more ([`is_away`](Self::is_away)); springs that have not been stepped yet are gone at once.
+    /// Moves the springs one step nearer to the pose, instead of [`step`](Self::step): each bone's rotation from the
+    /// pose falls to 1/e in 0.3 s. Once the rest is negligible, nothing is computed any more
+    /// ([`is_away`](Self::is_away)); springs that have not been stepped yet are away at once.
     ///
     /// # Panics
-    /// If the pose is not as long as the rig the springs were made from.
+    /// If the pose does not have one transform per joint of the springs' rig.
     pub fn ease(&mut self, step: &SpringStep<'_>) {
         let pose = |joint: usize| step.pose[joint].rotation;
         match self.mode {
@@ -21,7 +22,7 @@ impl SpringSwing {
                 let turned = step.rig.joints().zip(&self.turns);
                 let offset = |(joint, &turn): (usize, &Rotation)| {
                     let offset = (pose(joint).inverse() * turn).to_scaled_axis();
-                    // What numbers cannot hold never goes away by itself.
+                    // A non-finite rotation would never decay.
                     if offset.is_finite() { offset } else { Vec3::ZERO }
                 };
                 self.offsets.clear();
@@ -50,16 +51,16 @@ impl SpringSwing {
         self.mode == Mode::Away
     }
 
-    /// True if they were eased last, whether or not something of the way is left.
+    /// True if the last update eased the springs, whether or not a rotation remains.
     pub fn is_eased(&self) -> bool {
         matches!(self.mode, Mode::Easing | Mode::Away)
     }
 
-    /// Has springs that were eased swing again, instead of the first [`step`](Self::step): they are shown where they were eased to, and
-    /// begin the next step with the motion that they had then from the pose of a step ago, as it was shown, and the root that was above it.
+    /// Resumes springs that were eased, instead of the first [`step`](Self::step): they start at the eased rotations,
+    /// with the motion of the pose and root since the previous step.
     ///
     /// # Panics
-    /// If a pose is not as long as the rig the springs were made from.
+    /// If a pose does not have one transform per joint of the springs' rig.
     pub fn take_up(&mut self, step: &SpringStep<'_>, earlier: &[LocalTransform], earlier_root: Affine) {
         self.ease(step);
         let rig = step.rig;

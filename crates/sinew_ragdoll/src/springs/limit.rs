@@ -13,7 +13,7 @@ pub(super) struct Limit {
 }
 
 impl Limit {
-    /// For a bone whose tip lies at `axis` from its joint, unit.
+    /// For a bone whose tip is in the direction `axis` from its joint, unit.
     pub fn new(limit: &SpringLimit, axis: Vec3) -> Self {
         let along = Rotation::from_arc(Vec3::Y, axis);
         Self { kind: limit.kind, joint_from_limit: (along * limit.rotation).normalize() }

@@ -1,28 +1,29 @@
-//! Springs that a character wears: hair, tails, ears, straps, skirts. They swing behind whatever moves the character (clips,
-//! the mover, its muscles, its fall), and come up against colliders of their own, its body, the world and others in it.
+//! Springs worn by a character: hair, tails, ears, straps, skirts. They follow every motion of the character (clips,
+//! mover, muscles, falls) and collide with their own colliders, the character's body, the world and other characters.
 //!
-//! **Law.** Every spring bone has a tip that is held at the bone's length from its joint. The law is the reference of
-//! [VRMC_springBone 1.0](https://github.com/vrm-c/vrm-specification/tree/master/specification/VRMC_springBone-1.0), which
-//! advances the tip by Verlet's rule once a frame and therefore swings otherwise at every frame rate. Authors tune it at 60 frames a
-//! second; here it **always ticks at 60 Hz** ([`TICK`]), whatever the step of the world:
+//! **Law.** Every spring bone has a tip at the bone's length from its joint. The law is the reference of
+//! [VRMC_springBone 1.0](https://github.com/vrm-c/vrm-specification/tree/master/specification/VRMC_springBone-1.0),
+//! which advances the tip by Verlet integration once per frame, so its motion depends on the frame rate. Authors tune
+//! it at 60 frames per second; here it **always ticks at 60 Hz** ([`TICK`]), whatever the world's step:
 //!
 //! ```text
 //! x' = x + (1 − drag) (x − x₋₁) + TICK (stiffness r + gravity + drag · wind)      then the length, limits, colliders
 //! ```
 //!
-//! with the joint's place and rest direction `r` at the time of the tick, on a parabola through the last three poses. What is shown at
-//! times between two ticks continues the last one along the closed form of the motion that it samples, free flight
-//! through a medium with a constant force: after the share `ρ` of a tick, with `d = 1 − drag`,
+//! with the joint's position and rest direction `r` at the time of the tick, on a parabola through the last three
+//! poses. Between two ticks the shown state continues the last one along the closed form of the sampled motion, free
+//! flight through a medium with a constant force: after the share `ρ` of a tick, with `d = 1 − drag`,
 //!
 //! ```text
 //! x(ρ) = x + v ρ + (x − x₋₁ − v) d (1 − d^ρ) / (1 − d),      v = TICK · force / (1 − d)
 //! ```
 //!
-//! which is the tick itself for `ρ = 1`. What length, limits and colliders do to the tip in the whole tick is part of its force: a tip that
-//! they keep at rest is shown at rest, also where it cannot get out of them. Nothing of it is kept, so errors do not add up: the path is the same at 30 and 240 steps
-//! a second but for what lies between two poses (ADR 0020).
+//! which equals the tick for `ρ = 1`. The effect of length, limits and colliders over the whole tick is part of the
+//! tip's force, so a tip that they hold at rest is shown at rest, even inside a collider. The interpolation stores
+//! nothing, so errors do not accumulate: the path is the same at 30 and 240 steps per second except for motion between
+//! two poses (ADR 0020).
 //!
-//! Springs are light: they take their motion from the character and give none back.
+//! Springs are massless to the character: they follow its motion and exert no force on it.
 //!
 //! ```
 //! use sinew_anim::rest_pose;

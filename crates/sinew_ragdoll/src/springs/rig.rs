@@ -1,4 +1,4 @@
-//! Springs as they are stepped: in metres, joints that matter alone, parents first.
+//! Springs prepared for stepping: in metres, only the relevant joints, parents first.
 
 use super::limit::Limit;
 use crate::def::RagdollDef;
@@ -8,17 +8,17 @@ use sinew_anim::{JointIdx, Rig};
 use sinew_math::{Affine, Transform, Vec3, clamp, max, normalize_or};
 use sinew_physics::Shape;
 
-/// Joint that springs hang on, swing with, or carry colliders.
+/// Joint that springs hang on or move with, or that carries colliders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Node {
     pub joint: JointIdx,
     /// Index among the nodes; smaller than its own.
     pub parent: Option<usize>,
-    /// Bone that turns it.
+    /// Bone that rotates it.
     pub bone: Option<usize>,
-    /// It swings, or something above it does: such nodes come after all that do not.
+    /// It or one of its ancestors swings: such nodes come after all that do not.
     pub swings: bool,
-    /// Another node, a collider or a centre hangs on it.
+    /// Another node, a collider or a centre is attached to it.
     pub carries: bool,
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Bone {
     pub length: f32,
     /// m/s toward the rest pose.
     pub stiffness: f32,
-    /// m/s, character axes: where the character stands does not turn it.
+    /// m/s, character axes: the character's facing does not rotate it.
     pub gravity: Vec3,
     pub drag: f32,
     /// Metres.
@@ -45,9 +45,9 @@ pub(super) struct Bone {
 /// Chain of bones.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Chain {
-    /// Node in whose space inertia is felt.
+    /// Node in whose space inertia is measured.
     pub center: Option<usize>,
-    /// Indices of colliders, those that are there.
+    /// Indices of existing colliders.
     pub colliders: Vec<usize>,
     pub hits_body: bool,
 }
@@ -76,28 +76,29 @@ pub struct SpringRig {
     pub(super) nodes: Vec<Node>,
     /// Number of nodes that do not swing; they are the first.
     pub(super) stills: usize,
-    /// By node, ascending, so that what hangs on a bone comes after it.
+    /// By node, ascending, so that descendants of a bone come after it.
     pub(super) bones: Vec<Bone>,
     pub(super) chains: Vec<Chain>,
     pub(super) colliders: Vec<Collider>,
     pub(super) links: Vec<Link>,
-    /// A collider hangs on what swings.
+    /// A collider is attached to a swinging node.
     pub(super) swinging_colliders: bool,
-    /// Shapes of the ragdoll's bodies, for chains that meet them.
+    /// Shapes of the ragdoll's bodies, for chains that collide with them.
     pub(super) bodies: Vec<Shape>,
-    /// Bits of the first 64 bodies that each bone is clear of when at rest in the bind pose, and so may meet.
+    /// Bit mask of the first 64 bodies that each bone is clear of in the bind pose, and so collides with.
     pub(super) meets: Vec<u64>,
-    /// Nodes that chains hang on, each with the farthest that a tip comes from it, metres.
+    /// Nodes that chains are attached to, each with the largest distance that a tip can have from it, metres.
     pub(super) anchors: Vec<(usize, f32)>,
     left_out: Vec<JointIdx>,
 }
 
 impl SpringRig {
-    /// Springs of a rig with a ragdoll, `bind_model` its bind pose in model space. Bones are left out ([`left_out`](Self::left_out)) whose joints a
-    /// body moves, or carry what one moves, are named twice, hang on nothing, or have no length.
+    /// Springs of a rig with a ragdoll; `bind_model` is its bind pose in model space. A bone is left out
+    /// ([`left_out`](Self::left_out)) if a body moves its joint or a descendant, if it is listed twice, has no parent,
+    /// or has no length.
     ///
     /// # Panics
-    /// If a joint or collider is named that is not there.
+    /// If a named joint or collider does not exist.
     pub fn new(
         rig: &Rig,
         ragdoll: &RagdollDef,
@@ -145,7 +146,8 @@ impl SpringRig {
         it
     }
 
-    /// Nodes: joints of bones, centres and colliders of chains that have a bone, and all above them. Gives the node of every joint.
+    /// Nodes: joints of bones, centres and colliders of chains that have a bone, and all their ancestors. Returns the
+    /// node of every joint.
     fn add_nodes(
         &mut self,
         rig: &Rig,
@@ -212,7 +214,7 @@ impl SpringRig {
         }
     }
 
-    /// Links between bones that swing, as long as the bind pose has them.
+    /// Links between swinging bones, with their length in the bind pose.
     fn add_links(&mut self, mapping: &Mapping, bind_model: &[Affine]) {
         let character = mapping.character_from_model();
         let bone_of = |joint| self.bones.iter().position(|bone| self.nodes[bone.node].joint == joint);
@@ -232,7 +234,7 @@ impl SpringRig {
     fn add_anchors(&mut self, mapping: &Mapping, bind_model: &[Affine]) {
         let character = mapping.character_from_model();
         let place = |node: &Node| character.point(bind_model[node.joint].translation);
-        // Per node: its anchor, and how far it may be from there.
+        // Per node: its anchor, and its largest distance from there.
         let mut ways: Vec<(usize, f32)> = Vec::with_capacity(self.nodes.len());
         for (k, node) in self.nodes.iter().enumerate() {
             ways.push(match node.parent.filter(|_| node.swings) {
@@ -253,7 +255,7 @@ impl SpringRig {
         self.anchors = farthest.into_iter().enumerate().filter(|(_, reach)| *reach > 0.0).collect();
     }
 
-    /// Bodies that each bone may meet: not those that its tip touches in the bind pose.
+    /// Bodies that each bone collides with: all except those its tip touches in the bind pose.
     fn meet_bodies(&mut self, ragdoll: &RagdollDef, mapping: &Mapping, bind_model: &[Affine]) {
         if !self.chains.iter().any(|chain| chain.hits_body) {
             self.meets = vec![0; self.bones.len()];
@@ -277,7 +279,7 @@ impl SpringRig {
         self.bodies = bodies.iter().map(|body| body.shape.clone()).collect();
     }
 
-    /// Springs that this was made from.
+    /// Springs this was made from.
     pub fn source(&self) -> &Springs {
         &self.source
     }
@@ -297,7 +299,7 @@ impl SpringRig {
         &self.left_out
     }
 
-    /// True if a chain meets the bodies of the character.
+    /// True if a chain collides with the character's bodies.
     pub fn meets_bodies(&self) -> bool {
         !self.bodies.is_empty()
     }

@@ -5,7 +5,7 @@ use super::{SpringRig, SpringSwing};
 use sinew_math::{Affine, Mat3, ReadError, Reader, Writer};
 
 impl SpringSwing {
-    /// Writes what decides the future, and what is shown.
+    /// Writes all future-relevant state, and the shown one.
     pub fn save(&self, w: &mut Writer) {
         w.u8(self.mode as u8);
         match self.mode {
@@ -36,10 +36,10 @@ impl SpringSwing {
         }
     }
 
-    /// Springs of the same rig as they were saved.
+    /// Restores springs of the same rig.
     ///
     /// # Errors
-    /// If the bytes end too early, the phase is none, or what is left of a way is not finite.
+    /// If the bytes end too early, the phase is invalid, or a remaining rotation is not finite.
     pub fn load(rig: &SpringRig, r: &mut Reader<'_>) -> Result<Self, ReadError> {
         let mut swing = Self::default();
         swing.mode = match r.u8()? {

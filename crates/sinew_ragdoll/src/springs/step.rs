@@ -1,4 +1,4 @@
-//! Ticks of springs, and what is shown between two of them.
+//! Ticks of springs, and interpolation between two of them.
 
 use super::TICK;
 use super::collide::{Placed, Surroundings};
@@ -9,7 +9,7 @@ use sinew_anim::LocalTransform;
 use sinew_math::{Affine, Mat3, Rotation, Transform, Vec3, max, normalize_or};
 use sinew_physics::{BodyId, World};
 
-/// Most ticks of one step: what takes longer than a second at once starts over from its last second.
+/// Largest number of ticks in one step: a longer step restarts from its last second.
 const MOST_TICKS: u32 = 60;
 
 /// Input of a step of springs.
@@ -17,57 +17,61 @@ const MOST_TICKS: u32 = 60;
 pub struct SpringStep<'a> {
     /// Springs of the kind of character.
     pub rig: &'a SpringRig,
-    /// Pose at the end of the step as clips or bodies have it, one transform per joint of the rig: what the springs swing about.
+    /// Pose at the end of the step from clips or bodies, one transform per joint of the rig: the springs swing about
+    /// it.
     pub pose: &'a [LocalTransform],
     /// From the file's model space to the world at the end of the step.
     pub world_from_model: Affine,
-    /// Poses of the ragdoll's bodies in the world at the end of the step, for chains that meet them; else empty.
+    /// World poses of the ragdoll's bodies at the end of the step, for chains that collide with them; else empty.
     pub bodies: &'a [Transform],
-    /// The world, and the bodies in it that are the character's own; `None`: nothing to come up against, and no wind.
+    /// The world, and the character's own bodies in it; `None`: no collisions with the world, and no wind.
     pub world: Option<(&'a World, &'a [BodyId])>,
-    /// Length of the step, seconds, ≥ 0.
+    /// Not stepped yet: the first step starts at rest.
     pub seconds: f32,
 }
 
 /// Motion of springs about the pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Mode {
-    /// Nothing has been stepped yet: the first step starts at rest.
+    /// Not stepped yet: the first step starts at rest.
     #[default]
     Fresh,
     Swinging,
-    /// They are seen from afar: what they are off from the pose goes away.
+    /// Distant: their rotation from the pose decays.
     Easing,
     /// They are the pose, and nothing is computed.
     Away,
 }
 
-/// Springs as they swing: the state of one character's.
+/// State of one character's springs.
 #[derive(Clone, Debug, Default)]
 pub struct SpringSwing {
     pub(super) mode: Mode,
-    /// Part of a tick that has passed since the last, 0..1.
+    /// Share of a tick that has passed since the last one, 0..1.
     pub(super) phase: f32,
-    /// Tips at the last tick, and their way in it: metres, in the space of the chain's centre, else of the world.
+    /// Tips at the last tick, and their displacement in it: metres, in the space of the chain's centre, else of the
+    /// world.
     pub(super) tips: Vec<Vec3>,
     pub(super) ways: Vec<Vec3>,
     /// Nodes that do not swing at the end of the last step, in the world.
     pub(super) before: Vec<Affine>,
-    /// The same a step earlier, and the length of that step, seconds: what the way between two poses is bent by.
+    /// The same one step earlier, and the length of that step, seconds: gives the curvature of the path between two
+    /// poses.
     pub(super) earlier: Vec<Affine>,
     pub(super) stride: f32,
-    /// Local rotation of every bone, as it is shown.
+    /// Local rotation of every bone, as shown.
     pub(super) turns: Vec<Rotation>,
-    /// Turn of every bone from the pose while it eases, scaled axis.
+    /// Rotation of every bone from the pose while it eases, scaled axis.
     pub(super) offsets: Vec<Vec3>,
     pub(super) now: Vec<Affine>,
     /// All nodes at the time of a tick, and the colliders on them.
     pub(super) at: Vec<Affine>,
     placed: Vec<Placed>,
-    /// Nodes that do not swing at the tick before, and the way of each collider since then; `None` on what swings.
+    /// Non-swinging nodes at the tick before, and the displacement of each collider since then; `None` on swinging
+    /// nodes.
     last: Vec<Affine>,
     moved: Vec<Option<Affine>>,
-    /// Pull of links on each tip in a tick, metres.
+    /// Pull of links on each tip per tick, metres.
     pulls: Vec<Vec3>,
 }
 
@@ -77,12 +81,12 @@ impl SpringSwing {
         Self::default()
     }
 
-    /// Has the next step start at rest, whatever has been before.
+    /// Restarts at rest in the next step.
     pub fn reset(&mut self) {
         self.mode = Mode::Fresh;
     }
 
-    /// Takes the springs along to where the character was put, as they are.
+    /// Moves the springs with a character that was teleported, without changing their shape.
     pub fn carry(&mut self, rig: &SpringRig, moved: Transform) {
         if self.mode != Mode::Swinging {
             return;
@@ -97,7 +101,7 @@ impl SpringSwing {
         }
     }
 
-    /// Takes the springs along where the character has become larger by `factor` about a point of the world, metres, as they are.
+    /// Scales the springs with a character that was scaled by `factor` about a world position, metres.
     pub fn resize(&mut self, rig: &SpringRig, about: Vec3, factor: f32) {
         if self.mode != Mode::Swinging {
             return;
@@ -117,7 +121,7 @@ impl SpringSwing {
         }
     }
 
-    /// Local rotations of the bones, in the order of [`SpringRig::joints`]; none while they are the pose's.
+    /// Local rotations of the bones, in the order of [`SpringRig::joints`]; empty while they equal the pose.
     pub fn turns(&self) -> &[Rotation] {
         &self.turns
     }
@@ -125,7 +129,7 @@ impl SpringSwing {
     /// Follows the character by a step, from rest where they have not swung before; one of no length changes nothing. Allocates the first time only.
     ///
     /// # Panics
-    /// If the pose is not as long as the rig the springs were made from.
+    /// If the pose does not have one transform per joint of the springs' rig.
     pub fn step(&mut self, step: &SpringStep<'_>) {
         self.look(step);
         if !self.now.iter().all(Affine::is_finite) {
@@ -134,7 +138,7 @@ impl SpringSwing {
         if self.mode != Mode::Swinging {
             return self.rest(step);
         }
-        // A pause: the way goes on where it was.
+        // A pause: the motion continues where it was.
         if step.seconds == 0.0 {
             return;
         }
@@ -161,7 +165,7 @@ impl SpringSwing {
         self.stride = step.seconds;
     }
 
-    /// Places of the nodes that do not swing at the last tick: on the straight way through the ends of the last two steps.
+    /// Positions of the non-swinging nodes at the last tick: on the line through the ends of the last two steps.
     fn look_back(&mut self) {
         let back = if self.stride > 0.0 { self.phase * TICK / self.stride } else { 0.0 };
         self.last.clear();
@@ -177,7 +181,7 @@ impl SpringSwing {
         }
     }
 
-    /// Places of the nodes that do not swing.
+    /// Positions of the non-swinging nodes.
     pub(super) fn look(&mut self, step: &SpringStep<'_>) {
         self.now.clear();
         for node in &step.rig.nodes[..step.rig.stills] {
@@ -206,7 +210,7 @@ impl SpringSwing {
         self.stride = 0.0;
     }
 
-    /// Places all nodes as a pose has them.
+    /// Places all nodes according to a pose.
     pub(super) fn place_all(
         &mut self,
         rig: &SpringRig,
@@ -231,7 +235,7 @@ impl SpringSwing {
         rig.chains[bone.chain].center.map(|node| &self.at[node])
     }
 
-    /// True if something of the world is where a bone could come.
+    /// True if some part of the world is within reach of a bone.
     fn are_near(&self, rig: &SpringRig, around: &Surroundings<'_>) -> bool {
         let place = |anchor: usize| self.now[anchor].translation;
         let sum = rig.anchors.iter().fold(Vec3::ZERO, |sum, &(anchor, _)| sum + place(anchor));
@@ -240,8 +244,8 @@ impl SpringSwing {
         around.are_near(middle, rig.anchors.iter().map(reach).fold(0.0, max))
     }
 
-    /// Brings the bones from the last tick on by the share `rho` of one; a whole tick is kept. `share` says how far the step has come
-    /// by then.
+    /// Advances the bones from the last tick by the share `rho` of one; a whole tick is stored. `share` is the elapsed
+    /// share of the step.
     fn advance(&mut self, step: &SpringStep<'_>, meets: Option<Surroundings<'_>>, share: f32, rho: f32) {
         let ratio = self.stride / step.seconds;
         let rig = step.rig;
@@ -264,7 +268,7 @@ impl SpringSwing {
         self.turn_all(step, meets, rho);
     }
 
-    /// Turns all that swings. Colliders are looked at where they are placed, if they are.
+    /// Rotates all swinging nodes. Colliders that are placed are collided with.
     fn turn_all(&mut self, step: &SpringStep<'_>, meets: Option<Surroundings<'_>>, rho: f32) {
         let rig = step.rig;
         for (k, node) in rig.nodes.iter().enumerate().skip(rig.stills) {
@@ -299,7 +303,7 @@ impl SpringSwing {
         }
     }
 
-    /// Places the colliders on a node that swings.
+    /// Places the colliders of a swinging node.
     fn place_on(&mut self, rig: &SpringRig, node: usize) {
         for (placed, collider) in self.placed.iter_mut().zip(&rig.colliders) {
             if collider.node == node {
@@ -308,7 +312,7 @@ impl SpringSwing {
         }
     }
 
-    /// Place of a tip after the share `rho` of a tick.
+    /// Position of a tip after the share `rho` of a tick.
     #[inline]
     fn next(
         &self,
@@ -333,11 +337,11 @@ impl SpringSwing {
         let around = Around { placed: &self.placed, moved: &self.moved, step, meets, index, held };
         let whole = around.tick(tip, from, way, push);
         let next = if rho < 1.0 { around.part(tip, way, whole, rho) } else { whole };
-        // What numbers cannot hold starts over at rest.
+        // A non-finite state restarts at rest.
         if next.is_finite() { next } else { held.rest() }
     }
 
-    /// Place in the world where a tip was at the last tick; `tip` is where the chain's centre has carried it since.
+    /// World position of a tip at the last tick; `tip` has moved with the chain's centre since.
     #[inline]
     fn last_place(&self, rig: &SpringRig, index: usize, tip: Vec3) -> Vec3 {
         match rig.chains[rig.bones[index].chain].center {
@@ -346,13 +350,13 @@ impl SpringSwing {
         }
     }
 
-    /// Has links pull at the tips where their motion would bring them.
+    /// Applies the links' pull to the tips at their predicted positions.
     fn pull(&mut self, rig: &SpringRig) {
         self.pulls.clear();
         if rig.links.is_empty() {
             return;
         }
-        // Free places at first, and the way from there at the end.
+        // Predicted positions at first, and the displacement from them at the end.
         for (index, bone) in rig.bones.iter().enumerate() {
             let free = self.tips[index] + self.ways[index] * (1.0 - bone.drag);
             self.pulls.push(self.center(rig, bone).map_or(free, |center| center.point(free)));
@@ -377,7 +381,7 @@ impl SpringSwing {
         }
     }
 
-    /// Keeps the place of a tip after a whole tick.
+    /// Stores the position of a tip after a whole tick.
     #[inline]
     fn keep(&mut self, rig: &SpringRig, index: usize, next: Vec3) {
         let tip = self.center(rig, &rig.bones[index]).map_or(next, |center| center.inverse().point(next));
@@ -396,13 +400,13 @@ fn scaled(turn: Rotation, scale: Vec3) -> Mat3 {
     Mat3::from_cols(m.x_axis * scale.x, m.y_axis * scale.y, m.z_axis * scale.z)
 }
 
-/// Place of a node at a share of the step from the second place to the third, on the parabola through all three; `ratio` is the length
-/// of the step before over this one's. Columns keep their lengths, for bones do.
+/// Position of a node at a share of the step from the second position to the third, on the parabola through all three;
+/// `ratio` is the previous step's length over this one's. Columns keep their lengths, because bones do.
 fn between([a, b, c]: [&Affine; 3], ratio: f32, share: f32) -> Affine {
     if share == 1.0 {
         return *c;
     }
-    // Steps of wholly different lengths tell nothing of the way's bend.
+    // If the step lengths differ strongly, the curvature is unknown.
     let is_alike = ratio > 1.0 / ALIKE && ratio < ALIKE;
     let bend = if is_alike { share * (share - 1.0) / (1.0 + ratio) } else { 0.0 };
     let ratio = if is_alike { ratio } else { 1.0 };

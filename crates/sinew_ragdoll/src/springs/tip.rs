@@ -1,4 +1,4 @@
-//! One tip: its way in a tick and in a part of one, and what holds it.
+//! One tip: its motion in a tick and in a part of one, and its constraints.
 
 use super::collide::{Gap, Placed, Surroundings};
 use super::rig::Bone;
@@ -8,13 +8,13 @@ use sinew_anim::LocalTransform;
 use sinew_math::trig::pow;
 use sinew_math::{Affine, Mat3, Rotation, Vec3, normalize_or};
 
-/// Times that a tip is pushed out of the world within a tick: a corner has two sides.
+/// Number of times that a tip is pushed out of the world within a tick: a corner has two sides.
 const PUSHES: usize = 2;
 
 /// A bone with all that holds its tip or pushes it.
 pub(super) struct Around<'a> {
     pub placed: &'a [Placed],
-    /// Way of each collider since the last tick, of those that are looked at on the way.
+    /// Displacement of each collider since the last tick, for continuous collision.
     pub moved: &'a [Option<Affine>],
     pub step: &'a SpringStep<'a>,
     pub meets: Option<Surroundings<'a>>,
@@ -23,7 +23,8 @@ pub(super) struct Around<'a> {
 }
 
 impl Around<'_> {
-    /// Place of the tip a tick on, from where and on which way it is, pushed by `push` a tick; `from` is where it was in the world.
+    /// Position of the tip one tick later, from its position and displacement, with an added displacement `push`;
+    /// `from` is its world position.
     #[inline]
     pub fn tick(&self, tip: Vec3, from: Vec3, way: Vec3, push: Vec3) -> Vec3 {
         let [keeps, pushed] = flight(self.held.bone.drag, 1.0);
@@ -31,8 +32,8 @@ impl Around<'_> {
         self.push_out(self.stopped(from, next), None)
     }
 
-    /// Place to which a tip comes that goes from one place to another: not through a collider or the world, where it is so fast that the end of its way
-    /// does not tell.
+    /// End position of a tip that moves from one position to another. It does not pass through a collider or the world,
+    /// even where it is so fast that its end position alone would miss them.
     #[inline]
     fn stopped(&self, from: Vec3, mut next: Vec3) -> Vec3 {
         let (rig, bone) = (self.step.rig, self.held.bone);
@@ -50,8 +51,8 @@ impl Around<'_> {
         next
     }
 
-    /// Place of the tip the share `rho` of a tick on, which leads to `whole`: what holds and pushes it acts as evenly in time as its spring
-    /// does, so that a tip at rest is where it is. Colliders let it as deep into them as they let it at the end of the tick.
+    /// Position of the tip after the share `rho` of a tick that ends at `whole`: constraints and pushes act as evenly
+    /// in time as the spring, so a tip at rest stays. Colliders allow the same depth as at the end of the tick.
     pub fn part(&self, tip: Vec3, way: Vec3, whole: Vec3, rho: f32) -> Vec3 {
         let drag = self.held.bone.drag;
         let acts = whole - tip - way * flight(drag, 1.0)[0];
@@ -59,7 +60,7 @@ impl Around<'_> {
         self.push_out(self.held.hold(tip, way * keeps + acts * pushed), Some(whole))
     }
 
-    /// Out of every collider, one after the other; where a place is given, only as far as that one is.
+    /// Pushes out of every collider, one after the other; if a position is given, only as far as it is outside.
     #[inline]
     fn push_out(&self, mut next: Vec3, as_far_as: Option<Vec3>) -> Vec3 {
         let (rig, bone) = (self.step.rig, self.held.bone);
@@ -95,11 +96,11 @@ impl Around<'_> {
 /// Hold of a joint on the tip of its bone.
 pub(super) struct Held<'a> {
     pub bone: &'a Bone,
-    /// Rotation at rest in the space of the joint's parent, and where the tip points then there, unit.
+    /// Rest rotation in the space of the joint's parent, and the tip's direction there, unit.
     rest: Rotation,
     seen_axis: Vec3,
     world_from_parent: &'a Mat3,
-    /// Place of the joint, world.
+    /// World position of the joint.
     pub place: Vec3,
     /// Metres.
     length: f32,
@@ -108,7 +109,7 @@ pub(super) struct Held<'a> {
 }
 
 impl<'a> Held<'a> {
-    /// By a joint that has come to `place`.
+    /// For a joint that has moved to `place`.
     #[inline(always)]
     pub fn new(bone: &'a Bone, local: &LocalTransform, world_from_parent: &'a Mat3, place: Vec3) -> Self {
         let rest = local.rotation;
@@ -124,7 +125,7 @@ impl<'a> Held<'a> {
         Self { bone, rest, seen_axis, world_from_parent, place, length, axis: along / length }
     }
 
-    /// False where the bone has no length: it does not swing.
+    /// False if the bone has no length: it does not swing.
     #[inline(always)]
     pub fn has_length(&self) -> bool {
         self.length > 1e-12 && self.length < f32::INFINITY
@@ -133,28 +134,28 @@ impl<'a> Held<'a> {
     /// A direction of the world in the space of the joint's parent, unit.
     #[inline]
     fn seen(&self, v: Vec3) -> Vec3 {
-        // The rows of the inverse, but for their common factor.
+        // The rows of the inverse, up to a common factor.
         let m = self.world_from_parent;
         let (x, y, z) = (m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
         let seen = Vec3::new(v.dot(x), v.dot(y), v.dot(z));
         normalize_or(if m.x_axis.dot(x) < 0.0 { -seen } else { seen }, self.seen_axis)
     }
 
-    /// Local rotation with which the tip is there.
+    /// Local rotation that puts the tip at this position.
     #[inline]
     pub fn turn_to(&self, tip: Vec3) -> Rotation {
         (Rotation::from_arc(self.seen_axis, self.seen(tip - self.place)) * self.rest).normalize()
     }
 
-    /// Place of the tip at rest.
+    /// Position of the tip at rest.
     pub fn rest(&self) -> Vec3 {
         self.place + self.axis * self.length
     }
 
-    /// The nearest place to one `by` beyond a tip at the bone's length, in a direction that its limit allows.
+    /// The position nearest to `by` beyond a tip, at the bone's length and in a direction that its limit allows.
     #[inline]
     pub fn hold(&self, tip: Vec3, by: Vec3) -> Vec3 {
-        // The difference first, which is exact: small ways lose no digits to where in the world they are.
+        // The exact difference first, so that small displacements lose no digits to the world position.
         let mut direction = normalize_or((tip - self.place) + by, self.axis);
         if let Some(limit) = &self.bone.limit {
             let seen = self.rest.inverse() * self.seen(direction);
@@ -166,7 +167,8 @@ impl<'a> Held<'a> {
         self.place + direction * self.length
     }
 
-    /// Out of a collider until it is no deeper in it than the place `as_far_as` is, if one is given; `None`: it is out.
+    /// Pushes out of a collider until it is no deeper in it than the position `as_far_as`, if given; `None`: until it
+    /// is outside.
     #[inline]
     fn out_of(
         &self,
@@ -181,7 +183,8 @@ impl<'a> Held<'a> {
     }
 }
 
-/// Way of a free tip in the share `rho` of a tick, as shares of its way in the tick before and of what pushes it in a tick.
+/// Displacement of a free tip in the share `rho` of a tick, as shares of its displacement in the previous tick and of
+/// the push per tick.
 fn flight(drag: f32, rho: f32) -> [f32; 2] {
     let keeps = 1.0 - drag;
     if rho == 1.0 {

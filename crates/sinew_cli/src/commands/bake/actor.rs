@@ -1,4 +1,4 @@
-//! Who falls: the ragdoll and the motions of the user's character, its own or those that come with Sinew.
+//! The falling character: its ragdoll, and its own or the built-in motions.
 
 use super::clips::Motions;
 use crate::failure::{Failure, Result};
@@ -14,14 +14,14 @@ pub enum GetsUpBy {
     Own,
     /// The built-in ones.
     Builtin,
-    /// There are none: why not, after 'it does not get up: '.
+    /// There are none; the reason, to follow 'it does not get up: '.
     Nothing(String),
 }
 
-/// Advice for a user whose character has no clips to get up by.
+/// Advice for a user whose character has no get-up clips.
 const CLIPS_HELP: &str = "name a file with a clip to get up by with --clips, called such as 'get up'";
 
-/// The character, and by what it gets up; `builtin`: whether the built-in motions may fill in.
+/// The character and its get-up motions; `builtin`: built-in motions may replace missing ones.
 pub fn actor(
     file: &CharacterFile,
     ragdoll: RagdollDef,
@@ -52,7 +52,7 @@ pub fn actor(
     } else {
         format!("no clip of its own does it, and --no-builtin-motions leaves out Sinew's; {CLIPS_HELP}")
     };
-    // A body that lies down and has no motion to get up by would float to its feet.
+    // A lying body without a get-up motion would float to its feet.
     def.after_settling = AfterSettling::StayDown;
     def.set_motions(own).map_err(failed)?;
     Ok((def, GetsUpBy::Nothing(why)))

@@ -11,7 +11,7 @@ use sinew::ragdoll::{BakeHit, CharacterDef, RagdollBodyDef};
 /// From the hips up.
 const SPINE: [Role; 6] = [Role::Hips, Role::Spine, Role::Chest, Role::UpperChest, Role::Neck, Role::Head];
 
-/// A hit on the body that is named, or on the nearest one where a part of a body has none of its own: then it is said so.
+/// A hit on the named body, or on the nearest one, with a note, if the body part has none of its own.
 pub fn aim(
     hit: &HitArg,
     character: &CharacterDef,
@@ -57,8 +57,8 @@ fn carrier(role: Role, analysis: &RigAnalysis, bodies: &[RagdollBodyDef]) -> Opt
     bodies.iter().position(|body| body.joint == joint || body.merged.contains(&joint))
 }
 
-/// The nearest body along the spine, of two as near the lower one; of a limb the next part toward the trunk. A creature's spine is
-/// as long as a human's, however many parts it has.
+/// The nearest body along the spine, the lower of two equally near ones; for a limb, the next part toward the trunk. A
+/// creature's spine counts as long as a human's, however many parts it has.
 fn nearest(role: Role, bodies: &[RagdollBodyDef]) -> Option<usize> {
     if let Some(place) = SPINE.iter().position(|other| *other == role) {
         let along = (1..SPINE.len()).flat_map(|away| [place.checked_sub(away), Some(place + away)]);

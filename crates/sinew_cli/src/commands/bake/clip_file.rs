@@ -1,4 +1,4 @@
-//! `-o OUT.(glb|vrm|bvh)`: the file that the clip goes into.
+//! `-o OUT.(glb|vrm|bvh)`: the file for the clip.
 
 use crate::failure::Result;
 use crate::fall::Fall;
@@ -9,7 +9,7 @@ use sinew::math::Rotation;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// Format of a file, by its name.
+/// Its bytes, and notes on what the format cannot represent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipFormat {
     /// A copy of the character's file with one clip more.
@@ -32,7 +32,7 @@ impl ClipFile {
         &self.path
     }
 
-    /// Its bytes, and what they cannot hold, a sentence each.
+    /// Its bytes, and notes on what the format cannot represent, one sentence each.
     pub fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<(Vec<u8>, Vec<String>)> {
         let written = match self.format {
             ClipFormat::Copy => append_clip(
@@ -48,7 +48,7 @@ impl ClipFile {
     }
 }
 
-/// Bones in metres, with the rest pose as the offsets, and a row for each frame.
+/// Bones in metres, with the rest pose as the offsets, and one row per frame.
 fn skeleton(file: &CharacterFile, fall: &Fall<'_>) -> sinew::formats::Result<(Vec<u8>, Vec<String>)> {
     let rig = &file.document.rig;
     let (mut bones, mut clip, dropped) = bones_only(rig, &fall.baked.clip_for_file(&fall.input.character));

@@ -1,4 +1,4 @@
-//! Clips of a bake, and the use of each.
+//! Clips of a bake, and their roles.
 
 use crate::commands::clip_choice::find_clip;
 use crate::failure::{Failure, Result};
@@ -14,20 +14,20 @@ use std::path::{Path, PathBuf};
 
 /// The motions of a character.
 pub struct Motions {
-    /// All clips: those of its own file, then those of others.
+    /// All clips: the file's own, then those of other files.
     pub clips: Vec<Clip>,
     /// The clip that plays until the fall.
     pub looped: Option<usize>,
-    /// Repairs made while the other files were read, a sentence each.
+    /// Repairs made on reading the other files, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// Name of a clip that is baked, where the user does not say it; with a number where the file has that already. None of them is
-/// played until the next fall unless it is asked for.
+/// Default name of the baked clip, with a number if the file has that name already. Clips of this name are not played
+/// as motions unless requested.
 pub const CLIP_NAME: &str = "sinew";
 
 impl Motions {
-    /// From the character's file and from `others`; `wanted` is the user's choice of a clip.
+    /// Clips of the character's file and of `others`; `wanted` is the user's choice.
     pub fn gather(file: &CharacterFile, others: &[PathBuf], wanted: Option<&str>) -> Result<Self> {
         let mut clips = file.document.clips.clone();
         let mut notes = Vec::new();
@@ -44,9 +44,9 @@ impl Motions {
     }
 }
 
-/// The clips of another file, on this character: by the names of joints, else by roles.
+/// The clips of another file, retargeted to this character: by joint names, else by roles.
 fn read_clips(path: &Path, file: &CharacterFile, notes: &mut Vec<String>) -> Result<Vec<Clip>> {
-    // What is there is played, though the header of a BVH promises more or fewer frames.
+    // Plays the rows that exist, even if a BVH header declares more or fewer.
     let bvh = BvhOptions { rows: BvhRows::AsPresent, ..BvhOptions::default() };
     let motion = Motion::load(path, &MotionOptions { bvh, ..MotionOptions::default() })?;
     let rows = motion.file.notes.iter().filter(|note| note.contains(" frames, has "));

@@ -1,25 +1,25 @@
-//! Doors of a world: openings from the ground up with a lintel over them. They tell how large those are who live there.
+//! Finds doors in a world: openings from the ground up with a lintel. Their height implies the size of a character.
 
 use sinew::math::{Vec3, min};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyHit, BodyKind, BodyKinds, QueryFilter, Shape, World, WorldDef};
 
-/// Places to each side of the middle from which doors are sought.
+/// Number of sample positions on each side of the middle.
 const PLACES: i32 = 6;
-/// Heights at which is looked, shares of the room's: every so much.
+/// Spacing of sample heights, as a share of the room's height.
 const LEVELS: u8 = 24;
-/// Heights of doors, shares of the room's.
+/// Door heights, as shares of the room's height.
 const DOORS: core::ops::Range<f32> = 0.5..0.97;
-/// Free way behind a door, and farthest wall with one, heights of the room.
+/// Free depth behind a door, and largest distance of its wall, in room heights.
 const BEHIND: f32 = 0.3;
 const FARTHEST: f32 = 4.0;
-/// Walls over a door are in one plane, within this share of the room's height.
+/// Walls over a door are coplanar within this share of the room's height.
 const EVEN: f32 = 0.05;
 /// Rooms, metres.
 const ROOMS: core::ops::Range<f32> = 0.3..60.0;
 
-/// Median free height of the doors of a world, metres; `None` where none is found.
+/// Median free height of the doors of a world, metres; `None` without doors.
 pub fn door(bodies: &[BodyDef]) -> Option<f32> {
     let mut world = World::new(WorldDef::default());
     let mut bounds: Option<Aabb> = None;
@@ -60,13 +60,13 @@ impl Rays {
         hits
     }
 
-    /// Free way from a place, at most `direction` long.
+    /// Free distance from a position, at most `direction` long.
     fn way(&self, origin: Vec3, direction: Vec3) -> f32 {
         let hits = self.all(origin, direction);
         hits.iter().map(|hit| (hit.point - origin).length()).fold(direction.length(), min)
     }
 
-    /// Free heights of the doors that are seen from a place on the ground of a room.
+    /// Free heights of the doors visible from a ground position in a room.
     fn doors_around(&self, ground: Vec3) -> Vec<f32> {
         let from = ground + Vec3::Y * 0.01;
         let room = self.way(from, Vec3::Y * ROOMS.end) + 0.01;
@@ -79,7 +79,7 @@ impl Rays {
             .collect()
     }
 
-    /// From the ground up free ways until a lintel, and from it up to the ceiling one wall.
+    /// From the ground up: free rays up to a lintel, then one wall up to the ceiling.
     fn door(&self, ground: Vec3, toward: Vec3, room: f32) -> Option<f32> {
         let levels: Vec<f32> = (1..LEVELS).map(|level| room * f32::from(level) / f32::from(LEVELS)).collect();
         let see = |&level: &f32| self.way(ground + Vec3::Y * level, toward * (FARTHEST * room));
@@ -94,7 +94,7 @@ impl Rays {
         let is_door = lintel > 0
             && ways[..lintel].iter().all(|&way| is_free(way))
             && ways[lintel..].iter().all(|&way| is_wall(way));
-        // Half-way between the last free level and the first at the wall, and from there the lintel's own edge.
+        // Half-way between the last free height and the first on the wall, then the exact edge of the lintel.
         let inside = ground + Vec3::Y * 0.01 + toward * (highest + 0.02 * room);
         let height = self.way(inside, Vec3::Y * room) + 0.01;
         let between = [levels[lintel.saturating_sub(1)], levels[lintel]];

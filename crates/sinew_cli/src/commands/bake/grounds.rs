@@ -1,29 +1,29 @@
-//! Grounds of a world: places that one can walk between, found on a grid of columns.
+//! Walkable grounds of a world: connected positions on a grid of columns.
 
 use sinew::math::{Vec3, max};
 use sinew::physics::boxes::Aabb;
 
 /// Width of a column, in heights of the character.
 const CELL: f32 = 0.5;
-/// Fewest and most columns along a side: in small worlds a place between things is found, in large ones the search ends.
+/// Fewest and most columns per side: small worlds need a fine grid, large ones a bounded search.
 const COLUMNS: [usize; 2] = [24, 128];
 /// Highest step between columns, in heights of the character.
 const STEP: f32 = 0.25;
-/// And what a slope adds to it, in widths of a column.
+/// Additional height for a slope, in column widths.
 const SLOPE: f32 = 0.5;
-/// Ratio of sizes up to which the lower of two grounds comes first, as the floor of a house before its roof.
+/// Size ratio up to which the lower of two grounds comes first, as a house's floor before its roof.
 const ALIKE: f32 = 0.5;
-/// Most places of a ground that are looked at, evenly spread.
+/// Largest number of positions tested per ground, evenly spread.
 const MOST_PLACES: usize = 1024;
 
-/// A place on a column.
+/// A position on a column.
 struct Node {
     cell: usize,
     at: Vec3,
 }
 
-/// Grounds by size, the largest first, each as its places, those nearest its middle first. `floors` gives the heights on which one can
-/// stand on a way down from a place, so deep.
+/// Grounds by size, largest first, each as its positions, those nearest its middle first. `floors` returns the walkable
+/// heights below a position, down to a depth.
 pub fn grounds(bounds: &Aabb, height: f32, floors: impl Fn(Vec3, f32) -> Vec<f32>) -> Vec<Vec<Vec3>> {
     let size = bounds.max - bounds.min;
     let count = |length: f32| ((length / (CELL * height)) as usize).clamp(COLUMNS[0], COLUMNS[1]) | 1;
@@ -31,7 +31,7 @@ pub fn grounds(bounds: &Aabb, height: f32, floors: impl Fn(Vec3, f32) -> Vec<f32
     let (nx, nz) = (count(size.x), count(size.z));
     let cell = Vec3::new(size.x / nx as f32, 0.0, size.z / nz as f32);
     let top = bounds.max.y + height;
-    // A half-space that stands lower than everything else is found as well.
+    // Also finds a half-space below everything else.
     let depth = size.y + 2.0 * height + 1000.0;
     let mut nodes: Vec<Node> = Vec::new();
     let mut first = Vec::with_capacity(nx * nz + 1);
@@ -81,7 +81,7 @@ fn connected(nodes: &[Node], first: &[usize], nx: usize, step: f32) -> Vec<Vec<u
     parts
 }
 
-/// The parts by size, and of the largest ones that are alike the lowest first.
+/// The parts by size; among the largest ones of similar size the lowest first.
 fn by_size(nodes: &[Node], mut parts: Vec<Vec<usize>>) -> Vec<Vec<Vec3>> {
     parts.sort_by_key(|part| core::cmp::Reverse(part.len()));
     let mean = |part: &[usize]| {

@@ -17,7 +17,7 @@ pub struct HitArg {
 impl FromStr for HitArg {
     type Err = String;
 
-    /// Names of bones may hold `@` and `=`, so it is the last of each that counts.
+    /// Bone names may contain `@` and `=`, so the last one of each counts.
     fn from_str(text: &str) -> Result<Self, String> {
         let (rest, time) = text.rsplit_once('@').ok_or("'@T' is missing: a hit has a time")?;
         let (bone, impulse) = rest.rsplit_once('=').ok_or("'=IX,IY,IZ' is missing: a hit has an impulse")?;
@@ -36,7 +36,7 @@ impl FromStr for HitArg {
     }
 }
 
-/// The largest number that a hit may hold; far beyond anything that a body survives.
+/// Largest number allowed in a hit; far beyond anything that a body survives.
 const LARGEST: f32 = 1e6;
 
 fn finite(text: &str) -> Result<f32, String> {

@@ -1,17 +1,18 @@
-//! A character that lies in its file.
+//! A character in a lying pose in its file.
 
 use crate::judge::LIMP_AT;
 use sinew::anim::{Wrap, local_to_model, rest_pose, sample::sample, skin_vertices};
 use sinew::math::{Affine, Rotation, Transform, Vec3, min};
 use sinew::ragdoll::CharacterDef;
 
-/// Rise of the body's own up along the file's, from which it stands: 45°.
+/// Cosine above which a character counts as standing: its own up axis within 45° of the file's.
 const STANDS: f32 = 0.7;
 
-/// Number of moments of the looped clip that are looked at, besides its start: ten a second, or so.
+/// Number of sampled times of the looped clip besides its start: about ten per second.
 const LOOKS: usize = 5;
 
-/// Place of a character by how its file has it: where it `stands`, or turned and lowered onto the ground there if it lies. `up` is the file's up axis.
+/// Placement of a character from its file: as it `stands`, or rotated and lowered onto the ground there if it lies.
+/// `up` is the file's up axis.
 pub fn as_in_file(stands: Transform, character: &CharacterDef, up: Vec3) -> Transform {
     let character_from_model = character.mapping().character_from_model();
     let up = character.ragdoll.character_from_model.rotation * up;
@@ -24,8 +25,8 @@ pub fn as_in_file(stands: Transform, character: &CharacterDef, up: Vec3) -> Tran
     Transform::new(stands.translation - Vec3::Y * lowest, stands.rotation * turn)
 }
 
-/// Height of the lowest drawn vertex in the looped clip until the character goes limp by itself, or in the rest pose, under a map from model space,
-/// metres.
+/// Height of the lowest drawn vertex, metres, in the looped clip until the character goes limp, or in the rest pose,
+/// under a map from model space.
 fn lowest_point(character: &CharacterDef, world_from_model: &Affine) -> f32 {
     let motions = character.motions();
     let looped = motions.looped.map(|looped| &motions.clips[looped]);

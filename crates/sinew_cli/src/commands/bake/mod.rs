@@ -1,4 +1,4 @@
-//! `sinew bake`: a character is hit or goes limp, falls, and the fall becomes a clip on the user's own rig.
+//! `sinew bake`: simulates a hit or a fall of a character and writes it as a clip on the user's own rig.
 
 mod actor;
 mod aim;
@@ -48,7 +48,8 @@ use std::sync::Arc;
 const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
 const OBSTACLES: [[f32; 3]; 3] = [[0.45, 0.33, 0.22], [0.40, 0.36, 0.30], [0.33, 0.27, 0.22]];
 
-/// Let your character fall: simulated from its animation, written back as a clip into a copy of your file, or as a BVH
+/// Let your character fall: simulate it from its animation and write the fall as a clip into a copy of your file, or as
+/// a BVH
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -67,15 +68,15 @@ pub struct Bake {
     /// its idle, else its first clip; in a file without clips the rest pose
     #[arg(long, value_name = "NAME")]
     clip: Option<String>,
-    /// Further files with clips (GLB, VRMA, BVH, FBX, DeepMimic): for the same skeleton by the names of joints, else for a
-    /// human of any size by what the joints are
+    /// Further files with clips (GLB, VRMA, BVH, FBX, DeepMimic): for the same skeleton matched by joint names, else
+    /// for a human of any size matched by the joints' roles
     #[arg(long, value_name = "FILE", num_args = 1..)]
     clips: Vec<PathBuf>,
     /// A world file (JSON) or a mesh (GLB, OBJ) to fall in; without it a floor at y = 0
     #[arg(long, value_name = "FILE")]
     world: Option<PathBuf>,
-    /// Place where the character stands, metres; by default a flat place with half as much room again over it as the character
-    /// is tall, on the largest ground of the world that can be walked on, without --world the origin
+    /// Position of the character, metres; by default a flat position with free height of one and a half times the
+    /// character's, on the largest walkable ground of the world; without --world the origin
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     at: Option<Vec3>,
     /// Direction in which it faces, degrees from +Z toward +X
@@ -84,32 +85,33 @@ pub struct Bake {
     /// Add a floor at this height, metres
     #[arg(long, value_name = "Y", value_parser = metres, allow_negative_numbers = true)]
     floor: Option<f32>,
-    /// A ragdoll of this character from `ragdoll build`, as it is or edited; without it one is built
+    /// A ragdoll of this character from `ragdoll build`, edited or not; by default one is built
     #[arg(long, value_name = "FILE.sinew.json", conflicts_with = "SettingsArg")]
     ragdoll: Option<PathBuf>,
-    /// Get up only by clips of the file or of --clips. Else a human without any gets up and walks on by motions that come with
-    /// Sinew
+    /// Get up only by clips of the file or of --clips. By default a human without any gets up and walks by built-in
+    /// motions
     #[arg(long)]
     no_builtin_motions: bool,
     #[command(flatten)]
     settings: SettingsArg,
-    /// Leave hair, tails and what else the file has springs for as clips and bodies have them
+    /// Do not simulate the file's springs (hair, tails, …)
     #[arg(long)]
     no_springs: bool,
-    /// Let what is called hair, ear, tail, skirt, ribbon, breast or cape swing where the file states no springs
+    /// Simulate springs guessed from joint names (hair, ear, tail, skirt, ribbon, breast, cape) if the file has none
     #[arg(long, conflicts_with = "no_springs")]
     guess_springs: bool,
-    /// Leave capes, skirts and coats that the settings list as clips and bodies have them
+    /// Do not simulate the garments (capes, skirts, coats) listed in the settings
     #[arg(long)]
     no_garments: bool,
     /// Push a bone: joint name or role, impulse in N·s along the world's axes (+Y up), time in seconds; repeatable. A role
     /// without a body means the nearest one that has
     #[arg(long = "hit", value_name = "BONE=IX,IY,IZ@T", allow_hyphen_values = true)]
     hits: Vec<HitArg>,
-    /// Let hits that are too weak to fell it be a flinch: the limb gives way and comes back
+    /// Show hits that are too weak to fell it as a flinch: the limb gives way and recovers
     #[arg(long)]
     flinch: bool,
-    /// Go limp at this time, seconds; without any --hit the default is 0.5, and who stays upright so is pushed over
+    /// Go limp at this time, seconds; without any --hit the default is 0.5, and a character that stays upright is
+    /// pushed over
     #[arg(long, value_name = "T", value_parser = seconds, allow_negative_numbers = true)]
     limp_at: Option<f32>,
     /// Length of the clip, seconds
@@ -118,8 +120,8 @@ pub struct Bake {
     /// Frames per second of the clip
     #[arg(long, value_name = "N", default_value = "30", value_parser = rate)]
     fps: f32,
-    /// Most that any joint of the clip may be from the simulation at a frame, mm, and by how many tenths of a degree it may
-    /// be turned; 0 keeps a key for every frame. Default 0.1: a tenth of a millimetre, a hundredth of a degree
+    /// Largest error of any joint of the clip at a frame, mm, and the largest rotation error in tenths of a degree; 0
+    /// keeps a key for every frame. Default 0.1: a tenth of a millimetre, a hundredth of a degree
     #[arg(long, value_name = "MM", value_parser = key_error, allow_negative_numbers = true)]
     key_error: Option<f32>,
     /// File to write: a copy of yours with the new clip in it (.glb, .vrm), or its skeleton and the clip (.bvh)
@@ -133,7 +135,7 @@ pub struct Bake {
     picture: Option<PictureFile>,
 }
 
-/// Who falls, and what is to be said of it.
+/// The falling character, and notes about it.
 struct Cast {
     file: CharacterFile,
     ragdoll: RagdollDef,
@@ -143,7 +145,7 @@ struct Cast {
     notes: Vec<String>,
 }
 
-/// Largest error of keys, mm: what is worse is no copy of the motion.
+/// Largest allowed key error, mm: beyond it the clip is no copy of the motion.
 const LARGEST_KEY_ERROR: f32 = 100.0;
 
 /// An error that keys may have, mm.
@@ -216,7 +218,7 @@ impl Bake {
         Ok(report)
     }
 
-    /// Bodies of the world: what the file says, and the floor that is asked for, at y = 0 where there is no file.
+    /// Bodies of the world: from the file, and a floor if requested, at y = 0 without a file.
     fn bodies(&self) -> Result<Vec<BodyDef>> {
         let mut bodies = self.world.as_ref().map_or(Ok(Vec::new()), load_world)?;
         let level = self.floor.or_else(|| self.world.is_none().then_some(0.0));
@@ -224,7 +226,7 @@ impl Bake {
         Ok(bodies)
     }
 
-    /// Place where a character of that height (metres) stands.
+    /// Position of a character of this height (metres).
     fn place(&self, bodies: &[BodyDef], height: f32) -> Result<Place> {
         let Some(world) = &self.world else {
             let on_floor = self.at.unwrap_or(Vec3::Y * self.floor.unwrap_or(0.0));
@@ -236,7 +238,7 @@ impl Bake {
             .map_err(|what| Failure::at(&name, what, if self.at.is_some() { "--at" } else { "--world" }))
     }
 
-    /// Bound by which the user allows keys to be off; nothing in a format that has all frames anyway.
+    /// Allowed key error; zero for a format that stores every frame.
     fn key_bound(&self) -> Result<KeyBound> {
         match (self.output.format, self.key_error) {
             (ClipFormat::Bvh, None) => Ok(KeyBound::ALL_KEYS),
@@ -250,7 +252,7 @@ impl Bake {
         }
     }
 
-    /// The character with the definition that was given or what a build gives.
+    /// The character with the given definition, or a built one.
     fn character(&self, textures: Textures, world: &[BodyDef]) -> Result<Cast> {
         let Some(path) = &self.ragdoll else {
             let door = || self.world.as_ref().and_then(|_| door(world));
@@ -275,7 +277,7 @@ impl Bake {
         let rig = &mut file.document.rig;
         rig.springs = self.spring_source(None).springs(rig, file.analysis.up_axis);
         let ragdoll = read_definition(path, &file)?;
-        // Nobody knows whether its mass was guessed or given.
+        // It is unknown if its mass was guessed or given.
         let mut doubt = Doubt::of(&ragdoll);
         if let Some(doubt) = &mut doubt {
             doubt.reason += "; --height, --unit or --mass of `ragdoll build` sets it";
@@ -284,7 +286,7 @@ impl Bake {
         Ok(Cast { file, ragdoll, garments: Vec::new(), doubt, notes })
     }
 
-    /// Source of the springs that are asked for: by an option, else by the settings.
+    /// Source of springs: an option, else the settings.
     fn spring_source(&self, setting: Option<SpringSource>) -> SpringSource {
         match (self.no_springs, self.guess_springs) {
             (true, _) => SpringSource::None,
@@ -293,7 +295,7 @@ impl Bake {
         }
     }
 
-    /// Name of the new clip: as the user says, else `sinew`, with a number where the file has that already.
+    /// Name of the new clip: the user's, else `sinew`, with a number if the file has that name already.
     fn clip_name(&self, file: &CharacterFile) -> Result<String> {
         let is_taken = |name: &str| file.document.clips.iter().any(|clip| clip.name == name);
         match &self.name {
@@ -318,7 +320,7 @@ impl Bake {
         never_over(inputs.chain(self.world.as_deref()).chain(self.ragdoll.as_deref()), self.outputs())
     }
 
-    /// A hit that would never come is a mistake; going limp after the end only leaves the fall out.
+    /// A hit after the end is an error; going limp after the end only means that there is no fall.
     fn check_times(&self) -> Result<()> {
         match self.hits.iter().map(|hit| hit.time).find(|time| *time > self.seconds) {
             Some(time) => {
@@ -333,7 +335,7 @@ impl Bake {
         std::iter::once(self.output.path()).chain(self.picture.iter().map(PictureFile::path)).collect()
     }
 
-    /// Writes all files; gives what the clip's cannot hold, a sentence each.
+    /// Writes all files; returns notes on what the clip's format cannot represent.
     fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<Vec<String>> {
         let (bytes, notes) = self.output.write(file, fall)?;
         let mut outputs = Outputs::default();
@@ -359,7 +361,7 @@ impl Bake {
     }
 }
 
-/// Each sentence, the first time it is said.
+/// Each sentence once.
 fn once(notes: Vec<String>) -> Vec<String> {
     let mut said: Vec<String> = Vec::new();
     for note in notes {
@@ -370,7 +372,7 @@ fn once(notes: Vec<String>) -> Vec<String> {
     said
 }
 
-/// Triangles of the world that nothing collides with, if there are any.
+/// Non-colliding triangles of the world, if any.
 fn left_out(bodies: &[BodyDef]) -> Option<String> {
     let shapes = bodies.iter().flat_map(|body| &body.shapes);
     let dropped = shapes.filter_map(|shape| match &shape.shape {
@@ -392,7 +394,7 @@ fn floor(level: f32) -> BodyDef {
     BodyDef { kind: BodyKind::Static, position: Vec3::Y * level, shapes, ..BodyDef::default() }
 }
 
-/// The whole character, seen from the front left of one that faces +Z if nothing is in the way.
+/// The whole character, seen from its front left (facing +Z), unless something blocks the view.
 fn film<'a>(fall: &'a Fall<'a>) -> Film<'a> {
     let mut set = Vec::new();
     for (index, body) in fall.input.bodies.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Place of the character in the world: where the user says, else on a flat place with room over it.
+//! Position of the character in the world: the user's, else a flat position with free space above.
 
 use super::grounds::grounds;
 use sinew::math::{Rotation, Transform, Vec3, max};
@@ -10,42 +10,43 @@ use sinew::physics::{
 
 /// Cosine of the steepest ground that is walked on: 40°.
 const WALKABLE: f32 = 0.766;
-/// Demands on a place, in heights of the character.
+/// Requirements for a position, in heights of the character.
 struct Demand {
-    /// Free way to each side: to fall in, or to stand in.
+    /// Free distance on each side: to fall, or to stand.
     room: f32,
     /// Free height.
     over: f32,
     /// Least cosine of the ground's slope.
     level: f32,
-    /// Unevenness of the ground around, at most.
+    /// Largest unevenness of the ground around.
     even: f32,
 }
 
-/// Demands from the best place down: flat ground (5°) with room to fall, with room to stand, under a low ceiling, and on a slope (20°).
+/// Requirements from best to worst: flat ground (5°) with space to fall, with space to stand, under a low ceiling, and
+/// on a slope (20°).
 const DEMANDS: [Demand; 4] = [
     Demand { room: 1.0, over: 1.5, level: 0.996, even: 0.02 },
     Demand { room: 0.35, over: 1.5, level: 0.996, even: 0.02 },
     Demand { room: 0.35, over: LEAST_OVER, level: 0.996, even: 0.02 },
     Demand { room: 0.35, over: LEAST_OVER, level: 0.94, even: 0.12 },
 ];
-/// Least free height over a place, in heights of the character.
+/// Least free height over a position, in heights of the character.
 const LEAST_OVER: f32 = 1.15;
-/// The ground of a place is even this far around, in shares of the room.
+/// Radius of even ground around a position, as a share of the free space.
 const AROUND: [f32; 2] = [0.5, 0.95];
-/// Height over the ground at which the room begins, in heights of the character: no pebble is in the way.
+/// Height over the ground where the free space starts, in heights of the character: ignores pebbles.
 const OVER: f32 = 0.06;
 
-/// A place and a way to face, as the user says them or as they were found.
+/// A position and a facing, given or found.
 pub struct Place {
     /// World from character.
     pub stands: Transform,
-    /// True if the place was sought.
+    /// True if the position was searched.
     pub found: bool,
 }
 
-/// The place that was said, or one that is sought on the world for a character of that `height`, metres; `facing` is in
-/// degrees. What there is no place on is an error in a line.
+/// The given position, or one searched in the world for a character of that `height`, metres; `facing` is in degrees.
+/// If there is none, returns a one-line error.
 pub fn place(bodies: &[BodyDef], height: f32, at: Option<Vec3>, facing: f32) -> Result<Place, String> {
     let turn = Rotation::from_axis_angle(Vec3::Y, facing.to_radians());
     let ground = Ground::new(bodies);
@@ -72,7 +73,7 @@ pub fn place(bodies: &[BodyDef], height: f32, at: Option<Vec3>, facing: f32) -> 
 /// A world to stand on.
 struct Ground {
     world: World,
-    /// Around all that stands and ends somewhere.
+    /// Around all finite static bodies.
     bounds: Option<Aabb>,
 }
 
@@ -96,7 +97,7 @@ impl Ground {
         !self.world.body_ids().any(stands)
     }
 
-    /// Hits of a straight way down, the highest first.
+    /// Hits of a vertical ray, the highest first.
     fn below(&self, from: Vec3, depth: f32) -> Vec<BodyHit> {
         let mut hits = Vec::new();
         let ray = Ray { origin: from, direction: Vec3::Y * -depth };
@@ -104,14 +105,14 @@ impl Ground {
         hits
     }
 
-    /// True if something stands under a place, however deep.
+    /// True if there is ground below a position at any depth.
     fn is_under(&self, at: Vec3, height: f32) -> bool {
         const DEPTH: f32 = 1000.0;
         !self.below(at + Vec3::Y * (0.5 * height), DEPTH).is_empty()
     }
 
-    /// A flat place with room over it on the largest ground that can be walked on, near its middle; where it has none, on the next.
-    /// Places that meet more [demands](DEMANDS) go first.
+    /// A flat position with free space above, near the middle of the largest walkable ground; if it has none, on the
+    /// next one. Positions that meet more [demands](DEMANDS) are preferred.
     fn flat_place(&self, height: f32) -> Option<Vec3> {
         let bounds = self.bounds.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::splat(0.5 * height)));
         let grounds = grounds(&bounds, height, |from, depth| self.floors(from, depth, height));
@@ -125,7 +126,7 @@ impl Ground {
         DEMANDS.iter().find_map(places)
     }
 
-    /// Heights under a place on which one can stand: level enough, with head room.
+    /// Walkable heights below a position: level enough, with head room.
     fn floors(&self, from: Vec3, depth: f32, height: f32) -> Vec<f32> {
         let hits = self.below(from, depth);
         let has_room = |hit: &&BodyHit| {
@@ -155,9 +156,9 @@ impl Ground {
     }
 
     fn is_free(&self, at: Vec3, height: f32, demand: &Demand) -> bool {
-        // Ground that rises around the place is in nobody's way.
+        // Rising ground around the position is no obstacle.
         let (room, begins) = (demand.room, max(OVER, demand.even));
-        // Lines find most of what is in the way, and cost far less than a box that overlaps a mesh.
+        // Rays find most obstacles, and cost far less than a box overlap with a mesh.
         let heart = at + Vec3::Y * (0.5 * height);
         let sides = [Vec3::X, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Z].map(|way| (heart, way * (room * height)));
         let up = (at + Vec3::Y * (begins * height), Vec3::Y * ((demand.over - begins) * height));
@@ -183,13 +184,13 @@ pub fn point(text: &str) -> Result<Vec3, String> {
 
 /// A height or a coordinate.
 pub fn metres(text: &str) -> Result<f32, String> {
-    /// Farther from the origin a millimetre is too little to be told, metres.
+    /// Farther from the origin f32 cannot resolve a millimetre, metres.
     const FARTHEST: f32 = 1e4;
     let number: f32 = text.trim().parse().map_err(|_| format!("'{text}' is not a number"))?;
     if number.abs() <= FARTHEST { Ok(number) } else { Err(format!("'{text}' is out of range")) }
 }
 
-/// A turn, degrees.
+/// A rotation, degrees.
 pub fn degrees(text: &str) -> Result<f32, String> {
     let number: f32 = text.trim().parse().map_err(|_| format!("'{text}' is not a number"))?;
     if number.abs() <= 360.0 { Ok(number) } else { Err("must lie between -360 and 360".to_owned()) }
@@ -205,7 +206,7 @@ mod tests {
         BodyDef { kind: BodyKind::Static, position, rotation, shapes, ..BodyDef::default() }
     }
 
-    /// A room whose ceiling is 1.3 heights over its floor, and nothing to stand on above.
+    /// A room whose ceiling is 1.3 heights over its floor, without ground above it.
     #[test]
     fn a_low_ceiling_is_room_enough() {
         let over = 1.3 * 2.0;

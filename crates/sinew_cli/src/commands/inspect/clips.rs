@@ -1,4 +1,4 @@
-//! Facts that `sinew inspect` tells about clips and their events.
+//! Facts about clips and their events for `sinew inspect`.
 
 use crate::input::motion::Motion;
 use crate::report::table::{Table, shown};
@@ -9,18 +9,18 @@ use sinew::anim::{
 };
 use sinew::math::{Affine, Rotation, Vec3};
 
-/// A clip and what can be measured of it.
+/// A clip and its measurements.
 pub struct ClipFacts<'a> {
     clip: &'a Clip,
     events: &'a [ClipEvent],
     keys: usize,
-    /// As it is played; else why it cannot be.
+    /// The playable clip, or the reason why it cannot be played.
     built: Result<BuiltClip, String>,
-    /// Displacement of the body by the clip, where it is known what a metre is.
+    /// Displacement of the body by the clip, if the unit is known.
     way: Option<Way>,
 }
 
-/// Displacement of a body by a clip: its place at the end, seen from its start.
+/// Displacement of a body by a clip: its end relative to its start.
 struct Way {
     /// Metres, character axes.
     shift: Vec3,
@@ -71,7 +71,7 @@ impl<'a> ClipFacts<'a> {
     }
 }
 
-/// From the first to the last pose of a clip, told by the joint that carries the body.
+/// From the first to the last pose of a clip, measured at the joint that carries the body.
 fn way(motion: &Motion, clip: &Clip, analysis: &RigAnalysis) -> Option<Way> {
     let rig = &motion.file.rig;
     let carrier = analysis.joint_with(Role::Hips).or_else(|| analysis.kept.first().map(|bone| bone.joint))?;

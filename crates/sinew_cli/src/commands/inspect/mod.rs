@@ -1,4 +1,4 @@
-//! `sinew inspect`: what is in a file.
+//! `sinew inspect`: shows the content of a file.
 
 mod clips;
 
@@ -21,7 +21,7 @@ use sinew::ragdoll::{Settings, SettingsError};
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Show what is in a file: joints, clips, events, springs, units, and which joint is which bone, with confidence
+/// Show the content of a file: joints, clips, events, springs, units, and the bone role of each joint, with confidence
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
@@ -51,7 +51,7 @@ impl Inspect {
         Ok(Report { json: content.to_json(), text: content.to_text() })
     }
 
-    /// Settings beside the file, if there are any.
+    /// Settings next to the file, if any.
     fn settings(&self) -> Result<Option<Settings>> {
         let path = settings_path(&self.file);
         if !path.is_file() {
@@ -70,7 +70,7 @@ impl Inspect {
         }
     }
 
-    /// Links across strands that the settings ask for.
+    /// Links across strands requested by the settings.
     fn links(&self, motion: &Motion, settings: Option<&Settings>) -> Result<Vec<SpringLink>> {
         let Some(settings) = settings else { return Ok(motion.file.rig.springs.links.clone()) };
         let up = motion.analysis.as_ref().map_or(Vec3::Y, |analysis| analysis.up_axis);
@@ -78,11 +78,11 @@ impl Inspect {
         Ok(springs.map_err(|error| self.failure(error))?.links)
     }
 
-    /// Garments that the settings ask for.
+    /// Garments requested by the settings.
     fn worn(&self, motion: &Motion, settings: Option<&Settings>) -> Result<Vec<Garment>> {
         let (Some(settings), Some(analysis)) = (settings, &motion.analysis) else { return Ok(Vec::new()) };
         let mut rig = motion.file.rig.clone();
-        // Lengths are metres by what the settings say of the unit.
+        // The settings define the unit.
         let analysis = analyze_with(&rig, analysis, settings).map_err(|error| self.failure(error))?;
         let nodes = rig.joints.len();
         let laid = settings.garments.lay_sheets(&mut rig, &analysis, nodes);
@@ -95,9 +95,9 @@ impl Inspect {
 struct Content<'a> {
     motion: &'a Motion,
     clips: Vec<ClipFacts<'a>>,
-    /// Links of its springs, and what is wrong in the settings that ask for them and for garments.
+    /// Links of its springs, and errors in the settings for them and for garments.
     links: Vec<SpringLink>,
-    /// Garments that the settings ask for.
+    /// Garments requested by the settings.
     worn: Vec<Garment>,
     trouble: Vec<String>,
 }
@@ -203,7 +203,7 @@ impl Content<'_> {
         }
     }
 
-    /// The joints as a tree: below each what hangs on it, in file order.
+    /// The joints as a tree, in file order.
     fn joint_table(&self) -> Table {
         let joints = &self.motion.file.rig.joints;
         let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
@@ -242,7 +242,7 @@ impl Content<'_> {
         notes
     }
 
-    /// Warnings of what could not be read, and what cannot be played.
+    /// Warnings of what could not be read or played.
     fn warnings(&self) -> Vec<String> {
         let unplayable = self.clips.iter().filter_map(ClipFacts::warning);
         self.motion.file.notes.iter().cloned().chain(unplayable).chain(self.trouble.clone()).collect()

@@ -20,7 +20,7 @@ use sinew_picture::{EncodeError, RenderSettings};
 use sinew_scenes::scenes::{Instance, Scene, Settings, find};
 use std::path::{Path, PathBuf};
 
-/// Length of the movie of a world file, and when a picture of one is taken, seconds: things have fallen by then.
+/// Duration of the movie of a world file, and time of its still picture, seconds: things have fallen by then.
 const WORLD_SECONDS: f32 = 3.0;
 
 /// Open a window on scenes, or draw a scene, a world file, or a character or motion file as a picture or a movie
@@ -50,10 +50,10 @@ pub struct View {
     /// Draw one picture: a .png, .gif or .webp file
     #[arg(long, value_name = "OUT.(png|gif|webp)")]
     picture: Option<PictureFile>,
-    /// When the picture is taken, seconds from the start; by default at the scene's end, of a clip in its middle
+    /// Time of the picture, seconds from the start; by default the scene's end, or the middle of a clip
     #[arg(long, value_name = "T", requires = "still", value_parser = seconds)]
     at: Option<f32>,
-    /// Draw all of it, 20 pictures a second: a .gif, .png (animated) or .webp file
+    /// Draw all of it at 20 pictures per second: a .gif, .png (animated) or .webp file
     #[arg(long, value_name = "OUT.(gif|png|webp)")]
     movie: Option<PictureFile>,
     /// Length of the movie, seconds; by default the scene's, or the clip's
@@ -65,7 +65,7 @@ pub struct View {
     /// The window starts without running
     #[arg(long, conflicts_with_all = ["picture", "movie"])]
     paused: bool,
-    /// A second recording of the same scene, which the window shows beside the first
+    /// A second recording of the same scene, shown in the window next to the first
     #[arg(long, value_name = "OTHER.sinewrec", conflicts_with_all = ["picture", "movie"])]
     ghost: Option<PathBuf>,
     /// Open the window, write a picture of it with its panels (after --at seconds of a scene), and close it
@@ -208,7 +208,7 @@ impl<'a> Subject<'a> {
         Ok(Self::Scene(scene, Box::new(settings)))
     }
 
-    /// Set up anew.
+    /// Recreated.
     pub fn start(&self) -> Instance {
         match self {
             Self::Scene(scene, settings) => scene.start(settings),
@@ -229,7 +229,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// Time that it takes to show what it is about, seconds.
+    /// Duration of the scene, seconds.
     fn seconds(&self) -> f32 {
         match self {
             Self::Scene(scene, settings) => scene.steps as f32 * scene.start(settings).world().def().dt(),

@@ -14,26 +14,26 @@ use sinew_picture::{
 };
 use sinew_scenes::scenes::{CameraHint, Curve, Expected, Figure, Instance, Metric, Trails};
 
-/// Pictures a second: a whole number of a GIF's hundredths of a second.
+/// Pictures per second: a whole number of a GIF's hundredths of a second.
 const FPS: u32 = 20;
 /// Figures on a picture.
 const MOST_FIGURES: usize = 3;
-/// Most bodies whose trails are drawn: of more nobody could tell them apart.
+/// Largest number of bodies with drawn trails: more are indistinguishable.
 const MOST_TRAILS: usize = 4;
 /// Steps that trails go back.
 const TRAIL_STEPS: usize = 600;
-/// Rays that look whether something stands in the way.
+/// Number of rays that test for occlusion.
 const MOST_RAYS: usize = 64;
-/// Largest reach of a picture around what moves, in radii of the largest thing that moves.
+/// Largest radius of a picture around moving bodies, in radii of the largest one.
 const WIDEST: f32 = 120.0;
-/// Reach of a skin over its joints, as a share of what these extend over.
+/// Extent of a skin beyond its joints, as a share of the joints' extent.
 const FLESH: f32 = 0.08;
-/// Around what is shown, as a share of its size.
+/// Margin around the subject, as a share of its size.
 const MARGIN: f32 = 0.1;
 
-/// Settings by which pictures are made, and what stands on them.
+/// Settings of the pictures, and their captions.
 pub struct Reel<'a> {
-    /// Title: what is shown.
+    /// Title of the subject.
     pub title: &'a str,
     /// When its closed forms hold, seconds.
     pub ends: f32,
@@ -70,7 +70,7 @@ impl Reel<'_> {
     ) -> Result<Vec<u8>, EncodeError> {
         let frames = (seconds * FPS as f32) as u32 + 1;
         let time = |frame: u32| frame as f32 / FPS as f32;
-        // Once to see how far everything goes, so that the camera need not move; once to draw it.
+        // The first pass measures the extent, so that the camera need not move; the second draws.
         let mut rehearsal = Take::new(subject.start());
         rehearsal.step_to(time(frames - 1));
         rehearsal.turn_to_see();
@@ -87,13 +87,13 @@ impl Reel<'_> {
     }
 }
 
-/// A scene on its way, and where everything has been.
+/// A running scene with the positions so far.
 struct Take {
     run: Instance,
     hint: CameraHint,
     /// Around all that a picture is about, so far.
     whole: Aabb,
-    /// Ways of the centres of mass so far, each with its colour.
+    /// Paths of the centres of mass so far, each with its colour.
     trails: Vec<Trail>,
     /// Materials of each figure.
     looks: Vec<Vec<RenderMaterial>>,
@@ -134,11 +134,11 @@ impl Take {
         }
     }
 
-    /// Goes around what is shown, by quarters, to where least of what moves is hidden behind what stands.
+    /// Tries camera directions around the subject, by quarter turns, and picks the one with the least occlusion.
     fn turn_to_see(&mut self) {
         let Vec3 { x, y, z } = self.hint.direction;
         let sides = [Vec3::new(x, y, z), Vec3::new(z, y, -x), Vec3::new(-z, y, x), Vec3::new(-x, y, -z)];
-        // Of equal ones the first: the one that was asked for.
+        // Among equal ones the first, which is the requested one.
         self.hint.direction = sides.into_iter().min_by_key(|&side| self.hidden(side)).unwrap_or(sides[0]);
     }
 
@@ -161,7 +161,7 @@ impl Take {
         self.hint.bounds.or(all).unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE))
     }
 
-    /// Lines that the scene draws beside its world.
+    /// Lines that the scene draws in addition to its world.
     fn lines(&self) -> Lines {
         let mut lines = Lines::default();
         self.run.draw(&mut lines);
@@ -170,7 +170,7 @@ impl Take {
         lines
     }
 
-    /// As it stands now, in a frame for all of `whole`.
+    /// The current state, in a frame for all of `whole`.
     fn draw(&self, reel: &Reel<'_>, whole: &Aabb, renderer: &mut Renderer) -> Image {
         let shown = self.shown(whole);
         let figures = self.run.figures();
@@ -196,8 +196,8 @@ impl Take {
         renderer.render(&scene, &Camera::framing_box(&shown, self.hint.direction, aspect))
     }
 
-    /// The part of `whole` that a picture shows: all of it, unless things are then too small to be seen; always all
-    /// that is there now.
+    /// The part of `whole` that a picture shows: all of it unless things are then too small, and always everything
+    /// present at that time.
     fn shown(&self, whole: &Aabb) -> Aabb {
         let now = self.now();
         let limit = WIDEST * self.largest();
@@ -213,7 +213,7 @@ impl Take {
         shown.expand(max(MARGIN * 0.5 * (shown.max - shown.min).length(), 1e-3))
     }
 
-    /// Radius of the largest shape that moves, metres; infinite if none has one.
+    /// Radius of the largest moving shape, metres; infinite if there is none.
     fn largest(&self) -> f32 {
         let world = self.run.world();
         let moving = world.body_ids().filter(|&id| world.kind(id) != BodyKind::Static);
@@ -247,7 +247,7 @@ impl Take {
     }
 }
 
-/// Around a character's joints and, as far as can be told from them, its skin.
+/// Around a character's joints and its estimated skin.
 fn around(figure: &Figure<'_>) -> Option<Aabb> {
     let joints = figure.world_from_joint.iter().map(|joint| joint.translation);
     let bones = joints.map(|at| Aabb { min: at, max: at }).reduce(|a, b| a.merge(&b))?;
@@ -278,15 +278,15 @@ impl Trail {
     }
 }
 
-/// Moment of a scene: tells if all that is expected of it has had time to happen.
+/// State of a scene: tells if every expectation has had time to be met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Moment {
     OnTheWay,
     AtTheEnd,
 }
 
-/// The figures that a scene is about: those with a closed form, else what else it measures; never those that every
-/// scene has. What is expected holds at the end; before that it is shown of those that are right already.
+/// The main figures of a scene: those with a closed form, else its other measurements, never those common to all
+/// scenes. Expectations apply at the end; before that only the satisfied ones are shown.
 fn figures(metrics: &[Metric], moment: Moment) -> Vec<String> {
     let own = &metrics[..metrics.len().saturating_sub(Instance::METRICS_OF_EVERY_SCENE)];
     let is_closed = |metric: &&Metric| matches!(metric.expected, Expected::Near { .. });

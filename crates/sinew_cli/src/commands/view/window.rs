@@ -45,13 +45,13 @@ impl View {
         Ok(Report { json: json!({"subject": title, "outputs": outputs}), text: String::new() })
     }
 
-    /// Says that there is none, and the command that adds it.
+    /// Reports that the build has no window, and the command that adds it.
     #[cfg(not(feature = "viewer"))]
     pub(super) fn open(&self) -> Result<Report> {
         use crate::input::scene_choice::choose;
         use std::path::Path;
 
-        // What is wrong with the subject is told first: no other build helps there.
+        // Errors of the subject come first: another build does not fix them.
         match self.subject.as_deref() {
             Some(name) if Path::new(name).extension().is_none() => drop(choose(name, &self.settings)?),
             Some(name) if !Path::new(name).exists() => return Err(Failure::of_file(name, "no such file")),

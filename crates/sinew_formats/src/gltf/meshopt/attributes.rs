@@ -20,7 +20,7 @@ pub(super) fn decode(bytes: &[u8], count: usize, stride: usize) -> Decoded {
         Some(0xA1) => 1,
         _ => return Err("it does not begin like attributes"),
     };
-    // The end of the stream holds the element before the first, and what the channels are.
+    // The end of the stream holds the initial element and the channel types.
     let tail = stride + if version == 0 { 0 } else { stride / 4 };
     let padded = tail.max(if version == 0 { 32 } else { 24 });
     let body = bytes.len().checked_sub(1 + padded).ok_or("it is cut off")?;
@@ -78,7 +78,7 @@ impl Lanes<'_, '_> {
         Ok(out)
     }
 
-    /// 16 numbers of so many bits; the largest of these stands for a whole byte that follows the group.
+    /// 16 numbers of this many bits; the largest code stands for a whole byte after the group.
     fn group(&mut self, bits: u32, out: &mut Vec<u8>) -> Result<(), &'static str> {
         if bits == 0 {
             out.resize(out.len() + GROUP, 0);
@@ -91,7 +91,7 @@ impl Lanes<'_, '_> {
         }
         let most = (1 << bits) - 1;
         for &byte in packed {
-            // The first number is in the highest bits, but where there is one bit for each.
+            // The first number is in the highest bits, except with one bit each.
             let mut byte = if bits == 1 { byte.reverse_bits() } else { byte };
             for _ in 0..8 / bits {
                 let number = byte >> (8 - bits);

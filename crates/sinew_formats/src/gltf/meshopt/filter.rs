@@ -1,6 +1,6 @@
 //! Filters behind the attribute streams: unit vectors, quaternions, floats and colours in fewer bits (extension, appendix B).
 
-/// Puts the elements of `stride` bytes back as the filter found them.
+/// Undoes the filter on elements of `stride` bytes.
 pub(super) fn apply(filter: &str, bytes: &mut [u8], stride: usize) -> Result<(), &'static str> {
     match (filter, stride) {
         ("NONE", _) => {}
@@ -34,12 +34,12 @@ fn each_i16(bytes: &mut [u8], f: impl Fn([i32; 4], i32) -> [i32; 4]) {
     }
 }
 
-/// To the nearest whole number, halves away from 0.
+/// To the nearest integer, halves away from 0.
 fn rounded(x: f32) -> i32 {
     (if x >= 0.0 { x + 0.5 } else { x - 0.5 }) as i32
 }
 
-/// A unit vector from its place on an octahedron; the third number is 1 as the encoder rounded it, the fourth is kept.
+/// A unit vector from octahedral coordinates; the third number is the encoder's rounded 1, the fourth is kept.
 fn octahedral([x, y, one, w]: [i32; 4], most: i32) -> [i32; 4] {
     let [mut x, mut y] = [x as f32, y as f32];
     let z = one as f32 - x.abs() - y.abs();
@@ -52,7 +52,7 @@ fn octahedral([x, y, one, w]: [i32; 4], most: i32) -> [i32; 4] {
     [rounded(x * scale), rounded(y * scale), rounded(z * scale), w]
 }
 
-/// A quaternion from its three smaller numbers; the fourth says which is missing, and how large 1 is.
+/// A quaternion from its three smaller components; the fourth gives the missing index and the scale of 1.
 fn quaternion([x, y, z, code]: [i32; 4], most: i32) -> [i32; 4] {
     let scale = core::f32::consts::FRAC_1_SQRT_2 / (code | 3) as f32;
     let three = [x, y, z].map(|number| number as f32 * scale);
@@ -72,7 +72,7 @@ fn exponential(bytes: &mut [u8]) {
     for element in bytes.chunks_exact_mut(4) {
         let bits = i32::from_le_bytes([element[0], element[1], element[2], element[3]]);
         let (exponent, mantissa) = (bits >> 24, bits << 8 >> 8);
-        // Powers of 2 down to the smallest that f32 has, in two steps that are both exact.
+        // Powers of 2 down to the smallest of f32, in two exact steps.
         let power = |e: i32| f32::from_bits(((e + 127).clamp(1, 254) as u32) << 23);
         let half = exponent / 2;
         let value = mantissa as f32 * power(half) * power(exponent - half);
@@ -80,7 +80,7 @@ fn exponential(bytes: &mut [u8]) {
     }
 }
 
-/// RGBA from luma, two differences of colour, and alpha, whose highest bit says how large 1 is.
+/// RGBA from luma, two colour differences, and alpha, whose highest bit gives the scale of 1.
 fn color([y, co, cg, alpha]: [i32; 4], most: i32) -> [i32; 4] {
     let full = 2 * most + 1;
     let (y, alpha) = (y & full, alpha & full);

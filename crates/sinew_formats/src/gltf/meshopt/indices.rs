@@ -21,7 +21,7 @@ impl<T: Copy> Recent<T> {
         self.next = self.next.wrapping_add(1);
     }
 
-    /// The one that was pushed so many before the next: 1 is the last.
+    /// The entry pushed this many entries ago: 1 is the last.
     fn back(&self, by: usize) -> T {
         self.items[self.next.wrapping_sub(by) & 15]
     }
@@ -31,9 +31,9 @@ struct Triangles<'a> {
     data: Reader<'a>,
     edges: Recent<[u32; 2]>,
     vertices: Recent<u32>,
-    /// The lowest index that was not there yet.
+    /// The lowest new index.
     next: u32,
-    /// The last one written out.
+    /// The last index written.
     last: u32,
     out: Vec<u32>,
 }
@@ -89,7 +89,7 @@ impl Triangles<'_> {
         edges.iter().for_each(|&edge| self.edges.push(edge));
     }
 
-    /// A triangle at an edge that was seen.
+    /// A triangle at a recent edge.
     fn by_edge(&mut self, code: u8, fifo_codes: u8) -> Result<(), &'static str> {
         let [a, b] = self.edges.back(1 + usize::from(code >> 4));
         let third = code & 15;
@@ -97,7 +97,7 @@ impl Triangles<'_> {
             0 => self.fresh(),
             _ if third < fifo_codes => self.vertices.back(1 + usize::from(third)),
             15 => self.explicit()?,
-            // 13 and 14 are one before the last and one behind it.
+            // 13 and 14 are one before and one after the last index.
             _ => {
                 self.last = if third == 13 { self.last.wrapping_sub(1) } else { self.last.wrapping_add(1) };
                 self.last
@@ -110,7 +110,7 @@ impl Triangles<'_> {
         Ok(())
     }
 
-    /// A triangle that begins with a new vertex; the others by a code from the table.
+    /// A triangle that starts with a new vertex; a code from the table gives the others.
     fn by_table(&mut self, code: u8) {
         let a = self.fresh();
         let corner = |state: &mut Self, code: u8| match code {
@@ -152,7 +152,7 @@ impl Triangles<'_> {
         Ok(())
     }
 
-    /// Remembers those that were new, or written out.
+    /// Stores the indices that were new or written explicitly.
     fn new_vertices(&mut self, corners: [(u8, u32); 2]) {
         for (code, index) in corners {
             if code == 0 || code == 15 {
@@ -168,7 +168,7 @@ pub(super) fn decode_sequence(bytes: &[u8], count: usize) -> Indices {
         Some(0xD0 | 0xD1) => {}
         _ => return Err("it does not begin like indices"),
     }
-    // Four bytes at the end are there so that decoders may read ahead.
+    // The four padding bytes let decoders read ahead.
     let length = bytes.len().checked_sub(5).ok_or("it is cut off")?;
     let mut reader = Reader { rest: &bytes[1..1 + length] };
     let mut last = [0_u32; 2];

@@ -1,8 +1,7 @@
 //! Compressed buffer views: `EXT_meshopt_compression`, and `KHR_meshopt_compression`, which adds a second version of the
 //! attribute streams and a filter for colours.
 //!
-//! Streams come from anywhere: every byte read is checked to be there, and what a view claims to hold is booked before
-//! it is decoded.
+//! Streams are untrusted: every read is bounds-checked, and a view's claimed size is booked before decoding.
 
 mod attributes;
 mod filter;
@@ -12,7 +11,7 @@ use super::source::{Buffer, buffer_bytes};
 use crate::container::json::At;
 use crate::error::Result;
 
-/// Both names of the extension; what the newer one adds is told by the streams themselves.
+/// Both names of the extension; the streams themselves mark the newer one's additions.
 const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 /// True if an extension is one that this module reads.
@@ -23,7 +22,7 @@ pub(super) fn is_known(name: &str) -> bool {
 /// Why a stream cannot be decoded, in a few words.
 type Decoded = Result<Vec<u8>, &'static str>;
 
-/// The bytes of each buffer view that is compressed; `None` for the others. `budget` shrinks by what they take.
+/// The bytes of each compressed buffer view; `None` for the others. `budget` shrinks by their size.
 pub(super) fn decode_views(
     root: At<'_>,
     buffers: &[Buffer],
@@ -97,7 +96,7 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// The next so many bytes.
+    /// The next this many bytes.
     fn take(&mut self, count: usize) -> Result<&'a [u8], &'static str> {
         let (taken, rest) = self.rest.split_at_checked(count).ok_or("it is cut off")?;
         self.rest = rest;
@@ -122,7 +121,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Numbers of both signs as they are stored: 0, −1, 1, −2, …
+/// Zigzag-coded signed numbers: 0, −1, 1, −2, …
 fn unzigzag(value: u32) -> u32 {
     (value >> 1) ^ (value & 1).wrapping_neg()
 }

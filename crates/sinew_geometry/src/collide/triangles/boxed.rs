@@ -215,7 +215,7 @@ fn within(points: &[ManifoldPoint; 2], margin: f32) -> &[ManifoldPoint] {
 }
 
 /// Both ends of the overlap between a box face and an edge of the triangle, if the face lies on the edge: with only the
-/// point where edges cross, the box would rock from one side to the other for ever.
+/// point where edges cross, the box would rock from one side to the other forever.
 fn under_face(
     placed: &PlacedBox,
     edge: &Segment,

@@ -73,7 +73,7 @@ impl Outline {
             let (from, to) = (triangle.corners[edge], triangle.corners[(edge + 1) % 3]);
             let outward = sinew_math::normalize_or((to - from).cross(triangle.normal), Vec3::ZERO);
             let beyond = |p: Vec3| (p - from).dot(outward) - tolerance;
-            // Outlines are long, and most edges have all of one on the same side.
+            // Outlines are long, and usually entirely on one side of an edge.
             let kept = self.corners().iter().filter(|corner| beyond(corner.at) <= 0.0).count();
             if kept == 0 {
                 self.count = 0;

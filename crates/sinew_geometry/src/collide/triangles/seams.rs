@@ -1,4 +1,4 @@
-//! Contacts with edges at which a surface ends and another shape continues: they get a normal that both show there.
+//! Contacts at edges where another shape continues a surface: they get a normal that both shapes share.
 
 use super::solid::Solid;
 use super::{Candidate, name};

@@ -91,7 +91,7 @@ impl<'a> Solid<'a> {
                     push(corner.point, corner.name, Side::Shape(corner.side));
                 }
                 if !feature.is_face() {
-                    // Round where it is lowest: between the corners of what stands for it.
+                    // Round at its lowest point: between the corners of its polygon.
                     outline = lowest(posed, normal, outline);
                 }
                 outline.face = feature.name;

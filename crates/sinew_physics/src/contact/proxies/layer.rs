@@ -1,4 +1,4 @@
-//! One of the trees and whose its leaves are.
+//! One of the trees and the owners of its leaves.
 
 use super::{FEW, Owner};
 use crate::tree::Tree;
@@ -24,24 +24,24 @@ impl Leaf {
     }
 }
 
-/// A tree, and whose its leaves are.
+/// A tree with the owners of its leaves.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Layer {
     pub tree: Tree,
     pub owners: Vec<Owner>,
-    /// True for each leaf whose pairs are being looked for anew.
+    /// True for each leaf whose pairs are pending a search.
     pub is_pending: Vec<bool>,
-    /// Numbers of leaves that are not used, by how many there are in a row.
+    /// Free leaf ranges, by length.
     pub gaps: BTreeMap<u32, Vec<u32>>,
 }
 
-/// Leaves of a body: so many from `first` on, one for each shape.
+/// Leaves of a body: this many from `first` on, one per shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Home {
     pub first: u32,
     pub count: u32,
     pub moves: bool,
-    /// It is among those to be looked for anew.
+    /// It is pending a search.
     pub dirty: bool,
     /// When it last could touch something.
     pub active: u64,

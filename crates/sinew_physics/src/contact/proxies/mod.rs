@@ -1,6 +1,6 @@
-//! Bounds of all shapes of a world, in two trees, one for what is fixed and one for what may move. Bounds of
-//! what moves have room to move in, so that the tree need not change in every step. The trees hold at any time, within a
-//! step and between steps, and what they answer does not depend on how they came to be: they are no part of the state.
+//! Bounds of all shapes of a world in two trees, one for fixed and one for movable shapes. Bounds of movable shapes
+//! have a margin, so that the tree need not change in every step. The trees are always valid, within a step and between
+//! steps, and query results do not depend on their history: they are not part of the state.
 
 mod layer;
 mod motion;
@@ -21,7 +21,7 @@ use crate::contact::tuning::{BOUNDS_EXCESS, BOUNDS_ROOM, MARGIN};
 use crate::tree::{Item, PAD};
 use sinew_math::{Transform, Vec3, max, max3, min3};
 
-/// Bodies with fewer shapes are put into a tree one by one.
+/// Bodies with fewer shapes are inserted into a tree individually.
 const FEW: usize = 64;
 
 /// A shape of a body: indices.
@@ -36,38 +36,38 @@ pub(crate) struct Owner {
 pub(crate) struct Proxies {
     fixed: Layer,
     moving: Layer,
-    /// Half-spaces: their bounds would tell nothing.
+    /// Half-spaces: their bounds would be useless.
     unbounded: Vec<Owner>,
     /// Leaves of each body, by its index.
     homes: Vec<Option<Home>>,
-    /// Static bodies of a single shape, by index: rays meet many, and a body is spread over several lines of the cache.
+    /// Static bodies with a single shape, by index: rays hit many, and a body spans several cache lines.
     lone: Vec<Option<Placed>>,
-    /// Bounds of each leaf of `moving` within the coming step, world, metres; [`UNKNOWN`] where nobody needed them.
+    /// Bounds of each leaf of `moving` during the coming step, world, metres; [`UNKNOWN`] if not needed.
     reach: Vec<Aabb>,
-    /// By the first leaf of each body that may move.
+    /// By the first leaf of each movable body.
     traces: Vec<Trace>,
     /// By index of the body.
     strides: Vec<Stride>,
-    /// Bodies that could touch something when pairs were looked for last, and when that was.
+    /// Bodies that could touch something at the last pair search, and its time.
     active: Vec<u32>,
     active_before: Vec<u32>,
     stamp: u64,
     /// Step that the last `update_motion` was for, seconds.
     dt: f32,
-    /// Bodies all of whose shapes are to be looked for anew.
+    /// Bodies whose shapes are all pending a search.
     dirty: Vec<u32>,
-    /// Leaves of `moving` that have other bounds than when they were last looked for.
+    /// Leaves of `moving` whose bounds have changed since their last search.
     enlarged: Vec<u32>,
-    /// All that moves is to be looked for anew.
+    /// Everything movable is pending a search.
     all_pending: bool,
     /// Leaves that are marked as pending.
     pending: Vec<Leaf>,
-    /// Some of them are of bodies that have gone.
+    /// Some of them belong to removed bodies.
     has_gone: bool,
     scratch: Vec<Item>,
 }
 
-/// A shape where it is, and who asks for it.
+/// A shape with its pose and owner.
 #[derive(Clone, Debug)]
 pub(crate) struct Placed {
     pub shape: Shape,
@@ -76,13 +76,12 @@ pub(crate) struct Placed {
     pub sensing: Sensing,
 }
 
-/// Bounds of a shape as it is placed now.
+/// Bounds of a shape at its current pose.
 fn bounds(body: &Body, shape: u32) -> Aabb {
     body.shapes[shape as usize].shape.aabb(&body.world_from_shape(shape as usize))
 }
 
-/// Larger by what rounding may do in an exact test; without end if a number is none, since that would spoil the bounds of
-/// others.
+/// Enlarged by the rounding error of an exact test; infinite for NaN, which would corrupt the bounds of others.
 pub(crate) fn thick(bounds: &Aabb) -> Aabb {
     let far = max3(-bounds.min, bounds.max);
     let thick = bounds.expand(PAD * max(far.x, max(far.y, far.z)));
@@ -93,13 +92,13 @@ pub(crate) fn thick(bounds: &Aabb) -> Aabb {
     }
 }
 
-/// Bounds within which contacts of a shape are looked for, world: its own, grown by its motion and a margin.
+/// Bounds for the contact search of a shape, world: its own, grown by its motion and a margin.
 fn grown(body: &Body, shape: u32, motion: f32) -> Aabb {
     bounds(body, shape).expand(MARGIN + motion)
 }
 
 impl Proxies {
-    /// A body has come.
+    /// A body was added.
     pub fn add(&mut self, index: u32, body: &Body) {
         let home = self.move_in(index, body);
         let count = home.count as usize;
@@ -115,7 +114,7 @@ impl Proxies {
         self.mark_dirty(index);
     }
 
-    /// A body has gone.
+    /// A body was removed.
     pub fn remove(&mut self, index: u32) {
         let Some(home) = self.homes.get_mut(index as usize).and_then(Option::take) else { return };
         self.lone[index as usize] = None;
@@ -133,7 +132,7 @@ impl Proxies {
         }
     }
 
-    /// A body has been put somewhere else.
+    /// A body was teleported.
     pub fn place(&mut self, index: u32, body: &Body) {
         let Some(home) = self.homes[index as usize] else { return };
         self.refresh(index, body);
@@ -143,7 +142,7 @@ impl Proxies {
         self.mark_dirty(index);
     }
 
-    /// A body has other surfaces than before.
+    /// A body has new surfaces.
     pub fn refresh(&mut self, index: u32, body: &Body) {
         self.lone[index as usize] = lone(body);
         if let Some(home) = self.home(index).filter(|home| home.moves && home.count > 0) {
@@ -151,7 +150,7 @@ impl Proxies {
         }
     }
 
-    /// All bodies may be others than before: keeps what fits.
+    /// All bodies may have changed: keeps what still matches.
     pub fn adopt(&mut self, bodies: &Arena<Body>) {
         for index in 0..self.homes.len() as u32 {
             let body = bodies.try_at(index);
@@ -181,7 +180,7 @@ impl Proxies {
         self.traces.fill(Trace::NONE);
     }
 
-    /// The shape of a static body that has no other, where it is: what the body would say.
+    /// The shape of a single-shape static body, at its pose, as stored in the body.
     pub fn lone(&self, index: u32) -> Option<&Placed> {
         self.lone[index as usize].as_ref()
     }
@@ -198,7 +197,7 @@ impl Proxies {
         if moves { &mut self.moving } else { &mut self.fixed }
     }
 
-    /// Gives a body leaves, which are not in a tree yet; of half-spaces they never are.
+    /// Allocates leaves for a body, not yet in a tree; half-spaces get none.
     fn move_in(&mut self, index: u32, body: &Body) -> Home {
         let moves = body.kind != BodyKind::Static;
         let count = body.shapes.len() as u32;
@@ -221,7 +220,7 @@ impl Proxies {
             self.traces[own].fill(Trace::NONE);
             self.moving.tree.reserve(count);
             self.scratch.reserve(count);
-            // All may leave their room at once.
+            // All may leave their margins at once.
             self.enlarged.reserve(count);
             self.pending.reserve(count);
         }
@@ -230,7 +229,7 @@ impl Proxies {
         home
     }
 
-    /// Builds a tree anew if it is worn.
+    /// Rebuilds a degraded tree.
     fn mend(&mut self, moves: bool) {
         if moves && self.moving.tree.is_worn() {
             self.moving.tree.rebuild(&mut self.scratch);
@@ -239,7 +238,7 @@ impl Proxies {
         }
     }
 
-    /// True if a body's leaves are those that it would be given now, and hold it.
+    /// True if a body's leaves are up to date and contain it.
     fn fits(&mut self, index: u32, body: &Body) -> bool {
         let Some(home) = self.home(index) else { return false };
         let tree = &self.layer(home.moves).tree;
@@ -265,14 +264,14 @@ impl Proxies {
         }
     }
 
-    /// Sees to it that the bounds of a shape in its tree hold these, with room to spare if they have to be changed: most of it
-    /// along the `way` that it is expected to go, metres. Tells whether they had to be.
+    /// Ensures that the bounds of a shape in its tree contain these; if they must change, adds a margin, mostly along
+    /// the expected `way`, metres. Returns true if they changed.
     fn cover(&mut self, home: Home, shape: u32, needed: &Aabb, way: Vec3, room: f32) -> bool {
         let leaf = home.first + shape;
         let tree = &mut self.layer_mut(home.moves).tree;
         let own = tree.bounds(leaf);
         let room = if home.moves { room } else { 0.0 };
-        // What comes to rest needs less room than what fell.
+        // A resting body needs a smaller margin than a falling one.
         let fits =
             own.contains(needed) && needed.expand(BOUNDS_EXCESS * (room + way.length())).contains(&own);
         if !fits {
@@ -283,7 +282,7 @@ impl Proxies {
         !fits
     }
 
-    /// Has all shapes of a body looked for anew; how far it moved is not known.
+    /// Makes all shapes of a body pending; its motion is unknown.
     fn mark_dirty(&mut self, index: u32) {
         let Some(home) = &mut self.homes[index as usize] else { return };
         if core::mem::replace(&mut home.dirty, true) {
@@ -303,7 +302,7 @@ impl Proxies {
         }
     }
 
-    /// Builds a tree anew, with bodies that have just been given leaves.
+    /// Rebuilds a tree, including bodies with new leaves.
     fn build(&mut self, moves: bool, new: &[(u32, &Body)]) {
         let count = new.iter().map(|(_, body)| body.shapes.len()).sum::<usize>();
         let mut items = Vec::with_capacity(self.layer(moves).tree.len() + count);

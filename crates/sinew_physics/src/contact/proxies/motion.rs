@@ -1,4 +1,4 @@
-//! Motion of bodies in a step, done and to come: bounds of their shapes within it, and the room in the tree that saves its upkeep.
+//! Motion of bodies in past and coming steps: bounds of their shapes within it, and the margins that save tree updates.
 
 use super::{Home, Proxies, grown, thick};
 use crate::arena::Arena;
@@ -14,17 +14,17 @@ use sinew_math::{Transform, Vec3, max, min, min3};
 /// Motion of a body in a step, metres.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stride {
-    /// Motion of its centre since pairs were last looked for, and of its points besides; without end if it was put
-    /// somewhere. None at all unless `stamp` is the present one.
+    /// Motion of its centre since the last pair search, and of its other points; infinite after a teleport. Zero unless
+    /// `stamp` is current.
     shift: Vec3,
     turned: f32,
     stamp: u64,
-    /// Motion in the coming step, at its present velocity.
+    /// Motion in the coming step at its current velocity.
     ahead: Vec3,
     spin: f32,
-    /// Motion in the coming step that a blow may bring besides, in any direction.
+    /// Additional motion in the coming step from an impulse, in any direction.
     blow: f32,
-    /// Room by which its bounds are larger for that, metres.
+    /// Margin of its bounds for that, metres.
     pub grown: f32,
 }
 
@@ -41,22 +41,22 @@ impl Stride {
 /// Relative motion of two bodies, metres: a bound for any two of their points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Closing {
-    /// By how much they may have come closer since pairs were last looked for.
+    /// Largest approach since the last pair search.
     pub moved: f32,
-    /// Largest gap within which points are looked for because of how fast they are, metres.
+    /// Largest distance at which contact points are searched because of speed, metres.
     pub ahead: f32,
 }
 
-/// Gap within which points of two bodies are looked for because of how fast they are, metres.
+/// Distance at which contact points of two bodies are searched because of speed, metres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ahead {
     /// No farther than this.
     pub most: f32,
-    /// Part of it for blows that joints are about to pass on.
+    /// Its share for impulses that joints will transmit.
     pub blow: f32,
 }
 
-/// Pose and motion of a body when its bounds were last worked out.
+/// Pose and motion of a body at its last bounds update.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Trace {
     /// The body's reach: its shapes never change.
@@ -66,16 +66,16 @@ pub(super) struct Trace {
     /// As in [`Stride`].
     shift: Vec3,
     turned: f32,
-    /// Way that its centre may go until a ball around it, which holds all of it at rest, may leave its bounds in the tree, metres: of a
-    /// kinematic body.
+    /// Distance that a kinematic body's centre may move until a ball around it, which contains the whole body in any
+    /// orientation, may leave its bounds in the tree, metres.
     pub free: f32,
 }
 
-/// Bounds that were not worked out.
+/// Bounds that were not computed.
 pub(super) const UNKNOWN: Aabb = Aabb { min: Vec3::NAN, max: Vec3::NAN };
 
 impl Trace {
-    /// Trace of a body that was put where it is.
+    /// Motion of a teleported body.
     pub const NONE: Self = Self {
         arm: f32::NAN,
         pose: Transform { translation: Vec3::NAN, ..Transform::IDENTITY },
@@ -86,13 +86,13 @@ impl Trace {
     };
 }
 
-/// Share by which motion is taken as more than it is, and the same of the distance from the origin and of a body's size: what
-/// rounding may do to a bound and to the gap that it is taken from.
+/// Safety factors on motion and on the distance from the origin and the body's size: the rounding error of a bound and
+/// of a gap computed from it.
 const SLACK: f32 = 1e-3;
 const BLUR: f32 = 2e-6;
 
-/// Motion of a body's centre between two poses, and the most that any point within `arm` of it did besides, metres: by the chord of half the
-/// turn, twice as long as that of a quarter.
+/// Motion of a body's centre between two poses, and the largest additional motion of any point within `arm` of it,
+/// metres: by the chord of half the rotation, twice as long as that of a quarter.
 fn way(from: &Transform, to: &Transform, arm: f32) -> (Vec3, f32) {
     let (p, q) = (from.rotation, to.rotation.toward(from.rotation));
     let turned = Vec3::new(q.x - p.x, q.y - p.y, q.z - p.z).length_squared() + (q.w - p.w) * (q.w - p.w);
@@ -102,7 +102,7 @@ fn way(from: &Transform, to: &Transform, arm: f32) -> (Vec3, f32) {
 }
 
 impl Proxies {
-    /// Works out where the `movers` may be within a step of `dt` seconds, and lets the tree follow.
+    /// Computes the bounds of `movers` during a step of `dt` seconds, and updates the tree.
     pub fn follow(&mut self, bodies: &Arena<Body>, movers: impl Iterator<Item = u32>, dt: f32) {
         let same_step = self.begin(dt);
         for index in movers {
@@ -113,8 +113,9 @@ impl Proxies {
         }
     }
 
-    /// Works out where the `movers`, all that moves, may be within a step of `dt` seconds, and takes note of who can touch something in it and
-    /// of how far all have moved. What was `changed`, comes to be able to touch, or no longer is, is to be looked for anew.
+    /// Computes the bounds of `movers` (all movable bodies) during a step of `dt` seconds, and records which bodies can
+    /// touch something and how far each has moved. Bodies that were `changed`, or that gain or lose the ability to
+    /// touch, become pending.
     pub fn update_motion(
         &mut self,
         bodies: &Arena<Body>,
@@ -167,13 +168,13 @@ impl Proxies {
         core::mem::replace(&mut self.dt, dt) == dt
     }
 
-    /// Works out where a body that forces move may be within the step, and lets the tree follow.
+    /// Computes the bounds of a dynamic body during the step, and updates the tree.
     fn predict(&mut self, index: u32, home: Home, body: &Body, same_step: bool) {
         let trace = &mut self.traces[home.first as usize];
         if same_step && trace.pose == body.world_from_principal && trace.velocity == body.velocity {
             return;
         }
-        // Where it was is not known of what was put somewhere.
+        // The previous pose of a teleported body is unknown.
         let arm = if trace.arm >= 0.0 { trace.arm } else { body.reach() };
         let (shift, turned) = way(&trace.pose, &body.world_from_principal, arm);
         let (shift, turned) = (trace.shift + shift, trace.turned + turned);
@@ -185,8 +186,8 @@ impl Proxies {
         self.predict_bounds(index, home, body, BOUNDS_STEPS, BOUNDS_ROOM);
     }
 
-    /// The same of a kinematic body, of which there may be many that meet nobody: as long as the tree has bounds for a small one that hold a
-    /// ball around it, nothing else is worked out, and how far it moved counts as not known.
+    /// The same for a kinematic body. There may be many without contacts, so as long as a small one's bounds in the
+    /// tree contain a ball around it, nothing else is computed, and its motion counts as unknown.
     fn predict_kinematic(&mut self, index: u32, home: Home, body: &Body) {
         let (trace, stride) = (&mut self.traces[home.first as usize], &mut self.strides[index as usize]);
         let arm = if trace.arm >= 0.0 { trace.arm } else { body.reach() };
@@ -199,7 +200,7 @@ impl Proxies {
         }
         let mut free = trace.free;
         if free < grown {
-            // Should it come to be dynamic, nothing is known of how it moved.
+            // If it becomes dynamic, its motion is unknown.
             *trace = Trace { arm, ..Trace::NONE };
             free = self.free(home.first, body, arm);
         }
@@ -210,13 +211,14 @@ impl Proxies {
             self.predict_bounds(index, home, body, BOUNDS_STEPS_LED, room);
             free = self.free(home.first, body, arm);
         }
-        // It goes as its velocity says; what may be rounded there is less than its turning, which is taken off besides.
+        // It moves according to its velocity; the rounding error is less than its rotation, which is also subtracted.
         let far = body.center().abs();
         let gone = grown * (1.0 + SLACK) + BLUR * (far.x + far.y + far.z + arm);
         self.traces[home.first as usize].free = free - gone;
     }
 
-    /// Way that the centre of a body may go until a ball around it leaves its bounds in the tree, metres; negative if it does.
+    /// Distance that the centre of a body may move until a ball around it leaves its bounds in the tree, metres;
+    /// negative if it already has.
     fn free(&self, leaf: u32, body: &Body, arm: f32) -> f32 {
         let ball = thick(&Aabb::around(body.center(), Vec3::splat(arm + MARGIN)));
         let own = self.moving.tree.bounds(leaf);
@@ -224,19 +226,19 @@ impl Proxies {
         min(spare.x, min(spare.y, spare.z))
     }
 
-    /// Has points of a body looked for farther away in this step, as far as it comes at `speed` (m/s) in any direction beside the velocity
-    /// that it has.
+    /// Extends the contact search of a body in this step for an additional `speed` (m/s) in any direction.
     pub fn widen(&mut self, index: u32, body: &Body, speed: f32) {
         let Some(home) = self.home(index).filter(|home| home.count > 0 && body.can_touch()) else { return };
         let (stride, way) = (&mut self.strides[index as usize], speed * self.dt);
         stride.blow = way;
         stride.grown += way;
-        // In the next step it is worked out anew, whatever its velocity is by then.
+        // The next step recomputes it from the velocity at that time.
         self.traces[home.first as usize].velocity.linear = Vec3::NAN;
         self.predict_bounds(index, home, body, BOUNDS_STEPS, BOUNDS_ROOM);
     }
 
-    /// Works out the bounds of a body within the step. Where the tree must change it gets `room` (m) around and `steps` of motion ahead.
+    /// Computes the bounds of a body during the step. If the tree must change, adds a margin of `room` (m) and `steps`
+    /// steps of motion.
     fn predict_bounds(&mut self, index: u32, home: Home, body: &Body, steps: f32, room: f32) {
         let Stride { grown: motion, ahead, .. } = self.strides[index as usize];
         for shape in 0..home.count {
@@ -250,7 +252,7 @@ impl Proxies {
         }
     }
 
-    /// Notes that a body can touch something in this step; gives its leaves, if it has any.
+    /// Records that a body can touch something in this step; returns its leaves, if any.
     #[inline(always)]
     fn mark_active(&mut self, index: u32) -> Option<Home> {
         let home = self.homes.get_mut(index as usize)?.as_mut()?;
@@ -265,7 +267,7 @@ impl Proxies {
         Some(home)
     }
 
-    /// Forgets the motion of what is to be looked for anew.
+    /// Clears the motion of pending bodies.
     fn forget_motion(&mut self, bodies: &Arena<Body>) {
         for at in 0..self.dirty.len() {
             let index = self.dirty[at];
@@ -273,10 +275,10 @@ impl Proxies {
             let stride = &mut self.strides[index as usize];
             (stride.shift, stride.turned, stride.stamp) = (Vec3::ZERO, f32::INFINITY, self.stamp);
             if !home.moves {
-                // What is static may have been given one, which counts when points are looked for.
+                // A static body may have a motion set, which counts in the contact search.
                 stride.ahead = body.velocity.linear * self.dt;
             } else if home.count > 0 && !body.can_touch() {
-                // It rests, and nobody will work out its bounds.
+                // It rests, and its bounds will not be computed.
                 (stride.ahead, stride.spin, stride.blow, stride.grown) = (Vec3::ZERO, 0.0, 0.0, 0.0);
                 self.traces[home.first as usize] = Trace::NONE;
                 for shape in 0..home.count {
@@ -296,8 +298,8 @@ impl Proxies {
         Closing { moved, ahead: self.ahead(key).most }
     }
 
-    /// Gap within which points of two bodies are looked for because of how fast they are: as far as they come closer, or one of them comes,
-    /// whichever is more, what both turn, and what a blow may bring.
+    /// Distance at which contact points of two bodies are searched because of speed: their relative or larger
+    /// individual approach, both rotations, and possible impulses.
     pub fn ahead(&self, key: ContactKey) -> Ahead {
         let [p, q] = [key.a, key.b].map(|body| &self.strides[body as usize]);
         let (p2, q2) = (p.ahead.length_squared(), q.ahead.length_squared());

@@ -1,4 +1,4 @@
-//! Queries of the trees: pairs that may meet, and shapes near a box, along a line or around a point.
+//! Tree queries: candidate pairs, and shapes near a box, along a line or around a point.
 
 use super::layer::Home;
 use super::{Leaf, Owner, Proxies, grown, is_bounded};
@@ -13,22 +13,22 @@ use core::ops::ControlFlow;
 use sinew_math::{Vec3, max, max3};
 
 impl Proxies {
-    /// True if there is anything to be looked for anew.
+    /// True if any search is pending.
     pub fn has_pending(&self) -> bool {
         self.all_pending || !(self.dirty.is_empty() && self.enlarged.is_empty() && self.pending.is_empty())
     }
 
-    /// True if that is no more than shapes that left their bounds.
+    /// True if only shapes that left their bounds are pending.
     pub fn only_enlarged(&self) -> bool {
         !self.all_pending && self.dirty.is_empty() && !self.has_gone
     }
 
-    /// True if the pairs of a shape are being looked for anew.
+    /// True if the pairs of a shape are pending a search.
     pub fn is_pending(&self, leaf: Leaf) -> bool {
         self.all_pending || self.layer(leaf.moves()).is_pending[leaf.at()]
     }
 
-    /// Everything has been looked for.
+    /// Clears all pending searches.
     pub fn clear_pending(&mut self) {
         (self.all_pending, self.has_gone) = (false, false);
         for index in self.dirty.drain(..) {
@@ -43,8 +43,9 @@ impl Proxies {
         }
     }
 
-    /// Pairs of a pending shape and another whose bounds in the trees overlap its own, of which one can touch something and whose kinds let them
-    /// meet (another kind has a body looked for anew): each at least once, in no order. [`update_motion`](Self::update_motion) comes before.
+    /// Pairs of a pending shape and another with overlapping tree bounds, of which one can touch something and whose
+    /// kinds may collide (a kind change makes a body pending): each at least once, in unspecified order. Call
+    /// [`update_motion`](Self::update_motion) before.
     pub fn search(&mut self, bodies: &Arena<Body>, mut visit: impl FnMut((Owner, Leaf), (Owner, Leaf))) {
         if self.all_pending {
             for &index in &self.active {
@@ -75,7 +76,7 @@ impl Proxies {
         }
     }
 
-    /// True if the neighbours of a shape that moves are asked for.
+    /// True if a moving shape's neighbours are requested.
     fn is_asking(&self, owner: Owner, leaf: Leaf) -> bool {
         if self.all_pending {
             self.home(owner.body).is_some_and(|home| home.active == self.stamp)
@@ -84,7 +85,7 @@ impl Proxies {
         }
     }
 
-    /// Visits the pairs of a shape with the shapes whose bounds meet its own.
+    /// Visits the pairs of a shape with all shapes whose bounds overlap its own.
     fn neighbors(
         &self,
         bodies: &Arena<Body>,
@@ -99,7 +100,7 @@ impl Proxies {
         let bounds = self.wide_bounds(body, owner, leaf);
         let sensing = body.surface(owner.shape as usize).sensing;
         let mut meet = |other: Owner, its: Leaf| {
-            // Two that move and are both looked for find each other.
+            // Two moving shapes that are both pending find each other.
             let is_found = leaf.moves() && its.moves() && its.at() < leaf.at() && self.is_asking(other, its);
             let its_body = bodies.at(other.body);
             let its_sensing = its_body.surface(other.shape as usize).sensing;
@@ -119,7 +120,7 @@ impl Proxies {
         if !leaf.moves() {
             return;
         }
-        // The bounds of what is fixed lack its margin.
+        // The bounds of fixed shapes lack its margin.
         let _ = self.fixed.tree.overlapping(&bounds.expand(1.01 * MARGIN), |leaf| {
             meet(self.fixed.owners[leaf as usize], Leaf::new(false, leaf))
         });
@@ -130,7 +131,7 @@ impl Proxies {
         }
     }
 
-    /// Bounds that hold a shape and all that may touch it, as long as its tree does not change.
+    /// Bounds that contain a shape and everything that may touch it, until its tree changes.
     fn wide_bounds(&self, body: &Body, owner: Owner, leaf: Leaf) -> Aabb {
         match (leaf.moves(), is_bounded(body, owner.shape)) {
             (true, _) => self.moving.tree.bounds(leaf.at() as u32),
@@ -139,7 +140,7 @@ impl Proxies {
         }
     }
 
-    /// True if the bounds of two shapes in their trees do not overlap. Both are there.
+    /// True if the bounds of two shapes in their trees do not overlap. Both must be in the trees.
     pub fn are_parted(&self, leaves: [Leaf; 2]) -> bool {
         let bounds = |leaf: Leaf| {
             let tree = &self.layer(leaf.moves()).tree;
@@ -150,14 +151,14 @@ impl Proxies {
         p.is_some_and(|p| q.is_some_and(|q| !overlap(&p, &q)))
     }
 
-    /// True if two shapes are near each other: their bounds, grown by the motion of the coming step and a margin, overlap. That
-    /// does not depend on what the trees hold.
+    /// True if two shapes are near each other: their bounds, grown by the motion of the coming step and a margin,
+    /// overlap. Does not depend on the trees' history.
     pub fn are_near(&self, bodies: &Arena<Body>, key: ContactKey, leaves: [Leaf; 2]) -> bool {
         let [(p, _), (q, _)] = self.grown_bounds(bodies, key, leaves);
         overlap(&p, &q)
     }
 
-    /// Gap of the bounds of two shapes, metres: they are at least so far apart.
+    /// Gap between the bounds of two shapes, metres: a lower bound of their distance.
     pub fn gap(&self, bodies: &Arena<Body>, key: ContactKey, leaves: [Leaf; 2]) -> f32 {
         let [(p, grown_p), (q, grown_q)] = self.grown_bounds(bodies, key, leaves);
         let beyond = max3(p.min - q.max, q.min - p.max);
@@ -166,7 +167,7 @@ impl Proxies {
         apart.length() - PAD * max(far.x, max(far.y, far.z))
     }
 
-    /// Bounds of the shapes of a pair, grown by a margin and by motion, which is told besides.
+    /// Bounds of the shapes of a pair, grown by a margin and by motion, with that motion.
     fn grown_bounds(&self, bodies: &Arena<Body>, key: ContactKey, leaves: [Leaf; 2]) -> [(Aabb, f32); 2] {
         let grown = |leaf: Leaf, body: u32, shape: u32| {
             if leaf.moves() {
@@ -180,8 +181,8 @@ impl Proxies {
         [grown(leaves[0], key.a, key.shape_a), grown(leaves[1], key.b, key.shape_b)]
     }
 
-    /// Every shape whose bounds overlap these, touching ones and half-spaces too, and perhaps others near by; in no order,
-    /// until one breaks off.
+    /// Every shape whose bounds overlap these, including touching ones and half-spaces, and possibly other nearby ones;
+    /// in unspecified order, until the callback breaks off.
     pub fn overlapping<B>(
         &self,
         bounds: &Aabb,
@@ -201,13 +202,13 @@ impl Proxies {
         &self.unbounded
     }
 
-    /// All other shapes: trees that are not empty, each with whose its leaves are.
+    /// All other shapes: the non-empty trees with the owners of their leaves.
     pub fn trees(&self) -> impl Iterator<Item = (&Tree, &[Owner])> {
         let layers = [&self.fixed, &self.moving].into_iter().filter(|layer| !layer.tree.is_empty());
         layers.map(|layer| (&layer.tree, layer.owners.as_slice()))
     }
 
-    /// Every shape that may be met along a line; see [`Tree::along`].
+    /// Every shape that a line may hit; see [`Tree::along`].
     pub fn along(&self, sweep: &Sweep, mut visit: impl FnMut(Owner) -> f32) {
         let mut sweep = *sweep;
         for &owner in &self.unbounded {

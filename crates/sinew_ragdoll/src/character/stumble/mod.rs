@@ -351,7 +351,7 @@ impl Footing {
 }
 
 impl Stumble {
-    /// Moves the legs of a pose of the clips to a stumble's in so many seconds; `way`: displacement of the character
+    /// Moves the legs of a pose of the clips to a stumble's in this many seconds; `way`: displacement of the character
     /// until then. `place`: its place then.
     pub fn hold_feet(
         &self,
