@@ -162,11 +162,9 @@ async function examples(browser, folder) {
   const source = join(told.root, 'bindings/web/package/examples');
   const target = join(folder, 'examples');
   await cp(source, target, { recursive: true });
-  for (const name of ['react', 'react-dom', '@react-three/fiber', 'scheduler', 'zustand', 'its-fine', 'react-use-measure',
-    'suspend-react', 'base64-js', 'buffer', 'ieee754', 'use-sync-external-store', '@babel/runtime']) {
-    const from = join(here, 'node_modules', name);
-    await cp(from, join(folder, 'node_modules', name), { recursive: true }).catch(() => {});
-  }
+  const { devDependencies } = JSON.parse(await readFile(join(here, 'package.json'), 'utf8'));
+  const react = ['react', 'react-dom', '@react-three/fiber'].map((name) => `${name}@${devDependencies[name]}`);
+  run(folder, 'npm', 'install', '--no-audit', '--no-fund', ...react);
   run(target, join(folder, 'node_modules/.bin/vite'), 'build');
   const server = await serve({}, join(target, 'dist'));
   for (const name of ['falling', 'crowd', 'shooter', 'cloth', 'react']) {
