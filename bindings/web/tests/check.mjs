@@ -157,6 +157,17 @@ async function drags(page, ask) {
   check(await page.evaluate(() => !window.drag.isDragging && window.hero.state === 'limp'), 'it was let go, limp');
 }
 
+// A program in TypeScript fits the types of the package.
+async function types(folder) {
+  const { devDependencies } = JSON.parse(await readFile(join(here, 'package.json'), 'utf8'));
+  const packages = ['typescript', '@types/three'].map((name) => `${name}@${devDependencies[name]}`);
+  run(folder, 'npm', 'install', '--no-audit', '--no-fund', '--save-dev', ...packages);
+  await cp(join(here, 'user.ts'), join(folder, 'user.ts'));
+  const strict = ['--noEmit', '--strict', '--target', 'es2022', '--module', 'esnext', '--moduleResolution', 'bundler'];
+  run(folder, 'npx', 'tsc', ...strict, '--lib', 'es2022,dom,dom.iterable,esnext.disposable', 'user.ts');
+  console.log('a program in TypeScript fits the types');
+}
+
 // Each example builds, and its page shows something without an error.
 async function examples(browser, folder) {
   const source = join(told.root, 'bindings/web/package/examples');
@@ -193,6 +204,7 @@ await mkdir(pictures, { recursive: true });
 const browser = await browse();
 try {
   const folder = await readme(browser);
+  await types(folder);
   await scenes(browser, folder);
   await examples(browser, folder);
   console.log(`all as it should be; pictures in ${pictures}`);
