@@ -157,6 +157,12 @@ async function drags(page, ask) {
   check(await page.evaluate(() => !window.drag.isDragging && window.hero.state === 'limp'), 'it was let go, limp');
 }
 
+// Wrong calls are errors with a sentence, in Node.
+async function errors(folder) {
+  await cp(join(here, 'errors.mjs'), join(folder, 'errors.mjs'));
+  console.log(run(folder, 'node', 'errors.mjs').trim());
+}
+
 // A program in TypeScript fits the types of the package.
 async function types(folder) {
   const { devDependencies } = JSON.parse(await readFile(join(here, 'package.json'), 'utf8'));
@@ -204,6 +210,7 @@ await mkdir(pictures, { recursive: true });
 const browser = await browse();
 try {
   const folder = await readme(browser);
+  await errors(folder);
   await types(folder);
   await scenes(browser, folder);
   await examples(browser, folder);
