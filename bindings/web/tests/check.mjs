@@ -157,16 +157,31 @@ async function drags(page, ask) {
   check(await page.evaluate(() => !window.drag.isDragging && window.hero.state === 'limp'), 'it was let go, limp');
 }
 
+// Wrong calls are errors with a sentence, in Node.
+async function errors(folder) {
+  await cp(join(here, 'errors.mjs'), join(folder, 'errors.mjs'));
+  console.log(run(folder, 'node', 'errors.mjs').trim());
+}
+
+// A program in TypeScript fits the types of the package.
+async function types(folder) {
+  const { devDependencies } = JSON.parse(await readFile(join(here, 'package.json'), 'utf8'));
+  const packages = ['typescript', '@types/three'].map((name) => `${name}@${devDependencies[name]}`);
+  run(folder, 'npm', 'install', '--no-audit', '--no-fund', '--save-dev', ...packages);
+  await cp(join(here, 'user.ts'), join(folder, 'user.ts'));
+  const strict = ['--noEmit', '--strict', '--target', 'es2022', '--module', 'esnext', '--moduleResolution', 'bundler'];
+  run(folder, 'npx', 'tsc', ...strict, '--lib', 'es2022,dom,dom.iterable,esnext.disposable', 'user.ts');
+  console.log('a program in TypeScript fits the types');
+}
+
 // Each example builds, and its page shows something without an error.
 async function examples(browser, folder) {
   const source = join(told.root, 'bindings/web/package/examples');
   const target = join(folder, 'examples');
   await cp(source, target, { recursive: true });
-  for (const name of ['react', 'react-dom', '@react-three/fiber', 'scheduler', 'zustand', 'its-fine', 'react-use-measure',
-    'suspend-react', 'base64-js', 'buffer', 'ieee754', 'use-sync-external-store', '@babel/runtime']) {
-    const from = join(here, 'node_modules', name);
-    await cp(from, join(folder, 'node_modules', name), { recursive: true }).catch(() => {});
-  }
+  const { devDependencies } = JSON.parse(await readFile(join(here, 'package.json'), 'utf8'));
+  const react = ['react', 'react-dom', '@react-three/fiber'].map((name) => `${name}@${devDependencies[name]}`);
+  run(folder, 'npm', 'install', '--no-audit', '--no-fund', ...react);
   run(target, join(folder, 'node_modules/.bin/vite'), 'build');
   const server = await serve({}, join(target, 'dist'));
   for (const name of ['falling', 'crowd', 'shooter', 'cloth', 'react']) {
@@ -195,6 +210,8 @@ await mkdir(pictures, { recursive: true });
 const browser = await browse();
 try {
   const folder = await readme(browser);
+  await errors(folder);
+  await types(folder);
   await scenes(browser, folder);
   await examples(browser, folder);
   console.log(`all as it should be; pictures in ${pictures}`);

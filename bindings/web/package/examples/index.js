@@ -11,7 +11,7 @@ const PUSH = 1.6;
 const say = (text) => { document.getElementById('state').textContent = text; };
 const bar = document.getElementById('bar');
 bar.style.width = '30%';
-const { physics, scene, camera, controls, renderer, run } = await stage({ eye: [2.6, 1.7, 4.2] });
+const { physics, scene, camera, controls, renderer, run } = await stage({ eye: [2.2, 1.5, 3.6] });
 bar.style.width = '80%';
 
 let walker;
@@ -98,7 +98,7 @@ const WORDS = {
   animated: 'It walks. Click to push it, drag its limbs.',
   flinching: 'It keeps its feet.',
   powered: 'It keeps its feet.',
-  limp: 'It falls: every bone is a body, every joint has a person’s limits.',
+  limp: 'It falls: every bone is a body, every joint has its limits.',
   preparing: 'It turns over to get up.',
   gettingUp: 'It gets up.',
 };
