@@ -6,8 +6,8 @@ use sinew::anim::weights::lost_weights;
 use sinew::anim::{Clip, Garment, Hints, Rig, RigAnalysis, analyze_hinted, characters};
 use sinew::formats::{
     Document, MotionFile, MotionFormat, MotionOptions, ReadOptions, load_gltf, load_motion, no_files,
-    read_bytes, read_gltf, read_mjcf, read_motion, read_ragdoll, read_ragdoll_settings, read_urdf,
-    settings_path, write_gltf, write_motion,
+    read_bytes, read_gltf, read_model, read_motion, read_ragdoll, read_ragdoll_settings, settings_path,
+    write_gltf, write_motion,
 };
 use sinew::math::Vec3;
 use sinew::motions::{BuiltinError, looped_among, set_motions_with_builtin};
@@ -320,10 +320,8 @@ pub fn load_ragdoll(path: &Path) -> Result<Repair, Failure> {
     let named = |error: sinew::formats::Error| error.with_file(&name);
     match extension.as_deref() {
         Some("json") => Ok(Repair::new(read_ragdoll(&read_bytes(path)?).map_err(named)?)),
-        Some(kind @ ("xml" | "urdf")) => {
-            let bytes = read_bytes(path)?;
-            let model = if kind == "xml" { read_mjcf(&bytes) } else { read_urdf(&bytes) };
-            let model = model.and_then(|model| model.to_ragdoll()).map_err(named)?;
+        Some("xml" | "urdf") => {
+            let model = read_model(&read_bytes(path)?).and_then(|model| model.to_ragdoll()).map_err(named)?;
             Ok(Repair { springs: model.springs, ..Repair::new(model.def) })
         }
         _ => {

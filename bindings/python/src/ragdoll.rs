@@ -6,8 +6,7 @@ use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use sinew::formats::{
-    MjcfModel, MjcfText, read_bytes, read_mjcf, read_physics_gltf, read_ragdoll, read_urdf, write_atomic,
-    write_mjcf, write_ragdoll,
+    MjcfModel, MjcfText, read_bytes, read_model, read_ragdoll, write_atomic, write_mjcf, write_ragdoll,
 };
 use sinew::math::Range;
 use sinew::physics::{JointKind, Shape};
@@ -42,13 +41,7 @@ pub fn load_ragdoll(py: Python<'_>, path: PathBuf) -> PyResult<Ragdoll> {
 #[pyfunction]
 pub fn load_model(py: Python<'_>, path: PathBuf) -> PyResult<Model> {
     let read = || {
-        let end = path.extension().map(|end| end.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let read = |bytes: Vec<u8>| match end.as_str() {
-            "urdf" => read_urdf(&bytes),
-            "gltf" | "glb" => read_physics_gltf(&bytes),
-            _ => read_mjcf(&bytes),
-        };
-        let model = read_bytes(&path).and_then(read);
+        let model = read_bytes(&path).and_then(|bytes| read_model(&bytes));
         model.map_err(|error| error.with_file(path.display().to_string()))
     };
     Ok(Model { model: py.detach(|| guarded(read))?.map_err(of_file)? })

@@ -46,7 +46,7 @@ pub use gltf::{
 };
 pub use jolt::{JoltMotor, JoltRagdoll, read_jolt_animation, read_jolt_ragdoll};
 pub use mesh::TriangleMesh;
-pub use mjcf::{MjcfModel, MjcfRagdoll, MjcfText, read_mjcf, write_mjcf};
+pub use mjcf::{MjcfModel, MjcfRagdoll, MjcfText, read_mjcf, read_model, write_mjcf};
 pub use motion::{MotionFile, MotionFormat, MotionOptions, read_motion};
 pub use obj::read_obj;
 pub use physics_gltf::read_physics_gltf;

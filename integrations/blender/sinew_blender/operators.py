@@ -1,6 +1,7 @@
 """Operators: what the buttons do."""
 
 import json
+import time
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
@@ -12,6 +13,8 @@ from .skeleton import SinewError
 
 # Seconds between two looks at a simulation that runs.
 LOOKS_EVERY = 0.1
+# Seconds of sampling between two of Blender's redraws.
+SLICE = 0.5
 
 
 def active_armature(context):
@@ -153,36 +156,54 @@ class SINEW_OT_simulate(Sinew, bpy.types.Operator):
     def invoke(self, context, event):
         if bpy.app.background:
             return self.execute(context)
-        manager = context.window_manager
-        manager.progress_begin(0, 1)
         try:
-            job = simulation.prepare(context, selected_armatures(context), lambda share: manager.progress_update(0.3 * share))
+            self._work = simulation.preparing(context, selected_armatures(context))
         except SinewError as error:
-            manager.progress_end()
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        self._job = job
-        job.start()
+        manager = context.window_manager
+        self._job = None
+        manager.progress_begin(0, 1)
         self._timer = manager.event_timer_add(LOOKS_EVERY, window=context.window)
         manager.modal_handler_add(self)
         context.workspace.status_text_set("Sinew simulates; Esc cancels")
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
-        job = self._job
-        if event.type == "ESC":
-            job.cancelled = True
-        if event.type != "TIMER":
-            return {"RUNNING_MODAL"}
-        context.window_manager.progress_update(0.3 + 0.7 * job.share)
-        if job.thread.is_alive():
-            return {"RUNNING_MODAL"}
-        self._end(context)
         try:
-            return self.finish(context, job)
+            return self.go_on(context, event)
         except SinewError as error:
+            self._end(context)
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+
+    def go_on(self, context, event):
+        """Samples in slices of Blender's time, then looks after the thread that simulates."""
+        if event.type == "ESC" and self._job is None:
+            self._work.close()
+            self._end(context)
+            self.report({"INFO"}, "Cancelled: nothing was keyed")
+            return {"CANCELLED"}
+        if event.type == "ESC":
+            self._job.cancelled = True
+        if event.type != "TIMER":
+            return {"RUNNING_MODAL"}
+        progress = context.window_manager.progress_update
+        if self._job is None:
+            until = time.monotonic() + SLICE
+            try:
+                while time.monotonic() < until:
+                    progress(0.3 * next(self._work))
+            except StopIteration as done:
+                self._job = done.value
+                self._job.start()
+            return {"RUNNING_MODAL"}
+        progress(0.3 + 0.7 * self._job.share)
+        if self._job.thread.is_alive():
+            return {"RUNNING_MODAL"}
+        done = self.finish(context, self._job)
+        self._end(context)
+        return done
 
     def _end(self, context):
         context.window_manager.event_timer_remove(self._timer)
@@ -190,7 +211,7 @@ class SINEW_OT_simulate(Sinew, bpy.types.Operator):
         context.workspace.status_text_set(None)
 
     def finish(self, context, job):
-        if isinstance(job.error, bridge.engine().Cancelled):
+        if job.cancelled or isinstance(job.error, bridge.engine().Cancelled):
             self.report({"INFO"}, "Cancelled: nothing was keyed")
             return {"CANCELLED"}
         if job.error is not None:

@@ -68,8 +68,13 @@ def frames_of(scene):
     return first, last
 
 
-def prepare(context, arms, told=None):
+def prepare(context, arms):
     """Reads armatures, animation and world; what only Blender's own thread may do."""
+    return sk.whole(preparing(context, arms))
+
+
+def preparing(context, arms):
+    """`prepare` step by step: a generator of the share that is done."""
     scene, sinew = context.scene, bridge.engine()
     settings = scene.sinew
     first, last = frames_of(scene)
@@ -82,7 +87,7 @@ def prepare(context, arms, told=None):
     loaded, takes, actors, units = [], [], [], []
     for arm in arms:
         with own_animation(arm):
-            take = sk.sample(arm, sk.skeleton_of(arm), first, last, told)
+            take = yield from sk.sampling(arm, sk.skeleton_of(arm), first, last)
         one = bridge.load(arm, take.frames, fps)
         ragdoll = bridge.ragdoll(arm) if arm.sinew.definition else bridge.build(arm)
         one.unit = ragdoll.unit_scale

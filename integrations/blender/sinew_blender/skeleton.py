@@ -336,8 +336,9 @@ class Take:
         return frame - self.first
 
 
-def sample(arm, skeleton, first, last, told=None):
-    """The user's animation from the first frame to the last, with Blender's own frame put back."""
+def sampling(arm, skeleton, first, last):
+    """The user's animation from the first frame to the last, a step of the generator for each; Blender's own frame is put back, also where it is closed before its
+    end."""
     scene = bpy.context.scene
     at, sub = scene.frame_current, scene.frame_subframe
     take, carried = Take(first), carriers(arm, skeleton.names)
@@ -350,8 +351,20 @@ def sample(arm, skeleton, first, last, told=None):
             take.worlds.append(world)
             take.carriers.append({n: bones[n].matrix.copy() for n in carried})
             take.modes.append({n: bones[n].sinew_mode for n in skeleton.names})
-            if told is not None:
-                told((frame - first + 1) / (last - first + 1))
+            yield (frame - first + 1) / (last - first + 1)
     finally:
         scene.frame_set(at, subframe=sub)
     return take
+
+
+def whole(steps):
+    """Runs a generator to its end; returns what it returns."""
+    while True:
+        try:
+            next(steps)
+        except StopIteration as done:
+            return done.value
+
+
+def sample(arm, skeleton, first, last):
+    return whole(sampling(arm, skeleton, first, last))

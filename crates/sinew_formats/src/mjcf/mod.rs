@@ -157,6 +157,19 @@ pub fn read_mjcf(bytes: &[u8]) -> Result<MjcfModel> {
     Ok(MjcfModel { name, gravity, bodies, joints, excluded_pairs, keyframes, notes: notes.into_sentences() })
 }
 
+/// Reads a model of bodies and joints in any of the formats that hold one: MJCF, URDF, or the physics of a glTF, by what is in the file.
+///
+/// # Errors
+/// As [`read_mjcf`], [`read_urdf`](crate::read_urdf) and [`read_physics_gltf`](crate::read_physics_gltf).
+pub fn read_model(bytes: &[u8]) -> Result<MjcfModel> {
+    let first = bytes.iter().find(|byte| !byte.is_ascii_whitespace());
+    if crate::container::glb::is_glb(bytes) || first == Some(&b'{') {
+        return crate::read_physics_gltf(bytes);
+    }
+    let place = |tag: &[u8]| bytes.windows(tag.len()).position(|window| window == tag).unwrap_or(usize::MAX);
+    if place(b"<robot") < place(b"<mujoco") { crate::read_urdf(bytes) } else { read_mjcf(bytes) }
+}
+
 /// Refuses sections that are not of the format, and notes those that are not read.
 fn check_sections(root: Element<'_>, notes: &mut Notes) -> Result<()> {
     for (tag, section) in children(root) {

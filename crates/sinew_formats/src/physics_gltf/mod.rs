@@ -109,7 +109,7 @@ fn list<'a>(root: At<'a>, name: &str, key: &str) -> Result<Vec<At<'a>>> {
     extension(root, name)?.map_or(Ok(Vec::new()), |of| of.list(key))
 }
 
-/// Physics extension of a node, of either family.
+/// Physics of a node, of either family.
 fn physics(node: At<'_>) -> Result<Option<At<'_>>> {
     Ok(extension(node, "KHR_physics_rigid_bodies")?.or(extension(node, "OMI_physics_body")?))
 }

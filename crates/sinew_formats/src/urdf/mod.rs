@@ -251,7 +251,7 @@ fn read_kind(element: Element<'_>) -> Result<Kind> {
             let value = need(axis, "xyz")?;
             let axis = Vec3::from_array(value.numbers()?);
             let length = axis.length();
-            if !(length > 1e-6) {
+            if length < 1e-6 {
                 return Err(value.malformed("an axis has a length"));
             }
             axis / length
@@ -281,7 +281,7 @@ fn read_kind(element: Element<'_>) -> Result<Kind> {
         other => return Err(kind.malformed(format!("no joint is {}", quoted(other)))),
     };
     if let JointKind::Hinge { limit: Some(range) } | JointKind::Slider { limit: Some(range) } = joint
-        && !(range.lo <= range.hi)
+        && range.lo > range.hi
     {
         return Err(malformed(element, "its limits leave nothing"));
     }
