@@ -118,20 +118,11 @@ pub fn python() -> Result<()> {
         command::run(Command::new("python3").args(["-m", "venv"]).arg(venv))?;
     }
     let source = command::root().join("bindings/python");
-    let pip = |venv: &Path| {
-        let mut pip = Command::new(venv.join("bin/pip"));
-        pip.args(["install", "--quiet", "--disable-pip-version-check"]);
-        pip
-    };
     command::run(pip(&builder).arg("maturin>=1.7,<2"))?;
-    let mut build = Command::new(builder.join("bin/maturin"));
-    build.args(["build", "--release", "--locked", "--out"]).arg(folder.join("wheels"));
-    command::run(build.current_dir(&source).env("CARGO_TARGET_DIR", target()))?;
-    let wheels = fs::read_dir(folder.join("wheels"))?.collect::<std::io::Result<Vec<_>>>()?;
-    let wheel = wheels.first().context("maturin made no wheel")?.path();
+    let wheel = wheel(&builder, &folder.join("wheels"))?;
     let with_extras = format!("sinew[gym,ray] @ file://{}", wheel.display());
     command::run(pip(&user).arg(with_extras))?;
-    command::run(pip(&user).args(["pytest", "mypy", "matplotlib", "nbconvert", "ipykernel"]))?;
+    command::run(pip(&user).args(["pytest", "mypy", "matplotlib", "nbconvert", "ipykernel", "usd-core"]))?;
     let run = |program: &str, arguments: &[&str], place: &Path| {
         command::run(Command::new(user.join("bin").join(program)).args(arguments).current_dir(place))
     };
@@ -155,6 +146,29 @@ pub fn python() -> Result<()> {
     let mut convert = Command::new(user.join("bin/python"));
     convert.args(["-m", "nbconvert", "--to", "html", "--execute", "--output-dir"]).arg(&folder).arg(notebook);
     command::run(convert.current_dir(&tests).env("PATH", path_with(&user.join("bin"))))
+}
+
+/// The start of a command that installs packages into an environment.
+pub fn pip(venv: &Path) -> Command {
+    let mut pip = Command::new(venv.join("bin/pip"));
+    pip.args(["install", "--quiet", "--disable-pip-version-check"]);
+    pip
+}
+
+/// The wheel, built by the maturin of an environment into a folder, which is emptied before.
+///
+/// # Errors
+/// If it does not build.
+pub fn wheel(builder: &Path, out: &Path) -> Result<PathBuf> {
+    if out.exists() {
+        fs::remove_dir_all(out)?;
+    }
+    let mut build = Command::new(builder.join("bin/maturin"));
+    build.args(["build", "--release", "--locked", "--out"]).arg(out);
+    let source = command::root().join("bindings/python");
+    command::run(build.current_dir(source).env("CARGO_TARGET_DIR", target()))?;
+    let wheels = fs::read_dir(out)?.collect::<std::io::Result<Vec<_>>>()?;
+    Ok(wheels.first().context("maturin made no wheel")?.path())
 }
 
 /// The programs that pages print.

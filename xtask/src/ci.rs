@@ -2,7 +2,7 @@
 
 use crate::command::{self, Profile};
 use crate::golden::{self, Coverage};
-use crate::{bench, bindings, contract, new_user, spawns, targets, tidy, web};
+use crate::{bench, bindings, blender, contract, new_user, npm, spawns, targets, tidy, web};
 use anyhow::{Context, Result, anyhow, bail};
 use serde_json::Value;
 use std::fs;
@@ -15,7 +15,7 @@ use std::time::Instant;
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
     /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
-    /// SINEW_WORLDS, as in 100..200); ten minutes of random lives, and ten with characters; definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the viewer's window and its page; the plugin for Bevy; the libraries for C and Python; instruction counts; the oldest compiler
+    /// SINEW_WORLDS, as in 100..200); ten minutes of random lives, and ten with characters; definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the viewer's window and its page; the npm package; the plugin for Bevy; the libraries for C and Python; the extension in Blender; instruction counts; the oldest compiler
     #[arg(long)]
     full: bool,
 }
@@ -59,10 +59,12 @@ impl Ci {
             check("peers", &peers);
             check("window", &window);
             check("web", &web::check);
+            check("npm", &npm::check);
             check("bevy", &bevy);
             check("new user of bevy", &new_user::bevy);
             check("c", &bindings::c);
             check("python", &bindings::python);
+            check("blender", &blender::check);
             check("counts", &bench::check_counts);
             check("oldest compiler", &oldest_compiler);
         }
@@ -110,16 +112,23 @@ fn window() -> Result<()> {
     Ok(())
 }
 
-/// The plugin for Bevy compiles with no feature, and does what its tests say with all, on files that Bevy has loaded as well; two
-/// examples in a window. One set of features for tests and windows: Bevy is built once.
+/// Compiler of the examples in a window: the whole of Bevy asks for a newer one than the plugin, which the pinned one builds.
+const WINDOW_TOOLCHAIN: &str = "1.97.1";
+
+/// The plugin for Bevy compiles with no feature, and does what its tests say with all; then, with the whole of Bevy, on files that Bevy has
+/// loaded, and two examples in a window.
 fn bevy() -> Result<()> {
-    let run = |arguments: &[&str]| {
-        let mut cargo = command::cargo(arguments);
-        cargo.args(["--locked", "--manifest-path", "integrations/bevy_sinew/Cargo.toml"]);
+    let run = |cargo: &mut Command, arguments: &[&str]| {
+        cargo.args(arguments).args(["--locked", "--manifest-path", "integrations/bevy_sinew/Cargo.toml"]);
         command::run(cargo.arg("--target-dir").arg(command::target().join("bevy")))
     };
-    run(&["check", "--no-default-features"])?;
-    run(&["test", "--workspace", "--all-features"])?;
+    run(&mut command::cargo(&[]), &["check", "--no-default-features"])?;
+    run(&mut command::cargo(&[]), &["test", "--package", "bevy_sinew", "--all-features"])?;
+    let toolchain = ["toolchain", "install", WINDOW_TOOLCHAIN, "--profile", "minimal"];
+    command::run(Command::new("rustup").args(toolchain))?;
+    let mut newer = Command::new("rustup");
+    newer.args(["run", WINDOW_TOOLCHAIN, "cargo"]).current_dir(command::root());
+    run(&mut newer, &["test", "--package", "window"])?;
     for (example, at) in [("character", "2.2"), ("door", "1.9")] {
         bevy_window(example, at)?;
     }

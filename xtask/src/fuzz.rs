@@ -37,9 +37,11 @@ const TARGETS: &[Target] = &[
     Target { name: "fbx", seeds: "", longest: 16_384 },
     Target { name: "gltf", seeds: "../shared/data/rigs", longest: 65_536 },
     Target { name: "jolt", seeds: "../shared/data/peers/jolt", longest: 32_768 },
+    Target { name: "physics_gltf", seeds: "../shared/data/peers/omi_physics_joint", longest: 32_768 },
     Target { name: "ragdoll", seeds: "", longest: 16_384 },
     Target { name: "roles", seeds: "", longest: 2_048 },
     Target { name: "settings", seeds: "", longest: 4_096 },
+    Target { name: "urdf", seeds: "../shared/data/robots", longest: 16_384 },
 ];
 
 impl Fuzz {

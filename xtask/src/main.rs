@@ -1,8 +1,9 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | web | fuzz | lives | soak`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | blender | npm | web | fuzz | lives | soak`.
 #![forbid(unsafe_code)]
 
 mod bench;
 mod bindings;
+mod blender;
 mod book;
 mod chapters;
 mod check;
@@ -12,6 +13,7 @@ mod contract;
 mod fuzz;
 mod golden;
 mod new_user;
+mod npm;
 mod ragdolls;
 mod searches;
 mod sizes;
@@ -55,6 +57,10 @@ enum Task {
     Sizes(sizes::Sizes),
     /// The libraries for C and Python, built, installed and tried as their users have them
     Bindings(bindings::Bindings),
+    /// The npm package `sinew-physics`, built, packed and tried as its users have it
+    Npm(npm::Npm),
+    /// The extension for Blender as a zip; and its trial in Blender's module for Python
+    Blender(blender::Blender),
     /// The viewer as a page, a folder of static files; and its trial in a browser
     Web(web::Web),
     /// Bytes from nowhere against the readers, and clips against the runtime
@@ -82,12 +88,14 @@ fn run() -> anyhow::Result<ExitCode> {
         Task::NewUser(user) => user.run()?,
         Task::Sizes(sizes) => sizes.run()?,
         Task::Bindings(bindings) => bindings.run()?,
+        Task::Blender(blender) => blender.run()?,
         Task::Book(book) => book.run()?,
         Task::Ragdolls(ragdolls) => ragdolls.run()?,
         Task::Wild(wild) => wild.run()?,
         Task::Fuzz(fuzz) => fuzz.run()?,
         Task::Lives(lives) => lives.run()?,
         Task::Soak(soak) => soak.run()?,
+        Task::Npm(npm) => npm.run()?,
         Task::Web(web) => web.run()?,
         Task::Bench(bench) => return bench.run(),
     }

@@ -78,7 +78,7 @@ fn build(folder: &Path) -> Result<()> {
 }
 
 /// The program that writes the JavaScript around a WebAssembly program, of the version that the lock file has.
-fn binder() -> Result<PathBuf> {
+pub fn binder() -> Result<PathBuf> {
     let lock = fs::read_to_string(command::root().join("Cargo.lock")).context("Cargo.lock")?;
     let after =
         lock.split_once("name = \"wasm-bindgen\"\nversion = \"").context("no wasm-bindgen in Cargo.lock")?.1;
@@ -102,11 +102,16 @@ fn compressed(folder: &Path) -> Result<u64> {
             // Pictures, each fetched by its chapter alone.
             continue;
         }
-        let out = Command::new("gzip").args(["-9", "-c"]).arg(path).output().context("gzip")?;
-        ensure!(out.status.success(), "gzip: {}", String::from_utf8_lossy(&out.stderr));
-        bytes += out.stdout.len() as u64;
+        bytes += gzipped(&path)?;
     }
     Ok(bytes)
+}
+
+/// Bytes of a file after gzip.
+pub fn gzipped(path: &Path) -> Result<u64> {
+    let out = Command::new("gzip").args(["-9", "-c"]).arg(path).output().context("gzip")?;
+    ensure!(out.status.success(), "gzip: {}", String::from_utf8_lossy(&out.stderr));
+    Ok(out.stdout.len() as u64)
 }
 
 /// Opens the page in a browser, by WebGL2 and by WebGPU.

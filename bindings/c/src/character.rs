@@ -8,7 +8,7 @@ use crate::types::{SinewBodyId, SinewPose, SinewVec3};
 use crate::world::SinewWorld;
 use sinew::math::{Reader, Writer};
 use sinew::ragdoll::{Character, CharacterDef, State};
-use sinew_bindings::{CharacterFile, Wishes, embedded};
+use sinew_bindings::{CharacterFile, Corrections, Motions, Wishes, embedded};
 use std::ffi::{CString, c_char};
 use std::path::Path;
 use std::sync::Arc;
@@ -67,10 +67,10 @@ pub unsafe extern "C" fn sinew_character_def_load(
             embedded()
         } else {
             // SAFETY: as the caller promises.
-            CharacterFile::load(Path::new(unsafe { text(path, "path") }?))?
+            CharacterFile::load(Path::new(unsafe { text(path, "path") }?), &Corrections::default())?
         };
         let (ragdoll, _) = file.build(&Wishes::default())?;
-        let made = file.character(&ragdoll, None)?;
+        let made = file.character(&ragdoll, &Motions::default())?;
         let names = made
             .rig
             .joints

@@ -1,18 +1,21 @@
 //! Files of characters and ragdolls, by their paths.
 
 use crate::Failure;
-use sinew::anim::{Hints, RigAnalysis, analyze_hinted};
+use sinew::anim::legs::add_ankles;
+use sinew::anim::weights::lost_weights;
+use sinew::anim::{Clip, Garment, Hints, Rig, RigAnalysis, analyze_hinted, characters};
 use sinew::formats::{
-    Document, MotionFormat, MotionOptions, ReadOptions, load_gltf, load_motion, no_files, read_bytes,
-    read_gltf, read_mjcf, read_ragdoll, read_ragdoll_settings, settings_path, write_gltf, write_motion,
+    Document, MotionFile, MotionFormat, MotionOptions, ReadOptions, load_gltf, load_motion, no_files,
+    read_bytes, read_gltf, read_model, read_motion, read_ragdoll, read_ragdoll_settings, settings_path,
+    write_gltf, write_motion,
 };
 use sinew::math::Vec3;
-use sinew::motions::{BuiltinError, set_motions_with_builtin};
-use sinew::ragdoll::build::takes;
-use sinew::ragdoll::settings::{Unit, analyze_with};
+use sinew::motions::{BuiltinError, looped_among, set_motions_with_builtin};
+use sinew::ragdoll::build::{joint_name, takes};
+use sinew::ragdoll::settings::{BodyWish, BoneSettings, Unit, analyze_with, role_named};
 use sinew::ragdoll::{
-    AfterSettling, BuildOptions, BuildReport, CharacterDef, Locomotion, MotionSet, RagdollDef, Repair,
-    Settings, build_moving,
+    AfterSettling, BuildOptions, BuildReport, CharacterDef, DriveMode, GroundContact, Locomotion, MotionSet,
+    RagdollDef, Repair, Settings, build_moving,
 };
 use std::path::Path;
 
@@ -21,12 +24,63 @@ use std::path::Path;
 pub struct CharacterFile {
     /// As the user named it.
     pub name: String,
-    /// Its rig, clips and bytes.
+    /// Its rig, clips and bytes. The rig may have ankles that the file lacks, and joints of sheets.
     pub document: Document,
     /// Analysis of its joints.
     pub analysis: RigAnalysis,
-    /// Settings beside the file, or none.
+    /// Settings beside the file or given, or none.
     pub settings: Settings,
+    /// Garments that the settings dress it in.
+    pub garments: Vec<Garment>,
+}
+
+/// Settings that a user gives with a file, over those beside it.
+#[derive(Clone, Debug, Default)]
+pub struct Corrections {
+    /// Settings instead of those beside the file.
+    pub settings: Option<Settings>,
+    /// Joints and the roles that they have.
+    pub roles: Vec<(String, String)>,
+    /// Joints that are no part of the body, with all below them.
+    pub ignore: Vec<String>,
+    /// Bones, by role or joint, that get a body of their own, or none.
+    pub bodies: Vec<(String, bool)>,
+    /// Length of the file's unit, metres.
+    pub unit: Option<f32>,
+    /// Height of the whole, metres.
+    pub height: Option<f32>,
+    /// Mass of the whole, kg.
+    pub mass: Option<f32>,
+}
+
+impl Corrections {
+    fn over(&self, beside: Settings) -> Result<Settings, Failure> {
+        let mut settings = self.settings.clone().unwrap_or(beside);
+        for (joint, role) in &self.roles {
+            let role = role_named(role).map_err(Failure::argument)?;
+            settings
+                .bones
+                .push((joint.clone(), BoneSettings { role: Some(role), ..BoneSettings::default() }));
+        }
+        settings.ignore.extend(self.ignore.iter().cloned());
+        for (bone, has) in &self.bodies {
+            let body = Some(if *has { BodyWish::Keep } else { BodyWish::Drop });
+            settings.bones.push((bone.clone(), BoneSettings { body, ..BoneSettings::default() }));
+        }
+        let positive = |number: Option<f32>, what: &str| match number {
+            Some(number) if !(number > 0.0 && number < f32::INFINITY) => {
+                Err(Failure::argument(format!("a {what} is positive and finite, not {number}")))
+            }
+            other => Ok(other),
+        };
+        let (unit, height) = (positive(self.unit, "unit")?, positive(self.height, "height")?);
+        if unit.is_some() && height.is_some() {
+            return Err(Failure::argument("unit and height say the same: give one of the two"));
+        }
+        settings.unit = unit.map(Unit::Scale).or(height.map(Unit::Height)).or(settings.unit);
+        settings.mass = positive(self.mass, "mass")?.or(settings.mass);
+        Ok(settings)
+    }
 }
 
 /// Wishes of a build that differ from what file and settings say; `None` leaves it to them.
@@ -40,34 +94,82 @@ pub struct Wishes {
     pub options: BuildOptions,
 }
 
+/// Motions of a character: what it does before, during and after a fall.
+#[derive(Clone, Debug)]
+pub struct Motions {
+    /// Name of the clip that plays until it falls; `None`: the file's walk, else its idle, else its first.
+    pub looped: Option<String>,
+    /// Rule by which that clip moves it over the ground. Default by the clip.
+    pub locomotion: Locomotion,
+    /// Whether Sinew's own motions fill in where the file has none to get up by. Default true.
+    pub builtin: bool,
+    /// Action once it lies still. Default get up.
+    pub after_settling: AfterSettling,
+    /// Drive of its bodies while it falls. Default limp.
+    pub falling: DriveMode,
+}
+
+impl Default for Motions {
+    fn default() -> Self {
+        Self {
+            looped: None,
+            locomotion: Locomotion::ByClip,
+            builtin: true,
+            after_settling: AfterSettling::GetUp,
+            falling: DriveMode::Limp,
+        }
+    }
+}
+
 impl CharacterFile {
     /// Reads a GLB, glTF, VRM or FBX with a skinned character, and the settings beside it. As the commands of `sinew` read it,
     /// but for the unit of a file in doubt, which they also ask its neighbours for.
     ///
     /// # Errors
     /// Names the file, what is wrong with it, and where.
-    pub fn load(path: &Path) -> Result<Self, Failure> {
+    pub fn load(path: &Path, corrections: &Corrections) -> Result<Self, Failure> {
         let name = path.display().to_string();
         let is_fbx = matches!(MotionFormat::of(&read_bytes(path)?), Ok(MotionFormat::Fbx));
         let document = if is_fbx {
-            let file = load_motion(path, &MotionOptions::default())?;
-            let bytes = write_motion(&file.rig, &file.clips, &file.events);
-            let read = |bytes: Vec<u8>| read_gltf(&bytes, ReadOptions::default(), &mut no_files);
-            bytes.and_then(read).map_err(|error| error.with_file(&name))?
+            of_motion(load_motion(path, &MotionOptions::default())?, &name)?
         } else {
             load_gltf(path, ReadOptions::default())?
         };
         let beside = settings_path(path);
-        let settings = if beside.is_file() {
+        let settings = if corrections.settings.is_none() && beside.is_file() {
             let read = read_bytes(&beside).and_then(|bytes| read_ragdoll_settings(&bytes));
             read.map_err(|error| error.with_file(beside.display().to_string()))?
         } else {
             Settings::default()
         };
-        Self::new(name, document, settings)
+        Self::new(name, document, corrections.over(settings)?)
     }
 
-    fn new(name: String, document: Document, settings: Settings) -> Result<Self, Failure> {
+    /// [`load`](Self::load) of bytes in memory. `name` is the file's: errors begin with it, and its words help to tell what the character is.
+    /// A glTF must hold its buffers.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn read(bytes: &[u8], name: &str, corrections: &Corrections) -> Result<Self, Failure> {
+        let named = |error: sinew::formats::Error| error.with_file(name);
+        let document = if matches!(MotionFormat::of(bytes), Ok(MotionFormat::Fbx)) {
+            of_motion(read_motion(bytes, &MotionOptions::default(), &mut no_files).map_err(named)?, name)?
+        } else {
+            read_gltf(bytes, ReadOptions::default(), &mut no_files).map_err(named)?
+        };
+        Self::new(name.to_owned(), document, corrections.over(Settings::default())?)
+    }
+
+    /// [`load`](Self::load) of a rig and clips that code made.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn of_rig(rig: &Rig, clips: &[Clip], name: &str, corrections: &Corrections) -> Result<Self, Failure> {
+        let bytes = write_gltf(rig, clips).map_err(|error| error.with_file(name))?;
+        Self::read(&bytes, name, corrections)
+    }
+
+    fn new(name: String, mut document: Document, settings: Settings) -> Result<Self, Failure> {
         let stem = Path::new(&name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let hints = Hints {
             name: stem.unwrap_or_default(),
@@ -77,9 +179,31 @@ impl CharacterFile {
             ..Hints::of_clips(&document.rig, &document.clips)
         };
         let failed = |error: &dyn core::fmt::Display| Failure::file(&name, error);
-        let analysis = analyze_hinted(&document.rig, &hints).map_err(|error| failed(&error))?;
-        let analysis = analyze_with(&document.rig, &analysis, &settings).map_err(|error| failed(&error))?;
-        Ok(Self { name, document, analysis, settings })
+        if let Some(joint) = lost_weights(&document.rig) {
+            let bone = joint_name(&document.rig, joint);
+            let what = format!(
+                "all vertices hang on one bone, {bone}: the weights of the skin were lost, and it cannot bend"
+            );
+            return Err(failed(&what));
+        }
+        let note = keep_largest(&mut document.rig);
+        let nodes = document.node_count();
+        let rig = &mut document.rig;
+        let analyze = |rig: &Rig| {
+            let plain = analyze_hinted(rig, &hints).map_err(|error| failed(&error))?;
+            analyze_with(rig, &plain, &settings).map_err(|error| failed(&error))
+        };
+        let mut analysis = analyze(rig)?;
+        if settings.garments.has_meshes() {
+            settings.garments.lay_sheets(rig, &analysis, nodes).map_err(|error| failed(&error))?;
+            analysis = analyze(rig)?;
+        }
+        add_ankles(rig, &mut analysis);
+        analysis.notes.extend(note);
+        let source = settings.springs.unwrap_or_default();
+        rig.springs = settings.springs_of(source, rig, analysis.up_axis).map_err(|error| failed(&error))?;
+        let garments = settings.garments.garments(rig).map_err(|error| failed(&error))?;
+        Ok(Self { name, document, analysis, settings, garments })
     }
 
     /// The ragdoll of the character, and what the build says of it.
@@ -92,49 +216,89 @@ impl CharacterFile {
         settings.mass = wishes.mass.or(settings.mass);
         settings.unit = wishes.height.map(Unit::Height).or(settings.unit);
         let failed = |error: &dyn core::fmt::Display| Failure::file(&self.name, error);
-        let analysis = analyze_with(rig, &self.analysis, &settings).map_err(|error| failed(&error))?;
+        let corrected = match wishes.height {
+            Some(_) => Some(analyze_with(rig, &self.analysis, &settings).map_err(|error| failed(&error))?),
+            None => None,
+        };
         let moves = takes(rig, &self.document.clips);
-        build_moving(rig, &analysis, &moves, &wishes.options, &settings).map_err(|error| failed(&error))
+        build_moving(rig, corrected.as_ref().unwrap_or(&self.analysis), &moves, &wishes.options, &settings)
+            .map_err(|error| failed(&error))
     }
 
-    /// The character with its own clips; by what it gets up it may be given Sinew's own motions, if it is a humanoid. One that has
-    /// none stays down. `looped`: name of the clip that plays until it falls.
+    /// The character with its own clips, as `sinew bake` makes it; by what it gets up it may be given Sinew's own motions, if it is a
+    /// humanoid. One that has none stays down.
     ///
     /// # Errors
     /// The ragdoll is another rig's, there is no such clip, or a clip cannot be played.
-    pub fn character(&self, ragdoll: &RagdollDef, looped: Option<&str>) -> Result<CharacterDef, Failure> {
+    pub fn character(&self, ragdoll: &RagdollDef, motions: &Motions) -> Result<CharacterDef, Failure> {
         let failed = |error: &dyn core::fmt::Display| Failure::file(&self.name, error);
         let (rig, clips) = (&self.document.rig, &self.document.clips);
         let ragdoll = ragdoll.clone().for_rig(rig).map_err(|error| failed(&error))?;
         let mut def = CharacterDef::new(rig.clone(), ragdoll, &self.analysis.bind_model);
-        let get_ups = def.get_ups_among(clips);
-        let looped = match looped {
-            None => {
-                let called =
-                    |word: &str| clips.iter().position(|clip| clip.name.to_lowercase().contains(word));
-                let first = (0..clips.len()).find(|index| !get_ups.contains(index));
-                called("walk").or_else(|| called("idle")).or(first)
-            }
+        def.ground_contact = GroundContact::Enforced;
+        let looped = match &motions.looped {
+            None => looped_among(rig, &self.analysis, clips),
             Some(name) => {
-                let found = clips.iter().position(|clip| clip.name == name);
+                let found = clips.iter().position(|clip| clip.name == *name);
                 Some(found.ok_or_else(|| failed(&format!("no clip is called '{name}'")))?)
             }
         };
-        let get_ups: Vec<usize> = get_ups.into_iter().filter(|&clip| Some(clip) != looped).collect();
+        let mut get_ups = def.get_ups_among(clips);
+        get_ups.retain(|&clip| Some(clip) != looped);
         let clips = clips.clone();
         let own =
-            MotionSet { clips, looped, get_ups, locomotion: Locomotion::ByClip, ..MotionSet::default() };
+            MotionSet { clips, looped, get_ups, locomotion: motions.locomotion, ..MotionSet::default() };
+        self.give_motions(&mut def, own, motions.builtin && motions.after_settling == AfterSettling::GetUp)?;
+        if motions.after_settling == AfterSettling::StayDown {
+            def.after_settling = AfterSettling::StayDown;
+        }
+        def.set_garments(&self.garments);
+        def.falling = motions.falling;
+        Ok(def)
+    }
+
+    fn give_motions(&self, def: &mut CharacterDef, own: MotionSet, builtin: bool) -> Result<(), Failure> {
+        let failed = |error: &dyn core::fmt::Display| Failure::file(&self.name, error);
         if own.get_ups.is_empty() {
-            match set_motions_with_builtin(&mut def, &self.analysis, own.clone()) {
-                Ok(()) => return Ok(def),
-                Err(BuiltinError::Motion(error)) => return Err(failed(&error)),
-                Err(BuiltinError::Retarget(_) | BuiltinError::InFloor(_)) => {}
+            let given = builtin.then(|| set_motions_with_builtin(def, &self.analysis, own.clone()));
+            match given {
+                // Sinew's walk replaces none that the file has, nor the rule by which that one moves.
+                Some(Ok(())) => return Ok(()),
+                Some(Err(BuiltinError::Motion(error))) => return Err(failed(&error)),
+                Some(Err(BuiltinError::Retarget(_) | BuiltinError::InFloor(_))) | None => {}
             }
             def.after_settling = AfterSettling::StayDown;
         }
-        def.set_motions(own).map_err(|error| failed(&error))?;
-        Ok(def)
+        def.set_motions(own).map_err(|error| failed(&error))
     }
+}
+
+/// The document that a file of motions becomes as a glTF.
+fn of_motion(file: MotionFile, name: &str) -> Result<Document, Failure> {
+    let bytes = write_motion(&file.rig, &file.clips, &file.events);
+    let read = |bytes: Vec<u8>| read_gltf(&bytes, ReadOptions::default(), &mut no_files);
+    Ok(bytes.and_then(read).map_err(|error| error.with_file(name))?)
+}
+
+/// Leaves out the meshes of all characters but the one with the most vertices; returns a note if there were several.
+fn keep_largest(rig: &mut Rig) -> Option<String> {
+    let all = characters(rig);
+    let vertices = |own: &[usize]| {
+        let primitives = own.iter().flat_map(|&mesh| &rig.meshes[mesh].primitives);
+        primitives.map(|primitive| primitive.positions.len()).sum::<usize>()
+    };
+    let largest = (0..all.len()).reduce(|a, b| if vertices(&all[b]) > vertices(&all[a]) { b } else { a })?;
+    if all.len() < 2 {
+        return None;
+    }
+    let is_others =
+        |mesh: usize| all.iter().any(|meshes| meshes.contains(&mesh)) && !all[largest].contains(&mesh);
+    let mut index = 0;
+    rig.meshes.retain(|_| {
+        index += 1;
+        !is_others(index - 1)
+    });
+    Some(format!("there are {} characters in the file; the one with the most vertices is taken", all.len()))
 }
 
 /// The mannequin that comes with Sinew, as if it had been read from a file.
@@ -145,7 +309,7 @@ pub fn embedded() -> CharacterFile {
     CharacterFile::new("mannequin".to_owned(), document, Settings::default()).expect("and has a skin")
 }
 
-/// Any file that a ragdoll comes from, by its name: a definition (`.json`), an MJCF model (`.xml`), or a character, of which it
+/// Any file that a ragdoll comes from, by its name: a definition (`.json`), an MJCF or URDF model (`.xml`, `.urdf`), or a character, of which it
 /// is built.
 ///
 /// # Errors
@@ -156,12 +320,12 @@ pub fn load_ragdoll(path: &Path) -> Result<Repair, Failure> {
     let named = |error: sinew::formats::Error| error.with_file(&name);
     match extension.as_deref() {
         Some("json") => Ok(Repair::new(read_ragdoll(&read_bytes(path)?).map_err(named)?)),
-        Some("xml") => {
-            let model = read_mjcf(&read_bytes(path)?).and_then(|model| model.to_ragdoll()).map_err(named)?;
+        Some("xml" | "urdf") => {
+            let model = read_model(&read_bytes(path)?).and_then(|model| model.to_ragdoll()).map_err(named)?;
             Ok(Repair { springs: model.springs, ..Repair::new(model.def) })
         }
         _ => {
-            let (def, _) = CharacterFile::load(path)?.build(&Wishes::default())?;
+            let (def, _) = CharacterFile::load(path, &Corrections::default())?.build(&Wishes::default())?;
             Ok(Repair { reference: Some(def.clone()), ..Repair::new(def) })
         }
     }

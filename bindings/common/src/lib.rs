@@ -5,7 +5,7 @@ mod character_file;
 mod panics;
 mod random_fall;
 
-pub use character_file::{CharacterFile, Wishes, embedded, load_ragdoll};
+pub use character_file::{CharacterFile, Corrections, Motions, Wishes, embedded, load_ragdoll};
 pub use panics::caught;
 pub use random_fall::{FallOptions, RandomFall, random_fall};
 

@@ -113,7 +113,7 @@ mod tests {
     fn falls_begin_in_their_pose_lie_on_their_ground_and_depend_on_the_seed_alone() {
         let file = embedded();
         let (ragdoll, _) = file.build(&crate::Wishes::default()).expect("it is built");
-        let character = file.character(&ragdoll, None).expect("it moves");
+        let character = file.character(&ragdoll, &crate::Motions::default()).expect("it moves");
         let options = FallOptions { seconds: 2.0, ..FallOptions::default() };
         let mut hashes = Vec::new();
         for seed in 0..6 {

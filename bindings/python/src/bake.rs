@@ -1,20 +1,27 @@
 //! Bakes: a stretch of a character's life as arrays, and as a clip in a file.
 
-use crate::arrays::{array, floats, poses, vec3};
-use crate::errors::{bad, guarded, of_file, refused};
+use crate::arrays::{array, floats, poses, push_pose, vec3};
+use crate::collider::{Collider, parted, world_of};
+use crate::drive::{Drive, body_named};
+use crate::errors::{Cancelled, bad, guarded, of_file, refused};
 use crate::ragdoll::quality_dict;
+use core::ops::ControlFlow;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use sinew::anim::Rig;
-use sinew::formats::{append_clip, load_world, write_atomic, write_gltf};
-use sinew::math::Affine;
-use sinew::physics::{BodyDef, Shape};
-use sinew::ragdoll::quality::judge_bake;
-use sinew::ragdoll::{BakeHit, BakeInput, Baked, CharacterDef, CharacterEvent, State, Verdict, bake};
+use sinew::formats::{UsdInput, UsdText, append_clip, write_atomic, write_gltf, write_usda};
+use sinew::math::{Affine, Transform};
+use sinew::physics::{FieldDef, FieldKind, Wind, WorldDef};
+use sinew::ragdoll::quality::{judge_bake, toppled};
+use sinew::ragdoll::{
+    BakeHit, BakeInput, BakeReturn, Baked, CharacterDef, CharacterEvent, HitEffect, State, Verdict,
+    bake_together,
+};
 use sinew_bindings::{CharacterFile, FallOptions, random_fall};
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Character with its motions.
 #[pyclass(frozen, module = "sinew")]
@@ -29,13 +36,216 @@ pub struct Bake {
     file: Arc<CharacterFile>,
     def: Arc<CharacterDef>,
     baked: Baked,
+    fps: f32,
     hits: Vec<BakeHit>,
     verdict: Verdict,
     reasons: Vec<String>,
 }
 
+/// Character of a bake, with all that is done to it.
+#[pyclass(frozen, module = "sinew")]
+pub struct Actor {
+    file: Arc<CharacterFile>,
+    def: Arc<CharacterDef>,
+    hits: Vec<BakeHit>,
+    flinches: bool,
+    limp_at: Option<f32>,
+    drives: Vec<Py<Drive>>,
+    returns: Option<BakeReturn>,
+    place: Transform,
+    phase: f32,
+    name: String,
+    /// One that stays upright when it goes limp is pushed over, where it is alone.
+    topples: bool,
+}
+
 /// Hit of a bake: time in seconds, body by role or joint, impulse in N·s.
 type Hit<'py> = (f32, String, Bound<'py, PyAny>);
+
+#[pymethods]
+impl Actor {
+    /// What is done to a character in a bake.
+    #[new]
+    #[pyo3(signature = (character, *, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, pose=None, phase=0.0, name="sinew"))]
+    fn new(
+        character: &Character,
+        hits: Option<Vec<Hit<'_>>>,
+        flinch: bool,
+        limp_at: Option<f32>,
+        drives: Option<Vec<Py<Drive>>>,
+        return_at: Option<f32>,
+        return_seconds: f32,
+        topple: Option<bool>,
+        pose: Option<&Bound<'_, PyAny>>,
+        phase: f32,
+        name: &str,
+    ) -> PyResult<Self> {
+        let hits = hits.unwrap_or_default();
+        let hits = hits.iter().map(|hit| character.hit(hit)).collect::<PyResult<Vec<_>>>()?;
+        let drives = drives.unwrap_or_default();
+        if let Some(wrong) =
+            [limp_at, return_at, Some(phase)].into_iter().flatten().find(|time| !time.is_finite())
+        {
+            return Err(bad(format!("times are finite, not {wrong}")));
+        }
+        if !(0.0..f32::INFINITY).contains(&return_seconds) {
+            return Err(bad(format!("a return takes 0 s or longer, not {return_seconds}")));
+        }
+        let place = match pose {
+            Some(pose) => poses(&floats(pose, &[Some(7)], "pose")?, "pose")?[0],
+            None => Transform::IDENTITY,
+        };
+        let nothing = hits.is_empty() && limp_at.is_none() && drives.is_empty();
+        Ok(Self {
+            file: character.file.clone(),
+            def: character.def.clone(),
+            hits,
+            flinches: flinch,
+            limp_at: limp_at.or(nothing.then_some(0.5)),
+            drives,
+            returns: return_at.map(|time| BakeReturn { time, seconds: return_seconds }),
+            place,
+            phase,
+            name: name.to_owned(),
+            topples: topple.unwrap_or(nothing && return_at.is_none()),
+        })
+    }
+}
+
+/// Stage of a bake, as Python gives it.
+struct Stage {
+    colliders: Vec<Collider>,
+    fields: Vec<FieldDef>,
+    world: WorldDef,
+    seconds: f32,
+    fps: f32,
+}
+
+/// Bakes characters in one world; each gets the bits that it would have alone if they never meet.
+#[pyfunction]
+#[pyo3(signature = (actors, *, seconds=10.0, fps=30.0, world=None, wind=None, gravity=None, progress=None))]
+pub fn bake(
+    py: Python<'_>,
+    actors: Vec<Py<Actor>>,
+    seconds: f32,
+    fps: f32,
+    world: Option<&Bound<'_, PyAny>>,
+    wind: Option<&Bound<'_, PyAny>>,
+    gravity: Option<&Bound<'_, PyAny>>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Vec<Bake>> {
+    let stage = Stage::new(seconds, fps, world, wind, gravity)?;
+    let actors: Vec<&Actor> = actors.iter().map(|actor| actor.get()).collect();
+    stage.bake(py, &actors, progress)
+}
+
+impl Stage {
+    fn new(
+        seconds: f32,
+        fps: f32,
+        world: Option<&Bound<'_, PyAny>>,
+        wind: Option<&Bound<'_, PyAny>>,
+        gravity: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        check_length(seconds, fps)?;
+        let wind = wind.map(|wind| vec3(wind, "wind")).transpose()?;
+        let wind = wind.map(|velocity| FieldDef::new(FieldKind::Wind(Wind { velocity, ..Wind::default() })));
+        let default = WorldDef::default();
+        let gravity = gravity.map(|gravity| vec3(gravity, "gravity")).transpose()?.unwrap_or(default.gravity);
+        Ok(Self {
+            colliders: world_of(world)?,
+            fields: wind.into_iter().collect(),
+            world: WorldDef { gravity, ..default },
+            seconds,
+            fps,
+        })
+    }
+
+    fn bake(&self, py: Python<'_>, actors: &[&Actor], progress: Option<Py<PyAny>>) -> PyResult<Vec<Bake>> {
+        let (bodies, movers) = parted(&self.colliders);
+        let drives = actors.iter().map(|actor| {
+            actor.drives.iter().map(|drive| drive.get().in_bake(&actor.def)).collect::<PyResult<Vec<_>>>()
+        });
+        let drives = drives.collect::<PyResult<Vec<_>>>()?;
+        let inputs = actors.iter().zip(&drives).enumerate().map(|(index, (actor, drives))| {
+            let of_stage = index == 0;
+            BakeInput {
+                world_from_character: actor.place,
+                phase: actor.phase,
+                world: self.world.clone(),
+                bodies: if of_stage { &bodies } else { &[] },
+                movers: if of_stage { &movers } else { &[] },
+                fields: if of_stage { &self.fields } else { &[] },
+                drives,
+                returns: actor.returns,
+                hits: &actor.hits,
+                hit_effect: if actor.flinches { HitEffect::FlinchesOrFalls } else { HitEffect::Falls },
+                limp_at: actor.limp_at,
+                seconds: self.seconds,
+                fps: self.fps,
+                name: &actor.name,
+                ..BakeInput::new(actor.def.clone())
+            }
+        });
+        let inputs: Vec<BakeInput<'_>> = inputs.collect();
+        let mut watch = Watch { progress, seconds: self.seconds, told: Instant::now(), error: None };
+        let baked = py.detach(|| refused(|| bake_together(&inputs, &mut |time| watch.see(time))))?;
+        let Some(mut baked) = baked else {
+            return Err(watch.error.unwrap_or_else(|| Cancelled::new_err("the bake was cancelled")));
+        };
+        if let ([actor], [input]) = (actors, &inputs[..])
+            && actor.topples
+            && let Some(pushed) = py.detach(|| refused(|| toppled(input, &baked[0])))?
+        {
+            baked = vec![py.detach(|| refused(|| sinew::ragdoll::bake(&pushed)))?];
+        }
+        let made = |(actor, baked): (&&Actor, Baked)| {
+            let (verdict, reasons) = judge_bake(&baked.quality);
+            let (file, def, hits) = (actor.file.clone(), actor.def.clone(), actor.hits.clone());
+            Bake { file, def, baked, fps: self.fps, hits, verdict, reasons }
+        };
+        Ok(actors.iter().zip(baked).map(made).collect())
+    }
+}
+
+/// Seconds of the clock between two calls of the user's function.
+const TELLS_EVERY: f32 = 0.05;
+
+/// Tells a bake's progress to Python, and asks whether it shall go on.
+struct Watch {
+    progress: Option<Py<PyAny>>,
+    seconds: f32,
+    told: Instant,
+    error: Option<PyErr>,
+}
+
+impl Watch {
+    fn see(&mut self, time: f32) -> ControlFlow<()> {
+        if self.told.elapsed().as_secs_f32() < TELLS_EVERY {
+            return ControlFlow::Continue(());
+        }
+        let share = if self.seconds > 0.0 { (time / self.seconds).min(1.0) } else { 1.0 };
+        let goes_on = Python::attach(|py| {
+            py.check_signals()?;
+            match &self.progress {
+                Some(progress) => {
+                    let answer = progress.call1(py, (share,))?;
+                    Ok(answer.is_none(py) || answer.is_truthy(py)?)
+                }
+                None => Ok(true),
+            }
+        });
+        self.told = Instant::now();
+        match goes_on {
+            Ok(true) => ControlFlow::Continue(()),
+            Ok(false) => ControlFlow::Break(()),
+            Err(error) => {
+                self.error = Some(error);
+                ControlFlow::Break(())
+            }
+        }
+    }
+}
 
 #[pymethods]
 impl Character {
@@ -45,43 +255,64 @@ impl Character {
         self.def.ragdoll.bodies.iter().map(|body| body.role.as_str()).collect()
     }
 
-    /// Simulates it: walking, hit, falling, getting up. Without a hit it goes limp after half a second.
-    #[pyo3(signature = (*, seconds=10.0, fps=30.0, hits=None, limp_at=None, world=None, pose=None, phase=0.0, name="sinew"))]
+    /// Names of its joints, in the order of arrays of poses.
+    #[getter]
+    fn joints(&self) -> Vec<&str> {
+        self.def.rig.joints.iter().map(|joint| joint.name.as_str()).collect()
+    }
+
+    /// Pose at which it stands where its file has it, (7,): the file's place times its unit is then the world's.
+    #[getter]
+    fn place_in_file<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        let mut numbers = Vec::new();
+        push_pose(&mut numbers, &self.def.mapping().character_from_model().to_rigid().inverse());
+        PyArray1::from_vec(py, numbers)
+    }
+
+    /// Height by which the looped clip is raised onto its floor, metres.
+    #[getter]
+    fn raised(&self) -> f32 {
+        self.def.raised()
+    }
+
+    /// Simulates it: walking, hit, falling, getting up. Where nothing is done to it, it goes limp after half a second.
+    #[pyo3(signature = (*, seconds=10.0, fps=30.0, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, world=None, wind=None, gravity=None, pose=None, phase=0.0, name="sinew", progress=None))]
     fn bake(
-        &self,
+        slf: PyRef<'_, Self>,
         py: Python<'_>,
         seconds: f32,
         fps: f32,
         hits: Option<Vec<Hit<'_>>>,
+        flinch: bool,
         limp_at: Option<f32>,
-        world: Option<PathBuf>,
+        drives: Option<Vec<Py<Drive>>>,
+        return_at: Option<f32>,
+        return_seconds: f32,
+        topple: Option<bool>,
+        world: Option<&Bound<'_, PyAny>>,
+        wind: Option<&Bound<'_, PyAny>>,
+        gravity: Option<&Bound<'_, PyAny>>,
         pose: Option<&Bound<'_, PyAny>>,
         phase: f32,
         name: &str,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Bake> {
-        check_length(seconds, fps)?;
-        let hits = hits.unwrap_or_default();
-        let hits = hits.iter().map(|hit| self.hit(hit)).collect::<PyResult<Vec<_>>>()?;
-        let bodies = match world {
-            None => vec![BodyDef::fixed(Shape::HalfSpace)],
-            Some(path) => load_world(&path).map_err(of_file)?,
-        };
-        let mut input = BakeInput {
-            bodies: &bodies,
-            hits: &hits,
-            limp_at: limp_at.or(if hits.is_empty() { Some(0.5) } else { None }),
-            seconds,
-            fps,
+        let actor = Actor::new(
+            &slf,
+            hits,
+            flinch,
+            limp_at,
+            drives,
+            return_at,
+            return_seconds,
+            topple,
+            pose,
             phase,
             name,
-            ..BakeInput::new(self.def.clone())
-        };
-        if let Some(pose) = pose {
-            input.world_from_character = poses(&floats(pose, &[Some(7)], "pose")?, "pose")?[0];
-        }
-        let baked = py.detach(|| refused(|| bake(&input)))?;
-        let (verdict, reasons) = judge_bake(&baked.quality);
-        Ok(Bake { file: self.file.clone(), def: self.def.clone(), baked, hits, verdict, reasons })
+        )?;
+        let stage = Stage::new(seconds, fps, world, wind, gravity)?;
+        let mut baked = stage.bake(py, &[&actor], progress)?;
+        Ok(baked.pop().expect("one for each"))
     }
 
     /// A random fall: pose within the limits, ground and hit by the seed; the same bits on every machine.
@@ -98,6 +329,7 @@ impl Character {
             file,
             def,
             baked: fall.baked,
+            fps,
             hits: vec![fall.hit],
             verdict: fall.verdict,
             reasons: fall.reasons,
@@ -107,10 +339,7 @@ impl Character {
 
 impl Character {
     fn hit(&self, (time, name, impulse): &Hit<'_>) -> PyResult<BakeHit> {
-        let body = self.def.body_named(name).ok_or_else(|| {
-            let roles: Vec<&str> = self.def.ragdoll.bodies.iter().map(|body| body.role.as_str()).collect();
-            bad(format!("no body is called '{name}'; there are {}", roles.join(", ")))
-        })?;
+        let body = body_named(&self.def, name)?;
         if !time.is_finite() {
             return Err(bad(format!("the time of a hit is finite, not {time}")));
         }
@@ -127,7 +356,7 @@ fn check_length(seconds: f32, fps: f32) -> PyResult<()> {
     Ok(())
 }
 
-fn state_name(state: State) -> &'static str {
+pub fn state_name(state: State) -> &'static str {
     match state {
         State::Animated => "animated",
         State::Limp => "limp",
@@ -139,7 +368,7 @@ fn state_name(state: State) -> &'static str {
 }
 
 /// `WentLimp` becomes `went_limp`.
-fn event_name(event: &CharacterEvent) -> String {
+pub fn event_name(event: &CharacterEvent) -> String {
     let text = format!("{event:?}");
     let mut name = String::new();
     for (at, c) in text.chars().take_while(|c| c.is_alphanumeric()).enumerate() {
@@ -245,6 +474,20 @@ impl Bake {
         Ok(PyBytes::new(py, &py.detach(|| self.bytes(mesh))?))
     }
 
+    /// The character, its motion and its ragdoll as USD text (.usda), and what that cannot hold, a sentence each.
+    #[pyo3(signature = (*, physics=true))]
+    fn usda(&self, py: Python<'_>, physics: bool) -> PyResult<(String, Vec<String>)> {
+        let input = UsdInput {
+            rig: &self.def.rig,
+            clip: &self.baked.clip,
+            fps: self.fps,
+            world_from_model: self.baked.world_from_model,
+            ragdoll: physics.then_some(&self.def.ragdoll),
+        };
+        let UsdText { text, notes } = py.detach(|| guarded(|| write_usda(&input)))?;
+        Ok((text, notes))
+    }
+
     /// Writes that file, whole or not at all.
     #[pyo3(signature = (path, *, mesh=true))]
     fn save(&self, py: Python<'_>, path: PathBuf, mesh: bool) -> PyResult<()> {
@@ -258,12 +501,12 @@ impl Bake {
     }
 
     fn bytes(&self, mesh: bool) -> PyResult<Vec<u8>> {
-        let clip = &self.baked.clip;
+        let clip = self.baked.clip_for_file(&self.def);
         let written = if mesh {
-            append_clip(&self.file.document, clip, &clip.name, None)
+            append_clip(&self.file.document, &clip, &clip.name, None)
         } else {
             let bones = Rig { meshes: Vec::new(), skins: Vec::new(), ..self.def.rig.clone() };
-            write_gltf(&bones, std::slice::from_ref(clip))
+            write_gltf(&bones, std::slice::from_ref(&clip))
         };
         written.map_err(|error| of_file(error.with_file(&self.file.name)))
     }

@@ -12,6 +12,8 @@ pyo3::create_exception!(
     "A file that cannot be read or written, or is not what it should be: the message names the file and the place."
 );
 
+pyo3::create_exception!(_sinew, Cancelled, SinewError, "A bake that its progress function ended.");
+
 /// The exception of a failure.
 pub fn failed(failure: Failure) -> PyErr {
     if failure.is_of_file { FileError::new_err(failure.what) } else { PyValueError::new_err(failure.what) }

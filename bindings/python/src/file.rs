@@ -1,12 +1,16 @@
 //! Files of characters.
 
 use crate::bake::Character;
-use crate::errors::{bad, failed, guarded};
+use crate::drive::Drive;
+use crate::errors::{bad, failed, guarded, of_file};
 use crate::ragdoll::Ragdoll;
+use crate::rig_arrays;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use sinew::ragdoll::{BuildOptions, LimitSource, Sex, ShapeChoice};
-use sinew_bindings::Wishes;
+use pyo3::types::{PyBytes, PyDict};
+use sinew::formats::{append_clips, read_ragdoll_settings};
+use sinew::ragdoll::{AfterSettling, BuildOptions, DriveMode, LimitSource, Locomotion, Sex, ShapeChoice};
+use sinew_bindings::{Corrections, Motions, Wishes};
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -16,10 +20,111 @@ pub struct CharacterFile {
     pub file: Arc<sinew_bindings::CharacterFile>,
 }
 
+/// What the arguments of a loading function say.
+fn corrections(
+    settings: Option<&Bound<'_, PyAny>>,
+    roles: Option<HashMap<String, String>>,
+    ignore: Option<Vec<String>>,
+    bodies: Option<HashMap<String, bool>>,
+    [unit, height, mass]: [Option<f32>; 3],
+) -> PyResult<Corrections> {
+    let settings = settings.map(|given| {
+        let py = given.py();
+        let whole = PyDict::new(py);
+        whole.set_item("sinew", "ragdoll-settings")?;
+        whole.set_item("version", 1)?;
+        whole.call_method1("update", (given,))?;
+        let text: String = py.import("json")?.call_method1("dumps", (whole,))?.extract()?;
+        read_ragdoll_settings(text.as_bytes()).map_err(|error| bad(format!("settings: {error}")))
+    });
+    // A dictionary has no order that counts here: sorted, the same arguments give the same bits.
+    let sorted = |map: Option<HashMap<String, String>>| {
+        let mut list: Vec<_> = map.unwrap_or_default().into_iter().collect();
+        list.sort();
+        list
+    };
+    let mut bodies: Vec<_> = bodies.unwrap_or_default().into_iter().collect();
+    bodies.sort();
+    Ok(Corrections {
+        settings: settings.transpose()?,
+        roles: sorted(roles),
+        ignore: ignore.unwrap_or_default(),
+        bodies,
+        unit,
+        height,
+        mass,
+    })
+}
+
 /// Reads a GLB, glTF, VRM or FBX with a skinned character, and the settings beside it.
 #[pyfunction]
-pub fn load(py: Python<'_>, path: PathBuf) -> PyResult<CharacterFile> {
-    let file = py.detach(|| guarded(|| sinew_bindings::CharacterFile::load(&path)))?.map_err(failed)?;
+#[pyo3(signature = (path, *, settings=None, roles=None, ignore=None, bodies=None, unit=None, height=None, mass=None))]
+pub fn load(
+    py: Python<'_>,
+    path: PathBuf,
+    settings: Option<&Bound<'_, PyAny>>,
+    roles: Option<HashMap<String, String>>,
+    ignore: Option<Vec<String>>,
+    bodies: Option<HashMap<String, bool>>,
+    unit: Option<f32>,
+    height: Option<f32>,
+    mass: Option<f32>,
+) -> PyResult<CharacterFile> {
+    let given = corrections(settings, roles, ignore, bodies, [unit, height, mass])?;
+    let load = || guarded(|| sinew_bindings::CharacterFile::load(&path, &given));
+    let file = py.detach(load)?.map_err(failed)?;
+    Ok(CharacterFile { file: Arc::new(file) })
+}
+
+/// Reads a character from the bytes of a GLB, VRM or FBX, or of a glTF that holds its buffers.
+#[pyfunction]
+#[pyo3(signature = (data, *, name="character", settings=None, roles=None, ignore=None, bodies=None, unit=None, height=None, mass=None))]
+pub fn load_bytes(
+    py: Python<'_>,
+    data: &[u8],
+    name: &str,
+    settings: Option<&Bound<'_, PyAny>>,
+    roles: Option<HashMap<String, String>>,
+    ignore: Option<Vec<String>>,
+    bodies: Option<HashMap<String, bool>>,
+    unit: Option<f32>,
+    height: Option<f32>,
+    mass: Option<f32>,
+) -> PyResult<CharacterFile> {
+    let given = corrections(settings, roles, ignore, bodies, [unit, height, mass])?;
+    let read = || guarded(|| sinew_bindings::CharacterFile::read(data, name, &given));
+    let file = py.detach(read)?.map_err(failed)?;
+    Ok(CharacterFile { file: Arc::new(file) })
+}
+
+/// Makes a character of arrays: joints with their rest pose, skinned meshes, clips.
+#[pyfunction]
+#[pyo3(signature = (joints, parents, translations, rotations, *, scales=None, inverse_bind=None, meshes=None, clips=None, name="character", settings=None, roles=None, ignore=None, bodies=None, unit=None, height=None, mass=None))]
+pub fn load_arrays(
+    py: Python<'_>,
+    joints: Vec<String>,
+    parents: &Bound<'_, PyAny>,
+    translations: &Bound<'_, PyAny>,
+    rotations: &Bound<'_, PyAny>,
+    scales: Option<&Bound<'_, PyAny>>,
+    inverse_bind: Option<&Bound<'_, PyAny>>,
+    meshes: Option<Vec<Bound<'_, PyDict>>>,
+    clips: Option<&Bound<'_, PyDict>>,
+    name: &str,
+    settings: Option<&Bound<'_, PyAny>>,
+    roles: Option<HashMap<String, String>>,
+    ignore: Option<Vec<String>>,
+    bodies: Option<HashMap<String, bool>>,
+    unit: Option<f32>,
+    height: Option<f32>,
+    mass: Option<f32>,
+) -> PyResult<CharacterFile> {
+    let given = corrections(settings, roles, ignore, bodies, [unit, height, mass])?;
+    let mut rig = rig_arrays::skeleton(joints, parents, [translations, rotations], scales)?;
+    rig_arrays::skin(&mut rig, inverse_bind, &meshes.unwrap_or_default())?;
+    let clips = clips.map(|clips| rig_arrays::clips(&rig, clips)).transpose()?.unwrap_or_default();
+    let make = || guarded(|| sinew_bindings::CharacterFile::of_rig(&rig, &clips, name, &given));
+    let file = py.detach(make)?.map_err(failed)?;
     Ok(CharacterFile { file: Arc::new(file) })
 }
 
@@ -106,24 +211,41 @@ impl CharacterFile {
         Ok(Ragdoll::built(def, report))
     }
 
-    /// The character with its motions, ready to be baked.
-    #[pyo3(signature = (ragdoll=None, *, clip=None))]
+    /// The character with its motions, ready to be baked or to live in a world.
+    #[pyo3(signature = (ragdoll=None, *, clip=None, exact=false, builtin_motions=true, gets_up=true, falling=None))]
     fn character(
         &self,
         py: Python<'_>,
         ragdoll: Option<&Ragdoll>,
-        clip: Option<&str>,
+        clip: Option<String>,
+        exact: bool,
+        builtin_motions: bool,
+        gets_up: bool,
+        falling: Option<&Drive>,
     ) -> PyResult<Character> {
+        let motions = Motions {
+            looped: clip,
+            locomotion: if exact { Locomotion::Exact } else { Locomotion::ByClip },
+            builtin: builtin_motions,
+            after_settling: if gets_up { AfterSettling::GetUp } else { AfterSettling::StayDown },
+            falling: falling.map_or(DriveMode::Limp, |drive| drive.mode),
+        };
         let made = py.detach(|| {
             guarded(|| {
                 let def = match ragdoll {
                     Some(ragdoll) => ragdoll.repair.def.clone(),
                     None => self.file.build(&Wishes::default())?.0,
                 };
-                self.file.character(&def, clip)
+                self.file.character(&def, &motions)
             })
         })?;
         Ok(Character { file: self.file.clone(), def: Arc::new(made.map_err(failed)?) })
+    }
+
+    /// The file as a GLB, with the files that it names in it; of arrays, the file that they were made.
+    fn glb<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let written = py.detach(|| append_clips(&self.file.document, &[]));
+        Ok(PyBytes::new(py, &written.map_err(|error| of_file(error.with_file(&self.file.name)))?))
     }
 
     fn __repr__(&self) -> String {

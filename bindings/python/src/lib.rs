@@ -5,9 +5,13 @@
 mod arrays;
 mod bake;
 mod batch;
+mod collider;
+mod drive;
 mod errors;
 mod file;
+mod live;
 mod ragdoll;
+mod rig_arrays;
 mod world;
 
 use pyo3::prelude::*;
@@ -21,10 +25,18 @@ fn _sinew(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<ragdoll::Ragdoll>()?;
     module.add_class::<ragdoll::Model>()?;
     module.add_class::<bake::Character>()?;
+    module.add("Cancelled", module.py().get_type::<errors::Cancelled>())?;
+    module.add_class::<bake::Actor>()?;
     module.add_class::<bake::Bake>()?;
+    module.add_class::<collider::Collider>()?;
+    module.add_class::<drive::Drive>()?;
+    module.add_class::<live::LiveCharacter>()?;
     module.add_class::<world::World>()?;
     module.add_class::<batch::BatchWorlds>()?;
     module.add_function(wrap_pyfunction!(file::load, module)?)?;
+    module.add_function(wrap_pyfunction!(file::load_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(file::load_arrays, module)?)?;
+    module.add_function(wrap_pyfunction!(bake::bake, module)?)?;
     module.add_function(wrap_pyfunction!(file::mannequin, module)?)?;
     module.add_function(wrap_pyfunction!(ragdoll::load_ragdoll, module)?)?;
     module.add_function(wrap_pyfunction!(ragdoll::load_model, module)?)

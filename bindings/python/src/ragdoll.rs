@@ -1,12 +1,19 @@
 //! Ragdolls and models as data.
 
 use crate::arrays::{array, push_pose};
-use crate::errors::{failed, guarded, of_file};
+use crate::errors::{bad, failed, guarded, of_file};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use sinew::formats::{MjcfModel, read_bytes, read_mjcf, write_atomic, write_ragdoll};
-use sinew::ragdoll::{BuildReport, FallQuality, RagdollDef, Repair, doctor, drop_test, torque_caps};
+use sinew::formats::{
+    MjcfModel, MjcfText, read_bytes, read_model, read_ragdoll, write_atomic, write_mjcf, write_ragdoll,
+};
+use sinew::math::Range;
+use sinew::physics::{JointKind, Shape};
+use sinew::ragdoll::doctor::Finding;
+use sinew::ragdoll::{
+    BuildReport, FallQuality, RagdollBodyDef, RagdollDef, Repair, cure, doctor, drop_test, torque_caps,
+};
 use std::path::PathBuf;
 
 /// Ragdoll: bodies and joints, parents before children; joint `i` holds body `i + 1`.
@@ -23,18 +30,18 @@ pub struct Model {
     pub model: MjcfModel,
 }
 
-/// Reads a ragdoll: a definition (.json), an MJCF model (.xml), or a character, of which it is built.
+/// Reads a ragdoll: a definition (.json), an MJCF or URDF model (.xml, .urdf), or a character, of which it is built.
 #[pyfunction]
 pub fn load_ragdoll(py: Python<'_>, path: PathBuf) -> PyResult<Ragdoll> {
     let repair = py.detach(|| guarded(|| sinew_bindings::load_ragdoll(&path)))?.map_err(failed)?;
     Ok(Ragdoll { repair, notes: Vec::new(), mean_error: None })
 }
 
-/// Reads an MJCF model: bodies, joints, and a floor where it has one.
+/// Reads an MJCF model (.xml), a URDF (.urdf) or the physics of a glTF (.gltf, .glb): bodies, joints, and a floor where it has one.
 #[pyfunction]
 pub fn load_model(py: Python<'_>, path: PathBuf) -> PyResult<Model> {
     let read = || {
-        let model = read_bytes(&path).and_then(|bytes| read_mjcf(&bytes));
+        let model = read_bytes(&path).and_then(|bytes| read_model(&bytes));
         model.map_err(|error| error.with_file(path.display().to_string()))
     };
     Ok(Model { model: py.detach(|| guarded(read))?.map_err(of_file)? })
@@ -68,6 +75,98 @@ pub fn quality_dict<'py>(py: Python<'py>, q: &FallQuality) -> PyResult<Bound<'py
     }
     dict.set_item("nan", q.nan)?;
     Ok(dict)
+}
+
+/// A shape in another size.
+fn scaled_shape(shape: &Shape, factor: f32) -> PyResult<Shape> {
+    Ok(match *shape {
+        Shape::Box { half_extents } => Shape::Box { half_extents: half_extents * factor },
+        Shape::Sphere { radius } => Shape::Sphere { radius: radius * factor },
+        Shape::Capsule { half_height, radius } => {
+            Shape::Capsule { half_height: half_height * factor, radius: radius * factor }
+        }
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => Shape::TaperedCapsule {
+            half_height: half_height * factor,
+            radius_bottom: radius_bottom * factor,
+            radius_top: radius_top * factor,
+        },
+        _ => return Err(bad("this shape cannot be scaled: give a new one")),
+    })
+}
+
+/// Wishes for one body and the joint above it.
+struct Edit {
+    mass: Option<f32>,
+    shape: Option<Shape>,
+    scale: Option<f32>,
+    swing_y: Option<(f32, f32)>,
+    swing_z: Option<(f32, f32)>,
+    twist: Option<(f32, f32)>,
+    friction_torque: Option<f32>,
+}
+
+impl Edit {
+    fn apply(self, def: &mut RagdollDef, index: usize) -> PyResult<()> {
+        let body = &mut def.bodies[index];
+        let positive = |number: Option<f32>, what: &str| match number {
+            Some(number) if !(number > 0.0 && number < f32::INFINITY) => {
+                Err(bad(format!("{what} is positive and finite, not {number}")))
+            }
+            other => Ok(other),
+        };
+        let (mass, scale) = (positive(self.mass, "a mass")?, positive(self.scale, "a scale")?);
+        if self.shape.is_some() || scale.is_some() {
+            let shape = self.shape.unwrap_or_else(|| body.shape.clone());
+            body.shape = scale.map_or(Ok(shape.clone()), |scale| scaled_shape(&shape, scale))?;
+            let solid = body.shape.mass_properties(1.0);
+            body.mass = solid.scaled_to(body.mass.mass);
+        }
+        if let Some(mass) = mass {
+            def.total_mass += mass - body.mass.mass;
+            body.mass = body.mass.scaled_to(mass);
+        }
+        let Some(joint) = index.checked_sub(1).map(|joint| &mut def.joints[joint]) else {
+            let any =
+                self.swing_y.or(self.swing_z).or(self.twist).is_some() || self.friction_torque.is_some();
+            return if any { Err(bad("the first body has no joint")) } else { Ok(()) };
+        };
+        joint.friction_torque = self.friction_torque.unwrap_or(joint.friction_torque);
+        let range = |(lo, hi): (f32, f32)| Range { lo, hi };
+        match &mut joint.kind {
+            JointKind::Ball { limit: Some(limit) } | JointKind::Universal { limit: Some(limit) } => {
+                limit.swing_y = self.swing_y.map_or(limit.swing_y, range);
+                limit.swing_z = self.swing_z.map_or(limit.swing_z, range);
+                limit.twist = self.twist.map_or(limit.twist, range);
+            }
+            JointKind::Hinge { limit } if self.swing_y.is_none() && self.swing_z.is_none() => {
+                *limit = self.twist.map(range).or(*limit);
+            }
+            _ if self.swing_y.or(self.swing_z).or(self.twist).is_some() => {
+                return Err(bad("this joint has no such limit"));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// Findings of the doctor: `{"findings": [{"code", "severity", "bones", "cause", "evidence", "fix", "fixed"}]}`.
+fn findings_dict(py: Python<'_>, found: Vec<Finding>) -> PyResult<Bound<'_, PyDict>> {
+    let findings = PyList::empty(py);
+    for finding in found {
+        let dict = PyDict::new(py);
+        dict.set_item("code", finding.code.name())?;
+        dict.set_item("severity", finding.severity.name())?;
+        dict.set_item("bones", &finding.bones)?;
+        dict.set_item("cause", finding.code.cause())?;
+        dict.set_item("evidence", &finding.evidence)?;
+        dict.set_item("fix", &finding.fix)?;
+        dict.set_item("fixed", finding.fixed)?;
+        findings.append(dict)?;
+    }
+    let report = PyDict::new(py);
+    report.set_item("findings", findings)?;
+    Ok(report)
 }
 
 #[pymethods]
@@ -133,6 +232,26 @@ impl Ragdoll {
         self.repair.def.height
     }
 
+    /// Metres of a unit of the file.
+    #[getter]
+    fn unit_scale(&self) -> f32 {
+        self.repair.def.unit_scale
+    }
+
+    /// A copy with all mended that the doctor mends, and what it found.
+    fn cured<'py>(&self, py: Python<'py>) -> PyResult<(Self, Bound<'py, PyDict>)> {
+        let (repair, found) = py.detach(|| guarded(|| cure(&self.repair)))?;
+        let ragdoll = Self { repair, notes: self.notes.clone(), mean_error: self.mean_error };
+        Ok((ragdoll, findings_dict(py, found)?))
+    }
+
+    /// The definition as a MuJoCo model, and what that cannot hold, a sentence each.
+    #[pyo3(signature = (name="ragdoll"))]
+    fn to_mjcf(&self, py: Python<'_>, name: &str) -> PyResult<(String, Vec<String>)> {
+        let MjcfText { text, notes } = py.detach(|| guarded(|| write_mjcf(&self.repair.def, name)))?;
+        Ok((text, notes))
+    }
+
     /// Report of the build: notes, and the mean distance between skin and shapes in metres, if it was built.
     #[getter]
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -149,20 +268,7 @@ impl Ragdoll {
     /// Findings of the doctor: `{"findings": [{"code", "severity", "bones", "cause", "evidence", "fix"}]}`.
     fn doctor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = py.detach(|| guarded(|| doctor(&self.repair)))?;
-        let findings = PyList::empty(py);
-        for finding in found {
-            let dict = PyDict::new(py);
-            dict.set_item("code", finding.code.name())?;
-            dict.set_item("severity", finding.severity.name())?;
-            dict.set_item("bones", &finding.bones)?;
-            dict.set_item("cause", finding.code.cause())?;
-            dict.set_item("evidence", &finding.evidence)?;
-            dict.set_item("fix", &finding.fix)?;
-            findings.append(dict)?;
-        }
-        let report = PyDict::new(py);
-        report.set_item("findings", findings)?;
-        Ok(report)
+        findings_dict(py, found)
     }
 
     /// Drops it and throws it at a wall: `{"verdict", "reasons", "drop", "wall"}`.
@@ -174,6 +280,44 @@ impl Ragdoll {
         dict.set_item("drop", quality_dict(py, &tested.drop)?)?;
         dict.set_item("wall", quality_dict(py, &tested.wall)?)?;
         Ok(dict)
+    }
+
+    /// The ragdoll of a definition's text, as `to_json` gives it.
+    #[staticmethod]
+    fn from_json(text: &str) -> PyResult<Self> {
+        let def = read_ragdoll(text.as_bytes()).map_err(of_file)?;
+        Ok(Self { repair: Repair::new(def), notes: Vec::new(), mean_error: None })
+    }
+
+    /// A copy with one body and its joint otherwise: what is not given stays. Ranges in radians.
+    #[pyo3(signature = (bone, *, mass=None, shape=None, size=None, scale=None, swing_y=None, swing_z=None, twist=None, friction_torque=None))]
+    fn edited(
+        &self,
+        bone: &str,
+        mass: Option<f32>,
+        shape: Option<&str>,
+        size: Option<Vec<f32>>,
+        scale: Option<f32>,
+        swing_y: Option<(f32, f32)>,
+        swing_z: Option<(f32, f32)>,
+        twist: Option<(f32, f32)>,
+        friction_torque: Option<f32>,
+    ) -> PyResult<Self> {
+        let mut def = self.repair.def.clone();
+        let named = |body: &RagdollBodyDef| body.role == bone || body.bone == bone;
+        let index = def.bodies.iter().position(named);
+        let index = index.ok_or_else(|| bad(format!("no body is called '{bone}'")))?;
+        let new_shape = match (shape, size) {
+            (Some(kind), Some(size)) => Some(crate::world::shape(kind, &size)?),
+            (None, None) => None,
+            _ => return Err(bad("a shape needs its kind and its size")),
+        };
+        let wanted = Edit { mass, shape: new_shape, scale, swing_y, swing_z, twist, friction_torque };
+        wanted.apply(&mut def, index)?;
+        // Written and read again: what a file must not hold is refused by its sentence.
+        let def = read_ragdoll(write_ragdoll(&def).as_bytes()).map_err(|error| bad(error.to_string()))?;
+        let repair = Repair { reference: self.repair.reference.clone(), ..Repair::new(def) };
+        Ok(Self { repair, notes: self.notes.clone(), mean_error: self.mean_error })
     }
 
     /// Text of its definition, as a .sinew.json file has it.

@@ -1,25 +1,34 @@
 //! One world, with arrays in and out.
 
 use crate::arrays::{array, elements, floats, poses, push_pose, push_velocity, vec3, vectors, velocities};
+use crate::bake::Character;
+use crate::collider::{Collider, parted};
 use crate::errors::{SinewError, bad, guarded, refused};
+use crate::live::{LiveCharacter, one_pose};
 use crate::ragdoll::Ragdoll;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use sinew::math::hash::hash_bytes;
 use sinew::math::{Range, Reader, Rotation, Transform, Vec3, Writer};
 use sinew::physics::ray::Ray;
 use sinew::physics::stage::NoProfiler;
 use sinew::physics::{
-    BodyDef, BodyHit, BodyId, BodyKind, JointDef, JointId, JointKind, Material, Motor, OverlapWith, Probe,
-    Quality, Shape, ShapeDef, Sleeping, Softness, Threads, Velocity, WorldDef,
+    BodyDef, BodyHit, BodyId, BodyKind, FieldDef, FieldId, FieldKind, Gusts, JointDef, JointId, JointKind,
+    Material, Motor, OverlapWith, Probe, Quality, Shape, ShapeDef, Sleeping, Softness, Threads, Velocity,
+    Wind, WorldDef,
 };
 use sinew::ragdoll::BodyState;
 
 /// World of bodies and joints. Metres, kilograms, seconds, radians; +Y is up.
 #[pyclass(module = "sinew")]
 pub struct World {
-    world: sinew::physics::World,
+    pub world: sinew::physics::World,
+    /// Characters that follow it; `None`: taken out.
+    pub characters: Vec<Option<sinew::ragdoll::Character>>,
     threads: Threads,
+    /// Bodies that go by keys.
+    keyed: Vec<(BodyId, Collider)>,
 }
 
 /// Ids of bodies or joints.
@@ -58,7 +67,7 @@ pub fn world_def(
 }
 
 /// A shape by its name and sizes, in metres.
-fn shape(kind: &str, size: &[f32]) -> PyResult<Shape> {
+pub fn shape(kind: &str, size: &[f32]) -> PyResult<Shape> {
     let shape = match (kind, size) {
         ("box", &[x, y, z]) => Shape::Box { half_extents: Vec3::new(x, y, z) },
         ("sphere", &[radius]) => Shape::Sphere { radius },
@@ -101,7 +110,7 @@ pub fn contact_dict<'py>(py: Python<'py>, world: &sinew::physics::World) -> PyRe
 }
 
 impl World {
-    fn body(&self, bits: u64) -> PyResult<BodyId> {
+    pub fn body(&self, bits: u64) -> PyResult<BodyId> {
         let id = BodyId::from_bits(bits);
         if self.world.contains(id) { Ok(id) } else { Err(bad(format!("there is no body {bits:#x}"))) }
     }
@@ -120,6 +129,14 @@ impl World {
                 ids.into_iter().map(|bits| self.body(bits)).collect()
             }
         }
+    }
+
+    /// World, then characters.
+    fn state(&self) -> Writer {
+        let mut w = Writer::new();
+        self.world.save(&mut w);
+        self.characters.iter().flatten().for_each(|character| character.save(&mut w));
+        w
     }
 
     fn bits<'py>(py: Python<'py>, ids: &[BodyId]) -> Ids<'py> {
@@ -142,7 +159,9 @@ impl World {
     ) -> PyResult<Self> {
         let gravity = gravity.map(|gravity| vec3(gravity, "gravity")).transpose()?;
         let def = world_def(gravity, dt, substeps, quality, sleeping)?;
-        Ok(Self { world: sinew::physics::World::new(def), threads: Threads::new(threads.clamp(1, 256)) })
+        let world = sinew::physics::World::new(def);
+        let threads = Threads::new(threads.clamp(1, 256));
+        Ok(Self { world, characters: Vec::new(), threads, keyed: Vec::new() })
     }
 
     /// Adds a body of one shape and gives its id.
@@ -187,6 +206,44 @@ impl World {
         Ok(refused(|| self.world.add_body(&def))?.to_bits())
     }
 
+    /// Adds a collider and gives its id. One with keys goes by them, from the world's time 0 on.
+    fn add_collider(&mut self, collider: &Collider) -> PyResult<u64> {
+        let id = match parted(std::slice::from_ref(collider)).1.first() {
+            Some(mover) => refused(|| mover.enter(&mut self.world))?,
+            None => refused(|| self.world.add_body(&collider.def))?,
+        };
+        if collider.keys.is_some() {
+            self.keyed.push((id, collider.clone()));
+        }
+        Ok(id.to_bits())
+    }
+
+    /// Adds wind, m/s, and gives its id: gusts of a speed (m/s), a length (m) and a time (s) may be added to it.
+    #[pyo3(signature = (velocity, *, gust_speed=0.0, gust_length=3.0, gust_time=1.0, seed=0))]
+    fn add_wind(
+        &mut self,
+        velocity: &Bound<'_, PyAny>,
+        gust_speed: f32,
+        gust_length: f32,
+        gust_time: f32,
+        seed: u64,
+    ) -> PyResult<u64> {
+        let velocity = vec3(velocity, "velocity")?;
+        let gusts = Gusts { speed: gust_speed, length: gust_length, time: gust_time, seed };
+        let gusts = (gust_speed != 0.0).then_some(gusts);
+        let wind = FieldDef::new(FieldKind::Wind(Wind { velocity, gusts, ..Wind::default() }));
+        Ok(refused(|| self.world.add_field(&wind))?.to_bits())
+    }
+
+    /// Takes a field out.
+    fn remove_field(&mut self, field: u64) -> PyResult<()> {
+        let id = FieldId::from_bits(field);
+        if !self.world.contains_field(id) {
+            return Err(bad(format!("there is no field {field:#x}")));
+        }
+        refused(|| self.world.remove_field(id))
+    }
+
     /// Puts a ragdoll into the world and gives the ids of its bodies and joints. `poses` (n, 7) are those of its bodies; without them it
     /// stands at `pose` in its bind pose.
     #[pyo3(signature = (ragdoll, *, pose=None, poses=None, velocities=None))]
@@ -219,6 +276,28 @@ impl World {
             guarded(|| sinew::ragdoll::Ragdoll::spawn(&mut self.world, def, &states, &Default::default()))?;
         let joints = spawned.joints.iter().map(|joint| joint.to_bits()).collect();
         Ok((Self::bits(py, &spawned.bodies), PyArray1::from_vec(py, joints)))
+    }
+
+    /// Brings a character into the world, standing at a pose, `phase` seconds into its looped clip; it follows every step.
+    #[pyo3(signature = (character, *, pose=None, phase=0.0))]
+    fn add_character(
+        slf: &Bound<'_, Self>,
+        character: &Character,
+        pose: Option<&Bound<'_, PyAny>>,
+        phase: f32,
+    ) -> PyResult<LiveCharacter> {
+        let place = pose.map(one_pose).transpose()?.unwrap_or(Transform::IDENTITY);
+        let mut world = slf.borrow_mut();
+        let World { world: physics, characters, .. } = &mut *world;
+        let def = character.def.clone();
+        let made = refused(|| {
+            let mut made = sinew::ragdoll::Character::new(def.clone(), place, phase);
+            made.enter(physics);
+            made
+        })?;
+        characters.push(Some(made));
+        let index = characters.len() - 1;
+        Ok(LiveCharacter { world: slf.clone().unbind(), index, def: character.def.clone() })
     }
 
     /// Takes a body out, with its joints.
@@ -282,8 +361,18 @@ impl World {
     /// Takes steps, without the GIL.
     #[pyo3(signature = (count=1))]
     fn step(&mut self, py: Python<'_>, count: u32) -> PyResult<()> {
-        let Self { world, threads } = self;
-        py.detach(|| guarded(|| (0..count).for_each(|_| world.step_with(threads, &NoProfiler))))
+        let Self { world, characters, threads, keyed } = self;
+        keyed.retain(|(id, _)| world.contains(*id));
+        let one = || {
+            for (id, collider) in keyed.iter() {
+                for mover in parted(std::slice::from_ref(collider)).1 {
+                    mover.lead(*id, world);
+                }
+            }
+            world.step_with(threads, &NoProfiler);
+            characters.iter_mut().flatten().for_each(|character| character.update(world));
+        };
+        py.detach(|| guarded(|| std::iter::repeat_with(one).take(count as usize).for_each(drop)))
     }
 
     /// Number of steps since the beginning.
@@ -442,22 +531,32 @@ impl World {
         Ok(PyArray1::from_vec(py, turn.to_array().to_vec()))
     }
 
-    /// Hash of all that decides the future.
+    /// Hash of all that decides the future, characters included.
     fn hash(&self) -> u64 {
-        self.world.hash()
+        if self.characters.iter().flatten().next().is_none() {
+            return self.world.hash();
+        }
+        hash_bytes(self.state().as_bytes())
     }
 
-    /// The state as bytes.
+    /// The state as bytes, with that of the characters.
     fn save<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        let mut w = Writer::new();
-        self.world.save(&mut w);
-        PyBytes::new(py, w.as_bytes())
+        PyBytes::new(py, self.state().as_bytes())
     }
 
-    /// Brings back a state that was saved.
+    /// Brings back a state that was saved; the characters are those that were there then.
     fn load(&mut self, state: &[u8]) -> PyResult<()> {
-        let loaded = guarded(|| self.world.load(&mut Reader::new(state)))?;
-        loaded.map_err(|what| SinewError::new_err(format!("no state of a world: {what}")))
+        let mut world = self.world.clone();
+        let mut characters = self.characters.clone();
+        let mut r = Reader::new(state);
+        let loaded = guarded(|| {
+            world.load(&mut r).map_err(|what| what.to_string())?;
+            let mut each = characters.iter_mut().flatten();
+            each.try_for_each(|character| character.load(&mut r).map_err(|what| what.to_string()))
+        })?;
+        loaded.map_err(|what| SinewError::new_err(format!("no state of this world: {what}")))?;
+        (self.world, self.characters) = (world, characters);
+        Ok(())
     }
 
     fn __repr__(&self) -> String {

@@ -22,8 +22,11 @@ pub mod mjcf;
 pub mod motion;
 pub mod obj;
 mod parts;
+pub mod physics_gltf;
 pub mod ragdoll;
 mod triangles;
+pub mod urdf;
+pub mod usd;
 pub mod world;
 
 pub use bvh::{BvhDocument, BvhEnds, BvhOptions, BvhText, BvhWriteOptions, read_bvh, write_bvh};
@@ -43,9 +46,12 @@ pub use gltf::{
 };
 pub use jolt::{JoltMotor, JoltRagdoll, read_jolt_animation, read_jolt_ragdoll};
 pub use mesh::TriangleMesh;
-pub use mjcf::{MjcfModel, MjcfRagdoll, MjcfText, read_mjcf, write_mjcf};
+pub use mjcf::{MjcfModel, MjcfRagdoll, MjcfText, read_mjcf, read_model, write_mjcf};
 pub use motion::{MotionFile, MotionFormat, MotionOptions, read_motion};
 pub use obj::read_obj;
+pub use physics_gltf::read_physics_gltf;
 pub use ragdoll::settings::read_ragdoll_settings;
 pub use ragdoll::{read_ragdoll, write_ragdoll};
+pub use urdf::read_urdf;
+pub use usd::{UsdInput, UsdText, write_usda};
 pub use world::{read_world, write_world};

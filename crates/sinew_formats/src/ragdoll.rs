@@ -273,7 +273,7 @@ fn read_reference(at: At<'_>, bodies: &[RagdollBodyDef]) -> Result<usize> {
     }
 }
 
-fn read_kind(at: At<'_>) -> Result<JointKind> {
+pub(crate) fn read_kind(at: At<'_>) -> Result<JointKind> {
     let kind = at.need("type")?;
     let limits = at.get("limits_deg")?;
     Ok(match kind.str()? {

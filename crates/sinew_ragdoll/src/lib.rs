@@ -26,7 +26,7 @@ pub mod skin;
 pub mod springs;
 mod tuning;
 
-pub use bake::{BakeHit, BakeInput, Baked, HitEffect, bake};
+pub use bake::{BakeDrive, BakeHit, BakeInput, BakeMover, BakeReturn, Baked, HitEffect, bake, bake_together};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
 pub use character::{
     AfterSettling, Blow, Character, CharacterDef, CharacterEvent, Detail, Distances, FootPlanting,

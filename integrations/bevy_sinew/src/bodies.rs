@@ -105,7 +105,7 @@ fn take_out(mut world: DeferredWorld, context: HookContext) {
 }
 
 /// The body goes with the component that made it.
-pub(crate) fn forget_body(removed: On<Remove, RigidBody>, mut commands: Commands) {
+pub(crate) fn forget_body(removed: On<Remove<RigidBody>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<BodyHandle>();
 }
 

@@ -81,7 +81,7 @@ fn take_out(mut world: DeferredWorld, context: HookContext) {
 }
 
 /// The character goes with the component that made it.
-pub(crate) fn forget_character(removed: On<Remove, CharacterBody>, mut commands: Commands) {
+pub(crate) fn forget_character(removed: On<Remove<CharacterBody>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<(CharacterHandle, CharacterJoints)>();
 }
 

@@ -102,12 +102,12 @@ fn take_out_field(mut world: DeferredWorld, context: HookContext) {
 }
 
 /// The joint goes with the component that made it.
-pub(crate) fn forget_joint(removed: On<Remove, Joint>, mut commands: Commands) {
+pub(crate) fn forget_joint(removed: On<Remove<Joint>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<JointHandle>();
 }
 
 /// The field goes with the component that made it.
-pub(crate) fn forget_field(removed: On<Remove, Field>, mut commands: Commands) {
+pub(crate) fn forget_field(removed: On<Remove<Field>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<FieldHandle>();
 }
 

@@ -72,7 +72,7 @@ fn take_out(mut world: DeferredWorld, context: HookContext) {
 }
 
 /// The mover goes with the component that made it.
-pub(crate) fn forget_mover(removed: On<Remove, Mover>, mut commands: Commands) {
+pub(crate) fn forget_mover(removed: On<Remove<Mover>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<MoverHandle>();
 }
 

@@ -70,7 +70,7 @@ fn take_out(mut world: DeferredWorld, context: HookContext) {
 }
 
 /// The particles go with the component that made them.
-pub(crate) fn forget_particles(removed: On<Remove, Particles>, mut commands: Commands) {
+pub(crate) fn forget_particles(removed: On<Remove<Particles>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<ParticlesHandle>();
 }
 

@@ -14,6 +14,7 @@ const ALLOWED: &[&str] = &[
     "bindings/c/src",
     "bindings/c/tests",
     "bindings/python/src",
+    "bindings/web/src",
 ];
 
 /// `unsafe` stands only in the modules above. Every crate root forbids it, or, where the crate has one of those modules

@@ -1,23 +1,31 @@
 from os import PathLike
-from typing import Literal, Sequence, final
+from typing import Any, Callable, Literal, Mapping, Sequence, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .types import BuildReport, Contacts, DoctorReport, DropReport, Events, FallQuality, RayHits
+from .types import BuildReport, ClipArrays, Contacts, DoctorReport, DropReport, Events, FallQuality, MeshArrays, RayHits
 
 __all__ = [
     "__version__",
     "SinewError",
     "FileError",
+    "Cancelled",
     "CharacterFile",
     "Ragdoll",
     "Model",
     "Character",
+    "Actor",
     "Bake",
+    "Collider",
+    "Drive",
+    "LiveCharacter",
     "World",
     "BatchWorlds",
+    "bake",
     "load",
+    "load_bytes",
+    "load_arrays",
     "mannequin",
     "load_ragdoll",
     "load_model",
@@ -31,6 +39,7 @@ _Ids = NDArray[np.uint64]
 _Shape = Literal["box", "sphere", "capsule", "cylinder", "cone", "half_space"]
 _Quality = Literal["fast", "balanced", "exact"]
 _Hit = tuple[float, str, ArrayLike]
+_World = _Path | Sequence["Collider"]
 
 class SinewError(Exception):
     """A call that failed within Sinew."""
@@ -38,17 +47,77 @@ class SinewError(Exception):
 class FileError(SinewError):
     """A file that cannot be read or written, or is not what it should be: the message names the file and the place."""
 
-def load(path: _Path) -> CharacterFile:
-    """Reads a GLB, glTF, VRM or FBX with a skinned character, and the settings beside it."""
+class Cancelled(SinewError):
+    """A bake that its progress function ended."""
+
+def load(
+    path: _Path,
+    *,
+    settings: Mapping[str, Any] | None = None,
+    roles: Mapping[str, str] | None = None,
+    ignore: Sequence[str] | None = None,
+    bodies: Mapping[str, bool] | None = None,
+    unit: float | None = None,
+    height: float | None = None,
+    mass: float | None = None,
+) -> CharacterFile:
+    """Reads a GLB, glTF, VRM or FBX with a skinned character. `settings` has the keys of a settings file and is used instead of the one beside the file; over it: `roles` of joints, joints to `ignore`, `bodies` that bones get or not, the file's `unit` or the character's `height` in metres, its `mass` in kg."""
+
+def load_bytes(
+    data: bytes,
+    *,
+    name: str = "character",
+    settings: Mapping[str, Any] | None = None,
+    roles: Mapping[str, str] | None = None,
+    ignore: Sequence[str] | None = None,
+    bodies: Mapping[str, bool] | None = None,
+    unit: float | None = None,
+    height: float | None = None,
+    mass: float | None = None,
+) -> CharacterFile:
+    """Reads a character from the bytes of a GLB, VRM or FBX, or of a glTF that holds its buffers; `name` stands in errors. All else as `load`."""
+
+def load_arrays(
+    joints: Sequence[str],
+    parents: ArrayLike,
+    translations: ArrayLike,
+    rotations: ArrayLike,
+    *,
+    scales: ArrayLike | None = None,
+    inverse_bind: ArrayLike | None = None,
+    meshes: Sequence[MeshArrays] | None = None,
+    clips: Mapping[str, ClipArrays] | None = None,
+    name: str = "character",
+    settings: Mapping[str, Any] | None = None,
+    roles: Mapping[str, str] | None = None,
+    ignore: Sequence[str] | None = None,
+    bodies: Mapping[str, bool] | None = None,
+    unit: float | None = None,
+    height: float | None = None,
+    mass: float | None = None,
+) -> CharacterFile:
+    """Makes a character of arrays, +Y up: names of joints, their parents (n,), -1 for a root and else before them, and their rest pose in their parents: translations (n, 3), rotations (n, 4) x y z w, scales (n, 3). `inverse_bind` (n, 4, 4) is from a mesh to each joint; without it meshes are where the rest pose has them. All else as `load`."""
+
+def bake(
+    actors: Sequence[Actor],
+    *,
+    seconds: float = 10.0,
+    fps: float = 30.0,
+    world: _World | None = None,
+    wind: ArrayLike | None = None,
+    gravity: ArrayLike | None = None,
+    progress: Callable[[float], bool | None] | None = None,
+) -> list[Bake]:
+    """Simulates several characters in one world, where they meet each other. `world` is the name of a file or a list of colliders, by default a floor; `wind` and `gravity` are m/s and m/s². `progress` is called with the share that is done; if it returns False the bake ends with `Cancelled`."""
 
 def mannequin() -> CharacterFile:
     """The mannequin that comes with Sinew, 1.75 m, with a walk and two ways to get up."""
 
 def load_ragdoll(path: _Path) -> Ragdoll:
-    """Reads a ragdoll: a definition (.json), an MJCF model (.xml), or a character, of which it is built."""
+    """Reads a ragdoll: a definition (.json), an MJCF or URDF model (.xml, .urdf), or a character, of which it is built."""
 
 def load_model(path: _Path) -> Model:
-    """Reads an MJCF model: bodies, joints, and a floor where it has one."""
+    """Reads an MJCF model (.xml), a URDF (.urdf) or the physics of a glTF (.gltf, .glb): bodies, joints, and a floor where it has one."""
 
 @final
 class CharacterFile:
@@ -85,8 +154,20 @@ class CharacterFile:
     ) -> Ragdoll:
         """Builds its ragdoll; mass in kg, height in metres."""
 
-    def character(self, ragdoll: Ragdoll | None = None, *, clip: str | None = None) -> Character:
-        """The character with its motions; `clip` plays until it falls."""
+    def character(
+        self,
+        ragdoll: Ragdoll | None = None,
+        *,
+        clip: str | None = None,
+        exact: bool = False,
+        builtin_motions: bool = True,
+        gets_up: bool = True,
+        falling: Drive | None = None,
+    ) -> Character:
+        """The character with its motions; `clip` plays until it falls: `exact`ly where the file has it, whatever ground is there, else on the ground. `falling` drives the bodies while it falls."""
+
+    def glb(self) -> bytes:
+        """The file as a GLB, with the files that it names in it; of arrays, the file that they were made."""
 
 @final
 class Ragdoll:
@@ -127,6 +208,35 @@ class Ragdoll:
     @property
     def height(self) -> float:
         """Height as it was bound, metres."""
+
+    @property
+    def unit_scale(self) -> float:
+        """Metres of a unit of the file."""
+
+    @staticmethod
+    def from_json(text: str) -> Ragdoll:
+        """The ragdoll of a definition's text, as `to_json` gives it."""
+
+    def edited(
+        self,
+        bone: str,
+        *,
+        mass: float | None = None,
+        shape: _Shape | None = None,
+        size: Sequence[float] | None = None,
+        scale: float | None = None,
+        swing_y: tuple[float, float] | None = None,
+        swing_z: tuple[float, float] | None = None,
+        twist: tuple[float, float] | None = None,
+        friction_torque: float | None = None,
+    ) -> Ragdoll:
+        """A copy with one body (by role or bone) and the joint above it otherwise: kg, metres, ranges in radians, N·m; what is not given stays."""
+
+    def cured(self) -> tuple[Ragdoll, DoctorReport]:
+        """A copy with all mended that the doctor mends, and what it found."""
+
+    def to_mjcf(self, name: str = "ragdoll") -> tuple[str, list[str]]:
+        """The definition as a MuJoCo model, and what that cannot hold, a sentence each."""
 
     @property
     def report(self) -> BuildReport:
@@ -177,24 +287,152 @@ class Character:
     def roles(self) -> list[str]:
         """Role of each body, as `hits` name them."""
 
+    @property
+    def joints(self) -> list[str]:
+        """Names of its joints, in the order of arrays of poses; those that Sinew added come last."""
+
+    @property
+    def place_in_file(self) -> _Floats:
+        """Pose at which it stands where its file has it: (7,). Places of the file times its unit are then places of the world."""
+
+    @property
+    def raised(self) -> float:
+        """Height by which the clip that plays is raised onto its floor, metres; 0 of an exact one."""
+
     def bake(
         self,
         *,
         seconds: float = 10.0,
         fps: float = 30.0,
         hits: Sequence[_Hit] | None = None,
+        flinch: bool = False,
         limp_at: float | None = None,
-        world: _Path | None = None,
+        drives: Sequence[Drive] | None = None,
+        return_at: float | None = None,
+        return_seconds: float = 0.5,
+        topple: bool | None = None,
+        world: _World | None = None,
+        wind: ArrayLike | None = None,
+        gravity: ArrayLike | None = None,
         pose: ArrayLike | None = None,
         phase: float = 0.0,
         name: str = "sinew",
+        progress: Callable[[float], bool | None] | None = None,
     ) -> Bake:
-        """Simulates it. A hit is a time in seconds, a body by role or joint, and an impulse in N·s."""
+        """Simulates it: as `Actor` and `bake` of one. Where nothing is done to it, it goes limp after half a second."""
 
     def random_fall(
         self, seed: int, *, seconds: float = 3.0, fps: float = 30.0, impulse: float = 120.0
     ) -> Bake:
         """A random fall: pose within the limits, ground and hit by the seed; the same bits on every machine."""
+
+@final
+class Actor:
+    """Character of a bake with all that is done to it."""
+
+    def __new__(
+        cls,
+        character: Character,
+        *,
+        hits: Sequence[_Hit] | None = None,
+        flinch: bool = False,
+        limp_at: float | None = None,
+        drives: Sequence[Drive] | None = None,
+        return_at: float | None = None,
+        return_seconds: float = 0.5,
+        topple: bool | None = None,
+        pose: ArrayLike | None = None,
+        phase: float = 0.0,
+        name: str = "sinew",
+    ) -> Actor:
+        """A hit is a time in seconds, a body by role or joint, and an impulse in N·s; with `flinch` weak ones only let it flinch. `drives` change what moves its bones over time. At `return_at` seconds its clip alone has the pose again; the simulated pose dies away in `return_seconds` before. With `topple` a single character that goes limp and stays upright is pushed over; by default where nothing else is done to it."""
+
+@final
+class Drive:
+    """Drive of a bone (by role or joint), of a bone and all `below` it, or of all: from a time on."""
+
+    def __new__(
+        cls,
+        mode: Literal["keyed", "powered", "pinned", "limp"],
+        *,
+        time: float = 0.0,
+        bone: str | None = None,
+        below: bool = False,
+        half_life: float = 0.1,
+        hertz: float = 5.0,
+        damping_ratio: float = 1.0,
+        strength: float = 1.0,
+        pin_hertz: float = 3.0,
+        pin_force: float = 400.0,
+        pin_torque: float = 100.0,
+    ) -> Drive:
+        """`keyed`: the clip has it; `powered`: muscles of a `strength` up to 1 draw it to the clip as springs of so many `hertz`; `pinned`: springs from the world besides, N and N·m at most; `limp`: it hangs. Half of the change is made within `half_life` seconds."""
+
+    @property
+    def mode(self) -> str:
+        """`keyed`, `powered`, `pinned` or `limp`."""
+
+    @property
+    def time(self) -> float:
+        """Seconds from the start."""
+
+    @property
+    def bone(self) -> str | None:
+        """Bone that it drives; None: all."""
+
+    @property
+    def below(self) -> bool:
+        """True if it drives all below the bone, too."""
+
+    @property
+    def half_life(self) -> float:
+        """Seconds in which half of the change is made."""
+
+@final
+class Collider:
+    """Body of a world that is no character. Static, unless it is made `dynamic` or `keyed`."""
+
+    def __new__(
+        cls,
+        kind: _Shape,
+        size: Sequence[float],
+        *,
+        pose: ArrayLike | None = None,
+        friction: float = 0.6,
+        restitution: float = 0.0,
+    ) -> Collider:
+        """A shape as `World.add_body` takes it, at a pose (7,)."""
+
+    @staticmethod
+    def floor(height: float = 0.0, *, friction: float = 0.6) -> Collider:
+        """All below a height, metres."""
+
+    @staticmethod
+    def mesh(
+        vertices: ArrayLike,
+        triangles: ArrayLike,
+        *,
+        pose: ArrayLike | None = None,
+        friction: float = 0.6,
+        restitution: float = 0.0,
+    ) -> Collider:
+        """A surface of triangles: vertices (v, 3) in metres, triangles (t, 3), counter-clockwise seen from outside."""
+
+    @staticmethod
+    def hull(
+        points: ArrayLike, *, pose: ArrayLike | None = None, friction: float = 0.6, restitution: float = 0.0
+    ) -> Collider:
+        """The convex hull of points (n, 3), metres."""
+
+    @staticmethod
+    def load(path: _Path) -> list[Collider]:
+        """All bodies of a world file (.json) or a mesh (.glb, .obj)."""
+
+    def dynamic(self, *, density: float = 1000.0) -> Collider:
+        """The same body moved by forces; density in kg/m³."""
+
+    def keyed(self, times: ArrayLike, poses: ArrayLike) -> Collider:
+        """The same body at poses (n, 7) at times (n,) in seconds, whatever is in its way."""
 
 @final
 class Bake:
@@ -251,6 +489,9 @@ class Bake:
     def glb(self, *, mesh: bool = True) -> bytes:
         """The file with the clip in it, or the bones alone with the clip if there is to be no mesh."""
 
+    def usda(self, *, physics: bool = True) -> tuple[str, list[str]]:
+        """The character, its motion and its ragdoll as USD text (.usda), and what that cannot hold, a sentence each."""
+
     def save(self, path: _Path, *, mesh: bool = True) -> None:
         """Writes that file, whole or not at all."""
 
@@ -294,6 +535,28 @@ class World:
         velocities: ArrayLike | None = None,
     ) -> tuple[_Ids, _Ids]:
         """Adds a ragdoll and returns ids of its bodies (n,) and joints (n - 1,). `pose` (7,) moves the bind pose; `poses` (n, 7) and `velocities` (n, 6) are of each body."""
+
+    def add_collider(self, collider: Collider) -> int:
+        """Adds a collider and returns its id; a keyed one goes by its keys from the world's time 0 on."""
+
+    def add_character(
+        self, character: Character, *, pose: ArrayLike | None = None, phase: float = 0.0
+    ) -> LiveCharacter:
+        """Brings a character in, standing at a pose (7,), `phase` seconds into its clip; it follows every step."""
+
+    def add_wind(
+        self,
+        velocity: ArrayLike,
+        *,
+        gust_speed: float = 0.0,
+        gust_length: float = 3.0,
+        gust_time: float = 1.0,
+        seed: int = 0,
+    ) -> int:
+        """Adds wind, m/s, with gusts of a speed (m/s), a length (m) and a time (s), and returns its id."""
+
+    def remove_field(self, field: int) -> None:
+        """Removes a wind."""
 
     def remove_body(self, body: int) -> None:
         """Removes a body with its joints."""
@@ -377,13 +640,107 @@ class World:
         """Turn of a joint from its frame, a scaled axis in radians: (3,)."""
 
     def hash(self) -> int:
-        """Hash of the state: equal on every machine."""
+        """Hash of the state, characters included: equal on every machine."""
 
     def save(self) -> bytes:
-        """State as bytes, for `load`."""
+        """State as bytes, characters included, for `load`."""
 
     def load(self, state: bytes) -> None:
         """Brings back a saved state."""
+
+
+@final
+class LiveCharacter:
+    """Character in a world: it follows every step of it."""
+
+    @property
+    def state(self) -> str:
+        """`animated`, `limp`, `preparing`, `getting up`, `flinching` or `powered`."""
+
+    @property
+    def events(self) -> list[str]:
+        """Events of the last step, and of what was done since."""
+
+    @property
+    def pose(self) -> _Floats:
+        """Place of the character in the world: (7,)."""
+
+    @property
+    def translations(self) -> _Floats:
+        """Local translation of each joint, in the file's unit: (joints, 3)."""
+
+    @property
+    def rotations(self) -> _Floats:
+        """Local rotation of each joint, x y z w: (joints, 4)."""
+
+    @property
+    def positions(self) -> _Floats:
+        """Place of each joint in the world, metres: (joints, 3)."""
+
+    def skin_matrices(self, skin: int = 0, *, alpha: float = 1.0) -> _Floats:
+        """Matrices from a mesh's bind pose to the world for each joint of a skin, `alpha` between the last step and this: (joints of the skin, 3, 4)."""
+
+    @property
+    def bodies(self) -> _Ids:
+        """Ids of its bodies, in the order of `Character.roles`; none while it has none in the world."""
+
+    def set_move(self, velocity: ArrayLike | None) -> None:
+        """Has it go at a velocity over the ground, m/s (3,); None: as its clips go."""
+
+    def face(self, direction: ArrayLike) -> None:
+        """Has it turn to look along a direction (3,)."""
+
+    def jump(self) -> None:
+        """Has it jump in the next step, if it has ground."""
+
+    def hit(self, bone: str, impulse: ArrayLike) -> float:
+        """Hits a body, by role or joint, with an impulse in N·s (3,); returns its work, J."""
+
+    def go_limp(self) -> None:
+        """Lets the bodies take over."""
+
+    def set_preset(self, preset: Literal["animated", "flinching", "powered", "limp"]) -> None:
+        """Has all of it moved in another way."""
+
+    def set_drive(self, drive: Drive) -> None:
+        """Has part of it moved in another way from now on; the time of the drive does nothing."""
+
+    def return_to_clip(self, pose: ArrayLike, *, phase: float = 0.0, seconds: float = 0.5) -> None:
+        """Gives it back to its clip at `phase` seconds, at a pose (7,), within so many seconds."""
+
+    def teleport(self, pose: ArrayLike) -> None:
+        """Puts it elsewhere at once: (7,)."""
+
+    def clear(self) -> bool:
+        """Moves it, limp, out of static shapes that it is deep in; False if it is in none."""
+
+    def hold(self, bone: str, body: int, *, pose: ArrayLike | None = None, drops: bool = False) -> int:
+        """Has a bone hold a dynamic body; `pose` (7,) is that of the body in the bone's. Returns the joint's id."""
+
+    def grab(self, bone: str, body: int, *, max_force: float = 1300.0, reach: float = 0.25) -> int | None:
+        """Has a bone grab a body within reach (m), also one of another character, with a force in N. Returns the joint's id, or None."""
+
+    def release(self, body: int) -> bool:
+        """Lets go of what it holds; False if it does not hold that."""
+
+    @property
+    def held(self) -> _Ids:
+        """Ids of bodies that it holds."""
+
+    def detach(self, bone: str) -> _Ids | None:
+        """Cuts a limb off, with all below it; returns the ids of its bodies, or None if it was cut off before."""
+
+    def set_level_of_detail(self, detail: Literal["full", "hit_bodies", "keyed", "frozen"]) -> None:
+        """Gives it as much detail as that."""
+
+    def reset_springs(self) -> None:
+        """Starts its springs over at rest."""
+
+    def reset_garments(self) -> None:
+        """Starts its garments over at rest."""
+
+    def despawn(self) -> None:
+        """Takes it out of the world."""
 
 
 @final

@@ -3,7 +3,7 @@
 from typing import TypedDict
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 _Floats = NDArray[np.float32]
 _Ids = NDArray[np.uint64]
@@ -46,6 +46,7 @@ class Finding(TypedDict):
     cause: str
     evidence: str
     fix: str
+    fixed: bool
 
 
 class DoctorReport(TypedDict):
@@ -89,3 +90,30 @@ class Events(TypedDict):
     begin: _Ids
     end: _Ids
     hit: _Ids
+
+
+class _MeshNeeds(TypedDict):
+    positions: ArrayLike
+    triangles: ArrayLike
+
+
+class MeshArrays(_MeshNeeds, total=False):
+    """Mesh for `load_arrays`: positions (v, 3), triangles (t, 3). A skinned one has joints and weights of each vertex (v, 4); one that
+    moves with a single joint has its index as `joint`, and positions in that joint's space."""
+
+    name: str
+    joints: ArrayLike
+    weights: ArrayLike
+    joint: int
+
+
+class _ClipNeeds(TypedDict):
+    times: ArrayLike
+
+
+class ClipArrays(_ClipNeeds, total=False):
+    """Clip for `load_arrays`: times (f,) in seconds, local translations (f, n, 3), rotations (f, n, 4) x y z w, scales (f, n, 3)."""
+
+    translations: ArrayLike
+    rotations: ArrayLike
+    scales: ArrayLike

@@ -5,7 +5,7 @@ use crate::input::files::CharacterFile;
 use crate::input::settings_arg::SettingsArg;
 use crate::input::source::{name, read_bytes};
 use sinew::anim::Garment;
-use sinew::formats::{Textures, read_mjcf, read_ragdoll};
+use sinew::formats::{Textures, read_model, read_ragdoll};
 use sinew::ragdoll::{BuildOptions, RagdollDef, Repair};
 use std::path::Path;
 
@@ -46,7 +46,7 @@ impl RagdollFile {
                 garments: Vec::new(),
             }),
             Kind::Mjcf => {
-                let model = read_mjcf(&bytes).and_then(|model| Ok((model.to_ragdoll()?, model.notes)));
+                let model = read_model(&bytes).and_then(|model| Ok((model.to_ragdoll()?, model.notes)));
                 let (ragdoll, mut notes) = model.map_err(|error| error.with_file(&name))?;
                 notes.extend(ragdoll.notes);
                 let repair = Repair { springs: ragdoll.springs, ..Repair::new(ragdoll.def) };

@@ -59,8 +59,8 @@ fn upright(def: &CharacterDef) -> String {
     match (def.motions().looped.map(|clip| def.motions().clips[clip].name.as_str()), def.motions().locomotion)
     {
         (Some(_), Locomotion::Forward { .. }) => "walks".to_owned(),
-        (Some(""), Locomotion::InPlace | Locomotion::ByClip) => "plays a clip without a name".to_owned(),
-        (Some(clip), Locomotion::InPlace | Locomotion::ByClip) => format!("plays clip {}", shown(clip)),
+        (Some(""), _) => "plays a clip without a name".to_owned(),
+        (Some(clip), _) => format!("plays clip {}", shown(clip)),
         (None, _) => RESTS.to_owned(),
     }
 }

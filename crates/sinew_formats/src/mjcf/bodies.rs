@@ -12,7 +12,7 @@ use sinew_physics::{BodyDef, BodyKind, MassProperties, Shape};
 use std::collections::BTreeMap;
 
 /// Most bodies of a model: those of the largest joint tree. Pairs of bodies grow with the square.
-const MOST_BODIES: usize = 1024;
+pub(crate) const MOST_BODIES: usize = 1024;
 
 /// A body of the file with its position in the tree.
 pub(super) struct Link<'a> {
@@ -225,7 +225,7 @@ impl<'a> Reading<'a, '_> {
 }
 
 /// Checks that a solid body can have such a mass and inertia.
-fn check_mass(mass: &MassProperties) -> core::result::Result<(), &'static str> {
+pub(crate) fn check_mass(mass: &MassProperties) -> core::result::Result<(), &'static str> {
     let moments = mass.inertia.eigen().0;
     // This form rejects NaN.
     if !(mass.mass > 0.0 && moments.z > 0.0 && mass.mass.is_finite() && moments.is_finite()) {

@@ -35,16 +35,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod bodies;
+pub(crate) mod bodies;
 mod compiler;
 mod defaults;
 mod geom;
 mod joint;
 mod keyframe;
-mod notes;
+pub(crate) mod notes;
 mod ragdoll;
 mod write;
-mod xml;
+pub(crate) mod xml;
 
 pub use ragdoll::MjcfRagdoll;
 pub use write::{MjcfText, write_mjcf};
@@ -155,6 +155,19 @@ pub fn read_mjcf(bytes: &[u8]) -> Result<MjcfModel> {
     let name = root.attribute("model").unwrap_or_default().to_owned();
     let gravity = read_gravity(root)?;
     Ok(MjcfModel { name, gravity, bodies, joints, excluded_pairs, keyframes, notes: notes.into_sentences() })
+}
+
+/// Reads a model of bodies and joints in any of the formats that hold one: MJCF, URDF, or the physics of a glTF, by what is in the file.
+///
+/// # Errors
+/// As [`read_mjcf`], [`read_urdf`](crate::read_urdf) and [`read_physics_gltf`](crate::read_physics_gltf).
+pub fn read_model(bytes: &[u8]) -> Result<MjcfModel> {
+    let first = bytes.iter().find(|byte| !byte.is_ascii_whitespace());
+    if crate::container::glb::is_glb(bytes) || first == Some(&b'{') {
+        return crate::read_physics_gltf(bytes);
+    }
+    let place = |tag: &[u8]| bytes.windows(tag.len()).position(|window| window == tag).unwrap_or(usize::MAX);
+    if place(b"<robot") < place(b"<mujoco") { crate::read_urdf(bytes) } else { read_mjcf(bytes) }
 }
 
 /// Refuses sections that are not of the format, and notes those that are not read.

@@ -2,7 +2,7 @@
 
 /// Collects notes, each once with its count: memory does not grow with the file.
 #[derive(Default)]
-pub(super) struct Notes {
+pub(crate) struct Notes {
     left_out: Vec<(&'static str, usize)>,
     changed: Vec<String>,
 }

@@ -4,7 +4,7 @@ use crate::error::{Error, Result, quoted};
 use roxmltree::{Attribute, Document, Node};
 
 /// An element. Shares the lifetime of the document and of the text that it was made from.
-pub(super) type Element<'a> = Node<'a, 'a>;
+pub(crate) type Element<'a> = Node<'a, 'a>;
 
 /// Longest text that is read. Models without meshes are far shorter; the XML parser uses about 20 times that in memory.
 const MOST_BYTES: usize = 4 << 20;
@@ -14,7 +14,7 @@ const MOST_ATTRIBUTES: usize = 1000;
 const LARGEST: f32 = 1e9;
 
 /// Parses bytes as XML.
-pub(super) fn parse(bytes: &[u8]) -> Result<Document<'_>> {
+pub(crate) fn parse(bytes: &[u8]) -> Result<Document<'_>> {
     if bytes.len() > MOST_BYTES {
         let what = format!("{} bytes are more than the {MOST_BYTES} that are read", bytes.len());
         return Err(Error::unsupported(what, "top level"));
@@ -55,7 +55,7 @@ fn position(row: u32, column: u32) -> String {
 }
 
 /// Line and column of an element.
-pub(super) fn place(element: Element<'_>) -> String {
+pub(crate) fn place(element: Element<'_>) -> String {
     place_at(element, element.range().start)
 }
 
@@ -65,23 +65,23 @@ fn place_at(element: Element<'_>, byte: usize) -> String {
 }
 
 /// The elements directly below one.
-pub(super) fn children<'a>(element: Element<'a>) -> impl DoubleEndedIterator<Item = (&'a str, Element<'a>)> {
+pub(crate) fn children<'a>(element: Element<'a>) -> impl DoubleEndedIterator<Item = (&'a str, Element<'a>)> {
     element.children().filter(Element::is_element).map(|child| (child.tag_name().name(), child))
 }
 
 /// The element breaks the rules of its format.
-pub(super) fn malformed(element: Element<'_>, what: impl Into<String>) -> Error {
+pub(crate) fn malformed(element: Element<'_>, what: impl Into<String>) -> Error {
     Error::malformed(what, place(element))
 }
 
 /// The element uses an unsupported feature.
-pub(super) fn unsupported(element: Element<'_>, what: impl Into<String>) -> Error {
+pub(crate) fn unsupported(element: Element<'_>, what: impl Into<String>) -> Error {
     Error::unsupported(what, place(element))
 }
 
 /// An attribute with its element.
 #[derive(Clone, Copy)]
-pub(super) struct Value<'a> {
+pub(crate) struct Value<'a> {
     element: Element<'a>,
     attribute: Attribute<'a, 'a>,
 }

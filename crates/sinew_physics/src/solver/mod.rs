@@ -1,7 +1,7 @@
-//! The substeps of one island, on arrays of its own: bodies in tree order, joints, contact rows, limit rows.
+//! Substeps of one island, on its own arrays: bodies in tree order, joints, contact rows, limit rows.
 //!
-//! An island is one task. It reads the world, works on its copies, and the world takes the results in `store` and
-//! `finalize`, so that threads never share what they write.
+//! An island is one task. It copies what it needs from the world, and `store` and `finalize` copy the results back, so threads
+//! never write to shared memory.
 
 mod articulation;
 mod body;
@@ -56,7 +56,7 @@ use sinew_math::dispatch;
 use sinew_math::{Transform, Vec3, abs3, normalize_or};
 use sweep::conjugate::Conjugate;
 
-/// The solver of one island. Its memory is kept for the next one, but nothing in it.
+/// Solver of one island. The next island reuses its memory, but none of its values.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct IslandSolver {
     pub bodies: Vec<SolverBody>,
@@ -64,25 +64,25 @@ pub(crate) struct IslandSolver {
     pub velocities: Vec<Vec6>,
     pub joints: Vec<SolverJoint>,
     pub manifolds: Vec<ManifoldRows>,
-    /// In lanes, of an island without joints.
+    /// Contacts in lanes; empty if the coupling is `Response`.
     contacts: Contacts,
-    /// Poses when the step began.
+    /// Poses at the start of the step.
     starts: Vec<Transform>,
-    /// Who touches, of an island without joints.
+    /// Pairs of touching bodies; for islands without joints.
     touches: Vec<Touch>,
-    /// Per moving body: it touches another one, and no joint holds either.
+    /// True for each moving body that touches another one while no joint holds either.
     paired: Vec<bool>,
-    /// Masses of what touches differ so much that mass scaling follows from substep to substep.
+    /// Masses of touching bodies differ so much that mass scales are updated in each substep.
     is_unequal: bool,
-    /// A point was hit in this substep so that it bounces.
+    /// At least one contact point bounces in this substep.
     bounces: bool,
     /// Velocities before the bounce.
     bounced_from: Vec<Vec6>,
-    /// One per moving body.
+    /// One link for each moving body.
     links: Vec<Link>,
     /// Range of the links of each tree.
     trees: Vec<Range<usize>>,
-    /// Trees of one shape, of an island by turns.
+    /// Batches of trees of equal shape; for islands solved by turns.
     batches: Batches,
     coupling: Coupling,
     loops: Loops,
@@ -91,17 +91,17 @@ pub(crate) struct IslandSolver {
     limit_blocks: LimitBlocks,
     response: Response,
     response_cache: ResponseCache,
-    /// Impulses of contacts and limits that the sweeps in progress have put on each moving body.
+    /// Impulses that contacts and limits applied to each moving body in the current sweeps.
     impulses: Vec<Vec6>,
-    /// Linear impulses of contacts on each moving body in this substep.
+    /// Linear contact impulse on each moving body in this substep, N s.
     contact_push: Vec<Vec3>,
-    /// Velocities after the forces, before any constraint.
+    /// Velocities after forces, before any constraint.
     unconstrained: Vec<Vec6>,
-    /// Velocities when the bodies have moved, before `relax`.
+    /// Velocities after the position update, before `relax`.
     moved: Vec<Vec6>,
-    /// Impulses that bodies get, once they have moved, from elsewhere than their joints; what contacts and loops gave before, negative.
+    /// Impulses on bodies after the position update from everything but their joints; impulses that contacts and loops applied before it count negative.
     accounted: Vec<Vec6>,
-    /// Fields and lasting forces act: they are taken anew in each substep.
+    /// Fields or lasting forces act and are evaluated in each substep.
     forces_vary: bool,
     attraction: Attraction,
     scratch: Scratch,
@@ -112,44 +112,44 @@ pub(crate) struct IslandSolver {
     policy: SweepPolicy,
     dirty: DirtyRows,
     conjugate: Conjugate,
-    /// Energy that the changes of the sweep in progress have one by one, J.
+    /// Sum over the changes of the current sweep of the energy of each, J.
     change_energy: f32,
-    /// Largest change of a velocity component in the sweep in progress.
+    /// Largest change of a velocity component in the current sweep, m/s or rad/s.
     largest_change: f32,
-    /// Kinetic energy before and after the forces acted in this substep, J.
+    /// Kinetic energy before and after forces in this substep, J.
     kinetic_before: f32,
     kinetic_start: f32,
-    /// Momentum after the forces acted.
+    /// Momentum after forces.
     momentum_start: Momentum,
-    /// Work in this substep of the forces, and of springs and motors, J.
+    /// Work of forces, and of springs and motors, in this substep, J.
     force_work: f32,
     drive_work: f32,
     /// Kinetic energy that the full push of saturated motors gives bodies before joints hold them, and the work that it does once they
     /// hold, J: in this substep.
     push_energy: f32,
     push_work: f32,
-    /// In the step so far.
+    /// Work in the step so far.
     pub work: Work,
-    /// Springs of particles hold a body that bears what is far heavier.
+    /// Particle springs hold a body that carries a much heavier one.
     pub bears_by_springs: bool,
-    /// Particles or objects pushed in this substep.
+    /// Particles or objects applied impulses in this substep.
     pushed_from_outside: bool,
-    /// Objects pushed in this step.
+    /// Objects applied impulses in this step.
     disturbed: bool,
-    /// A surface moves along its body, or throws off what touches it.
+    /// A contact surface has a velocity, or a contact a speed at which it separates.
     driven: bool,
-    /// Poses changed since all that depends on them was computed.
+    /// Poses changed after the values that depend on them were computed.
     displaced: bool,
-    /// Fastest rate that a hit may give a joint, rad/s: limits within reach of it get rows.
+    /// Fastest rate that a hit may give a joint, rad/s. Limits that it can reach get rows.
     hit_rate: f32,
-    /// Sweeps have dealt with all limits and contacts that the substep was foreseen to pass by far.
+    /// The sweeps resolved every limit and contact that the predicted poses violate by far.
     is_settled: bool,
-    /// Substep, seconds, how many there are in the step, and how many times as long as the world's they are: a power of two.
+    /// Length of a substep, s; number of substeps in the step; ratio of their length to the world's, a power of two.
     h: f32,
     substeps: u32,
     stretch: f32,
     tally: boundary::tally::Tally,
-    /// Most that a body moves, m/s, and turns within a substep, radians.
+    /// Largest speed of a body, m/s, and largest turn in a substep, radians.
     max_speed: f32,
     max_turn: f32,
 }
@@ -163,31 +163,31 @@ struct Scratch {
     dv: Vec<Vec6>,
     wanted: Vec<bool>,
     before: Vec<Vec6>,
-    /// Poses of all bodies at the end of the substep; kinematic ones move, too.
+    /// Predicted poses of all bodies at the end of the substep, kinematic ones included.
     predicted: Vec<Transform>,
-    /// Per tree: position error, m or rad; whether it is being corrected, and whether it was in the last corrections.
+    /// For each tree: position error, m or rad; whether it is being corrected; whether the last corrections included it.
     errors: Vec<f32>,
     errors_left: Vec<f32>,
     corrected: Vec<bool>,
     looked_at: Vec<bool>,
-    /// Velocities within a sweep by turns, after the limits had their turn.
+    /// Velocities within a sweep by turns, after the limits.
     swept: Vec<Vec6>,
-    /// Velocities within a sweep by turns, after the contacts had theirs.
+    /// Velocities within a sweep by turns, after the contacts.
     contacted: Vec<Vec6>,
     /// Impulses of the limits.
     limits: Vec<f32>,
-    /// Velocities that the joints of the substep are solved from.
+    /// Velocities from which the joints of the substep are solved.
     started: Vec<Vec6>,
     loads: piles::loads::Scratch,
     pieces: Vec<articulation::piece::Piece>,
-    /// Impulses of motors in the substep, until their work is known.
+    /// Motor impulses of the substep, kept until their work is known.
     motor_impulses: Vec<MotorImpulse>,
     build: boundary::growth::Scratch,
 }
 
 impl IslandSolver {
-    /// Forces to velocities: damping on the old velocity, gravity, applied forces and fields, speed limits, the spin of the
-    /// middle of the substep by gyroscopic torque. Limits act here, never after the solve: there they tear joints.
+    /// Integrates forces into velocities: damping on the old velocity, gravity, applied forces, fields, speed limits, and the midpoint
+    /// spin of the gyroscopic torque. Speed limits act here and never after the solve, where they would open joints.
     pub fn integrate_velocity(&mut self, view: &View<'_>, groups: &mut [TakenGroup]) {
         let h = self.h;
         self.tally.substeps += 1;
@@ -216,12 +216,12 @@ impl IslandSolver {
         self.unconstrained.extend_from_slice(&self.velocities[..moving]);
         self.contact_push.clear();
         self.contact_push.resize(moving, Vec3::ZERO);
-        // Only now, as an impulse among those of joints: a light body that has a motor's full push spins as it never will once its
-        // joints hold, and the gyroscopic torque of that spin would do work of its own.
+        // Saturated motors push after the gyroscopic torque: a light body with the full push of a motor spins faster than its joints
+        // allow, and the gyroscopic torque of that spin would do work.
         self.push_saturated();
     }
 
-    /// The last substep's impulses of contacts and limits, but for what jumped up in it: an impact is not repeated.
+    /// Applies the impulses of contacts and limits of the last substep. Impulses that jumped in it are impacts and are not repeated.
     pub fn warm_start(&mut self, runner: &dyn TaskRunner) {
         if !self.has_joints() {
             self.contacts.warm_start(&mut self.velocities, runner);
@@ -255,9 +255,9 @@ impl IslandSolver {
         self.scratch.started.extend_from_slice(&self.velocities[..self.links.len()]);
     }
 
-    /// Joints exactly, then contacts and limits with bias, then SHAKE: the joints' positions at the pose to come.
+    /// Solves joints exactly, then contacts and limits with bias, then joint positions at the predicted poses (SHAKE).
     ///
-    /// Never contacts before the tree: the joints would undo what the contacts did (823 mm gap, +59 kJ in one step).
+    /// Joints come before contacts: in the other order they undo what contacts did (823 mm gap, +59 kJ in one step).
     pub fn solve(&mut self, runner: &dyn TaskRunner) {
         if !self.has_joints() {
             self.contacts.pull_approach(&self.velocities);
@@ -301,8 +301,8 @@ impl IslandSolver {
         self.add_drive_work();
     }
 
-    /// Velocities to poses; joint forces of the substep; then everything that depends on the pose, once, for `relax`
-    /// and the next substep's `solve`.
+    /// Integrates velocities into poses, stores the joint forces, and recomputes everything that depends on poses, once, for
+    /// `relax` and for `solve` of the next substep.
     pub fn integrate_position(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         self.read_pins();
         self.store_joint_forces();
@@ -319,7 +319,7 @@ impl IslandSolver {
         self.begin_relax_reactions();
     }
 
-    /// Impulses from outside the island's rows, one for each moving body, through the trees.
+    /// Applies external impulses, one for each moving body, through the trees.
     pub fn apply_impulses(&mut self, impulses: &[Vec6]) {
         if impulses.iter().all(|p| *p == ZERO6) {
             return;
@@ -333,7 +333,7 @@ impl IslandSolver {
         self.answer_impulses();
     }
 
-    /// Joint velocities to zero at the new pose (RATTLE), contacts and limits without bias, friction.
+    /// Removes joint velocities at the new poses (RATTLE), then solves contacts and limits without bias, and friction.
     pub fn relax(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         let usual = self.policy;
         if self.bears_by_springs {
@@ -343,7 +343,7 @@ impl IslandSolver {
         self.policy = usual;
     }
 
-    /// `relax` by the policy that is set.
+    /// `relax` with the current policy.
     fn relax_rows(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         if core::mem::take(&mut self.displaced) {
             self.refresh(view, runner);
@@ -376,12 +376,12 @@ impl IslandSolver {
         let released = self.release_motors();
         self.add_relax_reactions();
         if released {
-            // Their rows are to hold from the next substep on.
+            // The rows of released motors act from the next substep on.
             self.renew_rows();
         }
     }
 
-    /// Bounce of what was hit in this substep, the last of it: the work of bodies that move by themselves is counted.
+    /// Applies restitution to contacts hit in this substep, then adds the work of kinematic bodies.
     pub fn restitution(&mut self, runner: &dyn TaskRunner) {
         if self.bounces {
             self.bounced_from.clear();
@@ -397,7 +397,7 @@ impl IslandSolver {
         self.add_kinematic_work();
     }
 
-    /// Rows, inertias, factor and response at the present pose.
+    /// Recomputes rows, inertias, factor and response at the current poses.
     fn refresh(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         if !self.has_joints() {
             self.refresh_mass_scale();
@@ -420,7 +420,7 @@ impl IslandSolver {
         self.refresh_response();
     }
 
-    /// Contacts in lanes at the poses to which bodies have come.
+    /// Moves contacts in lanes to the current poses.
     fn place_contacts(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         self.contacts.place(&Substep {
             view,
@@ -463,7 +463,7 @@ impl IslandSolver {
         dispatch::run(RefreshInertia(&mut self.bodies[..self.links.len()]));
     }
 
-    /// Finds the bodies that carry rows, and how they answer to impulses.
+    /// Finds the bodies that have rows and chooses the members of the response.
     fn refresh_response(&mut self) {
         let wanted = &mut self.scratch.wanted;
         wanted.clear();
@@ -496,7 +496,7 @@ impl IslandSolver {
         }
     }
 
-    /// Contacts of jointed bodies that the substep would press in by far at other points than those of their rows. Gives whether
+    /// Adds points to contacts of jointed bodies that the predicted poses press in by far at other points than those of their rows. True if
     /// there are any. (Without joints nothing swings in so fast, and corners that bounce at once would gain energy.)
     fn predict_contacts(&mut self) -> bool {
         let mut any = false;
@@ -512,25 +512,25 @@ impl IslandSolver {
         any
     }
 
-    /// Joints hold some of its bodies.
+    /// True if joints hold some of its bodies.
     fn has_joints(&self) -> bool {
         self.coupling != Coupling::Free
     }
 
-    /// Contacts lie in lanes.
+    /// True if contacts lie in lanes.
     fn is_in_lanes(&self) -> bool {
         self.coupling != Coupling::Response
     }
 
-    /// In the motion of this substep, J.
+    /// Work of forces during the motion of this substep, J.
     fn work_of_forces(&self) -> f32 {
         let power = |(body, v): (&SolverBody, &Vec6)| body.force.dot(linear(v)) + body.torque.dot(angular(v));
         let moving = self.bodies[..self.links.len()].iter().zip(&self.velocities);
         self.h * moving.map(power).fold(0.0, |sum, power| sum + power)
     }
 
-    /// True if the substep is longer than the world's, and could not deal with limits and contacts that it was foreseen to pass, or has
-    /// taken a joint far beyond a limit.
+    /// True if the substep is longer than the world's and left predicted violations of limits or contacts unresolved, or moved a joint
+    /// far beyond a limit.
     pub fn overreaches(&self) -> bool {
         self.stretch > 1.0 && (!self.is_settled || self.leaps_limits())
     }

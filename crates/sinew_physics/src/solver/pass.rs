@@ -1,25 +1,25 @@
-//! Passes over the rows of an island, and how its contacts and joints come to agree in them.
+//! Passes over the rows of an island, and the coupling of its contacts and joints.
 
 /// Purpose of a pass over the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pass {
     /// With bias, no friction.
     Solve,
-    /// Without bias, with friction: friction that reacts to bias velocities pumps tall stacks.
+    /// Without bias, with friction. Friction that reacts to bias velocities adds energy to tall stacks.
     Relax,
-    /// As `relax` leaves it, and what was hit bounces: what it stands on must bear that, too.
+    /// As `Relax`, with the rebound speed of contacts that were hit. The contacts below them bear the rebound too.
     Restitution,
 }
 
-/// Way in which contacts and joints of an island come to agree. It decides how nearly and how soon they do, nothing else.
+/// Coupling of contacts and joints in an island. It decides how accurately and how fast they converge, nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Coupling {
     /// There are no joints.
     #[default]
     Free,
-    /// Contacts and limits see all links move with each impulse: for single figures.
+    /// Each impulse of a contact or limit changes the velocities of all links. For one or two trees.
     Response,
-    /// Contacts in lanes and trees by turns: for heaps.
+    /// Limits, contacts in lanes and exact trees alternate. For heaps.
     Turns,
 }
 
@@ -27,6 +27,6 @@ pub(super) enum Coupling {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Corrected {
     All,
-    /// Trees whose velocities have changed since the last corrections of this substep.
+    /// Trees whose velocities changed after the last corrections of this substep.
     Changed,
 }

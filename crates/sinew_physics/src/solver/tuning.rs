@@ -42,11 +42,18 @@ pub(super) const CALM_TURN: f32 = 0.25;
 /// do not need. Shown by `stack_ratio`, `stack_mass_ratio`, and the tests of `stacks` with towers of any masses.
 pub(super) const GRADED_RATIO: f32 = 100.0;
 
-/// Trees of joints beyond which an island is solved by turns, a number.
+/// Trees of joints beyond which an island without loops is solved by turns, a number.
 ///
-/// The response of all links grows with trees times contacts (ADR 0017). Sensible from 2 to 16. Larger: heaps of some figures take
-/// longer. Smaller: few figures agree less exactly with their contacts. Shown by `ragdoll_pile` (beyond) and `ragdoll_poses` (below).
-pub(super) const RESPONSE_TREES: usize = 8;
+/// The response of all links grows with trees times contacts (ADR 0017). Sensible from 2 to 8. Larger: heaps of some figures take longer: with 8
+/// instead of 2, a heap of ten takes half as much again, and its 99th percentile twice as much. Smaller: with 1 a heap of ten rests 2 to
+/// 30 mm deep (`humanoid_pile_10` of `cargo xtask bench`). Shown by `ragdoll_pile` (beyond) and `ragdoll_poses` (below).
+pub(super) const RESPONSE_TREES: usize = 2;
+
+/// Trees of joints beyond which an island with loops is solved by turns, a number.
+///
+/// Loops are iterated between the turns, and what contacts do to them meanwhile may gain energy: with 2, nets of welds and springs do in 1 of 100
+/// random worlds. Larger and smaller: as for [`RESPONSE_TREES`]. Shown by the test `random_worlds`.
+pub(super) const RESPONSE_TREES_WITH_LOOPS: usize = 8;
 
 /// Contacts, beside those of [`RESPONSE_CONTACTS_PER_LINK`], beyond which an island with joints is solved by turns, a number.
 ///

@@ -14,14 +14,22 @@
 //! assert_eq!((baked.frames.len(), baked.clip.duration), (16, 0.5)); // at 30 frames a second
 //! ```
 
+mod actor;
+mod frames;
 mod keys;
+mod mover;
+mod run;
 
-use crate::character::{Character, CharacterDef, CharacterEvent, InWorld, State, Toughness, moved};
-use crate::quality::{FallQuality, QualityMeter};
-use sinew_anim::{Clip, KeyBound, KeyError, LocalTransform, Reduced, reduce_keys};
-use sinew_math::hash::hash_bytes;
-use sinew_math::{Affine, Transform, Vec3, Writer, clamp, max};
-use sinew_physics::{BodyDef, BodyId, Velocity, World, WorldDef};
+pub use mover::BakeMover;
+
+use crate::character::{CharacterDef, CharacterEvent, Part, State, moved};
+use crate::drive::DriveMode;
+use crate::quality::FallQuality;
+use core::ops::ControlFlow;
+use run::Run;
+use sinew_anim::{Clip, KeyBound, KeyError, LocalTransform};
+use sinew_math::{Affine, Transform, Vec3};
+use sinew_physics::{BodyDef, FieldDef, WorldDef};
 use std::sync::Arc;
 
 /// A push at a moment.
@@ -35,7 +43,31 @@ pub struct BakeHit {
     pub impulse: Vec3,
 }
 
-/// Input of a bake.
+/// Change of what moves a part of the character at a moment: [`Character::set_drive`](crate::Character::set_drive). It counts while the
+/// character stands; one that has fallen is driven as [`CharacterDef::falling`] says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BakeDrive<'a> {
+    /// Seconds from the start.
+    pub time: f32,
+    /// Bodies whose drive changes.
+    pub part: Part<'a>,
+    /// Mode of those drives from then on.
+    pub mode: DriveMode,
+    /// Half of the change is made within so many seconds.
+    pub half_life: f32,
+}
+
+/// Return to the looped clip, as if nothing had happened: [`Character::return_to_clip`](crate::Character::return_to_clip) at the place where
+/// the character started, at the moment of the clip that it would have reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BakeReturn {
+    /// Seconds from the start at which the clip alone has the pose again.
+    pub time: f32,
+    /// Seconds before that in which the simulated pose dies away.
+    pub seconds: f32,
+}
+
+/// Input of a bake: what is to be simulated.
 #[derive(Clone, Debug)]
 pub struct BakeInput<'a> {
     /// The character.
@@ -48,6 +80,14 @@ pub struct BakeInput<'a> {
     pub world: WorldDef,
     /// Bodies of the world besides the character's own.
     pub bodies: &'a [BodyDef],
+    /// Bodies of the world that go by keys.
+    pub movers: &'a [BakeMover<'a>],
+    /// Wind, water and other fields of the world.
+    pub fields: &'a [FieldDef],
+    /// Changes of drives, in any order. With any the character has its bodies in the world from the start.
+    pub drives: &'a [BakeDrive<'a>],
+    /// Return to the looped clip; `None`: only by getting up.
+    pub returns: Option<BakeReturn>,
     /// Pushes, in any order.
     pub hits: &'a [BakeHit],
     /// Effect of pushes. Default: each one fells.
@@ -91,6 +131,10 @@ impl<'a> BakeInput<'a> {
             phase: 0.0,
             world: WorldDef::default(),
             bodies: &[],
+            movers: &[],
+            fields: &[],
+            drives: &[],
+            returns: None,
             hits: &[],
             hit_effect: HitEffect::Falls,
             limp_at: None,
@@ -154,264 +198,56 @@ impl Baked {
 /// Simulates a character in a world. Same bits on every target and for every frame rate.
 ///
 /// # Panics
-/// If a number is not finite, `fps` is below 1, the key bound is negative, or a hit names a missing body.
+/// If a number is not finite, `fps` is below 1, the key bound is negative, or a hit or drive names a body that is not there.
 pub fn bake(input: &BakeInput<'_>) -> Baked {
-    assert!(
-        input.seconds.is_finite() && input.fps >= 1.0,
-        "a bake has a length and a frame rate, not {} s and {} frames a second",
-        input.seconds,
-        input.fps
-    );
-    assert!(input.hits.iter().all(|hit| hit.time.is_finite()), "hits have a time: {:?}", input.hits);
-    let mut run = Run::new(input);
-    let mut frames = Frames::new(input);
-    frames.add_until(&run);
-    while run.time() < input.seconds {
+    let mut baked = bake_together(core::slice::from_ref(input), &mut |_| ControlFlow::Continue(()));
+    baked.as_mut().and_then(Vec::pop).expect("nothing stops it, and there is one for each input")
+}
+
+/// [`bake`] of several characters in one world, which meet each other; the bodies, movers and fields of all inputs are in it. `watch` is told the
+/// simulated seconds after every step, and ends the bake if it breaks: the result is then `None`.
+///
+/// Figures that a world has as a whole (energy, work) are the same for each of several characters.
+///
+/// # Panics
+/// As [`bake`]; or if the inputs differ in their world or their length.
+pub fn bake_together(
+    inputs: &[BakeInput<'_>],
+    watch: &mut dyn FnMut(f32) -> ControlFlow<()>,
+) -> Option<Vec<Baked>> {
+    let Some(first) = inputs.first() else { return Some(Vec::new()) };
+    for input in inputs {
+        input.check();
+        assert!(input.world == first.world, "characters of one bake are in one world");
+        assert!(input.seconds == first.seconds, "a bake has one length");
+    }
+    let mut run = Run::new(inputs);
+    while run.time() < first.seconds {
         run.step();
-        frames.add_until(&run);
+        if watch(run.time()).is_break() {
+            return None;
+        }
     }
-    let hash = run.hash();
-    let rig = &input.character.rig;
-    let world_from_model = input.character.mapping().world_from_model(input.world_from_character);
-    // Relative to the character's start: far from the world's origin small displacements are lost in rounding.
-    let root = input.character.mapping().character_from_model();
-    let every_key = keys::clip(rig, input.name, &frames.list);
-    let Reduced { clip, error, keys } = reduce_keys(rig, &every_key, &root, input.key_bound);
-    Baked {
-        clip,
-        key_error: error,
-        keys,
-        frames: frames.list,
-        world_from_model,
-        quality: run.meter.quality(),
-        events: run.events,
-        bodies: input.character.ragdoll.bodies.len(),
-        steps: run.world.step_count(),
-        hash,
-    }
+    Some(run.finish(inputs))
 }
 
-/// A running bake.
-struct Run {
-    world: World,
-    character: Character,
-    meter: QualityMeter,
-    /// Pending interventions, the latest first.
-    pending: Vec<(f32, Push)>,
-    events: Vec<(f32, CharacterEvent)>,
-    /// Events of pushes that are recorded already; the next update repeats them.
-    ahead: usize,
-}
-
-/// The character at its start: in the world, if pushes may make it flinch or it wears garments, because that needs
-/// bodies.
-fn spawned(input: &BakeInput<'_>, world: &mut World) -> Character {
-    let falls = input.hit_effect == HitEffect::Falls;
-    if falls && input.character.garments().is_empty() {
-        return Character::new(input.character.clone(), input.world_from_character, input.phase);
-    }
-    let mut def = CharacterDef::clone(&input.character);
-    // It follows its clips and reacts only to requested hits.
-    def.in_world = InWorld { mover: None, feels: f32::INFINITY, ..def.in_world };
-    if falls {
-        def.in_world.toughness = Toughness::None;
-    }
-    let mut character = Character::new(Arc::new(def), input.world_from_character, input.phase);
-    character.enter(world);
-    character
-}
-
-/// Intervention at a moment: the character goes limp, or is hit.
-#[derive(Clone, Copy)]
-enum Push {
-    Limp { topple: Vec3 },
-    Hit { body: usize, impulse: Vec3 },
-}
-
-impl Run {
-    fn new(input: &BakeInput<'_>) -> Self {
-        let mut world = World::new(input.world.clone());
-        for body in input.bodies {
-            world.add_body(body);
-        }
-        let hits =
-            input.hits.iter().map(|hit| (hit.time, Push::Hit { body: hit.body, impulse: hit.impulse }));
-        let mut pending: Vec<_> = input
-            .limp_at
-            .map(|time| (time, Push::Limp { topple: input.topple }))
-            .into_iter()
-            .chain(hits)
-            .collect();
-        // Stable, so that simultaneous pushes keep their order.
-        pending.sort_by(|a, b| a.0.total_cmp(&b.0));
-        pending.reverse();
-        let character = spawned(input, &mut world);
-        let mut run = Self {
-            world,
-            character,
-            meter: QualityMeter::new(&input.character.ragdoll, input.seconds),
-            pending,
-            events: Vec::new(),
-            ahead: 0,
-        };
-        run.push_due();
-        run
-    }
-
-    fn time(&self) -> f32 {
-        self.world.time() as f32
-    }
-
-    fn hash(&self) -> u64 {
-        let mut w = Writer::new();
-        self.world.save(&mut w);
-        self.character.save(&mut w);
-        hash_bytes(w.as_bytes())
-    }
-
-    /// One step of the world, and the interventions due at its end.
-    fn step(&mut self) {
-        self.meter.before_step(&self.world);
-        self.world.step();
-        match (self.character.ragdoll(), self.character.state()) {
-            (Some(ragdoll), State::Limp) => self.meter.after_step(&self.world, ragdoll),
-            // While clips lead the bodies, their motion is not measured.
-            (Some(_), State::Flinching) => {}
-            (Some(ragdoll), _) => self.meter.after_driven_step(&self.world, ragdoll),
-            (None, _) => {}
-        }
-        self.character.update(&mut self.world);
-        self.note_events(self.ahead);
-        self.push_due();
-    }
-
-    /// Applies pushes whose time has come.
-    fn push_due(&mut self) {
-        let noted = self.character.events().len();
-        // Half a step early is nearer than half a step late.
-        let now = self.time() + 0.5 * self.world.def().dt();
-        while let Some(&(time, push)) = self.pending.last().filter(|(time, _)| *time <= now) {
-            debug_assert!(time <= now);
-            self.pending.pop();
-            let is_limp = |run: &Self| matches!(run.character.state(), State::Limp | State::Preparing);
-            let was_limp = is_limp(self);
-            match push {
-                Push::Limp { topple } => {
-                    self.character.go_limp(&mut self.world);
-                    self.topple(topple);
-                }
-                Push::Hit { body, impulse } => {
-                    let work = self.character.hit(&mut self.world, body, impulse);
-                    if is_limp(self) {
-                        self.meter.pushed(work);
-                    }
-                }
-            }
-            if !was_limp && is_limp(self) {
-                self.meter.went_limp();
-            }
-        }
-        self.note_events(noted);
-        self.ahead = self.character.events().len() - noted;
-    }
-
-    /// Rotates a limp body as a whole about the ground under its middle, so that its highest part gets that extra
-    /// velocity.
-    fn topple(&mut self, velocity: Vec3) {
-        let Some(ragdoll) = self.character.ragdoll().filter(|_| velocity != Vec3::ZERO) else { return };
-        let ids: Vec<BodyId> = ragdoll.own_bodies().map(|(_, id)| id).collect();
-        let center = |world: &World, id: BodyId| world.center_of_mass(id);
-        let middle = ids.iter().fold(Vec3::ZERO, |sum, &id| sum + center(&self.world, id)) / ids.len() as f32;
-        let ground = Vec3::new(middle.x, self.character.world_from_character().translation.y, middle.z);
-        let top = ids.iter().map(|&id| center(&self.world, id).y - ground.y).fold(0.0, max);
-        if top <= 0.0 {
-            return;
-        }
-        let about = Vec3::Y.cross(velocity) / top;
-        let before = self.world.energy().kinetic;
-        for id in ids {
-            let own = self.world.velocity(id);
-            let linear = own.linear + about.cross(center(&self.world, id) - ground);
-            self.world.set_velocity(id, Velocity { linear, angular: own.angular + about });
-        }
-        self.meter.pushed(self.world.energy().kinetic - before);
-    }
-
-    /// Keeps the character's events from the `first` on.
-    fn note_events(&mut self, first: usize) {
-        let time = self.time();
-        for &event in &self.character.events()[first..] {
-            if event == CharacterEvent::Up {
-                self.meter.got_up(&self.world);
-            }
-            self.events.push((time, event));
-        }
-    }
-}
-
-/// Resamples steps to frames.
-struct Frames {
-    list: Vec<Frame>,
-    fps: f32,
-    seconds: f32,
-    world_from_character: Transform,
-    /// Pose and time of the last step, for the frames between it and the next.
-    last: Vec<LocalTransform>,
-    last_time: f32,
-    now: Vec<LocalTransform>,
-}
-
-impl Frames {
-    fn new(input: &BakeInput<'_>) -> Self {
-        Self {
-            list: Vec::with_capacity(1 + (clamp(input.seconds, 0.0, 3600.0) * input.fps) as usize),
-            fps: input.fps,
-            seconds: input.seconds,
-            world_from_character: input.world_from_character,
-            last: Vec::new(),
-            last_time: 0.0,
-            now: Vec::new(),
-        }
-    }
-
-    /// Adds the frames between the last step and the present one.
-    fn add_until(&mut self, run: &Run) {
-        let character = &run.character;
-        let time = run.time();
-        self.now.clear();
-        self.now.extend_from_slice(character.pose());
-        // All frames are relative to the character's start.
-        character.def().mapping().reframe(
-            &mut self.now,
-            character.world_from_character(),
-            self.world_from_character,
+impl BakeInput<'_> {
+    fn check(&self) {
+        assert!(
+            self.seconds.is_finite() && self.fps >= 1.0,
+            "a bake has a length and a frame rate, not {} s and {} frames a second",
+            self.seconds,
+            self.fps
         );
-        if self.last.is_empty() {
-            self.last.clone_from(&self.now);
-        }
-        loop {
-            let at = self.list.len() as f32 / self.fps;
-            if at > time || at > self.seconds {
-                break;
-            }
-            let span = time - self.last_time;
-            let t = if span > 0.0 { clamp((at - self.last_time) / span, 0.0, 1.0) } else { 1.0 };
-            let pose = self.last.iter().zip(&self.now).map(|(a, b)| between(a, b, t)).collect();
-            self.list.push(Frame { time: at, state: character.state(), pose });
-        }
-        core::mem::swap(&mut self.last, &mut self.now);
-        self.last_time = time;
-    }
-}
-
-fn between(a: &LocalTransform, b: &LocalTransform, t: f32) -> LocalTransform {
-    // A resting body has the same bits in all frames.
-    if a == b {
-        return *a;
-    }
-    LocalTransform {
-        translation: a.translation * (1.0 - t) + b.translation * t,
-        rotation: a.rotation.nlerp(b.rotation, t),
-        scale: a.scale * (1.0 - t) + b.scale * t,
+        assert!(self.hits.iter().all(|hit| hit.time.is_finite()), "hits have a time: {:?}", self.hits);
+        assert!(
+            self.drives.iter().all(|drive| drive.time.is_finite()),
+            "drives have a time: {:?}",
+            self.drives
+        );
+        let is_moment =
+            |back: BakeReturn| back.time.is_finite() && (0.0..f32::INFINITY).contains(&back.seconds);
+        assert!(self.returns.is_none_or(is_moment), "a return has a time and a length: {:?}", self.returns);
+        self.movers.iter().for_each(BakeMover::check);
     }
 }

@@ -314,8 +314,22 @@ impl Character {
         }
     }
 
-    /// Sets the drive of a part; half of the change is made within `half_life` seconds. A standing character is powered
-    /// from then on, with all other bodies as its clips have them.
+    /// Gives it back to its looped clip, whatever it does now: at `place`, `phase` seconds into the clip. Pose and motion die away within
+    /// `seconds`, in which it counts as getting up. The way there goes through what is between: it is for a moment that was chosen.
+    /// Nothing happens to one that cannot get up, for [a leg of it is gone](Self::detach).
+    ///
+    /// # Panics
+    /// If the place or the phase is not finite, or `seconds` is negative or not finite.
+    pub fn return_to_clip(&mut self, world: &mut World, place: Transform, phase: f32, seconds: f32) {
+        assert!(place.is_finite() && phase.is_finite(), "a character returns to a finite place and moment");
+        assert!((0.0..f32::INFINITY).contains(&seconds), "a return takes 0 s or longer, not {seconds}");
+        if self.physique.may_get_up(&self.def) {
+            self.return_to(world, place, phase, seconds);
+        }
+    }
+
+    /// Has part of it moved in another way: half of the change is made within `half_life` seconds. What stands is powered
+    /// from then on, all else of it as its clips have it.
     ///
     /// # Panics
     /// If no body is called so, or as [`Drives::set`].

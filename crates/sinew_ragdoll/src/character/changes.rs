@@ -10,8 +10,8 @@ use super::prepare::Preparing;
 use super::stumble::{Balance, Balancing};
 use super::wear::{Bearer, Wear};
 use super::{
-    Blow, Character, CharacterEvent, Detail, FootPlanting, GettingReady, HitBodies, State, Toughness, blows,
-    ground, powered, prepare,
+    Blow, Character, CharacterEvent, Detail, FootPlanting, GettingReady, HitBodies, Locomotion, State,
+    Toughness, blows, ground, powered, prepare,
 };
 use crate::character::tuning::{ABOVE_PELVIS, INTO_GET_UP, INTO_LOOP, INTO_STANDING, LYING_MOVER};
 use crate::drive::{DriveMode, Muscle};
@@ -28,6 +28,7 @@ impl Character {
     /// True if its feet follow the ground.
     pub(super) fn follows_ground(&self) -> bool {
         self.def.in_world.foot_planting == FootPlanting::OnGround
+            && self.def.motions().locomotion != Locomotion::Exact
             && self.def.in_world.hit_bodies != HitBodies::Absent
             && self.detail.is_some_and(|detail| detail > Detail::Frozen)
     }
@@ -478,7 +479,34 @@ impl Character {
         let pelvis = model[def.ragdoll.bodies[0].joint].translation;
         let pelvis = def.mapping().world_from_model(here).point(pelvis);
         let height = ground::below(world, pelvis, ABOVE_PELVIS, own).unwrap_or(here.translation.y);
-        self.figure.reframe(&def, standing(place, lean, pelvis, height));
+        self.take_over(world, standing(place, lean, pelvis, height), seconds);
+    }
+
+    /// Gives the pose back to the looped clip at `phase` seconds, of a character that stands at `place`: what it does now dies away within
+    /// `seconds`.
+    pub(super) fn return_to(&mut self, world: &mut World, place: Transform, phase: f32, seconds: f32) {
+        self.end_clearing(world);
+        self.grips.release_all(self.physique.own(), false, world, &mut self.events);
+        if !self.feet.pose.is_empty() {
+            self.figure.pose.clone_from(&self.feet.pose);
+        }
+        self.feet.leave();
+        self.feet.passage = Default::default();
+        self.take_over(world, place, seconds);
+        let def = self.def.clone();
+        def.play_looped(&mut self.gait.animator, phase);
+        self.gait.teleport(place.translation, world);
+        self.events.push(CharacterEvent::GettingUp { clip: None });
+        self.leave_bodies(world);
+        self.activity = Activity::GettingUp(Rising { way: Way::Without(seconds), lean: Vec3::ZERO });
+        self.stand_up(world, 1.0);
+    }
+
+    /// Stands at `place` with every joint where it is in the world, stops what plays on the whole body, and lets the present pose and its
+    /// motion die away within `seconds` in what will be played.
+    fn take_over(&mut self, world: &World, place: Transform, seconds: f32) {
+        let def = self.def.clone();
+        self.figure.reframe(&def, place);
         self.gait.climbing = 0.0;
         let pose = |pose: &[sinew_anim::LocalTransform]| -> Pose { pose.iter().copied().collect() };
         let (earlier, now) = (pose(&self.figure.earlier.pose), pose(&self.figure.pose));

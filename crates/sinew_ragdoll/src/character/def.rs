@@ -24,6 +24,9 @@ pub enum Locomotion {
     InPlace,
     /// The character travels on with each lap. A clip that ends where it began stays in place.
     ByClip,
+    /// Exactly as the clip has it, at the place where the character was put: the clip is not raised onto its floor, no ground lifts the character,
+    /// and its feet are not moved to the ground. For an animation that was made for this very world.
+    Exact,
     /// The clip walks on the spot; the character advances along its facing at this speed, m/s.
     Forward {
         /// m/s; negative walks backwards.

@@ -9,7 +9,7 @@ use super::clearance::{Depths, FEET, PARTS, Passage, larger};
 use super::figure::Figure;
 use super::legs::{Legs, Need, Planting, Tilts};
 use super::tread::Treads;
-use super::{CharacterDef, GroundContact, State, ground};
+use super::{CharacterDef, GroundContact, Locomotion, State, ground};
 use crate::character::tuning::{
     FOOT_EDGE, FOOT_FLOOR, FOOT_RANGE, FOOT_SEARCH, FOOT_SHARE, PLANTED_SOONER, WALKS_FROM,
 };
@@ -90,7 +90,9 @@ impl Feet {
             return self.tread(stand, legs, world, model);
         }
         self.treads = None;
+        let is_exact = stand.def.motions().locomotion == Locomotion::Exact;
         let share = match stand.activity {
+            Activity::GettingUp(rising) if is_exact && rising.is_without_clip() => 0.0,
             Activity::GettingUp(rising) => {
                 smoothstep(PLANTED_SOONER * (1.0 - rising.left(stand.def, stand.animator)))
             }

@@ -1,6 +1,6 @@
 //! The floor of a clip: the height of its lowest drawn point, which may differ from the rest pose's.
 
-use super::{CharacterDef, MotionSet};
+use super::{CharacterDef, Locomotion, MotionSet};
 use crate::character::tuning::OWN_FLOOR;
 use crate::def::RagdollDef;
 use crate::mapping::carries_character;
@@ -47,7 +47,8 @@ impl Raised {
         };
         let stands = |role: &str| role == "hips" || role.starts_with("limb");
         let has_legs = def.ragdoll.bodies.iter().any(|body| stands(&body.role));
-        let looped = motions.looped.map_or(0.0, |index| {
+        let looped = motions.looped.filter(|_| motions.locomotion != Locomotion::Exact);
+        let looped = looped.map_or(0.0, |index| {
             let clip = &motions.clips[index];
             let raised = raise(low(clip, 0));
             // Without legs, or in the air, nothing stands; only parts in the floor are raised.

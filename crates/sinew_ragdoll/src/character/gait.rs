@@ -2,7 +2,7 @@
 
 use super::activity::Activity;
 use super::figure::Figure;
-use super::{CharacterDef, HitBodies, State, ground};
+use super::{CharacterDef, HitBodies, Locomotion, State, ground};
 use crate::character::tuning::{
     CLIMB_SPEED, FASTEST_PACE, HIGHEST_STEP, MOST_BESIDE, MOST_PACES, PACE_RATE, PICKS_UP, POWERED_TURNS,
     PUSHED_ASIDE, STANDS_BELOW, STANDS_IN, STEP_SETTLES, STEP_SLOPE,
@@ -91,7 +91,9 @@ impl Gait {
             return;
         }
         let mut to = from * step;
-        if let Some(height) = ground::below(world, to.translation, HIGHEST_STEP, own) {
+        let follows = def.motions().locomotion != Locomotion::Exact;
+        let below = follows.then(|| ground::below(world, to.translation, HIGHEST_STEP, own));
+        if let Some(height) = below.flatten() {
             to.translation.y += clamp(height - to.translation.y, -CLIMB_SPEED * dt, CLIMB_SPEED * dt);
         }
         figure.place = to;

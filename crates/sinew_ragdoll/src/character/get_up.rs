@@ -52,7 +52,12 @@ impl Rising {
         }
     }
 
-    /// On a slope the clip, made for a level floor, lies along the slope and gradually stands upright.
+    /// True if it gets up by no clip of its own.
+    pub fn is_without_clip(&self) -> bool {
+        matches!(self.way, Way::Without(_))
+    }
+
+    /// On a slope the clip, made for a level floor, lies as the slope does and comes to stand upright.
     pub fn straighten(&self, def: &CharacterDef, animator: &Animator, figure: &mut Figure) {
         if self.lean == Vec3::ZERO {
             return;

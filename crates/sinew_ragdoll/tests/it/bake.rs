@@ -1,14 +1,18 @@
 //! A whole run, from walk to walk, as a clip.
 
 use crate::actor::{floor, in_centimetres_and_z_up, shared, somewhere, walker};
+use core::ops::ControlFlow;
 use sinew_anim::{KeyBound, Wrap, analyze, local_to_model, rest_pose, sample};
+use sinew_math::Transform;
 use sinew_math::{Affine, Vec3, max};
+use sinew_physics::{BodyDef, FieldDef, FieldKind, Shape, Wind};
 use sinew_ragdoll::bake::KEY_BOUND;
 use sinew_ragdoll::quality::judge_bake;
 use sinew_ragdoll::settings::BoneSettings;
 use sinew_ragdoll::{
-    BakeHit, BakeInput, Baked, BuildOptions, CharacterDef, CharacterEvent, HitEffect, Locomotion, MotionSet,
-    Settings, State, Verdict, bake, build_with,
+    AfterSettling, BakeDrive, BakeHit, BakeInput, BakeMover, BakeReturn, Baked, BuildOptions, CharacterDef,
+    CharacterEvent, DriveMode, HitEffect, Locomotion, MotionSet, Part, Settings, State, Verdict, bake,
+    bake_together, build_with,
 };
 use sinew_scenes::mannequin::{Mannequin, mannequin};
 use std::sync::Arc;
@@ -255,4 +259,114 @@ fn a_figure_with_large_feet_and_head_keeps_its_limits_in_a_bake() {
         let (verdict, reasons) = judge_bake(&baked.quality);
         assert_eq!(verdict, Verdict::Good, "{body} {impulse}: {reasons:?}");
     }
+}
+
+/// Places of all joints in the world, frame by frame.
+fn places(def: &CharacterDef, baked: &Baked) -> Vec<Vec<Vec3>> {
+    let mut model = Vec::new();
+    let of = |frame: &sinew_ragdoll::bake::Frame| {
+        local_to_model(&def.rig, &frame.pose, &baked.world_from_model, &mut model);
+        model.iter().map(|joint| joint.translation).collect()
+    };
+    baked.frames.iter().map(of).collect()
+}
+
+fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
+    a.iter().zip(b).fold(0.0, |most, (a, b)| max(most, (*a - *b).length()))
+}
+
+/// The walker, whose clip is played exactly where it is.
+fn exact() -> Arc<CharacterDef> {
+    let mut def = walker();
+    let motions = MotionSet { locomotion: Locomotion::Exact, ..def.motions().clone() };
+    def.set_motions(motions).expect("it could be played before");
+    shared(def)
+}
+
+#[test]
+fn a_return_brings_the_clip_back_as_if_nothing_had_been() {
+    let (def, bodies) = (exact(), [floor()]);
+    let own = BakeInput { bodies: &bodies, seconds: 5.0, ..BakeInput::new(def.clone()) };
+    let fallen = BakeInput {
+        limp_at: Some(1.0),
+        returns: Some(BakeReturn { time: 3.0, seconds: 0.6 }),
+        ..own.clone()
+    };
+    let (own, back) = (places(&def, &bake(&own)), places(&def, &bake(&fallen)));
+    let away: Vec<f32> = own.iter().zip(&back).map(|(a, b)| farthest(a, b)).collect();
+    assert!(away[..31].iter().all(|&away| away < 1e-4), "before it falls: {:?}", &away[..31]);
+    assert!(away[70] > 0.3, "it lies: {}", away[70]);
+    assert!(away[91..].iter().all(|&away| away < 2e-3), "and is back: {:?}", &away[91..]);
+    let own_step = (1..own.len()).map(|frame| farthest(&own[frame], &own[frame - 1])).fold(0.0, max);
+    for frame in 70..100 {
+        let step = farthest(&back[frame], &back[frame - 1]);
+        assert!(step < own_step + 0.25, "frame {frame}: a joint goes {step} m, {own_step} m in its clip");
+    }
+}
+
+#[test]
+fn an_exact_clip_is_neither_raised_nor_led_by_the_ground() {
+    let def = exact();
+    let ground = [floor().at(Vec3::Y * -0.4)];
+    let on = BakeInput { bodies: &ground, seconds: 1.0, ..BakeInput::new(def.clone()) };
+    let in_the_air = bake(&BakeInput { bodies: &[], ..on.clone() });
+    assert_eq!(bake(&on).frames, in_the_air.frames);
+    assert_eq!(def.raised(), 0.0);
+}
+
+#[test]
+fn drives_change_parts_of_a_character_over_time() {
+    let (def, bodies) = (exact(), [floor()]);
+    let drive = |time, mode| BakeDrive { time, part: Part::From("leftUpperArm"), mode, half_life: 0.05 };
+    let drives = [drive(0.5, DriveMode::Limp), drive(2.0, DriveMode::Keyed)];
+    let own = BakeInput { bodies: &bodies, seconds: 4.0, ..BakeInput::new(def.clone()) };
+    let driven = bake(&BakeInput { drives: &drives, ..own.clone() });
+    let (own, there) = (places(&def, &bake(&own)), places(&def, &driven));
+    let hand = def.rig.joints.iter().position(|joint| joint.name == "leftHand").expect("it has one");
+    let away: Vec<f32> = own.iter().zip(&there).map(|(a, b)| (a[hand] - b[hand]).length()).collect();
+    assert!(away[..14].iter().all(|&away| away < 0.02), "{:?}", &away[..14]);
+    assert!(away[15..60].iter().any(|&away| away > 0.05), "{:?}", &away[15..60]);
+    assert!(away[110..].iter().all(|&away| away < 0.02), "{:?}", &away[110..]);
+    assert_eq!(driven.quality.nan, 0);
+}
+
+#[test]
+fn movers_push_and_wind_blows() {
+    let mut def = walker();
+    // While clips move it, a plough would pass through.
+    def.after_settling = AfterSettling::StayDown;
+    let (def, bodies) = (shared(def), [floor()]);
+    let still =
+        BakeInput { bodies: &bodies, limp_at: Some(0.1), seconds: 4.0, ..BakeInput::new(def.clone()) };
+    let plough = Shape::Box { half_extents: Vec3::new(3.0, 1.0, 0.2) };
+    let at = |z: f32| Transform::from_translation(Vec3::new(0.0, 1.0, z));
+    let poses = [at(5.0), at(-3.0)];
+    let movers = [BakeMover { body: BodyDef::fixed(plough), times: &[1.5, 3.5], poses: &poses }];
+    let air = Wind { velocity: Vec3::X * 60.0, ..Wind::default() };
+    let fields = [FieldDef::new(FieldKind::Wind(air))];
+    let end = |input: &BakeInput<'_>| places(&def, &bake(input)).pop().expect("there are frames")[1];
+    let lies = end(&still);
+    let shoved = end(&BakeInput { movers: &movers, ..still.clone() });
+    assert!((shoved - lies).length() > 0.3, "the plough shoves it from {lies} to {shoved}");
+    assert!(end(&BakeInput { fields: &fields, ..still.clone() }).x > lies.x + 0.1, "the wind takes it along");
+}
+
+#[test]
+fn characters_of_one_bake_share_a_world_and_can_be_stopped() {
+    let (def, bodies) = (shared(walker()), [floor()]);
+    let at = |x: f32| Transform::from_translation(Vec3::X * x);
+    let one = BakeInput { bodies: &bodies, limp_at: Some(0.3), seconds: 2.0, ..BakeInput::new(def.clone()) };
+    let two = BakeInput { bodies: &[], world_from_character: at(0.4), limp_at: Some(0.6), ..one.clone() };
+    let far = BakeInput { world_from_character: at(40.0), ..two.clone() };
+    let go_on = &mut |_: f32| ControlFlow::Continue(());
+    let met = bake_together(&[one.clone(), two.clone()], go_on).expect("nothing stops it");
+    let apart = bake_together(&[one.clone(), far], go_on).expect("nothing stops it");
+    assert_ne!(met[0].frames, apart[0].frames, "they meet");
+    assert_eq!(met, bake_together(&[one.clone(), two], go_on).expect("nothing stops it"), "the same again");
+    let mut told = 0;
+    let stopped = bake_together(&[one], &mut |time| {
+        told += 1;
+        if time > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert!(stopped.is_none() && told == 31, "{told} steps");
 }

@@ -18,6 +18,7 @@ pub const ALL: &[Deed] = &[
     Deed::new("go_limp", 6, go_limp),
     Deed::new("set_preset", 10, set_preset),
     Deed::new("set_drive", 4, set_drive),
+    Deed::new("return_to_clip", 2, return_to_clip),
     Deed::new("drives_mut", 2, drives_mut),
     Deed::new("animator_mut", 2, animator_mut),
     Deed::new("lead", 10, lead),
@@ -235,6 +236,13 @@ fn lead(a: &mut Actor, n: &mut Numbers) -> Option<()> {
 fn jump(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let who = who(a, n)?;
     to!(a[who].jump(world));
+    Some(())
+}
+
+fn return_to_clip(a: &mut Actor, n: &mut Numbers) -> Option<()> {
+    let who = who(a, n)?;
+    let (at, phase, seconds) = (place(n), n.between(0.0, 3.0), n.between(0.0, 1.2));
+    to!(a[who].return_to_clip(world, at, phase, seconds));
     Some(())
 }
 

@@ -4,7 +4,7 @@ use super::performance::Performance;
 use super::ragdolls::ragdoll_of;
 use crate::parts::GRAVITY;
 use sinew::formats::{
-    BvhOptions, MjcfModel, ReadOptions, TriangleMesh, load_gltf, load_mesh, read_bvh, read_bytes, read_mjcf,
+    BvhOptions, MjcfModel, ReadOptions, TriangleMesh, load_gltf, load_mesh, read_bvh, read_bytes, read_model,
 };
 use sinew::math::Vec3;
 use sinew::physics::{Sleeping, World, WorldDef};
@@ -194,7 +194,7 @@ impl Settings {
             Domain::Number(..) | Domain::Whole(..) => return Ok(false),
             Domain::Model => {
                 let bytes = read_bytes(path)?;
-                self.model = Some(read_mjcf(&bytes).map_err(|error| error.with_file(path))?);
+                self.model = Some(read_model(&bytes).map_err(|error| error.with_file(path))?);
             }
             Domain::Level => {
                 let level = load_mesh(path)?;

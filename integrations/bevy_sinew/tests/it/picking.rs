@@ -2,10 +2,11 @@
 
 use super::*;
 use bevy_camera::Camera;
-use bevy_math::{Dir3, Ray3d};
+use bevy_math::Dir3;
 use bevy_picking::backend::PointerHits;
 use bevy_picking::backend::ray::{RayId, RayMap};
 use bevy_picking::pointer::PointerId;
+use bevy_shape::Ray3d;
 
 #[test]
 fn a_pointer_finds_the_body_under_it() {

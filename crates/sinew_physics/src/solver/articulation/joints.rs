@@ -1,4 +1,4 @@
-//! The joints of the trees: their rows, the factor, and the exact solve of velocities (RATTLE) and positions (SHAKE).
+//! Joints of the trees: rows, factor, and the exact solve of velocities (RATTLE) and positions (SHAKE).
 
 use crate::joint::JointPose;
 use crate::solver::IslandSolver;
@@ -14,7 +14,7 @@ use crate::spatial::{Vec6, ZERO6, add_scaled, largest, linear};
 use sinew_math::{Transform, dispatch, max, min};
 
 impl IslandSolver {
-    /// Poses and rows of all joints.
+    /// Recomputes poses and rows of all joints.
     pub(in crate::solver) fn refresh_joints(&mut self) {
         for joint in &mut self.joints {
             let (a, b) = (&self.bodies[joint.a as usize].pose, &self.bodies[joint.b as usize].pose);
@@ -29,7 +29,7 @@ impl IslandSolver {
         }
     }
 
-    /// Rows of the tree joints and the factor of all trees.
+    /// Factors all trees.
     pub(in crate::solver) fn factor_joints(&mut self) {
         let inertia = &mut self.scratch.inertia;
         dispatch::run(ListInertias { bodies: &self.bodies[..self.links.len()], list: inertia });
@@ -42,8 +42,8 @@ impl IslandSolver {
         self.batches.factor(&self.links, &self.joints, &self.bodies);
     }
 
-    /// Makes `scratch.dv` the answer of all trees to `scratch.impulses`, which are used up, and `scratch.residuals`, those of the rows
-    /// that [push](Link::push_gains) left out. No residuals mean none.
+    /// Writes to `scratch.dv` the velocity changes of all trees from `scratch.impulses`, which it overwrites, and `scratch.residuals`. An empty
+    /// list of residuals means zero.
     pub(in crate::solver) fn answer_trees(&mut self) {
         let Self { links, batches, scratch: s, .. } = self;
         s.dv.resize(links.len(), ZERO6);
@@ -85,8 +85,8 @@ impl IslandSolver {
         self.solve_trees();
     }
 
-    /// Iterative refinement: between masses of 1 : 100,000 one solve in single precision leaves too much. Not with loops:
-    /// redundant rows of a closed chain never agree to the last digit, and to insist makes its drives do work.
+    /// Refines the solution iteratively: between masses of 1 : 100,000 one solve in single precision leaves too large an error. Islands with loops
+    /// are left out: redundant rows of a closed chain never agree to the last digit, and refinement makes its drives do work.
     pub(in crate::solver) fn refine_joints(&mut self) {
         if !self.loops.is_empty() || self.coupling == Coupling::Turns {
             return;
@@ -106,13 +106,12 @@ impl IslandSolver {
         }
     }
 
-    /// SHAKE: removes the position errors at the poses that the velocities lead to, with the same factor, tree by tree until they are
-    /// small enough (one or two rounds but for violent hits). The factor is that of the substep's beginning: for a body
-    /// that turns by much of a radian it may lead away, and back in the next round. So a tree has all rounds unless one lessens its error by
-    /// little, ends with the best of them, and the next substep goes on from there. Trees that loops tie together, and
-    /// the few of an island that is not solved by turns, go on and back together.
+    /// Removes position errors at the predicted poses (SHAKE) with the factor of the substep's start, tree by tree until they are small
+    /// enough: one or two rounds except after violent hits. For a body that turns by much of a radian a round may raise the error and the
+    /// next lower it again, so a tree keeps the best of its rounds and stops when a round gains little. Trees with loops between them, and
+    /// all trees of an island that is not solved by turns, stop together.
     ///
-    /// Gives the largest error that is left, m or rad.
+    /// Returns the largest remaining error, m or rad.
     pub(in crate::solver) fn correct_positions(&mut self, of: Corrected) -> f32 {
         if !self.has_joints() {
             return 0.0;
@@ -154,7 +153,7 @@ impl IslandSolver {
         most
     }
 
-    /// Trees whose positions are to be corrected.
+    /// Marks the trees whose positions are corrected.
     fn choose_corrected(&mut self, of: Corrected) {
         let s = &mut self.scratch;
         let trees = self.trees.len();
@@ -170,7 +169,7 @@ impl IslandSolver {
         s.residuals.resize(self.links.len(), ZERO6);
     }
 
-    /// Trees for which this is true are corrected no more.
+    /// Ends the correction of trees for which `is_done` is true.
     fn leave_corrected(&mut self, is_done: impl Fn(usize) -> bool) {
         let s = &mut self.scratch;
         for (tree, range) in self.trees.iter().enumerate() {
@@ -181,7 +180,7 @@ impl IslandSolver {
         }
     }
 
-    /// Rows of limits are told of what a correction has changed.
+    /// Marks the trees that a correction changed, for the visits of limits.
     fn tell_corrections(&mut self) {
         if self.coupling != Coupling::Turns {
             return;
@@ -195,8 +194,7 @@ impl IslandSolver {
         }
     }
 
-    /// Notes the velocities of trees whose errors are less than after any round before. Those that have lessened by little are corrected
-    /// no more.
+    /// Stores the velocities of trees whose error is the least so far. Ends the correction of trees whose error shrank by little.
     fn keep_best(&mut self, left: &[f32], errors: &mut [f32]) {
         for tree in (0..self.trees.len()).filter(|&tree| left[tree] < errors[tree]) {
             if !self.scratch.corrected[tree] {
@@ -217,7 +215,7 @@ impl IslandSolver {
         }
     }
 
-    /// Velocities of trees go back to the best that they were.
+    /// Restores the velocities of the best round of each tree.
     fn take_back(&mut self) {
         for tree in 0..self.trees.len() {
             let range = self.trees[tree].clone();
@@ -240,7 +238,7 @@ impl IslandSolver {
         }
     }
 
-    /// Poses that the velocities lead to: of all bodies, or of the trees that are corrected.
+    /// Predicts the poses at the end of the substep, of all bodies or of the trees being corrected.
     fn predict(&mut self, all: bool) {
         let Self { bodies, velocities, scratch, trees, h, .. } = self;
         scratch.predicted.resize(bodies.len(), Transform::IDENTITY);
@@ -257,8 +255,8 @@ impl IslandSolver {
         }
     }
 
-    /// Residuals that would remove the position errors of the trees that are corrected at their predicted poses; writes the largest
-    /// error of each (m or rad).
+    /// Computes the residuals that remove the position errors of the trees being corrected at their predicted poses, and writes the largest
+    /// error of each tree (m or rad).
     fn find_errors(&mut self, errors: &mut [f32]) {
         let Self { velocities, joints, links, loops, trees, coupling, h, scratch: s, .. } = self;
         let (h, poses) = (*h, &s.predicted[..]);
@@ -282,7 +280,7 @@ impl IslandSolver {
         errors.fill(most);
     }
 
-    /// The residuals of welds that give, as they stand, are made up for.
+    /// Adds the residuals of soft welds to the error that they leave open.
     fn bend_welds(&mut self) {
         let h = self.h;
         let bend = |joint: &mut SolverJoint, residual: &Vec6| {
@@ -300,7 +298,7 @@ impl IslandSolver {
         }
     }
 
-    /// Adds to the velocities the answer of the trees to `scratch.impulses` and `scratch.residuals`, loops closed.
+    /// Adds to the velocities the response of the trees to `scratch.impulses` and `scratch.residuals`, then closes loops.
     pub(in crate::solver) fn solve_trees(&mut self) {
         let s = &mut self.scratch;
         for (link, residuals) in self.links.iter().zip(&s.residuals) {
@@ -339,8 +337,8 @@ impl IslandSolver {
         self.solve_trees();
     }
 
-    /// The linear force of each tree joint on its child in this substep: what the momentum of the subtree below gained,
-    /// less what contacts gave it.
+    /// Stores the linear force of each tree joint on its child in this substep: the momentum gained by the subtree below minus the
+    /// impulses of contacts on it, over the length of the substep.
     pub(in crate::solver) fn store_joint_forces(&mut self) {
         if !self.has_joints() {
             return;

@@ -1,22 +1,22 @@
-//! Articulated inverse inertia: the velocity change of all bodies of a tree from an impulse on one, with the joints holding. A contact
-//! that sees its link's own mass instead sinks: a 1 kg foot under 69 kg by 72 mm.
+//! Articulated inverse inertia: the velocity changes of all bodies of a tree from an impulse on one, while the joints hold. A contact that
+//! uses the mass of its link alone sinks: a 1 kg foot under 69 kg by 72 mm.
 
 use crate::solver::articulation::tree::{Link, NONE};
 use crate::spatial::{Mat6, Vec6, ZERO66, add_scaled, dot};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
 
-/// Links that answer to impulses: the bodies of each tree that carry rows, and their ancestors.
+/// Links whose response is computed, called members: the bodies of each tree that have rows, and their ancestors.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Response {
-    /// Per body: its position among the members of its tree, or `NONE`.
+    /// Position of each body among the members of its tree, or `NONE`.
     slot: Vec<u32>,
     /// Members of all trees, tree after tree, parents first.
     members: Vec<u32>,
-    /// Place of each one's parent among them; 0 of a root.
+    /// Position of the parent of each member; 0 for a root.
     above: Vec<u32>,
     trees: Vec<Members>,
-    /// Columns of the rows that [close](Self::close) loops, and inverses of what these rows answer to each other, tree after tree.
+    /// Columns of the rows that [close](Self::close) loops, and the inverse of their mutual response, tree after tree.
     columns: Vec<Vec6>,
     inverses: Vec<f32>,
 }
@@ -84,8 +84,7 @@ impl Response {
         self.slot.get(body as usize).map(|&slot| slot as usize)
     }
 
-    /// Closes the loops of a tree: from now on answers are those of `W − U S⁻¹ Uᵀ` with the columns U of the loop rows, one for each
-    /// row of `inverse`, which is S⁻¹.
+    /// Closes the loops of a tree: its response becomes `W − U S⁻¹ Uᵀ`, with one column of U for each row of `inverse`, which is S⁻¹.
     pub fn close(&mut self, tree: u32, columns: &[Vec6], inverse: &[f32]) {
         let members = &mut self.trees[tree as usize];
         members.rows = columns.len() / members.count;
@@ -94,8 +93,8 @@ impl Response {
         self.inverses.extend_from_slice(inverse);
     }
 
-    /// Makes columns, `stride` apart from each other, the velocity changes of all members of a tree from impulses: each column from those
-    /// on one or two members, which are given with their places. They are zero.
+    /// Writes columns, `stride` apart: the velocity changes of all members of a tree from the impulses on one or two of them, given with
+    /// their positions. The columns must be zero before.
     pub fn answer_all(
         &self,
         links: &[Link],
@@ -117,7 +116,7 @@ impl Response {
         }
     }
 
-    /// Takes off what the rows that close loops do about the answer to an impulse.
+    /// Subtracts the reaction of closed loops from the response to an impulse.
     fn close_answer(&self, tree: &Members, slot: usize, impulse: &Vec6, out: &mut [Vec6]) {
         if tree.rows == 0 {
             return;
@@ -134,14 +133,14 @@ impl Response {
     }
 }
 
-/// An impulse on a member of a tree, which is given by its place.
+/// Impulse on a member of a tree, with its position.
 pub(crate) type Push<'a> = Option<(usize, &'a Vec6)>;
 
-/// Impulses on a member of a tree, then its velocity changes, one in each lane.
+/// Impulses on a member of a tree, then its velocity changes, one column in each lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AnswerLanes {
     numbers: Mat6,
-    /// An impulse is on it or was passed on to it.
+    /// True if an impulse acts on it or was passed up to it.
     is_pushed: bool,
 }
 
@@ -149,8 +148,8 @@ impl AnswerLanes {
     const NONE: Self = Self { numbers: ZERO66, is_pushed: false };
 }
 
-/// Velocity changes of the members of a tree from impulses on one or two of them, eight times side by side: what impulses pass on goes up to
-/// the root, and from there the answers come down (Featherstone 2008, 7.3).
+/// Computes the velocity changes of the members of a tree from impulses on one or two of them, eight columns in lanes: impulses are passed up to
+/// the root, then velocity changes down to the leaves (Featherstone 2008, 7.3).
 struct AnswerAll<'a> {
     links: &'a [Link],
     members: &'a [u32],

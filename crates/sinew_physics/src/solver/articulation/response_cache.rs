@@ -1,6 +1,6 @@
-//! Columns of the response: what a unit of a row's impulse makes of the velocities of all members of its trees. They are
-//! computed for rows that are not idle, once for a pose: a push then adds a multiple of a column, where the blocks would have to
-//! be multiplied for every visit. What rows answer to each other is read from them, too.
+//! Columns of the response: the velocity changes of all members of a row's trees from a unit of its impulse. They are computed
+//! once for a pose, for rows that are not idle. A push then adds a multiple of a column. The responses between rows are dot products with
+//! columns.
 
 use crate::collide::MAX_POINTS;
 use crate::joint::Row;
@@ -137,8 +137,7 @@ impl ResponseCache {
         places.map(|place| place.map_or(ZERO6, |place| self.entries[column + place]))
     }
 
-    /// Appends the columns of up to eight rows of two trees, or of one, side by side. Gives where the first lies, and how far each is from
-    /// the next.
+    /// Appends the columns of up to eight rows of one or two trees. Returns the start of the first and the stride.
     pub(in crate::solver) fn add_all(
         &mut self,
         response: &Response,
@@ -175,13 +174,13 @@ impl ResponseCache {
         CoveredBodies::new(response, links, bodies).places
     }
 
-    /// Response of the rate of a row whose bodies have these places in a column, per unit of impulse of the column's row.
+    /// Rate change of a row, whose bodies have these places in a column, by a unit impulse of the column's row.
     pub fn answer(&self, column: usize, places: [Option<usize>; 2], row: &Row) -> f32 {
         let [a, b] = places.map(|place| place.map(|place| &self.entries[column + place]));
         a.map_or(0.0, |on_a| dot(&row.a, on_a)) + b.map_or(0.0, |on_b| dot(&row.b, on_b))
     }
 
-    /// Adds to the velocities what changes of the impulses of rows of two trees, or one, give. Gives the largest change.
+    /// Adds to the velocities the response to changes of the impulses of rows of one or two trees. Returns the largest change.
     pub fn push_all(
         &self,
         response: &Response,
@@ -200,7 +199,7 @@ impl ResponseCache {
         dispatch::run(PushAll { entries, starts, by, members: reach.members, velocities })
     }
 
-    /// Adds to the velocities what changes of the impulses of rows of two bodies give.
+    /// Adds to the velocities the response to changes of the impulses of rows of two bodies.
     pub fn push(
         &self,
         response: &Response,
@@ -216,7 +215,7 @@ impl ResponseCache {
     }
 }
 
-/// The sum of columns, each times the change of its row.
+/// Adds columns times the changes of their rows to velocities.
 struct Push<'a> {
     columns: &'a [Vec6],
     stride: usize,
@@ -248,7 +247,7 @@ impl Kernel for Push<'_> {
     }
 }
 
-/// The sum of columns that lie anywhere, each times the change of its row.
+/// Adds columns at any places times the changes of their rows to velocities.
 struct PushAll<'a> {
     entries: &'a [Vec6],
     starts: &'a [usize],
@@ -283,7 +282,7 @@ impl Kernel for PushAll<'_> {
     }
 }
 
-/// To the velocities of members, columns times changes.
+/// Adds `N` columns times changes to the velocities of members.
 #[inline(always)]
 fn add<L: Lanes, const N: usize>(
     members: &[u32],

@@ -1,6 +1,6 @@
-//! Limits in blocks of up to eight rows of one tree, those that push already first. What rows of a block ask for is looked at side by
-//! side. Those that push are solved among each other, by what they answer to each other, and then the bodies get what all of them
-//! give at once: a change of one row goes through eight numbers, and not through all links of the tree.
+//! Limits in blocks of up to eight rows of one tree, rows with an impulse first. The rates of a block are computed in lanes. Rows that push
+//! are solved among each other by a dense response matrix, and the bodies then receive all impulses at once: the change of one row
+//! updates eight rates instead of all links of the tree.
 
 use crate::solver::IslandSolver;
 use crate::solver::articulation::response_cache::ResponseCache;
@@ -18,32 +18,32 @@ use sinew_math::max;
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct LimitBlocks {
     blocks: Vec<Block>,
-    /// Per tree: the last block of its rows.
+    /// For each tree the last block of its rows.
     last: Vec<u32>,
-    /// Rows that have a place, from the first on.
+    /// Number of rows that are in a block; the first ones.
     placed: usize,
 }
 
-/// Rows of one tree, or a single one between two trees: lane by lane.
+/// Rows of one tree, or one row between two trees, one in each lane.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 struct Block {
     /// Jacobians on A, then on B.
     rows: [[f32; WIDTH]; 12],
-    /// Rates below which they have something to give.
+    /// Rate of each row below which it pushes.
     threshold: [f32; WIDTH],
-    /// Response of all rates to a unit of impulse of each row.
+    /// Change of all rates by a unit impulse of each row.
     response: [[f32; WIDTH]; WIDTH],
     bodies: [[u32; WIDTH]; 2],
-    /// Places among the island's limits.
+    /// Index of each row in the island's list of limits.
     limits: [u32; WIDTH],
     /// Column of each row, and the places of its bodies in columns.
     columns: [usize; WIDTH],
     places: [[Option<usize>; 2]; WIDTH],
     count: usize,
-    /// Rows that begin the pass with an impulse, bit by bit.
+    /// Bit mask of rows that begin the pass with an impulse.
     warm: u8,
-    /// Rows that have something to give or to take back at this pose, or had: they have columns. Bit by bit.
+    /// Bit mask of rows that push or pushed at this pose, and so have columns.
     pushing: u8,
 }
 
@@ -82,8 +82,8 @@ impl Block {
         [self.bodies[0][k], self.bodies[1][k]]
     }
 
-    /// Visits the rows that push until their rates change by less than `tolerance`, from the present ones on. Gives the changes of
-    /// their impulses, the energy that these have one by one, and the last round's largest change of a rate.
+    /// Visits the rows that push until their rates change by less than `tolerance`. Returns the changes of their impulses, the sum of the
+    /// energies of the single changes, and the largest change of a rate in the last round.
     fn solve(
         &self,
         limits: &mut [LimitRow],
@@ -116,7 +116,7 @@ impl Block {
     }
 }
 
-/// The rates of a block's rows, and which of them are below their thresholds.
+/// Computes the rates of the rows of a block and the mask of those below their thresholds.
 struct Look<'a> {
     block: &'a Block,
     velocities: &'a [Vec6],
@@ -146,7 +146,7 @@ impl Kernel for Look<'_> {
 }
 
 impl LimitBlocks {
-    /// Begins with none, for so many trees.
+    /// Removes all blocks, for an island of so many trees.
     pub fn clear(&mut self, trees: usize) {
         self.blocks.clear();
         self.last.clear();
@@ -171,7 +171,7 @@ impl LimitBlocks {
 }
 
 impl IslandSolver {
-    /// Before the sweeps of a pass: gives all rows places in blocks, those that push first, and says what they are to reach.
+    /// Before the sweeps of a pass: puts new rows into blocks, those with an impulse first, and computes thresholds.
     pub(in crate::solver) fn arrange_limits(&mut self, pass: Pass) {
         for pushing in [true, false] {
             for i in self.limit_blocks.placed..self.limits.len() {
@@ -213,7 +213,7 @@ impl IslandSolver {
         self.limits[i].block = at as u32;
     }
 
-    /// Visits the blocks about whose trees something has changed.
+    /// Visits the blocks whose trees changed.
     pub(in crate::solver) fn visit_limits(&mut self, pass: Pass) {
         for at in 0..self.limit_blocks.len() {
             let [a, b] = self.limit_blocks.blocks[at].ends(0);
@@ -224,7 +224,7 @@ impl IslandSolver {
         }
     }
 
-    /// Solves the rows of a block that have something to give, and gives the bodies their impulses.
+    /// Solves the rows of a block that push and applies their impulses to the bodies.
     fn visit_limit_block(&mut self, at: usize, pass: Pass) {
         let block = &mut self.limit_blocks.blocks[at];
         let (rates, below) = dispatch::run(Look { block, velocities: &self.velocities });
@@ -263,14 +263,14 @@ impl IslandSolver {
         for tree in [trees[0], trees[1].filter(|_| trees[0] != trees[1])].into_iter().flatten() {
             self.dirty.mark(tree, moved);
         }
-        // What they have made of themselves needs no other visit.
+        // Their own change needs no other visit.
         if left < tolerance {
             let now = self.dirty.of(&self.links, a, b);
             self.dirty.see_limits(at, now);
         }
     }
 
-    /// Columns of rows of a block that begin to push, and what they and those that push already answer to each other.
+    /// Computes columns for the rows `new` of a block and the responses between them and the rows that push already.
     fn respond_to_limits(&mut self, at: usize, new: u8) {
         let Self { limits, limit_blocks, joints, bodies, links, batches, response, response_cache, .. } =
             self;

@@ -1,4 +1,4 @@
-//! One row of a joint limit: how far it may still go, what it asks for, and what it gives.
+//! Row of a joint limit: its slack, its wanted rate and its impulse.
 
 use crate::joint::def::Softness;
 use crate::joint::{Row, Stop, turns};
@@ -18,10 +18,9 @@ use sinew_math::{Vec3, clamp, max, min};
 pub(super) enum Hardness {
     /// A stop.
     Hard,
-    /// A stop that a foreseen pose asks for: linearised at the end of the substep rather than at its start, to reach at
-    /// least this rate; lives through `solve` only.
+    /// A stop linearised at the predicted pose of the end of the substep, to reach at least this rate. It exists in `solve` only.
     Predicted(f32),
-    /// A spring that pushes while there is no slack, with this share of its damping.
+    /// A spring that pushes without slack, with this share of its damping.
     Soft(Softness, f32),
 }
 
@@ -29,10 +28,10 @@ pub(super) enum Hardness {
 #[derive(Clone, Debug)]
 pub(in crate::solver) struct LimitRow {
     pub joint: u32,
-    /// Index of the joint's stop, and of the limit whose memory it has.
+    /// Index of the stop in the joint, and of the limit that keeps its impulse.
     pub(super) stop: usize,
     pub(super) limit: usize,
-    /// Radians or metres.
+    /// Room before the stop, radians or metres; negative beyond it.
     pub(super) slack: f32,
     pub(super) hardness: Hardness,
     /// Gradient of the slack, world axes.
@@ -40,13 +39,13 @@ pub(in crate::solver) struct LimitRow {
     pub row: Row,
     /// Index of the block that it is in.
     pub block: u32,
-    /// Response of the row to its own impulse, with its column.
+    /// Response of the row to its own unit impulse; known once it has a column.
     pub(super) effective: f32,
-    /// Impulse of this substep: ≥ 0 after a visit, less between sweeps by what a conjugate step asked too much.
+    /// Impulse of this substep: ≥ 0 after a visit; a conjugate step may make it negative until the next one.
     pub impulse: f32,
 }
 
-/// The part of an impulse vector that a unilateral row about `axis` can have given.
+/// Impulse of a unilateral row about `axis` that best matches an impulse vector.
 pub(super) fn share(impulse: Vec3, axis: Vec3) -> f32 {
     max(impulse.dot(axis), 0.0) / axis.length_squared()
 }
@@ -73,7 +72,7 @@ impl LimitRow {
         }
     }
 
-    /// Starts with the last substep's impulse, or with the one before if it jumped up since.
+    /// Starts with the impulse of the last substep, or with the one before it if the impulse jumped.
     pub fn warm_start(&mut self, joints: &[SolverJoint], impulses: &mut [Vec6]) {
         self.impulse = 0.0;
         if self.hardness != Hardness::Hard {
@@ -87,7 +86,7 @@ impl LimitRow {
         self.add_impulses(joints, impulses, 1.0);
     }
 
-    /// Adds its present impulse, times `sign`, to those of its bodies.
+    /// Adds its impulse, times `sign`, to those of its bodies.
     pub fn add_impulses(&self, joints: &[SolverJoint], impulses: &mut [Vec6], sign: f32) {
         self.add_to(joints, impulses, sign * self.impulse);
     }
@@ -102,23 +101,23 @@ impl LimitRow {
         }
     }
 
-    /// Room that it should have at the end of a substep, radians or metres: none, or less where it must come back from far beyond.
+    /// Slack wanted at the end of a substep, radians or metres: 0, or negative if the joint must return from far beyond.
     pub(super) fn allowed(&self, h: f32) -> f32 {
         min(self.slack + self.most_push() * h, 0.0)
     }
 
-    /// Fastest rate with which it pushes back, rad/s or m/s.
+    /// Largest rate of return, rad/s or m/s.
     pub(super) fn most_push(&self) -> f32 {
         if turns(self.limit) { LIMIT_PUSH_SPIN } else { LIMIT_PUSH_SPEED }
     }
 
-    /// Room by which it may end a substep beyond where it should, radians or metres.
+    /// Tolerance of the slack at the end of a substep, radians or metres.
     pub(super) fn slack(&self) -> f32 {
         if turns(self.limit) { LIMIT_SLACK_ANGLE } else { LIMIT_SLACK_LENGTH }
     }
 
-    /// False if the velocities cannot lead beyond where it should be by more than the slack: along its own line they do not, and its
-    /// bodies turn by too little for another.
+    /// False if the velocities cannot exceed the allowed slack by more than the tolerance: along the linearised row they do not, and the bodies
+    /// turn too little for its error to matter.
     pub(super) fn may_pass(&self, joint: &SolverJoint, velocities: &[Vec6], h: f32) -> bool {
         if !turns(self.limit) {
             return true;
@@ -129,19 +128,19 @@ impl LimitRow {
         self.allowed(h) - ahead + LIMIT_BEND * turn2 >= LIMIT_SLACK_ANGLE
     }
 
-    /// Takes on what it answers to its own impulse.
+    /// Stores its response to its own impulse.
     pub fn take_response(&mut self, own: f32, joint: &SolverJoint, bodies: &[SolverBody], moving: usize) {
         let Row { a, b } = &self.row;
         self.effective = own + REDUNDANCY * free_response(bodies, moving, [(joint.a, a), (joint.b, b)]);
     }
 
-    /// Adds to the impulse of this substep; the caller puts it on the bodies. Gives the speed that it makes by itself.
+    /// Adds to the impulse of this substep; the caller applies it to the bodies. Returns the rate that it causes by itself.
     pub fn apply(&mut self, more: f32) -> f32 {
         self.impulse += more;
         more.abs() * self.effective
     }
 
-    /// Rate below which it has something to give in a pass, if it gives nothing yet.
+    /// Rate below which it pushes in a pass, if it has no impulse yet.
     pub fn threshold(&self, pass: Pass, h: f32) -> f32 {
         match self.hardness {
             Hardness::Soft(..) if pass != Pass::Solve => f32::NEG_INFINITY,
@@ -150,7 +149,7 @@ impl LimitRow {
         }
     }
 
-    /// Changes its impulse as this rate asks for; by how much.
+    /// Updates its impulse for a rate and returns the change.
     pub fn change(&mut self, pass: Pass, rate: f32, h: f32) -> f32 {
         if self.effective < 1e-9 {
             return 0.0;
@@ -170,14 +169,14 @@ impl LimitRow {
         change
     }
 
-    /// Energy that the spring of a soft row gives in a substep, J.
+    /// Work of the spring of a soft row in a substep, J.
     pub fn soft_work(&self, joint: &SolverJoint, velocities: &[Vec6]) -> f32 {
         let is_soft = matches!(self.hardness, Hardness::Soft(..));
         if is_soft { self.impulse * self.row.rate(joint, velocities) } else { 0.0 }
     }
 
-    /// Rate that a stop asks for at the present one. In `relax` a limb on its way to the stop is not hurried there: to
-    /// take an impulse back at another pose than it was given at gives energy.
+    /// Rate that a stop wants, given the current one. In `relax` a limb on its way to the stop is not accelerated: to take back an impulse
+    /// at another pose than where it acted adds energy.
     pub(super) fn wanted(&self, pass: Pass, rate: f32, h: f32) -> f32 {
         match (pass, self.hardness) {
             (Pass::Solve, Hardness::Predicted(rate)) => rate,

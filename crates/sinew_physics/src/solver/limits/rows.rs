@@ -11,7 +11,7 @@ use crate::spatial::{angular, linear};
 use sinew_math::{Vec3, max, min};
 
 impl IslandSolver {
-    /// Rows for the limits that may be reached within the substep.
+    /// Makes rows for the limits that may be reached within the substep.
     pub(in crate::solver) fn choose_limits(&mut self) {
         // Impulses of the substep so far go on counting, so that `relax` can take back what `solve` gave too much.
         for joint in &mut self.joints {
@@ -46,7 +46,7 @@ impl IslandSolver {
                 let zone = zone.filter(|zone| turns(stop.limit) && stop.slack < zone.width);
                 if let (Some(zone), None) = (zone, soft) {
                     let early = Stop { slack: stop.slack - zone.width, ..stop };
-                    // Damping comes with depth: all of it at once would be a blow at the zone's edge.
+                    // Damping grows with depth: full damping at the edge of the zone would be an impact.
                     let depth = min(-early.slack / zone.width, 1.0);
                     let hardness = Hardness::Soft(zone.softness, depth);
                     limits.push(LimitRow::new((index, joint), place, &early, hardness, 0.0));
@@ -62,16 +62,15 @@ impl IslandSolver {
         }
     }
 
-    /// True if a rotation has gone farther beyond a hard limit within the substep than any may.
+    /// True if a rotation went beyond a hard limit by more than `LIMIT_LEAP` within the substep.
     pub(in crate::solver) fn leaps_limits(&self) -> bool {
         self.joints.iter().any(|joint| joint.least_slack < joint.slack_before - LIMIT_LEAP)
     }
 
-    /// Looks where the velocities lead: a limit row is linear, and a limb that turns by much of a radian within the
-    /// substep may end up far beyond, leave a cone on a side that its row does not face, or whirl around outside of it as
-    /// fast as the row would bring it back. For each such limit comes
-    /// one more row, linearised at the pose that the velocities lead to ([predicted](Self::correct_positions) with the joints
-    /// corrected); the sweeps must then run again.
+    /// Checks limits at the predicted poses. A limit row is linear: a limb that turns by much of a radian within the substep may end
+    /// far beyond it, leave a cone on a side that its row does not face, or circle outside it as fast as the row pulls it back. Each such
+    /// limit gets another row, linearised at the [predicted](Self::correct_positions) pose with corrected joints, and the sweeps must
+    /// run again.
     pub(in crate::solver) fn tighten_limits(&mut self) -> bool {
         let known = self.limits.len();
         let poses = &self.scratch.predicted;
@@ -91,7 +90,7 @@ impl IslandSolver {
                 looked_at = row.joint;
                 let [a, b] = [joint.a, joint.b].map(|body| &poses[body as usize]);
                 let pose = JointPose::new(&joint.geometry, a, b);
-                // What is to be beyond has no slack.
+                // Only stops without slack are violated.
                 there = [None; MAX_STOPS];
                 each_stop(&joint.geometry.kind, &pose, [0.0; 2], |place, stop| there[place] = Some(stop));
                 predicted = Some(pose);
@@ -117,14 +116,14 @@ impl IslandSolver {
         self.limits.len() > known
     }
 
-    /// True if positions of a joint's trees have been corrected since limits were last looked at.
+    /// True if the positions of a tree of the joint were corrected after limits were last checked.
     fn is_looked_at(&self, joint: &SolverJoint) -> bool {
         [joint.a, joint.b].iter().any(|&body| {
             self.links.get(body as usize).is_some_and(|link| self.scratch.looked_at[link.tree as usize])
         })
     }
 
-    /// True if some hard stop was passed and pushes back.
+    /// True if a joint is beyond a hard stop that pushes back.
     pub(in crate::solver) fn stops_push_back(&self) -> bool {
         self.limits.iter().any(|row| {
             let soft = matches!(row.hardness, Hardness::Soft(..));
@@ -132,7 +131,7 @@ impl IslandSolver {
         })
     }
 
-    /// Limit impulses of this substep become memory.
+    /// Stores the limit impulses of this substep for the warm start of the next.
     pub(in crate::solver) fn end_limits(&mut self) {
         for joint in &mut self.joints {
             for limit in &mut joint.limits {

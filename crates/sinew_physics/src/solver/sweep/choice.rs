@@ -1,4 +1,4 @@
-//! Choices of an island's solver: how many substeps, which coupling, how hard its sweeps try.
+//! Chooses the substeps, the coupling and the sweep policy of an island.
 
 use super::policy::{JOINTED, TURNS};
 use crate::body::def::Quality;
@@ -9,14 +9,14 @@ use crate::solver::pass::Coupling;
 use crate::solver::sweep::policy::{Firmness, SweepPolicy};
 use crate::solver::tuning::{
     BOUNCE_SPEED, CALM_TURN, DAMPED_CONTACTS, DAMPED_CONTACTS_JOINTED, DAMPED_CONTACTS_PER_BODY,
-    GRADED_RATIO, RESPONSE_CONTACTS, RESPONSE_CONTACTS_PER_LINK, RESPONSE_TREES,
+    GRADED_RATIO, RESPONSE_CONTACTS, RESPONSE_CONTACTS_PER_LINK, RESPONSE_TREES, RESPONSE_TREES_WITH_LOOPS,
 };
 use crate::solver::view::{Grading, View};
 use sinew_math::{max, min};
 
 impl IslandSolver {
-    /// Number of substeps that an island takes. Balanced: half of the world's where many contacts damp all motion, nothing spins fast and
-    /// masses are alike; all of them for what swings, flies or balances. With particles all, whatever the quality.
+    /// Chooses the number of substeps of an island. `Balanced` takes half of the world's where many contacts damp all motion, nothing spins
+    /// fast and masses are similar, otherwise all of them. Islands with particles take all of them at every quality.
     pub(in crate::solver) fn choose_substeps(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.quality = quality_of(island, view);
         self.stretch = stretch_of(island, view);
@@ -24,28 +24,27 @@ impl IslandSolver {
         self.is_settled = true;
     }
 
-    /// Chooses how islands of joints come to agree with their contacts: few figures by the response of all their links, heaps by turns.
+    /// Chooses the coupling of contacts and joints: the response of all links for few trees, turns for more.
     pub(in crate::solver) fn choose_coupling(&mut self, contacts: usize) {
         let jointed = self.trees.iter().filter(|tree| tree.len() > 1 || self.links[tree.start].joint != NONE);
+        let most_trees = if self.loops.is_empty() { RESPONSE_TREES } else { RESPONSE_TREES_WITH_LOOPS };
         let (trees, links) = jointed.fold((0, 0), |(trees, links), tree| (trees + 1, links + tree.len()));
         self.coupling = match trees {
             0 if self.pins.joints.is_empty() => Coupling::Free,
-            _ if trees > RESPONSE_TREES
-                || contacts > RESPONSE_CONTACTS + RESPONSE_CONTACTS_PER_LINK * links =>
-            {
+            _ if trees > most_trees || contacts > RESPONSE_CONTACTS + RESPONSE_CONTACTS_PER_LINK * links => {
                 Coupling::Turns
             }
             _ => Coupling::Response,
         };
     }
 
-    /// Once it is known who touches.
+    /// Chooses the sweep policy from the touching pairs.
     pub(in crate::solver) fn choose_policy(&mut self) {
         let of_pile =
             |contacts: usize| SweepPolicy::of_pile(self.support.highest(), self.mass_ratio(), contacts);
         self.policy = match self.coupling {
             Coupling::Free => of_pile(self.touches.len()),
-            // What touches jointed bodies is swept as they need it, piles beside and under them as those of which each contact counts.
+            // Contacts with jointed bodies need the policy of joints, piles beside and under them that of small piles.
             _ if self.paired.contains(&true) => self.policy_with_joints().at_least(of_pile(0)),
             _ => self.policy_with_joints(),
         }
@@ -75,7 +74,7 @@ impl IslandSolver {
         }
     }
 
-    /// Mass ratio of the heaviest to the lightest of the bodies that touch each other and are not jointed, as they answer to impulses.
+    /// Ratio of the heaviest to the lightest scaled mass of touching bodies without joints.
     pub(in crate::solver) fn mass_ratio(&self) -> f32 {
         let (mut lightest, mut heaviest) = (f32::INFINITY, 0.0);
         for (body, _) in self.bodies.iter().zip(&self.paired).filter(|(_, is_paired)| **is_paired) {
@@ -87,12 +86,12 @@ impl IslandSolver {
     }
 }
 
-/// The highest that a body of an island asks for.
+/// Highest quality that a body of the island asks for.
 fn quality_of(island: &Island<'_>, view: &View<'_>) -> Quality {
     island.bodies.iter().map(|&body| view.quality(body)).max().unwrap_or_default()
 }
 
-/// Length of an island's substeps over that of the world's: a power of two.
+/// Ratio of the length of an island's substeps to the world's, a power of two.
 pub(in crate::solver) fn stretch_of(island: &Island<'_>, view: &View<'_>) -> f32 {
     let may_halve = view.pace.substeps.is_multiple_of(2);
     match quality_of(island, view) {
@@ -104,7 +103,7 @@ pub(in crate::solver) fn stretch_of(island: &Island<'_>, view: &View<'_>) -> f32
     }
 }
 
-/// True if contacts of an island damp all motion, so that it may take longer substeps.
+/// True if contacts damp the motion of an island so much that it may take longer substeps.
 fn is_damped(island: &Island<'_>, view: &View<'_>) -> bool {
     let (contacts, bodies) = (island.contacts.len(), island.bodies.len());
     let many = if island.joints.is_empty() {
@@ -121,7 +120,7 @@ fn is_damped(island: &Island<'_>, view: &View<'_>) -> bool {
     many && !island.contacts.iter().any(bounces) && is_calm(island, view)
 }
 
-/// True if masses and spins of an island let it take longer substeps.
+/// True if masses and spins of an island allow longer substeps.
 fn is_calm(island: &Island<'_>, view: &View<'_>) -> bool {
     let (mut lightest, mut heaviest, mut spin) = (f32::INFINITY, 0.0, 0.0);
     for &index in island.bodies {

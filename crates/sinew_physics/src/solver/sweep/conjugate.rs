@@ -1,6 +1,6 @@
-//! Faster sweeps: each sweep's change of all impulses is a step downhill, and steps downhill are made conjugate
-//! (nonsmooth nonlinear conjugate gradients: Silcowitz, Niebe and Erleben 2010). For a hand between the floor and the
-//! chest that lies on it, 12 sweeps do what took 30 (ADR 0011).
+//! Conjugate steps between sweeps: the change of all impulses in a sweep serves as a gradient (nonsmooth nonlinear conjugate
+//! gradients: Silcowitz, Niebe and Erleben 2010). A hand between the floor and the chest that lies on it needs 12 sweeps instead of
+//! 30 (ADR 0011).
 
 use crate::solver::articulation::tree::Link;
 use crate::solver::contact_rows::{ContactImpulses, ManifoldRows};
@@ -8,7 +8,7 @@ use crate::solver::limits::row::LimitRow;
 use crate::solver::sweep::dirty::DirtyRows;
 use crate::spatial::{Vec6, add_scaled, largest};
 
-/// State of the conjugate steps of a pass. What lists hold of a pass before is never used: its first sweep has no energy to go on from.
+/// State of the conjugate steps of a pass. Values of an earlier pass are never used, since the first sweep of a pass has no previous energy.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Conjugate {
     /// Before the sweep, then its change.

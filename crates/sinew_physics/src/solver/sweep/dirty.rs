@@ -1,19 +1,19 @@
-//! Rows that need another visit, as told by how much the velocities of their trees have changed.
+//! Decides which rows need another visit, by the changes of the velocities of their trees.
 
 use crate::solver::articulation::tree::Link;
 use crate::solver::limits::row::LimitRow;
 
-/// Velocity changes of each tree in a pass, summed, m/s or rad/s: rows whose trees lie still need no further visit, and in a
-/// heap most of them do after a few sweeps.
+/// Sum of the velocity changes of each tree in a pass, m/s or rad/s. Rows whose trees do not change need no further visit, which in a
+/// heap is most of them after a few sweeps.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct DirtyRows {
-    /// A change below it is none.
+    /// Changes below it are ignored, m/s or rad/s.
     tolerance: f32,
     trees: Vec<f32>,
-    /// Per manifold and per block of limits: the sum of its trees when it was last visited.
+    /// For each manifold and each block of limits: the sum of its trees at its last visit.
     manifolds: Vec<f32>,
     limits: Vec<f32>,
-    /// Per tree: its sum when the pass was resumed.
+    /// For each tree: its sum at the time when the pass was resumed.
     corrected: Vec<f32>,
 }
 
@@ -30,7 +30,7 @@ impl DirtyRows {
         }
     }
 
-    /// Goes on with a pass in which limits have got rows more, those from `first` on; so many blocks there are now.
+    /// Resumes a pass after limits gained the rows `new`; `blocks` is the new number of blocks.
     pub fn resume(&mut self, blocks: usize, new: &[LimitRow]) {
         self.limits.resize(blocks, f32::NEG_INFINITY);
         for row in new {
@@ -40,7 +40,7 @@ impl DirtyRows {
         self.corrected.extend_from_slice(&self.trees);
     }
 
-    /// True of a tree whose velocities have changed since the pass was [resumed](Self::resume).
+    /// True for a tree whose velocities changed after the pass was [resumed](Self::resume).
     pub fn has_changed(&self, tree: usize) -> bool {
         self.trees[tree] != self.corrected[tree]
     }
@@ -51,7 +51,7 @@ impl DirtyRows {
         tree(a) + tree(b)
     }
 
-    /// A tree's velocities have changed by this much.
+    /// Adds a change to the sum of a tree.
     #[inline(always)]
     pub fn mark(&mut self, tree: u32, change: f32) {
         if let Some(sum) = self.trees.get_mut(tree as usize) {
@@ -59,14 +59,14 @@ impl DirtyRows {
         }
     }
 
-    /// A row whose impulses have changed what they make of a velocity by this needs a visit, whatever its trees do.
+    /// Marks a manifold for a visit if its own impulses changed a velocity by at least the tolerance.
     pub fn mark_manifold(&mut self, i: usize, change: f32) {
         if change >= self.tolerance {
             self.manifolds[i] = f32::NEG_INFINITY;
         }
     }
 
-    /// Marks a block of limits for a visit if its own change asks for one.
+    /// Marks a block of limits for a visit if its own impulses changed a velocity by at least the tolerance.
     pub fn mark_limits(&mut self, block: u32, change: f32) {
         if change >= self.tolerance {
             self.limits[block as usize] = f32::NEG_INFINITY;
@@ -81,13 +81,13 @@ impl DirtyRows {
         wakes(&mut self.limits[block], now, self.tolerance)
     }
 
-    /// A block of limits need not be visited before its trees change again.
+    /// Notes that a block of limits needs no visit before its trees change again.
     pub fn see_limits(&mut self, block: usize, now: f32) {
         self.limits[block] = now;
     }
 }
 
-/// True if enough has happened since the last visit; then this counts as the last one.
+/// True if the sum grew by the tolerance since the last visit; then this visit becomes the last one.
 fn wakes(seen: &mut f32, now: f32, tolerance: f32) -> bool {
     let wakes = now - *seen >= tolerance;
     if wakes {

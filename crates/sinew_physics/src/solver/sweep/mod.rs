@@ -1,6 +1,5 @@
-//! Sweeps over contact and limit rows in impulse space. While they run, only the bodies that carry rows are
-//! kept up to date, through the articulated response; then the trees are solved once with all impulses, so that the
-//! joints hold exactly.
+//! Sweeps over contact and limit rows in impulse space. During the sweeps only bodies with rows are updated, through the
+//! articulated response; afterwards the trees are solved once with all impulses, so that the joints hold exactly.
 
 pub(in crate::solver) mod choice;
 pub(in crate::solver) mod conjugate;
@@ -19,7 +18,7 @@ use crate::spatial::{ZERO6, add_scaled, largest, linear};
 use sinew_math::max;
 
 impl IslandSolver {
-    /// Visits all rows and gives the bodies their impulses.
+    /// Visits all rows and applies their impulses to the bodies.
     pub(in crate::solver) fn sweep(&mut self, pass: Pass, runner: &dyn TaskRunner) {
         match self.coupling {
             Coupling::Free => self.sweep_free(pass, runner),
@@ -28,7 +27,7 @@ impl IslandSolver {
         }
     }
 
-    /// Goes on with the sweeps of `solve`, since limits or contacts have got rows more. Gives the trees that may have changed.
+    /// Resumes the sweeps of `solve` after limits or contacts gained rows. Returns the trees that may have changed.
     pub(in crate::solver) fn sweep_again(&mut self, runner: &dyn TaskRunner) -> Corrected {
         if self.coupling == Coupling::Turns {
             self.resume_by_turns(runner);
@@ -38,7 +37,7 @@ impl IslandSolver {
         Corrected::All
     }
 
-    /// Contacts in lanes alone.
+    /// Sweeps an island without joints: contacts in lanes.
     fn sweep_free(&mut self, pass: Pass, runner: &dyn TaskRunner) {
         let sweeps = self.policy.of_blocks(pass);
         let done = self.contacts.sweep(pass, sweeps, &mut self.velocities, (self.h, runner));
@@ -88,7 +87,7 @@ impl IslandSolver {
         self.finish_sweep(pass);
     }
 
-    /// Energy that a sweep must change for another to follow, J.
+    /// Energy change of a sweep below which no other follows, J.
     pub(in crate::solver) fn enough_energy(&self) -> f32 {
         let enough = self.policy.enough;
         0.5 * enough * enough * self.mass() / self.links.len() as f32
@@ -133,7 +132,7 @@ impl IslandSolver {
         }
     }
 
-    /// Puts changes of rows on two bodies and their trees.
+    /// Applies changes of rows to two bodies and their trees.
     pub(in crate::solver) fn push(&mut self, bodies: [u32; 2], change: &Change) {
         if change.is_zero() {
             return;
@@ -169,7 +168,7 @@ impl IslandSolver {
         }
     }
 
-    /// Velocities of all bodies from the impulses of the sweeps, exactly.
+    /// Solves the velocities of all bodies exactly with the impulses of the sweeps.
     fn finish_sweep(&mut self, pass: Pass) {
         self.add_impulses(1.0);
         self.answer_sweep();
@@ -178,7 +177,7 @@ impl IslandSolver {
         }
     }
 
-    /// Velocities from those before the sweep and all impulses of it.
+    /// Solves velocities from those before the sweep and all its impulses.
     pub(in crate::solver) fn answer_sweep(&mut self) {
         self.add_pushes();
         let moving = self.links.len();
@@ -188,7 +187,7 @@ impl IslandSolver {
         self.answer_impulses();
     }
 
-    /// Adds the impulses of a sweep to those that bodies have got in this substep.
+    /// Adds the impulses of a sweep to those of the substep.
     pub(in crate::solver) fn add_pushes(&mut self) {
         for (push, p) in self.contact_push.iter_mut().zip(&self.impulses) {
             *push += linear(p);

@@ -1,4 +1,4 @@
-//! Sweep policy: how hard the sweeps of an island try, and how hard its contacts are.
+//! Sweep policy of an island: number and end of its sweeps; and firmness of its contacts.
 
 use crate::body::def::Quality;
 use crate::solver::pass::Pass;
@@ -8,22 +8,21 @@ use crate::solver::tuning::{
 };
 use sinew_math::{max, min};
 
-/// Limits on the sweeps of a pass: how many there may be, and what ends them.
+/// Number of sweeps of a pass and the conditions that end them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::solver) struct SweepPolicy {
     solve: usize,
     relax: usize,
-    /// Change of a velocity in a sweep below which there need not be another, m/s or rad/s. What rows would do about less
-    /// is left alone.
+    /// Velocity change in a sweep below which no other follows, m/s or rad/s. Rows ignore smaller changes.
     pub tolerance: f32,
-    /// Share of the energy of the substep's largest change that a sweep must change for another to follow: what a hit leaves beyond that
-    /// is a thirtieth of its speed (of a heap, a tenth), and the next substep goes on from there.
+    /// Share of the energy of the largest change in the substep below which no other sweep follows. After a hit this leaves a thirtieth of its
+    /// speed (in a heap a tenth), and the next substep continues from there.
     pub small: f32,
-    /// Speed at which a body of the island's mean mass has the energy that a sweep must change for another to follow, m/s; 0 where only
-    /// the tolerance ends them. Of islands with joints.
+    /// Speed, m/s, at which a body of the island's mean mass has the energy below which no other sweep follows; 0: only the tolerance ends
+    /// sweeps. For islands with joints.
     pub enough: f32,
     pub order: Order,
-    /// The sweep from which on those of free bodies are conjugate steps.
+    /// First sweep with conjugate steps; for free bodies.
     first_conjugate: usize,
 }
 

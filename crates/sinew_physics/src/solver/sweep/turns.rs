@@ -1,10 +1,10 @@
-//! Limits, contacts in lanes, and joint trees by turns, for heaps of figures: a sweep visits the limits with the exact response of their
-//! trees, then all blocks of contacts with the bodies' own masses, then the trees are solved exactly with what both gave.
+//! Sweeps by turns, for heaps of figures: each visits limits with the exact response of their trees, then all blocks of contacts with the
+//! bodies' own masses, then solves the trees exactly with the impulses of both.
 //!
-//! Each of the three lessens the energy of the error (block Gauss-Seidel on impulses of limits, contacts and joints), and the sweeps
-//! are conjugate steps. The exact response of contacts, too, which small islands sweep with, costs more than it saves where hundreds
-//! of them couple dozens of trees. Limits must have it: those of a tree see each other, and with what their own two bodies answer
-//! alone, a chain of 70 links that was curled up by a wall gained five times its energy.
+//! Each of the three lowers the energy of the error (block Gauss-Seidel on the impulses of limits, contacts and joints), and conjugate steps
+//! follow the sweeps. The exact response of contacts, which small islands use, costs more than it saves where hundreds of contacts couple
+//! dozens of trees. Limits need it: with the response of their own two bodies alone, a chain of 70 links curled up by a wall gained five times
+//! its energy.
 
 use crate::runner::TaskRunner;
 use crate::solver::IslandSolver;
@@ -19,7 +19,7 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes};
 use sinew_math::max;
 
-/// Impulse that gives a body this change of velocity if nothing holds it.
+/// Impulse that gives a free body this change of velocity.
 fn impulse_of(body: &SolverBody, change: &Vec6) -> Vec6 {
     let r = body.pose.rotation;
     let inertia = (body.inertia + body.excess) * body.mass_scale;
@@ -27,7 +27,7 @@ fn impulse_of(body: &SolverBody, change: &Vec6) -> Vec6 {
     join(linear(change) * (body.mass * body.mass_scale), spin)
 }
 
-/// Trees that have got impulses take on what those make of their velocities before the sweep; rows of limits learn how far they moved.
+/// Solves the trees outside batches for the impulses of a sweep, from the velocities before it, and marks how far they moved.
 struct TurnOfTrees<'a> {
     links: &'a [Link],
     trees: &'a [Range<usize>],
@@ -81,7 +81,7 @@ impl Kernel for TurnOfTrees<'_> {
     }
 }
 
-/// Largest of the lanes of numbers without signs.
+/// Largest lane of non-negative numbers.
 #[inline(always)]
 fn largest_of<L: Lanes>(numbers: L) -> f32 {
     let mut all = ZERO6;
@@ -90,7 +90,7 @@ fn largest_of<L: Lanes>(numbers: L) -> f32 {
 }
 
 impl IslandSolver {
-    /// Sweeps over limits, blocks and trees, until one changes little.
+    /// Sweeps over limits, contacts and trees until a sweep changes little.
     pub(in crate::solver) fn sweep_by_turns(&mut self, pass: Pass, runner: &dyn TaskRunner) {
         if self.contacts.is_empty() && self.limits.is_empty() {
             return;
@@ -101,7 +101,7 @@ impl IslandSolver {
         self.run_turns(pass, 1, runner);
     }
 
-    /// Goes on with `solve`: what the rows that limits have got since, and corrections of positions, have not stirred is at rest.
+    /// Resumes `solve` after limits gained rows. Only trees that the new rows or position corrections change are visited by limits.
     pub(in crate::solver) fn resume_by_turns(&mut self, runner: &dyn TaskRunner) {
         if self.contacts.is_empty() && self.limits.is_empty() {
             return;
@@ -113,7 +113,7 @@ impl IslandSolver {
         self.run_turns(Pass::Solve, 0, runner);
     }
 
-    /// Takes turns until a sweep after the first `least` changes little.
+    /// Runs sweeps until one after the first `least` changes little.
     fn run_turns(&mut self, pass: Pass, least: usize, runner: &dyn TaskRunner) {
         let sweeps = self.policy.of_turns(pass);
         let enough = self.enough_energy();
@@ -139,13 +139,13 @@ impl IslandSolver {
         }
     }
 
-    /// Impulses of limits before a sweep or a conjugate step.
+    /// Stores the impulses of limits before a sweep or a conjugate step.
     fn note_limits(&mut self) {
         self.scratch.limits.clear();
         self.scratch.limits.extend(self.limits.iter().map(|row| row.impulse));
     }
 
-    /// Visits the limits, and begins the list of the sweep's impulses with theirs.
+    /// Visits the limits; the impulses of the sweep start with theirs.
     fn take_turn_of_limits(&mut self, pass: Pass) {
         let moving = self.links.len();
         self.scratch.before.clear();
@@ -161,8 +161,8 @@ impl IslandSolver {
         self.scratch.swept.extend_from_slice(&self.velocities[..self.links.len()]);
     }
 
-    /// From the changes of velocities since they were noted, which the contacts made with the bodies' own masses. Of trees in batches
-    /// their turn does it.
+    /// Adds the impulses of contacts, computed from the velocity changes that they made with the bodies' own masses. For trees in batches
+    /// [`Batches::take_turns`] does this.
     fn take_impulses_of_contacts(&mut self) {
         for range in &self.batches.alone {
             for i in range.clone() {
@@ -174,8 +174,8 @@ impl IslandSolver {
         }
     }
 
-    /// Velocities from those before the sweep and the impulses of it, exactly. Trees that have got none are as they were. Gives the
-    /// largest change by what the contacts did not know of.
+    /// Solves velocities exactly from those before the sweep and its impulses. Trees without impulses keep theirs. Returns the largest change
+    /// beside those that contacts made.
     fn take_turn_of_trees(&mut self) -> f32 {
         let Self { batches, impulses, scratch, velocities, dirty, .. } = self;
         let mut velocities =
@@ -213,7 +213,7 @@ impl IslandSolver {
         max(change, of_others)
     }
 
-    /// Goes on in the direction of the last sweeps.
+    /// Makes a conjugate step in the direction of the last sweeps.
     fn step_conjugate(&mut self, energy: f32, runner: &dyn TaskRunner) {
         self.note_limits();
         let Self { contacts, velocities, scratch, dirty, trees, limits, .. } = self;
@@ -234,7 +234,7 @@ impl IslandSolver {
         }
     }
 
-    /// Puts the starting impulses of limits and contacts on the bodies, as if nothing held them.
+    /// Applies the warm start of limits and contacts to the bodies as if they were free.
     pub(in crate::solver) fn warm_start_by_turns(&mut self, runner: &dyn TaskRunner) {
         self.reset_impulses();
         for row in &mut self.limits {
@@ -255,7 +255,7 @@ impl IslandSolver {
         }
     }
 
-    /// True if a link is part of a tree of joints.
+    /// True if a body is part of a tree with joints.
     pub(in crate::solver) fn is_jointed(&self, body: u32) -> bool {
         self.coupling != Coupling::Free
             && self.links.get(body as usize).is_some_and(|link| {

@@ -1,11 +1,11 @@
 //! Batches: joint trees of one shape, up to eight side by side, one in each lane.
 //!
-//! Factor and solve are those of [`tree`](crate::solver::articulation::tree), but the elimination of a joint is kept as it is, a pivot and what it couples,
-//! instead of as 6×6 matrices of a link: in lanes that is the shorter way. A shape is which link hangs on which and how many
-//! rotations each joint holds, so that figures of one kind share a batch, whatever their sizes and poses.
+//! Factor and solve are those of [`tree`](crate::solver::articulation::tree), but a joint's elimination is stored as its pivot and coupling
+//! instead of as 6×6 matrices of a link, which needs fewer operations in lanes. A shape is the parent of each link and the number of rotations that each
+//! joint holds, so figures of one kind share a batch whatever their sizes and poses.
 //!
-//! Heaps of figures are solved so ([`Coupling::Turns`](crate::solver::Coupling)). Trees that are held by fixed bodies, that have motors, or
-//! joints that do not hold a point, are solved one by one.
+//! Islands solved by [turns](crate::solver::Coupling::Turns) use batches. Trees held by fixed bodies, with motors, or with joints that do not
+//! hold a point, are solved one by one.
 
 mod answer;
 mod factor;
@@ -27,20 +27,20 @@ use sinew_math::{dispatch, max};
 use solve::{SolveBatch, Way};
 use turn::TurnOfBatch;
 
-/// Batches, from the last one on, in which room is looked for: more would cost more than half-empty ones where all shapes differ.
+/// Number of last batches searched for a free lane. A longer search costs more than half-empty batches where all shapes differ.
 const OPEN: usize = 16;
-/// Most links of a tree in a batch: what the factor knows of them lies on the stack.
+/// Most links of a tree in a batch: the factor keeps their inertias on the stack.
 const MOST_LINKS: usize = 32;
 
 /// Batches of an island.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Batches {
-    /// Batches in use, and memory of earlier steps behind them.
+    /// Batches in use, then unused ones whose memory is kept.
     batches: Vec<Batch>,
     used: usize,
     /// Batch and lane of each tree; `NONE` of those that are solved alone.
     places: Vec<(u32, u32)>,
-    /// Links of the trees that are solved alone.
+    /// Ranges of links of the trees that are solved one by one.
     pub alone: Vec<Range<usize>>,
     shape: Vec<Site>,
     /// Memory for solves.
@@ -67,7 +67,7 @@ pub(in crate::solver) struct Batch {
 }
 
 impl Batches {
-    /// For so many trees, also if there are none now: memory goes on to the next island.
+    /// Reserves memory for so many trees; the next island may have them.
     pub fn make_room(&mut self, trees: usize) {
         self.places.clear();
         self.places.reserve(trees);
@@ -75,7 +75,7 @@ impl Batches {
         self.alone.reserve(trees + 1);
     }
 
-    /// Begins with none: all trees are solved alone.
+    /// Removes all batches: all trees are solved one by one.
     pub fn clear(&mut self, links: usize) {
         self.used = 0;
         self.ways.resize(MOST_LINKS, Way::NONE);
@@ -84,7 +84,7 @@ impl Batches {
         self.alone.push(0..links);
     }
 
-    /// Puts all trees that can share a batch into one.
+    /// Forms batches of the trees that can share one.
     pub fn form(&mut self, links: &[Link], joints: &[SolverJoint], trees: &[Range<usize>]) {
         self.clear(links.len());
         self.alone.clear();
@@ -120,7 +120,7 @@ impl Batches {
         }
     }
 
-    /// Makes `shape` that of a tree. False if it cannot be in a batch.
+    /// Reads the shape of a tree into `shape`. False if it cannot be in a batch.
     fn read_shape(&mut self, links: &[Link], joints: &[SolverJoint], range: &Range<usize>) -> bool {
         self.shape.clear();
         if range.len() > MOST_LINKS {
@@ -143,7 +143,7 @@ impl Batches {
         true
     }
 
-    /// Another batch, of the shape that was read.
+    /// Opens another batch of the shape that was read.
     fn open(&mut self) -> usize {
         if self.used == self.batches.len() {
             let (trees, first) = ([0; WIDTH], [0; WIDTH]);
@@ -168,8 +168,8 @@ impl Batches {
         }
     }
 
-    /// Trees take on what impulses of limits, and of contacts in this sweep, make of the velocities before it; rows of limits
-    /// learn how far they moved. `impulses` are those of limits, and get those of contacts. Gives the largest change that the contacts did not know of.
+    /// Solves the trees for the impulses of limits and contacts of this sweep, from the velocities before it, and marks how far they moved.
+    /// `impulses` holds those of limits; those of contacts are added. Returns the largest change beside those that contacts made.
     pub fn take_turns(
         &mut self,
         impulses: &mut [Vec6],
@@ -184,8 +184,8 @@ impl Batches {
         most
     }
 
-    /// Makes columns, `stride` apart from each other, the velocity changes of all links of a tree from impulses: each column from those
-    /// on one or two links, which are given with their places. False if the tree is solved alone.
+    /// Writes columns, `stride` apart: the velocity changes of all links of a tree from impulses on one or two links, given with their
+    /// positions. False if the tree is solved alone.
     pub fn answer(
         &mut self,
         tree: u32,
@@ -199,7 +199,7 @@ impl Batches {
         true
     }
 
-    /// Takes on arms, axes and inertias at the present pose, and factors all trees.
+    /// Reads arms, axes and inertias at the current poses and factors all trees.
     pub fn factor(&mut self, links: &[Link], joints: &[SolverJoint], bodies: &[SolverBody]) {
         for batch in &mut self.batches[..self.used] {
             batch.gather(links, joints, bodies);
@@ -207,7 +207,7 @@ impl Batches {
         }
     }
 
-    /// True of a tree that shares a batch.
+    /// True for a tree in a batch.
     pub fn have(&self, tree: usize) -> bool {
         self.places.get(tree).is_some_and(|place| place.0 != NONE)
     }

@@ -10,12 +10,12 @@ use crate::spatial::Vec6;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
 
-/// Trees take on what impulses of limits, and of contacts in this sweep, make of the velocities before it; rows of limits learn
-/// how far they moved. Gives the largest change that the contacts did not know of.
+/// Solves the trees of a batch for the impulses of limits and contacts of this sweep, from the velocities before it, and marks how far they
+/// moved. Returns the largest change beside those that contacts made.
 pub(super) struct TurnOfBatch<'a, 'b> {
     pub batch: &'a Batch,
     pub ways: &'a mut [Way],
-    /// Impulses of limits; those of contacts, which are read from what they changed, are added.
+    /// Impulses of limits; those of contacts, computed from their velocity changes, are added.
     pub impulses: &'a mut [Vec6],
     pub velocities: &'a mut TurnVelocities<'b>,
     pub dirty: &'a mut DirtyRows,
@@ -64,7 +64,7 @@ impl Kernel for TurnOfBatch<'_, '_> {
     }
 }
 
-/// True if some tree has got an impulse in this sweep.
+/// True if an impulse acted on a tree in this sweep.
 #[inline(always)]
 fn is_pushed<L: Lanes>(batch: &Batch, impulses: &[Vec6], swept: &[Vec6], velocities: &[Vec6]) -> bool {
     let none = L::splat(0.0);

@@ -1,0 +1,304 @@
+//! Characters that live in a world of Python's.
+
+use crate::arrays::{array, floats, poses, push_pose, vec3};
+use crate::bake::{event_name, state_name};
+use crate::drive::{Drive, body_named};
+use crate::errors::{bad, guarded, refused};
+use crate::world::World;
+use numpy::{PyArray1, PyArrayDyn};
+use pyo3::prelude::*;
+use sinew::math::{Affine, Transform, Vec3};
+use sinew::physics::BodyId;
+use sinew::ragdoll::{CharacterDef, Detail, Grab, Grip, Preset};
+use std::sync::Arc;
+
+/// Character in a world: it follows the world with every step.
+#[pyclass(frozen, module = "sinew")]
+pub struct LiveCharacter {
+    pub world: Py<World>,
+    /// Place in the world's list.
+    pub index: usize,
+    pub def: Arc<CharacterDef>,
+}
+
+impl LiveCharacter {
+    /// Reads the character; `ValueError` once it was taken out.
+    fn read<T>(&self, py: Python<'_>, read: impl FnOnce(&sinew::ragdoll::Character) -> T) -> PyResult<T> {
+        let world = self.world.borrow(py);
+        let character = world.characters[self.index].as_ref();
+        Ok(read(character.ok_or_else(|| bad("the character was taken out of its world"))?))
+    }
+
+    /// Has the character do something in its world.
+    fn act<T>(
+        &self,
+        py: Python<'_>,
+        act: impl FnOnce(&mut sinew::ragdoll::Character, &mut sinew::physics::World) -> T,
+    ) -> PyResult<T> {
+        let mut world = self.world.borrow_mut(py);
+        let World { world, characters, .. } = &mut *world;
+        let character = characters[self.index].as_mut();
+        let character = character.ok_or_else(|| bad("the character was taken out of its world"))?;
+        refused(|| act(character, world))
+    }
+
+    fn joints<'py>(
+        &self,
+        py: Python<'py>,
+        numbers: Vec<f32>,
+        width: usize,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+        array(py, numbers, &[self.def.rig.joints.len(), width])
+    }
+}
+
+/// One pose out of seven numbers.
+pub fn one_pose(given: &Bound<'_, PyAny>) -> PyResult<Transform> {
+    Ok(poses(&floats(given, &[Some(7)], "pose")?, "pose")?[0])
+}
+
+#[pymethods]
+impl LiveCharacter {
+    /// State: animated, limp, preparing, getting up, flinching or powered.
+    #[getter]
+    fn state(&self, py: Python<'_>) -> PyResult<&'static str> {
+        self.read(py, |character| state_name(character.state()))
+    }
+
+    /// Events of the last step, and of what was done since.
+    #[getter]
+    fn events(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        self.read(py, |character| character.events().iter().map(event_name).collect())
+    }
+
+    /// Place of the character, (7,).
+    #[getter]
+    fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let mut numbers = Vec::new();
+        self.read(py, |character| push_pose(&mut numbers, &character.world_from_character()))?;
+        Ok(PyArray1::from_vec(py, numbers))
+    }
+
+    /// Places of all joints in their parents, (joints, 3), units of the file.
+    #[getter]
+    fn translations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+        let numbers = self.read(py, |character| {
+            character.pose().iter().flat_map(|joint| joint.translation.to_array()).collect()
+        })?;
+        self.joints(py, numbers, 3)
+    }
+
+    /// Rotations of all joints in their parents, (joints, 4), x y z w.
+    #[getter]
+    fn rotations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+        let numbers = self.read(py, |character| {
+            let rotations = character.pose().iter().map(|joint| joint.rotation);
+            rotations.flat_map(|q| [q.x, q.y, q.z, q.w]).collect()
+        })?;
+        self.joints(py, numbers, 4)
+    }
+
+    /// Places of all joints in the world, (joints, 3), metres.
+    #[getter]
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+        let numbers = self.read(py, |character| {
+            let mut model: Vec<Affine> = Vec::new();
+            let root = character.world_from_model();
+            sinew::anim::local_to_model(&self.def.rig, character.pose(), &root, &mut model);
+            model.iter().flat_map(|joint| joint.translation.to_array()).collect()
+        })?;
+        self.joints(py, numbers, 3)
+    }
+
+    /// Matrices of a skin, (joints of the skin, 3, 4): from the mesh's bind pose to the world, `alpha` between the last step and this.
+    #[pyo3(signature = (skin=0, *, alpha=1.0))]
+    fn skin_matrices<'py>(
+        &self,
+        py: Python<'py>,
+        skin: usize,
+        alpha: f32,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+        if skin >= self.def.rig.skins.len() {
+            return Err(bad(format!("there is no skin {skin}, but {}", self.def.rig.skins.len())));
+        }
+        let mut palette = Vec::new();
+        self.read(py, |character| character.skin_palette(skin, alpha, &mut palette))?;
+        let count = palette.len();
+        array(py, palette.into_iter().flatten().collect(), &[count, 3, 4])
+    }
+
+    /// Ids of its bodies in the world, in the order of `Ragdoll.roles`; none where it has no bodies there.
+    #[getter]
+    fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u64>>> {
+        let ids = self.read(py, |character| character.bodies().iter().map(|id| id.to_bits()).collect())?;
+        Ok(PyArray1::from_vec(py, ids))
+    }
+
+    /// Has it go at a velocity over the ground, m/s; `None`: as its clips go.
+    #[pyo3(signature = (velocity))]
+    fn set_move(&self, py: Python<'_>, velocity: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let velocity = velocity.map(|velocity| vec3(velocity, "velocity")).transpose()?;
+        self.act(py, |character, _| match velocity {
+            Some(velocity) => character.set_move(velocity),
+            None => character.follow_clips(),
+        })
+    }
+
+    /// Has it turn to look along a direction.
+    fn face(&self, py: Python<'_>, direction: &Bound<'_, PyAny>) -> PyResult<()> {
+        let direction = vec3(direction, "direction")?;
+        self.act(py, |character, _| character.face(direction))
+    }
+
+    /// Has it jump in the next step.
+    fn jump(&self, py: Python<'_>) -> PyResult<()> {
+        self.act(py, |character, world| character.jump(world))
+    }
+
+    /// Hits a body, by role or joint, with an impulse in N·s; gives its work, J.
+    fn hit(&self, py: Python<'_>, bone: &str, impulse: &Bound<'_, PyAny>) -> PyResult<f32> {
+        let (body, impulse) = (body_named(&self.def, bone)?, vec3(impulse, "impulse")?);
+        self.act(py, |character, world| character.hit(world, body, impulse))
+    }
+
+    /// Lets the bodies take over.
+    fn go_limp(&self, py: Python<'_>) -> PyResult<()> {
+        self.act(py, |character, world| character.go_limp(world))
+    }
+
+    /// Has all of it moved in another way: animated, flinching, powered or limp.
+    fn set_preset(&self, py: Python<'_>, preset: &str) -> PyResult<()> {
+        let preset = match preset {
+            "animated" => Preset::Animated,
+            "flinching" => Preset::Flinching,
+            "powered" => Preset::Powered,
+            "limp" => Preset::Limp,
+            other => {
+                return Err(bad(format!("a preset is animated, flinching, powered or limp, not '{other}'")));
+            }
+        };
+        self.act(py, |character, world| character.set_preset(world, preset))
+    }
+
+    /// Has part of it moved in another way, from now on; the time of the drive does nothing.
+    fn set_drive(&self, py: Python<'_>, drive: &Drive) -> PyResult<()> {
+        let part = drive.part(&self.def)?;
+        self.act(py, |character, world| character.set_drive(world, part, drive.mode, drive.half_life))
+    }
+
+    /// Gives it back to its looped clip at `phase` seconds, at a pose, within so many seconds.
+    #[pyo3(signature = (pose, *, phase=0.0, seconds=0.5))]
+    fn return_to_clip(
+        &self,
+        py: Python<'_>,
+        pose: &Bound<'_, PyAny>,
+        phase: f32,
+        seconds: f32,
+    ) -> PyResult<()> {
+        let place = one_pose(pose)?;
+        self.act(py, |character, world| character.return_to_clip(world, place, phase, seconds))
+    }
+
+    /// Puts it elsewhere at once.
+    fn teleport(&self, py: Python<'_>, pose: &Bound<'_, PyAny>) -> PyResult<()> {
+        let place = one_pose(pose)?;
+        self.act(py, |character, world| character.teleport(world, place))
+    }
+
+    /// Moves it, limp, out of static shapes that it is deep in; false if it is in none.
+    fn clear(&self, py: Python<'_>) -> PyResult<bool> {
+        self.act(py, |character, world| character.clear(world))
+    }
+
+    /// Has a bone hold a dynamic body of the world; `pose` is that of the held body in the bone's. Gives the joint's id.
+    #[pyo3(signature = (bone, body, *, pose=None, drops=false))]
+    fn hold(
+        &self,
+        py: Python<'_>,
+        bone: &str,
+        body: u64,
+        pose: Option<&Bound<'_, PyAny>>,
+        drops: bool,
+    ) -> PyResult<u64> {
+        body_named(&self.def, bone)?;
+        let body = self.world.borrow(py).body(body)?;
+        let bone_from_held = pose.map(one_pose).transpose()?.unwrap_or(Transform::IDENTITY);
+        let grip = Grip { bone_from_held, drops, ..Grip::default() };
+        Ok(self.act(py, |character, world| character.hold(world, bone, body, &grip))?.to_bits())
+    }
+
+    /// Has a bone grab a body within reach, also one of another character; gives the joint's id, or None out of reach.
+    #[pyo3(signature = (bone, body, *, max_force=1300.0, reach=0.25))]
+    fn grab(
+        &self,
+        py: Python<'_>,
+        bone: &str,
+        body: u64,
+        max_force: f32,
+        reach: f32,
+    ) -> PyResult<Option<u64>> {
+        body_named(&self.def, bone)?;
+        let body = self.world.borrow(py).body(body)?;
+        let grab = Grab { max_force, reach, ..Grab::HAND };
+        let joint = self.act(py, |character, world| character.grab(world, bone, body, &grab))?;
+        Ok(joint.map(|joint| joint.to_bits()))
+    }
+
+    /// Lets go of what it holds; false if it does not hold that.
+    fn release(&self, py: Python<'_>, body: u64) -> PyResult<bool> {
+        self.act(py, |character, world| character.release(world, BodyId::from_bits(body)))
+    }
+
+    /// Ids of bodies that it holds.
+    #[getter]
+    fn held<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u64>>> {
+        let ids = self.read(py, |character| character.held().map(BodyId::to_bits).collect())?;
+        Ok(PyArray1::from_vec(py, ids))
+    }
+
+    /// Cuts a limb off, with all below it; gives the ids of its bodies, which stay in the world. None if it was cut off before.
+    fn detach<'py>(&self, py: Python<'py>, bone: &str) -> PyResult<Option<Bound<'py, PyArray1<u64>>>> {
+        body_named(&self.def, bone)?;
+        let limb = self.act(py, |character, world| character.detach(world, bone))?;
+        Ok(limb.map(|limb| PyArray1::from_vec(py, limb.bodies().iter().map(|id| id.to_bits()).collect())))
+    }
+
+    /// Detail: full, hit bodies, keyed or frozen.
+    #[pyo3(signature = (detail))]
+    fn set_level_of_detail(&self, py: Python<'_>, detail: &str) -> PyResult<()> {
+        let detail = match detail {
+            "full" => Detail::Full,
+            "hit_bodies" => Detail::HitBodies,
+            "keyed" => Detail::Keyed,
+            "frozen" => Detail::Frozen,
+            other => {
+                return Err(bad(format!("a detail is full, hit_bodies, keyed or frozen, not '{other}'")));
+            }
+        };
+        self.act(py, |character, world| character.set_level_of_detail(world, detail))
+    }
+
+    /// Starts its springs over at rest.
+    fn reset_springs(&self, py: Python<'_>) -> PyResult<()> {
+        self.act(py, |character, _| character.reset_springs())
+    }
+
+    /// Starts its garments over at rest.
+    fn reset_garments(&self, py: Python<'_>) -> PyResult<()> {
+        self.act(py, |character, world| character.reset_garments(world))
+    }
+
+    /// Takes it out of the world.
+    fn despawn(&self, py: Python<'_>) -> PyResult<()> {
+        let mut world = self.world.borrow_mut(py);
+        let World { world, characters, .. } = &mut *world;
+        let character = characters[self.index].take();
+        let character = character.ok_or_else(|| bad("the character was taken out of its world"))?;
+        guarded(|| character.despawn(world))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let at: Vec3 = self.read(py, |character| character.world_from_character().translation)?;
+        Ok(format!("LiveCharacter({}, at {:.2} {:.2} {:.2})", self.state(py)?, at.x, at.y, at.z))
+    }
+}

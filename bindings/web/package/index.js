@@ -1,0 +1,60 @@
+// Sinew: physics for characters. Call `init` once and wait for it, then use the classes.
+import load, { warmUp } from './wasm/sinew_web.js';
+
+export * from './wasm/sinew_web.js';
+
+/** @type {Promise<void> | undefined} */
+let loading;
+/** @type {WebAssembly.Memory | undefined} */
+let memory;
+
+/** True in Node, where `fetch` opens no files. */
+function isNode() {
+  const { process } = /** @type {any} */ (globalThis);
+  return Boolean(process?.versions?.node) && import.meta.url.startsWith('file:');
+}
+
+/** @param {InitOptions} options */
+async function start({ wasm, warm = true }) {
+  let source = wasm;
+  if (source === undefined && isNode()) {
+    // A name in a variable, so that bundlers for browsers look for no such module.
+    const files = 'node:fs/promises';
+    const { readFile } = await import(/* @vite-ignore */ /* webpackIgnore: true */ files);
+    source = await readFile(new URL('./wasm/sinew_web_bg.wasm', import.meta.url));
+  }
+  const exports = await load(source === undefined ? undefined : { module_or_path: source });
+  memory = exports.memory;
+  if (warm) warmUp();
+}
+
+/**
+ * Options of `init`.
+ * @typedef {object} InitOptions
+ * @property {string | URL | Request | Response | BufferSource | WebAssembly.Module | Promise<Response>} [wasm]
+ *   The program, or where it is. By default it lies beside this file.
+ * @property {boolean} [warm] False: the first falls are slower, since the browser compiles code when it is first called. Default true.
+ */
+
+/**
+ * Loads the program. Every call waits for the same load; one that failed is tried again.
+ * @param {InitOptions} [options]
+ * @returns {Promise<void>}
+ */
+export function init(options = {}) {
+  loading ??= start(options).catch((error) => {
+    loading = undefined;
+    throw error;
+  });
+  return loading;
+}
+
+/**
+ * Bytes of memory that the program has taken. It never gives any back, but uses again what was freed.
+ * @returns {number}
+ */
+export function memoryBytes() {
+  return memory?.buffer.byteLength ?? 0;
+}
+
+export default init;

@@ -1,0 +1,292 @@
+// Sinew for three.js: physics that moves meshes, instances and the bones of any rigged model.
+import { EventDispatcher, Vector3 } from 'three';
+import { World, init } from './index.js';
+import { SinewBody, SinewInstances } from './three/bodies.js';
+import { SinewCharacter } from './three/character.js';
+import { SinewDebug } from './three/debug.js';
+import { SinewDrag } from './three/drag.js';
+import { SinewGeometry } from './three/particles.js';
+
+/** @import { Camera, InstancedMesh, Object3D, Ray, Raycaster } from 'three' */
+/** @import { GLTF } from 'three/addons/loaders/GLTFLoader.js' */
+/** @import { ClothOptions, GrabOptions, PhysicsEvent, QueryOptions, RopeOptions, SoftBallOptions, WorldOptions } from './index.js' */
+/** @import { InitOptions } from './index.js' */
+/** @import { ObjectBodyOptions } from './three/bodies.js' */
+/** @import { SinewCharacterOptions } from './three/character.js' */
+
+export { SinewBody, SinewCharacter, SinewDebug, SinewDrag, SinewGeometry, SinewInstances };
+
+/** Longest frame, seconds: a page that was in the background goes on from where it was. */
+const LONGEST_FRAME = 0.25;
+/** Length of the ray of a pick, metres. */
+const FAR = 1000;
+
+/**
+ * What a ray met.
+ * @typedef {object} Picked
+ * @property {bigint} body Id of the body.
+ * @property {Vector3} point World.
+ * @property {Vector3} normal Out of the body, unit.
+ * @property {number} distance Metres from the origin of the ray.
+ * @property {SinewBody} [object] The body that moves an object, if it is one.
+ * @property {SinewCharacter} [character] The character that it is a part of.
+ * @property {string} [bone] Name of the character's body.
+ * @property {SinewInstances} [instances] The bodies that move instances, if it is one of them.
+ * @property {number} [instance] Index of the instance.
+ */
+
+/**
+ * Physics of a scene of three.js. Metres and seconds; +Y is up.
+ *
+ * Events are those of `PhysicsEvent`; `event.a` and `event.b` are ids, `event.targets` what they belong to.
+ * @extends {EventDispatcher<Record<string, any>>}
+ */
+export class Sinew extends EventDispatcher {
+  /** @type {Set<SinewBody>} */
+  #bodies = new Set();
+  /** @type {Set<SinewInstances>} */
+  #instances = new Set();
+  /** @type {Set<SinewCharacter>} */
+  #characters = new Set();
+  /** @type {Set<SinewGeometry>} */
+  #geometries = new Set();
+  /** @type {Set<SinewDrag>} */
+  #drags = new Set();
+  /** @type {Map<bigint, { object: SinewBody } | { instances: SinewInstances, instance: number }>} What bodies belong to, but for those of characters. */
+  #owners = new Map();
+  /** Types of events that somebody has listened for. */
+  #heard = /** @type {Set<string>} */ (new Set());
+  /** @type {SinewDebug | undefined} */
+  #debug;
+
+  /**
+   * Loads the program and makes a world.
+   * @param {WorldOptions} [options]
+   * @param {InitOptions} [load]
+   */
+  static async create(options, load) {
+    await init(load);
+    return new Sinew(options);
+  }
+
+  /**
+   * A world, once `init` is done.
+   * @param {WorldOptions} [options]
+   */
+  constructor(options) {
+    super();
+    /** The world of bodies, with all its calls. */
+    this.world = new World(options);
+  }
+
+  /**
+   * Lets time pass and moves all objects to where the physics has them. Call it once a frame.
+   * @param {number} seconds Time since the last frame.
+   */
+  update(seconds) {
+    this.world.update(Math.min(Math.max(seconds, 0), LONGEST_FRAME));
+    this.#tell();
+    const { poses } = this.world;
+    for (const body of this.#bodies) body.write(poses);
+    for (const instances of this.#instances) instances.write(poses);
+    for (const character of this.#characters) character.write();
+    for (const geometry of this.#geometries) geometry.write();
+    this.#debug?.update();
+  }
+
+  /**
+   * @template {string} T
+   * @param {T} type
+   * @param {(event: any) => void} listener
+   */
+  addEventListener(type, listener) {
+    this.#heard.add(type);
+    super.addEventListener(type, listener);
+  }
+
+  #tell() {
+    const events = this.world.events();
+    if (events.length === 0) return;
+    /** @type {Map<number, SinewCharacter>} */
+    const characters = new Map();
+    for (const character of this.#characters) characters.set(character.core.index, character);
+    for (const event of events) {
+      if ('character' in event) {
+        const { character: index, ...rest } = event;
+        const character = characters.get(index);
+        character?.dispatchEvent({ ...rest });
+        if (this.#heard.has(event.type)) this.dispatchEvent({ ...rest, character });
+      } else if (this.#heard.has(event.type)) {
+        this.dispatchEvent({ ...event, targets: 'a' in event ? [this.owner(event.a), this.owner(event.b)] : [] });
+      }
+    }
+  }
+
+  /**
+   * What a body belongs to.
+   * @param {bigint} body
+   * @returns {{ object?: SinewBody, character?: SinewCharacter, bone?: string, instances?: SinewInstances, instance?: number }}
+   */
+  owner(body) {
+    const known = this.#owners.get(body);
+    if (known) return known;
+    for (const character of this.#characters) {
+      const bone = character.core.bone(body);
+      if (bone !== undefined) return { character, bone };
+    }
+    return {};
+  }
+
+  /**
+   * Puts a character into the world that moves a model which three's loader has loaded. `bytes` are those of the file, of which the ragdoll is
+   * built, once for all characters of one `gltf`. The first moves `gltf.scene`, each further one a copy: add its `object` to your scene.
+   * @param {GLTF} gltf
+   * @param {ArrayBuffer | Uint8Array} bytes
+   * @param {SinewCharacterOptions} [options]
+   */
+  character(gltf, bytes, options = {}) {
+    const character = new SinewCharacter(this.world, gltf, bytes, options);
+    this.#characters.add(character);
+    character.write();
+    return character;
+  }
+
+  /**
+   * Gives a mesh, or an object of meshes, a body that moves it. The object is where it is to begin.
+   * @param {Object3D} object
+   * @param {ObjectBodyOptions} [options]
+   */
+  body(object, options = {}) {
+    const body = new SinewBody(this.world, object, options);
+    this.#bodies.add(body);
+    this.#owners.set(body.id, { object: body });
+    return body;
+  }
+
+  /**
+   * Gives an object a static body: a wall, a level. Its shapes are those of its meshes.
+   * @param {Object3D} object
+   * @param {Omit<ObjectBodyOptions, 'kind'>} [options]
+   */
+  collider(object, options = {}) {
+    return this.body(object, { ...options, kind: 'static' });
+  }
+
+  /**
+   * Gives each instance of a mesh a body that moves it.
+   * @param {InstancedMesh} object
+   * @param {ObjectBodyOptions} [options]
+   */
+  instances(object, options = {}) {
+    const instances = new SinewInstances(this.world, object, options);
+    this.#instances.add(instances);
+    instances.ids.forEach((id, instance) => this.#owners.set(id, { instances, instance }));
+    return instances;
+  }
+
+  /**
+   * Adds a level ground without an end, and returns the id of its body.
+   * @param {number} [height] Metres.
+   */
+  ground(height = 0) {
+    return this.world.addBody({ kind: 'static', position: [0, height, 0], shape: { type: 'halfSpace' } });
+  }
+
+  /**
+   * Adds terrain: heights of a grid, row after row along x, around its origin; returns the id of its body.
+   * @param {{ columns: number, rows: number, spacing: number, heights: ArrayLike<number> }} field
+   * @param {Vector3} [position]
+   */
+  heightField(field, position = new Vector3()) {
+    return this.world.addBody({ kind: 'static', position, shape: { type: 'heightField', ...field } });
+  }
+
+  /**
+   * Adds cloth, and returns the geometry of a mesh for it.
+   * @param {ClothOptions} options
+   */
+  cloth(options) {
+    return this.#geometry(new SinewGeometry(this.world.addCloth(options)));
+  }
+
+  /**
+   * Adds a soft ball, and returns the geometry of a mesh for it.
+   * @param {SoftBallOptions} options
+   */
+  softBall(options) {
+    return this.#geometry(new SinewGeometry(this.world.addSoftBall(options)));
+  }
+
+  /**
+   * Adds a rope, and returns the geometry of a line for it.
+   * @param {RopeOptions} options
+   */
+  rope(options) {
+    return this.#geometry(new SinewGeometry(this.world.addRope(options)));
+  }
+
+  /** @param {SinewGeometry} geometry */
+  #geometry(geometry) {
+    this.#geometries.add(geometry);
+    return geometry;
+  }
+
+  /**
+   * First body on a ray: of a raycaster that was set from the pointer, for example.
+   * @param {Ray | Raycaster} ray
+   * @param {QueryOptions & { far?: number }} [options] `far`: metres, 1000 by default.
+   * @returns {Picked | undefined}
+   */
+  pick(ray, { far = FAR, ...options } = {}) {
+    const { origin, direction } = 'ray' in ray ? ray.ray : ray;
+    const hit = this.world.castRay(origin, direction.clone().setLength(far), options);
+    if (!hit) return undefined;
+    return {
+      body: hit.body,
+      point: new Vector3().copy(hit.point),
+      normal: new Vector3().copy(hit.normal),
+      distance: hit.fraction * far,
+      ...this.owner(hit.body),
+    };
+  }
+
+  /**
+   * Lets the pointer drag bodies and limbs.
+   * @param {Camera} camera
+   * @param {HTMLElement} element The canvas.
+   * @param {GrabOptions} [options]
+   */
+  drag(camera, element, options = {}) {
+    const drag = new SinewDrag(this, camera, element, options);
+    this.#drags.add(drag);
+    return drag;
+  }
+
+  /** What the physics sees, as lines: add it to your scene. */
+  get debug() {
+    this.#debug ??= new SinewDebug(this.world);
+    return this.#debug;
+  }
+
+  /**
+   * Takes something of this world's out, and frees it.
+   * @param {SinewBody | SinewInstances | SinewCharacter | SinewGeometry | SinewDrag} member
+   */
+  remove(member) {
+    const sets = /** @type {Set<any>[]} */ ([this.#bodies, this.#instances, this.#characters, this.#geometries, this.#drags]);
+    if (!sets.some((set) => set.delete(member))) return;
+    if (member instanceof SinewBody) this.#owners.delete(member.id);
+    if (member instanceof SinewInstances) member.ids.forEach((id) => this.#owners.delete(id));
+    member.dispose();
+  }
+
+  /** Frees the world and all that is in it; models and meshes stay where they are. */
+  dispose() {
+    for (const set of [this.#drags, this.#characters, this.#bodies, this.#instances, this.#geometries]) {
+      for (const member of /** @type {Set<any>} */ (set)) this.remove(member);
+    }
+    this.#debug?.dispose();
+    this.#debug = undefined;
+    this.world.free();
+  }
+}

@@ -1,0 +1,11 @@
+//! Robots of URDF: a model that a world takes, or refused with a place.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use sinew_formats::read_urdf;
+use sinew_physics::{World, WorldDef};
+
+fuzz_target!(|bytes: &[u8]| match read_urdf(bytes) {
+    Err(error) => assert!(!error.what.is_empty() && !error.where_.is_empty(), "{error}"),
+    Ok(model) => drop(model.spawn(&mut World::new(WorldDef::default()))),
+});

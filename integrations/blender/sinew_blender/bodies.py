@@ -1,0 +1,79 @@
+"""The definition on the armature, and the values of bones that it shows."""
+
+import json
+import math
+
+from . import bridge, properties
+from . import skeleton as sk
+from .skeleton import SinewError
+
+
+def store(arm, ragdoll):
+    """Keeps a ragdoll on the armature and fills in the bones' panels."""
+    arm.sinew.definition = ragdoll.to_json()
+    arm.sinew.fitted = arm.sinew.definition
+    arm.sinew.place = sk.text_of(sk.straight(arm.matrix_world))
+    show(arm)
+
+
+def show(arm):
+    """Fills in the bones' panels from the definition."""
+    by_bone = {body["bone"]: body for body in json.loads(arm.sinew.definition)["bodies"]} if arm.sinew.definition else {}
+    with properties.filling():
+        for bone in arm.pose.bones:
+            body, settings = by_bone.get(bone.name), bone.sinew
+            settings.has_body = body is not None
+            settings.has_swing = settings.has_twist = False
+            if body is None:
+                continue
+            settings.mass = body["mass"]["kg"]
+            settings.size = _size(arm, body)
+            joint = body.get("joint") or {}
+            settings.friction = joint.get("friction_torque", 0.0)
+            limits = joint.get("limits_deg") or {}
+            settings.has_swing = "swing_y" in limits
+            settings.has_twist = "twist" in limits
+            for key in ("swing_y", "swing_z", "twist"):
+                if key in limits:
+                    setattr(settings, key, [math.radians(x) for x in limits[key]])
+
+
+def _size(arm, body):
+    """Size of a body's shape against the one that was fitted."""
+    fitted = next((b for b in json.loads(arm.sinew.fitted)["bodies"] if b["bone"] == body["bone"]), body)
+    own, was = _extent(body["shape"]), _extent(fitted["shape"])
+    return own / was if was > 0 else 1.0
+
+
+def _extent(shape):
+    if shape["type"] == "box":
+        return shape["half_extents"][0]
+    return shape.get("radius", shape.get("radius_bottom", 0.0))
+
+
+def edit(arm, name):
+    """Brings the values of a bone's panel into the definition."""
+    if not arm.sinew.definition:
+        return
+    settings = arm.pose.bones[name].sinew
+    ragdoll = bridge.ragdoll(arm)
+    if name not in ragdoll.bones:
+        return
+    body = next(b for b in json.loads(arm.sinew.definition)["bodies"] if b["bone"] == name)
+    wanted = {"mass": settings.mass, "scale": settings.size / _size(arm, body)}
+    if settings.has_swing:
+        # Zero lies within a swing.
+        wanted["swing_y"], wanted["swing_z"] = (
+            (min(v[0], 0.0), max(v[1], 0.0)) for v in (settings.swing_y, settings.swing_z)
+        )
+    if settings.has_twist:
+        low, high = settings.twist
+        wanted["twist"] = (min(low, high), max(low, high))
+    if body.get("joint"):
+        wanted["friction_torque"] = settings.friction
+    try:
+        changed = bridge.asked(ragdoll.edited, name, **wanted)
+    except SinewError:
+        # What cannot be is shown as it was.
+        return show(arm)
+    arm.sinew.definition = changed.to_json()

@@ -1,0 +1,121 @@
+"""FK controls of Rigify: a fall that a proxy holds becomes keys on them."""
+
+import re
+
+import bpy
+
+from . import actions, keys
+from . import skeleton as sk
+from .skeleton import SinewError
+
+# Passes over all controls at a frame: each sees where the ones above it have come.
+PASSES = 2
+
+
+def control_of(arm, deform):
+    """The FK control that moves a deform bone as a whole, or None."""
+    name = sk.plain(deform)
+    stem, side = re.fullmatch(r"(.+?)(\.[LR])?", name).groups()
+    side = side or ""
+    for candidate in (f"{stem}_fk{side}", f"{stem}{side}"):
+        bone = arm.data.bones.get(candidate)
+        if bone is not None and not bone.use_deform:
+            return candidate
+    return None
+
+
+def controls(arm, skeleton):
+    """Pairs of a control and the deform bone that it moves, from the root down."""
+    found, root = [], skeleton.names[0]
+    if arm.data.bones.get("torso") is not None:
+        found.append(("torso", root))
+    for deform in skeleton.names:
+        control = control_of(arm, deform)
+        if control is not None and all(c != control for c, _ in found):
+            found.append((control, deform))
+    return found
+
+
+def switches(arm):
+    """Bones with a switch from IK (0) to FK (1)."""
+    return [b.name for b in arm.pose.bones if "IK_FK" in b.keys()]
+
+
+def bake(context, arm):
+    """Keys the FK controls so that the deform bones are where the proxy has them; returns the largest distance, Blender's length."""
+    proxy = bpy.data.objects.get(keys.proxy_name(arm))
+    if proxy is None or arm.sinew.keyed != "PROXY":
+        raise SinewError("Simulate with a proxy first")
+    skeleton = sk.skeleton_of(arm)
+    pairs = controls(arm, skeleton)
+    if len(pairs) < 3 or not switches(arm):
+        raise SinewError(f"{arm.name} has no FK controls of Rigify")
+    first, last = (int(x) for x in proxy.animation_data.action.frame_range)
+    back = _back(arm, skeleton.names[0])
+    last = last if back is None else min(last, back - 1)
+    at = context.scene.frame_current
+    goals = {}
+    for frame in range(first, last + 1):
+        context.scene.frame_set(frame)
+        evaluated = proxy.evaluated_get(context.evaluated_depsgraph_get())
+        goals[frame] = {n: evaluated.matrix_world @ evaluated.pose.bones[n].matrix for n in skeleton.names}
+    # The Action with the influences is a copy of the user's: the controls' keys go into it, the influences out.
+    action = arm.animation_data.action
+    made, own = arm.sinew.made_action, arm.sinew.own_action
+    keys.keep_pose(arm, [c for c, _ in pairs] + switches(arm))
+    keys.remove_proxy(arm)
+    actions.remove(action, arm, lambda path: f'constraints["{keys.CONSTRAINT}"]' in path)
+    for name in switches(arm):
+        fcurve = actions.curve(action, arm, keys.bone_path(name, '["IK_FK"]'), 0, name)
+        value = float(arm.pose.bones[name]["IK_FK"])
+        frames = [float(first - 1), float(first)] + ([float(back)] if back is not None else [])
+        actions.write(fcurve, frames, [value, 1.0] + ([value] if back is not None else []), "CONSTANT")
+    worst = _key(context, arm, action, pairs, goals, first, last)
+    arm.sinew.made_action, arm.sinew.own_action, arm.sinew.keyed = made, own, "FK"
+    context.scene.frame_set(at)
+    return worst
+
+
+def _back(arm, name):
+    """Frame at which the influence ends, or None."""
+    path = keys.bone_path(name, f'constraints["{keys.CONSTRAINT}"].influence')
+    for fcurve in actions.curves(arm.animation_data.action, arm):
+        if fcurve.data_path == path:
+            points = fcurve.keyframe_points
+            return int(points[-1].co[0]) if points[-1].co[1] == 0.0 and len(points) > 2 else None
+    return None
+
+
+def _key(context, arm, action, pairs, goals, first, last):
+    rest = {c: arm.data.bones[d].matrix_local.inverted() @ arm.data.bones[c].matrix_local for c, d in pairs}
+    rows = {c: [] for c, _ in pairs}
+    own = {c: {what: tuple(getattr(arm.pose.bones[c], what)) for what in keys.CHANNELS} for c, _ in pairs}
+    worst = 0.0
+    for frame in range(first, last + 1):
+        context.scene.frame_set(frame)
+        inverse = arm.matrix_world.inverted()
+        for _ in range(PASSES):
+            for control, deform in pairs:
+                bone = arm.pose.bones[control]
+                bone.matrix = sk.unscaled(inverse @ goals[frame][deform]) @ rest[control]
+                context.view_layer.update()
+        evaluated = arm.evaluated_get(context.evaluated_depsgraph_get())
+        for control, deform in pairs:
+            now = (evaluated.matrix_world @ evaluated.pose.bones[deform].matrix).translation
+            worst = max(worst, (now - goals[frame][deform].translation).length)
+            bone = arm.pose.bones[control]
+            rows[control].append((tuple(bone.location), bone.matrix_basis.to_quaternion()))
+    numbers = [float(f) for f in range(first, last + 1)]
+    for control, kept in rows.items():
+        bone = arm.pose.bones[control]
+        turns = [kept[0][1]]
+        for _, q in kept[1:]:
+            turns.append(-q if q.dot(turns[-1]) < 0 else q)
+        turned, path = keys.turns(turns, bone.rotation_mode)
+        channels = [(path, i, [t[i] for t in turned]) for i in range(len(turned[0]))]
+        if not all(bone.lock_location):
+            channels += [("location", i, [place[i] for place, _ in kept]) for i in range(3)]
+        for what, i, values in channels:
+            fcurve = actions.curve(action, arm, keys.bone_path(control, what), i, control)
+            actions.insert(fcurve, numbers, values, own[control][what][i])
+    return worst

@@ -1,0 +1,236 @@
+"""From the user's animation to keys: sample, simulate, key."""
+
+import json
+import threading
+from dataclasses import dataclass, field
+
+import bpy
+
+from . import actions, bridge, keys, stage
+from . import skeleton as sk
+from .skeleton import SinewError
+
+# States in which the user's animation alone has the pose.
+OWN = {"animated"}
+
+
+@dataclass
+class Fall:
+    """Simulated frames from the hand-over until the return, or the end."""
+
+    first: int
+    frames: list
+    worlds: list
+    carriers: list
+    # Frame from which the user's animation has the pose again, or None.
+    back: object = None
+
+
+@dataclass
+class Job:
+    """A simulation that was prepared on Blender's thread and runs on any."""
+
+    arms: list
+    loaded: list
+    takes: list
+    actors: list
+    stage: dict
+    first: int
+    last: int
+    fps: float
+    share: float = 0.0
+    cancelled: bool = False
+    baked: object = None
+    error: object = None
+    thread: object = field(default=None, repr=False)
+
+    def run(self):
+        try:
+            self.baked = bridge.asked(bridge.engine().bake, self.actors, progress=self.told, **self.stage)
+        except Exception as error:  # To be told on Blender's thread.
+            self.error = error
+
+    def told(self, share):
+        self.share = share
+        return not self.cancelled
+
+    def start(self):
+        self.thread = threading.Thread(target=self.run, name="Sinew", daemon=True)
+        self.thread.start()
+
+
+def frames_of(scene):
+    """First and last frame of the simulation."""
+    settings = scene.sinew
+    first, last = (settings.frame_start, settings.frame_end) if settings.use_range else (scene.frame_start, scene.frame_end)
+    if last <= first:
+        raise SinewError(f"The frame range ends at {last}, before it begins at {first}")
+    return first, last
+
+
+def prepare(context, arms):
+    """Reads armatures, animation and world; what only Blender's own thread may do."""
+    return sk.whole(preparing(context, arms))
+
+
+def preparing(context, arms):
+    """`prepare` step by step: a generator of the share that is done."""
+    scene, sinew = context.scene, bridge.engine()
+    settings = scene.sinew
+    first, last = frames_of(scene)
+    fps = scene.render.fps / scene.render.fps_base
+    at = settings.handover
+    if settings.by == "FRAME" and not first <= at <= last:
+        raise SinewError(f"The hand-over, frame {at}, is outside of the range {first} to {last}")
+    if settings.use_return and not max(at, first) < settings.return_frame <= last:
+        raise SinewError(f"The return, frame {settings.return_frame}, is not between hand-over and end")
+    loaded, takes, actors, units = [], [], [], []
+    for arm in arms:
+        with own_animation(arm):
+            take = yield from sk.sampling(arm, sk.skeleton_of(arm), first, last)
+        one = bridge.load(arm, take.frames, fps)
+        ragdoll = bridge.ragdoll(arm) if arm.sinew.definition else bridge.build(arm)
+        one.unit = ragdoll.unit_scale
+        falling = None
+        if settings.stiffness > 0:
+            falling = sinew.Drive("powered", strength=settings.stiffness)
+        character = bridge.asked(
+            one.file.character, ragdoll, clip=bridge.CLIP, exact=True, gets_up=settings.gets_up, falling=falling
+        )
+        given = {"hits": stage.hits(scene, arm, first, fps), "drives": drives(one, take, fps), "topple": settings.push_over}
+        if settings.by == "FRAME":
+            given["limp_at"] = (at - first) / fps
+        if settings.use_return:
+            given["return_at"] = (settings.return_frame - first) / fps
+            given["return_seconds"] = settings.return_blend / fps
+        if not given["hits"] and not given["drives"] and "limp_at" not in given:
+            raise SinewError(f"Nothing fells {arm.name}: add a hit, or choose the hand-over by frame")
+        actors.append(bridge.asked(sinew.Actor, character, pose=character.place_in_file, **given))
+        loaded.append(one)
+        takes.append(take)
+        units.append(ragdoll.unit_scale)
+    if max(units) > 1.001 * min(units):
+        raise SinewError("The armatures are of different units: simulate them one by one, or set their heights")
+    world = {
+        "seconds": (last - first) / fps,
+        "fps": fps,
+        "world": stage.world(scene, arms, first, last, fps, units[0]),
+        "wind": stage.wind(scene),
+        "gravity": gravity(scene),
+    }
+    return Job(arms, loaded, takes, actors, world, first, last, fps)
+
+
+def gravity(scene):
+    g = sk.TO_Y.to_3x3() @ scene.gravity if scene.use_gravity else (0.0, 0.0, 0.0)
+    return tuple(g)
+
+
+class own_animation:
+    """The user's animation without what an earlier simulation left over it: for the time of a sample."""
+
+    def __init__(self, arm):
+        self.arm, self.muted, self.tracks, self.action = arm, [], [], None
+
+    def __enter__(self):
+        arm, data = self.arm, self.arm.animation_data
+        for bone in arm.pose.bones:
+            for c in bone.constraints:
+                if c.name == keys.CONSTRAINT and not c.mute:
+                    c.mute = True
+                    self.muted.append((bone.name, c.name))
+        if data is None:
+            return self
+        if data.action is not None and data.action == arm.sinew.made_action:
+            self.action = data.action
+            keys.put_back(arm)
+        for track in data.nla_tracks:
+            if track.name == keys.TRACK and not track.mute:
+                track.mute = True
+                self.tracks.append(track)
+        if self.tracks:
+            keys.restore_pose(arm)
+        return self
+
+    def __exit__(self, *_):
+        for bone, name in self.muted:
+            self.arm.pose.bones[bone].constraints[name].mute = False
+        for track in self.tracks:
+            track.mute = False
+        if self.action is not None:
+            actions.assign(self.arm, self.action)
+
+
+def drives(loaded, take, fps):
+    """Changes of the bones' modes over time."""
+    sinew, out, last = bridge.engine(), [], {}
+    for index, modes in enumerate(take.modes):
+        for name, mode in modes.items():
+            if last.get(name, "KEYED") == mode:
+                continue
+            last[name] = mode
+            out.append(sinew.Drive(mode.lower(), time=index / fps, bone=name))
+    return out
+
+
+def falls_of(job):
+    """The part of each bake that the bodies have, as frames of Blender."""
+    found = []
+    for loaded, take, baked in zip(job.loaded, job.takes, job.baked):
+        states = baked.states
+        began = next((i for i, state in enumerate(states) if state not in OWN), None)
+        if began is None:
+            raise SinewError("Nothing fell: no hit struck it, and the hand-over is after the end")
+        end, back = len(states), None
+        if bpy.context.scene.sinew.use_return:
+            back = bpy.context.scene.sinew.return_frame
+            end = min(back - job.first, len(states))
+        frames = bridge.model_matrices(baked, loaded)
+        found.append(
+            Fall(job.first + began, frames[began:end], take.worlds[began:end], take.carriers[began:end], back)
+        )
+    return found
+
+
+def write(job, how):
+    """Keys for all characters; returns how each was keyed."""
+    done = []
+    for arm, loaded, take, baked, fall in zip(job.arms, job.loaded, job.takes, job.baked, falls_of(job)):
+        names = loaded.skeleton.names
+        keys.clear(arm)
+        way = how
+        if way == "AUTO":
+            data = arm.animation_data
+            on_tracks = data is not None and data.action is None and any(not t.mute for t in data.nla_tracks)
+            way = "PROXY" if sk.is_driven(arm, names) else "STRIP" if on_tracks else "ACTION"
+        if way == "PROXY":
+            keys.as_proxy(arm, loaded.skeleton, fall)
+        elif way == "STRIP":
+            keys.as_strip(arm, names, fall)
+        else:
+            keys.as_action(arm, names, fall)
+        arm.sinew.keyed = way
+        arm.sinew.report = json.dumps(report(loaded, take, baked, fall, way))
+        done.append(way)
+    return done
+
+
+def report(loaded, take, baked, fall, way):
+    """What became of it, for the panel and for tests: lengths in mm of Blender's unit in metres."""
+    unit = 1e3 * loaded.unit
+    off = 0.0
+    simulated = bridge.model_matrices(baked, loaded)
+    for i in range(fall.first - take.first):
+        for n in loaded.skeleton.names:
+            off = max(off, (simulated[i][n].translation - take.frames[i][n].translation).length * unit)
+    return {
+        "keyed": way,
+        "frames": len(fall.frames),
+        "handover": fall.first,
+        "before_handover_mm": round(off, 4),
+        "verdict": baked.verdict,
+        "reasons": list(baked.reasons),
+        "joint_gap_mm": 1e3 * baked.quality["joint_gap_max_m"],
+        "events": [[round(t, 3), e] for t, e in baked.events],
+        "hash": f"{baked.hash:016x}",
+    }

@@ -1,0 +1,121 @@
+"""The world around the character: colliders, moving ones, ground, wind, hits."""
+
+import bpy
+import numpy as np
+
+from . import bridge
+from . import skeleton as sk
+from .skeleton import TO_Y, SinewError
+
+# Most triangles of one collider.
+MOST_TRIANGLES = 500_000
+# Least change of a matrix by which an object counts as moving, Blender's length.
+MOVES = 1e-6
+
+
+def colliders(scene, arms):
+    """Objects that the characters collide with: those that the user marked, that are no skin of theirs."""
+    own = {ob for arm in arms for ob in sk.skins(arm)}
+    return [ob for ob in scene.objects if ob.type == "MESH" and ob.sinew_body.collides and ob not in own]
+
+
+def _triangles(ob, to_local):
+    """Triangles of the evaluated mesh, Blender's length and Sinew's axes."""
+    evaluated = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    me = evaluated.to_mesh()
+    try:
+        me.calc_loop_triangles()
+        if len(me.loop_triangles) == 0:
+            raise SinewError(f"{ob.name} has no faces to collide with")
+        if len(me.loop_triangles) > MOST_TRIANGLES:
+            raise SinewError(f"{ob.name} has {len(me.loop_triangles)} triangles, more than {MOST_TRIANGLES}: use a simpler mesh")
+        co = np.empty(len(me.vertices) * 3, np.float32)
+        me.vertices.foreach_get("co", co)
+        corners = np.empty(len(me.loop_triangles) * 3, np.uint32)
+        me.loop_triangles.foreach_get("vertices", corners)
+        m = np.array(to_local, np.float64)
+        vertices = co.reshape(-1, 3).astype(np.float64) @ m[:3, :3].T + m[:3, 3]
+        corners = corners.reshape(-1, 3)
+        if to_local.determinant() < 0:
+            corners = corners[:, ::-1]
+        return vertices, corners
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def _is_moving(scene, obs, first, last):
+    """Matrices of the objects at every frame, and which of them move."""
+    at, sub = scene.frame_current, scene.frame_subframe
+    tracks = {ob: [] for ob in obs}
+    animated = [ob for ob in obs if _may_move(ob)]
+    try:
+        for frame in range(first, last + 1) if animated else ():
+            scene.frame_set(frame)
+            for ob in animated:
+                tracks[ob].append(ob.matrix_world.copy())
+    finally:
+        if animated:
+            scene.frame_set(at, subframe=sub)
+    moving = {}
+    for ob in animated:
+        track = np.array([np.array(m) for m in tracks[ob]])
+        if np.abs(track - track[0]).max() > MOVES:
+            moving[ob] = tracks[ob]
+    return moving
+
+
+def _may_move(ob):
+    while ob is not None:
+        if ob.animation_data is not None or ob.constraints or ob.rigid_body is not None:
+            return True
+        ob = ob.parent
+    return False
+
+
+def world(scene, arms, first, last, fps, unit):
+    """Colliders in metres; `unit`: metres of a unit of Blender."""
+    sinew = bridge.engine()
+    made = []
+    settings = scene.sinew
+    if settings.ground:
+        made.append(sinew.Collider.floor(settings.ground_height * unit, friction=settings.ground_friction))
+    found = colliders(scene, arms)
+    moving = _is_moving(scene, found, first, last)
+    for ob in found:
+        friction = ob.sinew_body.friction
+        if ob not in moving:
+            vertices, corners = _triangles(ob, TO_Y @ ob.matrix_world)
+            made.append(bridge.asked(sinew.Collider.mesh, vertices * unit, corners, friction=friction))
+            continue
+        # The scale of the first frame is in the mesh, place and turn of each in the keys.
+        track = [sk.to_sinew(m) for m in moving[ob]]
+        vertices, corners = _triangles(ob, sk.to_sinew(moving[ob][0]).inverted() @ TO_Y @ moving[ob][0])
+        shape = bridge.asked(sinew.Collider.mesh, vertices * unit, corners, friction=friction)
+        poses = np.array([bridge.pose7(bridge.scaled(m, unit)) for m in track])
+        made.append(shape.keyed(np.arange(len(track)) / fps, poses))
+    return made
+
+
+def hits(scene, arm, first, fps):
+    """Hits of empties on this armature: time in seconds, body, impulse in N·s along the empty's arrow (+Z)."""
+    found = []
+    for ob in scene.objects:
+        hit = ob.sinew_hit
+        if ob.type != "EMPTY" or not hit.enabled or hit.armature not in {arm, None}:
+            continue
+        if not hit.bone:
+            raise SinewError(f"Hit {ob.name} has no bone: choose one in its Sinew panel")
+        if hit.bone not in arm.data.bones:
+            if hit.armature is None:
+                continue
+            raise SinewError(f"Hit {ob.name}: {arm.name} has no bone {hit.bone}")
+        way = (TO_Y @ ob.matrix_world).to_3x3().col[2].normalized()
+        found.append(((hit.frame - first) / fps, hit.bone, tuple(way * hit.impulse)))
+    return sorted(found, key=lambda one: one[0])
+
+
+def wind(scene):
+    """Velocity of the wind in m/s and Sinew's axes: of the scene's setting, or none."""
+    speed = scene.sinew.wind
+    v = TO_Y.to_3x3() @ speed
+    return None if v.length == 0 else tuple(v)

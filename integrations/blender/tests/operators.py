@@ -1,0 +1,314 @@
+"""Every operator, on one rig or another: `python operators.py`."""
+
+import json
+import os
+import tempfile
+
+import bpy
+from mathutils import Matrix
+
+import installed
+import rigs
+from installed import addon
+from job import check, counts, off, posed, settings
+from rigs import FIRST, LAST
+
+CHECKS = []
+
+
+def case(function):
+    CHECKS.append(function)
+    return function
+
+
+def fresh(make=rigs.cesium_man):
+    rigs.empty_scene()
+    arm = make()
+    check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built")
+    return arm, addon().skeleton.skeleton_of(arm).names
+
+
+def report(arm):
+    return json.loads(arm.sinew.report)
+
+
+def refused(operator, words, **arguments):
+    try:
+        done = operator(**arguments)
+    except RuntimeError as error:
+        check(words in str(error), f"it says '{words}', not: {error}")
+        check("Traceback" not in str(error) and str(error).count("\n") <= 1, f"one line: {error}")
+        return
+    raise AssertionError(f"{operator} is refused, not {done}")
+
+
+def box(name, at, size):
+    bpy.ops.mesh.primitive_cube_add(size=1, location=at)
+    made = bpy.context.object
+    made.name, made.scale = name, size
+    return made
+
+
+@case
+def hits_of_empties_fell_it_where_they_strike():
+    arm, names = fresh()
+    arm.data.bones.active = arm.data.bones["torso_joint_3"]
+    bpy.context.scene.frame_set(50)
+    check(bpy.ops.sinew.add_hit(impulse=120) == {"FINISHED"}, "a hit is added")
+    settings(by="HITS", use_return=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    check(abs(report(arm)["handover"] - 50) <= 1, f"it fell at {report(arm)['handover']}")
+    keyed = posed(arm, names)
+    chest = [frame["torso_joint_3"].translation.y for frame in keyed]
+    check(chest[60 - FIRST] > chest[50 - FIRST] + 0.05, "it went along the arrow, +Y")
+    bpy.data.objects["Hit torso_joint_3"].sinew_hit.bone = "wing"
+    refused(bpy.ops.sinew.simulate, "no bone wing")
+
+
+@case
+def it_lies_on_what_it_collides_with_and_is_moved_by_what_moves():
+    arm, names = fresh()
+    table = box("table", (0, 0, -0.55), (6, 6, 1))
+    table.select_set(True)
+    bpy.ops.sinew.collide(collides=True)
+    rigs.activate(arm)
+    settings(by="FRAME", handover=30, ground=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    lowest = min(m.translation.z for m in posed(arm, names)[-1].values())
+    check(-0.12 < lowest < 0.3, f"it lies on the table at -0.05: {lowest}")
+    still = posed(arm, names)[-1]
+    plough = box("plough", (0, 4, 0.5), (8, 0.5, 2))
+    for frame, y in ((90, 4.0), (140, -2.0)):
+        plough.location.y = y
+        plough.keyframe_insert("location", frame=frame)
+    plough.sinew_body.collides = True
+    rigs.activate(arm)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated with the plough")
+    moved = posed(arm, names)[-1]
+    hips = names[0]
+    check(moved[hips].translation.y < still[hips].translation.y - 0.5, "the plough shoves it")
+
+
+@case
+def wind_and_stiffness_change_the_fall():
+    arm, _ = fresh()
+    settings(by="FRAME", handover=30)
+    hashes = set()
+    for wanted in ({}, {"wind": (0, 60, 0)}, {"wind": (0, 0, 0), "stiffness": 0.6}):
+        settings(**wanted)
+        check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+        hashes.add(report(arm)["hash"])
+    check(len(hashes) == 3, "three falls differ")
+
+
+@case
+def nla_tracks_stay_below_a_strip():
+    arm, names = fresh()
+    own = posed(arm, names)
+    data = arm.animation_data
+    action, slot = data.action, getattr(data, "action_slot", None)
+    if action is not None:
+        track = data.nla_tracks.new()
+        strip = track.strips.new("mine", 1, action)
+        if slot is not None:
+            strip.action_slot = slot
+        data.action = None
+        own = posed(arm, names)
+    settings(by="FRAME", handover=40, keys="AUTO", use_return=True, return_frame=100, return_blend=15)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    check(report(arm)["keyed"] == "STRIP", report(arm)["keyed"])
+    keyed = posed(arm, names)
+    before = max(off(keyed[f], own[f], names) for f in range(39))
+    after = max(off(keyed[f], own[f], names) for f in range(100 - FIRST, LAST - FIRST + 1))
+    check(before < 1e-5 and after < 1e-5, f"before {before}, after {after}")
+    check(off(keyed[60], own[60], names) > 0.1, "and between it falls")
+
+
+@case
+def a_bone_can_be_limp_or_powered_over_time():
+    arm, names = fresh()
+    hand, elbow = "Skeleton_arm_joint_L__2_", "Skeleton_arm_joint_L__3_"
+    bone = arm.pose.bones[elbow]
+    for frame, mode in ((1, "KEYED"), (20, "LIMP"), (70, "KEYED")):
+        bone.sinew_mode = mode
+        bone.keyframe_insert("sinew_mode", frame=frame)
+    own = posed(arm, names)
+    settings(by="HITS", use_return=False)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    keyed = posed(arm, names)
+    away = [(a[hand].translation - b[hand].translation).length for a, b in zip(keyed, own)]
+    check(max(away[:19]) < 1e-3, "before, the animation has it")
+    check(max(away[25:65]) > 0.015, f"limp, it hangs: {max(away[25:65])}")
+    feet = max((a["leg_joint_L_3"].translation - b["leg_joint_L_3"].translation).length for a, b in zip(keyed, own))
+    check(feet < 0.02, f"all else goes on: {feet}")
+    check(away[-1] < 0.02, f"and it comes back: {away[-1]}")
+
+
+@case
+def values_of_a_bone_go_into_the_definition():
+    arm, _ = fresh()
+    bone = next(b for b in arm.pose.bones if b.sinew.has_swing)
+    was = json.loads(arm.sinew.definition)
+    bone.sinew.mass = 2.5
+    bone.sinew.swing_y = (-0.3, 0.4)
+    bone.sinew.size = 1.2
+    now = json.loads(arm.sinew.definition)
+    pick = lambda d: next(b for b in d["bodies"] if b["bone"] == bone.name)  # noqa: E731
+    check(abs(pick(now)["mass"]["kg"] - 2.5) < 1e-4, "mass")
+    check([round(x, 1) for x in pick(now)["joint"]["limits_deg"]["swing_y"]] == [-17.2, 22.9], "limits")
+    check(pick(now)["shape"] != pick(was)["shape"], "size")
+    check(abs(bone.sinew.size - 1.2) < 1e-3, "which the panel shows")
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "and it falls with them")
+
+
+@case
+def the_doctor_selects_and_mends():
+    arm, _ = fresh()
+    bone = next(b for b in arm.pose.bones if b.sinew.has_body and b.parent is not None and b.parent.sinew.has_body)
+    bone.sinew.mass = 900.0
+    bpy.ops.sinew.doctor()
+    found = [i for i, f in enumerate(arm.sinew.findings) if bone.name in json.loads(f.bones)]
+    check(found, "a bone of 900 kg is found")
+    check(bpy.ops.sinew.select_finding(index=found[0]) == {"FINISHED"}, "and selected")
+    chosen = {b.name for b in (*arm.data.bones, *arm.pose.bones) if getattr(b, "select", False)}
+    check(bone.name in chosen, f"it is among {chosen}")
+    check(bpy.ops.sinew.cure() == {"FINISHED"}, "and mended")
+    check(bone.sinew.mass < 100, f"it weighs {bone.sinew.mass} kg")
+
+
+@case
+def an_undo_leaves_nothing():
+    arm, names = fresh()
+    name = arm.name
+    bpy.ops.ed.undo_push(message="before")
+    before = counts()
+    own = posed(arm, names)
+    settings(by="FRAME", handover=45)
+    bpy.ops.ed.undo_push(message="set")
+    check(bpy.ops.sinew.simulate("EXEC_DEFAULT", True) == {"FINISHED"}, "it is simulated")
+    check(counts() != before, "an action is there")
+    check(bpy.ops.ed.undo() == {"FINISHED"}, "undone once")
+    arm = bpy.data.objects[name]
+    check(counts() == before, f"{counts()} is not {before}")
+    check(max(off(a, b, names) for a, b in zip(posed(arm, names), own)) == 0.0, "it moves as before")
+
+
+@case
+def a_cancelled_simulation_leaves_nothing():
+    arm, names = fresh()
+    before = counts()
+    job = addon().simulation.prepare(bpy.context, [arm])
+    job.stage["seconds"] = 3000.0
+    job.cancelled = True
+    job.start()
+    job.thread.join(60)
+    check(not job.thread.is_alive() and job.baked is None, "it ends")
+    check(isinstance(job.error, addon().bridge.engine().Cancelled), f"as cancelled, not {job.error}")
+    check(counts() == before, "and leaves nothing")
+
+
+@case
+def two_characters_meet():
+    rigs.empty_scene()
+    one = rigs.cesium_man()
+    two = one.copy()
+    two.data = one.data
+    bpy.context.scene.collection.objects.link(two)
+    skin = next(ob for ob in bpy.data.objects if ob.type == "MESH" and ob.find_armature() == one)
+    other = skin.copy()
+    bpy.context.scene.collection.objects.link(other)
+    other.parent = two
+    next(m for m in other.modifiers if m.type == "ARMATURE").object = two
+    two.matrix_world = Matrix.Translation((0.0, -0.5, 0.0)) @ one.matrix_world
+    bpy.context.view_layer.update()
+    for arm in (one, two):
+        rigs.activate(arm)
+        check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built")
+    rigs.activate(one)
+    two.select_set(True)
+    settings(by="FRAME", handover=30)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "both are simulated")
+    for arm in (one, two):
+        check(report(arm)["before_handover_mm"] < 1.0 and report(arm)["frames"] > 100, f"{report(arm)}")
+    check(one.animation_data.action != two.animation_data.action, "each has its own keys")
+
+
+@case
+def fk_controls_of_rigify_take_the_fall():
+    arm, names = fresh(rigs.rigify_human)
+    settings(by="FRAME", handover=45, use_range=True, frame_start=1, frame_end=90)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "it is simulated")
+    own = posed(arm, names)
+    check(bpy.ops.sinew.bake_fk() == {"FINISHED"}, "it is baked")
+    keyed = posed(arm, names)
+    check(not any(c.name == "Sinew" for b in arm.pose.bones for c in b.constraints), "no constraint is left")
+    before = max(off(a, b, names) for a, b in zip(keyed[:43], own[:43]))
+    limbs = [n for n in names if any(part in n for part in ("arm", "hand", "thigh", "shin", "foot", "head")) and ".001" not in n]
+    after = max(off(a, b, limbs) for a, b in zip(keyed[44:90], own[44:90]))
+    check(before < 1e-3, f"{1e3 * before} mm before")
+    check(after < 0.05, f"{1e3 * after} mm after")
+    print(f"  FK controls: limbs within {1e3 * after:.1f} mm")
+
+
+@case
+def files_are_written():
+    arm, _ = fresh()
+    with tempfile.TemporaryDirectory() as folder:
+        for kind, end in (("SINEW", ".sinew.json"), ("MJCF", ".xml"), ("GLB", ".glb")):
+            path = os.path.join(folder, "it" + end)
+            check(bpy.ops.sinew.export(filepath=path, format=kind) == {"FINISHED"}, kind)
+            check(os.path.getsize(path) > 1000, f"{path} is written")
+        refused(bpy.ops.sinew.export, "No such file", filepath=os.path.join(folder, "no", "it"), format="SINEW")
+
+
+@case
+def what_cannot_be_is_one_line():
+    rigs.empty_scene()
+    arm = rigs.cesium_man()
+    refused(bpy.ops.sinew.doctor, "Build the ragdoll first")
+    bpy.ops.sinew.build()
+    settings(by="HITS")
+    refused(bpy.ops.sinew.simulate, "Nothing fells")
+    settings(by="FRAME", handover=500)
+    refused(bpy.ops.sinew.simulate, "outside of the range")
+    settings(handover=45)
+    arm.scale = (2, 2, 2)
+    bpy.context.view_layer.update()
+    refused(bpy.ops.sinew.simulate, "another scale")
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "linked.blend")
+        arm.scale, name = (1, 1, 1), arm.name
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        rigs.empty_scene()
+        with bpy.data.libraries.load(path, link=True) as (source, into):
+            into.objects = [name]
+        linked = bpy.data.objects[name]
+        bpy.context.scene.collection.objects.link(linked)
+        rigs.activate(linked)
+        refused(bpy.ops.sinew.build, "library override")
+
+
+@case
+def an_armature_without_skin_has_tubes():
+    rigs.empty_scene()
+    addon_utils = __import__("addon_utils")
+    addon_utils.enable("rigify", default_set=False)
+    bpy.ops.object.armature_basic_human_metarig_add()
+    arm = rigs.activate(bpy.context.object)
+    check(bpy.ops.sinew.build() == {"FINISHED"}, "it is built")
+    settings(by="FRAME", handover=10, use_range=True, frame_start=1, frame_end=60)
+    check(bpy.ops.sinew.simulate() == {"FINISHED"}, "and falls")
+    check(report(arm)["verdict"] == "good", str(report(arm)["reasons"]))
+
+
+if __name__ == "__main__":
+    installed.install()
+    failed = []
+    for one in CHECKS:
+        try:
+            one()
+            print(f"PASS {one.__name__}")
+        except Exception as error:  # All are told.
+            failed.append(one.__name__)
+            print(f"FAIL {one.__name__}: {type(error).__name__}: {error}")
+    raise SystemExit(bool(failed))

@@ -1,0 +1,191 @@
+//! The npm package `sinew-physics`: built, packed, and tried as its users have it, in Node and in a browser.
+
+use crate::command;
+use crate::ragdolls;
+use crate::targets;
+use crate::web;
+use anyhow::{Context, Result, bail, ensure};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+const MANIFEST: &str = "bindings/Cargo.toml";
+/// What the package is made of, beside the program.
+const PACKAGE: &str = "bindings/web/package";
+/// Tools with their versions, and the tests.
+const TESTS: &str = "bindings/web/tests";
+/// Most bytes of the program after gzip. The goal is 1.3 MB; docs/guide/src/three.md says what keeps it from that.
+const MOST_BYTES: u64 = 2_000_000;
+/// Rigs that fall in the browser where the shared data is there.
+const RIGS: [&str; 3] = ["CesiumMan.glb", "kaykit_Knight.glb", "CoolLoops_mixamorig_vrm0.vrm"];
+
+/// `cargo xtask npm`: builds the package and packs it, and says how large it is.
+#[derive(clap::Args)]
+pub struct Npm {
+    /// Folder to write
+    #[arg(long, default_value = "out/npm")]
+    out: PathBuf,
+    /// Tries it as well: what its README prints, in Node, in a Vite project in headless Chromium, hashes beside native ones
+    #[arg(long)]
+    check: bool,
+    /// Measures it as well, beside the native library in the same run
+    #[arg(long)]
+    measure: bool,
+}
+
+impl Npm {
+    /// # Errors
+    /// If the package does not build, its types are wrong, it is too large, or it fails its trial.
+    pub fn run(&self) -> Result<()> {
+        let out = command::root().join(&self.out);
+        let tarball = build(&out)?;
+        if self.check {
+            tried(&out, &tarball)?;
+        }
+        if self.measure { measured(&out, &tarball) } else { Ok(()) }
+    }
+}
+
+/// Builds the package and tries it, for `cargo xtask ci --full`.
+///
+/// # Errors
+/// As [`Npm::run`].
+pub fn check() -> Result<()> {
+    Npm { out: "out/npm".into(), check: true, measure: false }.run()
+}
+
+fn cargo(arguments: &[&str]) -> Command {
+    let mut cargo = command::cargo(arguments);
+    cargo.args(["--locked", "--manifest-path", MANIFEST, "--package", "sinew_web", "--target-dir"]);
+    cargo.arg(target());
+    cargo
+}
+
+fn target() -> PathBuf {
+    command::target().join("bindings")
+}
+
+/// The folder with the tools of the tests, installed by their lock file.
+fn tools() -> Result<PathBuf> {
+    command::provide("npm", "npm")?;
+    let folder = command::target().join("npm");
+    fs::create_dir_all(&folder)?;
+    let same = |name: &str| -> Result<bool> {
+        let wanted = fs::read(command::root().join(TESTS).join(name)).with_context(|| name.to_owned())?;
+        Ok(fs::read(folder.join(name)).is_ok_and(|found| found == wanted))
+    };
+    if !(same("package-lock.json")? && folder.join("node_modules/.package-lock.json").exists()) {
+        for name in ["package.json", "package-lock.json"] {
+            fs::copy(command::root().join(TESTS).join(name), folder.join(name))?;
+        }
+        let mut install = Command::new("npm");
+        command::run(install.args(["ci", "--no-audit", "--no-fund"]).current_dir(&folder))?;
+    }
+    Ok(folder)
+}
+
+/// Builds the package in a folder of `out`, and packs it; returns the tarball.
+fn build(out: &Path) -> Result<PathBuf> {
+    targets::add(targets::BROWSER)?;
+    let (binder, tools) = (web::binder()?, tools()?);
+    // Every browser that has WebGL2 has vectors, and the bits are the same with them.
+    // A library for Rust besides would keep the linker from optimising across crates.
+    let mut build = cargo(&["rustc", "--lib", "--crate-type", "cdylib", "--profile", "web"]);
+    build.args(["--target", targets::BROWSER]);
+    command::run(build.env("RUSTFLAGS", "-C target-feature=+simd128"))?;
+    // Below the tools, so that their compiler finds the types of three from it.
+    let package = tools.join("package");
+    if package.exists() {
+        fs::remove_dir_all(&package).with_context(|| package.display().to_string())?;
+    }
+    copy(&command::root().join(PACKAGE), &package)?;
+    for licence in ["LICENSE-MIT", "LICENSE-APACHE"] {
+        fs::copy(command::root().join(licence), package.join(licence))?;
+    }
+    let program = target().join(targets::BROWSER).join("web/sinew_web.wasm");
+    let wasm = package.join("wasm");
+    let mut bind = Command::new(binder);
+    bind.args(["--target", "web", "--remove-name-section", "--remove-producers-section", "--out-dir"]);
+    command::run(bind.arg(&wasm).arg(program))?;
+    let program = wasm.join("sinew_web_bg.wasm");
+    types(&package, &tools)?;
+    let packed = command::output(Command::new("npm").args(["pack", "--silent"]).current_dir(&package))?;
+    fs::create_dir_all(out)?;
+    let tarball = out.join("sinew-physics.tgz");
+    fs::copy(package.join(packed.trim()), &tarball).context("npm pack")?;
+    let bytes = web::gzipped(&program)?;
+    eprintln!("{}: the program is {:.2} MB after gzip", tarball.display(), bytes as f64 * 1e-6);
+    ensure!(bytes < MOST_BYTES, "the program has {bytes} bytes after gzip, more than {MOST_BYTES}");
+    Ok(tarball)
+}
+
+/// Checks the package's JavaScript, and writes its types beside it.
+fn types(package: &Path, tools: &Path) -> Result<()> {
+    fs::copy(command::root().join(TESTS).join("tsconfig.json"), tools.join("tsconfig.json"))?;
+    let mut compiler = Command::new(tools.join("node_modules/.bin/tsc"));
+    command::run(compiler.arg("--project").arg(tools).arg("--outDir").arg(package))
+}
+
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to).with_context(|| to.display().to_string())?;
+    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
+        let entry = entry?;
+        let (from, to) = (entry.path(), to.join(entry.file_name()));
+        if from.is_dir() { copy(&from, &to)? } else { _ = fs::copy(from, to)? }
+    }
+    Ok(())
+}
+
+/// What the native library computes and takes for the same scenes; `flags` are the compiler's.
+fn native(flags: &str, arguments: &[&str]) -> Result<Value> {
+    let mut build =
+        command::cargo(&["build", "--locked", "--manifest-path", MANIFEST, "--package", "sinew_web"]);
+    // A folder for each, so that neither is built anew for the other.
+    let folder = if flags.is_empty() { target() } else { target().join("narrow") };
+    build.args(["--release", "--example", "native", "--target-dir"]).arg(folder).env("RUSTFLAGS", flags);
+    let program = command::build(&mut build, "native")?;
+    let mut run = Command::new(program);
+    command::output_json(run.arg(rigs()).args(RIGS).args(arguments))
+}
+
+fn rigs() -> PathBuf {
+    let shared = command::root().join(ragdolls::SHARED);
+    shared.canonicalize().unwrap_or(shared)
+}
+
+fn tried(out: &Path, tarball: &Path) -> Result<()> {
+    let mut clippy = cargo(&["clippy", "--target", targets::BROWSER]);
+    command::run(clippy.args(["--", "-D", "warnings"]))?;
+    run_tests("check.mjs", out, tarball, &native("", &[])?)
+}
+
+/// Times beside those of the native library, as it is and without registers of 256 bits.
+fn measured(out: &Path, tarball: &Path) -> Result<()> {
+    let mut times = native("", &["--measure"])?;
+    times["narrow"] = native("--cfg sinew_narrow", &["--measure"])?["times"].take();
+    run_tests("measure.mjs", out, tarball, &times)
+}
+
+fn run_tests(script: &str, out: &Path, tarball: &Path, native: &Value) -> Result<()> {
+    command::provide("chromium", "chromium")?;
+    command::provide("node", "nodejs")?;
+    let folder = tools()?;
+    copy(&command::root().join(TESTS), &folder)?;
+    if !rigs().is_dir() {
+        eprintln!("skipped: {} is not there, the mannequin alone falls", ragdolls::SHARED);
+    }
+    let told = json!({
+        "tarball": tarball,
+        "out": out,
+        "root": command::root(),
+        "rigs": if rigs().is_dir() { json!(rigs()) } else { Value::Null },
+        "native": native,
+    });
+    let mut node = Command::new("node");
+    node.arg(folder.join(script)).arg(told.to_string()).current_dir(&folder).stdout(Stdio::inherit());
+    if !node.status().context("node")?.success() {
+        bail!("{script} failed");
+    }
+    Ok(())
+}
