@@ -78,7 +78,7 @@ struct Border {
 type Influences = [(Bone, f32); 4];
 
 impl Chain {
-    /// One bone moves it all.
+    /// One bone moves all of it.
     pub(super) fn rigid(bone: Bone) -> Self {
         Self { first: bone, borders: Vec::new() }
     }

@@ -15,7 +15,7 @@ const BUDGETS: [usize; 4] = [usize::MAX, MAX_VERTICES, 128, MAX_FACES / 2 + 2];
 const TOLERANCES: [f64; 4] = [8.0, 2.0, 0.5, 0.0];
 /// Share of the size by which merging may leave a corner outside.
 const MOST_LOST: f32 = 4e-6;
-/// Share of the size that a hull must be thick.
+/// Least thickness of a hull, as a share of its size.
 const THINNEST: f32 = 1e-4;
 /// Share of the size by which a corner may lie outside of a face.
 const CONVEX: f32 = 1e-5;

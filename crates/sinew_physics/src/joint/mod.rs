@@ -88,7 +88,7 @@ impl Softness {
     }
 }
 
-/// Sign of a motor's push where it pushes with all it has, by direction: −1, 1, or 0 while it is strong enough.
+/// Sign of a saturated motor's push, by direction: −1, 1, or 0 if the motor is below its cap.
 pub(crate) type Saturation = [i8; DIRECTIONS];
 
 #[derive(Clone, Debug)]

@@ -52,7 +52,7 @@ impl<'a> QueryFilter<'a> {
     }
 }
 
-/// Treatment of sensors in a question.
+/// Treatment of sensors in a query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sensors {
     /// Sensors are ignored. Default.

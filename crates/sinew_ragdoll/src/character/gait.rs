@@ -246,7 +246,7 @@ impl Gait {
         })
     }
 
-    /// Has it go as its clips go.
+    /// Moves it with its clips' root motion.
     pub fn follow_clips(&mut self, def: &CharacterDef) {
         self.wish = None;
         if let Some(track) = self.looped_track(def) {

@@ -63,7 +63,7 @@ impl Tread {
     /// Advances a planted or swinging foot; `size`: height of the whole body, metres.
     fn go_on(&mut self, step: &Step, size: f32, grounded: bool, dt: f32) {
         let speed = step.way.length() / dt;
-        // A planted foot leaves only at half again as much.
+        // A planted foot leaves only at 1.5 times that.
         let slack = if self.stands { 1.5 } else { 1.0 };
         let stands = grounded && step.height < slack * STANCE_HEIGHT * size && speed < slack * STANCE_SPEED;
         if stands && self.stands {

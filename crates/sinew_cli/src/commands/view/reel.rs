@@ -20,7 +20,7 @@ const FPS: u32 = 20;
 const MOST_FIGURES: usize = 3;
 /// Largest number of bodies with drawn trails: more are indistinguishable.
 const MOST_TRAILS: usize = 4;
-/// Steps that trails go back.
+/// Length of trails in steps.
 const TRAIL_STEPS: usize = 600;
 /// Number of rays that test for occlusion.
 const MOST_RAYS: usize = 64;
