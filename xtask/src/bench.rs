@@ -357,5 +357,7 @@ fn write_page(all: &Results, names: &[&str]) -> Result<()> {
         );
         return Ok(());
     }
-    fs::write(&page, page::page(all, &missing)).context(PAGE)
+    fs::write(&page, page::page(all, &missing)).context(PAGE)?;
+    let scenes = command::target().join("benchmarks.md");
+    fs::write(&scenes, page::scenes(all)).with_context(|| scenes.display().to_string())
 }

@@ -10,9 +10,10 @@ use std::fmt::Write as _;
 /// No figure.
 const NONE: &str = "–";
 
-/// The whole page; `missing` are the scenes without figures.
+/// The page for readers; `missing` are the scenes without figures.
 pub fn page(results: &Results, missing: &[&str]) -> String {
-    let mut page = String::from(INTRODUCTION);
+    let mut page =
+        format!("{INTRODUCTION}\n{COUNTED}{} scenes: all of each in {DETAILS}.\n", results.scenes.len());
     let mut add = |heading: &str, text: &str| {
         write!(page, "\n## {heading}\n\n{text}").expect("a string takes everything");
     };
@@ -22,20 +23,33 @@ pub fn page(results: &Results, missing: &[&str]) -> String {
     add("Characters that blend clips", &format!("{ANIMATION}\n{}", animation(results)));
     add("Figures awake, beside MuJoCo", &format!("{FIGURES_ALONE}\n{}", figures_alone(results)));
     add("Against the specification", &format!("{SPECIFICATION}\n{}", speeds(results)));
-    add("Scene by scene", SCENES);
-    for scene in &results.scenes {
-        write!(page, "\n### {}\n\n{}", scene.name, details(scene)).expect("a string takes everything");
-    }
     let machine = results.machine.clone().unwrap_or_else(|| Machine::this().to_string());
     write!(page, "\n## Engines and machine\n\n{}\n{machine}", engines(results))
         .expect("a string takes everything");
     page
 }
 
-/// How many scenes a page has.
-pub fn scene_count(page: &str) -> usize {
-    page.lines().filter(|line| line.starts_with("### ")).count()
+/// Everything about each scene.
+pub fn scenes(results: &Results) -> String {
+    let mut page = format!("# Benchmarks, scene by scene\n\n{SCENES}");
+    for scene in &results.scenes {
+        write!(page, "\n## {}\n\n{}", scene.name, details(scene)).expect("a string takes everything");
+    }
+    page
 }
+
+/// Number of scenes of a page; 0 if it names none.
+pub fn scene_count(page: &str) -> usize {
+    let count = page.lines().find_map(|line| line.strip_prefix(COUNTED)?.split(' ').next()?.parse().ok());
+    count.unwrap_or(0)
+}
+
+/// Start of the line with the number of scenes.
+const COUNTED: &str = "Figures of ";
+
+/// Places of the figures that the page leaves out.
+const DETAILS: &str =
+    "`bench/benchmarks.json`, as tables in `target/benchmarks.md` after `cargo xtask bench --page`";
 
 fn gaps(missing: &[&str]) -> String {
     if missing.is_empty() { String::new() } else { format!("\nNot measured yet: {}.\n", missing.join(", ")) }
@@ -326,10 +340,14 @@ mod tests {
     #[test]
     fn the_page_has_all_parts() {
         let page = page(&results(), &["net", "bake"]);
-        for part in ["At a glance", "### chain_swing_1000", "Box3D: no balls.", "yet: net, bake.", "-O3"] {
+        for part in ["At a glance", "yet: net, bake.", "-O3"] {
             assert!(page.contains(part), "{part} is missing:\n{page}");
         }
         assert_eq!(scene_count(&page), 1);
+        let scenes = scenes(&results());
+        for part in ["## chain_swing_1000", "Box3D: no balls."] {
+            assert!(scenes.contains(part), "{part} is missing:\n{scenes}");
+        }
         assert!(!page.contains("\n\n\n"), "one empty line is enough:\n{page}");
     }
 }
