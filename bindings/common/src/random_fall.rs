@@ -5,7 +5,9 @@ use sinew::math::{Random, Transform, Vec3, min};
 use sinew::physics::BodyDef;
 use sinew::ragdoll::mapping::Physical;
 use sinew::ragdoll::quality::{judge_bake, random_ground, random_pose};
-use sinew::ragdoll::{AfterSettling, BakeHit, BakeInput, Baked, CharacterDef, MotionSet, Verdict, bake};
+use sinew::ragdoll::{
+    AfterSettling, BakeHit, BakeInput, Baked, CharacterDef, Locomotion, MotionSet, Verdict, bake,
+};
 use std::sync::Arc;
 
 /// Options of random falls.
@@ -63,7 +65,9 @@ pub fn random_fall(character: &CharacterDef, seed: u64, options: &FallOptions) -
     let mut posed = character.clone();
     posed.after_settling = AfterSettling::StayDown;
     let clips = vec![still(character, &bodies)];
-    let motions = MotionSet { clips, looped: Some(0), ..MotionSet::default() };
+    // The pose is where it is: its lowest point stands on nothing yet.
+    let locomotion = Locomotion::Exact;
+    let motions = MotionSet { clips, looped: Some(0), locomotion, ..MotionSet::default() };
     posed.set_motions(motions).expect("a pose can be played");
     let baked = bake(&BakeInput {
         world_from_character: stands,
