@@ -1,4 +1,4 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | blender | npm | web | fuzz | lives | soak`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | blender | npm | release | web | fuzz | lives | soak`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -15,6 +15,7 @@ mod golden;
 mod new_user;
 mod npm;
 mod ragdolls;
+mod release;
 mod searches;
 mod sizes;
 mod spawns;
@@ -61,6 +62,8 @@ enum Task {
     Npm(npm::Npm),
     /// The extension for Blender as a zip; and its trial in Blender's module for Python
     Blender(blender::Blender),
+    /// A rehearsal of a release: versions, packages, artifacts, and the steps that are left to a person
+    Release(release::Release),
     /// The viewer as a page, a folder of static files; and its trial in a browser
     Web(web::Web),
     /// Bytes from nowhere against the readers, and clips against the runtime
@@ -96,6 +99,7 @@ fn run() -> anyhow::Result<ExitCode> {
         Task::Lives(lives) => lives.run()?,
         Task::Soak(soak) => soak.run()?,
         Task::Npm(npm) => npm.run()?,
+        Task::Release(release) => release.run()?,
         Task::Web(web) => web.run()?,
         Task::Bench(bench) => return bench.run(),
     }
