@@ -6,6 +6,7 @@ use crate::input::files::{CharacterFile, Outputs, WeightSource, must_end_in, nev
 use crate::input::motion::Motion;
 use crate::input::onto::{Carried, carry};
 use crate::input::picture_file::{PictureFile, longest, rate};
+use crate::input::settings_arg::unit;
 use crate::input::skeleton::{bones_only, frame_rate, lost_meshes, transform};
 use crate::input::source::{load_gltf, name};
 use crate::render::bones::flesh_out;
@@ -58,11 +59,11 @@ pub struct Convert {
     /// Frames per second of resampled motion; by default the file's
     #[arg(long, value_name = "N", value_parser = rate)]
     fps: Option<f32>,
-    /// Metres per unit of a BVH that is written
-    #[arg(long, value_name = "METRES", default_value = "0.01", value_parser = metres)]
+    /// Length of one unit of a BVH that is written: m, dm, cm, mm, in, ft, or metres as a number
+    #[arg(long, value_name = "UNIT", default_value = "cm", value_parser = unit, allow_negative_numbers = true)]
     unit: f32,
-    /// Metres per unit of a BVH input; by default inferred from the skeleton's size
-    #[arg(long, value_name = "METRES", value_parser = metres)]
+    /// Length of one unit of a BVH input, likewise; by default inferred from the skeleton's size
+    #[arg(long, value_name = "UNIT", value_parser = unit, allow_negative_numbers = true)]
     unit_in: Option<f32>,
     /// Axis that points up in a BVH that is written
     #[arg(long, value_name = "AXIS", default_value = "y")]
@@ -115,11 +116,6 @@ enum PaceArg {
 }
 
 /// A length above 0.
-fn metres(text: &str) -> Result<f32, String> {
-    let number: f32 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
-    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be above 0".to_owned()) }
-}
-
 /// Format of OUT.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Target {

@@ -90,7 +90,8 @@ const MASS: &str = "mass";
 const UNITS: [(&str, f32); 6] =
     [("m", 1.0), ("dm", 0.1), ("cm", 0.01), ("mm", 0.001), ("in", 0.0254), ("ft", 0.3048)];
 
-fn unit(text: &str) -> Result<f32, String> {
+/// Reads a unit by its name, or as a number: its length in metres.
+pub fn unit(text: &str) -> Result<f32, String> {
     match UNITS.iter().find(|(name, _)| name.eq_ignore_ascii_case(text)) {
         Some(&(_, metres)) => Ok(metres),
         None => positive(text).map_err(|_| "must be m, dm, cm, mm, in, ft or metres above 0".to_owned()),
