@@ -47,7 +47,7 @@ pub use rotations::orthonormal::{
 pub use rotations::quaternion::Quaternion;
 pub use rotations::rotation::Rotation;
 pub use symmetric::Sym3;
-pub use transform::{Affine, Transform};
+pub use transform::{Affine, Transform, inverse3};
 
 /// The smaller of two numbers by explicit selection: `b` if either is NaN (like x86 `minps`), on every target.
 #[inline(always)]

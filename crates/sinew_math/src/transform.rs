@@ -99,7 +99,7 @@ impl Affine {
 
     /// The inverse map; not finite if the linear part has no inverse.
     pub fn inverse(&self) -> Self {
-        let linear = self.linear.inverse();
+        let linear = inverse3(&self.linear);
         Self { linear, translation: -(linear * self.translation) }
     }
 
@@ -137,4 +137,14 @@ impl Mul for Affine {
     fn mul(self, b: Self) -> Self {
         Self { linear: self.linear * b.linear, translation: self.point(b.translation) }
     }
+}
+/// Inverse of a 3×3 matrix by its cofactors; not finite if there is none.
+///
+/// glam's own inverse has another order of operations since 0.33, and other bits. This one keeps its bits whatever glam does.
+pub fn inverse3(m: &Mat3) -> Mat3 {
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
+    let cofactors = [y.cross(z), z.cross(x), x.cross(y)];
+    let scale = 1.0 / z.dot(cofactors[2]);
+    let [a, b, c] = cofactors.map(|column| column * scale);
+    Mat3::from_cols(a, b, c).transpose()
 }

@@ -14,7 +14,7 @@ pub use look_at::{Look, LookAt, look_at};
 pub use two_bone::{Pole, TwoBone, TwoBoneGoal, TwoBoneSolution, solve_two_bone, two_bone_ik};
 
 use crate::rig::{JointIdx, LocalTransform, Rig};
-use sinew_math::{Affine, Rotation, Vec3};
+use sinew_math::{Affine, Rotation, Vec3, inverse3};
 
 /// The map that the local transform of a joint is relative to.
 fn parent_model(rig: &Rig, joint: JointIdx, local: &[LocalTransform], model: &[Affine]) -> Affine {
@@ -60,7 +60,7 @@ pub(crate) fn shift(
     model: &mut [Affine],
 ) {
     let parent = parent_model(rig, joint, local, model);
-    let step = parent.linear.inverse() * by;
+    let step = inverse3(&parent.linear) * by;
     if step.is_finite() {
         local[joint].translation += step;
         update_from(rig, joint, &parent, local, model);

@@ -168,7 +168,8 @@ fn files_that_are_no_ragdoll_are_refused_in_a_line() {
         ),
         ("nan.json", r#"{"sinew":"ragdoll","version":1,"total_mass":NaN}"#, "not JSON"),
         ("large.json", r#"{"sinew":"ragdoll","version":1,"total_mass":1e99,"bodies":[]}"#, "(bodies)"),
-        ("other.xml", "<robot/>", "not an MJCF file"),
+        ("other.xml", "<svg/>", "not an MJCF file"),
+        ("robot.xml", "<robot/>", "at least one link"),
         ("still.xml", "<mujoco><worldbody/></mujoco>", "no body moves"),
     ] {
         let file = folder.file(name, text);

@@ -1,6 +1,6 @@
 //! Impulses limited to a disk or a ball: friction and rolling resistance.
 
-use sinew_math::{Mat3, Vec3, max};
+use sinew_math::{Mat3, Vec3, inverse3, max};
 
 /// The impulse in the disk of radius `most` that leaves the least energy: minimises `½ xᵀ K x − bᵀ x`.
 ///
@@ -39,7 +39,7 @@ pub(crate) fn least_energy(k: &[[f32; 2]; 2], b: [f32; 2], most: f32) -> [f32; 2
 /// One projected gradient step for an impulse in a ball: from `x`, against the rate `v`, with response `k`. Exact where
 /// the ball does not bind.
 pub(crate) fn step_in_ball(k: &Mat3, x: Vec3, v: Vec3, most: f32) -> Vec3 {
-    let exact = x - k.inverse() * v;
+    let exact = x - inverse3(k) * v;
     if exact.is_finite() && exact.length() <= most {
         return exact;
     }
