@@ -93,7 +93,7 @@ pub struct Bench {
     /// or else `sinew scenes`. With --steps: as many, after a warm-up of a third of the scene
     #[arg(long, value_name = "SCENE", conflicts_with_all = ["scenes", "engines", "quick", "check", "counts", "kernels", "page"])]
     trace: Option<String>,
-    /// Steps that a trace does not look at, instead of a third of the scene
+    /// Number of steps before a trace starts, instead of a third of the scene
     #[arg(long, value_name = "STEPS", requires = "trace")]
     warm_up: Option<u32>,
     /// Instead, write the page anew from the figures that there are

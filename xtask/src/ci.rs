@@ -97,8 +97,8 @@ fn peers() -> Result<()> {
     command::run(clippy.args(["--", "-D", "warnings"]))
 }
 
-/// The viewer's window opens, is pulled at and edits, on a display of its own; its pictures are those that are kept, and all scenes are opened many times; skips with a line
-/// where there is no driver.
+/// Opens the viewer's window on its own display, drags and edits in it, compares its pictures with the committed ones, and opens all scenes
+/// many times. Without a driver it is skipped with a message.
 fn window() -> Result<()> {
     command::provide("Xvfb", "xvfb")?;
     command::provide("xdotool", "xdotool")?;
@@ -115,8 +115,8 @@ fn window() -> Result<()> {
 /// Compiler of the examples in a window: the full Bevy needs a newer one than the plugin, which the pinned one builds.
 const WINDOW_TOOLCHAIN: &str = "1.97.1";
 
-/// The plugin for Bevy compiles with no feature, and does what its tests say with all; then, with the whole of Bevy, on files that Bevy has
-/// loaded, and two examples in a window.
+/// Compiles the plugin for Bevy without features and tests it with all; then tests the whole of Bevy with files loaded by Bevy, and two
+/// examples in a window.
 fn bevy() -> Result<()> {
     let run = |cargo: &mut Command, arguments: &[&str]| {
         cargo.args(arguments).args(["--locked", "--manifest-path", "integrations/bevy_sinew/Cargo.toml"]);
@@ -135,7 +135,7 @@ fn bevy() -> Result<()> {
     Ok(())
 }
 
-/// An example in a window of its own, by a software driver if there is no other; it fails where its picture does not show what moves.
+/// Runs an example in its own window, with a software driver if there is no other; fails if its picture does not show the moving objects.
 fn bevy_window(example: &str, at: &str) -> Result<()> {
     command::provide("xvfb-run", "xvfb")?;
     if !Path::new("/usr/share/vulkan/icd.d").exists() {
