@@ -180,7 +180,7 @@ fn random_worlds() -> Result<()> {
     command::run(test.args(["--", "--nocapture", "ten_thousand_random_worlds"]).env("SINEW_FULL", "1"))
 }
 
-/// Ten minutes of lives made of all calls, or those of SINEW_LIVES, without characters and with; and every lie about snapshots.
+/// Runs random call sequences for ten minutes, or those of SINEW_LIVES, without and with characters, and all tests of corrupted snapshots.
 fn random_lives() -> Result<()> {
     for package in ["sinew_physics", "sinew_ragdoll"] {
         let mut test = command::cargo(&["test", "--release", "--package", package, "--test", "lives"]);

@@ -308,7 +308,7 @@ impl Session {
         self.step_time
     }
 
-    /// Lines that tell of a file that was opened.
+    /// Lines that describe an opened file.
     pub fn report(&self) -> &[String] {
         self.workbench.as_ref().map_or(&self.report, |workbench| workbench.report())
     }

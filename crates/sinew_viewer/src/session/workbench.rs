@@ -85,7 +85,7 @@ impl Workbench {
         &self.findings
     }
 
-    /// Lines that tell of it.
+    /// Lines that describe it.
     pub fn report(&self) -> &[String] {
         &self.report
     }

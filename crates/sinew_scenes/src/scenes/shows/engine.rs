@@ -38,7 +38,7 @@ fn frame_rates(setup: &Setup<'_>) -> Instance {
 /// The ball falls from here, m.
 const DROP: f32 = 100.0;
 
-/// A bit of everything, and a ball that falls past it.
+/// Bodies of several kinds, and a ball that falls past them.
 fn crowd(setup: &Setup<'_>) -> (World, BodyId) {
     let mut world = setup.world();
     world.add_body(&floor());
