@@ -1,4 +1,4 @@
-//! Time, and what it buys, on Sinew and other engines.
+//! Time and quality of Sinew and other engines.
 
 mod counts;
 mod figures;
@@ -31,31 +31,31 @@ pub use counts::check as check_counts;
 /// The page for readers.
 const PAGE: &str = "docs/benchmarks.md";
 
-/// Rounds in which the engines take turns.
+/// Number of rounds in which the engines alternate.
 const ROUNDS: u32 = 3;
 
-/// Starts of a heap, in which the engines take turns instead: a single run says little of what is chaotic.
+/// Number of starts of a heap, in which the engines alternate instead: a single run of a chaotic scene says little.
 const STARTS: u32 = 5;
 
 /// Steps of a scene in a quick run.
 const QUICK_STEPS: u32 = 60;
 
-/// A run that takes longer is stopped: some scenes drive some engines out of their minds.
+/// Time limit of a run: some scenes diverge on some engines.
 const LIMIT: Duration = Duration::from_secs(900);
 
-/// Not a scene of the peers: a character from rig to baked clip, whose speed is held against real time.
+/// Not a peer scene: a character from rig to baked clip, whose speed is compared to real time.
 const BAKE: &str = "bake";
 
 /// Extensions of files that hold characters.
 const RIGS: &[&str] = &["glb", "gltf", "vrm", "fbx"];
 
-/// Nor this: characters that fall limp until they sleep, of which there must be files.
+/// Not a peer scene: characters that fall limp until they sleep, read from files.
 const LIMP: &str = "limp";
 
-/// Nor this: some scenes of it on one thread and on two, by the wall's clock.
+/// Not a peer scene: some scenes on one thread and on two, by wall time.
 const THREADS: &str = "threads";
 
-/// The scenes of it, and steps of each: enough for a heap.
+/// Scenes of it, and the steps of each: enough for a heap.
 const THREADED: &[(&str, u32)] = &[("box_rain", 120), ("ragdoll_pile", 300)];
 
 /// `cargo xtask bench`: writes docs/benchmarks.md and bench/benchmarks.json.
@@ -93,7 +93,7 @@ pub struct Bench {
     /// or else `sinew scenes`. With --steps: as many, after a warm-up of a third of the scene
     #[arg(long, value_name = "SCENE", conflicts_with_all = ["scenes", "engines", "quick", "check", "counts", "kernels", "page"])]
     trace: Option<String>,
-    /// Steps that a trace does not look at, instead of a third of the scene
+    /// Number of steps before a trace starts, instead of a third of the scene
     #[arg(long, value_name = "STEPS", requires = "trace")]
     warm_up: Option<u32>,
     /// Instead, write the page anew from the figures that there are
@@ -198,13 +198,13 @@ impl Bench {
         Ok(results)
     }
 
-    /// Writes down what there is so far: whoever stops a long run loses one scene only.
+    /// Writes the results so far, so that stopping a long run loses only one scene.
     fn keep(&self, results: &Results, scenes: &[Scene]) -> Result<()> {
         let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
         if self.quick { Ok(()) } else { write(results.clone(), &names) }
     }
 
-    /// A scene on all engines that are made for it, which take turns, so that a neighbour's load hits all alike.
+    /// Runs a scene on all engines that support it, alternating, so that other load affects all alike.
     fn race(&self, engines: &[Engine], scene: &Scene) -> Result<Vec<EngineResult>> {
         let result = |engine: &Engine| EngineResult { name: engine.name.clone(), reports: Vec::new() };
         let engines: Vec<&Engine> = engines.iter().filter(|engine| engine.is_for(scene)).collect();
@@ -243,7 +243,7 @@ impl Bench {
     }
 }
 
-/// What came of a run, for those who wait.
+/// Summary of a run for the console.
 fn in_a_word(report: &Value) -> String {
     match report["cpu_ms"]["median"].as_f64() {
         Some(median) => format!("{:>9} ms", figures::rounded(median)),
@@ -255,8 +255,8 @@ fn in_a_word(report: &Value) -> String {
     }
 }
 
-/// Of the demo: simulated seconds per processor second of its bake, and how often its file becomes a ragdoll in 100 ms, if it had
-/// 6,000 vertices.
+/// For the demo: simulated seconds per processor second of its bake, and how often its file, if it had 6,000 vertices, is converted to a
+/// ragdoll in 100 ms.
 fn bake() -> Result<(Option<f64>, Option<f64>)> {
     let sinew = command::build_sinew(Profile::Release)?;
     let folder = std::env::temp_dir().join(format!("sinew-bench-{}", std::process::id()));
@@ -273,7 +273,7 @@ fn bake() -> Result<(Option<f64>, Option<f64>)> {
     Ok((Some(realtime), Some(100.0 / milliseconds * (vertices / 6000.0))))
 }
 
-/// Simulated seconds per processor second of characters that fall limp until they sleep, of the rigs in [`SHARED`]; none without them.
+/// Simulated seconds per processor second of characters that fall limp until they sleep, for the rigs in [`SHARED`]; empty without them.
 fn limp() -> Result<BTreeMap<String, f64>> {
     let folder = command::root().join(SHARED);
     let Ok(files) = fs::read_dir(&folder) else {
@@ -289,7 +289,7 @@ fn limp() -> Result<BTreeMap<String, f64>> {
     Ok(["median", "slowest_humanoid"].into_iter().filter_map(factor).collect())
 }
 
-/// Of each scene, how much sooner a step is done on two threads than on one: the median of rounds by turns.
+/// For each scene, the speed-up of a step by a second thread: the median of alternating rounds.
 fn two_threads(rounds: u32) -> Result<BTreeMap<String, f64>> {
     let binary = peers::build_ours()?;
     let wall = |scene: &str, steps: u32, threads: u32| -> Result<f64> {
@@ -309,18 +309,18 @@ fn two_threads(rounds: u32) -> Result<BTreeMap<String, f64>> {
     Ok(factors)
 }
 
-/// File with the figures of earlier runs, in the repository: a whole run takes longer than a machine may last.
+/// File with the figures of earlier runs, in the repository, since a full run takes longer than a machine may be available.
 fn file() -> PathBuf {
     command::root().join("bench/benchmarks.json")
 }
 
-/// The figures of earlier runs; none if there are none that can be read.
+/// Figures of earlier runs; empty if none can be read.
 fn kept() -> Results {
     let earlier = fs::read_to_string(file()).ok().and_then(|text| serde_json::from_str(&text).ok());
     Results::from_json(&earlier.unwrap_or(Value::Null))
 }
 
-/// Adds the figures of another machine, which must have some.
+/// Adds the figures of another machine, at least one.
 fn take(file: &Path) -> Result<()> {
     let text = fs::read_to_string(file).with_context(|| file.display().to_string())?;
     let value = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
@@ -338,7 +338,7 @@ fn take(file: &Path) -> Result<()> {
     write(taken, &names.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
-/// Adds the figures to those of earlier runs, of the scenes called `names`, and writes the page.
+/// Merges the figures of the scenes `names` with those of earlier runs, and writes the page.
 fn write(results: Results, names: &[&str]) -> Result<()> {
     let mut all = kept();
     all.update(results, names);
@@ -346,7 +346,7 @@ fn write(results: Results, names: &[&str]) -> Result<()> {
     write_page(&all, &[names, &[BAKE, LIMP, THREADS]].concat())
 }
 
-/// Writes the page of all figures, and which of `names` have none; but never over one with more scenes.
+/// Writes the page of all figures, with a list of `names` without figures. Never replaces a page with more scenes.
 fn write_page(all: &Results, names: &[&str]) -> Result<()> {
     let missing: Vec<&str> = names.iter().copied().filter(|name| !all.has(name)).collect();
     let page = command::root().join(PAGE);

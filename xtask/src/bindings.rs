@@ -1,4 +1,4 @@
-//! The bindings to C and Python as their users have them: library and header with `cc`, the wheel in an empty environment.
+//! Tests the bindings to C and Python as users have them: library and header with `cc`, the wheel in an empty environment.
 
 use crate::command;
 use crate::new_user::{blocks, read};
@@ -11,9 +11,9 @@ const MANIFEST: &str = "bindings/Cargo.toml";
 /// Pages whose programs are run as they are printed.
 const C_PAGES: &[&str] = &["docs/c.md"];
 const PYTHON_PAGES: &[&str] = &["README.md", "docs/python.md"];
-/// Strict enough for a library's header: nothing of it may disturb its user's build.
+/// Strict warnings, so that the header never disturbs a user's build.
 const WARNINGS: &[&str] = &["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"];
-/// What the static library needs of Linux.
+/// System libraries that the static library needs on Linux.
 const SYSTEM: &[&str] = &["-lm", "-lpthread", "-ldl"];
 
 /// `cargo xtask bindings`.
@@ -28,7 +28,7 @@ pub struct Bindings {
 }
 
 impl Bindings {
-    /// Tries both, or the one that is asked for.
+    /// Tests both, or the requested one.
     ///
     /// # Errors
     /// As [`c`] and [`python`].
@@ -53,7 +53,7 @@ fn cargo(arguments: &[&str]) -> Command {
 /// The library's tests, its header up to date, and its example and the programs of the pages: plainly, as C++, and with the address sanitizer.
 ///
 /// # Errors
-/// If one does not build, or ends with another status than 0.
+/// If a program does not build, or its exit status is not 0.
 pub fn c() -> Result<()> {
     let both = ["-p", "sinew_c", "-p", "sinew_bindings"];
     command::run(cargo(&["clippy", "--all-targets"]).args(both).args(["--", "-D", "warnings"]))?;
@@ -108,7 +108,7 @@ fn compile_and_run(program: &Path, folder: &Path, options: &[&str]) -> Result<()
 pub fn python() -> Result<()> {
     command::run(cargo(&["clippy"]).args(["-p", "sinew_py", "--", "-D", "warnings"]))?;
     let folder = target().join("python");
-    // Nothing of an earlier run may help this one.
+    // Remove the results of an earlier run.
     if folder.exists() {
         fs::remove_dir_all(&folder)?;
     }
@@ -126,7 +126,7 @@ pub fn python() -> Result<()> {
     let run = |program: &str, arguments: &[&str], place: &Path| {
         command::run(Command::new(user.join("bin").join(program)).args(arguments).current_dir(place))
     };
-    // From a folder of its own, so that the installed package is tried and not the sources.
+    // Run in a folder of its own, so that the installed package is tested and not the sources.
     let tests = folder.join("tests");
     copy(&source.join("tests"), &tests)?;
     run("pytest", &["-q", "."], &tests)?;
@@ -171,7 +171,7 @@ pub fn wheel(builder: &Path, out: &Path) -> Result<PathBuf> {
     Ok(wheels.first().context("maturin made no wheel")?.path())
 }
 
-/// The programs that pages print.
+/// Programs printed on pages.
 fn printed(pages: &[&str], language: &str) -> Result<Vec<String>> {
     let mut all = Vec::new();
     for page in pages {

@@ -12,10 +12,10 @@ const PAGE: &str = "docs/guide/src/book.md";
 const FOLDER: &str = "docs/guide/src/book";
 /// Pixels of a picture.
 const SIZE: [&str; 2] = ["560", "315"];
-/// Bytes of all pictures: what a clone of the repository should not have to carry more than.
+/// Largest total size of the pictures, bytes, to keep clones small.
 const MOST_BYTES: u64 = 2_000_000;
 
-/// When scenes are shown whose end says little, seconds; taken where a link is made.
+/// Times of pictures for scenes whose end shows little, seconds; used when a link is created.
 const MOMENTS: &[(&str, &str)] = &[
     ("aabb_vs_obb", "0.75"),
     ("block_overhang", "2.2"),

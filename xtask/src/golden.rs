@@ -1,4 +1,4 @@
-//! State hashes of all scenes: the same in debug and release, on one thread and on several, and as committed.
+//! State hashes of all scenes: equal in debug and release, on one thread and on several, and to the committed ones.
 
 use crate::command::{self, Profile};
 use anyhow::{Context, Result, bail};
@@ -9,16 +9,16 @@ use std::process::Command;
 /// Committed hashes, one line per scene: name, steps, hash.
 const PATH: &str = "xtask/golden.txt";
 
-/// Steps of a scene that is blessed for the first time: ten seconds, enough for most to fall asleep.
+/// Steps of a scene blessed for the first time: ten seconds, enough for most to fall asleep.
 const STEPS_DEFAULT: u32 = 600;
 
 /// A build and a number of threads.
 type Variant = (Profile, u32);
 
-/// Each pair of differences at once: enough to see that something differs.
+/// Both differences combined: enough to detect a difference.
 const DIAGONAL: &[Variant] = &[(Profile::Debug, 1), (Profile::Release, 2)];
 
-/// Every combination: shows which difference it is.
+/// Every combination: identifies the difference.
 const ALL: &[Variant] =
     &[(Profile::Debug, 1), (Profile::Debug, 2), (Profile::Release, 1), (Profile::Release, 2)];
 
@@ -44,7 +44,7 @@ impl Golden {
     }
 }
 
-/// How much to verify.
+/// Extent of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coverage {
     /// Debug on one thread, release on two.
@@ -114,7 +114,7 @@ fn parse(text: &str) -> Result<Vec<GoldenHash>> {
     text.lines().enumerate().map(line).collect()
 }
 
-/// Hashes of all scenes that the command line lists, for as many steps as `known` says.
+/// Hashes of all scenes listed by the command line, for the steps in `known`.
 fn observe(known: &[GoldenHash], variants: &[Variant]) -> Result<Vec<GoldenHash>> {
     let binaries =
         |profile| variants.iter().find(|&&(p, _)| p == profile).map(|_| command::build_sinew(profile));
@@ -162,7 +162,7 @@ fn hash(binary: &Path, scene: &str, steps: u32, threads: u32) -> Result<String> 
     Ok(hash.with_context(|| format!("`sinew run {scene} --json`: no `hash` of 16 digits"))?.to_owned())
 }
 
-/// One line per scene that is new, gone or different.
+/// One line per scene that is new, removed or different.
 fn differences(committed: &[GoldenHash], found: &[GoldenHash]) -> Vec<String> {
     let of = |list: &[GoldenHash], scene: &str| list.iter().find(|golden| golden.scene == scene).cloned();
     let mut lines = Vec::new();

@@ -1,4 +1,4 @@
-//! First steps as a new user takes them: what README and guide print, from an empty folder outside the workspace.
+//! First steps of a new user: the programs in README and guide, in an empty folder outside the workspace.
 
 use crate::command;
 use anyhow::{Context, Result, bail};
@@ -83,7 +83,7 @@ fn try_in(folder: &Path, name: &str, page: &str, dependencies: &str, profile: &[
         let mut run = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
         run.args(["run", "--quiet", "--bin", &format!("{name}_{index}")]).args(profile).current_dir(folder);
         run.arg("--target-dir").arg(command::target().join("new_user"));
-        // What `cargo xtask` was built with is not the new user's.
+        // Remove build variables of `cargo xtask`, which a new user does not have.
         for variable in ["CARGO_MANIFEST_DIR", "CARGO_PKG_NAME", "RUSTFLAGS"] {
             run.env_remove(variable);
         }

@@ -1,4 +1,4 @@
-//! The npm package `sinew-physics`: built, packed, and tried as its users have it, in Node and in a browser.
+//! The npm package `sinew-physics`: built, packed, and tested as its users have it, in Node and in a browser.
 
 use crate::command;
 use crate::ragdolls;
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 const MANIFEST: &str = "bindings/Cargo.toml";
-/// What the package is made of, beside the program.
+/// Sources of the package besides the program.
 const PACKAGE: &str = "bindings/web/package";
 /// Tools with their versions, and the tests.
 const TESTS: &str = "bindings/web/tests";
@@ -89,12 +89,12 @@ fn tools() -> Result<PathBuf> {
 fn build(out: &Path) -> Result<PathBuf> {
     targets::add(targets::BROWSER)?;
     let (binder, tools) = (web::binder()?, tools()?);
-    // Every browser that has WebGL2 has vectors, and the bits are the same with them.
-    // A library for Rust besides would keep the linker from optimising across crates.
+    // Every browser with WebGL2 has vectors, and the bits are the same with them. An additional Rust library would prevent the linker from
+    // optimising across crates.
     let mut build = cargo(&["rustc", "--lib", "--crate-type", "cdylib", "--profile", "web"]);
     build.args(["--target", targets::BROWSER]);
     command::run(build.env("RUSTFLAGS", "-C target-feature=+simd128"))?;
-    // Below the tools, so that their compiler finds the types of three from it.
+    // The package is below the tools, so that their compiler finds three's types.
     let package = tools.join("package");
     if package.exists() {
         fs::remove_dir_all(&package).with_context(|| package.display().to_string())?;
@@ -137,11 +137,11 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// What the native library computes and takes for the same scenes; `flags` are the compiler's.
+/// Hashes and times of the native library for the same scenes; `flags` are the compiler's.
 fn native(flags: &str, arguments: &[&str]) -> Result<Value> {
     let mut build =
         command::cargo(&["build", "--locked", "--manifest-path", MANIFEST, "--package", "sinew_web"]);
-    // A folder for each, so that neither is built anew for the other.
+    // Separate folders, so that neither rebuilds the other.
     let folder = if flags.is_empty() { target() } else { target().join("narrow") };
     build.args(["--release", "--example", "native", "--target-dir"]).arg(folder).env("RUSTFLAGS", flags);
     let program = command::build(&mut build, "native")?;

@@ -1,4 +1,4 @@
-//! The quality of the ragdolls that rigs get which nobody prepared.
+//! Quality of the ragdolls of unprepared rigs.
 
 use crate::bench::table::Table;
 use crate::command::{self, Profile};
@@ -63,7 +63,7 @@ impl Ragdolls {
                         falls.row(fall_row(name, &report["quality"]["gate"]));
                     }
                     let said = report["quality"]["reasons"].as_array().into_iter().flatten();
-                    // No clip is played here, which the page says once.
+                    // No clip is played here, which the page mentions once.
                     for reason in
                         said.filter_map(Value::as_str).filter(|reason| !reason.starts_with("hand-over"))
                     {
@@ -85,11 +85,11 @@ impl Ragdolls {
     }
 }
 
-/// What became of a rig.
+/// Result of a rig.
 pub enum Measured {
     /// What `ragdoll build` says.
     Built(Value),
-    /// The line with which it refuses.
+    /// The error message.
     Refused(String),
 }
 
@@ -109,7 +109,7 @@ pub fn measure(binary: &Path, file: &Path, gate: u32) -> Result<Measured> {
         return Ok(Measured::Built(serde_json::from_slice(&output.stdout)?));
     }
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    // A refusal is one line; a panic is a fault of ours.
+    // A refusal is one line; a panic is a bug.
     ensure!(output.status.code() == Some(1), "{}: {}\n{said}", file.display(), output.status);
     Ok(Measured::Refused(said.trim().rsplit(": ").next().unwrap_or_default().to_owned()))
 }

@@ -1,4 +1,4 @@
-//! Searches for failures that go on from run to run, and an hour of game.
+//! Searches for failures that continue from run to run, and a long run of all scenes.
 
 use crate::command;
 use anyhow::{Context, Result, bail};
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Minutes after which a search notes how far it is, and tells of what it found.
+/// Minutes between progress reports of a search.
 const CHUNK: f64 = 5.0;
 
 /// `cargo xtask lives`: random lives of worlds, or of characters in them, from the seed at which the last run ended.
@@ -31,7 +31,7 @@ pub struct Lives {
     progress: Option<PathBuf>,
 }
 
-/// What a search makes.
+/// Kind of search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum Of {
     /// Worlds, by all calls of theirs
@@ -105,7 +105,7 @@ fn next_seed(log: &Path) -> Result<u64> {
     end.with_context(|| format!("{}: its last line begins with no seeds: {line}", log.display()))
 }
 
-/// `cargo xtask soak`: an hour of game, watched from step to step.
+/// `cargo xtask soak`: an hour of scenes, checked in every step.
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask soak --hours 0.5 --part brawl")]
 pub struct Soak {
@@ -119,7 +119,7 @@ pub struct Soak {
 
 impl Soak {
     /// # Errors
-    /// If something is lost, opens, flies or grows.
+    /// If a body is lost, a joint opens, a speed explodes or memory grows.
     pub fn run(&self) -> Result<()> {
         if !(self.hours > 0.0 && self.hours.is_finite()) {
             bail!("--hours is a positive number, not {}", self.hours);

@@ -142,7 +142,7 @@ fn tried(folder: &Path) -> Result<()> {
                 bail!("{way}: {scene} has {found} after {steps} steps, elsewhere {hash}");
             }
         }
-        // One try on whatever else the machine does: the bar is of a quiet one.
+        // One attempt, regardless of other load: the bar is that of an idle machine.
         if told["ready_again_ms"].as_u64().is_none_or(|ms| ms > MOST_MS) {
             eprintln!("{way}: more than {MOST_MS} ms to the first picture");
         }

@@ -1,4 +1,4 @@
-//! What an engine has to do to be measured.
+//! Interface that an engine implements to be measured.
 
 use serde_json::{Value, json};
 use sinew::math::{Rotation, SwingTwistLimit, Transform, Vec3};

@@ -13,37 +13,37 @@
 
 // Outcome of a call.
 typedef enum SinewStatus {
-  // It was done.
+  // The call succeeded.
   SINEW_STATUS_OK = 0,
-  // A pointer is null that must not be.
+  // A required pointer is null.
   SINEW_STATUS_NULL_POINTER = 1,
-  // An id names nothing that is there: it was removed, or is of another world.
+  // An id is stale: its object was removed, or belongs to another world.
   SINEW_STATUS_STALE_ID = 2,
-  // A number, a size or a name cannot be.
+  // A number, a size or a name is invalid.
   SINEW_STATUS_BAD_ARGUMENT = 3,
-  // A file cannot be read or written, or is not what it should be; the sentence names the file and the place.
+  // A file cannot be read or written, or is invalid; the message names the file and the place.
   SINEW_STATUS_BAD_FILE = 4,
-  // The bytes are no snapshot of this version; the world is as it was.
+  // The bytes are no snapshot of this version; the world is unchanged.
   SINEW_STATUS_BAD_SNAPSHOT = 5,
-  // The buffer has too little room; the count that it needs was given.
+  // The buffer is too small; the needed count was returned.
   SINEW_STATUS_TOO_SMALL = 6,
-  // A bug of the library. What was being changed is of no use any more and can only be freed.
+  // A bug in the library. The object being changed is unusable and can only be freed.
   SINEW_STATUS_PANIC = 7,
 } SinewStatus;
 
-// State of a character: what decides its pose.
+// State of a character, which determines the source of its pose.
 typedef enum SinewCharacterState {
   // Clips.
   SINEW_CHARACTER_STATE_ANIMATED = 0,
-  // Its bodies: it falls, or lies.
+  // Its bodies: it falls or lies.
   SINEW_CHARACTER_STATE_LIMP = 1,
-  // Its bodies, which are brought to where a get-up clip begins.
+  // Its bodies, which move to the start of a get-up clip.
   SINEW_CHARACTER_STATE_PREPARING = 2,
   // A get-up clip.
   SINEW_CHARACTER_STATE_GETTING_UP = 3,
-  // Clips, but for a limb that was struck.
+  // Clips, except for a limb that was hit.
   SINEW_CHARACTER_STATE_FLINCHING = 4,
-  // Its bodies, drawn to its clips by muscles.
+  // Its bodies, pulled toward its clips by muscles.
   SINEW_CHARACTER_STATE_POWERED = 5,
 } SinewCharacterState;
 
@@ -51,9 +51,9 @@ typedef enum SinewCharacterState {
 typedef enum SinewBodyKind {
   // Moved by forces.
   SINEW_BODY_KIND_DYNAMIC = 0,
-  // Moved by nothing.
+  // Never moves.
   SINEW_BODY_KIND_STATIC = 1,
-  // Moved as its velocity says; nothing pushes it.
+  // Moves at its velocity; nothing pushes it.
   SINEW_BODY_KIND_KINEMATIC = 2,
 } SinewBodyKind;
 
@@ -63,7 +63,7 @@ typedef enum SinewEventKind {
   SINEW_EVENT_KIND_BEGIN = 0,
   // Bodies that stopped; ids may be stale.
   SINEW_EVENT_KIND_END = 1,
-  // Bodies that came in fast and were stopped.
+  // Bodies that hit each other fast.
   SINEW_EVENT_KIND_HIT = 2,
 } SinewEventKind;
 
@@ -75,7 +75,7 @@ typedef enum SinewJointKind {
   SINEW_JOINT_KIND_HINGE = 1,
   // Slides along the axis. `range`: metres.
   SINEW_JOINT_KIND_SLIDER = 2,
-  // Nothing is free.
+  // Locks all motions.
   SINEW_JOINT_KIND_FIXED = 3,
   // Rope or rod from the anchor of A to that of B. `range`: metres.
   SINEW_JOINT_KIND_DISTANCE = 4,
@@ -100,10 +100,10 @@ typedef enum SinewShapeKind {
 // Character in a world. It is stepped after the world: `sinew_world_step`, then `sinew_character_update`, one for one.
 typedef struct SinewCharacter SinewCharacter;
 
-// Kind of a character: rig, ragdoll and motions, of which many can be in worlds.
+// Kind of a character: rig, ragdoll and motions, shared by any number of characters.
 typedef struct SinewCharacterDef SinewCharacterDef;
 
-// Ragdoll as data, to be put into worlds.
+// Ragdoll as data, to be added to worlds.
 typedef struct SinewRagdoll SinewRagdoll;
 
 // World with bodies and joints. One thread at a time may use it.
@@ -119,7 +119,7 @@ typedef struct SinewVec3 {
   float z;
 } SinewVec3;
 
-// Rotation as a unit quaternion; one that is not is made so. Four zeros are no rotation at all: the identity.
+// Rotation as a unit quaternion; other lengths are normalised. Four zeros are the identity.
 typedef struct SinewRotation {
   // Coefficient of i.
   float x;
@@ -131,7 +131,7 @@ typedef struct SinewRotation {
   float w;
 } SinewRotation;
 
-// Rigid pose: rotated first, then moved.
+// Rigid pose: rotation, then translation.
 typedef struct SinewPose {
   // Metres.
   struct SinewVec3 position;
@@ -139,7 +139,7 @@ typedef struct SinewPose {
   struct SinewRotation rotation;
 } SinewPose;
 
-// Name of a body of a world. A removed body's is stale: using it is an error, never another body.
+// Id of a body in a world. The id of a removed body is stale: using it is an error, and it never refers to another body.
 typedef struct SinewBodyId {
   // Index and generation.
   uint64_t bits;
@@ -159,11 +159,11 @@ typedef struct SinewJointDef {
   uint32_t kind;
   // The first body.
   struct SinewBodyId a;
-  // The other, not the same; one of both is dynamic.
+  // The other body; at least one of both must be dynamic.
   struct SinewBodyId b;
   // Anchor of both bodies, world, metres; of a distance joint its end at A.
   struct SinewVec3 anchor;
-  // End of a distance joint at B, world, metres; of no use to others.
+  // End of a distance joint at B, world, metres; ignored by other kinds.
   struct SinewVec3 anchor_b;
   // Axis of a hinge or a slider, world; not zero.
   struct SinewVec3 axis;
@@ -175,7 +175,7 @@ typedef struct SinewJointDef {
   float range_hi;
 } SinewJointDef;
 
-// Name of a joint of a world, as with bodies.
+// Id of a joint in a world, as for bodies.
 typedef struct SinewJointId {
   // Index and generation.
   uint64_t bits;
@@ -189,7 +189,7 @@ typedef struct SinewRayHit {
   struct SinewVec3 point;
   // Out of the body, unit length.
   struct SinewVec3 normal;
-  // Share of the ray before the hit, 0 to 1.
+  // Fraction of the ray before the hit, 0 to 1.
   float fraction;
 } SinewRayHit;
 
@@ -213,7 +213,7 @@ typedef struct SinewContact {
   struct SinewVec3 normal;
   // Gap, metres; negative if they overlap.
   float separation;
-  // All that it pushed in the step, N·s.
+  // Total impulse of the step, N·s.
   float impulse;
 } SinewContact;
 
@@ -233,7 +233,7 @@ typedef struct SinewWorldDef {
   uint64_t step_nanoseconds;
   // Substeps of a step, at least 1. Default 4.
   uint32_t substeps;
-  // Work that a step does: 0 fast, 1 balanced, 2 exact. Default 1.
+  // Quality of a step: 0 fast, 1 balanced, 2 exact. Default 1.
   uint32_t quality;
   // 1 if bodies at rest may fall asleep, else 0. Default 1.
   uint32_t sleeping;
@@ -259,7 +259,7 @@ typedef struct SinewBodyDef {
   const struct SinewShape *shapes;
   // Number of shapes.
   size_t shape_count;
-  // kg, spread as the shapes are; 0, the default: by `density`.
+  // kg, distributed over the shapes; 0, the default: computed from `density`.
   float mass;
   // kg/m³. Default 1,000.
   float density;
@@ -269,7 +269,7 @@ typedef struct SinewBodyDef {
   float restitution;
   // Bits of the layers that its shapes are on. Default 1.
   uint32_t layers;
-  // Bits of the layers that they meet. Default all.
+  // Bits of the layers that they collide with. Default all.
   uint32_t mask;
   // For the user.
   uint64_t user_data;
@@ -294,20 +294,20 @@ const char *sinew_version(void);
 enum SinewStatus sinew_character_def_load(const char *path,
                                           struct SinewCharacterDef **def);
 
-// Frees a kind of character; characters that were made of it stay. Null is fine.
+// Frees a kind of character; its characters stay. Null is allowed.
 //
 // The caller promises:
 // `def` is null or came from `sinew_character_def_load` and is not used any more.
 void sinew_character_def_free(struct SinewCharacterDef *def);
 
-// Number of joints of its rig: of the transforms of a pose.
+// Number of joints in its rig, and of transforms in a pose.
 //
 // The caller promises:
 // `def` is null or a kind of character, `count` is null or points to a number.
 enum SinewStatus sinew_character_def_joint_count(const struct SinewCharacterDef *def,
                                                  size_t *count);
 
-// Name of a joint; it lives as long as the kind of character.
+// Name of a joint; valid as long as the kind of character.
 //
 // The caller promises:
 // `def` is null or a kind of character, `name` is null or points to room for a pointer.
@@ -315,7 +315,7 @@ enum SinewStatus sinew_character_def_joint_name(const struct SinewCharacterDef *
                                                 size_t joint,
                                                 const char **name);
 
-// Puts a character into a world, animated, with bodies that rays find; it stands at a pose (+Y up, facing +Z).
+// Adds an animated character to a world, with bodies that rays can hit, standing at a pose (+Y up, facing +Z).
 //
 // The caller promises:
 // `def` is null or a kind of character, `world` is null or a world that nobody else uses, `character` is null or room for a pointer.
@@ -332,19 +332,19 @@ enum SinewStatus sinew_character_spawn(const struct SinewCharacterDef *def,
 enum SinewStatus sinew_character_despawn(struct SinewCharacter *character,
                                          struct SinewWorld *world);
 
-// Frees a character and leaves its bodies in the world, for one that is freed as well. Null is fine.
+// Frees a character without removing its bodies, for a world that is freed as well. Null is allowed.
 //
 // The caller promises:
 // `character` is null or came from `sinew_character_spawn` and is not used any more.
 void sinew_character_free(struct SinewCharacter *character);
 
-// Follows the world by the step that it has just taken.
+// Updates the character after a step of its world.
 //
 // The caller promises:
 // `character` and `world` are null or nobody else's.
 enum SinewStatus sinew_character_update(struct SinewCharacter *character, struct SinewWorld *world);
 
-// Hits a body, by its role ("chest") or its joint's name, with an impulse, N·s, world axes. It falls, or flinches if it stands that.
+// Hits a body, by its role ("chest") or its joint's name, with an impulse, N·s, world axes. It falls, or flinches if the hit is weak.
 //
 // The caller promises:
 // `character` and `world` are null or nobody else's, `body` is null or text.
@@ -353,7 +353,7 @@ enum SinewStatus sinew_character_hit(struct SinewCharacter *character,
                                      const char *body,
                                      struct SinewVec3 impulse);
 
-// Lets it fall, at the speed that it has.
+// Makes it limp at its present velocity.
 //
 // The caller promises:
 // `character` and `world` are null or nobody else's.
@@ -367,7 +367,7 @@ enum SinewStatus sinew_character_go_limp(struct SinewCharacter *character,
 enum SinewStatus sinew_character_state(const struct SinewCharacter *character,
                                        enum SinewCharacterState *state);
 
-// Ids of its bodies in the world, in the order of its ragdoll.
+// Returns the ids of its bodies in the world, in the order of its ragdoll.
 //
 // The caller promises:
 // `character` is null or one that nobody changes; `ids` has room for `capacity`, `count` is null or points to a number.
@@ -376,7 +376,7 @@ enum SinewStatus sinew_character_bodies(const struct SinewCharacter *character,
                                         size_t capacity,
                                         size_t *count);
 
-// Transforms of all joints, each in its parent, in the order of the file.
+// Returns the transforms of all joints relative to their parents, in the order of the file.
 //
 // The caller promises:
 // `character` is null or one that nobody changes; `pose` has room for `capacity`, `count` is null or points to a number.
@@ -385,14 +385,14 @@ enum SinewStatus sinew_character_pose(const struct SinewCharacter *character,
                                       size_t capacity,
                                       size_t *count);
 
-// Matrix from the file's model space to the world, to be put above the pose: 3 rows of 4.
+// Returns the matrix from the file's model space to the world, the parent of the pose: 3 rows of 4.
 //
 // The caller promises:
 // `character` is null or one that nobody changes, `matrix` is null or has room for 12 numbers.
 enum SinewStatus sinew_character_world_from_model(const struct SinewCharacter *character,
                                                   float *matrix);
 
-// Saves a character into a buffer, to go with the snapshot of its world; as `sinew_world_save`.
+// Saves a character to a buffer, to accompany the snapshot of its world; see `sinew_world_save`.
 //
 // The caller promises:
 // `character` is null or one that nobody changes; `bytes` has room for `capacity`, `size` is null or points to a number.
@@ -401,7 +401,7 @@ enum SinewStatus sinew_character_save(const struct SinewCharacter *character,
                                       size_t capacity,
                                       size_t *size);
 
-// Brings back a saved character of the same kind. It is as it was if the bytes are none of one.
+// Restores a saved character of the same kind. If the bytes are invalid, it is unchanged.
 //
 // The caller promises:
 // `character` is null or nobody else's, `bytes` has `size` of them.
@@ -409,7 +409,7 @@ enum SinewStatus sinew_character_load(struct SinewCharacter *character,
                                       const uint8_t *bytes,
                                       size_t size);
 
-// Adds a joint; the bodies are where they are to be for it.
+// Adds a joint at the present poses of its bodies.
 //
 // The caller promises:
 // `world` is null or a world that nobody else uses, `def` null or a definition, `id` null or room for one.
@@ -417,7 +417,7 @@ enum SinewStatus sinew_world_add_joint(struct SinewWorld *world,
                                        const struct SinewJointDef *def,
                                        struct SinewJointId *id);
 
-// Takes a joint out.
+// Removes a joint.
 //
 // The caller promises:
 // `world` is null or a world that nobody else uses.
@@ -435,7 +435,7 @@ enum SinewStatus sinew_world_drive_joint(struct SinewWorld *world,
                                          float damping_ratio,
                                          float max_torque);
 
-// Distance of the joint's two anchors, metres: how far it has come apart.
+// Returns the distance of the joint's two anchors, metres.
 //
 // The caller promises:
 // `world` is null or a world that nobody changes, `gap` is null or points to a number.
@@ -443,7 +443,7 @@ enum SinewStatus sinew_world_joint_gap(const struct SinewWorld *world,
                                        struct SinewJointId id,
                                        float *gap);
 
-// Pose of B in A as the joint sees it: its rotation and its slide.
+// Returns the pose of B in A in the joint's frames: its rotation and its slide.
 //
 // The caller promises:
 // As `sinew_world_joint_gap`.
@@ -451,7 +451,7 @@ enum SinewStatus sinew_world_joint_pose(const struct SinewWorld *world,
                                         struct SinewJointId id,
                                         struct SinewPose *pose);
 
-// Casts a ray from `origin` as far as `way` goes. `found` is 1 and `hit` filled if it meets something, else 0.
+// Casts a ray from `origin` along `way`, which also sets its length. If it hits a body, `found` is 1 and `hit` is filled, else `found` is 0.
 //
 // The caller promises:
 // `world` is null or a world that nobody changes; `hit` and `found` are null or have room.
@@ -472,7 +472,7 @@ enum SinewStatus sinew_world_overlap(const struct SinewWorld *world,
                                      size_t capacity,
                                      size_t *count);
 
-// Points of all contacts, near ones that do not touch among them, in the order of pairs.
+// Returns the points of all contacts, including those with a gap, in the order of pairs.
 //
 // The caller promises:
 // `world` is null or a world that nobody changes; `contacts` has room for `capacity`, `count` is null or points to a number.
@@ -499,7 +499,7 @@ enum SinewStatus sinew_world_events(const struct SinewWorld *world,
 enum SinewStatus sinew_ragdoll_load(const char *path,
                                     struct SinewRagdoll **ragdoll);
 
-// Frees a ragdoll; bodies in worlds stay. Null is fine.
+// Frees a ragdoll; bodies in worlds stay. Null is allowed.
 //
 // The caller promises:
 // `ragdoll` is null or came from `sinew_ragdoll_load` and is not used any more.
@@ -511,7 +511,7 @@ void sinew_ragdoll_free(struct SinewRagdoll *ragdoll);
 // `ragdoll` is null or a ragdoll, `count` is null or points to a number.
 enum SinewStatus sinew_ragdoll_body_count(const struct SinewRagdoll *ragdoll, size_t *count);
 
-// Role of a body, such as "head" or "leftUpperArm"; it lives as long as the ragdoll.
+// Role of a body, such as "head" or "leftUpperArm"; valid as long as the ragdoll.
 //
 // The caller promises:
 // `ragdoll` is null or a ragdoll, `role` is null or points to room for a pointer.
@@ -532,13 +532,13 @@ enum SinewStatus sinew_ragdoll_spawn(const struct SinewRagdoll *ragdoll,
                                      size_t capacity,
                                      size_t *count);
 
-// Hash of all that decides the future: the same on every machine, for every number of threads.
+// Hash of the complete state: the same on every machine, for every number of threads.
 //
 // The caller promises:
 // `world` is null or a world that nobody changes, `hash` is null or points to a number.
 enum SinewStatus sinew_world_hash(const struct SinewWorld *world, uint64_t *hash);
 
-// Saves a world into a buffer; `size` is the number of bytes, also where the capacity is too small for them.
+// Saves a world to a buffer; `size` is the number of bytes, also if the capacity is too small.
 //
 // The caller promises:
 // `world` is null or a world that nobody changes; `bytes` has room for `capacity`, `size` is null or points to a number.
@@ -547,7 +547,7 @@ enum SinewStatus sinew_world_save(const struct SinewWorld *world,
                                   size_t capacity,
                                   size_t *size);
 
-// Brings back what was saved. The world is as it was if the bytes are none of a world.
+// Restores a saved world. If the bytes are invalid, the world is unchanged.
 //
 // The caller promises:
 // `world` is null or a world that nobody else uses, `bytes` has `size` of them.
@@ -565,19 +565,19 @@ enum SinewStatus sinew_world_def_default(struct SinewWorldDef *def);
 // `def` is null or points to room for one.
 enum SinewStatus sinew_body_def_default(struct SinewBodyDef *def);
 
-// Makes a world. `def` may be null: the defaults.
+// Creates a world. `def` may be null for the defaults.
 //
 // The caller promises:
 // `def` is null or points to settings, `world` is null or points to room for a pointer.
 enum SinewStatus sinew_world_new(const struct SinewWorldDef *def, struct SinewWorld **world);
 
-// Frees a world; null is fine.
+// Frees a world; null is allowed.
 //
 // The caller promises:
 // `world` is null or came from `sinew_world_new` and is not used any more.
 void sinew_world_free(struct SinewWorld *world);
 
-// Takes steps, on as many threads; the result does not depend on their number. 0 and 1: the caller's alone.
+// Takes steps on the given number of threads; the result does not depend on it. 0 and 1 use the calling thread only.
 //
 // The caller promises:
 // `world` is null or a world that nobody else uses.
@@ -599,7 +599,7 @@ enum SinewStatus sinew_world_add_body(struct SinewWorld *world,
                                       const struct SinewBodyDef *def,
                                       struct SinewBodyId *id);
 
-// Takes a body out, with its joints.
+// Removes a body with its joints.
 //
 // The caller promises:
 // `world` is null or a world that nobody else uses.
@@ -632,7 +632,7 @@ enum SinewStatus sinew_world_velocities(const struct SinewWorld *world,
                                         size_t count,
                                         struct SinewVelocity *velocities);
 
-// Puts a body elsewhere, without a way between.
+// Moves a body to a pose without passing through the space between.
 //
 // The caller promises:
 // `world` is null or a world that nobody else uses.
@@ -640,7 +640,7 @@ enum SinewStatus sinew_world_set_pose(struct SinewWorld *world,
                                       struct SinewBodyId id,
                                       struct SinewPose pose);
 
-// Sets the velocity of a body; a static one has none, whatever is asked.
+// Sets the velocity of a body; ignored for static ones.
 //
 // The caller promises:
 // `world` is null or a world that nobody else uses.
@@ -648,7 +648,7 @@ enum SinewStatus sinew_world_set_velocity(struct SinewWorld *world,
                                           struct SinewBodyId id,
                                           struct SinewVelocity velocity);
 
-// Pushes a dynamic body by an impulse, N·s, world axes, at a point in the world; at its centre of mass if `point` is null.
+// Applies an impulse, N·s, world axes, to a dynamic body at a point in the world, or at its centre of mass if `point` is null.
 //
 // The caller promises:
 // `world` is null or a world that nobody else uses, `point` is null or points to one.

@@ -8,21 +8,21 @@ use std::ffi::{CStr, CString, c_char};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SinewStatus {
-    /// It was done.
+    /// The call succeeded.
     Ok = 0,
-    /// A pointer is null that must not be.
+    /// A required pointer is null.
     NullPointer = 1,
-    /// An id names nothing that is there: it was removed, or is of another world.
+    /// An id is stale: its object was removed, or belongs to another world.
     StaleId = 2,
-    /// A number, a size or a name cannot be.
+    /// A number, a size or a name is invalid.
     BadArgument = 3,
-    /// A file cannot be read or written, or is not what it should be; the sentence names the file and the place.
+    /// A file cannot be read or written, or is invalid; the message names the file and the place.
     BadFile = 4,
-    /// The bytes are no snapshot of this version; the world is as it was.
+    /// The bytes are no snapshot of this version; the world is unchanged.
     BadSnapshot = 5,
-    /// The buffer has too little room; the count that it needs was given.
+    /// The buffer is too small; the needed count was returned.
     TooSmall = 6,
-    /// A bug of the library. What was being changed is of no use any more and can only be freed.
+    /// A bug in the library. The object being changed is unusable and can only be freed.
     Panic = 7,
 }
 

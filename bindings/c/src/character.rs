@@ -13,7 +13,7 @@ use std::ffi::{CString, c_char};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Kind of a character: rig, ragdoll and motions, of which many can be in worlds.
+/// Kind of a character: rig, ragdoll and motions, shared by any number of characters.
 pub struct SinewCharacterDef {
     def: Arc<CharacterDef>,
     names: Vec<CString>,
@@ -24,21 +24,21 @@ pub struct SinewCharacter {
     character: Handle<Character>,
 }
 
-/// State of a character: what decides its pose.
+/// State of a character, which determines the source of its pose.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SinewCharacterState {
     /// Clips.
     Animated = 0,
-    /// Its bodies: it falls, or lies.
+    /// Its bodies: it falls or lies.
     Limp = 1,
-    /// Its bodies, which are brought to where a get-up clip begins.
+    /// Its bodies, which move to the start of a get-up clip.
     Preparing = 2,
     /// A get-up clip.
     GettingUp = 3,
-    /// Clips, but for a limb that was struck.
+    /// Clips, except for a limb that was hit.
     Flinching = 4,
-    /// Its bodies, drawn to its clips by muscles.
+    /// Its bodies, pulled toward its clips by muscles.
     Powered = 5,
 }
 
@@ -82,7 +82,7 @@ pub unsafe extern "C" fn sinew_character_def_load(
     })
 }
 
-/// Frees a kind of character; characters that were made of it stay. Null is fine.
+/// Frees a kind of character; its characters stay. Null is allowed.
 ///
 /// # Safety
 /// `def` is null or came from `sinew_character_def_load` and is not used any more.
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn sinew_character_def_free(def: *mut SinewCharacterDef) {
     unsafe { free(def) }
 }
 
-/// Number of joints of its rig: of the transforms of a pose.
+/// Number of joints in its rig, and of transforms in a pose.
 ///
 /// # Safety
 /// `def` is null or a kind of character, `count` is null or points to a number.
@@ -105,7 +105,7 @@ pub unsafe extern "C" fn sinew_character_def_joint_count(
     guard(|| unsafe { give(count, "count", shared(def, "def")?.names.len()) })
 }
 
-/// Name of a joint; it lives as long as the kind of character.
+/// Name of a joint; valid as long as the kind of character.
 ///
 /// # Safety
 /// `def` is null or a kind of character, `name` is null or points to room for a pointer.
@@ -126,7 +126,7 @@ pub unsafe extern "C" fn sinew_character_def_joint_name(
     })
 }
 
-/// Puts a character into a world, animated, with bodies that rays find; it stands at a pose (+Y up, facing +Z).
+/// Adds an animated character to a world, with bodies that rays can hit, standing at a pose (+Y up, facing +Z).
 ///
 /// # Safety
 /// `def` is null or a kind of character, `world` is null or a world that nobody else uses, `character` is null or room for a pointer.
@@ -173,7 +173,7 @@ pub unsafe extern "C" fn sinew_character_despawn(
     })
 }
 
-/// Frees a character and leaves its bodies in the world, for one that is freed as well. Null is fine.
+/// Frees a character without removing its bodies, for a world that is freed as well. Null is allowed.
 ///
 /// # Safety
 /// `character` is null or came from `sinew_character_spawn` and is not used any more.
@@ -210,7 +210,7 @@ unsafe fn together<R>(
     world.world.change(|world| character.character.change(|character| call(character, world)))
 }
 
-/// Follows the world by the step that it has just taken.
+/// Updates the character after a step of its world.
 ///
 /// # Safety
 /// `character` and `world` are null or nobody else's.
@@ -229,7 +229,7 @@ pub unsafe extern "C" fn sinew_character_update(
     })
 }
 
-/// Hits a body, by its role ("chest") or its joint's name, with an impulse, N·s, world axes. It falls, or flinches if it stands that.
+/// Hits a body, by its role ("chest") or its joint's name, with an impulse, N·s, world axes. It falls, or flinches if the hit is weak.
 ///
 /// # Safety
 /// `character` and `world` are null or nobody else's, `body` is null or text.
@@ -259,7 +259,7 @@ fn no_body(def: &CharacterDef, name: &str) -> CallError {
     error(SinewStatus::BadArgument, format!("no body is called '{name}'; there are {}", roles.join(", ")))
 }
 
-/// Lets it fall, at the speed that it has.
+/// Makes it limp at its present velocity.
 ///
 /// # Safety
 /// `character` and `world` are null or nobody else's.
@@ -302,7 +302,7 @@ pub unsafe extern "C" fn sinew_character_state(
     })
 }
 
-/// Ids of its bodies in the world, in the order of its ragdoll.
+/// Returns the ids of its bodies in the world, in the order of its ragdoll.
 ///
 /// # Safety
 /// `character` is null or one that nobody changes; `ids` has room for `capacity`, `count` is null or points to a number.
@@ -322,7 +322,7 @@ pub unsafe extern "C" fn sinew_character_bodies(
     })
 }
 
-/// Transforms of all joints, each in its parent, in the order of the file.
+/// Returns the transforms of all joints relative to their parents, in the order of the file.
 ///
 /// # Safety
 /// `character` is null or one that nobody changes; `pose` has room for `capacity`, `count` is null or points to a number.
@@ -346,7 +346,7 @@ pub unsafe extern "C" fn sinew_character_pose(
     })
 }
 
-/// Matrix from the file's model space to the world, to be put above the pose: 3 rows of 4.
+/// Returns the matrix from the file's model space to the world, the parent of the pose: 3 rows of 4.
 ///
 /// # Safety
 /// `character` is null or one that nobody changes, `matrix` is null or has room for 12 numbers.
@@ -369,7 +369,7 @@ pub unsafe extern "C" fn sinew_character_world_from_model(
     })
 }
 
-/// Saves a character into a buffer, to go with the snapshot of its world; as `sinew_world_save`.
+/// Saves a character to a buffer, to accompany the snapshot of its world; see `sinew_world_save`.
 ///
 /// # Safety
 /// `character` is null or one that nobody changes; `bytes` has room for `capacity`, `size` is null or points to a number.
@@ -389,7 +389,7 @@ pub unsafe extern "C" fn sinew_character_save(
     })
 }
 
-/// Brings back a saved character of the same kind. It is as it was if the bytes are none of one.
+/// Restores a saved character of the same kind. If the bytes are invalid, it is unchanged.
 ///
 /// # Safety
 /// `character` is null or nobody else's, `bytes` has `size` of them.

@@ -16,7 +16,7 @@ pub enum SinewJointKind {
     Hinge = 1,
     /// Slides along the axis. `range`: metres.
     Slider = 2,
-    /// Nothing is free.
+    /// Locks all motions.
     Fixed = 3,
     /// Rope or rod from the anchor of A to that of B. `range`: metres.
     Distance = 4,
@@ -30,11 +30,11 @@ pub struct SinewJointDef {
     pub kind: u32,
     /// The first body.
     pub a: SinewBodyId,
-    /// The other, not the same; one of both is dynamic.
+    /// The other body; at least one of both must be dynamic.
     pub b: SinewBodyId,
     /// Anchor of both bodies, world, metres; of a distance joint its end at A.
     pub anchor: SinewVec3,
-    /// End of a distance joint at B, world, metres; of no use to others.
+    /// End of a distance joint at B, world, metres; ignored by other kinds.
     pub anchor_b: SinewVec3,
     /// Axis of a hinge or a slider, world; not zero.
     pub axis: SinewVec3,
@@ -84,7 +84,7 @@ fn joint(world: &World, id: SinewJointId) -> Outcome<JointId> {
     if is_there { Ok(joint) } else { Err(error(SinewStatus::StaleId, format!("no joint {:#x}", id.bits))) }
 }
 
-/// Adds a joint; the bodies are where they are to be for it.
+/// Adds a joint at the present poses of its bodies.
 ///
 /// # Safety
 /// `world` is null or a world that nobody else uses, `def` null or a definition, `id` null or room for one.
@@ -107,7 +107,7 @@ pub unsafe extern "C" fn sinew_world_add_joint(
     })
 }
 
-/// Takes a joint out.
+/// Removes a joint.
 ///
 /// # Safety
 /// `world` is null or a world that nobody else uses.
@@ -150,7 +150,7 @@ pub unsafe extern "C" fn sinew_world_drive_joint(
     })
 }
 
-/// Distance of the joint's two anchors, metres: how far it has come apart.
+/// Returns the distance of the joint's two anchors, metres.
 ///
 /// # Safety
 /// `world` is null or a world that nobody changes, `gap` is null or points to a number.
@@ -168,7 +168,7 @@ pub unsafe extern "C" fn sinew_world_joint_gap(
     })
 }
 
-/// Pose of B in A as the joint sees it: its rotation and its slide.
+/// Returns the pose of B in A in the joint's frames: its rotation and its slide.
 ///
 /// # Safety
 /// As `sinew_world_joint_gap`.

@@ -16,7 +16,7 @@ pub struct SinewRayHit {
     pub point: SinewVec3,
     /// Out of the body, unit length.
     pub normal: SinewVec3,
-    /// Share of the ray before the hit, 0 to 1.
+    /// Fraction of the ray before the hit, 0 to 1.
     pub fraction: f32,
 }
 
@@ -34,7 +34,7 @@ pub struct SinewContact {
     pub normal: SinewVec3,
     /// Gap, metres; negative if they overlap.
     pub separation: f32,
-    /// All that it pushed in the step, N·s.
+    /// Total impulse of the step, N·s.
     pub impulse: f32,
 }
 
@@ -56,11 +56,11 @@ pub enum SinewEventKind {
     Begin = 0,
     /// Bodies that stopped; ids may be stale.
     End = 1,
-    /// Bodies that came in fast and were stopped.
+    /// Bodies that hit each other fast.
     Hit = 2,
 }
 
-/// Casts a ray from `origin` as far as `way` goes. `found` is 1 and `hit` filled if it meets something, else 0.
+/// Casts a ray from `origin` along `way`, which also sets its length. If it hits a body, `found` is 1 and `hit` is filled, else `found` is 0.
 ///
 /// # Safety
 /// `world` is null or a world that nobody changes; `hit` and `found` are null or have room.
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn sinew_world_overlap(
     })
 }
 
-/// Points of all contacts, near ones that do not touch among them, in the order of pairs.
+/// Returns the points of all contacts, including those with a gap, in the order of pairs.
 ///
 /// # Safety
 /// `world` is null or a world that nobody changes; `contacts` has room for `capacity`, `count` is null or points to a number.

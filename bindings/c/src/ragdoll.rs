@@ -9,7 +9,7 @@ use sinew_bindings::{Wishes, embedded, load_ragdoll};
 use std::ffi::{CString, c_char};
 use std::path::Path;
 
-/// Ragdoll as data, to be put into worlds.
+/// Ragdoll as data, to be added to worlds.
 pub struct SinewRagdoll {
     def: RagdollDef,
     roles: Vec<CString>,
@@ -45,7 +45,7 @@ pub unsafe extern "C" fn sinew_ragdoll_load(
     })
 }
 
-/// Frees a ragdoll; bodies in worlds stay. Null is fine.
+/// Frees a ragdoll; bodies in worlds stay. Null is allowed.
 ///
 /// # Safety
 /// `ragdoll` is null or came from `sinew_ragdoll_load` and is not used any more.
@@ -68,7 +68,7 @@ pub unsafe extern "C" fn sinew_ragdoll_body_count(
     guard(|| unsafe { give(count, "count", shared(ragdoll, "ragdoll")?.def.bodies.len()) })
 }
 
-/// Role of a body, such as "head" or "leftUpperArm"; it lives as long as the ragdoll.
+/// Role of a body, such as "head" or "leftUpperArm"; valid as long as the ragdoll.
 ///
 /// # Safety
 /// `ragdoll` is null or a ragdoll, `role` is null or points to room for a pointer.

@@ -4,7 +4,7 @@ use crate::border::{SinewStatus, elements, error, exclusive, fill, give, guard, 
 use crate::world::SinewWorld;
 use sinew::math::{Reader, Writer};
 
-/// Hash of all that decides the future: the same on every machine, for every number of threads.
+/// Hash of the complete state: the same on every machine, for every number of threads.
 ///
 /// # Safety
 /// `world` is null or a world that nobody changes, `hash` is null or points to a number.
@@ -14,7 +14,7 @@ pub unsafe extern "C" fn sinew_world_hash(world: *const SinewWorld, hash: *mut u
     guard(|| unsafe { give(hash, "hash", shared(world, "world")?.world.get()?.hash()) })
 }
 
-/// Saves a world into a buffer; `size` is the number of bytes, also where the capacity is too small for them.
+/// Saves a world to a buffer; `size` is the number of bytes, also if the capacity is too small.
 ///
 /// # Safety
 /// `world` is null or a world that nobody changes; `bytes` has room for `capacity`, `size` is null or points to a number.
@@ -34,7 +34,7 @@ pub unsafe extern "C" fn sinew_world_save(
     })
 }
 
-/// Brings back what was saved. The world is as it was if the bytes are none of a world.
+/// Restores a saved world. If the bytes are invalid, the world is unchanged.
 ///
 /// # Safety
 /// `world` is null or a world that nobody else uses, `bytes` has `size` of them.

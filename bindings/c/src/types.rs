@@ -16,7 +16,7 @@ pub struct SinewVec3 {
     pub z: f32,
 }
 
-/// Rotation as a unit quaternion; one that is not is made so. Four zeros are no rotation at all: the identity.
+/// Rotation as a unit quaternion; other lengths are normalised. Four zeros are the identity.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SinewRotation {
@@ -30,7 +30,7 @@ pub struct SinewRotation {
     pub w: f32,
 }
 
-/// Rigid pose: rotated first, then moved.
+/// Rigid pose: rotation, then translation.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SinewPose {
@@ -50,7 +50,7 @@ pub struct SinewVelocity {
     pub angular: SinewVec3,
 }
 
-/// Name of a body of a world. A removed body's is stale: using it is an error, never another body.
+/// Id of a body in a world. The id of a removed body is stale: using it is an error, and it never refers to another body.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SinewBodyId {
@@ -58,7 +58,7 @@ pub struct SinewBodyId {
     pub bits: u64,
 }
 
-/// Name of a joint of a world, as with bodies.
+/// Id of a joint in a world, as for bodies.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SinewJointId {
@@ -72,9 +72,9 @@ pub struct SinewJointId {
 pub enum SinewBodyKind {
     /// Moved by forces.
     Dynamic = 0,
-    /// Moved by nothing.
+    /// Never moves.
     Static = 1,
-    /// Moved as its velocity says; nothing pushes it.
+    /// Moves at its velocity; nothing pushes it.
     Kinematic = 2,
 }
 

@@ -28,7 +28,7 @@ pub struct SinewWorldDef {
     pub step_nanoseconds: u64,
     /// Substeps of a step, at least 1. Default 4.
     pub substeps: u32,
-    /// Work that a step does: 0 fast, 1 balanced, 2 exact. Default 1.
+    /// Quality of a step: 0 fast, 1 balanced, 2 exact. Default 1.
     pub quality: u32,
     /// 1 if bodies at rest may fall asleep, else 0. Default 1.
     pub sleeping: u32,
@@ -48,7 +48,7 @@ pub struct SinewBodyDef {
     pub shapes: *const SinewShape,
     /// Number of shapes.
     pub shape_count: usize,
-    /// kg, spread as the shapes are; 0, the default: by `density`.
+    /// kg, distributed over the shapes; 0, the default: computed from `density`.
     pub mass: f32,
     /// kg/m³. Default 1,000.
     pub density: f32,
@@ -58,7 +58,7 @@ pub struct SinewBodyDef {
     pub restitution: f32,
     /// Bits of the layers that its shapes are on. Default 1.
     pub layers: u32,
-    /// Bits of the layers that they meet. Default all.
+    /// Bits of the layers that they collide with. Default all.
     pub mask: u32,
     /// For the user.
     pub user_data: u64,
@@ -199,7 +199,7 @@ pub(crate) fn body(world: &World, id: SinewBodyId) -> Outcome<BodyId> {
     }
 }
 
-/// Makes a world. `def` may be null: the defaults.
+/// Creates a world. `def` may be null for the defaults.
 ///
 /// # Safety
 /// `def` is null or points to settings, `world` is null or points to room for a pointer.
@@ -216,7 +216,7 @@ pub unsafe extern "C" fn sinew_world_new(
     })
 }
 
-/// Frees a world; null is fine.
+/// Frees a world; null is allowed.
 ///
 /// # Safety
 /// `world` is null or came from `sinew_world_new` and is not used any more.
@@ -226,7 +226,7 @@ pub unsafe extern "C" fn sinew_world_free(world: *mut SinewWorld) {
     unsafe { free(world) }
 }
 
-/// Takes steps, on as many threads; the result does not depend on their number. 0 and 1: the caller's alone.
+/// Takes steps on the given number of threads; the result does not depend on it. 0 and 1 use the calling thread only.
 ///
 /// # Safety
 /// `world` is null or a world that nobody else uses.
@@ -282,7 +282,7 @@ pub unsafe extern "C" fn sinew_world_add_body(
     })
 }
 
-/// Takes a body out, with its joints.
+/// Removes a body with its joints.
 ///
 /// # Safety
 /// `world` is null or a world that nobody else uses.
@@ -359,7 +359,7 @@ pub unsafe extern "C" fn sinew_world_velocities(
     })
 }
 
-/// Puts a body elsewhere, without a way between.
+/// Moves a body to a pose without passing through the space between.
 ///
 /// # Safety
 /// `world` is null or a world that nobody else uses.
@@ -380,7 +380,7 @@ pub unsafe extern "C" fn sinew_world_set_pose(
     })
 }
 
-/// Sets the velocity of a body; a static one has none, whatever is asked.
+/// Sets the velocity of a body; ignored for static ones.
 ///
 /// # Safety
 /// `world` is null or a world that nobody else uses.
@@ -401,7 +401,7 @@ pub unsafe extern "C" fn sinew_world_set_velocity(
     })
 }
 
-/// Pushes a dynamic body by an impulse, N·s, world axes, at a point in the world; at its centre of mass if `point` is null.
+/// Applies an impulse, N·s, world axes, to a dynamic body at a point in the world, or at its centre of mass if `point` is null.
 ///
 /// # Safety
 /// `world` is null or a world that nobody else uses, `point` is null or points to one.

@@ -1,4 +1,4 @@
-//! Files of characters and ragdolls, by their paths.
+//! Character and ragdoll files, by path.
 
 use crate::Failure;
 use sinew::anim::legs::add_ankles;
@@ -19,31 +19,31 @@ use sinew::ragdoll::{
 };
 use std::path::Path;
 
-/// A rigged character: the file, and who is what in it.
+/// A rigged character: the file, and the roles of its joints.
 #[derive(Clone, Debug)]
 pub struct CharacterFile {
-    /// As the user named it.
+    /// Name given by the user.
     pub name: String,
-    /// Its rig, clips and bytes. The rig may have ankles that the file lacks, and joints of sheets.
+    /// Its rig, clips and bytes. The rig may have added ankles and sheet joints that the file lacks.
     pub document: Document,
     /// Analysis of its joints.
     pub analysis: RigAnalysis,
-    /// Settings beside the file or given, or none.
+    /// Settings beside the file or given by the user, if any.
     pub settings: Settings,
-    /// Garments that the settings dress it in.
+    /// Garments from the settings.
     pub garments: Vec<Garment>,
 }
 
-/// Settings that a user gives with a file, over those beside it.
+/// User settings that override those beside the file.
 #[derive(Clone, Debug, Default)]
 pub struct Corrections {
     /// Settings instead of those beside the file.
     pub settings: Option<Settings>,
-    /// Joints and the roles that they have.
+    /// Joints and their roles.
     pub roles: Vec<(String, String)>,
-    /// Joints that are no part of the body, with all below them.
+    /// Joints that, with all below them, do not belong to the body.
     pub ignore: Vec<String>,
-    /// Bones, by role or joint, that get a body of their own, or none.
+    /// Bones, by role or joint, and whether each gets its own body.
     pub bodies: Vec<(String, bool)>,
     /// Length of the file's unit, metres.
     pub unit: Option<f32>,
@@ -83,7 +83,7 @@ impl Corrections {
     }
 }
 
-/// Wishes of a build that differ from what file and settings say; `None` leaves it to them.
+/// Build options that override file and settings; `None` keeps theirs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wishes {
     /// Mass of the whole, kg.
@@ -94,7 +94,7 @@ pub struct Wishes {
     pub options: BuildOptions,
 }
 
-/// Motions of a character: what it does before, during and after a fall.
+/// Motions of a character before, during and after a fall.
 #[derive(Clone, Debug)]
 pub struct Motions {
     /// Name of the clip that plays until it falls; `None`: the file's walk, else its idle, else its first.
@@ -122,8 +122,8 @@ impl Default for Motions {
 }
 
 impl CharacterFile {
-    /// Reads a GLB, glTF, VRM or FBX with a skinned character, and the settings beside it. As the commands of `sinew` read it,
-    /// but for the unit of a file in doubt, which they also ask its neighbours for.
+    /// Reads a GLB, glTF, VRM or FBX with a skinned character, and the settings beside it, like the commands of `sinew`. These also use
+    /// neighbouring files to find an uncertain unit.
     ///
     /// # Errors
     /// Names the file, what is wrong with it, and where.
@@ -145,8 +145,8 @@ impl CharacterFile {
         Self::new(name, document, corrections.over(settings)?)
     }
 
-    /// [`load`](Self::load) of bytes in memory. `name` is the file's: errors begin with it, and its words help to tell what the character is.
-    /// A glTF must hold its buffers.
+    /// [`load`](Self::load) for bytes in memory. `name` is that of the file: it begins error messages, and its words help to classify the
+    /// character. A glTF must contain its buffers.
     ///
     /// # Errors
     /// As [`load`](Self::load).
@@ -160,7 +160,7 @@ impl CharacterFile {
         Self::new(name.to_owned(), document, corrections.over(Settings::default())?)
     }
 
-    /// [`load`](Self::load) of a rig and clips that code made.
+    /// [`load`](Self::load) for a rig and clips created by code.
     ///
     /// # Errors
     /// As [`load`](Self::load).
@@ -173,7 +173,7 @@ impl CharacterFile {
         let stem = Path::new(&name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let hints = Hints {
             name: stem.unwrap_or_default(),
-            // Readers turn every format so that +Y is up.
+            // All readers convert to +Y up.
             up: Some(Vec3::Y),
             exporter: document.generator().to_owned(),
             ..Hints::of_clips(&document.rig, &document.clips)
@@ -209,7 +209,7 @@ impl CharacterFile {
     /// The ragdoll of the character, and what the build says of it.
     ///
     /// # Errors
-    /// Names the file and what is wrong with it or with a wish.
+    /// Names the file and the problem of the file or the options.
     pub fn build(&self, wishes: &Wishes) -> Result<(RagdollDef, BuildReport), Failure> {
         let rig = &self.document.rig;
         let mut settings = self.settings.clone();
@@ -225,11 +225,11 @@ impl CharacterFile {
             .map_err(|error| failed(&error))
     }
 
-    /// The character with its own clips, as `sinew bake` makes it; by what it gets up it may be given Sinew's own motions, if it is a
-    /// humanoid. One that has none stays down.
+    /// The character with its own clips, as built by `sinew bake`. A humanoid can get Sinew's get-up motions. A character without any stays
+    /// down.
     ///
     /// # Errors
-    /// The ragdoll is another rig's, there is no such clip, or a clip cannot be played.
+    /// If the ragdoll belongs to another rig, the clip does not exist, or a clip cannot be played.
     pub fn character(&self, ragdoll: &RagdollDef, motions: &Motions) -> Result<CharacterDef, Failure> {
         let failed = |error: &dyn core::fmt::Display| Failure::file(&self.name, error);
         let (rig, clips) = (&self.document.rig, &self.document.clips);
@@ -262,7 +262,7 @@ impl CharacterFile {
         if own.get_ups.is_empty() {
             let given = builtin.then(|| set_motions_with_builtin(def, &self.analysis, own.clone()));
             match given {
-                // Sinew's walk replaces none that the file has, nor the rule by which that one moves.
+                // Sinew's walk replaces neither the file's walk nor its locomotion.
                 Some(Ok(())) => return Ok(()),
                 Some(Err(BuiltinError::Motion(error))) => return Err(failed(&error)),
                 Some(Err(BuiltinError::Retarget(_) | BuiltinError::InFloor(_))) | None => {}
@@ -273,14 +273,14 @@ impl CharacterFile {
     }
 }
 
-/// The document that a file of motions becomes as a glTF.
+/// Converts a motion file to a glTF document.
 fn of_motion(file: MotionFile, name: &str) -> Result<Document, Failure> {
     let bytes = write_motion(&file.rig, &file.clips, &file.events);
     let read = |bytes: Vec<u8>| read_gltf(&bytes, ReadOptions::default(), &mut no_files);
     Ok(bytes.and_then(read).map_err(|error| error.with_file(name))?)
 }
 
-/// Leaves out the meshes of all characters but the one with the most vertices; returns a note if there were several.
+/// Removes the meshes of all characters but the one with the most vertices; returns a note if there were several.
 fn keep_largest(rig: &mut Rig) -> Option<String> {
     let all = characters(rig);
     let vertices = |own: &[usize]| {
@@ -301,7 +301,7 @@ fn keep_largest(rig: &mut Rig) -> Option<String> {
     Some(format!("there are {} characters in the file; the one with the most vertices is taken", all.len()))
 }
 
-/// The mannequin that comes with Sinew, as if it had been read from a file.
+/// The mannequin of the library, as if it had been read from a file.
 pub fn embedded() -> CharacterFile {
     let mannequin = sinew::mannequin::mannequin();
     let bytes = write_gltf(&mannequin.rig, &mannequin.clips).expect("the mannequin is a glTF");

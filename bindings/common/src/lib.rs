@@ -9,22 +9,22 @@ pub use character_file::{CharacterFile, Corrections, Motions, Wishes, embedded, 
 pub use panics::caught;
 pub use random_fall::{FallOptions, RandomFall, random_fall};
 
-/// Why something was not done: one line that names the file and the place.
+/// Error of a call: one line that names the file and the place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure {
-    /// True if a file could not be read or written, or is not what it should be; false if an argument is wrong.
+    /// True if a file could not be read or written, or is invalid; false if an argument is wrong.
     pub is_of_file: bool,
     /// Description of what is wrong.
     pub what: String,
 }
 
 impl Failure {
-    /// An argument that cannot be.
+    /// Error for an invalid argument.
     pub fn argument(what: impl Into<String>) -> Self {
         Self { is_of_file: false, what: what.into() }
     }
 
-    /// Trouble with a file, by its name.
+    /// Error for a file, by its name.
     pub fn file(name: &str, what: impl core::fmt::Display) -> Self {
         Self { is_of_file: true, what: format!("{name}: {what}") }
     }

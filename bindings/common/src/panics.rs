@@ -6,14 +6,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::Once;
 
 thread_local! {
-    /// A panic of this thread is caught below.
+    /// True while a panic of this thread is caught below.
     static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Runs `call`; a panic becomes its sentence, and nothing is printed of it.
+/// Runs `call`; a panic becomes its message, and nothing is printed.
 ///
 /// # Errors
-/// The sentence of the panic.
+/// The message of the panic.
 pub fn caught<T>(call: impl FnOnce() -> T) -> Result<T, String> {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| {
@@ -30,7 +30,7 @@ pub fn caught<T>(call: impl FnOnce() -> T) -> Result<T, String> {
     outcome.map_err(|payload| text_of_panic(payload.as_ref()))
 }
 
-/// Text that a panic carries: the sentence of an assertion.
+/// Message of a panic.
 fn text_of_panic(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
     text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic".to_owned())

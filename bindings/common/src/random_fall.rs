@@ -27,7 +27,7 @@ impl Default for FallOptions {
     }
 }
 
-/// A random fall and what became of it.
+/// A random fall and its results.
 #[derive(Clone, Debug)]
 pub struct RandomFall {
     /// The hit.
@@ -42,11 +42,11 @@ pub struct RandomFall {
     pub reasons: Vec<String>,
 }
 
-/// Lets a character fall from a random pose within its limits, turned at random, its lowest point 1.3 m to 2.5 m above the floor, on
-/// random ground; within the first half it is hit somewhere from anywhere.
+/// Drops a character from a random pose within its limits, with a random orientation, its lowest point 1.3 m to 2.5 m above the floor, on
+/// random ground. Within the first half it gets a random hit.
 ///
 /// # Panics
-/// If an option is not finite or negative, or there is less than a frame a second.
+/// If an option is not finite or negative, or the frame rate is below 1.
 pub fn random_fall(character: &CharacterDef, seed: u64, options: &FallOptions) -> RandomFall {
     let mut random = Random::new(seed);
     let ground = random_ground(&mut random);

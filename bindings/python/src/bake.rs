@@ -1,4 +1,4 @@
-//! Bakes: a stretch of a character's life as arrays, and as a clip in a file.
+//! Bakes: the simulated motion of a character as arrays, and as a clip in a file.
 
 use crate::arrays::{array, floats, poses, push_pose, vec3};
 use crate::collider::{Collider, parted, world_of};
@@ -42,7 +42,7 @@ pub struct Bake {
     reasons: Vec<String>,
 }
 
-/// Character of a bake, with all that is done to it.
+/// Character of a bake with its hits and drives.
 #[pyclass(frozen, module = "sinew")]
 pub struct Actor {
     file: Arc<CharacterFile>,
@@ -55,7 +55,7 @@ pub struct Actor {
     place: Transform,
     phase: f32,
     name: String,
-    /// One that stays upright when it goes limp is pushed over, where it is alone.
+    /// True if a limp character that stays upright is pushed over, in a bake of one.
     topples: bool,
 }
 
@@ -64,7 +64,7 @@ type Hit<'py> = (f32, String, Bound<'py, PyAny>);
 
 #[pymethods]
 impl Actor {
-    /// What is done to a character in a bake.
+    /// Actions on a character in a bake.
     #[new]
     #[pyo3(signature = (character, *, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, pose=None, phase=0.0, name="sinew"))]
     fn new(
@@ -112,7 +112,7 @@ impl Actor {
     }
 }
 
-/// Stage of a bake, as Python gives it.
+/// World and length of a bake, from Python's arguments.
 struct Stage {
     colliders: Vec<Collider>,
     fields: Vec<FieldDef>,
@@ -208,10 +208,10 @@ impl Stage {
     }
 }
 
-/// Seconds of the clock between two calls of the user's function.
+/// Wall time between two calls of the user's function, seconds.
 const TELLS_EVERY: f32 = 0.05;
 
-/// Tells a bake's progress to Python, and asks whether it shall go on.
+/// Reports a bake's progress to Python, and checks whether to continue.
 struct Watch {
     progress: Option<Py<PyAny>>,
     seconds: f32,
@@ -275,7 +275,7 @@ impl Character {
         self.def.raised()
     }
 
-    /// Simulates it: walking, hit, falling, getting up. Where nothing is done to it, it goes limp after half a second.
+    /// Simulates it: walking, hit, falling, getting up. Without any action, it goes limp after half a second.
     #[pyo3(signature = (*, seconds=10.0, fps=30.0, hits=None, flinch=false, limp_at=None, drives=None, return_at=None, return_seconds=0.5, topple=None, world=None, wind=None, gravity=None, pose=None, phase=0.0, name="sinew", progress=None))]
     fn bake(
         slf: PyRef<'_, Self>,
@@ -468,7 +468,7 @@ impl Bake {
         self.baked.hash
     }
 
-    /// The file with the clip in it, or the bones alone with the clip if there is to be no mesh.
+    /// The file with the clip, or only its bones with the clip if `mesh` is false.
     #[pyo3(signature = (*, mesh=true))]
     fn glb<'py>(&self, py: Python<'py>, mesh: bool) -> PyResult<Bound<'py, PyBytes>> {
         Ok(PyBytes::new(py, &py.detach(|| self.bytes(mesh))?))
@@ -488,7 +488,7 @@ impl Bake {
         Ok((text, notes))
     }
 
-    /// Writes that file, whole or not at all.
+    /// Writes that file atomically.
     #[pyo3(signature = (path, *, mesh=true))]
     fn save(&self, py: Python<'_>, path: PathBuf, mesh: bool) -> PyResult<()> {
         py.detach(|| write_atomic(&path, &self.bytes(mesh)?).map_err(of_file))

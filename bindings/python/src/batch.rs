@@ -15,7 +15,7 @@ use sinew::ragdoll::{BodySettings, BodyState, RagdollDef};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Worlds that hold one figure each, on a floor. Each has the bits that it would have alone, whatever the number of threads.
+/// Worlds with one figure each, on a floor. Each has the same bits as it would alone, for any number of threads.
 #[pyclass(module = "sinew")]
 pub struct BatchWorlds {
     worlds: Vec<Mutex<World>>,
@@ -26,7 +26,7 @@ pub struct BatchWorlds {
     threads: Threads,
 }
 
-/// Puts the figure into a world: its moving bodies, their joints, and their names.
+/// Adds the figure to a world: its moving bodies, their joints, and their names.
 type Figure = (Vec<BodyId>, Vec<JointId>, Vec<String>);
 
 fn spawn_ragdoll(world: &mut World, def: &RagdollDef) -> Figure {
@@ -46,7 +46,7 @@ fn spawn_model(world: &mut World, model: &Model) -> Figure {
 }
 
 impl BatchWorlds {
-    /// Does something with every world, on all threads, without the GIL.
+    /// Applies an operation to every world, on all threads, without the GIL.
     fn each(&self, py: Python<'_>, work: impl Fn(usize, &mut World) + Sync) -> PyResult<()> {
         let next = AtomicUsize::new(0);
         let task = || {
@@ -80,7 +80,7 @@ impl BatchWorlds {
         Ok(all)
     }
 
-    /// Numbers of the worlds that are meant; all of them if none are given.
+    /// Indices of the given worlds; all of them if none are given.
     fn chosen(&self, worlds: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<usize>> {
         let count = self.worlds.len();
         let Some(worlds) = worlds else { return Ok((0..count).collect()) };
@@ -133,7 +133,7 @@ impl BatchWorlds {
         py.detach(|| {
             guarded(|| {
                 let (first, (bodies, joints, names)) = make();
-                // Ids of whatever world: those of one go with all.
+                // Ids without a world, since those of one world are valid in all.
                 let bodies = bodies.into_iter().map(|id| BodyId::from_bits(id.to_bits())).collect();
                 let joints = joints.into_iter().map(|id| JointId::from_bits(id.to_bits())).collect();
                 let mut worlds = vec![Mutex::new(first)];
@@ -171,7 +171,7 @@ impl BatchWorlds {
         self.each(py, |_, world| (0..count).for_each(|_| world.step()))
     }
 
-    /// Brings worlds back to their beginning; then, if they are given, figures to `poses` (m, n, 7) and `velocities` (m, n, 6).
+    /// Resets worlds to their beginning; then moves figures to `poses` (m, n, 7) and `velocities` (m, n, 6), if given.
     #[pyo3(signature = (worlds=None, *, poses=None, velocities=None))]
     fn reset(
         &mut self,
@@ -203,7 +203,7 @@ impl BatchWorlds {
         })
     }
 
-    /// Pushes a body of each world by an impulse, N·s, (worlds, 3), at its centre of mass.
+    /// Applies an impulse to a body of each world, N·s, (worlds, 3), at its centre of mass.
     fn push(&mut self, body: usize, impulses: &Bound<'_, PyAny>) -> PyResult<()> {
         let impulses = vectors(&floats(impulses, &[Some(self.worlds.len()), Some(3)], "impulses")?);
         let id =

@@ -1,4 +1,4 @@
-//! Bodies of a world that are no character: shapes, meshes, and what goes by keys.
+//! Bodies of a world besides characters: shapes, meshes, and keyframed bodies.
 
 use crate::arrays::{elements, floats, poses, vectors};
 use crate::errors::{bad, guarded, of_file};
@@ -110,7 +110,7 @@ impl Collider {
         Ok(bodies.into_iter().map(|def| Self { def, keys: None }).collect())
     }
 
-    /// The same body, but moved by forces: density in kg/m³.
+    /// The same body moved by forces; density in kg/m³.
     #[pyo3(signature = (*, density=1000.0))]
     fn dynamic(&self, density: f32) -> PyResult<Self> {
         let mut def = BodyDef { kind: BodyKind::Dynamic, ..self.def.clone() };
@@ -121,7 +121,7 @@ impl Collider {
         Ok(Self { def, keys: None })
     }
 
-    /// The same body, but at poses (n, 7) at times (n,) in seconds, whatever is in its way.
+    /// The same body, moved to poses (n, 7) at times (n,) in seconds, regardless of obstacles.
     fn keyed(&self, times: &Bound<'_, PyAny>, poses: &Bound<'_, PyAny>) -> PyResult<Self> {
         let times = floats(times, &[None], "times")?;
         let keys = crate::arrays::poses(&floats(poses, &[Some(times.len()), Some(7)], "poses")?, "poses")?;
@@ -144,7 +144,7 @@ impl Collider {
     }
 }
 
-/// World of a bake: a file's name or colliders; nothing given is a floor.
+/// World of a bake: a file's name or colliders; by default a floor.
 pub fn world_of(given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Collider>> {
     let Some(given) = given else { return Ok(vec![Collider::floor(0.0, Material::DEFAULT.friction)?]) };
     if let Ok(path) = given.extract::<PathBuf>() {
@@ -155,7 +155,7 @@ pub fn world_of(given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Collider>> {
     Ok(list.iter().map(|collider| Collider::clone(collider)).collect())
 }
 
-/// Bodies that stand or fall, and bodies that go by keys.
+/// Static and dynamic bodies, and keyframed bodies.
 pub fn parted(colliders: &[Collider]) -> (Vec<BodyDef>, Vec<BakeMover<'_>>) {
     let still = colliders.iter().filter(|collider| collider.keys.is_none());
     let keyed = colliders.iter().filter_map(|collider| {

@@ -12,7 +12,7 @@ use sinew::physics::BodyId;
 use sinew::ragdoll::{CharacterDef, Detail, Grab, Grip, Preset};
 use std::sync::Arc;
 
-/// Character in a world: it follows the world with every step.
+/// Character in a world; it follows every step.
 #[pyclass(frozen, module = "sinew")]
 pub struct LiveCharacter {
     pub world: Py<World>,
@@ -22,14 +22,14 @@ pub struct LiveCharacter {
 }
 
 impl LiveCharacter {
-    /// Reads the character; `ValueError` once it was taken out.
+    /// Reads the character; `ValueError` after it was removed.
     fn read<T>(&self, py: Python<'_>, read: impl FnOnce(&sinew::ragdoll::Character) -> T) -> PyResult<T> {
         let world = self.world.borrow(py);
         let character = world.characters[self.index].as_ref();
         Ok(read(character.ok_or_else(|| bad("the character was taken out of its world"))?))
     }
 
-    /// Has the character do something in its world.
+    /// Applies an action to the character in its world.
     fn act<T>(
         &self,
         py: Python<'_>,
@@ -52,7 +52,7 @@ impl LiveCharacter {
     }
 }
 
-/// One pose out of seven numbers.
+/// Reads a pose from seven numbers.
 pub fn one_pose(given: &Bound<'_, PyAny>) -> PyResult<Transform> {
     Ok(poses(&floats(given, &[Some(7)], "pose")?, "pose")?[0])
 }
@@ -65,7 +65,7 @@ impl LiveCharacter {
         self.read(py, |character| state_name(character.state()))
     }
 
-    /// Events of the last step, and of what was done since.
+    /// Events of the last step, and of calls since.
     #[getter]
     fn events(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         self.read(py, |character| character.events().iter().map(event_name).collect())
@@ -127,14 +127,14 @@ impl LiveCharacter {
         array(py, palette.into_iter().flatten().collect(), &[count, 3, 4])
     }
 
-    /// Ids of its bodies in the world, in the order of `Ragdoll.roles`; none where it has no bodies there.
+    /// Ids of its bodies in the world, in the order of `Ragdoll.roles`; empty while it has none there.
     #[getter]
     fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u64>>> {
         let ids = self.read(py, |character| character.bodies().iter().map(|id| id.to_bits()).collect())?;
         Ok(PyArray1::from_vec(py, ids))
     }
 
-    /// Has it go at a velocity over the ground, m/s; `None`: as its clips go.
+    /// Sets its velocity over the ground, m/s; `None`: it follows its clips.
     #[pyo3(signature = (velocity))]
     fn set_move(&self, py: Python<'_>, velocity: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let velocity = velocity.map(|velocity| vec3(velocity, "velocity")).transpose()?;
@@ -144,13 +144,13 @@ impl LiveCharacter {
         })
     }
 
-    /// Has it turn to look along a direction.
+    /// Makes it turn to face a direction.
     fn face(&self, py: Python<'_>, direction: &Bound<'_, PyAny>) -> PyResult<()> {
         let direction = vec3(direction, "direction")?;
         self.act(py, |character, _| character.face(direction))
     }
 
-    /// Has it jump in the next step.
+    /// Makes it jump in the next step, if it is on the ground.
     fn jump(&self, py: Python<'_>) -> PyResult<()> {
         self.act(py, |character, world| character.jump(world))
     }
@@ -161,12 +161,12 @@ impl LiveCharacter {
         self.act(py, |character, world| character.hit(world, body, impulse))
     }
 
-    /// Lets the bodies take over.
+    /// Makes it limp.
     fn go_limp(&self, py: Python<'_>) -> PyResult<()> {
         self.act(py, |character, world| character.go_limp(world))
     }
 
-    /// Has all of it moved in another way: animated, flinching, powered or limp.
+    /// Changes the drive of the whole character: animated, flinching, powered or limp.
     fn set_preset(&self, py: Python<'_>, preset: &str) -> PyResult<()> {
         let preset = match preset {
             "animated" => Preset::Animated,
@@ -180,13 +180,13 @@ impl LiveCharacter {
         self.act(py, |character, world| character.set_preset(world, preset))
     }
 
-    /// Has part of it moved in another way, from now on; the time of the drive does nothing.
+    /// Changes the drive of a part from now on; the drive's time is ignored.
     fn set_drive(&self, py: Python<'_>, drive: &Drive) -> PyResult<()> {
         let part = drive.part(&self.def)?;
         self.act(py, |character, world| character.set_drive(world, part, drive.mode, drive.half_life))
     }
 
-    /// Gives it back to its looped clip at `phase` seconds, at a pose, within so many seconds.
+    /// Blends it back to its looped clip at `phase` seconds, at a pose, within `seconds`.
     #[pyo3(signature = (pose, *, phase=0.0, seconds=0.5))]
     fn return_to_clip(
         &self,
@@ -199,18 +199,18 @@ impl LiveCharacter {
         self.act(py, |character, world| character.return_to_clip(world, place, phase, seconds))
     }
 
-    /// Puts it elsewhere at once.
+    /// Teleports it.
     fn teleport(&self, py: Python<'_>, pose: &Bound<'_, PyAny>) -> PyResult<()> {
         let place = one_pose(pose)?;
         self.act(py, |character, world| character.teleport(world, place))
     }
 
-    /// Moves it, limp, out of static shapes that it is deep in; false if it is in none.
+    /// Moves a limp character out of static shapes that it is deep in; false if it is in none.
     fn clear(&self, py: Python<'_>) -> PyResult<bool> {
         self.act(py, |character, world| character.clear(world))
     }
 
-    /// Has a bone hold a dynamic body of the world; `pose` is that of the held body in the bone's. Gives the joint's id.
+    /// Makes a bone hold a dynamic body of the world; `pose` is the body's pose in the bone's frame. Returns the joint's id.
     #[pyo3(signature = (bone, body, *, pose=None, drops=false))]
     fn hold(
         &self,
@@ -227,7 +227,7 @@ impl LiveCharacter {
         Ok(self.act(py, |character, world| character.hold(world, bone, body, &grip))?.to_bits())
     }
 
-    /// Has a bone grab a body within reach, also one of another character; gives the joint's id, or None out of reach.
+    /// Makes a bone grab a body within reach, also one of another character; returns the joint's id, or None out of reach.
     #[pyo3(signature = (bone, body, *, max_force=1300.0, reach=0.25))]
     fn grab(
         &self,
@@ -244,7 +244,7 @@ impl LiveCharacter {
         Ok(joint.map(|joint| joint.to_bits()))
     }
 
-    /// Lets go of what it holds; false if it does not hold that.
+    /// Releases a held body; false if it does not hold it.
     fn release(&self, py: Python<'_>, body: u64) -> PyResult<bool> {
         self.act(py, |character, world| character.release(world, BodyId::from_bits(body)))
     }
@@ -256,7 +256,7 @@ impl LiveCharacter {
         Ok(PyArray1::from_vec(py, ids))
     }
 
-    /// Cuts a limb off, with all below it; gives the ids of its bodies, which stay in the world. None if it was cut off before.
+    /// Detaches a limb with everything below it; returns the ids of its bodies, which stay in the world. None if it was detached before.
     fn detach<'py>(&self, py: Python<'py>, bone: &str) -> PyResult<Option<Bound<'py, PyArray1<u64>>>> {
         body_named(&self.def, bone)?;
         let limb = self.act(py, |character, world| character.detach(world, bone))?;
@@ -278,17 +278,17 @@ impl LiveCharacter {
         self.act(py, |character, world| character.set_level_of_detail(world, detail))
     }
 
-    /// Starts its springs over at rest.
+    /// Restarts its springs at rest.
     fn reset_springs(&self, py: Python<'_>) -> PyResult<()> {
         self.act(py, |character, _| character.reset_springs())
     }
 
-    /// Starts its garments over at rest.
+    /// Restarts its garments at rest.
     fn reset_garments(&self, py: Python<'_>) -> PyResult<()> {
         self.act(py, |character, world| character.reset_garments(world))
     }
 
-    /// Takes it out of the world.
+    /// Removes it from the world.
     fn despawn(&self, py: Python<'_>) -> PyResult<()> {
         let mut world = self.world.borrow_mut(py);
         let World { world, characters, .. } = &mut *world;

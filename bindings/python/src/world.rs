@@ -24,17 +24,17 @@ use sinew::ragdoll::BodyState;
 #[pyclass(module = "sinew")]
 pub struct World {
     pub world: sinew::physics::World,
-    /// Characters that follow it; `None`: taken out.
+    /// Characters that follow it; `None`: removed.
     pub characters: Vec<Option<sinew::ragdoll::Character>>,
     threads: Threads,
-    /// Bodies that go by keys.
+    /// Keyframed bodies.
     keyed: Vec<(BodyId, Collider)>,
 }
 
 /// Ids of bodies or joints.
 type Ids<'py> = Bound<'py, PyArray1<u64>>;
 
-/// A body that is nowhere: of a ray that met none.
+/// Body id of a ray without a hit.
 const NOBODY: u64 = u64::MAX;
 
 /// Settings of a world, from Python's arguments.
@@ -146,7 +146,7 @@ impl World {
 
 #[pymethods]
 impl World {
-    /// Makes a world; `threads` changes how long a step takes, never what comes out.
+    /// Creates a world; `threads` affects the time of a step, not its result.
     #[new]
     #[pyo3(signature = (*, gravity=None, dt=1.0/60.0, substeps=4, quality="balanced", sleeping=true, threads=1))]
     fn new(
@@ -206,7 +206,7 @@ impl World {
         Ok(refused(|| self.world.add_body(&def))?.to_bits())
     }
 
-    /// Adds a collider and gives its id. One with keys goes by them, from the world's time 0 on.
+    /// Adds a collider and returns its id; a keyed one follows its keys from the world's time 0 on.
     fn add_collider(&mut self, collider: &Collider) -> PyResult<u64> {
         let id = match parted(std::slice::from_ref(collider)).1.first() {
             Some(mover) => refused(|| mover.enter(&mut self.world))?,
@@ -235,7 +235,7 @@ impl World {
         Ok(refused(|| self.world.add_field(&wind))?.to_bits())
     }
 
-    /// Takes a field out.
+    /// Removes a field.
     fn remove_field(&mut self, field: u64) -> PyResult<()> {
         let id = FieldId::from_bits(field);
         if !self.world.contains_field(id) {
@@ -278,7 +278,7 @@ impl World {
         Ok((Self::bits(py, &spawned.bodies), PyArray1::from_vec(py, joints)))
     }
 
-    /// Brings a character into the world, standing at a pose, `phase` seconds into its looped clip; it follows every step.
+    /// Adds a character, standing at a pose, `phase` seconds into its looped clip; it follows every step.
     #[pyo3(signature = (character, *, pose=None, phase=0.0))]
     fn add_character(
         slf: &Bound<'_, Self>,
@@ -300,7 +300,7 @@ impl World {
         Ok(LiveCharacter { world: slf.clone().unbind(), index, def: character.def.clone() })
     }
 
-    /// Takes a body out, with its joints.
+    /// Removes a body with its joints.
     fn remove_body(&mut self, body: u64) -> PyResult<()> {
         let body = self.body(body)?;
         refused(|| self.world.remove_body(body))
@@ -337,13 +337,13 @@ impl World {
         Ok(refused(|| self.world.add_joint(&def))?.to_bits())
     }
 
-    /// Takes a joint out.
+    /// Removes a joint.
     fn remove_joint(&mut self, joint: u64) -> PyResult<()> {
         let joint = self.joint(joint)?;
         guarded(|| self.world.remove_joint(joint))
     }
 
-    /// Drives a joint toward a turn (scaled axis), as a spring of so many Hz with at most a torque in N·m; 0 Hz: not at all.
+    /// Drives a joint toward a rotation (scaled axis) by a spring of a frequency in Hz with a largest torque in N·m; 0 Hz: no drive.
     #[pyo3(signature = (joint, target, *, hertz, damping_ratio=1.0, max_torque=f32::INFINITY))]
     fn drive_joint(
         &mut self,
@@ -425,7 +425,7 @@ impl World {
         array(py, numbers, &[bodies.len(), 6])
     }
 
-    /// Puts bodies elsewhere.
+    /// Sets poses of bodies.
     fn set_poses(&mut self, bodies: &Bound<'_, PyAny>, poses: &Bound<'_, PyAny>) -> PyResult<()> {
         let bodies = self.bodies(Some(bodies))?;
         let numbers = floats(poses, &[Some(bodies.len()), Some(7)], "poses")?;
@@ -445,7 +445,7 @@ impl World {
         })
     }
 
-    /// Pushes a body by an impulse, N·s, at a point in the world, else at its centre of mass.
+    /// Applies an impulse to a body, N·s, at a point in the world, or else at its centre of mass.
     #[pyo3(signature = (body, impulse, *, point=None))]
     fn push(
         &mut self,
@@ -531,7 +531,7 @@ impl World {
         Ok(PyArray1::from_vec(py, turn.to_array().to_vec()))
     }
 
-    /// Hash of all that decides the future, characters included.
+    /// Hash of the complete state, characters included.
     fn hash(&self) -> u64 {
         if self.characters.iter().flatten().next().is_none() {
             return self.world.hash();
@@ -544,7 +544,7 @@ impl World {
         PyBytes::new(py, self.state().as_bytes())
     }
 
-    /// Brings back a state that was saved; the characters are those that were there then.
+    /// Restores a saved state; the characters must be those at the time of saving.
     fn load(&mut self, state: &[u8]) -> PyResult<()> {
         let mut world = self.world.clone();
         let mut characters = self.characters.clone();

@@ -18,7 +18,7 @@ function isNode() {
 async function start({ wasm, warm = true }) {
   let source = wasm;
   if (source === undefined && isNode()) {
-    // A name in a variable, so that bundlers for browsers look for no such module.
+    // The name is in a variable, so that bundlers for browsers do not resolve the module.
     const files = 'node:fs/promises';
     const { readFile } = await import(/* @vite-ignore */ /* webpackIgnore: true */ files);
     source = await readFile(new URL('./wasm/sinew_web_bg.wasm', import.meta.url));
@@ -32,12 +32,12 @@ async function start({ wasm, warm = true }) {
  * Options of `init`.
  * @typedef {object} InitOptions
  * @property {string | URL | Request | Response | BufferSource | WebAssembly.Module | Promise<Response>} [wasm]
- *   The program, or where it is. By default it lies beside this file.
+ *   The program or its address. By default it is next to this file.
  * @property {boolean} [warm] False: the first falls are slower, since the browser compiles code when it is first called. Default true.
  */
 
 /**
- * Loads the program. Every call waits for the same load; one that failed is tried again.
+ * Loads the program. All calls wait for the same load; a failed one is retried.
  * @param {InitOptions} [options]
  * @returns {Promise<void>}
  */
@@ -50,7 +50,7 @@ export function init(options = {}) {
 }
 
 /**
- * Bytes of memory that the program has taken. It never gives any back, but uses again what was freed.
+ * Bytes of memory that the program has allocated. It never shrinks, but reuses freed memory.
  * @returns {number}
  */
 export function memoryBytes() {

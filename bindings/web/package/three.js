@@ -22,7 +22,7 @@ const LONGEST_FRAME = 0.25;
 const FAR = 1000;
 
 /**
- * What a ray met.
+ * The hit of a ray.
  * @typedef {object} Picked
  * @property {bigint} body Id of the body.
  * @property {Vector3} point World.
@@ -80,7 +80,7 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * Lets time pass and moves all objects to where the physics has them. Call it once a frame.
+   * Steps the physics and moves all objects to their poses. Call it once a frame.
    * @param {number} seconds Time since the last frame.
    */
   update(seconds) {
@@ -123,7 +123,7 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * What a body belongs to.
+   * The object or character that a body belongs to.
    * @param {bigint} body
    * @returns {{ object?: SinewBody, character?: SinewCharacter, bone?: string, instances?: SinewInstances, instance?: number }}
    */
@@ -138,8 +138,8 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * Puts a character into the world that moves a model which three's loader has loaded. `bytes` are those of the file, of which the ragdoll is
-   * built, once for all characters of one `gltf`. The first moves `gltf.scene`, each further one a copy: add its `object` to your scene.
+   * Adds a character that moves a model loaded by three's loader. The ragdoll is built from the file's `bytes`, once for all characters of
+   * one `gltf`. The first character moves `gltf.scene`, each further one a copy: add its `object` to your scene.
    * @param {GLTF} gltf
    * @param {ArrayBuffer | Uint8Array} bytes
    * @param {SinewCharacterOptions} [options]
@@ -152,7 +152,7 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * Gives a mesh, or an object of meshes, a body that moves it. The object is where it is to begin.
+   * Adds a body that moves a mesh or an object of meshes, starting at the object's pose.
    * @param {Object3D} object
    * @param {ObjectBodyOptions} [options]
    */
@@ -164,7 +164,7 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * Gives an object a static body: a wall, a level. Its shapes are those of its meshes.
+   * Adds a static body for an object, such as a wall or a level, with the shapes of its meshes.
    * @param {Object3D} object
    * @param {Omit<ObjectBodyOptions, 'kind'>} [options]
    */
@@ -173,7 +173,7 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * Gives each instance of a mesh a body that moves it.
+   * Adds a body for each instance of a mesh, which moves the instance.
    * @param {InstancedMesh} object
    * @param {ObjectBodyOptions} [options]
    */
@@ -185,7 +185,7 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * Adds a level ground without an end, and returns the id of its body.
+   * Adds an infinite level ground, and returns the id of its body.
    * @param {number} [height] Metres.
    */
   ground(height = 0) {
@@ -269,7 +269,7 @@ export class Sinew extends EventDispatcher {
   }
 
   /**
-   * Takes something of this world's out, and frees it.
+   * Removes something from this world, and frees it.
    * @param {SinewBody | SinewInstances | SinewCharacter | SinewGeometry | SinewDrag} member
    */
   remove(member) {

@@ -1,4 +1,4 @@
-//! Border to JavaScript: failures as errors, panics as errors, handles that several objects share.
+//! Border to JavaScript: errors, panics, and handles shared by several objects.
 
 use std::cell::{Cell, RefCell};
 use std::panic::{PanicHookInfo, set_hook};
@@ -26,16 +26,16 @@ impl From<Failure> for JsValue {
 
 #[wasm_bindgen(module = "/src/attempt.js")]
 extern "C" {
-    /// Calls back; returns what was thrown, `undefined` if nothing was.
+    /// Calls back; returns the thrown value, or `undefined`.
     fn attempt(call: &mut dyn FnMut()) -> JsValue;
 }
 
 thread_local! {
-    /// Sentence of the last panic, and the place of it in the sources.
+    /// Message of the last panic, and its place in the sources.
     static LAST_PANIC: Cell<Option<(String, String)>> = const { Cell::new(None) };
 }
 
-/// Keeps the sentence of each panic for [`caught`]. Called once, when the module starts.
+/// Keeps the message of each panic for [`caught`]. Called once, when the module starts.
 pub fn keep_panics() {
     set_hook(Box::new(|info: &PanicHookInfo<'_>| {
         let payload = info.payload();
@@ -46,8 +46,8 @@ pub fn keep_panics() {
     }));
 }
 
-/// Runs `call`; a panic, or any other trap, becomes its sentence and its place in the sources. Frames between are not unwound: what they
-/// own is not freed, and what they have changed stays changed.
+/// Runs `call`; a panic or any other trap becomes its message and its place in the sources. Frames in between are not unwound: their memory
+/// is not freed, and their changes stay.
 pub fn caught<T>(call: impl FnOnce() -> T) -> Result<T, (String, String)> {
     let (mut call, mut outcome) = (Some(call), None);
     let thrown = attempt(&mut || {
@@ -61,12 +61,12 @@ pub fn caught<T>(call: impl FnOnce() -> T) -> Result<T, (String, String)> {
     }
 }
 
-/// Runs a call that panics about its arguments before it changes anything.
+/// Runs a call that may panic about its arguments before it changes anything.
 pub fn refused<T>(call: impl FnOnce() -> T) -> Outcome<T> {
     caught(call).map_err(|(what, _)| Failure(what))
 }
 
-/// A value that several JavaScript objects share. A panic while it was changed breaks it: every later call says so.
+/// A value shared by several JavaScript objects. A panic during a change breaks it, and every later call reports that.
 pub struct Shared<T>(Rc<Handle<T>>);
 
 struct Handle<T> {
@@ -94,21 +94,21 @@ impl<T> Shared<T> {
         }
     }
 
-    /// Asks it something.
+    /// Reads the value.
     pub fn read<R>(&self, call: impl FnOnce(&T) -> Outcome<R>) -> Outcome<R> {
         self.check()?;
         let value = self.0.value.try_borrow().map_err(|_| in_use())?;
         refused(|| call(&value))?
     }
 
-    /// Changes it by a call that may panic about its arguments, before it has changed anything.
+    /// Changes the value by a call that may panic about its arguments before it changes anything.
     pub fn change<R>(&self, call: impl FnOnce(&mut T) -> Outcome<R>) -> Outcome<R> {
         self.check()?;
         let mut value = self.0.value.try_borrow_mut().map_err(|_| in_use())?;
         refused(|| call(&mut value))?
     }
 
-    /// Changes it by a call that must not panic: one that does breaks it.
+    /// Changes the value by a call that must not panic; a panic breaks it.
     pub fn run<R>(&self, call: impl FnOnce(&mut T) -> Outcome<R>) -> Outcome<R> {
         self.check()?;
         let mut value = self.0.value.try_borrow_mut().map_err(|_| in_use())?;

@@ -18,7 +18,7 @@ use sinew::physics::{BodyHit, BodyId, Strength};
 use sinew::ragdoll::{Detail, Grab, Grip, Part, Preset, State};
 use wasm_bindgen::prelude::*;
 
-/// A character in a world: clips move it until something hits it, then its bodies fall, and it gets up.
+/// A character in a world: it plays clips until it is hit, then its bodies fall, and it gets up.
 #[wasm_bindgen]
 pub struct Character {
     inner: Shared<Inner>,
@@ -48,7 +48,7 @@ fn place_of(position: Option<Vec3Like>, turn: Option<QuatLike>) -> Outcome<Trans
 
 #[wasm_bindgen]
 impl World {
-    /// Puts a character of a kind into the world, standing at a place, facing +Z unless it is turned.
+    /// Adds a character of a kind to the world, standing at a position, facing +Z unless it is rotated.
     pub fn spawn(
         &self,
         def: &CharacterDef,
@@ -76,7 +76,7 @@ fn named(character: &sinew::ragdoll::Character, bone: &str) -> Outcome<usize> {
     })
 }
 
-/// A grip, by what options say otherwise than `usual`.
+/// A grip with options that override `usual`.
 pub fn grab_of(value: Option<GrabOptions>, usual: Grab) -> Outcome<Grab> {
     let value: JsValue = value.map(JsValue::from).unwrap_or_default();
     let options = Options::of(&value, "options", &["maxForce", "reach", "slip", "speed"])?;
@@ -114,13 +114,13 @@ impl Character {
 impl Character {
     // What it is
 
-    /// Index in its world, by which events name it.
+    /// Index in its world, which events use.
     #[wasm_bindgen(getter)]
     pub fn index(&self) -> usize {
         self.place
     }
 
-    /// State: what decides its pose.
+    /// State, which determines the source of its pose.
     #[wasm_bindgen(getter)]
     pub fn state(&self) -> Outcome<StateOut> {
         self.ask(|_, member| {
@@ -136,15 +136,15 @@ impl Character {
         })
     }
 
-    /// Where it stands: the ground under it, and where it faces (+Z). While it is limp: where it went limp.
+    /// Pose on the ground, facing +Z. While it is limp, the pose at which it went limp.
     #[wasm_bindgen(getter)]
     pub fn place(&self) -> Outcome<PoseOut> {
         self.ask(|_, member| Ok(pose(member.character.world_from_character()).unchecked_into()))
     }
 
-    /// Pose between the last two steps, ten numbers for each joint of the kind, in the order of its `nodes`: position, rotation x, y, z, w and
-    /// scale, in its parent and the file's unit; then the sixteen of the matrix from the file to the world, column after column. A view of
-    /// memory: ask for it anew in each frame.
+    /// Pose between the last two steps, ten numbers for each joint of the kind, in the order of its `nodes`: position, rotation x, y, z, w
+    /// and scale, relative to the parent and in the file's unit; then the sixteen of the matrix from the file to the world, column after
+    /// column. The array is a view of memory: request it again in each frame.
     #[wasm_bindgen(getter)]
     pub fn pose(&self) -> Outcome<Float32Array> {
         self.ask(|_, member| Ok(member.view.of(&member.pose)))
@@ -155,7 +155,7 @@ impl Character {
         self.ask(|_, member| Ok(member.character.bodies().iter().map(|body| body.to_bits()).collect()))
     }
 
-    /// Id of a body, by role or bone; none of what was cut off.
+    /// Id of a body, by role or bone; `undefined` for a detached one.
     pub fn body(&self, bone: &str) -> Outcome<Option<u64>> {
         self.ask(|_, member| {
             let index = named(&member.character, bone)?;
@@ -163,7 +163,7 @@ impl Character {
         })
     }
 
-    /// Name of one of its bodies, of one that a ray hit, for example; `undefined` if it is not its own.
+    /// Name of one of its bodies, for example of a ray hit; `undefined` for other bodies.
     pub fn bone(&self, body: u64) -> Outcome<Option<String>> {
         self.ask(|_, member| {
             let index = member.character.body_index(BodyId::from_bits(body));
@@ -173,7 +173,7 @@ impl Character {
 
     // Where it goes
 
-    /// Has it go at a velocity over the ground, m/s.
+    /// Sets its velocity over the ground, m/s.
     #[wasm_bindgen(js_name = setMove)]
     pub fn set_move(&self, velocity: Vec3Like) -> Outcome {
         let velocity = vec3(&velocity, "velocity")?;
@@ -183,7 +183,7 @@ impl Character {
         })
     }
 
-    /// Has it go as its clips go again, which it does to begin with.
+    /// Makes it follow its clips again, the initial mode.
     #[wasm_bindgen(js_name = followClips)]
     pub fn follow_clips(&self) -> Outcome {
         self.change(|character, _| {
@@ -192,7 +192,7 @@ impl Character {
         })
     }
 
-    /// Has it turn to look along a direction.
+    /// Makes it turn to face a direction.
     pub fn face(&self, direction: Vec3Like) -> Outcome {
         let direction = vec3(&direction, "direction")?;
         self.change(|character, _| {
@@ -201,7 +201,7 @@ impl Character {
         })
     }
 
-    /// Has it jump in the next step, if it has ground then.
+    /// Makes it jump in the next step, if it is on the ground.
     pub fn jump(&self) -> Outcome {
         self.change(|character, world| {
             character.jump(world);
@@ -209,7 +209,7 @@ impl Character {
         })
     }
 
-    /// Puts it elsewhere at once.
+    /// Teleports it.
     pub fn teleport(&self, position: Vec3Like, turn: Option<QuatLike>) -> Outcome {
         let place = place_of(Some(position), turn)?;
         self.change(|character, world| {
@@ -218,7 +218,7 @@ impl Character {
         })
     }
 
-    /// Plays one of the kind's clips in the place of what plays.
+    /// Plays one of the kind's clips instead of the current one.
     pub fn play(&self, clip: &str, options: Option<PlayOptions>) -> Outcome {
         let value: JsValue = options.map(JsValue::from).unwrap_or_default();
         let options = Options::of(&value, "options", &["fade", "speed", "loop"])?;
@@ -242,7 +242,7 @@ impl Character {
 
     // What moves it
 
-    /// Hits a body, by role or bone, with an impulse, N·s. It falls, or flinches if it stands that.
+    /// Hits a body, by role or bone, with an impulse, N·s. It falls, or flinches if the hit is weak.
     pub fn hit(&self, bone: &str, impulse: Vec3Like) -> Outcome {
         let impulse = vec3(&impulse, "impulse")?;
         self.change(|character, world| {
@@ -252,7 +252,7 @@ impl Character {
         })
     }
 
-    /// Hits a body at a point in the world, where a ray hit it, for example; false if it is not its own.
+    /// Hits a body at a point in the world, for example that of a ray hit; returns false if the body is not its own.
     #[wasm_bindgen(js_name = hitAt)]
     pub fn hit_at(&self, body: u64, point: Vec3Like, impulse: Vec3Like) -> Outcome<bool> {
         let (point, impulse) = (vec3(&point, "point")?, vec3(&impulse, "impulse")?);
@@ -263,7 +263,7 @@ impl Character {
         })
     }
 
-    /// Lets its bodies take over, at the pose and the speed that it has.
+    /// Makes it limp at its present pose and velocity.
     #[wasm_bindgen(js_name = goLimp)]
     pub fn go_limp(&self) -> Outcome {
         self.change(|character, world| {
@@ -272,7 +272,7 @@ impl Character {
         })
     }
 
-    /// Has all of it moved in another way: by clips, by muscles toward its clips, or by nothing.
+    /// Changes the drive of all of it: clips, muscles toward its clips, or none.
     #[wasm_bindgen(js_name = setPreset)]
     pub fn set_preset(&self, preset: PresetName) -> Outcome {
         let name = preset.as_string().unwrap_or_default();
@@ -286,8 +286,8 @@ impl Character {
         })
     }
 
-    /// Has a body, or with `below` all that hangs on it, moved in another way; half of the change is made within `half_life` seconds.
-    /// Without a bone: all of it.
+    /// Changes the drive of a body, or with `below` of all below it; half of the change is made within `half_life` seconds. Without a bone:
+    /// of all of it.
     #[wasm_bindgen(js_name = setDrive)]
     pub fn set_drive(
         &self,
@@ -312,7 +312,7 @@ impl Character {
 
     // What it holds
 
-    /// Has a body, by role or bone, hold a dynamic body of the world, which is put there.
+    /// Makes a body, by role or bone, hold a dynamic body of the world, which is moved there.
     pub fn hold(&self, bone: &str, held: u64, options: Option<HoldOptions>) -> Outcome {
         let value: JsValue = options.map(JsValue::from).unwrap_or_default();
         let known = ["position", "rotation", "drops", "breakForce", "breakTorque"];
@@ -336,7 +336,8 @@ impl Character {
         })
     }
 
-    /// Has a body take hold of a body where it is, another's limb for example, and drag it; false if it is out of reach.
+    /// Makes a body grab another one at its present pose, for example another character's limb, and drag it; returns false if it is out of
+    /// reach.
     pub fn grab(&self, bone: &str, held: u64, options: Option<GrabOptions>) -> Outcome<bool> {
         let grab = grab_of(options, Grab::HAND)?;
         self.change(|character, world| {
@@ -346,7 +347,7 @@ impl Character {
         })
     }
 
-    /// Lets go of what it holds; false if it does not hold that.
+    /// Releases a held body; returns false if it does not hold it.
     pub fn release(&self, held: u64) -> Outcome<bool> {
         self.change(|character, world| Ok(character.release(world, BodyId::from_bits(held))))
     }
@@ -358,7 +359,7 @@ impl Character {
 
     // What it wears
 
-    /// Has its springs and garments start over at rest: after a cut.
+    /// Restarts its springs and garments at rest, for example after a camera cut.
     #[wasm_bindgen(js_name = resetSprings)]
     pub fn reset_springs(&self) -> Outcome {
         self.change(|character, world| {
@@ -368,7 +369,7 @@ impl Character {
         })
     }
 
-    /// Gives it as much detail as that: at once if its clips move it, else once they do again.
+    /// Sets its level of detail: at once if its clips move it, else once they do again.
     #[wasm_bindgen(js_name = setDetail)]
     pub fn set_detail(&self, detail: DetailName) -> Outcome {
         let name = detail.as_string().unwrap_or_default();
@@ -382,7 +383,7 @@ impl Character {
         })
     }
 
-    /// Takes it out of the world.
+    /// Removes it from the world.
     pub fn remove(&self) -> Outcome {
         self.inner.change(|inner| {
             let is_it = inner.characters.get(self.place).and_then(Option::as_ref);

@@ -1,4 +1,4 @@
-//! Kinds of characters: rig, ragdoll and motions, of which many can be in worlds.
+//! Kinds of characters: rig, ragdoll and motions, shared by characters.
 
 use crate::border::{Failure, Outcome, refused};
 use crate::drive::drive_mode;
@@ -11,7 +11,7 @@ use sinew::ragdoll::{AfterSettling, Locomotion, MotionSet, RagdollBodyDef, Setti
 use std::sync::Arc;
 use wasm_bindgen::prelude::*;
 
-/// A kind of character, made of a GLB, glTF or VRM file. Characters share it: make one for each file.
+/// A kind of character built from a GLB, glTF or VRM file. Characters share it: create one for each file.
 #[wasm_bindgen]
 pub struct CharacterDef {
     pub(crate) def: Arc<sinew::ragdoll::CharacterDef>,
@@ -42,7 +42,7 @@ fn names(list: impl Iterator<Item = String>) -> Names {
     JsValue::from(list.map(JsValue::from).collect::<Array>()).unchecked_into()
 }
 
-/// The settings of a ragdoll that options ask for.
+/// Converts options to ragdoll settings.
 fn settings(options: &Options<'_>) -> Outcome<Settings> {
     let mut settings = match options.get("settings") {
         None => Settings::default(),
@@ -65,7 +65,7 @@ fn settings(options: &Options<'_>) -> Outcome<Settings> {
     Ok(settings)
 }
 
-/// Changes a definition as options ask for it.
+/// Applies options to a definition.
 fn adjust(def: &mut sinew::ragdoll::CharacterDef, options: &Options<'_>) -> Outcome {
     if let Some(looped) = options.text("looped")? {
         let motions = def.motions().clone();
@@ -96,7 +96,7 @@ fn adjust(def: &mut sinew::ragdoll::CharacterDef, options: &Options<'_>) -> Outc
     Ok(())
 }
 
-/// Bytes of a file beside a glTF, from the object that holds them by path.
+/// Bytes of a glTF's companion file, from the object that maps paths to bytes.
 fn file_of(files: &JsValue, path: &str) -> Result<Vec<u8>, Error> {
     let found = Reflect::get(files, &JsValue::from_str(path)).unwrap_or_default();
     found.dyn_ref::<Uint8Array>().map_or_else(|| no_files(path), |bytes| Ok(bytes.to_vec()))
@@ -104,8 +104,8 @@ fn file_of(files: &JsValue, path: &str) -> Result<Vec<u8>, Error> {
 
 #[wasm_bindgen]
 impl CharacterDef {
-    /// Reads a GLB, glTF or VRM, finds the roles of its joints, builds the ragdoll, and chooses walk, idle and get-ups among its clips. A
-    /// human that lacks one of these has the built-in ones.
+    /// Reads a GLB, glTF or VRM, finds the roles of its joints, builds the ragdoll, and chooses walk, idle and get-ups among its clips.
+    /// Humans that lack one of these get the built-in ones.
     pub fn load(bytes: &[u8], options: Option<CharacterOptions>) -> Outcome<CharacterDef> {
         let value: JsValue = options.map(JsValue::from).unwrap_or_default();
         let options = Options::of(&value, "options", &KNOWN)?;
@@ -122,7 +122,7 @@ impl CharacterDef {
         Ok(CharacterDef { def: Arc::new(def), notes: loaded.notes })
     }
 
-    /// Assumptions about the file, chosen clips, and what was not found, one sentence each.
+    /// Assumptions about the file, chosen clips, and missing parts, one sentence each.
     #[wasm_bindgen(getter)]
     pub fn notes(&self) -> Names {
         names(self.notes.iter().cloned())
@@ -134,14 +134,14 @@ impl CharacterDef {
         names(self.def.rig.joints.iter().map(|joint| joint.name.clone()))
     }
 
-    /// Index of the glTF node of each joint; 4294967295 of one that is no node.
+    /// Index of the glTF node of each joint; 4294967295 for a joint without one.
     #[wasm_bindgen(getter)]
     pub fn nodes(&self) -> Vec<u32> {
         let node = |source: usize| u32::try_from(source).unwrap_or(u32::MAX);
         self.def.rig.joints.iter().map(|joint| node(joint.source)).collect()
     }
 
-    /// Names of the bodies, by which `hit`, `hold` and others know them: roles such as "chest", else bones.
+    /// Names of the bodies for `hit`, `hold` and others: roles such as "chest", or else bones.
     #[wasm_bindgen(getter)]
     pub fn bones(&self) -> Names {
         names(self.def.ragdoll.bodies.iter().map(bone_name))
@@ -153,7 +153,7 @@ impl CharacterDef {
         self.def.ragdoll.bodies.iter().map(|body| body.joint as u32).collect()
     }
 
-    /// Names of the clips that `play` knows, built-in ones among them.
+    /// Names of the clips for `play`, including built-in ones.
     #[wasm_bindgen(getter)]
     pub fn clips(&self) -> Names {
         names(self.def.motions().clips.iter().map(|clip| clip.name.clone()))
@@ -171,7 +171,7 @@ impl CharacterDef {
         self.def.ragdoll.total_mass
     }
 
-    /// Number of chains of bones that swing, of hair and the like.
+    /// Number of swinging bone chains, such as hair.
     #[wasm_bindgen(getter)]
     pub fn springs(&self) -> usize {
         self.def.rig.springs.chains.len()
@@ -191,7 +191,7 @@ impl CharacterDef {
     }
 }
 
-/// A GLB of the mannequin that comes with the library, 1.75 m, with a walk and two ways to get up: to try without a file.
+/// A GLB of the library's mannequin, 1.75 m, with a walk and two ways to get up, for tests without a file.
 #[wasm_bindgen(js_name = mannequinGlb)]
 pub fn mannequin_glb() -> Outcome<Vec<u8>> {
     let mannequin = sinew::mannequin::mannequin();

@@ -115,7 +115,7 @@ const SIZES: [&str; 15] = [
     "rotation",
 ];
 
-/// A shape alone, without a surface: for questions.
+/// A shape without a surface, for queries.
 pub fn probe_shape(value: &JsValue) -> Outcome<Shape> {
     let shape = shape(&Options::of(value, "shape", &SIZES)?)?;
     if shape.is_solid() && shape != Shape::HalfSpace {
@@ -125,7 +125,7 @@ pub fn probe_shape(value: &JsValue) -> Outcome<Shape> {
     Err(Failure::new("a shape to ask with is convex and bounded"))
 }
 
-/// What a shape is to others; what it does not say itself is as in `default`.
+/// Surface and filter of a shape; missing fields are taken from `default`.
 fn surfaced(options: &Options<'_>, default: &ShapeDef) -> Outcome<ShapeDef> {
     let friction = options.number("friction")?.unwrap_or(default.material.friction);
     let restitution = options.number("restitution")?.unwrap_or(default.material.restitution);
@@ -214,7 +214,7 @@ pub fn body_def(value: &JsValue) -> Outcome<BodyDef> {
     Ok(def)
 }
 
-/// A mass distributed as the shapes have theirs.
+/// Distributes a mass over the shapes.
 fn spread(mass: f32, def: &BodyDef) -> Outcome<MassProperties> {
     if mass.is_nan() || mass <= 0.0 {
         return Err(Failure(format!("body.mass must be positive, not {mass}")));
@@ -228,13 +228,13 @@ fn spread(mass: f32, def: &BodyDef) -> Outcome<MassProperties> {
     Ok(MassProperties { mass, inertia: by_density.inertia * (mass / by_density.mass), ..by_density })
 }
 
-/// The body of an id, if it is there.
+/// The body of an id, if it exists.
 pub fn body(world: &World, bits: u64) -> Outcome<BodyId> {
     let id = BodyId::from_bits(bits);
     if world.contains(id) { Ok(id) } else { Err(Failure(format!("there is no body {bits} in this world"))) }
 }
 
-/// The joint of an id, if it is there.
+/// The joint of an id, if it exists.
 pub fn joint(world: &World, bits: u64) -> Outcome<JointId> {
     let id = JointId::from_bits(bits);
     if world.contains_joint(id) {
@@ -246,7 +246,7 @@ pub fn joint(world: &World, bits: u64) -> Outcome<JointId> {
 
 const JOINTS: [&str; 5] = ["ball", "hinge", "slider", "fixed", "distance"];
 
-/// A joint to be added, where its bodies are now.
+/// A joint definition at the present poses of its bodies.
 pub fn joint_def(value: &JsValue, world: &World) -> Outcome<JointDef> {
     let known = [
         "type",

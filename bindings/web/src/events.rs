@@ -1,4 +1,4 @@
-//! Events of steps, kept until JavaScript asks for them.
+//! Events of steps, kept until JavaScript reads them.
 
 use crate::values::{object, vector};
 use js_sys::Array;
@@ -7,17 +7,17 @@ use sinew::physics::{BodyId, JointId, World};
 use sinew::ragdoll::{Character, CharacterEvent};
 use wasm_bindgen::JsValue;
 
-/// Something that a step told of.
+/// An event of a step.
 pub enum Told {
-    /// Two bodies began or stopped to touch, or one to be inside a sensor of the other.
+    /// Two bodies began or stopped touching, or being inside a sensor.
     Pair(&'static str, BodyId, BodyId),
-    /// Two bodies came in fast and were stopped.
+    /// Two bodies hit each other fast.
     Hit { bodies: [BodyId; 2], point: Vec3, normal: Vec3, speed: f32, impulse: f32 },
     /// A joint broke.
     Broken(JointId),
-    /// The state of a body became non-finite; it was taken out of the simulation.
+    /// The state of a body became non-finite, and it was removed from the simulation.
     Quarantined(BodyId),
-    /// An event of a character, by its index in the world; the name of what a clip tells of.
+    /// An event of a character, by its index in the world, with name and payload of a clip event.
     Character(usize, CharacterEvent, Option<Box<(String, String)>>),
 }
 
@@ -43,7 +43,7 @@ pub fn of_world(world: &World, told: &mut Vec<Told>) {
     told.extend(events.quarantined.iter().map(|&body| Told::Quarantined(body)));
 }
 
-/// Adds those of the last update of a character.
+/// Adds the events of a character's last update.
 pub fn of_character(index: usize, character: &Character, told: &mut Vec<Told>) {
     let set = character.def().set();
     told.extend(character.events().iter().map(|&event| {

@@ -1,4 +1,4 @@
-//! Points that grab: a mouse's, a crane's.
+//! Grab points: of a mouse or a crane.
 
 use crate::border::{Outcome, Shared};
 use crate::character::grab_of;
@@ -10,7 +10,7 @@ use crate::world::World;
 use sinew::ragdoll::Grab;
 use wasm_bindgen::prelude::*;
 
-/// A point of the world that holds a body, a limb for one, and drags it to where it is told, with a force that has a bound.
+/// A point in the world that grabs a body or a limb and drags it to a target with a limited force.
 #[wasm_bindgen]
 pub struct GrabPoint {
     inner: Shared<Inner>,
@@ -19,7 +19,7 @@ pub struct GrabPoint {
 
 #[wasm_bindgen]
 impl World {
-    /// Takes hold of a dynamic body at a point in the world; `undefined` if that is out of reach, or no force moves the body.
+    /// Grabs a dynamic body at a point in the world; `undefined` if that is out of reach, or no force moves the body.
     pub fn grab(&self, id: u64, point: Vec3Like, options: Option<GrabOptions>) -> Outcome<Option<GrabPoint>> {
         let (point, grab) = (vec3(&point, "point")?, grab_of(options, Grab::POINT)?);
         let serial = self.inner.change(|inner| {
@@ -33,7 +33,7 @@ impl World {
 
 #[wasm_bindgen]
 impl GrabPoint {
-    /// Has it go to a point in the world.
+    /// Moves it to a point in the world.
     #[wasm_bindgen(js_name = setTarget)]
     pub fn set_target(&self, point: Vec3Like) -> Outcome {
         let point = vec3(&point, "point")?;
@@ -45,7 +45,7 @@ impl GrabPoint {
         })
     }
 
-    /// True as long as it holds something.
+    /// Returns true while it holds something.
     #[wasm_bindgen(getter)]
     pub fn holds(&self) -> Outcome<bool> {
         self.inner.read(|inner| Ok(inner.grab_place(self.serial).is_some()))

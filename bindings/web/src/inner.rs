@@ -1,4 +1,4 @@
-//! A world with all that is stepped with it: characters, points that grab, and what JavaScript reads after each frame.
+//! A world with everything that is stepped with it: characters, grab points, and the data that JavaScript reads after each frame.
 
 use crate::border::{Failure, Outcome};
 use crate::events::Told;
@@ -14,7 +14,7 @@ const MAGIC: &[u8; 8] = b"sinewwb\x01";
 /// Numbers of a body in the list of poses: position, rotation.
 const BODY_NUMBERS: usize = 7;
 
-/// World, and what belongs to it.
+/// World and its companions.
 pub struct Inner {
     pub world: World,
     pub characters: Vec<Option<Member>>,
@@ -25,7 +25,7 @@ pub struct Inner {
     tracked: Vec<Option<BodyId>>,
     poses: Vec<f32>,
     poses_view: View,
-    /// Number of characters and points that there ever were.
+    /// Number of characters and grab points created so far.
     serial: u64,
     alpha: f32,
 }
@@ -40,7 +40,7 @@ pub struct Member {
     locals: Vec<LocalTransform>,
 }
 
-/// A point that grabs.
+/// A grab point.
 pub struct Gripped {
     pub serial: u64,
     pub point: GrabPoint,
@@ -99,7 +99,7 @@ impl Member {
     }
 }
 
-/// The place of `item` in a list with free places.
+/// Inserts `item` into a list with free slots, and returns its index.
 fn settle<T>(list: &mut Vec<Option<T>>, item: T) -> usize {
     let free = list.iter().position(Option::is_none).unwrap_or(list.len());
     if free == list.len() {
@@ -147,7 +147,7 @@ impl Inner {
         }
     }
 
-    /// Takes steps and shows their last state.
+    /// Takes steps and exports the last state.
     pub fn step(&mut self, count: u32) {
         self.told.clear();
         let Self { world, characters, grabs, told, .. } = self;
@@ -155,7 +155,7 @@ impl Inner {
         self.show(1.0);
     }
 
-    /// Takes the steps that a frame holds and shows what lies between the last two; returns the number of steps.
+    /// Takes the steps of a frame and exports the interpolated state; returns the number of steps.
     pub fn update(&mut self, time: Duration) -> u32 {
         self.told.clear();
         let Self { world, characters, grabs, told, .. } = self;
@@ -164,7 +164,7 @@ impl Inner {
         update.steps
     }
 
-    /// Writes all that JavaScript reads, `alpha` of the way between the last two steps.
+    /// Exports all data for JavaScript, interpolated by `alpha` between the last two steps.
     pub fn show(&mut self, alpha: f32) {
         self.alpha = alpha;
         self.characters.iter_mut().flatten().for_each(|member| member.write_pose(alpha));
@@ -181,12 +181,12 @@ impl Inner {
         }
     }
 
-    /// Share of a step that waits to be taken.
+    /// Remaining time as a share of a step.
     pub fn alpha(&self) -> f32 {
         self.alpha
     }
 
-    /// Shows the pose of a body from now on; returns its place in the list of poses.
+    /// Exports the pose of a body from now on; returns its index in the list of poses.
     pub fn track(&mut self, body: BodyId) -> usize {
         let place = settle(&mut self.tracked, body);
         self.poses.resize(BODY_NUMBERS * self.tracked.len(), 0.0);
@@ -196,19 +196,19 @@ impl Inner {
         place
     }
 
-    /// Shows that pose no longer.
+    /// Stops exporting a pose.
     pub fn untrack(&mut self, place: usize) {
         if let Some(tracked) = self.tracked.get_mut(place) {
             *tracked = None;
         }
     }
 
-    /// Poses of the bodies that are shown.
+    /// Poses of the exported bodies.
     pub fn poses(&self) -> js_sys::Float32Array {
         self.poses_view.of(&self.poses)
     }
 
-    /// Takes a character in; returns its place and its number.
+    /// Adds a character; returns its index and its number.
     pub fn settle_character(&mut self, character: Character) -> (usize, u64) {
         self.serial += 1;
         let mut member = Member {
@@ -222,19 +222,19 @@ impl Inner {
         (settle(&mut self.characters, member), self.serial)
     }
 
-    /// Takes a point that grabs in; returns its number.
+    /// Adds a grab point; returns its number.
     pub fn settle_grab(&mut self, point: GrabPoint) -> u64 {
         self.serial += 1;
         settle(&mut self.grabs, Gripped { serial: self.serial, point });
         self.serial
     }
 
-    /// The place of a point that grabs, as long as it holds something.
+    /// The index of a grab point, while it holds something.
     pub fn grab_place(&self, serial: u64) -> Option<usize> {
         self.grabs.iter().position(|grab| grab.as_ref().is_some_and(|grab| grab.serial == serial))
     }
 
-    /// State of world, characters and points that grab.
+    /// State of world, characters and grab points.
     pub fn save(&self) -> Vec<u8> {
         let mut w = Writer::new();
         w.raw(MAGIC);
@@ -252,7 +252,7 @@ impl Inner {
         w.into_bytes()
     }
 
-    /// Brings a state back; all is as it was if the bytes are none of one.
+    /// Restores a state; if the bytes are invalid, nothing changes.
     pub fn load(&mut self, bytes: &[u8]) -> Outcome {
         let failed = |what: &dyn core::fmt::Display| Failure(format!("no state of this world: {what}"));
         let mut r = Reader::new(bytes);

@@ -13,7 +13,7 @@ use sinew::physics::GroupId;
 use sinew::physics::particles::{AttachmentTarget, BlobDef, ClothDef, GroupDef, ParticleGroup, RopeDef};
 use wasm_bindgen::prelude::*;
 
-/// A rope, a piece of cloth or a soft ball in a world. To hold one at a body or a place, attach its particles.
+/// A rope, a piece of cloth or a soft ball in a world. To attach it to a body or the world, attach its particles.
 #[wasm_bindgen]
 pub struct Particles {
     inner: Shared<Inner>,
@@ -21,7 +21,7 @@ pub struct Particles {
     triangles: Vec<u32>,
 }
 
-/// Reads a definition that panics about its numbers.
+/// Runs a constructor that may panic about its numbers.
 fn built<T>(make: impl FnOnce() -> T) -> Outcome<T> {
     crate::border::refused(make)
 }
@@ -88,7 +88,7 @@ impl World {
         self.add_group(&cloth.group, triangles)
     }
 
-    /// Adds a soft ball: a skin with air in it.
+    /// Adds a soft ball: a skin filled with air.
     #[wasm_bindgen(js_name = addSoftBall)]
     pub fn add_soft_ball(&self, options: SoftBallOptions) -> Outcome<Particles> {
         let options = Options::of(&options, "ball", &["center", "radius", "mass"])?;
@@ -101,7 +101,7 @@ impl World {
         self.add_group(&blob.group, triangles)
     }
 
-    /// What holds a particle at a place: the world, or the body of an id.
+    /// Holder of a particle at a position: the world, or the body of an id.
     fn holder(&self, holder: &JsValue, place: Vec3, name: &str) -> Outcome<AttachmentTarget> {
         if holder.as_string().as_deref() == Some("world") {
             return Ok(AttachmentTarget::World(place));
@@ -159,7 +159,8 @@ impl Particles {
         self.ask(|group| group.positions().len())
     }
 
-    /// Positions, three numbers a particle, interpolated between steps: a view of memory. Ask for it anew in each frame.
+    /// Positions, three numbers for each particle, interpolated between steps. The array is a view of memory: request it again in each
+    /// frame.
     #[wasm_bindgen(getter)]
     pub fn positions(&self) -> Outcome<Float32Array> {
         self.inner.read(|inner| {
@@ -168,7 +169,7 @@ impl Particles {
         })
     }
 
-    /// Triangles of the surface, three particles each; none of a rope.
+    /// Triangles of the surface, three particles each; empty for a rope.
     #[wasm_bindgen(getter)]
     pub fn triangles(&self) -> Vec<u32> {
         self.triangles.clone()
@@ -181,14 +182,14 @@ impl Particles {
         self.change(particle, |group| group.apply_impulse(particle, impulse))
     }
 
-    /// Puts a particle elsewhere.
+    /// Moves a particle.
     #[wasm_bindgen(js_name = setPosition)]
     pub fn set_position(&self, particle: u32, position: Vec3Like) -> Outcome {
         let position = vec3(&position, "position")?;
         self.change(particle, |group| group.set_position(particle, position))
     }
 
-    /// Takes them out of the world.
+    /// Removes them from the world.
     pub fn remove(&self) -> Outcome {
         self.inner.change(|inner| {
             let place = inner.groups.iter().position(|drawn| drawn.group == self.group);

@@ -1,4 +1,4 @@
-//! Questions to a world.
+//! Queries of a world.
 
 use crate::border::{Failure, Outcome};
 use crate::definitions::{KINDS, probe_shape};
@@ -13,7 +13,7 @@ use sinew::physics::{
 };
 use wasm_bindgen::prelude::*;
 
-/// Whom a question is about.
+/// Filter of a query.
 struct Asked {
     meets: Filter,
     kinds: BodyKinds,
@@ -92,7 +92,7 @@ impl World {
 
 #[wasm_bindgen]
 impl World {
-    /// First hit of a ray from `origin` along `way`, which ends where `way` does; `undefined` if there is none.
+    /// First hit of a ray from `origin` along `way`, which also sets its length; `undefined` without a hit.
     #[wasm_bindgen(js_name = castRay)]
     pub fn cast_ray(
         &self,
@@ -119,7 +119,7 @@ impl World {
         })
     }
 
-    /// First hit of a shape that is moved along `way` from a pose.
+    /// First hit of a shape moved along `way` from a pose.
     #[wasm_bindgen(js_name = castShape)]
     pub fn cast_shape(
         &self,

@@ -1,4 +1,4 @@
-//! Types of TypeScript for the objects that pass the border.
+//! TypeScript types of the objects that cross the border.
 
 use wasm_bindgen::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Values of JavaScript as ours, and back.
+//! Converts JavaScript values, and back.
 
 use crate::border::{Failure, Outcome};
 use js_sys::{Array, Float32Array, Object, Reflect, Uint32Array};
@@ -52,7 +52,7 @@ pub fn vec3(value: &JsValue, name: &str) -> Outcome<Vec3> {
     numbers(value, name, ["x", "y", "z"]).map(Vec3::from_array)
 }
 
-/// `{x, y, z, w}` or an array of four, of any length but 0; it is made a unit.
+/// `{x, y, z, w}` or an array of four, of any length but 0; it is normalised.
 pub fn rotation(value: &JsValue, name: &str) -> Outcome<Rotation> {
     let [x, y, z, w] = numbers(value, name, ["x", "y", "z", "w"])?;
     let rotation = Rotation { x, y, z, w };
@@ -60,7 +60,7 @@ pub fn rotation(value: &JsValue, name: &str) -> Outcome<Rotation> {
     if length.is_nan() || length < 1e-6 {
         return Err(Failure(format!("{name} must be a quaternion that is not 0")));
     }
-    // A unit keeps its bits, so that a pose that was asked for can be set again.
+    // A unit quaternion keeps its bits, so that a pose that was read can be set again.
     Ok(if (length - 1.0).abs() < 1e-6 { rotation } else { rotation.normalize() })
 }
 

@@ -3,7 +3,7 @@ use sinew::math::lanes::{Lanes, Vector3};
 use sinew::math::{Vec3, clamp, max, normalize_or, trig};
 use sinew::physics::boxes::Aabb;
 
-/// A pinhole camera that stands upright.
+/// An upright pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// World space, metres.
@@ -14,7 +14,7 @@ pub struct Camera {
     pub fov_y: f32,
 }
 
-/// A vertical field of view that neither flattens nor stretches a person, radians (35°).
+/// A vertical field of view without visible distortion of a person, radians (35°).
 const PORTRAIT_FOV: f32 = 0.610_865_24;
 
 impl Camera {
@@ -47,7 +47,7 @@ impl Camera {
     }
 }
 
-/// Axes of a camera's picture, unit, world space, and how far it reaches at a distance of 1.
+/// Axes of a camera's picture, unit length, world space, and its half extents at a distance of 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureAxes {
     /// To the right.
@@ -66,7 +66,7 @@ impl Camera {
     /// Axes of a picture `aspect` times as wide as it is high.
     pub fn axes(&self, aspect: f32) -> PictureAxes {
         let forward = normalize_or(self.target - self.position, -Vec3::Z);
-        // Straight up or down leaves no horizon to be level with: any right-hand side will do.
+        // Straight up or down, any right-hand direction is valid.
         let right = normalize_or(forward.cross(Vec3::Y), Vec3::X);
         let up = right.cross(forward);
         let half_height = trig::tan(0.5 * clamp(self.fov_y, 0.01, 3.1));
@@ -79,8 +79,8 @@ fn framing_distance(radius: f32, fov_y: f32) -> f32 {
     radius / trig::sin(0.5 * fov_y)
 }
 
-/// A camera that goes along with a character, calmly: it stands still while the character stays near the middle
-/// of the picture, and glides after it else.
+/// A camera that follows a character smoothly: it stands still while the character stays near the centre of the picture, and otherwise
+/// glides after it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FollowCamera {
     /// From the subject to the camera, unit, world space.
@@ -112,8 +112,8 @@ impl FollowCamera {
         }
     }
 
-    /// The portrait photographer's place: 40° off the way a character faces, 16° above, so that its front, side and
-    /// top are all seen. `facing` is horizontal, any length.
+    /// Portrait view: 40° off the facing direction of a character, 16° above, so that its front, side and top are visible. `facing` is
+    /// horizontal, any length.
     pub fn three_quarter(subject: Vec3, radius: f32, facing: Vec3) -> Self {
         let front = normalize_or(Vec3::new(facing.x, 0.0, facing.z), Vec3::Z);
         let left = Vec3::Y.cross(front);
@@ -153,7 +153,7 @@ impl FollowCamera {
 /// Nearest depth that is drawn, metres.
 pub const NEAR: f32 = 0.05;
 
-/// A camera made ready for a picture of some size: world → clip space and pixel → ray.
+/// A camera prepared for a picture size: world → clip space and pixel → ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub(crate) eye: Vec3,

@@ -9,8 +9,8 @@ const AROUND: usize = 24;
 /// Segments from the equator to a pole.
 const TO_POLE: usize = 6;
 
-/// The surface of a shape. Boxes, hulls, meshes and height fields have flat faces, the others smooth normals. Nothing of a
-/// half-space, which has no end: see [`plane`].
+/// The surface of a shape. Boxes, hulls, meshes and height fields have flat faces, the others smooth normals. An infinite half-space has no
+/// model: see [`plane`].
 pub fn shape(shape: &Shape, world_from_shape: Transform, material: RenderMaterial) -> Model {
     let mut model = match *shape {
         Shape::Box { half_extents } => box_model(half_extents),
@@ -35,7 +35,7 @@ pub fn shape(shape: &Shape, world_from_shape: Transform, material: RenderMateria
     Model { material, ..model }
 }
 
-/// A ball of eight fields, every second one darker, so that it is seen to turn.
+/// A ball with eight fields in alternating shades, so that its rotation is visible.
 pub fn ball(radius: f32, world_from_ball: Transform, material: RenderMaterial) -> Model {
     let mut model = shape(&Shape::Sphere { radius }, world_from_ball, material);
     let shade = |vertex: usize| {
@@ -56,14 +56,12 @@ pub fn rod(from: Vec3, to: Vec3, radius: f32, material: RenderMaterial) -> Model
     shape(&Shape::Capsule { half_height: 0.5 * along.length(), radius }, place, material)
 }
 
-/// A level floor of two colours (linear), `half_size` metres to each side of `center`, in squares of 1 m. It throws
-/// no shadow.
+/// A level floor of two colours (linear), `half_size` metres to each side of `center`, in squares of 1 m. It casts no shadow.
 pub fn floor(center: Vec3, half_size: f32, color: [f32; 3], other: [f32; 3]) -> Model {
     plane(Transform::from_translation(center), half_size, 1.0, [color, other])
 }
 
-/// The plane y = 0 of its frame, `half_size` metres to each side, in squares of `tile` metres of two colours
-/// (linear). It throws no shadow.
+/// The plane y = 0 of its frame, `half_size` metres to each side, in squares of `tile` metres of two colours (linear). It casts no shadow.
 pub fn plane(world_from_plane: Transform, half_size: f32, tile: f32, colors: [[f32; 3]; 2]) -> Model {
     let [color, other] = colors;
     let corner = |x: f32, z: f32| world_from_plane.point(Vec3::new(x * half_size, 0.0, z * half_size));
@@ -132,8 +130,8 @@ pub fn curve_color(number: usize) -> [f32; 3] {
     CURVES[number % CURVES.len()]
 }
 
-/// Bright and far from each other, on the sky as on the dark plate of a caption (Okabe and Ito's, for those who do not see all colours):
-/// blue, vermilion, yellow, bluish green, reddish purple.
+/// Bright and distinct on the sky and on the dark plate of a caption (the colour-blind safe palette of Okabe and Ito): blue, vermilion,
+/// yellow, bluish green, reddish purple.
 const CURVES: [[f32; 3]; 5] =
     [[0.0, 0.17, 0.45], [0.67, 0.11, 0.0], [0.87, 0.78, 0.05], [0.0, 0.34, 0.17], [0.60, 0.19, 0.39]];
 

@@ -5,7 +5,7 @@ pub struct Image {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// `width × height × 4` bytes, RGBA. What [`Renderer`](crate::Renderer) makes is opaque.
+    /// `width × height × 4` bytes, RGBA. Images of a [`Renderer`](crate::Renderer) are opaque.
     pub rgba: Vec<u8>,
 }
 

@@ -1,8 +1,8 @@
-//! Pictures that need no driver and are the same everywhere.
+//! Software-rendered pictures without a graphics driver, the same on every target.
 //!
-//! Plain data in, pixels out: describe a [`Scene`] (models come from [`draw`] or from any mesh), point a [`Camera`]
-//! at it, [`Renderer::render`] gives an [`Image`], and [`Movie`] turns images into a GIF, APNG or WebP file.
-//! Every number is made by `+ − × ÷ √` and by `sinew::math`, so the same scene has the same bytes on every target.
+//! Plain data in, pixels out: describe a [`Scene`] (models come from [`draw`] or from any mesh), place a [`Camera`], and
+//! [`Renderer::render`] returns an [`Image`]. [`Movie`] converts images to a GIF, APNG or WebP file. All numbers are computed by `+ − × ÷
+//! √` and by `sinew::math`, so the same scene has the same bits on every target.
 //!
 //! World space is right-handed with +Y up, in metres; colours are linear unless a name says sRGB.
 #![forbid(unsafe_code)]

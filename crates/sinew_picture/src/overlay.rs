@@ -17,7 +17,7 @@ const LETTERS_PER_ROW: usize = 16;
 /// Bytes of a line of the sheet: no gap after the last letter, but a line feed.
 const SHEET_PITCH: usize = LETTERS_PER_ROW * ADVANCE;
 
-/// A line lies on the surface it belongs to; this much nearer (as a share of its depth) it is not hidden by it.
+/// A line on a surface is drawn this much nearer (as a share of its depth), so that the surface does not hide it.
 const LINE_BIAS: f32 = 1.004;
 
 pub(crate) fn draw_lines(

@@ -2,7 +2,7 @@ use crate::texture::Texture;
 use sinew::math::{Vec2, Vec3};
 use std::sync::Arc;
 
-/// Everything that a picture shows.
+/// The complete content of a picture.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// Surfaces.
@@ -13,7 +13,7 @@ pub struct Scene {
     pub captions: Vec<Caption>,
     /// The one light with shadows.
     pub sun: Sun,
-    /// Light from all around, and what is seen where nothing is.
+    /// Ambient light, and the background.
     pub sky: Sky,
 }
 
@@ -79,7 +79,7 @@ pub enum Faces {
     Outside,
 }
 
-/// Shadow casting of a surface: whether it darkens what lies behind it.
+/// Shadow casting of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShadowCasting {
     /// It does.

@@ -1,4 +1,4 @@
-//! A physics world as models and lines: what can move in colours, what stands in grey.
+//! Draws a physics world as models and lines: moving bodies in colours, fixed ones in grey.
 
 use crate::draw;
 use crate::scene::{Line, LineDepth, Model, RenderMaterial, Scene};
@@ -10,7 +10,7 @@ use sinew::physics::{
 };
 use std::collections::HashSet;
 
-/// Part of a world that a picture shows: thin and small things are drawn as thick as it needs to see them.
+/// Part of a world shown in a picture: thin and small things are drawn thick enough to be visible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// The middle, world space, metres.
@@ -26,7 +26,7 @@ pub struct Frame {
 pub enum Kinematic {
     /// As others are.
     Solid,
-    /// By their edges: where what leads them is drawn as well, and they would hide it.
+    /// By their edges, so that they do not hide the figure that leads them.
     Wire,
 }
 
@@ -103,7 +103,7 @@ fn particle_bounds(group: &ParticleGroup) -> Aabb {
 /// Lines that a joint is drawn as: from the centre of each body that moves to its anchor, and from anchor to anchor.
 fn links(world: &World, id: JointId) -> [[Vec3; 2]; 3] {
     let JointDef { body_a, body_b, frame_a, frame_b, kind, motor, .. } = world.joint(id);
-    // A pin hangs where it pulls to: its anchor may be anywhere.
+    // A pin is drawn to the target of its motor, since its anchor may be anywhere.
     let is_pin = kind == JointKind::SixDof(SixDof::FREE) && world.kind(body_a) != BodyKind::Dynamic;
     let goal = motor.filter(|_| is_pin).map_or(Vec3::ZERO, |motor| motor.target.translation);
     let a = (world.transform(body_a) * frame_a).point(goal);
@@ -115,7 +115,7 @@ fn links(world: &World, id: JointId) -> [[Vec3; 2]; 3] {
     [[from(body_a, a), a], [a, b], [b, from(body_b, b)]]
 }
 
-/// Receives what a world is painted with: a [`Scene`], or a renderer that draws many shapes of a kind at once. Colours are linear.
+/// Target for drawing a world: a [`Scene`], or a renderer that draws many equal shapes at once. Colours are linear.
 pub trait Canvas {
     /// The surface of a shape that has an end, in one colour.
     fn solid(&mut self, shape: &Shape, world_from_shape: Transform, color: [f32; 3]);
@@ -156,8 +156,7 @@ pub fn paint(world: &World, frame: &Frame, canvas: &mut dyn Canvas) {
     paint_all_but(world, &[], frame, canvas);
 }
 
-/// Paints what [`paint`] does, without bodies that something else shows, and their joints: those of a character that is drawn by
-/// its skin.
+/// Paints as [`paint`] does, without bodies shown by other means, and without their joints: those of a character drawn by its skin.
 pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, canvas: &mut dyn Canvas) {
     let shown: HashSet<BodyId> = shown.iter().copied().collect();
     for (number, id) in world.body_ids().enumerate() {
@@ -286,7 +285,7 @@ impl Lines {
     }
 }
 
-/// Kinds that are no lines here: drawn as surfaces, or, as contacts, not at all.
+/// Kinds without lines here: drawn as surfaces, or, for contacts, not at all.
 const SURFACES: [DrawKind; 7] = [
     DrawKind::Static,
     DrawKind::Kinematic,

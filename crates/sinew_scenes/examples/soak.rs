@@ -1,20 +1,20 @@
-//! An hour of game, scene by scene, watched from step to step: `cargo xtask soak --hours 1`.
+//! A long run of all scenes, checked in every step: `cargo xtask soak --hours 1`.
 //!
-//! Each scene runs for its share of the time, from its start again after as many steps as it is about. What is looked at after each step: nobody
-//! is lost, no joint is open by more than 5 mm, nothing is faster than 30 m/s. What is looked at over the run: memory and time of a step stay what they were.
+//! Each scene runs for its share of the time and restarts after its usual number of steps. Checks after each step: no body is lost, no
+//! joint is open by more than 5 mm, no body is faster than 30 m/s. Checks over the run: memory and step time do not grow.
 
 use sinew::math::{Vec3, max};
 use sinew::physics::{BodyKind, JointState, World};
 use sinew_scenes::scenes::{Instance, find};
 use std::process::ExitCode;
 
-/// A part of the soak: a scene, its settings with the round's number in the place of `#`, and the steps of a round; `None`: one round.
+/// A part of the soak: a scene, its settings with `#` for the round's number, and the steps of a round; `None`: one round.
 struct Part {
     name: &'static str,
     scene: &'static str,
     settings: &'static [&'static str],
     round: Option<u64>,
-    /// Speed that blows of the scene give, m/s, where it strikes limbs one by one.
+    /// Speed caused by the scene's blows to single limbs, m/s.
     blows: f32,
 }
 
@@ -35,17 +35,17 @@ const PARTS: &[Part] = &[
 
 /// Speed at which the brawl's blow of 90 N·s drives the lightest limb, a hand of 0.4 kg, m/s.
 const BLOW: f32 = 225.0;
-/// Gap that no joint has, metres, and speed that nothing has, m/s.
+/// Largest joint gap, metres, and largest speed, m/s.
 const GAP: f32 = 5e-3;
 const FAST: f32 = 30.0;
-/// Depth below the floor, and distance from the middle, at which something is lost, metres.
+/// Depth below the floor and distance from the centre at which a body counts as lost, metres.
 const SUNK: f32 = 0.5;
 const FAR: f32 = 60.0;
-/// Growth of memory, bytes, and of the time of a step over a run that counts as none.
+/// Largest allowed growth of memory, bytes, and of the step time over a run.
 const GROWTH: f64 = 8e6;
 const SLOWER: f64 = 1.5;
 
-/// What was seen of a part.
+/// Measurements of a part.
 #[derive(Default)]
 struct Seen {
     steps: u64,
@@ -56,7 +56,7 @@ struct Seen {
     speed_at: u64,
     fast: u64,
     lost: u64,
-    /// Bytes, and seconds of a step, in the second and in the last tenth.
+    /// Memory, bytes, and step time, seconds, in the second and in the last tenth.
     memory: [f64; 2],
     seconds: [f64; 2],
 }
@@ -122,14 +122,14 @@ impl Seen {
     }
 }
 
-/// Memory that the process has, bytes; 0 where it cannot be told.
+/// Memory of the process, bytes; 0 if it is unknown.
 fn memory() -> f64 {
     let pages = std::fs::read_to_string("/proc/self/statm").ok();
     let pages = pages.and_then(|text| text.split(' ').nth(1)?.parse::<f64>().ok());
     pages.unwrap_or(0.0) * 4096.0
 }
 
-/// Time that this thread has had of a processor, seconds: what others do on the machine does not count. 0 where it cannot be told.
+/// CPU time of this thread, seconds, so that other processes do not count. 0 if it is unknown.
 fn processor_seconds() -> f64 {
     let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = told.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
@@ -140,7 +140,7 @@ fn started(part: &Part, round: u64) -> Instance {
     let scene = find(part.scene).expect("the registry has it");
     let mut settings = scene.settings();
     for setting in part.settings {
-        // Of numbers that a scene cannot have, the round's are none.
+        // Skip round numbers that the setting does not allow.
         let number = if part.scene == "crowd" { 50 + round % 40 } else { round };
         settings.assign(&setting.replace('#', &number.to_string())).expect("it is in range");
     }

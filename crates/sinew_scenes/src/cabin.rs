@@ -1,4 +1,4 @@
-//! The embedded world: a cabin whose porch ends in a flight of stairs, out of boxes.
+//! The embedded world: a cabin made of boxes, with stairs down from its porch.
 //!
 //! Metres, +Y up. The front edge of the porch is the line z = 0 at [`PORCH_HEIGHT`]; the stairs go down toward +Z and
 //! the cabin stands behind, at z < 0. Everything is static.
@@ -16,7 +16,7 @@ pub enum Site {
     Flat,
 }
 
-/// A static thing to collide with and to draw.
+/// A static body to collide with and to draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prop {
     /// Name of the thing; not unique.
@@ -30,13 +30,13 @@ pub struct Prop {
 /// Start of the character.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spawn {
-    /// World from character: soles' middle, facing +Z of the transform.
+    /// World from character; the origin is between the soles, facing +Z of the transform.
     pub world_from_character: Transform,
-    /// Way straight ahead to the edge of the first step, metres.
+    /// Distance straight ahead to the edge of the first step, metres.
     pub walk_length: f32,
 }
 
-/// Steps of the stairs: how often one steps down from porch to ground.
+/// Number of steps down from porch to ground.
 pub const STEPS: usize = 7;
 /// Height of one step, metres.
 pub const STEP_RISE: f32 = 0.175;
@@ -56,7 +56,7 @@ const HALF_WIDTH: f32 = 2.5;
 const COURSES: usize = 8;
 const COURSE_HEIGHT: f32 = 0.3;
 const LOG_HALF: f32 = 0.09;
-/// The door reaches up to under the topmost course.
+/// The door reaches up to the bottom of the topmost course.
 const DOOR_HALF_WIDTH: f32 = 0.55;
 const EAVES: f32 = PORCH_HEIGHT + COURSES as f32 * COURSE_HEIGHT;
 /// Slope of the roof, radians (35°).
@@ -88,8 +88,7 @@ impl Site {
         props
     }
 
-    /// Start of the character: with a cabin, inside behind the door, facing the stairs; else at the same place on
-    /// the ground.
+    /// Start of the character: with a cabin, inside behind the door, facing the stairs; otherwise at the same place on the ground.
     pub fn spawn(self) -> Spawn {
         let start = FRONT - 0.4;
         let height = if self == Self::CabinWithStairs { PORCH_HEIGHT } else { 0.0 };
@@ -142,7 +141,7 @@ fn floor_and_porch(props: &mut Vec<Prop>) {
     }
 }
 
-/// Posts and two rails along the open sides of the porch; the stairs' width stays free.
+/// Posts and two rails along the open sides of the porch, except at the stairs.
 fn railing(props: &mut Vec<Prop>) {
     let (top, outer, inner) = (PORCH_HEIGHT, PORCH_HALF_WIDTH - 0.06, 0.5 * STAIRS_WIDTH + 0.06);
     let rail = |low: Vec3, high: Vec3| block("rail", low, high, BEAM);
@@ -162,7 +161,7 @@ fn railing(props: &mut Vec<Prop>) {
     }
 }
 
-/// Solid steps, each down to the ground so that nothing slips in between, and a stringer on each side.
+/// Solid steps down to the ground, so that nothing slips in between, and a stringer on each side.
 fn stairs(props: &mut Vec<Prop>) {
     let half_width = 0.5 * STAIRS_WIDTH;
     for step in 1..STEPS {
@@ -182,7 +181,7 @@ fn stairs(props: &mut Vec<Prop>) {
     }
 }
 
-/// Courses of logs round the cabin; the front ones leave the door free but for the topmost.
+/// Courses of logs around the cabin; the front ones, except for the topmost, leave room for the door.
 fn walls(props: &mut Vec<Prop>) {
     for course in 0..COURSES {
         let bottom = PORCH_HEIGHT + course as f32 * COURSE_HEIGHT;
@@ -191,7 +190,7 @@ fn walls(props: &mut Vec<Prop>) {
             let top = bottom + COURSE_HEIGHT;
             props.push(block("log wall", v(x[0], bottom, z[0]), v(x[1], top, z[1]), color));
         };
-        // Courses cross at the corners in turn, as logs do.
+        // Courses cross at the corners alternately, as logs do.
         let jut = if course % 2 == 0 { 0.14 } else { 0.0 };
         let (x, front) = (HALF_WIDTH + jut, [FRONT - 2.0 * LOG_HALF, FRONT]);
         log([-x, x], [BACK, BACK + 2.0 * LOG_HALF]);
@@ -220,7 +219,7 @@ fn window(props: &mut Vec<Prop>, x: f32) {
     props.push(turned("window", center, v(0.34, 0.34, 0.035), Rotation::IDENTITY, [0.10, 0.16, 0.20]));
 }
 
-/// Shrinking courses that close the triangles under the roof on both sides.
+/// Shrinking courses that fill the triangles under the roof on both sides.
 fn gables(props: &mut Vec<Prop>) {
     let half_depth = 0.5 * (FRONT - BACK);
     let middle = 0.5 * (FRONT + BACK);
@@ -258,7 +257,7 @@ fn roof(props: &mut Vec<Prop>) {
     props.push(block("chimney", low, v(1.65, ridge + 0.75, middle - 0.6), STONE));
 }
 
-/// Things on the grass beside the way: crates, a wood pile, pines.
+/// Props on the grass beside the path: crates, a wood pile, pines.
 fn meadow(props: &mut Vec<Prop>) {
     let yaw = |degrees: f32| Rotation::from_axis_angle(Vec3::Y, degrees.to_radians());
     props.push(turned("crate", v(2.95, 0.3, -0.7), v(0.3, 0.3, 0.3), yaw(18.0), CRATE));

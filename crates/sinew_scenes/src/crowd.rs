@@ -1,4 +1,4 @@
-//! Characters that each blend two clips: for measurements.
+//! Characters that each blend two clips, for performance measurements.
 
 use sinew::anim::{
     BlendLayer, Blender, BuiltClip, Channel, Clip, ClipBuildOptions, Cursor, Interpolation, Joint,
@@ -8,16 +8,16 @@ use sinew::math::{Affine, Random, Rotation, Vec3, trig};
 
 /// Joints of the rig.
 const JOINTS: usize = 50;
-/// Joints of these that are in a row; each further row hangs on one joint of the first.
+/// Number of joints in a row; each further row is attached to one joint of the first.
 const ROW: usize = 10;
-/// Keys of each moving track: two seconds at 30 Hz.
+/// Number of keys of each moving track: two seconds at 30 Hz.
 const KEYS: u16 = 61;
 /// Length of both clips, seconds.
 pub const DURATION: f32 = 2.0;
-/// Steps in that time.
+/// Number of steps in that time.
 const STEPS_PER_LOOP: usize = 120;
 
-/// Who blends at what times.
+/// The characters, their clips and start times.
 #[derive(Clone)]
 pub struct CrowdScene {
     /// Five rows of ten joints, about 0.2 m apart.
@@ -28,17 +28,17 @@ pub struct CrowdScene {
     pub characters: Vec<Character>,
 }
 
-/// Properties that tell a character from the others.
+/// Parameters of one character.
 #[derive(Clone, Copy, Debug)]
 pub struct Character {
-    /// Time in each clip at which it begins, seconds.
+    /// Start time in each clip, seconds.
     pub start: [f32; 2],
-    /// Share of the second clip.
+    /// Blend weight of the second clip.
     pub weight: f32,
 }
 
 impl CrowdScene {
-    /// So many characters, always the same.
+    /// Creates the same `characters` characters every time.
     pub fn new(characters: usize) -> Self {
         let mut random = Random::new(11);
         let rig = Rig { joints: (0..JOINTS).map(|i| joint(i, &mut random)).collect(), ..Rig::default() };
@@ -60,7 +60,7 @@ impl CrowdScene {
     }
 }
 
-/// The scene as Sinew plays it: cursors and a model pose for each character; what lies between is shared.
+/// The scene as Sinew plays it: cursors and a model pose for each character; intermediate poses are shared.
 pub struct Crowd {
     scene: CrowdScene,
     skeleton: Skeleton,
@@ -78,7 +78,7 @@ struct Playing {
 }
 
 impl Crowd {
-    /// Before its first pose.
+    /// State before the first pose.
     pub fn new(scene: CrowdScene) -> Self {
         let joints = scene.rig.joints.len();
         let built =
@@ -107,7 +107,7 @@ impl Crowd {
         }
     }
 
-    /// Both clips at a character's times after `step` steps.
+    /// Samples and blends both clips at a character's times after `step` steps.
     pub fn sample(&mut self, character: usize, step: usize) -> &[Pose; 2] {
         let times = self.scene.times(character, step);
         let cursors = &mut self.characters[character].cursors;

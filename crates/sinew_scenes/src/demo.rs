@@ -1,5 +1,5 @@
-//! The main job on the embedded character and world: the mannequin walks out of the cabin, is hit in the back at the
-//! top of the stairs, falls down, gets up and walks on. Nothing in it is choreographed but the hit.
+//! The demo on the embedded character and world: the mannequin walks out of the cabin, is hit in the back at the top of the stairs, falls
+//! down, gets up and walks on. Only the hit is scripted.
 
 use crate::cabin::{Prop, Site};
 use crate::mannequin::{Mannequin, mannequin};
@@ -9,15 +9,15 @@ use sinew::physics::BodyDef;
 use sinew::ragdoll::{BakeHit, BakeInput, BuildOptions, CharacterDef, Locomotion, MotionSet, build};
 use std::sync::Arc;
 
-/// Length: the walk, the fall, getting up, and a few steps; seconds.
+/// Length in seconds: the walk, the fall, getting up, and a few steps.
 const SECONDS: f32 = 10.5;
 /// Distance before the edge of the porch at which the hit comes, metres.
 const HIT_BEFORE_EDGE: f32 = 0.45;
-/// In the back, N·s: what a shove with both hands gives.
+/// Impulse of the hit in the back, N·s: a shove with both hands.
 const IMPULSE: Vec3 = Vec3::new(0.0, 0.0, 110.0);
 const HIT_ROLE: &str = "chest";
 
-/// The job, ready to be simulated or changed.
+/// The demo, ready to be simulated or changed.
 #[derive(Clone, Debug)]
 pub struct Demo {
     /// The mannequin with its walk and both ways to get up.
@@ -26,14 +26,14 @@ pub struct Demo {
     pub world_from_character: Transform,
     /// Things that stand in the world.
     pub props: Vec<Prop>,
-    /// The bodies of `props`.
+    /// The static bodies of `props`.
     pub bodies: Vec<BodyDef>,
     /// The hit.
     pub hits: Vec<BakeHit>,
 }
 
 impl Demo {
-    /// The job in one of the worlds; only [`Site::CabinWithStairs`] has stairs to fall down.
+    /// The demo in one of the worlds; only [`Site::CabinWithStairs`] has stairs to fall down.
     pub fn new(site: Site) -> Self {
         let (character, walk_speed) = walking_mannequin();
         let (props, spawn) = (site.props(), site.spawn());
@@ -61,7 +61,7 @@ impl Demo {
     }
 }
 
-/// The character, and how fast it walks, m/s.
+/// Returns the character and its walking speed, m/s.
 pub(crate) fn walking_mannequin() -> (CharacterDef, f32) {
     let Mannequin { rig, clips, motions } = mannequin();
     let analysis = analyze(&rig).expect("the mannequin has a skin");

@@ -1,4 +1,4 @@
-//! The mannequin in a skirt and a cape: chains of bones round its waist and down its back, with a skin as artists make it.
+//! The mannequin in a skirt and a cape: chains of bones around its waist and down its back, with a skin as artists make it.
 
 use sinew::anim::{
     Garment, Joint, JointIdx, LocalTransform, Primitive, Rig, RigMesh, Skin, analyze, guess_garments,
@@ -7,19 +7,19 @@ use sinew::math::trig::{cos, sin};
 use sinew::math::{Affine, Transform, Vec3, max};
 use sinew::ragdoll::{BuildOptions, CharacterDef, build};
 
-/// Chains of a garment as an artist would lay them.
+/// Bone chains of a garment.
 pub struct Chains {
-    /// Name that each of its joints begins with.
+    /// Prefix of the joint names.
     pub name: &'static str,
-    /// Joint that it hangs on.
+    /// Joint to which it is attached.
     pub on: &'static str,
     /// Number of chains, and of bones in each.
     pub columns: usize,
     /// Bones in a chain; its joints are one more.
     pub bones: usize,
-    /// The last is beside the first.
+    /// True if the last chain is next to the first.
     pub closed: bool,
-    /// Place in the bind pose at shares of the way across and down, 0..=1, metres.
+    /// Position in the bind pose at fractions of the way across and down, 0..=1, metres.
     pub place: fn(f32, f32) -> Vec3,
     /// Linear RGBA.
     pub color: [f32; 4],
@@ -54,13 +54,13 @@ pub const CAPE: Chains = Chains {
     color: [0.05, 0.09, 0.25, 1.0],
 };
 
-/// Parts of a skin's cells between two joints, across and down.
+/// Skin cells between two joints, across and down.
 const PARTS: usize = 4;
 
 /// Rig of the mannequin with these garments.
 ///
 /// # Panics
-/// If it does not have a joint that they hang on.
+/// If the mannequin has no joint of the garment's name.
 pub fn dressed_rig(garments: &[&Chains]) -> Rig {
     let mut rig = crate::mannequin::mannequin().rig;
     for chains in garments {
@@ -80,7 +80,7 @@ impl Chains {
         if self.closed { self.columns } else { self.columns - 1 }
     }
 
-    /// Place of a joint in the bind pose.
+    /// Position of a joint in the bind pose.
     fn joint(&self, column: usize, at: usize) -> Vec3 {
         (self.place)(column as f32 / self.gaps() as f32, at as f32 / self.bones as f32)
     }
@@ -88,7 +88,7 @@ impl Chains {
     fn add_column(&self, rig: &mut Rig, on: JointIdx, column: usize) {
         let (mut parent, mut above) = (on, Vec3::ZERO);
         let mut at = Some(on);
-        // Joints of the mannequin do not turn in its bind pose.
+        // Joints of the mannequin are not rotated in its bind pose.
         while let Some(joint) = at {
             above += rig.joints[joint].rest.translation;
             at = rig.joints[joint].parent;
@@ -103,7 +103,7 @@ impl Chains {
         }
     }
 
-    /// A skin over the chains, whose joints begin at `first`; each vertex moves with the bones of the two chains that it is between.
+    /// Adds a skin over the chains, whose joints begin at `first`; each vertex moves with the bones of its two neighbouring chains.
     fn add_skin(&self, rig: &mut Rig, first: JointIdx) {
         let joints = self.bones + 1;
         let slot = |column: usize, bone: usize| ((column % self.columns) * joints + bone) as u16;
@@ -113,7 +113,7 @@ impl Chains {
             let column = usize::min(across / PARTS, self.gaps() - 1);
             let share = (across - column * PARTS) as f32 / PARTS as f32;
             for down in 0..=high {
-                // Half a bone on either side of a joint is shared by the two bones that meet there.
+                // Half a bone on either side of a joint is weighted to both bones.
                 let along = down as f32 / PARTS as f32 - 0.5;
                 let upper = usize::min(max(along, 0.0) as usize, self.bones - 1);
                 let lower = usize::min(upper + 1, self.bones - 1);
@@ -142,7 +142,7 @@ impl Chains {
             for down in 0..high {
                 let [a, b] = [vertex(across, down), vertex(across + 1, down)];
                 let [c, d] = [vertex(across + 1, down + 1), vertex(across, down + 1)];
-                // Both sides.
+                // Add triangles for both sides.
                 primitive.indices.extend([a, b, c, a, c, d, a, c, b, a, d, c]);
             }
         }
@@ -159,11 +159,11 @@ impl Chains {
     }
 }
 
-/// The mannequin in these garments as a character: the motions of [`mannequin::character`](crate::mannequin::character), and the garments that the names
-/// of its joints tell, each changed by `adjust`.
+/// The mannequin in these garments as a character: the motions of [`mannequin::character`](crate::mannequin::character), and the garments
+/// detected by joint names, each changed by `adjust`.
 ///
 /// # Panics
-/// Never: it can be built.
+/// Never: the character is valid.
 pub fn dressed(garments: &[&Chains], adjust: impl Fn(&mut Garment)) -> CharacterDef {
     let bare = crate::mannequin::mannequin().rig;
     let (ragdoll, _) =

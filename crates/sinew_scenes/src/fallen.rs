@@ -1,4 +1,4 @@
-//! A character of a file, limp: it falls on a floor and lies there, drawn by its skin, or by its bodies where there is no more of it.
+//! A limp character of a file falls on a floor, drawn by its skin, or by its bodies if it has none.
 
 use crate::framework::actors::Figure;
 use crate::framework::camera_hint::{CameraHint, Trails};
@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// Height of the soles above the floor at the start, as a share of the character's height.
 const HEIGHT: f32 = 0.4;
-/// Lean forward at the start, radians: one that stands upright would not fall over.
+/// Forward lean at the start, radians: an upright character would not fall over.
 const LEAN: f32 = 0.35;
 
 /// A character that falls limp on a floor, and the report on its ragdoll. The fall begins at once, in the rest pose of the file.
@@ -29,7 +29,7 @@ pub fn fall_of(rig: Rig, analysis: &RigAnalysis) -> Result<(Instance, BuildRepor
     Ok((fall_with(rig, ragdoll, &analysis.bind_model), report))
 }
 
-/// [`fall_of`] with a ragdoll that is there already, built for that rig. `bind_model` is `RigAnalysis::bind_model`.
+/// [`fall_of`] with an existing ragdoll of that rig. `bind_model` is `RigAnalysis::bind_model`.
 pub fn fall_with(rig: Rig, ragdoll: RagdollDef, bind_model: &[Affine]) -> Instance {
     let mut def = CharacterDef::new(rig, ragdoll, bind_model);
     def.after_settling = AfterSettling::StayDown;
@@ -45,7 +45,7 @@ pub fn fall_with(rig: Rig, ragdoll: RagdollDef, bind_model: &[Affine]) -> Instan
     Instance::new(world, fallen)
 }
 
-/// The bodies of a ragdoll without its rig, which fall from the pose in which it was built, and their ids.
+/// The bodies of a ragdoll without its rig, falling from the pose in which it was built, and their ids.
 pub fn fall_of_bodies(def: &RagdollDef) -> (Instance, Vec<BodyId>) {
     let mut world = floor_alone();
     let world_from_character = start(def);
@@ -72,10 +72,10 @@ fn start(def: &RagdollDef) -> Transform {
     Transform::new(Vec3::Y * (HEIGHT * def.height), Rotation::from_axis_angle(Vec3::X, LEAN))
 }
 
-/// Length of a fall for which the meter has memory from the start, seconds.
+/// Length of a fall for which the meter reserves memory from the start, seconds.
 const SECONDS: f32 = 10.0;
 
-/// The character on its way down.
+/// The falling character.
 struct Fallen {
     def: Arc<CharacterDef>,
     character: Character,
@@ -114,7 +114,7 @@ impl Script for Fallen {
         Ok(())
     }
 
-    /// The bars of a drop.
+    /// The bars of a drop test.
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let q = self.meter.quality();
         vec![
@@ -129,7 +129,7 @@ impl Script for Fallen {
         ]
     }
 
-    /// From the side, with room for where it comes to lie: it leans toward +z.
+    /// View from the side, with room in the direction of the fall, +z.
     fn camera_hint(&self) -> CameraHint {
         let height = self.def.ragdoll.height;
         let bounds =

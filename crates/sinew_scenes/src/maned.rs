@@ -1,4 +1,4 @@
-//! The mannequin with hair: a ponytail and two braids of rigid links on its head, with springs as an avatar's file states them.
+//! The mannequin with hair: a ponytail and two braids of rigid links on its head, with springs as in avatar files.
 
 use sinew::anim::springs::{ColliderShape, Side};
 use sinew::anim::{
@@ -11,7 +11,7 @@ use sinew::ragdoll::{BuildOptions, CharacterDef, build};
 /// Strand of hair.
 struct Strand {
     name: &'static str,
-    /// Place of its root and way of each link, in the head's axes, metres.
+    /// Position of its root and direction of each link, in the head's axes, metres.
     root: Vec3,
     link: Vec3,
     links: usize,
@@ -38,7 +38,7 @@ const STRANDS: [Strand; 3] = [
     },
 ];
 
-/// Settings of the hair: in the middle of what avatars have.
+/// Settings of the hair, typical for avatars.
 pub const HAIR: SpringBone = SpringBone {
     joint: 0,
     tail: Vec3::ZERO,
@@ -53,7 +53,7 @@ const COLOR: [f32; 4] = [0.10, 0.05, 0.03, 1.0];
 /// Half a link's thickness, metres.
 const THIN: f32 = 0.02;
 
-/// Rig of the mannequin with hair, its springs of `settings` in it and a ball for the head as their collider.
+/// Rig of the mannequin with hair, its springs with these `settings`, and a ball for the head as their collider.
 ///
 /// # Panics
 /// Never: the mannequin has a head.

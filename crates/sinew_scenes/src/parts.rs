@@ -6,7 +6,7 @@ use sinew::physics::{
     ShapeDef, World,
 };
 
-/// That all closed forms are made for, m/s².
+/// Gravity of all closed forms, m/s².
 pub(crate) const GRAVITY: f32 = 9.81;
 
 /// A dynamic body of one shape.
@@ -22,7 +22,7 @@ pub(crate) fn cuboid(half_extents: Vec3, position: Vec3) -> BodyDef {
     body(Shape::Box { half_extents }, position)
 }
 
-/// The same, meeting nothing.
+/// Makes a body collide with nothing.
 pub(crate) fn ghost(mut def: BodyDef) -> BodyDef {
     for shape in &mut def.shapes {
         shape.filter = Filter { mask: 0, ..Filter::default() };
@@ -30,7 +30,7 @@ pub(crate) fn ghost(mut def: BodyDef) -> BodyDef {
     def
 }
 
-/// The same, of one material.
+/// Sets the material of a body.
 pub(crate) fn made_of(mut def: BodyDef, material: Material) -> BodyDef {
     for shape in &mut def.shapes {
         shape.material = material;
@@ -38,7 +38,7 @@ pub(crate) fn made_of(mut def: BodyDef, material: Material) -> BodyDef {
     def
 }
 
-/// The same, unmoved.
+/// Makes a body static.
 pub(crate) fn fixed(def: BodyDef) -> BodyDef {
     BodyDef { kind: BodyKind::Static, ..def }
 }
@@ -48,19 +48,19 @@ pub(crate) fn floor() -> BodyDef {
     fixed(body(Shape::HalfSpace, Vec3::ZERO))
 }
 
-/// A place to hang things on.
+/// A static body to hang things on.
 pub(crate) fn hook() -> BodyDef {
     BodyDef { kind: BodyKind::Static, ..BodyDef::default() }
 }
 
-/// A capsule that reaches from x = `start` over `length` along x and meets nothing.
+/// A capsule from x = `start` over `length` along x that collides with nothing.
 pub(crate) fn level_rod(start: f32, length: f32, radius: f32) -> BodyDef {
     let half_height = 0.5 * length - radius;
     let def = body(Shape::Capsule { half_height, radius }, Vec3::X * (start + 0.5 * length));
     BodyDef { rotation: tilt(90.0), ..ghost(def) }
 }
 
-/// A thin rod, `m l²/12` about its middle, that reaches from x = `start` over `length` along x and meets nothing.
+/// A thin rod from x = `start` over `length` along x, with `m l²/12` about its middle, that collides with nothing.
 pub(crate) fn thin_rod(start: f32, length: f32, mass: f32) -> BodyDef {
     let moment = mass * length * length / 12.0;
     // Its own axis is y.
@@ -69,7 +69,7 @@ pub(crate) fn thin_rod(start: f32, length: f32, mass: f32) -> BodyDef {
     BodyDef { mass, ..level_rod(start, length, 0.03 * length) }
 }
 
-/// The same from one point to another.
+/// A thin rod from one point to another.
 pub(crate) fn thin_rod_between(from: Vec3, to: Vec3, mass: f32) -> BodyDef {
     let along = to - from;
     let turn = Rotation::from_arc(Vec3::X, along.normalize());
@@ -91,12 +91,12 @@ pub(crate) fn join(world: &mut World, a: BodyId, b: BodyId, at: Vec3) -> JointId
     world.add_joint(&JointDef::new(a, b, world.transform(a), world.transform(b), joint, kind))
 }
 
-/// About z, from x toward y.
+/// Rotation about z, from x toward y.
 pub(crate) fn tilt(degrees: f32) -> Rotation {
     Rotation::from_axis_angle(Vec3::Z, degrees.to_radians())
 }
 
-/// From the start of its second to the end of `steps` substeps, symplectic Euler takes `t (t + h) / 2` for `t² / 2`.
+/// Distance of a free fall from rest so far, metres: symplectic Euler gives `g t (t + h) / 2` instead of `g t² / 2`.
 pub(crate) fn fallen(world: &World) -> f64 {
     let dt = f64::from(world.def().dt());
     let t = world.step_count() as f64 * dt;

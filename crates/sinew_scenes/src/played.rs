@@ -1,4 +1,4 @@
-//! A motion of a file that plays, as bones, over a floor: motion capture has no skin, and so no bodies.
+//! A file's motion played as bones over a floor: motion capture has no skin, and thus no bodies.
 
 use crate::framework::actors::Figure;
 use crate::framework::camera_hint::{CameraHint, Trails};
@@ -10,10 +10,10 @@ use sinew::math::{Affine, ReadError, Reader, Vec3};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::{DebugDraw, DrawKind, World, WorldDef};
 
-/// Moments of a motion at which it is looked how far it goes.
+/// Number of sampled times that measure how far a motion travels.
 const LOOKS: u32 = 24;
 
-/// A clip of a rig that plays again and again; `world_from_file` puts the file's space into the world, metres.
+/// A looping clip of a rig; `world_from_file` converts the file's space to the world, metres.
 ///
 /// # Panics
 /// If a channel moves a joint that the rig does not have.
@@ -43,7 +43,7 @@ struct Played {
 }
 
 impl Played {
-    /// As it is `seconds` into the clip.
+    /// Shows the pose at `seconds` of the clip.
     fn show(&mut self, seconds: f32) {
         sample(&self.clip, &self.rig, seconds, Wrap::Loop, &mut self.pose);
         local_to_model(&self.rig, &self.pose, &self.root, &mut self.model);

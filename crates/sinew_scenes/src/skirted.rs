@@ -1,4 +1,4 @@
-//! The mannequin in a skirt that is a mesh: skinned to hips and thighs as artists do it, with a seam down its back and a buckle in front.
+//! The mannequin in a mesh skirt: skinned to hips and thighs as artists do, with a seam at the back and a buckle in front.
 
 use crate::dressed::SKIRT;
 use sinew::anim::garments::{MOST_PARTICLES, MeshPart, SheetError, SheetOptions, lay_sheet};
@@ -31,7 +31,7 @@ pub fn skirted_rig(cells: [usize; 2]) -> Rig {
     let mut primitive =
         Primitive { base_color: SKIRT.color, material: MATERIAL.to_owned(), ..Primitive::default() };
     let mut add = |place: Vec3| {
-        // Toward the hem more and more with the leg on its side.
+        // Toward the hem, the weight moves to the leg of its side.
         let down = clamp((1.0 - place.y) / 0.45, 0.0, 1.0);
         let (leg, side) = (0.7 * down, clamp(0.5 + 3.0 * place.x, 0.0, 1.0));
         primitive.joints.push([hips, left, right, 0]);
@@ -44,7 +44,7 @@ pub fn skirted_rig(cells: [usize; 2]) -> Rig {
     let [around, down] = cells;
     let mut rows: Vec<Vec<u32>> = Vec::new();
     for column in 0..=around {
-        // The seam is there twice, as texture coordinates make it.
+        // The seam has duplicate vertices for its texture coordinates.
         let across = (column % around) as f32 / around as f32;
         rows.push((0..=down).map(|row| add((SKIRT.place)(across, row as f32 / down as f32))).collect());
     }
@@ -56,7 +56,7 @@ pub fn skirted_rig(cells: [usize; 2]) -> Rig {
         for row in 0..down {
             let [a, b] = [rows[column][row], rows[column + 1][row]];
             let [c, d] = [rows[column + 1][row + 1], rows[column][row + 1]];
-            // Both sides.
+            // Add triangles for both sides.
             primitive.indices.extend([a, d, c, a, c, b, a, c, d, a, b, c]);
         }
     }
@@ -74,7 +74,7 @@ pub fn skirted_rig(cells: [usize; 2]) -> Rig {
     rig
 }
 
-/// Index of the sheet that the skirt of such a rig was made, with particles no farther apart than `spacing` (m) if there may be as many.
+/// Converts the skirt of such a rig to a sheet and returns its index. Particles are at most `spacing` (m) apart if their number allows.
 ///
 /// # Errors
 /// As [`lay_sheet`].
@@ -99,7 +99,7 @@ pub fn lay_skirt(rig: &mut Rig, most_particles: usize, spacing: f32) -> Result<u
 /// The mannequin in that skirt as a character: the motions of [`mannequin::character`](crate::mannequin::character), and the garment changed by `adjust`.
 ///
 /// # Panics
-/// Never: it can be built.
+/// Never: the character is valid.
 pub fn skirted(adjust: impl Fn(&mut Garment)) -> CharacterDef {
     let bare = crate::mannequin::mannequin().rig;
     let (ragdoll, _) =

@@ -1,4 +1,4 @@
-//! The viewer without a window, for tests and pictures of it: events in, pictures out.
+//! The viewer without a window, for tests and pictures: takes events and returns pictures.
 
 use crate::app::App;
 use crate::gpu::{Gpu, GpuError};
@@ -14,12 +14,12 @@ pub struct Headless {
     size: [u32; 2],
     events: Vec<Event>,
     frames: u32,
-    /// Held in the frame that comes next.
+    /// Ctrl is held in the next frame.
     holds_ctrl: bool,
 }
 
 impl Headless {
-    /// A viewer of a size in pixels, one for each point.
+    /// A viewer with a size in pixels, one pixel per point.
     pub fn new(app: App, gpu: Gpu, size: [u32; 2]) -> Self {
         let painter = Painter::new(gpu, wgpu::TextureFormat::Rgba8Unorm, size);
         Self {
@@ -38,7 +38,7 @@ impl Headless {
         &self.app
     }
 
-    /// The viewer, to be told what no event tells.
+    /// The viewer, for operations without an event.
     pub fn app_mut(&mut self) -> &mut App {
         &mut self.app
     }
@@ -56,7 +56,7 @@ impl Headless {
         }
     }
 
-    /// Presses a key and holds it, or lets it go.
+    /// Presses and holds a key, or releases it.
     pub fn hold(&mut self, key: egui::Key, pressed: bool) {
         let modifiers = Modifiers::NONE;
         self.events.push(Event::Key { key, physical_key: None, pressed, repeat: false, modifiers });
@@ -91,7 +91,7 @@ impl Headless {
         });
     }
 
-    /// One frame: takes what happened since the last one; a picture of it.
+    /// Runs one frame with the events since the last one, and returns its picture.
     ///
     /// # Errors
     /// If the picture does not come back from the card.
@@ -100,11 +100,11 @@ impl Headless {
         self.frames += 1;
         let ctrl = std::mem::take(&mut self.holds_ctrl);
         let modifiers = Modifiers { ctrl, command: ctrl, ..Modifiers::NONE };
-        // egui is told of modifiers by events of their own.
+        // egui receives modifiers as separate events.
         self.events.insert(0, Event::ModifiersChanged(modifiers));
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, Vec2::new(width, height))),
-            // Time goes by the frames, so that a test has the same one whenever it runs.
+            // Time advances by frames, so that a test is repeatable.
             time: Some(f64::from(self.frames) / 60.0),
             events: std::mem::take(&mut self.events),
             focused: true,

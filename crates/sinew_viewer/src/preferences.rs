@@ -1,4 +1,4 @@
-//! Choices of a person that are kept from one start to the next.
+//! User preferences that are kept between starts.
 
 use crate::layers::Layer;
 use serde_json::{Value, json};
@@ -20,7 +20,7 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// The file in which they are kept: `sinew/viewer.json` in the folder that the system has for such; `None` without one.
+    /// File of the preferences: `sinew/viewer.json` in the system's folder for configuration; `None` without one.
     pub fn path() -> Option<PathBuf> {
         let folder = |name: &str| std::env::var_os(name).filter(|path| !path.is_empty()).map(PathBuf::from);
         let config = folder("XDG_CONFIG_HOME")
@@ -29,7 +29,7 @@ impl Preferences {
         Some(config.join("sinew").join("viewer.json"))
     }
 
-    /// Reads them; what is not there or not understood is at its default.
+    /// Reads them; missing or invalid entries have their defaults.
     pub fn load(path: &Path) -> Self {
         let bytes = std::fs::read(path).unwrap_or_default();
         let value: Value = serde_json::from_slice(&bytes).unwrap_or_default();
@@ -39,12 +39,12 @@ impl Preferences {
         Self { layers, threads }
     }
 
-    /// Writes them, as far as that is possible.
+    /// Writes them, if possible.
     pub fn save(&self, path: &Path) {
         let layers: Vec<&str> = self.layers.iter().map(|layer| layer.name()).collect();
         let value = json!({"sinew": "viewer", "version": 1, "layers": layers, "threads": self.threads});
         if let Some(folder) = path.parent() {
-            // Where nothing can be kept, the next start has the defaults.
+            // If nothing can be written, the next start uses the defaults.
             let _ = std::fs::create_dir_all(folder);
         }
         let _ = sinew::formats::write_atomic(path, format!("{value:#}\n").as_bytes());

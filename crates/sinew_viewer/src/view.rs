@@ -11,22 +11,22 @@ use sinew_picture::world::{self, Canvas, Frame, Kinematic, Lines};
 use sinew_picture::{Camera, Line, LineDepth, RenderMaterial, Scene, Sky, Sun, draw};
 use sinew_scenes::scenes::Instance;
 
-/// Smallest distance between the camera and what it turns around, metres.
+/// Smallest distance between the camera and its target, metres.
 const NEAREST: f32 = 0.1;
 /// Largest, metres.
 const FARTHEST: f32 = 20_000.0;
 /// Steepest look up or down, radians: straight down has no horizon.
 const STEEPEST: f32 = 1.54;
-/// Field of view, radians (45°): wider than in pictures, since one looks about.
+/// Field of view, radians (45°): wider than in pictures, for interactive use.
 const FOV: f32 = core::f32::consts::FRAC_PI_4;
-/// Height of the camera above the ground at least, as a share of its distance: the near plane cuts nothing off.
+/// Least height of the camera above the ground, as a share of its distance, so that the near plane cuts nothing off.
 const CLEARANCE: f32 = 0.02;
-/// Upward share of a normal from which on a surface is ground and no wall.
+/// Upward component of a normal from which on a surface is ground and not a wall.
 const LEVEL: f32 = 0.7;
 /// Part of the world that a ray from the eye looks at, metres.
 const SIGHT: f32 = 1e5;
 
-/// Bounds of what a scene is about, world space, metres.
+/// Bounds of a scene's subject, world space, metres.
 pub fn bounds(instance: &Instance) -> Aabb {
     let mut lines = Lines::default();
     instance.draw(&mut lines);
@@ -46,7 +46,7 @@ fn curves(instance: &Instance) -> Vec<Line> {
     draw::curves(curves.iter().map(|curve| &curve.pieces[..]))
 }
 
-/// Bounds with the ground below them, if it is no farther than that they may fall on it before one's eyes.
+/// Extends bounds to the ground below them, if it is close enough for a visible fall.
 pub(crate) fn with_ground(bounds: &Aabb, world: &World) -> Aabb {
     let size = (bounds.max - bounds.min).length();
     let fall = max(6.0 * size, 1.0);
@@ -70,7 +70,7 @@ pub struct Orbit {
 }
 
 impl Orbit {
-    /// Sees bounds as a scene's hint says, in a picture `aspect` times as wide as it is high.
+    /// Frames bounds by a scene's hint, in a picture `aspect` times as wide as it is high.
     pub fn framing(bounds: &Aabb, direction: Vec3, aspect: f32) -> Self {
         let bounds = bounds.expand(max(0.1 * (bounds.max - bounds.min).length(), 0.05));
         let camera = Camera::framing_box(&bounds, direction, aspect);
@@ -105,7 +105,7 @@ impl Orbit {
         self.pitch = clamp(self.pitch + pitch, -STEEPEST, STEEPEST);
     }
 
-    /// Moves with its point: to the right, up and forward as the camera sees them, in units of the distance.
+    /// Moves camera and target: to the right, up and forward relative to the camera, in units of the distance.
     pub fn shift(&mut self, by: Vec3) {
         let axes = self.camera().axes(1.0);
         self.target += (axes.right * by.x + axes.up * by.y + axes.forward * by.z) * self.distance;
@@ -116,7 +116,7 @@ impl Orbit {
         self.distance = clamp(self.distance * factor, NEAREST, FARTHEST);
     }
 
-    /// Looks down more steeply where the camera would be in or below the ground, so that it stays above.
+    /// Pitches the camera further down where it would be in or below the ground.
     pub fn rise_above(&mut self, world: &World) {
         let way = Ray { origin: self.target, direction: self.back() * self.distance };
         let ground = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&way);
@@ -144,7 +144,7 @@ pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Sta
     let around = bounds(instance);
     let distance = (camera.position - camera.target).length();
     let size = 0.5 * (around.max - around.min).length();
-    // Neither finer than what is near nor wider than what is there.
+    // The size is limited by the near objects and by the content.
     let radius = clamp(distance * 0.5, 0.05, max(size, 1.0));
     let mut stage = Stage {
         scene: Scene {
@@ -184,14 +184,14 @@ pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Sta
     stage
 }
 
-/// Distance and turn from which on a ghost is seen beside the body, metres and radians.
+/// Distance and rotation from which on a ghost is drawn beside the body, metres and radians.
 const SEEN: f32 = 1e-3;
 /// Linear colour of a ghost.
 const GHOST: [f32; 3] = [0.05, 0.55, 0.50];
 
-/// Adds the bodies of a second run that are elsewhere than those of the first.
+/// Adds the bodies of a second run that differ from those of the first.
 fn add_ghost(ghost: &World, first: &World, stage: &mut Stage<'_>) {
-    // Ids know their world, so bodies are told by their order.
+    // Ids belong to one world, so bodies are matched by their order.
     let places: Vec<_> = first.body_ids().map(|id| first.transform(id)).collect();
     for (number, id) in ghost.body_ids().enumerate().filter(|(_, id)| ghost.kind(*id) != BodyKind::Static) {
         let place = ghost.transform(id);

@@ -1,6 +1,6 @@
 //! A character with Bevy: `cargo run --example character`; in a window `cargo run -p window -- character`.
 //!
-//! It walks, is hit, falls, gets up and walks on. The joints that it moves are entities, as those of a loaded scene are.
+//! It walks, is hit, falls, gets up and walks on. The joints that it moves are entities, like those of a loaded scene.
 
 use bevy_app::{App, FixedUpdate, PostStartup, Startup};
 use bevy_ecs::prelude::*;
@@ -13,7 +13,7 @@ use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bevy_transform::components::Transform;
 use std::sync::Arc;
 
-/// The joints of a rig as entities with names, as Bevy's loader makes them of a scene. In a game it is a `WorldAssetRoot`.
+/// Spawns the joints of a rig as named entities, as Bevy's loader does. In a game this is a `WorldAssetRoot`.
 fn scene(mut commands: Commands, heroes: Query<(Entity, &CharacterBody)>) {
     for (root, CharacterBody(def)) in &heroes {
         let mut joints: Vec<Entity> = Vec::new();
@@ -40,7 +40,7 @@ fn setup(mut commands: Commands) {
     commands.spawn(CharacterBody(Arc::new(kind())));
 }
 
-/// Hits it once, after a second and a half.
+/// Hits the character once, after a second and a half.
 fn hit(mut physics: ResMut<Physics>, mut heroes: Query<&mut CharacterHandle>) {
     for mut hero in &mut heroes {
         hero.set_move(Vec3::Z * 1.2);
@@ -61,7 +61,7 @@ fn tell(told: On<CharacterTold>, mut heard: ResMut<Heard>, physics: Res<Physics>
     heard.0.push(told.event);
 }
 
-/// The character and what hits it.
+/// Spawns the character and hits it.
 pub fn plugin(app: &mut App) {
     app.init_resource::<Heard>().add_observer(tell);
     app.add_systems(Startup, setup).add_systems(FixedUpdate, hit);

@@ -11,7 +11,7 @@ use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bevy_transform::components::Transform;
 use std::sync::Arc;
 
-/// Place of whoever looks, metres.
+/// Position of the viewer, metres.
 const CAMERA: Vec3 = Vec3::new(0.0, 1.7, -6.0);
 
 fn setup(mut commands: Commands) {
@@ -25,7 +25,7 @@ fn setup(mut commands: Commands) {
     }
 }
 
-/// The first one of each row.
+/// Makes the first character of each row faint.
 fn faint(mut physics: ResMut<Physics>, mut crowd: Query<&mut CharacterHandle>) {
     if physics.step_count() == 60 {
         for mut character in crowd.iter_mut().step_by(8) {
@@ -43,7 +43,7 @@ fn choose_detail(mut physics: ResMut<Physics>, mut crowd: Query<&mut CharacterHa
     }
 }
 
-/// The crowd and what becomes of it.
+/// Spawns the crowd and updates it.
 pub fn plugin(app: &mut App) {
     app.add_systems(Startup, setup).add_systems(FixedUpdate, (faint, choose_detail).chain());
 }

@@ -1,6 +1,6 @@
 //! A door with Bevy: `cargo run --example door`; in a window `cargo run -p window -- door`.
 //!
-//! A mover pushes a door open, a rope with a lamp hangs beside it, and the door falls shut behind it by a motor of its own.
+//! A mover pushes a door open, a lamp hangs from a rope beside it, and a motor closes the door behind the mover.
 
 use bevy_app::{App, FixedUpdate, Startup};
 use bevy_ecs::prelude::*;
@@ -54,7 +54,7 @@ fn angle(app: &mut App) -> f32 {
     world.resource::<Physics>().joint_transform(hinge).rotation.twist_angle(Vec3::X).to_degrees().abs()
 }
 
-/// Anything else that a joint can do is done by the resource: after 2.5 s the door gets a motor.
+/// Motors are set through the resource: after 2.5 s the door gets one.
 fn shut(mut physics: ResMut<Physics>, hinges: Query<&JointHandle>) {
     if physics.step_count() != 150 {
         return;
@@ -70,7 +70,7 @@ pub fn plugin(app: &mut App) {
     app.add_systems(Startup, setup).add_systems(FixedUpdate, shut);
 }
 
-/// Goes through the door.
+/// Runs until the mover is through the door.
 pub fn main() {
     let mut app = App::new();
     app.add_plugins((TimePlugin, SinewPlugin::default(), plugin)); // in a game `DefaultPlugins` bring the first

@@ -1,6 +1,6 @@
 //! The first program with Bevy: `cargo run --example hello`; in a window `cargo run -p window -- hello`.
 //!
-//! A box falls on the ground; an observer hears of it.
+//! A box falls on the ground, and an observer is notified.
 
 use bevy_app::App;
 use bevy_ecs::prelude::*;

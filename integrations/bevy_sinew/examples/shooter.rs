@@ -1,7 +1,7 @@
 //! A shooter with Bevy: `cargo run --example shooter`; in a window `cargo run -p window -- shooter`.
 //!
-//! A ray from the gun finds the limb of a character; what is weak makes it flinch, what is strong fells it. A mover walks behind a
-//! wall and is not seen.
+//! A ray from the gun finds the limb of a character: a weak shot makes it flinch, a strong one makes it fall. A mover walks behind a wall
+//! and is not hit.
 
 use bevy_app::{App, FixedUpdate, Startup};
 use bevy_ecs::prelude::*;
@@ -16,7 +16,7 @@ use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bevy_transform::components::Transform;
 use std::sync::Arc;
 
-/// A shot that is due in a step: at a limb, with an impulse, N·s.
+/// Scheduled shots: step, limb, impulse, N·s.
 #[derive(Resource)]
 struct Shots(Vec<(u64, &'static str, f32)>);
 

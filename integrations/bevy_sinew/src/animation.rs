@@ -1,4 +1,4 @@
-//! Characters whose clips Bevy plays: the pose that its `AnimationPlayer` leaves is what they strive for.
+//! Characters with clips played by Bevy: their target pose is that of Bevy's `AnimationPlayer`.
 
 use crate::characters::{CharacterHandle, CharacterJoints, write_joints};
 use bevy_ecs::prelude::*;
@@ -11,35 +11,35 @@ use sinew::ragdoll::{CharacterDef, Locomotion, MotionSet, Opening};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 use std::sync::{Arc, Weak};
 
-/// The clips of this character are Bevy's: whatever animates its joints in `AnimationSystems`, an `AnimationPlayer` above all, gives
-/// the pose that it has while it is animated, and that its muscles draw it to while it is powered. Put beside
-/// [`CharacterBody`](crate::CharacterBody) or `CharacterScene` when it comes; later it does nothing.
+/// Bevy plays the clips of this character: whatever animates its joints in `AnimationSystems`, usually an `AnimationPlayer`, sets its pose
+/// while it is animated and the target of its muscles while it is powered. Insert it together with [`CharacterBody`](crate::CharacterBody)
+/// or `CharacterScene`; inserted later, it has no effect.
 ///
-/// Each fixed step takes the pose of the last frame. Where the character goes is said by
-/// [`set_move`](sinew::ragdoll::Character::set_move); the speed of clips is the player's. It falls and gets up as others do, by the get-up clips
-/// of its own motions; meanwhile the player goes on.
+/// Each fixed step uses the pose of the last frame. [`set_move`](sinew::ragdoll::Character::set_move) sets the character's velocity; the
+/// player sets the speed of clips. It falls like any character and gets up by the get-up clips of its own motions, while the player
+/// continues.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 #[require(Given)]
 pub struct BevyAnimation {
-    /// True if its clips go over the ground. Then the pelvis is held over the place where it is at rest, and what it sways by is lost.
-    /// Default false: its clips stay in place.
+    /// True if its clips move over the ground. The pelvis is then held over its rest position, which removes its sway. Default false: its
+    /// clips stay in place.
     pub travels: bool,
 }
 
-/// Pose that the joints of a character were given by Bevy in the last frame.
+/// Pose that Bevy gave the joints of a character in the last frame.
 #[derive(Component, Clone, Debug, Default)]
 pub(crate) struct Given {
-    /// As joints had it, in the order of the rig; empty before the first frame.
+    /// Poses of the joints, in the order of the rig; empty before the first frame.
     joints: Vec<Place>,
-    /// The same, with all that is above the pelvis at rest.
+    /// The same pose, with everything above the pelvis at rest.
     pose: Option<Pose>,
 }
 
-/// Kinds of characters whose looped clip is Bevy's, each with the kind that it was made of.
+/// Kinds of characters with clips played by Bevy, each with the kind that it was derived from.
 pub(crate) type LedKinds = Vec<(Weak<CharacterDef>, Weak<CharacterDef>)>;
 
-/// A kind of character, with a looped clip that is to come from outside.
+/// Returns a kind of character whose looped clip comes from outside.
 pub(crate) fn led(kinds: &mut LedKinds, def: &Arc<CharacterDef>) -> Arc<CharacterDef> {
     kinds.retain(|(_, led)| led.strong_count() > 0);
     let known = kinds.iter().find(|(of, _)| core::ptr::eq(of.as_ptr(), Arc::as_ptr(def)));
@@ -58,7 +58,7 @@ pub(crate) fn led(kinds: &mut LedKinds, def: &Arc<CharacterDef>) -> Arc<Characte
     led
 }
 
-/// Before each step.
+/// Runs before each step.
 pub(crate) fn feed_characters(mut characters: Query<(&mut CharacterHandle, &Given)>) {
     for (mut handle, given) in &mut characters {
         let Some(pose) = &given.pose else { continue };
@@ -69,7 +69,7 @@ pub(crate) fn feed_characters(mut characters: Query<(&mut CharacterHandle, &Give
     }
 }
 
-/// Gives joints the pose that Bevy had left them in, for what it does not animate stays as it was.
+/// Restores the pose that Bevy left, so that joints without animation keep it.
 pub(crate) fn give_back(characters: Query<(&CharacterJoints, &Given)>, mut transforms: Query<&mut Place>) {
     for (CharacterJoints(joints), given) in &characters {
         for (&joint, given) in joints.iter().zip(&given.joints) {
@@ -80,7 +80,7 @@ pub(crate) fn give_back(characters: Query<(&CharacterJoints, &Given)>, mut trans
     }
 }
 
-/// Takes the pose that Bevy has given the joints, and shows the character's own instead.
+/// Stores the pose that Bevy gave the joints, and shows the character's own pose instead.
 pub(crate) fn take_and_show(
     time: Res<Time<Fixed>>,
     interpolation: Res<crate::Interpolation>,
@@ -113,7 +113,7 @@ pub(crate) fn take_and_show(
     }
 }
 
-/// Moves a flat pose so that its pelvis is over the place where it is at rest.
+/// Moves a flat pose so that its pelvis is over its rest position.
 fn hold_in_place(def: &CharacterDef, pose: &mut [LocalTransform], model: &mut Vec<Affine>) {
     let pelvis = def.ragdoll.bodies[0].joint;
     let root = def.mapping().character_from_model();

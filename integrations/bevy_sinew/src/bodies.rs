@@ -14,14 +14,14 @@ use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
 use sinew_physics::{BodyDef, BodyId, BodyKind, MassUpdate, Shape, ShapeDef, ShapeId};
 
-/// A body, of its kind.
+/// A rigid body of a kind.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 #[require(Transform, Collider)]
 pub enum RigidBody {
-    /// Moved by nothing.
+    /// Never moves.
     Static,
-    /// Moved as its [`Velocity`] says; nothing pushes it.
+    /// Moves at its [`Velocity`]; nothing pushes it.
     Kinematic,
     /// Moved by forces. Default.
     #[default]
@@ -38,8 +38,8 @@ impl From<RigidBody> for BodyKind {
     }
 }
 
-/// The shapes of a body, metres, in its own axes; mass comes from their densities. Without any, a dynamic body is a point of
-/// 1 kg that nothing touches.
+/// The shapes of a body, metres, in its own axes; mass is computed from their densities. A dynamic body without shapes is a point of 1 kg
+/// without contacts.
 #[derive(Component, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "reflect",
@@ -77,12 +77,12 @@ impl From<Velocity> for sinew_physics::Velocity {
     }
 }
 
-/// The body of an entity, once the world has it: from the first fixed step on.
+/// The body of an entity; available from the first fixed step on.
 #[derive(Component, Clone, Copy, Debug)]
 #[component(on_remove = take_out)]
 pub struct BodyHandle {
     id: BodyId,
-    /// As it was written or read last: what differs from it someone else has changed.
+    /// The last written or read transform; any difference is a change by the user.
     pub(crate) transform: Transform,
     velocity: Velocity,
 }
@@ -104,12 +104,12 @@ fn take_out(mut world: DeferredWorld, context: HookContext) {
     }
 }
 
-/// The body goes with the component that made it.
+/// Removes the body when its component is removed.
 pub(crate) fn forget_body(removed: On<Remove<RigidBody>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<BodyHandle>();
 }
 
-/// Mass of what has no shape, kg, and its moments, kg·m².
+/// Mass of a body without shapes, kg, and its moments, kg·m².
 const POINT_MASS: f32 = 1.0;
 const POINT_MOMENT: f32 = 0.1;
 
@@ -120,7 +120,7 @@ fn body_def(kind: RigidBody, shapes: &[ShapeDef]) -> BodyDef {
     BodyDef { kind: kind.into(), shapes: shapes.to_vec(), mass, ..BodyDef::default() }
 }
 
-/// Bodies that have come, in the order of their entities.
+/// Adds new bodies in the order of their entities.
 pub(crate) fn add_bodies(
     mut commands: Commands,
     mut physics: ResMut<Physics>,
@@ -161,7 +161,7 @@ pub(crate) fn change_kinds(
     }
 }
 
-/// Shapes of another collider: the body keeps its id.
+/// Replaces the shapes of a changed collider; the body keeps its id.
 pub(crate) fn change_shapes(
     mut physics: ResMut<Physics>,
     changed: Query<(&BodyHandle, &RigidBody, Ref<Collider>), Changed<Collider>>,

@@ -1,4 +1,4 @@
-//! Characters: on the joints of a scene, they walk, are hit, fall and get up.
+//! Characters that move the joints of a scene: they walk, are hit, fall and get up.
 
 use crate::animation::{BevyAnimation, LedKinds, led, to_place};
 use crate::events::both;
@@ -18,25 +18,25 @@ use sinew_physics::BodyId;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// A character of that kind. Put beside the root of a scene that was loaded from the same file, it moves the scene's joints, which it
-/// finds by their names among the entity's descendants; without a scene it is there all the same.
+/// A character of that kind. Inserted at the root of a scene loaded from the same file, it moves the scene's joints, which it finds by name
+/// among the entity's descendants. It also works without a scene.
 ///
-/// The entity's `Transform` says where it stands at first, in metres, facing +Z; from then on it is written, as that of the
-/// file's own space (which is scaled where the file counts in centimetres), and read where someone else changes it. The entity
-/// has no parent and no [`RigidBody`](crate::RigidBody).
+/// The entity's `Transform` sets the initial position, in metres, facing +Z. Later it is written as the transform of the file's own space
+/// (scaled if the file is in centimetres), and read when the user changes it. The entity must have no parent and no
+/// [`RigidBody`](crate::RigidBody).
 #[derive(Component, Clone, Debug)]
 #[require(Transform)]
 pub struct CharacterBody(pub Arc<CharacterDef>);
 
-/// The character of an entity, once the world has it: [`Character`] with all that it can do. Calls that want a world take
-/// `&mut physics` of [`ResMut<Physics>`](Physics).
+/// The [`Character`] of an entity; available from the first fixed step on. Pass `&mut physics` of [`ResMut<Physics>`](Physics) to calls
+/// that take a world.
 #[derive(Component, Clone, Debug)]
 #[component(on_remove = take_out)]
 pub struct CharacterHandle {
     character: Character,
-    /// As it was written or read last.
+    /// The last written or read transform.
     transform: Transform,
-    /// Bodies that the world was told are its.
+    /// Bodies registered as its limbs.
     bodies: Vec<BodyId>,
 }
 
@@ -54,11 +54,11 @@ impl DerefMut for CharacterHandle {
     }
 }
 
-/// Entities of a character's joints, in the order of its rig; found once the scene is there.
+/// Entities of a character's joints, in the order of its rig; inserted once the scene is loaded.
 #[derive(Component, Clone, Debug, Default)]
 pub struct CharacterJoints(pub Vec<Option<Entity>>);
 
-/// Something happened to a character.
+/// An event of a character.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq)]
 pub struct CharacterTold {
     /// Entity of the character.
@@ -80,7 +80,7 @@ fn take_out(mut world: DeferredWorld, context: HookContext) {
     physics.gone.extend(bodies);
 }
 
-/// The character goes with the component that made it.
+/// Removes the character when its component is removed.
 pub(crate) fn forget_character(removed: On<Remove<CharacterBody>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<(CharacterHandle, CharacterJoints)>();
 }
@@ -102,7 +102,7 @@ pub(crate) fn add_characters(
     }
 }
 
-/// Tells the world which bodies are whose.
+/// Registers the bodies of a character in the world.
 fn register(physics: &mut Physics, entity: Entity, handle: &mut CharacterHandle) {
     if handle.bodies != handle.character.bodies() {
         physics.gone.extend(handle.bodies.iter().filter(|body| !handle.character.bodies().contains(body)));
@@ -111,7 +111,7 @@ fn register(physics: &mut Physics, entity: Entity, handle: &mut CharacterHandle)
     }
 }
 
-/// Puts characters where someone has put their entities.
+/// Moves characters whose entities the user has moved.
 pub(crate) fn read_characters(
     mut physics: ResMut<Physics>,
     mut changed: Query<(Entity, &mut CharacterHandle, &Transform), Changed<Transform>>,
@@ -129,7 +129,7 @@ pub(crate) fn read_characters(
     }
 }
 
-/// Characters go on after the step, in the order of their entities.
+/// Updates the characters after the step, in the order of their entities.
 pub(crate) fn update_characters(
     mut physics: ResMut<Physics>,
     mut commands: Commands,
@@ -146,7 +146,7 @@ pub(crate) fn update_characters(
     }
 }
 
-/// Finds the joints of characters whose scenes have come.
+/// Finds the joints of characters whose scenes have loaded.
 pub(crate) fn find_joints(
     mut commands: Commands,
     waiting: Query<(Entity, &CharacterBody), Without<CharacterJoints>>,
@@ -162,8 +162,8 @@ pub(crate) fn find_joints(
     }
 }
 
-/// Entity of each joint: below that of its parent, a child of its name; of a root, the nearest descendant. Names may occur several
-/// times; each entity is taken once.
+/// Entity of each joint: a child of the parent's entity with the joint's name; for a root, the nearest descendant. If a name occurs several
+/// times, each entity is used once.
 fn joints_below(
     root: Entity,
     rig: &Rig,
@@ -172,7 +172,7 @@ fn joints_below(
 ) -> Vec<Option<Entity>> {
     let mut found: Vec<Option<Entity>> = Vec::with_capacity(rig.joints.len());
     for joint in &rig.joints {
-        // Nodes without a name are called so by Bevy's reader.
+        // Bevy's loader gives these names to nodes without one.
         let unnamed = format!("GltfNode{}", joint.source);
         let wanted = if joint.name.is_empty() { &unnamed } else { &joint.name };
         let from = joint.parent.map_or(Some(root), |parent| found[parent]);
@@ -201,7 +201,7 @@ fn affine(affine: &Affine) -> Affine3A {
     Affine3A { matrix3: Mat3A::from_cols(x, y, z), translation: affine.translation.into() }
 }
 
-/// Writes the places of characters and the transforms of their joints, between the last two steps.
+/// Writes the transforms of characters and of their joints, interpolated between the last two steps.
 pub(crate) fn write_characters(
     time: Res<Time<Fixed>>,
     interpolation: Res<crate::Interpolation>,
@@ -214,7 +214,7 @@ pub(crate) fn write_characters(
         let place = handle.character.interpolated(alpha, &mut pose);
         let world_from_model = affine(&handle.def().mapping().world_from_model(place));
         if let Ok(mut transform) = transforms.get_mut(entity)
-            // What someone has changed since the last step is still to be read.
+            // Changes by the user since the last step are still to be read.
             && *transform == handle.transform
         {
             let new = Transform::from_matrix(world_from_model.into());
@@ -223,7 +223,7 @@ pub(crate) fn write_characters(
                 handle.transform = new;
             }
         }
-        // What Bevy animates it would animate after this: see `animation`.
+        // Bevy would overwrite joints that it animates after this: see `animation`.
         if let Some(CharacterJoints(joints)) = joints.filter(|_| !is_led) {
             write_joints(joints, &pose, &mut transforms);
         }

@@ -1,4 +1,4 @@
-//! Steps, and what they tell: as messages, and to observers.
+//! Steps and their events, as messages and to observers.
 
 use crate::{BevyTasks, Physics, StepThreads};
 use bevy_app::App;
@@ -25,7 +25,7 @@ pub struct TouchEnded {
     pub b: Entity,
 }
 
-/// Of two bodies one began to be inside a sensor of the other.
+/// A body entered a sensor of another body.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SensorEntered {
     /// One of them.
@@ -34,7 +34,7 @@ pub struct SensorEntered {
     pub b: Entity,
 }
 
-/// Of two bodies one stopped being inside a sensor of the other; one of them may be gone.
+/// A body left a sensor of another body; one of them may be gone.
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SensorLeft {
     /// One of them.
@@ -43,7 +43,7 @@ pub struct SensorLeft {
     pub b: Entity,
 }
 
-/// Two bodies came in fast ([`WorldDef::hit_speed`](crate::WorldDef::hit_speed)) and stopped each other.
+/// Two bodies hit each other fast ([`WorldDef::hit_speed`](crate::WorldDef::hit_speed)).
 #[derive(Event, Message, Clone, Copy, Debug, PartialEq)]
 pub struct HitTold {
     /// One of them.
@@ -56,7 +56,7 @@ pub struct HitTold {
     pub normal: Vec3,
     /// Speed along the normal, m/s.
     pub approach: f32,
-    /// All that pushed, N·s.
+    /// Total impulse, N·s.
     pub impulse: f32,
 }
 
@@ -73,7 +73,7 @@ pub(crate) fn step(mut physics: ResMut<Physics>, threads: Res<StepThreads>) {
 }
 
 pub(crate) fn tell(mut physics: ResMut<Physics>, mut commands: Commands) {
-    // A character's limbs do not tell of each other.
+    // Contacts between limbs of one character are not reported.
     let told = |(a, b): (BodyId, BodyId)| {
         let pair = (physics.entity(a)?, physics.entity(b)?);
         (pair.0 != pair.1).then_some(pair)
@@ -102,7 +102,7 @@ pub(crate) fn tell(mut physics: ResMut<Physics>, mut commands: Commands) {
     }
 }
 
-/// As a message, and to observers.
+/// Sends an event as a message and to observers.
 pub(crate) fn both<E>(commands: &mut Commands, event: E)
 where
     E: Message + Clone + for<'a> Event<Trigger<'a>: Default>,

@@ -11,8 +11,8 @@ use bevy_math::Vec3;
 use bevy_reflect::Reflect;
 use sinew_physics::{DebugDraw, DrawKind};
 
-/// Draws all that a world has to show: outlines of shapes, joints, contacts, springs. Needs Bevy's `GizmoPlugin`, which
-/// `DefaultPlugins` bring; `GizmoConfigStore` switches it off and on as `PhysicsGizmos`.
+/// Draws the world: outlines of shapes, joints, contacts, springs. Needs Bevy's `GizmoPlugin`, which `DefaultPlugins` include;
+/// `GizmoConfigStore` enables and disables it as `PhysicsGizmos`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SinewGizmosPlugin;
 

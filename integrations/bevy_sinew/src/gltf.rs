@@ -25,7 +25,7 @@ impl Plugin for SinewGltfPlugin {
     }
 }
 
-/// A kind of character, read from a GLB: `asset_server.load("knight.glb")`. The same file loaded as a Bevy scene is what is drawn.
+/// A kind of character read from a GLB: `asset_server.load("knight.glb")`. Load the same file as a Bevy scene to draw it.
 #[derive(Asset, TypePath, Clone, Debug)]
 pub struct CharacterFile {
     /// Rig, ragdoll and motions.
@@ -34,44 +34,44 @@ pub struct CharacterFile {
     pub notes: Vec<String>,
 }
 
-/// The entity becomes a character as soon as the file is loaded: put it beside `SceneRoot` or `WorldAssetRoot` of the same file.
+/// Makes the entity a character once the file is loaded: insert it together with `SceneRoot` or `WorldAssetRoot` of the same file.
 #[derive(Component, Clone, Debug)]
 #[require(bevy_transform::components::Transform)]
 pub struct CharacterScene(pub Handle<CharacterFile>);
 
-/// Names of the clips that a character plays, for `AssetServer::load_with_settings`; a name that the file does not have is an error.
+/// Names of the clips that a character plays, for `AssetServer::load_with_settings`; an unknown name is an error.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct CharacterSettings {
     /// Clip that loops while it walks. Default: the built-in walk.
     pub walk: Option<String>,
     /// Clip that loops while it stands. Default: none.
     pub idle: Option<String>,
-    /// Clips that start lying and end standing. Default: those that are found to do so, else the built-in ones.
+    /// Clips that start lying and end standing. Default: those detected in the file, or else the built-in ones.
     pub get_ups: Vec<String>,
 }
 
-/// Reason for which a file gives no character.
+/// Reason why a file contains no valid character.
 #[derive(Debug, thiserror::Error)]
 pub enum CharacterFileError {
-    /// The bytes cannot be had.
+    /// The bytes cannot be read.
     #[error(transparent)]
     Io(#[from] std::io::Error),
-    /// It is no GLB, or a broken one.
+    /// It is not a valid GLB.
     #[error(transparent)]
     Format(#[from] sinew::formats::Error),
     /// It has no skin.
     #[error(transparent)]
     Analysis(#[from] NoSkin),
-    /// Its joints make no body.
+    /// No ragdoll can be built from its joints.
     #[error(transparent)]
     Build(#[from] BuildError),
     /// One of its clips cannot be played.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// It is no humanoid, or one of its clips cannot be played.
+    /// It is not a humanoid, or one of its clips cannot be played.
     #[error(transparent)]
     Builtin(#[from] BuiltinError),
-    /// The settings name a clip that it does not have.
+    /// The settings name a missing clip.
     #[error("no clip is called `{0}`")]
     NoClip(String),
 }
@@ -101,10 +101,10 @@ impl AssetLoader for CharacterLoader {
     }
 }
 
-/// Makes a kind of character from the bytes of a GLB. Humanoids lack no motion: what the file does not have is built in.
+/// Creates a kind of character from the bytes of a GLB. Missing motions of humanoids are replaced by built-in ones.
 ///
 /// # Errors
-/// Bytes that are no GLB with a skin, and settings that do not fit them.
+/// If the bytes are no GLB with a skin, or the settings do not fit it.
 pub fn read_character(
     bytes: &[u8],
     settings: &CharacterSettings,

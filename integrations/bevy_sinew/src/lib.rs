@@ -19,7 +19,7 @@
 //! assert!((height - 0.5).abs() < 0.01);
 //! ```
 //!
-//! # Who says what
+//! # Data flow
 //!
 //! | component | read | written |
 //! |---|---|---|
@@ -45,9 +45,9 @@
 //! | `picking` | `SinewPickingPlugin`: pointers find bodies | no |
 //! | `reflect` | components in the type registry, for scenes and inspectors | no |
 //!
-//! A body is in the world, not in its parent: where an ancestor goes, it stays, and its `Transform` is made to fit. So it is when
-//! it gets another parent. Scales are kept and do not scale shapes. All else that a world can do is done by the resource
-//! [`Physics`], with the id in [`BodyHandle`].
+//! A body moves in world space, not with its parent: if an ancestor or the parent changes, the body stays and its `Transform` is adjusted.
+//! Scales are kept, but do not scale shapes. All other features of a world are available through the resource [`Physics`], with the id in
+//! [`BodyHandle`].
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "characters")]
@@ -116,7 +116,7 @@ use std::collections::BTreeMap;
 /// steps of a frame.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PhysicsSystems {
-    /// Components that came, changed or went are brought into the world.
+    /// New, changed and removed components are applied to the world.
     Prepare,
     /// The world takes a step.
     Step,
@@ -126,29 +126,29 @@ pub enum PhysicsSystems {
     Write,
 }
 
-/// The physics of an app. As a [`World`] it can do all that one can; what it is made of beside that is which entity a body is.
+/// The physics of an app: a [`World`], with a map from bodies to entities.
 #[derive(Resource)]
 pub struct Physics {
     world: World,
     entities: BTreeMap<BodyId, Entity>,
     /// Bodies of characters.
     limbs: BTreeMap<BodyId, Entity>,
-    /// Bodies that are gone, until the step has told what they no longer touch.
+    /// Removed bodies, kept until the step has reported the ends of their contacts.
     gone: Vec<BodyId>,
 }
 
 impl Physics {
-    /// The entity of a body, that of its character for a limb; also of one that was taken out since the last step.
+    /// The entity of a body, or of the character of a limb; also for bodies removed since the last step.
     pub fn entity(&self, body: BodyId) -> Option<Entity> {
         self.entities.get(&body).or_else(|| self.limbs.get(&body)).copied()
     }
 
-    /// Number of bodies with an entity, those among them that were taken out since the last step.
+    /// Number of bodies with an entity, including those removed since the last step.
     pub fn len(&self) -> usize {
         self.entities.len()
     }
 
-    /// True if no entity is a body.
+    /// Returns true if no entity has a body.
     pub fn is_empty(&self) -> bool {
         self.entities.is_empty()
     }
@@ -168,7 +168,7 @@ impl DerefMut for Physics {
     }
 }
 
-/// Order in which entities come into the world: that in which they were first made.
+/// Order in which entities are added to the world: that of their creation.
 pub(crate) fn order(entity: Entity) -> (u32, u64) {
     (entity.index_u32(), entity.to_bits())
 }
@@ -231,7 +231,7 @@ fn add_characters(app: &mut App) {
     let prepare = (characters::add_characters, characters::read_characters, animation::feed_characters);
     let prepare = prepare.chain();
     app.add_systems(FixedPostUpdate, prepare.in_set(PhysicsSystems::Prepare).after(particles::add_particles));
-    // Before the world's events are told: bodies that a character let go of are still known then.
+    // Runs before the world's events are reported, while bodies released by a character are still known.
     let update = characters::update_characters.in_set(PhysicsSystems::Tell);
     app.add_systems(FixedPostUpdate, update.after(movers::tell_movers).before(events::tell));
     let write = (characters::find_joints, characters::write_characters).chain();

@@ -9,7 +9,7 @@ use bevy_math::Vec3;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use sinew_physics::{FieldDef, FieldId, JointDef, JointId, JointKind};
 
-/// Entities by their bits: Bevy writes and reads them by a feature that only its scenes switch on.
+/// Entities as bits: Bevy serialises entities only with a feature of its scenes.
 #[cfg(feature = "reflect")]
 pub(crate) mod bits {
     use bevy_ecs::entity::Entity;
@@ -26,7 +26,7 @@ pub(crate) mod bits {
     }
 }
 
-/// A joint between two bodies, on an entity of its own. It is made as soon as both are in the world, and goes with either of them.
+/// A joint between two bodies, on its own entity. It is created once both bodies are in the world, and removed with either of them.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "reflect",
@@ -43,21 +43,21 @@ pub struct Joint {
     #[entities]
     #[cfg_attr(feature = "reflect", serde(with = "bits"))]
     pub b: Entity,
-    /// Point at which it holds the bodies when it is made, world, metres.
+    /// Anchor of both bodies at creation, world, metres.
     pub anchor: Vec3,
-    /// Its x axis then, world, any length but 0: that of a hinge or a slider.
+    /// Its x axis at creation, world, any length but 0: that of a hinge or a slider.
     pub axis: Vec3,
-    /// Motions that it leaves free.
+    /// Its free motions.
     pub kind: JointKind,
 }
 
-/// The joint of an entity, once the world has it.
+/// The joint of an entity; available once it is in the world.
 #[derive(Component, Clone, Copy, Debug)]
 #[component(on_remove = take_out_joint)]
 pub struct JointHandle(JointId);
 
 impl JointHandle {
-    /// Id of the joint in [`Physics`]; stale when one of its bodies is gone.
+    /// Id of the joint in [`Physics`]; stale if one of its bodies was removed.
     pub fn id(&self) -> JointId {
         self.0
     }
@@ -73,7 +73,7 @@ impl JointHandle {
 )]
 pub struct Field(pub FieldDef);
 
-/// The field of an entity, once the world has it.
+/// The field of an entity; available once it is in the world.
 #[derive(Component, Clone, Copy, Debug)]
 #[component(on_remove = take_out_field)]
 pub struct FieldHandle(FieldId);
@@ -101,17 +101,17 @@ fn take_out_field(mut world: DeferredWorld, context: HookContext) {
     }
 }
 
-/// The joint goes with the component that made it.
+/// Removes the joint when its component is removed.
 pub(crate) fn forget_joint(removed: On<Remove<Joint>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<JointHandle>();
 }
 
-/// The field goes with the component that made it.
+/// Removes the field when its component is removed.
 pub(crate) fn forget_field(removed: On<Remove<Field>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<FieldHandle>();
 }
 
-/// Joints both of whose bodies are there, in the order of their entities.
+/// Adds joints whose bodies both exist, in the order of their entities.
 pub(crate) fn add_joints(
     mut commands: Commands,
     mut physics: ResMut<Physics>,
@@ -122,14 +122,14 @@ pub(crate) fn add_joints(
     new.sort_unstable_by_key(|&(entity, _)| order(entity));
     for (entity, joint) in new {
         let (Ok(a), Ok(b)) = (bodies.get(joint.a), bodies.get(joint.b)) else { continue };
-        // A hinge has the frames that any kind has.
+        // The frames of a hinge fit joints of any kind.
         let hinge = physics.hinge(a.id(), b.id(), joint.anchor, joint.axis);
         let id = physics.add_joint(&JointDef { kind: joint.kind, ..hinge });
         commands.entity(entity).insert(JointHandle(id));
     }
 }
 
-/// Another kind or limit for a joint that is there; its bodies and frames stay.
+/// Changes kind or limits of an existing joint; its bodies and frames stay.
 pub(crate) fn change_joints(
     mut physics: ResMut<Physics>,
     changed: Query<(Entity, &JointHandle, &Joint), Changed<Joint>>,

@@ -15,8 +15,8 @@ use bevy_transform::components::Transform;
 use sinew_math::Rotation;
 use sinew_physics::{MoverDef, MoverId};
 
-/// A mover, an upright capsule that walks, climbs steps, rides and pushes without being a body. Its entity's `Transform` is that of
-/// its feet, in the world: it belongs to an entity without a parent and without a [`RigidBody`](crate::RigidBody).
+/// A mover: an upright capsule that walks, climbs steps, rides and pushes without being a body. Its entity's `Transform` is that of its
+/// feet, in the world; the entity must have no parent and no [`RigidBody`](crate::RigidBody).
 #[derive(Component, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "reflect",
@@ -27,13 +27,13 @@ use sinew_physics::{MoverDef, MoverId};
 #[require(Transform, Walk, MoverState)]
 pub struct Mover(pub MoverDef);
 
-/// Wishes of a mover: how it is to go.
+/// Input of a mover.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Component, Default, Debug, PartialEq))]
 pub struct Walk {
-    /// Velocity over the ground, m/s, until it is told otherwise.
+    /// Velocity over the ground, m/s, until it is changed.
     pub velocity: Vec3,
-    /// Speed of a jump in the next step, m/s; then it is 0 again.
+    /// Speed of a jump in the next step, m/s; reset to 0 after it.
     pub jump: f32,
 }
 
@@ -43,11 +43,11 @@ pub struct Walk {
 pub struct MoverState {
     /// Velocity in the world, m/s.
     pub velocity: Vec3,
-    /// True if something bears it that is not too steep.
+    /// True if ground that is not too steep supports it.
     pub grounded: bool,
 }
 
-/// The mover of an entity, once the world has it.
+/// The mover of an entity; available once it is in the world.
 #[derive(Component, Clone, Copy, Debug)]
 #[component(on_remove = take_out)]
 pub struct MoverHandle {
@@ -71,7 +71,7 @@ fn take_out(mut world: DeferredWorld, context: HookContext) {
     }
 }
 
-/// The mover goes with the component that made it.
+/// Removes the mover when its component is removed.
 pub(crate) fn forget_mover(removed: On<Remove<Mover>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<MoverHandle>();
 }
@@ -90,7 +90,7 @@ pub(crate) fn add_movers(
     }
 }
 
-/// Puts movers where someone has put their entities, and tells them where to go.
+/// Moves movers whose entities the user has moved, and applies their input.
 pub(crate) fn lead_movers(
     mut physics: ResMut<Physics>,
     mut movers: Query<(Entity, &mut MoverHandle, &Mover, &mut Walk, &Transform)>,
@@ -104,7 +104,7 @@ pub(crate) fn lead_movers(
         handle.transform = transform;
         let now = physics.mover(handle.id).def();
         if now.height != def.height {
-            // Where there is no room it is tried again in the next step.
+            // Without room, the change is retried in the next step.
             physics.set_mover_height(handle.id, def.height);
         }
         if physics.mover(handle.id).def().filter != def.filter {
@@ -126,7 +126,7 @@ pub(crate) fn tell_movers(physics: Res<Physics>, mut movers: Query<(&MoverHandle
     }
 }
 
-/// Writes where feet are, and turns entities as what they stand on has turned them.
+/// Writes the positions of feet, and rotates entities with the ground that they stand on.
 pub(crate) fn write_movers(
     physics: Res<Physics>,
     time: Res<Time<Fixed>>,
@@ -135,7 +135,7 @@ pub(crate) fn write_movers(
 ) {
     let alpha = interpolation.alpha(&time);
     for (mut handle, mut transform) in &mut movers {
-        // What someone has changed since the last step is still to be read.
+        // Changes by the user since the last step are still to be read.
         if handle.transform.translation != transform.translation {
             continue;
         }

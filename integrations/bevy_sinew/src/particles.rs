@@ -11,9 +11,8 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef};
 use sinew_physics::{BodyId, GroupId};
 
-/// A group of particles in the world: a rope, a cape, a blob. Where they are [`Physics`] tells, by the id in
-/// [`ParticlesHandle`]; the entity's `Transform` does nothing. It is made as soon as all bodies that it hangs on are there, and
-/// goes with any of them.
+/// A group of particles in the world: a rope, a cape, a blob. [`Physics`] returns their positions, by the id in [`ParticlesHandle`]; the
+/// entity's `Transform` has no effect. The group is created once all bodies that it is attached to exist, and removed with any of them.
 #[derive(Component, Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "reflect",
@@ -22,9 +21,9 @@ use sinew_physics::{BodyId, GroupId};
     reflect(Component, Clone, Debug, PartialEq, Serialize, Deserialize)
 )]
 pub struct Particles {
-    /// Particles and springs, world, metres. Changes of a group that is there are made by [`Physics`].
+    /// Particles and springs, world, metres. Change an existing group through [`Physics`].
     pub def: GroupDef,
-    /// Particles that hang on entities with a body.
+    /// Particles attached to entities with a body.
     #[entities]
     pub hangs: Vec<Hang>,
 }
@@ -35,7 +34,7 @@ impl From<GroupDef> for Particles {
     }
 }
 
-/// A particle that hangs on a body.
+/// A particle attached to a body.
 #[derive(MapEntities, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "reflect", derive(serde::Serialize, serde::Deserialize))]
 pub struct Hang {
@@ -49,13 +48,13 @@ pub struct Hang {
     pub point: Vec3,
 }
 
-/// The particles of an entity, once the world has them.
+/// The particles of an entity; available once they are in the world.
 #[derive(Component, Clone, Copy, Debug)]
 #[component(on_remove = take_out)]
 pub struct ParticlesHandle(GroupId);
 
 impl ParticlesHandle {
-    /// Id of the group in [`Physics`]; stale when a body that it hung on is gone.
+    /// Id of the group in [`Physics`]; stale if a body that it was attached to was removed.
     pub fn id(&self) -> GroupId {
         self.0
     }
@@ -69,12 +68,12 @@ fn take_out(mut world: DeferredWorld, context: HookContext) {
     }
 }
 
-/// The particles go with the component that made them.
+/// Removes the particles when their component is removed.
 pub(crate) fn forget_particles(removed: On<Remove<Particles>>, mut commands: Commands) {
     commands.entity(removed.event().entity).try_remove::<ParticlesHandle>();
 }
 
-/// Takes out the groups that hang on a body which goes.
+/// Removes the groups attached to a removed body.
 pub(crate) fn remove_hanging(physics: &mut Physics, body: BodyId) {
     let hangs = |id: &GroupId| {
         let on = |target| matches!(target, AttachmentTarget::Body { body: other, .. } if other == body);

@@ -1,4 +1,4 @@
-//! Pointers find bodies.
+//! Picking of bodies by pointers.
 
 use crate::Physics;
 use bevy_app::{App, Plugin, PreUpdate};

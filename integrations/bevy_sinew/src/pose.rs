@@ -1,4 +1,4 @@
-//! Transforms, read where someone changed them and written where bodies moved.
+//! Transforms: read after changes by the user, and written after motion of bodies.
 
 use crate::{BodyHandle, Physics, order};
 use bevy_ecs::prelude::*;
@@ -9,11 +9,11 @@ use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
 use sinew_math::{Rotation, Transform as Pose};
 
-/// What is drawn between two steps.
+/// Interpolation of drawn poses between two steps.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "reflect", derive(bevy_reflect::Reflect), reflect(Resource, Default, Debug, PartialEq))]
 pub enum Interpolation {
-    /// Poses between the last step and the one before, as late as a step: smooth at any frame rate. Default.
+    /// Interpolates between the last two steps, with a delay of one step: smooth at any frame rate. Default.
     #[default]
     On,
     /// The pose of the last step.
@@ -21,7 +21,7 @@ pub enum Interpolation {
 }
 
 impl Interpolation {
-    /// Share of a step that what is drawn has come beyond the step before.
+    /// Fraction of the drawn pose between the last two steps.
     pub(crate) fn alpha(self, time: &Time<Fixed>) -> f32 {
         match self {
             Self::On => time.overstep_fraction(),
@@ -30,7 +30,7 @@ impl Interpolation {
     }
 }
 
-/// Without its scale.
+/// Converts to a pose without scale.
 pub(crate) fn to_pose(transform: &Transform) -> Pose {
     let [x, y, z, w] = transform.rotation.to_array();
     Pose::new(transform.translation, Rotation::from_xyzw(x, y, z, w).normalize())
@@ -40,7 +40,7 @@ pub(crate) fn to_quat(rotation: Rotation) -> Quat {
     Quat::from_xyzw(rotation.x, rotation.y, rotation.z, rotation.w)
 }
 
-/// From the parent's space to the world, by the transforms of all ancestors as they are now.
+/// Transform from the parent's space to the world, by the present transforms of all ancestors.
 fn world_from_parent(
     parent: Entity,
     parents: &Query<&ChildOf>,
@@ -52,7 +52,7 @@ fn world_from_parent(
         .fold(Affine3A::IDENTITY, |below, transform| transform.compute_affine() * below)
 }
 
-/// Puts bodies where someone has put their entities.
+/// Moves bodies whose entities the user has moved.
 pub(crate) fn read_transforms(
     mut physics: ResMut<Physics>,
     changed: Query<Entity, (Changed<Transform>, With<BodyHandle>)>,
@@ -82,7 +82,7 @@ pub(crate) fn read_transforms(
     }
 }
 
-/// Writes the transforms of bodies that moved, and of all that have a parent; parents before children.
+/// Writes the transforms of bodies that moved, and of all with a parent; parents before children.
 pub(crate) fn write_transforms(
     physics: Res<Physics>,
     time: Res<Time<Fixed>>,
@@ -122,13 +122,13 @@ pub(crate) fn write_transforms(
     }
 }
 
-/// Writes a transform if it is another, so that nothing else takes it for changed.
+/// Writes a transform if it differs, so that change detection ignores it otherwise.
 fn write(
     handle: &mut Mut<BodyHandle>,
     transform: &mut Mut<Transform>,
     make: impl FnOnce(&Transform) -> Transform,
 ) {
-    // What someone has changed since the last step is still to be read.
+    // Changes by the user since the last step are still to be read.
     if handle.transform != **transform {
         return;
     }

@@ -18,8 +18,9 @@ pub enum StepThreads {
     One,
 }
 
-/// Runs tasks on Bevy's `ComputeTaskPool`; the thread that asks takes its share. A batch that begins within a task runs on the thread that
-/// asks for it: who waits for a batch of Bevy's takes up other tasks meanwhile, and each of them would wait in turn, ever deeper.
+/// Runs tasks on Bevy's `ComputeTaskPool`; the calling thread takes its share. A batch that starts within a task runs on its calling
+/// thread: a thread that waits for one of Bevy's batches executes other tasks meanwhile, and each of these would wait in turn, with growing
+/// stack depth.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BevyTasks;
 

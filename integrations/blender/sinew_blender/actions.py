@@ -4,7 +4,7 @@ import bpy
 
 
 def curve(action, owner, path, index, group):
-    """The F-curve of a property, made where there is none."""
+    """The F-curve of a property, created if it is missing."""
     if hasattr(action, "fcurve_ensure_for_datablock"):  # Blender 5: the only way.
         return action.fcurve_ensure_for_datablock(owner, path, index=index, group_name=group)
     found = action.fcurves.find(path, index=index)
@@ -41,7 +41,7 @@ def remove(action, owner, gone):
 
 
 def assign(owner, action):
-    """Has the Action move the data."""
+    """Assigns the Action to the data."""
     data = owner.animation_data or owner.animation_data_create()
     data.action = action
     if hasattr(data, "action_slot") and data.action_slot is None and action is not None and action.slots:
@@ -51,12 +51,12 @@ def assign(owner, action):
 
 
 def interpolation(name):
-    """The number of a way to interpolate keys."""
+    """The number of an interpolation mode."""
     return bpy.types.Keyframe.bl_rna.properties["interpolation"].enum_items[name].value
 
 
 def write(fcurve, frames, values, way="LINEAR"):
-    """Keys, one a frame, instead of those that the curve had."""
+    """Replaces the keys of a curve by one for each frame."""
     points = fcurve.keyframe_points
     if hasattr(points, "clear"):
         points.clear()

@@ -9,7 +9,7 @@ from .skeleton import SinewError
 
 
 def store(arm, ragdoll):
-    """Keeps a ragdoll on the armature and fills in the bones' panels."""
+    """Stores a ragdoll on the armature and fills in the bones' panels."""
     arm.sinew.definition = ragdoll.to_json()
     arm.sinew.fitted = arm.sinew.definition
     arm.sinew.place = sk.text_of(sk.straight(arm.matrix_world))
@@ -39,7 +39,7 @@ def show(arm):
 
 
 def _size(arm, body):
-    """Size of a body's shape against the one that was fitted."""
+    """Size of a body's shape relative to the fitted one."""
     fitted = next((b for b in json.loads(arm.sinew.fitted)["bodies"] if b["bone"] == body["bone"]), body)
     own, was = _extent(body["shape"]), _extent(fitted["shape"])
     return own / was if was > 0 else 1.0
@@ -52,7 +52,7 @@ def _extent(shape):
 
 
 def edit(arm, name):
-    """Brings the values of a bone's panel into the definition."""
+    """Applies the values of a bone's panel to the definition."""
     if not arm.sinew.definition:
         return
     settings = arm.pose.bones[name].sinew
@@ -62,7 +62,7 @@ def edit(arm, name):
     body = next(b for b in json.loads(arm.sinew.definition)["bodies"] if b["bone"] == name)
     wanted = {"mass": settings.mass, "scale": settings.size / _size(arm, body)}
     if settings.has_swing:
-        # Zero lies within a swing.
+        # The range of a swing must include zero.
         wanted["swing_y"], wanted["swing_z"] = (
             (min(v[0], 0.0), max(v[1], 0.0)) for v in (settings.swing_y, settings.swing_z)
         )
@@ -74,6 +74,6 @@ def edit(arm, name):
     try:
         changed = bridge.asked(ragdoll.edited, name, **wanted)
     except SinewError:
-        # What cannot be is shown as it was.
+        # An invalid value is reset to the last valid one.
         return show(arm)
     arm.sinew.definition = changed.to_json()

@@ -1,4 +1,4 @@
-"""Between Blender and Sinew: characters out of armatures, and simulated poses back."""
+"""Converts armatures to characters of Sinew, and simulated poses back."""
 
 import json
 from dataclasses import dataclass
@@ -10,9 +10,9 @@ from . import skeleton as sk
 from .skeleton import TO_Y, SinewError
 
 CLIP = "user"
-# Share by which a scale may differ and count as the same.
+# Relative difference up to which two scales count as equal.
 SAME_SCALE = 1e-3
-# Sizes of characters that are taken as they are, metres.
+# Range of character sizes that need no guess of the unit, metres.
 SIZES = (0.3, 10.0)
 
 
@@ -26,7 +26,7 @@ def engine():
 
 
 def asked(call, *arguments, **named):
-    """Calls Sinew; what it refuses is said to the user."""
+    """Calls Sinew, and reports its errors to the user."""
     sinew = engine()
     try:
         return call(*arguments, **named)
@@ -38,7 +38,7 @@ def asked(call, *arguments, **named):
 
 @dataclass
 class Loaded:
-    """An armature as Sinew has it."""
+    """An armature in Sinew's representation."""
 
     file: object
     skeleton: sk.Skeleton
@@ -90,7 +90,7 @@ def load(arm, frames=None, fps=30.0, ignore=()):
     if settings.height > 0:
         wanted["height"] = settings.height
     elif SIZES[0] <= _extent(arm, skeleton) * sk.unit_of_scene() <= SIZES[1]:
-        # A plausible size is taken at its word; of any other Sinew guesses the unit.
+        # A plausible size is used unchanged; for any other Sinew guesses the unit.
         wanted["unit"] = sk.unit_of_scene()
     if settings.mass > 0:
         wanted["mass"] = settings.mass
@@ -144,7 +144,7 @@ def matrix_of(pose):
 
 
 def scaled(matrix, factor):
-    """The matrix with its place multiplied."""
+    """The matrix with its translation scaled."""
     out = matrix.copy()
     out.translation *= factor
     return out

@@ -1,4 +1,4 @@
-"""Keys out of matrices: an Action, an NLA strip, a proxy that a controlled rig follows, or FK controls."""
+"""Converts matrices to keys: of an Action, an NLA strip, a proxy that a controlled rig follows, or FK controls."""
 
 import json
 
@@ -11,7 +11,7 @@ CONSTRAINT = "Sinew"
 PROXY = "Sinew "
 CHANNELS = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
 TRACK = "Sinew"
-# Locations that stay below this of the rest pose get no keys, Blender's length of the bone.
+# Largest distance from the rest pose for which a location gets no keys, in units of Blender, bone space.
 STILL = 1e-6
 
 
@@ -70,7 +70,7 @@ def _has(arm, action, path):
 
 
 def turns(quaternions, mode):
-    """Rotations as a bone's mode has them."""
+    """Rotations in a bone's rotation mode."""
     if mode == "QUATERNION":
         return quaternions, "rotation_quaternion"
     if mode == "AXIS_ANGLE":
@@ -84,7 +84,7 @@ def turns(quaternions, mode):
 
 
 def new_action(arm):
-    """A copy of the user's Action under a new name; his own is kept as it is."""
+    """A copy of the user's Action under a new name; the original is not changed."""
     old = arm.animation_data.action if arm.animation_data else None
     name = f"{PROXY}{arm.name}"
     if old is None:
@@ -126,7 +126,7 @@ def put_back(arm):
 
 
 def clear(arm):
-    """Takes away what an earlier simulation keyed; the user's animation is as it was."""
+    """Removes the keys of an earlier simulation and restores the user's animation."""
     made, data = arm.sinew.made_action, arm.animation_data
     remove_proxy(arm)
     if data is not None:
@@ -208,7 +208,7 @@ def as_proxy(arm, skeleton, fall):
     return proxy
 
 
-# Share by which a bone may be longer than at rest and count as not stretched.
+# Relative stretch up to which a bone counts as not stretched.
 STRETCHED = 1e-4
 
 
@@ -242,7 +242,7 @@ def _copy_bones(arm, data, names, parent):
 
 
 def _edit(ob, change):
-    """Runs a change in edit mode of an object, and puts mode and selection back."""
+    """Runs a change in edit mode of an object, and restores mode and selection."""
     layer = bpy.context.view_layer
     active, selected = layer.objects.active, [o for o in layer.objects if o.select_get()]
     mode = active.mode if active is not None else "OBJECT"
@@ -279,7 +279,7 @@ def _follow(arm, proxy, names, handover, back):
 
 
 def remove_proxy(arm):
-    """Takes away what an earlier run left on a controlled rig: proxy, constraints, their keys."""
+    """Removes what an earlier run added to a controlled rig: proxy, constraints, their keys."""
     for bone in arm.pose.bones:
         for c in [c for c in bone.constraints if c.name == CONSTRAINT and c.type == "COPY_TRANSFORMS"]:
             bone.constraints.remove(c)

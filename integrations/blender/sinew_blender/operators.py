@@ -11,14 +11,14 @@ from . import bodies, bridge, keys, simulation
 from . import skeleton as sk
 from .skeleton import SinewError
 
-# Seconds between two looks at a simulation that runs.
+# Seconds between checks of a running simulation.
 LOOKS_EVERY = 0.1
-# Seconds of sampling between two of Blender's redraws.
+# Seconds of sampling between redraws.
 SLICE = 0.5
 
 
 def active_armature(context):
-    """The armature that is selected, or that the selected mesh hangs on."""
+    """The selected armature, or that of the selected mesh."""
     ob = context.object
     if ob is not None and ob.type == "MESH":
         ob = ob.find_armature()
@@ -35,7 +35,7 @@ def selected_armatures(context):
 
 
 class Sinew:
-    """What all operators share: errors are one line in the status bar."""
+    """Base of all operators: shows errors as a line in the status bar."""
 
     bl_options = {"REGISTER", "UNDO"}
 
@@ -178,7 +178,7 @@ class SINEW_OT_simulate(Sinew, bpy.types.Operator):
             return {"CANCELLED"}
 
     def go_on(self, context, event):
-        """Samples in slices of Blender's time, then looks after the thread that simulates."""
+        """Samples in time slices, then waits for the simulation thread."""
         if event.type == "ESC" and self._job is None:
             self._work.close()
             self._end(context)

@@ -12,13 +12,13 @@ BODY = (0.25, 0.75, 1.0, 0.9)
 CHOSEN = (1.0, 0.65, 0.15, 1.0)
 LIMIT = (1.0, 0.35, 0.3, 0.9)
 TWIST = (0.45, 0.9, 0.4, 0.9)
-# Corners of a circle.
+# Number of corners of a circle.
 STEPS = 24
 # Length of a limit's cone as a share of its bone.
 REACH = 0.5
 
 _handles = []
-# By name of the armature: definition it was made of, and lines by bone.
+# By name of the armature: its definition, and lines by bone.
 _made = {}
 
 
@@ -124,7 +124,7 @@ def lines_of(arm, chosen):
             out[CHOSEN if name in chosen else BODY].extend(at @ p for p in body)
         if settings.show_limits and name in chosen and carrier is not None:
             at = arm.matrix_world @ arm.pose.bones[carrier].matrix
-            # The limits turn with the parent, and sit where the bone is.
+            # The limits rotate with the parent, and are drawn at the bone.
             shift = (arm.matrix_world @ bone.matrix).translation - at @ swing[-2] if swing else Vector()
             out[LIMIT].extend((at @ p) + shift for p in swing)
             out[TWIST].extend((at @ p) + shift for p in twist)

@@ -1,4 +1,4 @@
-"""What is stored on scenes, armatures, bones and objects."""
+"""Properties of scenes, armatures, bones and objects."""
 
 import math
 
@@ -21,7 +21,7 @@ MODES = (
     ("POWERED", "Powered", "Muscles draw it to your animation; it gives way to what it meets"),
     ("LIMP", "Limp", "It hangs"),
 )
-# True while the add-on itself fills in values: then nothing is taken for an edit.
+# True while the add-on itself sets values, which then do not count as edits.
 _filling = [False]
 
 
@@ -35,11 +35,11 @@ class Finding(bpy.types.PropertyGroup):
 
 
 def _edited(bone_settings, context):
-    """A change of a bone's panel goes into the definition."""
+    """Applies a change in a bone's panel to the definition."""
     if _filling[0]:
         return
     arm = bone_settings.id_data
-    # Blender tells no path from such a value to its bone.
+    # Blender offers no path from such a value to its bone.
     here = bone_settings.as_pointer()
     name = next(bone.name for bone in arm.pose.bones if bone.sinew.as_pointer() == here)
     from . import bodies
@@ -156,9 +156,9 @@ def register():
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     for owner, name, cls in POINTERS:
-        # What is stored on the data can be overridden where it is linked.
+        # Properties on the data can be overridden in linked files.
         setattr(owner, name, PointerProperty(type=cls, override={"LIBRARY_OVERRIDABLE"}))
-    # By itself: values within a group of a bone cannot be keyed.
+    # Separate, since values within a property group of a bone cannot be keyed.
     bpy.types.PoseBone.sinew_mode = EnumProperty(
         items=MODES,
         name="Mode",

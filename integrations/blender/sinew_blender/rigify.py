@@ -1,4 +1,4 @@
-"""FK controls of Rigify: a fall that a proxy holds becomes keys on them."""
+"""Transfers a fall from a proxy to keys on Rigify's FK controls."""
 
 import re
 
@@ -8,7 +8,7 @@ from . import actions, keys
 from . import skeleton as sk
 from .skeleton import SinewError
 
-# Passes over all controls at a frame: each sees where the ones above it have come.
+# Passes over all controls at a frame; each uses the present pose of the controls above it.
 PASSES = 2
 
 
@@ -77,7 +77,7 @@ def bake(context, arm):
 
 
 def _back(arm, name):
-    """Frame at which the influence ends, or None."""
+    """Frame at which the influence returns to 0, or None."""
     path = keys.bone_path(name, f'constraints["{keys.CONSTRAINT}"].influence')
     for fcurve in actions.curves(arm.animation_data.action, arm):
         if fcurve.data_path == path:

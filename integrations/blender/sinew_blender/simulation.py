@@ -10,7 +10,7 @@ from . import actions, bridge, keys, stage
 from . import skeleton as sk
 from .skeleton import SinewError
 
-# States in which the user's animation alone has the pose.
+# States in which the user's animation alone sets the pose.
 OWN = {"animated"}
 
 
@@ -22,13 +22,13 @@ class Fall:
     frames: list
     worlds: list
     carriers: list
-    # Frame from which the user's animation has the pose again, or None.
+    # Frame from which the user's animation sets the pose again, or None.
     back: object = None
 
 
 @dataclass
 class Job:
-    """A simulation that was prepared on Blender's thread and runs on any."""
+    """A simulation that is prepared on Blender's main thread and runs on any thread."""
 
     arms: list
     loaded: list
@@ -47,7 +47,7 @@ class Job:
     def run(self):
         try:
             self.baked = bridge.asked(bridge.engine().bake, self.actors, progress=self.told, **self.stage)
-        except Exception as error:  # To be told on Blender's thread.
+        except Exception as error:  # To be reported on Blender's main thread.
             self.error = error
 
     def told(self, share):
@@ -69,12 +69,12 @@ def frames_of(scene):
 
 
 def prepare(context, arms):
-    """Reads armatures, animation and world; what only Blender's own thread may do."""
+    """Reads armatures, animation and world; must run on Blender's main thread."""
     return sk.whole(preparing(context, arms))
 
 
 def preparing(context, arms):
-    """`prepare` step by step: a generator of the share that is done."""
+    """`prepare` step by step: a generator that yields the progress."""
     scene, sinew = context.scene, bridge.engine()
     settings = scene.sinew
     first, last = frames_of(scene)
@@ -174,7 +174,7 @@ def drives(loaded, take, fps):
 
 
 def falls_of(job):
-    """The part of each bake that the bodies have, as frames of Blender."""
+    """The simulated part of each bake, as frames of Blender."""
     found = []
     for loaded, take, baked in zip(job.loaded, job.takes, job.baked):
         states = baked.states
@@ -216,7 +216,7 @@ def write(job, how):
 
 
 def report(loaded, take, baked, fall, way):
-    """What became of it, for the panel and for tests: lengths in mm of Blender's unit in metres."""
+    """Results for the panel and for tests: lengths in mm of Blender's unit in metres."""
     unit = 1e3 * loaded.unit
     off = 0.0
     simulated = bridge.model_matrices(baked, loaded)

@@ -1,4 +1,4 @@
-"""The skeleton that deforms: which bones, in which hierarchy, with which skin, whatever the rig around them is."""
+"""The deform skeleton: its bones, their hierarchy and their skin, independent of the rig around them."""
 
 import json
 import math
@@ -22,7 +22,7 @@ FOLLOWS = {"COPY_TRANSFORMS", "COPY_ROTATION", "ARMATURE", "DAMPED_TRACK", "COPY
 
 
 class SinewError(Exception):
-    """What the user is to be told, one sentence."""
+    """An error message for the user, in one sentence."""
 
 
 @dataclass
@@ -40,7 +40,7 @@ def plain(name):
 
 
 def check(arm):
-    """Raises where an armature cannot be worked on."""
+    """Raises if an armature cannot be used."""
     if arm is None or arm.type != "ARMATURE":
         raise SinewError("Select an armature first")
     if not arm.data.bones:
@@ -67,7 +67,7 @@ def skins(arm):
         by_parent = ob.parent == arm and ob.parent_type in {"ARMATURE", "BONE"}
         if by_modifier or by_parent:
             found.append(ob)
-    # Hidden props are no part of the character, unless all of it is hidden.
+    # Hidden meshes are not part of the character, unless all of it is hidden.
     return [ob for ob in found if ob.visible_get()] or found
 
 
@@ -158,7 +158,7 @@ def unscaled(matrix):
 
 
 def unit_of_scene():
-    """Metres of a unit of Blender."""
+    """Metres per unit of Blender."""
     return bpy.context.scene.unit_settings.scale_length
 
 
@@ -168,7 +168,7 @@ def to_sinew(matrix):
 
 
 def is_driven(arm, names):
-    """True if keys on these bones would not move them as they say: constraints or drivers have them."""
+    """True if constraints or drivers on these bones would override keys."""
     for name in names:
         if any(not c.mute and c.name != "Sinew" for c in arm.pose.bones[name].constraints):
             return True
@@ -268,7 +268,7 @@ def _mesh(ob, index, to_sinew_space):
     made = {"name": ob.name, "triangles": triangles.reshape(-1, 3)}
     m = to_sinew_space @ ob.matrix_world
     if ob.parent_type == "BONE":
-        # Where the bone has it now is where it has it at rest, seen from the bone.
+        # Relative to the bone, the vertex is where it is at rest.
         bone = ob.parent.pose.bones.get(ob.parent_bone)
         if ob.parent_bone not in index or bone is None:
             return None
@@ -277,7 +277,7 @@ def _mesh(ob, index, to_sinew_space):
         made["joint"] = index[ob.parent_bone]
     else:
         made["joints"], made["weights"] = _weights(ob, index)
-        # Vertices that no bone moves (props of the same object) are no skin.
+        # Vertices without a bone (props in the same object) are not skin.
         moved = made["weights"].sum(1) > 0
         made["triangles"] = made["triangles"][moved[made["triangles"]].all(1)]
     m = np.array(m, np.float64)

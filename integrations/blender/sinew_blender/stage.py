@@ -7,14 +7,14 @@ from . import bridge
 from . import skeleton as sk
 from .skeleton import TO_Y, SinewError
 
-# Most triangles of one collider.
+# Largest number of triangles of one collider.
 MOST_TRIANGLES = 500_000
-# Least change of a matrix by which an object counts as moving, Blender's length.
+# Smallest change of a matrix for which an object counts as moving, in units of Blender.
 MOVES = 1e-6
 
 
 def colliders(scene, arms):
-    """Objects that the characters collide with: those that the user marked, that are no skin of theirs."""
+    """Objects that the characters collide with: those marked by the user, except the characters' own skins."""
     own = {ob for arm in arms for ob in sk.skins(arm)}
     return [ob for ob in scene.objects if ob.type == "MESH" and ob.sinew_body.collides and ob not in own]
 
@@ -87,7 +87,7 @@ def world(scene, arms, first, last, fps, unit):
             vertices, corners = _triangles(ob, TO_Y @ ob.matrix_world)
             made.append(bridge.asked(sinew.Collider.mesh, vertices * unit, corners, friction=friction))
             continue
-        # The scale of the first frame is in the mesh, place and turn of each in the keys.
+        # The mesh contains the scale of the first frame; the keys contain position and rotation of each frame.
         track = [sk.to_sinew(m) for m in moving[ob]]
         vertices, corners = _triangles(ob, sk.to_sinew(moving[ob][0]).inverted() @ TO_Y @ moving[ob][0])
         shape = bridge.asked(sinew.Collider.mesh, vertices * unit, corners, friction=friction)

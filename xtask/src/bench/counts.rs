@@ -1,4 +1,4 @@
-//! Instructions that the kernels take, against the committed ones: unlike time, they are the same on a busy machine.
+//! Instruction counts of the kernels, compared to the committed ones. Unlike time, they do not depend on other load.
 
 use crate::command;
 use anyhow::{Context, Result, bail};
@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::process::Command;
 
-/// Committed counts: a line that says of what compiler they are, then one line per kernel: name, instructions.
+/// Committed counts: a line with the compiler, then one line per kernel: name, instructions.
 const PATH: &str = "bench/counts/baseline.txt";
 
 const MANIFEST: &str = "bench/counts/Cargo.toml";
@@ -19,8 +19,7 @@ const TOLERANCE: f64 = 0.02;
 /// The runner must be of the same version as the crate `gungraun` in the manifest.
 const RUNNER_VERSION: &str = "0.20.0";
 
-/// Instructions in a microsecond that long trees reached where this was written (62 million in 8 ms): for a feeling of
-/// what a count means, not for comparisons.
+/// Instructions per microsecond of long trees on the reference machine (62 million in 8 ms): for orientation, not for comparisons.
 const PER_MICROSECOND: f64 = 7_500.0;
 
 /// A kernel's cost.
@@ -30,14 +29,14 @@ struct Count {
     instructions: u64,
 }
 
-/// What is counted, and with what: instructions of one compiler say nothing about those of another.
+/// Counts and their compiler: counts of different compilers are not comparable.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Counts {
     compiler: String,
     kernels: Vec<Count>,
 }
 
-/// Counts and compares with the committed counts; says so where valgrind or its runner is missing and cannot be had.
+/// Counts and compares with the committed counts; reports if valgrind or its runner is missing and cannot be installed.
 ///
 /// # Errors
 /// If a count differs by more than the tolerance, to either side, or nothing can be counted.
@@ -58,7 +57,7 @@ pub fn check() -> Result<()> {
     Ok(())
 }
 
-/// Counts, and takes the counts as the right ones.
+/// Counts, and stores the counts as the expected ones.
 ///
 /// # Errors
 /// If nothing can be counted.
@@ -69,7 +68,7 @@ pub fn bless() -> Result<()> {
     fs::write(command::root().join(PATH), text(&found)).context(PATH)
 }
 
-/// Installs what counting needs, where it is not there.
+/// Installs missing tools for counting.
 fn provide() -> Result<()> {
     command::provide("valgrind", "valgrind")?;
     if !command::answers("gungraun-runner") {
@@ -137,12 +136,12 @@ fn print(found: &Counts, committed: Option<&Counts>) {
     }
 }
 
-/// By what share the count has risen.
+/// Relative increase of the count.
 fn change(old: &Count, new: u64) -> f64 {
     new as f64 / old.instructions as f64 - 1.0
 }
 
-/// With a comma after every three digits.
+/// Formats a number with a comma after every three digits.
 fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut grouped = String::new();
@@ -155,7 +154,7 @@ fn grouped(number: u64) -> String {
     grouped
 }
 
-/// One line per kernel that is new, gone or of another cost.
+/// One line per kernel that is new, removed or has a different count.
 fn differences(committed: &Counts, found: &Counts) -> Vec<String> {
     if committed.compiler != found.compiler {
         return vec![format!("{PATH} is of {}, this is {}", committed.compiler, found.compiler)];

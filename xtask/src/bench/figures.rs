@@ -1,9 +1,9 @@
-//! The figures of quality that stand beside the times, and how they are written.
+//! Quality figures listed beside the times, and their formatting.
 
 use super::results::{EngineResult, SceneResult};
 use serde_json::Value;
 
-/// What a number counts.
+/// Unit of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// In metres, written in millimetres up to a metre.
@@ -20,7 +20,7 @@ pub enum Unit {
 
 /// A figure of quality.
 pub struct Figure {
-    /// As a reader knows it.
+    /// Heading in tables.
     pub heading: &'static str,
     /// What it counts.
     pub unit: Unit,
@@ -30,34 +30,34 @@ pub struct Figure {
 
 /// Largest distance between the two anchors of a joint after any step.
 pub const GAP: Figure = Figure { heading: "gap", unit: Unit::Length, of: |e| number(e, "joint_gap_peak_m") };
-/// Of a chain: all its gaps together over its length, after any step.
+/// For a chain: the sum of its gaps over its length, after any step.
 pub const STRETCH: Figure =
     Figure { heading: "stretch", unit: Unit::Share, of: |e| number(e, "stretch_peak") };
-/// The same after the last one.
+/// For a chain: the same after the last step.
 pub const STRETCH_END: Figure =
     Figure { heading: "stretch at the end", unit: Unit::Share, of: |e| number(e, "stretch_end") };
 /// Mean gap of the joints of a rope at its worst.
 pub const GAP_PER_LINK: Figure =
     Figure { heading: "gap per link", unit: Unit::Length, of: |e| number(e, "gap_per_link") };
-/// Limits that were exceeded by more than 0.1 rad after any step.
+/// Number of limits exceeded by more than 0.1 rad after any step.
 pub const LIMITS: Figure = Figure {
     heading: "limits > 0.1 rad",
     unit: Unit::Count,
     of: |e| over_limits(e, "exceeded_run", |a, b| a + b),
 };
-/// Deepest overlap of two bodies after any step that was looked at.
+/// Deepest overlap of two bodies after any checked step.
 pub const DEPTH: Figure =
     Figure { heading: "depth", unit: Unit::Length, of: |e| number(e, "penetration_run_max_m") };
 /// The same after the last step.
 pub const DEPTH_END: Figure =
     Figure { heading: "depth at the end", unit: Unit::Length, of: |e| number(e, "penetration_end_max_m") };
-/// Likewise, of all but 1 % of the pairs.
+/// 99th percentile of the overlaps after the last step.
 pub const DEPTH_P99: Figure =
     Figure { heading: "its p99", unit: Unit::Length, of: |e| number(e, "penetration_end_p99_m") };
-/// How far from its place a body is that should stay.
+/// Displacement of a body that should stay.
 pub const SHIFT: Figure =
     Figure { heading: "shift", unit: Unit::Length, of: |e| number(e, "displacement_max_m") };
-/// The step after which everything sleeps; none if something never does.
+/// Step after which everything sleeps; `None` if something never does.
 pub const ASLEEP: Figure =
     Figure { heading: "asleep at step", unit: Unit::Count, of: |e| number(e, "asleep_step") };
 /// Mean stretch of a cloth's edges.
@@ -69,7 +69,7 @@ pub const POSE: Figure =
 /// Share of rays or pairs that hit.
 pub const HITS: Figure = Figure { heading: "hits", unit: Unit::Share, of: |e| e.number("hit_share") };
 
-/// All of them, in the order of the columns.
+/// All figures, in the order of the columns.
 pub const FIGURES: &[Figure] = &[
     GAP,
     Figure { heading: "gap at the end", unit: Unit::Length, of: |e| number(e, "joint_gap_end_max_m") },
@@ -94,7 +94,7 @@ pub const FIGURES: &[Figure] = &[
     HITS,
 ];
 
-/// The figure by which a scene shows whether its time is the time of the same work.
+/// Figure that shows whether engines did the same work in a scene.
 pub fn headline(scene: &str) -> &'static Figure {
     match scene {
         "box_pyramid" | "large_pyramid" => &SHIFT,
@@ -132,18 +132,17 @@ fn over_limits(engine: &EngineResult, key: &str, fold: fn(f64, f64) -> f64) -> O
     })
 }
 
-/// The most that the world ever had above what it began with; nothing put any in.
+/// Largest energy above the initial one; nothing adds energy.
 fn energy_gained(engine: &EngineResult) -> Option<f64> {
     Some((number(engine, "energy_peak_j")? - number(engine, "energy_start_j")?).max(0.0))
 }
 
-/// What is gone at the end, into heat or into nothing.
+/// Energy lost at the end, by dissipation or error.
 fn energy_lost(engine: &EngineResult) -> Option<f64> {
     Some(number(engine, "energy_start_j")? - number(engine, "energy_end_j")?)
 }
 
-/// The figures that say something about a scene: those that were measured and are not 0 throughout, and the shift of
-/// bodies only where they should stay.
+/// Relevant figures of a scene: those measured and not all 0, and the shift of bodies only where they should stay.
 pub fn telling(scene: &SceneResult) -> Vec<&'static Figure> {
     let is_telling = |figure: &Figure| {
         let mut values = scene.engines.iter().filter_map(figure.of);
@@ -154,19 +153,19 @@ pub fn telling(scene: &SceneResult) -> Vec<&'static Figure> {
 }
 
 impl Unit {
-    /// A number with its unit, rounded.
+    /// Formats a value with its unit, rounded.
     pub fn show(self, value: f64) -> String {
         let (value, unit) = self.scaled(value);
         if self == Self::Count { format!("{value:.0}") } else { format!("{}{unit}", rounded(value)) }
     }
 
-    /// A number with its unit, as it was written.
+    /// Formats a value with its unit, unrounded.
     pub fn show_bound(self, value: f64) -> String {
         let (value, unit) = self.scaled(value);
         format!("{}{unit}", value as f32)
     }
 
-    /// In a unit that people like for such a size.
+    /// Converts to a readable unit.
     fn scaled(self, value: f64) -> (f64, &'static str) {
         match self {
             Self::Length if value.abs() >= 1.0 => (value, " m"),
@@ -180,7 +179,7 @@ impl Unit {
     }
 }
 
-/// Three digits, but no more than three behind the point.
+/// Three significant digits, at most three after the decimal point.
 pub fn rounded(value: f64) -> String {
     let decimals = match value.abs() {
         0.0 => 0,

@@ -1,22 +1,22 @@
-//! What machine the figures are of.
+//! Machine on which the figures are measured.
 
 use std::fmt;
 use std::fs;
 use std::process::Command;
 use std::thread;
 
-/// As far as it is known.
+/// Known properties of a machine.
 #[derive(Clone, Debug)]
 pub struct Machine {
     processor: String,
     cores: usize,
     compiler: String,
-    /// Processes that wanted to run, on average over a minute, when it was looked at.
+    /// Average load over a minute at the time of measurement.
     load: Option<String>,
 }
 
 impl Machine {
-    /// The one that this runs on.
+    /// The present machine.
     pub fn this() -> Self {
         let cpu = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let model = cpu.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
@@ -47,14 +47,14 @@ impl fmt::Display for Machine {
 /// The commit in the working tree.
 pub fn revision() -> String {
     let commit = printed("git", &["show", "--no-patch", "--format=%h of %cs", "HEAD"]);
-    // The page that is being written is no change of what is measured.
+    // The page being written does not count as a change.
     let but_the_page = format!(":(exclude){}", super::PAGE);
     let changes =
         printed("git", &["status", "--porcelain", "--untracked-files=no", "--", ".", &but_the_page]);
     if changes.is_empty() { commit } else { format!("{commit} with changes") }
 }
 
-/// What a program prints; nothing if it is not there.
+/// Output of a program; `None` if it is missing.
 fn printed(program: &str, arguments: &[&str]) -> String {
     let output = Command::new(program).args(arguments).current_dir(crate::command::root()).output();
     output.map_or(String::new(), |output| String::from_utf8_lossy(&output.stdout).trim().to_owned())

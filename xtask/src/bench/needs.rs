@@ -1,4 +1,4 @@
-//! What building the peers needs besides Rust.
+//! Tools needed to build the peers besides Rust.
 
 use anyhow::{Result, bail};
 use std::env;
@@ -19,10 +19,10 @@ const NEEDS: &[Need] = &[
     Need { name: "libclang", package: "libclang-dev", is_there: has_libclang },
 ];
 
-/// Looks for all of it, so that a build does not fail after minutes.
+/// Checks for all of them, so that a build does not fail after minutes.
 ///
 /// # Errors
-/// One line with what is missing and how to get it.
+/// One line with the missing tools and how to install them.
 pub fn check() -> Result<()> {
     match complaint(&NEEDS.iter().filter(|need| !(need.is_there)()).collect::<Vec<_>>()) {
         Some(complaint) => bail!(complaint),
@@ -51,7 +51,7 @@ fn has_cpp_compiler() -> bool {
     env::var_os("CXX").is_some() || ["c++", "g++", "clang++", "cl"].into_iter().any(is_program)
 }
 
-/// Where bindgen looks, or nearly.
+/// Checks roughly the paths that bindgen searches.
 fn has_libclang() -> bool {
     if let Some(path) = env::var_os("LIBCLANG_PATH") {
         return holds_libclang(Path::new(&path)) || PathBuf::from(path).is_file();

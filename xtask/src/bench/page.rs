@@ -1,4 +1,4 @@
-//! `docs/benchmarks.md`: for readers who want to know what an engine gives for its time.
+//! Writes `docs/benchmarks.md`: what each engine achieves in its time.
 
 use super::figures::{Figure, came_apart, headline, rounded, telling};
 use super::machine::Machine;
@@ -114,7 +114,7 @@ fn is_of_figures(scene: &SceneResult) -> bool {
     scene.name.starts_with("humanoid_")
 }
 
-/// Scenes of bodies, cloth and shapes.
+/// Scenes with bodies, cloth and shapes.
 fn physics(results: &Results) -> Vec<&SceneResult> {
     results.scenes.iter().filter(|scene| !is_animation(scene) && !is_of_figures(scene)).collect()
 }
@@ -130,7 +130,7 @@ fn columns(scenes: &[&SceneResult]) -> Vec<String> {
     names
 }
 
-/// As readers know it.
+/// Display name of an engine.
 fn title(engine: &str) -> &str {
     match engine {
         "sinew" => "Sinew",
@@ -153,17 +153,17 @@ fn of<'a>(scene: &'a SceneResult, engine: &str) -> Option<&'a EngineResult> {
     scene.engines.iter().find(|result| result.name == engine)
 }
 
-/// One line per scene: time and figure of each engine.
+/// One line per scene: time and main figure of each engine.
 pub fn glance(results: &Results) -> Table {
     times_and_figures(&physics(results))
 }
 
-/// The same of scenes of clips.
+/// The same for animation scenes.
 pub fn animation(results: &Results) -> Table {
     times_and_figures(&results.scenes.iter().filter(|scene| is_animation(scene)).collect::<Vec<_>>())
 }
 
-/// The same of figures that lie and of heaps of them, beside MuJoCo.
+/// The same for lying figures and heaps of them, beside MuJoCo.
 pub fn figures_alone(results: &Results) -> Table {
     times_and_figures(&results.scenes.iter().filter(|scene| is_of_figures(scene)).collect::<Vec<_>>())
 }
@@ -190,12 +190,12 @@ fn factor(speed: Option<f64>) -> String {
     speed.map_or(NONE.to_owned(), |speed| format!("{}×", rounded(speed)))
 }
 
-/// Why there is no figure.
+/// Reason why there is no figure.
 fn absence(engine: &EngineResult) -> String {
     if engine.is_failed() { engine.why_not().unwrap_or(NONE).to_owned() } else { NONE.to_owned() }
 }
 
-/// What must hold, and what does.
+/// Requirements and whether they hold.
 pub fn holds(results: &Results, rows: &[Hold]) -> Table {
     let engines = columns(&physics(results));
     let mut table = heading(&["scene", "figure", "must"], &engines, &[]);
@@ -220,7 +220,7 @@ pub fn holds(results: &Results, rows: &[Hold]) -> Table {
     table
 }
 
-/// The specification's table, judged.
+/// The specification's table with verdicts.
 pub fn speeds(results: &Results) -> Table {
     let mut table = Table::new(2, ["work", "verdict", "must", "goal", "measured"]);
     for speed in SPEEDS {
@@ -275,12 +275,12 @@ fn cell(figure: &Figure, engine: &EngineResult) -> String {
     (figure.of)(engine).map_or(NONE.to_owned(), |value| figure.unit.show(value))
 }
 
-/// Warns of a time that is no time of the scene.
+/// Warning mark for a time that does not represent the scene.
 fn mark(engine: &EngineResult) -> &'static str {
     if came_apart(engine) { " †" } else { "" }
 }
 
-/// What was measured, and how it was compiled.
+/// Engines, their versions and compiler flags.
 fn engines(results: &Results) -> Table {
     let mut table = Table::new(4, ["engine", "version", "compiled", "settings"]);
     for name in columns(&results.scenes.iter().collect::<Vec<_>>()) {

@@ -32,7 +32,7 @@ const OZZ_TOOLCHAIN: &str = "1.94.0";
 /// Flags for the registers of this machine, where it has them.
 const WIDE_FLAGS: &str = "-C target-cpu=x86-64-v3";
 
-/// How often a running process is looked at.
+/// Interval between checks of a running process.
 const POLL: Duration = Duration::from_millis(20);
 
 /// An engine in a binary.

@@ -1,4 +1,4 @@
-//! What Sinew must reach, and whether it does.
+//! Requirements on Sinew, and whether they are met.
 
 use super::figures::{
     ASLEEP, CLOTH, DEPTH, DEPTH_END, DEPTH_P99, Figure, GAP, GAP_PER_LINK, LIMITS, SHIFT, STRETCH,
@@ -6,63 +6,63 @@ use super::figures::{
 };
 use super::results::{EngineResult, Results, SceneResult};
 
-/// Whether a must is reached.
+/// Verdict on a requirement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It is; and the goal beyond it, too.
+    /// Met, and the goal beyond it, too.
     Goal,
-    /// It is.
+    /// Met.
     Met,
-    /// It is not.
+    /// Missed.
     Missed,
-    /// It cannot be measured yet, for this reason.
+    /// Not measurable yet, with the reason.
     Open(String),
-    /// It was not asked for.
+    /// Not requested.
     NotRun,
 }
 
 /// A row of the specification's table of speeds.
 pub struct Speed {
-    /// Its words.
+    /// Its wording in the specification.
     pub work: &'static str,
-    /// What has to be reached.
+    /// Its bar.
     pub bar: Bar,
 }
 
-/// What a [`Speed`] has to reach.
+/// Bar of a [`Speed`].
 pub enum Bar {
-    /// A factor that must be at least so much, and should be more.
+    /// A factor with a required minimum and a goal.
     Factor { must: f64, goal: f64, measure: Measure },
-    /// Nothing here measures it.
+    /// Not measured here.
     Elsewhere { must: &'static str, goal: &'static str, why: &'static str },
 }
 
-/// Where the factor of a [`Speed`] comes from.
+/// Source of a [`Speed`]'s factor.
 #[derive(Clone, Copy)]
 pub enum Measure {
-    /// A scene: the fastest peer's mean step over ours.
+    /// A scene: the fastest peer's mean step over Sinew's.
     Peers(&'static str),
-    /// The same of the 99th percentile.
+    /// The same for the 99th percentile.
     PeersP99(&'static str),
-    /// A scene as for `Peers`, but a peer whose joints came apart does not count; with none left there is no bar.
+    /// Like `Peers`, but without peers whose joints came apart; if none is left, there is no bar.
     PeersTogether(&'static str),
-    /// A scene as for `Peers`, but a peer whose figure exceeds a bound does not count, and ours that does falls short.
+    /// Like `Peers`, but without peers whose figure exceeds a bound; if Sinew's exceeds it, the requirement is missed.
     PeersWithin(&'static str, &'static Figure, f64),
     /// A figure of characters that fall limp until they sleep, in seconds per second.
     Limp(&'static str),
     /// The bake of one character, in seconds per second.
     Bake,
-    /// How often a rig of 6,000 vertices becomes a ragdoll in 100 ms.
+    /// How often a rig of 6,000 vertices is converted to a ragdoll in 100 ms.
     Build,
-    /// A scene's wall time on one thread over that on two.
+    /// Wall time of a scene on one thread over that on two.
     Threads(&'static str),
 }
 
-/// The race of cloth, and the mean stretch that counts: that of Jolt.
+/// The cloth race, and the mean stretch up to which a peer counts: that of Jolt.
 const CLOTH_RACE: &str = "cloth, against those that stretch by 3.1 % at most";
 const CLOTH_STRETCH: f64 = 0.031;
 
-/// Speed of limp characters: the median of all rigs, and the slowest humanoid.
+/// Speeds of limp characters: the median of all rigs, and the slowest humanoid.
 const LIMP: [Measure; 2] = [Measure::Limp("median"), Measure::Limp("slowest_humanoid")];
 
 const fn factor(work: &'static str, must: f64, goal: f64, measure: Measure) -> Speed {
@@ -78,7 +78,7 @@ const fn elsewhere(work: &'static str, must: &'static str, goal: &'static str, w
     Speed { work, bar: Bar::Elsewhere { must, goal, why } }
 }
 
-/// Section 5 of the specification, and the speed of animation that was asked for beside it.
+/// Section 5 of the specification, and the additional requirement on animation speed.
 pub const SPEEDS: &[Speed] = &[
     factor("ragdoll pile", 1.0, 1.5, Measure::Peers("ragdoll_pile")),
     factor("ragdoll pile, 99th percentile", 0.6, 1.0, Measure::PeersP99("ragdoll_pile")),
@@ -137,7 +137,7 @@ pub const SPEEDS: &[Speed] = &[
 ];
 
 impl Speed {
-    /// What was measured, and what that means.
+    /// Returns the measured factor and the verdict.
     pub fn judge(&self, results: &Results) -> (Option<f64>, Verdict) {
         let (must, goal, measure) = match self.bar {
             Bar::Factor { must, goal, measure } => (must, goal, measure),
@@ -170,8 +170,7 @@ impl Measure {
     }
 }
 
-/// A scene that Sinew came to the end of. What dies or is stopped was run and falls short, what is not there yet is
-/// open.
+/// A scene that Sinew completed. A crash or a timeout misses the requirement; a missing scene is open.
 fn raced<'a>(results: &'a Results, scene: &str) -> Result<(&'a SceneResult, &'a EngineResult), Verdict> {
     let scene = results.scene(scene).ok_or(Verdict::NotRun)?;
     let ours = scene.sinew().ok_or(Verdict::NotRun)?;
@@ -182,14 +181,14 @@ fn raced<'a>(results: &'a Results, scene: &str) -> Result<(&'a SceneResult, &'a 
     }
 }
 
-/// As [`SceneResult::speed`], against the peers whose joints stay together.
+/// Like [`SceneResult::speed`], against peers whose joints stay together.
 fn speed_together(scene: &SceneResult) -> Result<f64, Verdict> {
     let mut fair = scene.clone();
     fair.engines.retain(|engine| engine.is_sinew() || !came_apart(engine));
     fair.speed().ok_or_else(|| Verdict::Open("no peer's joints stay together: no bar".to_owned()))
 }
 
-/// As [`SceneResult::speed`], against the peers whose figure is within a bound, as ours must be.
+/// Like [`SceneResult::speed`], against peers with a figure within the bound, which Sinew's must meet, too.
 fn speed_within(scene: &SceneResult, figure: &Figure, most: f64) -> Result<f64, Verdict> {
     let holds = |engine: &EngineResult| (figure.of)(engine).is_some_and(|it| it <= most);
     if !scene.sinew().is_some_and(holds) {
@@ -200,22 +199,22 @@ fn speed_within(scene: &SceneResult, figure: &Figure, most: f64) -> Result<f64, 
     fair.speed().ok_or_else(|| Verdict::Open("no peer stretches as little: no bar".to_owned()))
 }
 
-/// A row of a table of what must hold.
+/// A row of a table of requirements.
 pub struct Hold {
     /// The scene.
     pub scene: &'static str,
-    /// What is looked at.
+    /// Checked figure.
     pub figure: &'static Figure,
-    /// What it may be.
+    /// Its bound.
     pub most: Most,
 }
 
-/// How large a figure may be.
+/// Bound on a figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Most {
-    /// As large as this.
+    /// At most this value.
     Value(f64),
-    /// As large as that of the best peer.
+    /// At most the best peer's.
     BestPeer,
 }
 
@@ -275,7 +274,7 @@ pub const STANDS: &[Hold] = &[
 ];
 
 impl Hold {
-    /// Whether Sinew holds it.
+    /// Verdict on Sinew's figure.
     pub fn judge(&self, results: &Results) -> Verdict {
         let (scene, ours) = match raced(results, self.scene) {
             Ok(raced) => raced,
@@ -291,7 +290,7 @@ impl Hold {
         if holds { Verdict::Met } else { Verdict::Missed }
     }
 
-    /// What must be, in words.
+    /// The requirement in words.
     pub fn must(&self) -> String {
         match self.most {
             Most::Value(0.0) => "0".to_owned(),
@@ -301,7 +300,7 @@ impl Hold {
     }
 }
 
-/// A line for each row of the specification's table that falls short, and one for each that cannot be measured yet.
+/// A line for each missed row of the specification's table, and one for each that is not measurable yet.
 pub fn shortfalls(results: &Results) -> (Vec<String>, Vec<String>) {
     let (mut missed, mut open) = (Vec::new(), Vec::new());
     for speed in SPEEDS {
@@ -319,7 +318,7 @@ pub fn shortfalls(results: &Results) -> (Vec<String>, Vec<String>) {
 }
 
 impl Bar {
-    /// What must be, in words.
+    /// The requirement in words.
     pub fn must(&self) -> String {
         match self {
             Self::Factor { must, .. } => format!("≥ {must}×"),
@@ -327,7 +326,7 @@ impl Bar {
         }
     }
 
-    /// What should be, in words.
+    /// The goal in words.
     pub fn goal(&self) -> String {
         match self {
             Self::Factor { goal, .. } => format!("≥ {goal}×"),

@@ -1,4 +1,4 @@
-//! What was measured: the reports of the peers, kept as they are, and the figures in them.
+//! Measured results: the unmodified reports of the peers, and the figures in them.
 
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -15,9 +15,9 @@ pub struct Results {
     /// Simulated seconds per processor second of characters that fall limp until they sleep: `median` of all rigs and `slowest_humanoid`,
     /// where that was measured.
     pub limp: BTreeMap<String, f64>,
-    /// By scene: wall time on one thread over that on two, where that was measured.
+    /// By scene: wall time on one thread over that on two, if measured.
     pub threads: BTreeMap<String, f64>,
-    /// Machine that measured last, in words; `None` in files of before.
+    /// Machine of the last measurement, in words; `None` in older files.
     pub machine: Option<String>,
 }
 
@@ -39,7 +39,7 @@ pub struct SceneResult {
 pub struct EngineResult {
     /// As the peers name it.
     pub name: String,
-    /// One of each round, as it was printed.
+    /// One report from each round, unmodified.
     pub reports: Vec<Value>,
 }
 
@@ -74,7 +74,7 @@ impl Results {
             || name == super::THREADS && !self.threads.is_empty()
     }
 
-    /// Takes what is newer, keeps the rest, in the order of `names`; forgets other scenes.
+    /// Merges newer results in the order of `names`, and drops scenes not listed there.
     pub fn update(&mut self, newer: Self, names: &[&str]) {
         let older = std::mem::replace(self, newer);
         self.bake = self.bake.or(older.bake);
@@ -117,7 +117,7 @@ impl Results {
         })
     }
 
-    /// As it was written; what cannot be read counts as not measured.
+    /// Reads results; unreadable entries count as not measured.
     pub fn from_json(value: &Value) -> Self {
         let scenes = value["scenes"].as_array().into_iter().flatten();
         let factors = |key: &str| value[key].as_object().into_iter().flatten().filter_map(factor).collect();
@@ -150,12 +150,12 @@ fn scene(value: &Value) -> Option<SceneResult> {
 }
 
 impl SceneResult {
-    /// What Sinew did.
+    /// Sinew's result.
     pub fn sinew(&self) -> Option<&EngineResult> {
         self.engines.iter().find(|engine| engine.is_sinew())
     }
 
-    /// What the others did.
+    /// The peers' results.
     pub fn peers(&self) -> impl Iterator<Item = &EngineResult> {
         self.engines.iter().filter(|engine| !engine.is_sinew())
     }
@@ -165,7 +165,7 @@ impl SceneResult {
         self.ratio_against(engine, |times| times.mean)
     }
 
-    /// The same of the 99th percentile.
+    /// The same for the 99th percentile.
     pub fn p99_speed_against(&self, engine: &EngineResult) -> Option<f64> {
         self.ratio_against(engine, |times| times.p99)
     }
@@ -179,7 +179,7 @@ impl SceneResult {
         self.peers().filter_map(|peer| self.speed_against(peer)).min_by(f64::total_cmp)
     }
 
-    /// The same by the 99th percentile, against the peer whose is least.
+    /// The same by the 99th percentile, against the peer with the smallest.
     pub fn p99_speed(&self) -> Option<f64> {
         self.peers().filter_map(|peer| self.p99_speed_against(peer)).min_by(f64::total_cmp)
     }
@@ -191,17 +191,17 @@ impl SceneResult {
 }
 
 impl EngineResult {
-    /// Whether it is ours.
+    /// Returns true for Sinew.
     pub fn is_sinew(&self) -> bool {
         self.name == "sinew"
     }
 
-    /// Whether it died or was stopped.
+    /// Returns true if it crashed or timed out.
     pub fn is_failed(&self) -> bool {
         self.reports.iter().any(|report| report["failed"].is_string())
     }
 
-    /// Why there are no figures, if there are none.
+    /// Reason for missing figures.
     pub fn why_not(&self) -> Option<&str> {
         let report = self.reports.last()?;
         report["unsupported"].as_str().or_else(|| report["failed"].as_str())
@@ -231,7 +231,7 @@ impl EngineResult {
         self.reports.iter().filter_map(|report| report["peak_rss_mib"].as_f64()).min_by(f64::total_cmp)
     }
 
-    /// Of a figure of the runs that were looked at, one or from several starts, the median; `None` if one lacks it.
+    /// Median of a figure over the judged runs; `None` if one lacks it.
     pub fn judged(&self, figure: impl Fn(&Map<String, Value>) -> Option<f64>) -> Option<f64> {
         let runs = self.reports.iter().filter_map(|report| report["quality"].as_object());
         let mut values: Vec<f64> = runs.map(figure).collect::<Option<_>>()?;
@@ -244,7 +244,7 @@ impl EngineResult {
         self.reports.first()?[key].as_str()
     }
 
-    /// A number that stands beside the times.
+    /// A number listed beside the times.
     pub fn number(&self, key: &str) -> Option<f64> {
         self.reports.first()?[key].as_f64()
     }

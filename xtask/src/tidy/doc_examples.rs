@@ -5,7 +5,7 @@ use super::{File, Finding, Repo};
 /// Crates of which every public module has an example in its documentation.
 const CRATES: &[&str] = &["sinew_formats", "sinew_ragdoll"];
 
-/// Programs that are to be read in a minute.
+/// Programs that can be read in a minute.
 const EXAMPLES: &str = "crates/sinew/examples/";
 
 /// Most lines of one.

@@ -33,7 +33,7 @@ const ROOMS: &[(&str, &[&str])] = &[(
     ],
 )];
 
-/// Arrows back up that are there, by file and room. May only shrink.
+/// Existing arrows back up, by file and room. The list may only shrink.
 const EXCEPTIONS: &[(&str, &str)] = &[
     // The step is given the whole world, and the user's objects and the movers act on it within the step.
     ("crates/sinew_physics/src/step/mod.rs", "world"),

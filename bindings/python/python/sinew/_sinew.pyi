@@ -45,10 +45,10 @@ class SinewError(Exception):
     """A call that failed within Sinew."""
 
 class FileError(SinewError):
-    """A file that cannot be read or written, or is not what it should be: the message names the file and the place."""
+    """A file that cannot be read or written, or is invalid; the message names the file and the place."""
 
 class Cancelled(SinewError):
-    """A bake that its progress function ended."""
+    """A bake that was cancelled by its progress function."""
 
 def load(
     path: _Path,
@@ -114,18 +114,18 @@ def mannequin() -> CharacterFile:
     """The mannequin that comes with Sinew, 1.75 m, with a walk and two ways to get up."""
 
 def load_ragdoll(path: _Path) -> Ragdoll:
-    """Reads a ragdoll: a definition (.json), an MJCF or URDF model (.xml, .urdf), or a character, of which it is built."""
+    """Reads a ragdoll: a definition (.json), an MJCF or URDF model (.xml, .urdf), or a character, from which it is built."""
 
 def load_model(path: _Path) -> Model:
-    """Reads an MJCF model (.xml), a URDF (.urdf) or the physics of a glTF (.gltf, .glb): bodies, joints, and a floor where it has one."""
+    """Reads an MJCF model (.xml), a URDF (.urdf) or the physics of a glTF (.gltf, .glb): bodies, joints, and a floor if the file has one."""
 
 @final
 class CharacterFile:
-    """Rigged character as it was read."""
+    """Rigged character read from a file."""
 
     @property
     def name(self) -> str:
-        """Name of the file, as it was given."""
+        """Name of the file, as given."""
 
     @property
     def joints(self) -> list[str]:
@@ -137,11 +137,11 @@ class CharacterFile:
 
     @property
     def roles(self) -> dict[str, str]:
-        """Joint of each role of the body that was recognised (`hips`, `leftFoot`, ...)."""
+        """Joint of each recognised role of the body (`hips`, `leftFoot`, ...)."""
 
     @property
     def notes(self) -> list[str]:
-        """Assumptions that were made: the unit, the size, what was left out."""
+        """Assumptions: the unit, the size, skipped content."""
 
     def build(
         self,
@@ -167,7 +167,7 @@ class CharacterFile:
         """The character with its motions; `clip` plays until it falls: `exact`ly where the file has it, whatever ground is there, else on the ground. `falling` drives the bodies while it falls."""
 
     def glb(self) -> bytes:
-        """The file as a GLB, with the files that it names in it; of arrays, the file that they were made."""
+        """The file as a GLB that contains its companion files; for arrays, the file built from them."""
 
 @final
 class Ragdoll:
@@ -187,15 +187,15 @@ class Ragdoll:
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Index of the body that each hangs on, -1 for the first: (bodies,)."""
+        """Index of each body's parent, -1 for the first: (bodies,)."""
 
     @property
     def torques(self) -> _Floats:
-        """Torque that the muscles of each joint can do, N·m: (joints,)."""
+        """Largest muscle torque of each joint, N·m: (joints,)."""
 
     @property
     def bind_poses(self) -> _Floats:
-        """Pose of each body as the character was bound, metres: (bodies, 7)."""
+        """Bind pose of each body, metres: (bodies, 7)."""
 
     @property
     def joint_frames(self) -> _Floats:
@@ -203,15 +203,15 @@ class Ragdoll:
 
     @property
     def total_mass(self) -> float:
-        """Mass of all of it, kg."""
+        """Total mass, kg."""
 
     @property
     def height(self) -> float:
-        """Height as it was bound, metres."""
+        """Height in the bind pose, metres."""
 
     @property
     def unit_scale(self) -> float:
-        """Metres of a unit of the file."""
+        """Metres per unit of the file."""
 
     @staticmethod
     def from_json(text: str) -> Ragdoll:
@@ -230,13 +230,13 @@ class Ragdoll:
         twist: tuple[float, float] | None = None,
         friction_torque: float | None = None,
     ) -> Ragdoll:
-        """A copy with one body (by role or bone) and the joint above it otherwise: kg, metres, ranges in radians, N·m; what is not given stays."""
+        """A copy with changes of one body (by role or bone) and the joint above it, in kg, metres, radians, N·m; omitted values stay."""
 
     def cured(self) -> tuple[Ragdoll, DoctorReport]:
-        """A copy with all mended that the doctor mends, and what it found."""
+        """A copy with the doctor's repairs, and its findings."""
 
     def to_mjcf(self, name: str = "ragdoll") -> tuple[str, list[str]]:
-        """The definition as a MuJoCo model, and what that cannot hold, a sentence each."""
+        """The definition as a MuJoCo model, and a sentence on each loss."""
 
     @property
     def report(self) -> BuildReport:
@@ -252,7 +252,7 @@ class Ragdoll:
         """The definition as JSON, as `sinew ragdoll build` writes it."""
 
     def save(self, path: _Path) -> None:
-        """Writes the definition, whole or not at all."""
+        """Writes the definition atomically."""
 
     def __len__(self) -> int:
         """Number of bodies."""
@@ -276,7 +276,7 @@ class Model:
 
     @property
     def notes(self) -> list[str]:
-        """What was left out of the file."""
+        """Skipped content of the file."""
 
 
 @final
@@ -289,7 +289,7 @@ class Character:
 
     @property
     def joints(self) -> list[str]:
-        """Names of its joints, in the order of arrays of poses; those that Sinew added come last."""
+        """Names of its joints, in the order of pose arrays; joints added by Sinew come last."""
 
     @property
     def place_in_file(self) -> _Floats:
@@ -297,7 +297,7 @@ class Character:
 
     @property
     def raised(self) -> float:
-        """Height by which the clip that plays is raised onto its floor, metres; 0 of an exact one."""
+        """Height by which the played clip is raised onto its floor, metres; 0 for an exact one."""
 
     def bake(
         self,
@@ -319,7 +319,7 @@ class Character:
         name: str = "sinew",
         progress: Callable[[float], bool | None] | None = None,
     ) -> Bake:
-        """Simulates it: as `Actor` and `bake` of one. Where nothing is done to it, it goes limp after half a second."""
+        """Simulates it: as `Actor` and `bake` of one. Without any action, it goes limp after half a second."""
 
     def random_fall(
         self, seed: int, *, seconds: float = 3.0, fps: float = 30.0, impulse: float = 120.0
@@ -328,7 +328,7 @@ class Character:
 
 @final
 class Actor:
-    """Character of a bake with all that is done to it."""
+    """Character of a bake with its hits and drives."""
 
     def __new__(
         cls,
@@ -349,7 +349,7 @@ class Actor:
 
 @final
 class Drive:
-    """Drive of a bone (by role or joint), of a bone and all `below` it, or of all: from a time on."""
+    """Drive of a bone (by role or joint), of a bone and all `below` it, or of the whole character, from a time on."""
 
     def __new__(
         cls,
@@ -382,7 +382,7 @@ class Drive:
 
     @property
     def below(self) -> bool:
-        """True if it drives all below the bone, too."""
+        """True if it also drives everything below the bone."""
 
     @property
     def half_life(self) -> float:
@@ -390,7 +390,7 @@ class Drive:
 
 @final
 class Collider:
-    """Body of a world that is no character. Static, unless it is made `dynamic` or `keyed`."""
+    """Body of a world, besides characters. Static unless `dynamic` or `keyed`."""
 
     def __new__(
         cls,
@@ -405,7 +405,7 @@ class Collider:
 
     @staticmethod
     def floor(height: float = 0.0, *, friction: float = 0.6) -> Collider:
-        """All below a height, metres."""
+        """A half-space below a height, metres."""
 
     @staticmethod
     def mesh(
@@ -432,7 +432,7 @@ class Collider:
         """The same body moved by forces; density in kg/m³."""
 
     def keyed(self, times: ArrayLike, poses: ArrayLike) -> Collider:
-        """The same body at poses (n, 7) at times (n,) in seconds, whatever is in its way."""
+        """The same body, moved to poses (n, 7) at times (n,) in seconds, regardless of obstacles."""
 
 @final
 class Bake:
@@ -456,7 +456,7 @@ class Bake:
 
     @property
     def positions(self) -> _Floats:
-        """Place of each joint in the world, metres: (frames, joints, 3)."""
+        """Position of each joint in the world, metres: (frames, joints, 3)."""
 
     @property
     def parents(self) -> NDArray[np.int64]:
@@ -468,7 +468,7 @@ class Bake:
 
     @property
     def hits(self) -> list[tuple[float, str, list[float]]]:
-        """Hits that struck it: time in seconds, body, impulse in N·s."""
+        """Hits: time in seconds, body, impulse in N·s."""
 
     @property
     def quality(self) -> FallQuality:
@@ -487,13 +487,13 @@ class Bake:
         """Hash of the state at the end: equal on every machine."""
 
     def glb(self, *, mesh: bool = True) -> bytes:
-        """The file with the clip in it, or the bones alone with the clip if there is to be no mesh."""
+        """The file with the clip, or only its bones with the clip if `mesh` is false."""
 
     def usda(self, *, physics: bool = True) -> tuple[str, list[str]]:
-        """The character, its motion and its ragdoll as USD text (.usda), and what that cannot hold, a sentence each."""
+        """The character, its motion and its ragdoll as USD text (.usda), and a sentence on each loss."""
 
     def save(self, path: _Path, *, mesh: bool = True) -> None:
-        """Writes that file, whole or not at all."""
+        """Writes that file atomically."""
 
 @final
 class World:
@@ -537,12 +537,12 @@ class World:
         """Adds a ragdoll and returns ids of its bodies (n,) and joints (n - 1,). `pose` (7,) moves the bind pose; `poses` (n, 7) and `velocities` (n, 6) are of each body."""
 
     def add_collider(self, collider: Collider) -> int:
-        """Adds a collider and returns its id; a keyed one goes by its keys from the world's time 0 on."""
+        """Adds a collider and returns its id; a keyed one follows its keys from the world's time 0 on."""
 
     def add_character(
         self, character: Character, *, pose: ArrayLike | None = None, phase: float = 0.0
     ) -> LiveCharacter:
-        """Brings a character in, standing at a pose (7,), `phase` seconds into its clip; it follows every step."""
+        """Adds a character, standing at a pose (7,), `phase` seconds into its clip; it follows every step."""
 
     def add_wind(
         self,
@@ -585,10 +585,10 @@ class World:
         damping_ratio: float = 1.0,
         max_torque: float = ...,
     ) -> None:
-        """Draws a joint to a turn (3,), a scaled axis in radians, by a spring of so many hertz, with at most so much torque, N·m."""
+        """Drives a joint toward a rotation (3,), a scaled axis in radians, by a spring of a frequency in Hz with a largest torque, N·m."""
 
     def step(self, count: int = 1) -> None:
-        """Takes so many steps, without the GIL."""
+        """Takes `count` steps, without the GIL."""
 
     @property
     def step_count(self) -> int:
@@ -613,13 +613,13 @@ class World:
         """Velocities of bodies, linear m/s and angular rad/s: (n, 6)."""
 
     def set_poses(self, bodies: ArrayLike, poses: ArrayLike) -> None:
-        """Puts bodies elsewhere: (n, 7)."""
+        """Sets poses of bodies: (n, 7)."""
 
     def set_velocities(self, bodies: ArrayLike, velocities: ArrayLike) -> None:
         """Sets velocities of bodies: (n, 6)."""
 
     def push(self, body: int, impulse: ArrayLike, *, point: ArrayLike | None = None) -> None:
-        """Gives a body an impulse, N·s: (3,), at its centre of mass or at a point of the world, metres."""
+        """Applies an impulse to a body, N·s: (3,), at its centre of mass or at a point of the world, metres."""
 
     def ray(self, origins: ArrayLike, ways: ArrayLike) -> RayHits:
         """First hits of rays from `origins` (n, 3) along `ways` (n, 3), metres; a ray ends at `origin + way`. Without a hit the body is 2**64 - 1 and the fraction 1."""
@@ -631,13 +631,13 @@ class World:
         """Points of contact of the last step."""
 
     def events(self) -> Events:
-        """Events of the last step: pairs of bodies that begin and end to touch, and that hit."""
+        """Events of the last step: pairs of bodies that begin and end touching, and that hit each other."""
 
     def joint_gap(self, joint: int) -> float:
         """Distance between the anchors of a joint, metres."""
 
     def joint_turn(self, joint: int) -> _Floats:
-        """Turn of a joint from its frame, a scaled axis in radians: (3,)."""
+        """Rotation of a joint from its frame, a scaled axis in radians: (3,)."""
 
     def hash(self) -> int:
         """Hash of the state, characters included: equal on every machine."""
@@ -646,12 +646,12 @@ class World:
         """State as bytes, characters included, for `load`."""
 
     def load(self, state: bytes) -> None:
-        """Brings back a saved state."""
+        """Restores a saved state."""
 
 
 @final
 class LiveCharacter:
-    """Character in a world: it follows every step of it."""
+    """Character in a world; it follows every step."""
 
     @property
     def state(self) -> str:
@@ -659,11 +659,11 @@ class LiveCharacter:
 
     @property
     def events(self) -> list[str]:
-        """Events of the last step, and of what was done since."""
+        """Events of the last step, and of calls since."""
 
     @property
     def pose(self) -> _Floats:
-        """Place of the character in the world: (7,)."""
+        """Pose of the character in the world: (7,)."""
 
     @property
     def translations(self) -> _Floats:
@@ -675,77 +675,77 @@ class LiveCharacter:
 
     @property
     def positions(self) -> _Floats:
-        """Place of each joint in the world, metres: (joints, 3)."""
+        """Position of each joint in the world, metres: (joints, 3)."""
 
     def skin_matrices(self, skin: int = 0, *, alpha: float = 1.0) -> _Floats:
         """Matrices from a mesh's bind pose to the world for each joint of a skin, `alpha` between the last step and this: (joints of the skin, 3, 4)."""
 
     @property
     def bodies(self) -> _Ids:
-        """Ids of its bodies, in the order of `Character.roles`; none while it has none in the world."""
+        """Ids of its bodies, in the order of `Character.roles`; empty while it has none in the world."""
 
     def set_move(self, velocity: ArrayLike | None) -> None:
-        """Has it go at a velocity over the ground, m/s (3,); None: as its clips go."""
+        """Sets its velocity over the ground, m/s (3,); None: it follows its clips."""
 
     def face(self, direction: ArrayLike) -> None:
-        """Has it turn to look along a direction (3,)."""
+        """Makes it turn to face a direction (3,)."""
 
     def jump(self) -> None:
-        """Has it jump in the next step, if it has ground."""
+        """Makes it jump in the next step, if it is on the ground."""
 
     def hit(self, bone: str, impulse: ArrayLike) -> float:
         """Hits a body, by role or joint, with an impulse in N·s (3,); returns its work, J."""
 
     def go_limp(self) -> None:
-        """Lets the bodies take over."""
+        """Makes it limp."""
 
     def set_preset(self, preset: Literal["animated", "flinching", "powered", "limp"]) -> None:
-        """Has all of it moved in another way."""
+        """Changes the drive of the whole character."""
 
     def set_drive(self, drive: Drive) -> None:
-        """Has part of it moved in another way from now on; the time of the drive does nothing."""
+        """Changes the drive of a part from now on; the drive's time is ignored."""
 
     def return_to_clip(self, pose: ArrayLike, *, phase: float = 0.0, seconds: float = 0.5) -> None:
-        """Gives it back to its clip at `phase` seconds, at a pose (7,), within so many seconds."""
+        """Blends it back to its clip at `phase` seconds, at a pose (7,), within `seconds`."""
 
     def teleport(self, pose: ArrayLike) -> None:
-        """Puts it elsewhere at once: (7,)."""
+        """Teleports it to a pose (7,)."""
 
     def clear(self) -> bool:
-        """Moves it, limp, out of static shapes that it is deep in; False if it is in none."""
+        """Moves a limp character out of static shapes that it is deep in; False if it is in none."""
 
     def hold(self, bone: str, body: int, *, pose: ArrayLike | None = None, drops: bool = False) -> int:
-        """Has a bone hold a dynamic body; `pose` (7,) is that of the body in the bone's. Returns the joint's id."""
+        """Makes a bone hold a dynamic body; `pose` (7,) is the body's pose in the bone's frame. Returns the joint's id."""
 
     def grab(self, bone: str, body: int, *, max_force: float = 1300.0, reach: float = 0.25) -> int | None:
-        """Has a bone grab a body within reach (m), also one of another character, with a force in N. Returns the joint's id, or None."""
+        """Makes a bone grab a body within reach (m), also one of another character, with a force in N. Returns the joint's id, or None."""
 
     def release(self, body: int) -> bool:
-        """Lets go of what it holds; False if it does not hold that."""
+        """Releases a held body; False if it does not hold it."""
 
     @property
     def held(self) -> _Ids:
         """Ids of bodies that it holds."""
 
     def detach(self, bone: str) -> _Ids | None:
-        """Cuts a limb off, with all below it; returns the ids of its bodies, or None if it was cut off before."""
+        """Detaches a limb with everything below it; returns the ids of its bodies, or None if it was detached before."""
 
     def set_level_of_detail(self, detail: Literal["full", "hit_bodies", "keyed", "frozen"]) -> None:
-        """Gives it as much detail as that."""
+        """Sets its level of detail."""
 
     def reset_springs(self) -> None:
-        """Starts its springs over at rest."""
+        """Restarts its springs at rest."""
 
     def reset_garments(self) -> None:
-        """Starts its garments over at rest."""
+        """Restarts its garments at rest."""
 
     def despawn(self) -> None:
-        """Takes it out of the world."""
+        """Removes it from the world."""
 
 
 @final
 class BatchWorlds:
-    """Worlds that hold one figure each, on a floor. Each has the bits that it would have alone, whatever the number of threads."""
+    """Worlds with one figure each, on a floor. Each has the same bits as it would alone, for any number of threads."""
 
     def __new__(
         cls,
@@ -775,7 +775,7 @@ class BatchWorlds:
         """Number of threads that step them."""
 
     def step(self, count: int = 1) -> None:
-        """Takes so many steps in each world, without the GIL."""
+        """Takes `count` steps in each world, without the GIL."""
 
     def reset(
         self,
@@ -784,15 +784,15 @@ class BatchWorlds:
         poses: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
     ) -> None:
-        """Brings worlds back to their beginning, those that are named or all; `poses` (worlds, bodies, 7) and `velocities` (worlds, bodies, 6) as they shall begin."""
+        """Resets the named worlds or all to their beginning, with initial `poses` (worlds, bodies, 7) and `velocities` (worlds, bodies, 6) if given."""
 
     def push(self, body: int, impulses: ArrayLike) -> None:
-        """Gives that body of each world an impulse, N·s: (worlds, 3)."""
+        """Applies an impulse to a body of each world, N·s: (worlds, 3)."""
 
     def drive(
         self, targets: ArrayLike, *, stiffness: ArrayLike, damping: ArrayLike, max_torques: ArrayLike
     ) -> None:
-        """Draws the joints of each world to turns (worlds, joints, 3), scaled axes in radians: stiffness N·m/rad, damping N·m·s/rad and torque N·m of each joint (joints,)."""
+        """Drives the joints of each world toward rotations (worlds, joints, 3), scaled axes in radians: stiffness N·m/rad, damping N·m·s/rad and torque N·m of each joint (joints,)."""
 
     def poses(self) -> _Floats:
         """Poses of all bodies: (worlds, bodies, 7)."""
@@ -801,7 +801,7 @@ class BatchWorlds:
         """Velocities of all bodies: (worlds, bodies, 6)."""
 
     def joint_turns(self) -> _Floats:
-        """Turns of all joints, scaled axes in radians: (worlds, joints, 3)."""
+        """Rotations of all joints, scaled axes in radians: (worlds, joints, 3)."""
 
     def joint_gaps(self) -> _Floats:
         """Widest gap of a joint in each world, metres: (worlds,)."""

@@ -1,4 +1,4 @@
-// A character walks, is pushed over a crate every six seconds, gets up and walks on; the camera goes along.
+// A character walks, is pushed over a crate every six seconds, gets up and walks on; the camera follows.
 import { crate, hero, stage } from './stage.js';
 
 const { physics, scene, camera, controls, run } = await stage();
@@ -14,7 +14,7 @@ for (let i = 0; i < 8; i++) {
 const text = document.getElementById('text');
 setInterval(() => walker.state === 'animated' && walker.hit('chest', [40, 0, 110]), 6000);
 run(() => {
-  // The camera keeps its place beside the character.
+  // The camera keeps its position relative to the character.
   const moved = walker.position.clone().setY(0.8).sub(controls.target);
   controls.target.add(moved);
   camera.position.add(moved);

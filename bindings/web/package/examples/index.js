@@ -3,7 +3,7 @@ import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { hero, stage } from './stage.js';
 
-// Seconds between pushes that come by themselves.
+// Seconds between automatic pushes.
 const EVERY = 7;
 // N·s for each kg: 1.6 m/s for the whole character.
 const PUSH = 1.6;
@@ -28,7 +28,7 @@ function show({ gltf, bytes, name = 'the mannequin' }) {
 }
 
 function push() {
-  // From the side that the camera is on, and forward.
+  // Away from the camera and forward.
   const way = camera.getWorldDirection(new THREE.Vector3()).setY(0).normalize().multiplyScalar(PUSH * walker.mass);
   walker.hit(walker.bones.includes('chest') ? 'chest' : walker.bones[0], way);
   since = 0;

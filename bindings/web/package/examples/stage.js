@@ -1,4 +1,4 @@
-// What the examples share: a renderer, a lit scene with a floor, a camera, and the loop.
+// Shared by the examples: a renderer, a lit scene with a floor, a camera, and the loop.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
@@ -19,7 +19,7 @@ export async function stage({ eye = [4, 2.2, 5], target = [0, 0.8, 0] } = {}) {
   Object.assign(sun.shadow.camera, { left: -12, right: 12, top: 12, bottom: -12 });
   const floor = new THREE.Mesh(new THREE.PlaneGeometry(60, 60).rotateX(-Math.PI / 2), new THREE.MeshStandardMaterial({ color: 0x8d9aa5 }));
   floor.receiveShadow = true;
-  // Lines by which motion over the floor is seen.
+  // Lines that make motion over the floor visible.
   const lines = new THREE.GridHelper(60, 60, 0x748391, 0x7f8e9a);
   lines.position.y = 0.002;
   scene.add(new THREE.HemisphereLight(0xddeeff, 0x886644, 1.5), sun, floor, lines);

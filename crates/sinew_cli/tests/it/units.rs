@@ -85,7 +85,7 @@ fn the_unit_its_reason_and_its_alternatives_are_a_note() {
     let object = build(&scaled(rig.clone(), 20.0 / 1.75), &[]);
     let note = of_unit(&object).expect("a note");
     assert!(note.contains("taken as decimetres: 2.0") && note.contains("it may also be inches"), "{note}");
-    // What is given is no guess.
+    // A given unit is not reported as a guess.
     for extra in [["--unit", "cm"], ["--unit", "0.01"], ["--height", "1.8"]] {
         let object = build(&scaled(rig.clone(), 100.0), &extra);
         assert_eq!(of_unit(&object), None, "{extra:?}");

@@ -134,7 +134,7 @@ fn a_window_opens_and_is_pulled_at() {
     };
     let (name, before) = picture();
     assert_eq!(name, "sinew-free_fall-0.png");
-    // Of a single body that falls the middle of the picture is the body.
+    // For a single falling body, the picture is centred on the body.
     display.xdotool(&["mousedown", "1"]);
     display.xdotool(&["mousemove", "632", "350"]);
     viewer.wait_for("holds body");

@@ -1,12 +1,13 @@
-//! Physics in glTF files: `KHR_physics_rigid_bodies` with `KHR_implicit_shapes` (drafts of October 2025), and `OMI_physics_body`, `OMI_physics_shape`
-//! and `OMI_physics_joint`, read as a model of bodies and joints like those of [MJCF](crate::mjcf).
+//! Physics in glTF files, read as a model of bodies and joints like those of [MJCF](crate::mjcf): `KHR_physics_rigid_bodies` with
+//! `KHR_implicit_shapes` (drafts of October 2025), and `OMI_physics_body`, `OMI_physics_shape` and `OMI_physics_joint`.
 //!
-//! What is read: `motion` (mass, centre, inertia, velocities, gravity factor, static and kinematic bodies), colliders of spheres, boxes, capsules and cylinders on a node or
-//! any below it, friction and bounce of materials, joints with limits of their six directions. What collides and has no body above it is the world's. What
-//! [`write_khr`](crate::write_khr) wrote has its cones back exactly, from `extras.sinew`.
+//! The reader supports `motion` (mass, centre, inertia, velocities, gravity factor, static and kinematic bodies), sphere, box, capsule and
+//! cylinder colliders on a body's node or any node below it, friction and restitution of materials, and joints with limits in their six
+//! directions. Colliders without a body above them belong to the world. Cones in files written by [`write_khr`](crate::write_khr) are
+//! restored exactly, from `extras.sinew`.
 //!
-//! What has no counterpart is left out and said so in [`MjcfModel::notes`]: meshes and hulls that collide, triggers, filters, motors, softness of limits, scale that
-//! is not the same along all axes. The lengths are taken as metres.
+//! Unsupported content is skipped and listed in [`MjcfModel::notes`]: mesh and hull colliders, triggers, filters, motors, soft limits,
+//! non-uniform scale. Lengths are in metres.
 //!
 //! ```
 //! use sinew_formats::read_physics_gltf;
@@ -35,29 +36,28 @@ use sinew_physics::{
     SixDof,
 };
 
-/// Most nodes of a file: each may have a collider.
+/// Largest number of nodes in a file: each may have a collider.
 const MOST_NODES: usize = 100_000;
-/// Farthest place, metres.
+/// Largest coordinate, metres.
 const FARTHEST: f32 = 1e6;
-/// Mass of a dynamic body with neither mass nor shape, kg, and its moments, kg·m²: a ball of 20 cm.
+/// Mass, kg, and moments, kg·m², of a dynamic body with neither mass nor shape: a ball of 20 cm.
 const UNKNOWN: (f32, f32) = (1.0, 0.016);
-/// Density of bodies whose mass is not given, kg/m³.
+/// Density of bodies without a mass, kg/m³.
 const DENSITY: f32 = 1000.0;
 
-/// A node with its place.
+/// A node with its transform.
 struct Node<'a> {
     at: At<'a>,
     parent: Option<usize>,
     world: Affine,
-    /// Its body; 0 is the world's.
+    /// Index of its body; 0 is the world.
     body: usize,
 }
 
 /// Reads the physics of a glTF or GLB file; buffers are not needed.
 ///
-/// # Errors
-/// Names the place: what is no JSON; numbers, indices and kinds that the formats do not have; nodes in a circle; a file without physics; more than 100,000 nodes or
-/// 1,024 bodies.
+/// Names the place of the error: invalid JSON; numbers, indices and kinds that the formats do not allow; cycles of nodes; a file without
+/// physics; more than 100,000 nodes or 1,024 bodies.
 pub fn read_physics_gltf(bytes: &[u8]) -> Result<MjcfModel> {
     let json = if glb::is_glb(bytes) { glb::parse(bytes)?.json } else { bytes };
     let value = json::parse(json)?;
@@ -95,7 +95,7 @@ pub fn read_physics_gltf(bytes: &[u8]) -> Result<MjcfModel> {
     })
 }
 
-/// Lists that colliders refer to.
+/// Lists that colliders reference.
 struct Lists<'a> {
     shapes: Vec<At<'a>>,
     materials: Vec<At<'a>>,
@@ -109,7 +109,7 @@ fn list<'a>(root: At<'a>, name: &str, key: &str) -> Result<Vec<At<'a>>> {
     extension(root, name)?.map_or(Ok(Vec::new()), |of| of.list(key))
 }
 
-/// Physics of a node, of either family.
+/// The physics extension of a node, of either family.
 fn physics(node: At<'_>) -> Result<Option<At<'_>>> {
     Ok(extension(node, "KHR_physics_rigid_bodies")?.or(extension(node, "OMI_physics_body")?))
 }
@@ -133,7 +133,7 @@ fn read_nodes(root: At<'_>) -> Result<Vec<Node<'_>>> {
         }
         below.push(own);
     }
-    // A list of what is still to come, and no recursion: the depth of the file is not that of our stack.
+    // Use a list of open nodes instead of recursion, so that the depth of the file cannot overflow the stack.
     let mut open: Vec<usize> = (0..nodes.len()).filter(|&node| nodes[node].parent.is_none()).collect();
     let mut seen = 0;
     while let Some(index) = open.pop() {
@@ -164,7 +164,7 @@ fn local(node: At<'_>) -> Result<Affine> {
     Ok(Affine::from_scale_rotation_translation(scale, rotation, translation))
 }
 
-/// A quaternion of an optional key.
+/// Reads an optional quaternion.
 fn unit(of: At<'_>, key: &str) -> Result<Rotation> {
     let [x, y, z, w] = of.numbers_or(key, [0.0, 0.0, 0.0, 1.0])?;
     let rotation = Rotation { x, y, z, w };
@@ -176,13 +176,13 @@ fn unit(of: At<'_>, key: &str) -> Result<Rotation> {
     }
 }
 
-/// Place and turn of a node, without scale.
+/// Position and rotation of a node, without scale.
 fn rigid(world: &Affine) -> Transform {
     let place = world.to_rigid();
     Transform::new(place.translation, place.rotation.normalize())
 }
 
-/// The body of a node: its own, or that of the nearest node above with one.
+/// The body of a node: its own, or that of the nearest ancestor with one.
 fn body_of(nodes: &[Node<'_>], index: usize) -> usize {
     let above = |&at: &usize| nodes[at].parent;
     core::iter::successors(Some(index), above).map(|at| nodes[at].body).find(|&body| body != 0).unwrap_or(0)
@@ -266,7 +266,7 @@ fn read_material(of: At<'_>) -> Result<Material> {
     Ok(Material { friction, restitution: min(number("restitution", 0.0)?, 1.0), ..Material::default() })
 }
 
-/// A shape with its sizes multiplied; none of a kind that is not read.
+/// Reads a shape and scales it; `None` for an unsupported kind.
 fn read_shape(of: At<'_>, scale: f32, notes: &mut Notes) -> Result<Option<Shape>> {
     let kind = of.need("type")?;
     let sizes = of.get(kind.str()?)?;
@@ -314,7 +314,7 @@ fn read_shape(of: At<'_>, scale: f32, notes: &mut Notes) -> Result<Option<Shape>
     Ok(Some(shape))
 }
 
-/// Gives dynamic bodies their mass: the file's, or that of their shapes.
+/// Sets the mass of dynamic bodies: that of the file, or computed from their shapes.
 fn weigh(nodes: &[Node<'_>], bodies: &mut [MjcfBody]) -> Result<()> {
     for node in nodes.iter().filter(|node| node.body != 0) {
         let body = &mut bodies[node.body].def;
@@ -387,7 +387,7 @@ fn read_joints(
             Transform::new(seen.translation, seen.rotation.normalize())
         };
         let collides = at.get("enableCollision")?.map_or(Ok(false), At::bool)?;
-        // What the drafts cannot say of a ragdoll's joint.
+        // Settings of a ragdoll joint that the drafts cannot represent.
         let exact = settings.get("extras")?.map_or(Ok(None), |extras| extras.get("sinew"))?;
         let (kind, friction_torque) = match exact {
             Some(exact) => (
@@ -411,7 +411,7 @@ fn read_joints(
     Ok(joints)
 }
 
-/// Motions of the six directions that a joint's limits leave.
+/// Motions in the six directions that a joint's limits allow.
 fn kind_of(settings: At<'_>, notes: &mut Notes) -> Result<JointKind> {
     let (mut linear, mut angular) = ([AxisMotion::Free; 3], [AxisMotion::Free; 3]);
     for limit in settings.list("limits")? {
@@ -426,7 +426,7 @@ fn kind_of(settings: At<'_>, notes: &mut Notes) -> Result<JointKind> {
         for (key, motions, most) in [("linearAxes", &mut linear, FARTHEST), ("angularAxes", &mut angular, PI)]
         {
             let axes = limit.list(key)?;
-            // Several axes share a distance from the middle.
+            // Several axes share one distance limit, measured from the centre.
             let range = if axes.len() > 1 { Range { lo: -hi, hi } } else { Range { lo, hi } };
             let (lo, hi) = (max(range.lo, -most), min(range.hi, most));
             for axis in axes {
@@ -443,7 +443,7 @@ fn kind_of(settings: At<'_>, notes: &mut Notes) -> Result<JointKind> {
     Ok(simplest(linear, angular))
 }
 
-/// A motion within a further range; `None` where nothing is left.
+/// Intersects a motion with another range; `None` if the intersection is empty.
 fn narrowed(motion: AxisMotion, lo: f32, hi: f32, most: f32) -> Option<AxisMotion> {
     let (lo, hi) = match motion {
         AxisMotion::Locked => return Some(AxisMotion::Locked),
@@ -461,14 +461,14 @@ fn narrowed(motion: AxisMotion, lo: f32, hi: f32, most: f32) -> Option<AxisMotio
     }
 }
 
-/// The plainest joint with these motions.
+/// The simplest joint with these motions.
 fn simplest(linear: [AxisMotion; 3], angular: [AxisMotion; 3]) -> JointKind {
     use AxisMotion::{Free, Limited, Locked};
     let range = |motion: AxisMotion| match motion {
         Limited(range) => Some(range),
         Free | Locked => None,
     };
-    // A swing has its middle inside.
+    // The range of a swing must include zero.
     let swing = |motion: AxisMotion| match motion {
         Limited(Range { lo, hi }) => Limited(Range { lo: min(lo, 0.0), hi: max(hi, 0.0) }),
         other => other,

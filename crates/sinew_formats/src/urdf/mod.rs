@@ -1,12 +1,12 @@
-//! Robot models in URDF: the part of it that rigid bodies and joints need, read as a model of bodies and joints like those of [MJCF](crate::mjcf).
+//! Reads robot models in URDF as a model of bodies and joints like those of [MJCF](crate::mjcf).
 //!
-//! What is read: links with `<inertial>` and `<collision>` shapes (box, sphere, cylinder, capsule), joints of type `revolute`, `continuous`,
-//! `prismatic`, `fixed`, `floating` and Bullet's `spherical`, with `<origin>`, `<axis>`, `<limit>` and `<dynamics>`. Metres, kilograms; the file's z up
-//! becomes our y up, its x stays x. The links' own axes stay the file's.
+//! The reader supports links with `<inertial>` and `<collision>` shapes (box, sphere, cylinder, capsule), and joints of type `revolute`,
+//! `continuous`, `prismatic`, `fixed`, `floating` and Bullet's `spherical`, with `<origin>`, `<axis>`, `<limit>` and `<dynamics>`. Units
+//! are metres and kilograms. The file's z axis (up) becomes y, its x axis stays x. The links keep the file's own axes.
 //!
-//! What has no counterpart is left out and said so in [`MjcfModel::notes`]: visuals, meshes that collide, transmissions, mimics, limits of effort and
-//! velocity, safety controllers, Gazebo's and other extensions. What would make another model of it is an error: planar joints, links that hang on two
-//! joints, or on themselves.
+//! Unsupported content is skipped and listed in [`MjcfModel::notes`]: visuals, mesh colliders, transmissions, mimic joints, effort and
+//! velocity limits, safety controllers, Gazebo's and other extensions. Content that would change the model if skipped is an error: planar
+//! joints, links with two parent joints, cycles.
 //!
 //! - **The root link** is free; a root named `world` stands.
 //! - **Links without mass** between joints get one of a gram, as frames have it in files; a note says so. The root frame of most robots is one.
@@ -41,9 +41,9 @@ use sinew_physics::{
 };
 use std::collections::BTreeMap;
 
-/// Name of a root that stands.
+/// Name of a root link that is fixed.
 const WORLD: &str = "world";
-/// Mass of a link that has none, kg, and its moments, kg·m²: those of a ball of a gram and a few centimetres.
+/// Mass, kg, and moments, kg·m², of a link without inertial data: those of a ball of a gram and a few centimetres.
 const FRAME: (f32, f32) = (1e-3, 1e-6);
 
 /// A link of the file.
@@ -59,7 +59,7 @@ struct Joint<'a> {
     name: &'a str,
     parent: usize,
     child: usize,
-    /// The child's frame in the parent's, as the joint is at zero.
+    /// The child's frame in the parent's frame, with the joint at zero.
     parent_from_child: Transform,
     kind: Kind,
     damping: f32,
@@ -68,17 +68,17 @@ struct Joint<'a> {
 
 enum Kind {
     Floating,
-    /// Kind, and the direction of the frame's x axis in the child.
+    /// Kind, and the direction in the child of the joint frame's x axis.
     Held(JointKind, Vec3),
 }
 
 /// Reads a URDF file.
 ///
 /// # Errors
-/// Names line and column: text that is not XML or no URDF; names, numbers and types that the format does not have where they stand; what is not
-/// read and would make another model; more than 4 MiB or 1,024 links.
+/// Names line and column: invalid XML, or XML that is not URDF; invalid names, numbers and types; unsupported content that would change the
+/// model; more than 4 MiB or 1,024 links.
 pub fn read_urdf(bytes: &[u8]) -> Result<MjcfModel> {
-    // Some programs end a file with the zero of its text in memory.
+    // Some programs write the terminating zero byte of a C string to the file.
     let document = xml::parse(bytes.strip_suffix(&[0]).unwrap_or(bytes))?;
     let root = document.root_element();
     if root.tag_name().name() != "robot" {
@@ -131,7 +131,7 @@ fn need_child<'a>(element: Element<'a>, tag: &str) -> Result<Element<'a>> {
     child(element, tag).ok_or_else(|| malformed(element, format!("<{tag}> is missing")))
 }
 
-/// Pose of `<origin>` in an element; none is the identity.
+/// Pose of `<origin>` in an element; the identity without one.
 fn origin(element: Element<'_>) -> Result<Transform> {
     let Some(origin) = child(element, "origin") else { return Ok(Transform::IDENTITY) };
     let three = |key: &str| Value::of(origin, key).map_or(Ok([0.0; 3]), Value::numbers);
@@ -154,7 +154,7 @@ fn read_link<'a>(element: Element<'a>, name: &'a str, notes: &mut Notes) -> Resu
     Ok(link)
 }
 
-/// Mass of a link in its frame; none of a link without any.
+/// Mass of a link in its frame; `None` without `<inertial>`.
 fn read_inertial(element: Element<'_>, notes: &mut Notes) -> Result<Option<MassProperties>> {
     let mass = need(need_child(element, "mass")?, "value")?.not_negative()?;
     if mass == 0.0 {
@@ -177,14 +177,14 @@ fn read_inertial(element: Element<'_>, notes: &mut Notes) -> Result<Option<MassP
     Ok(Some(own.transformed(&origin(element)?)))
 }
 
-/// A shape that collides; none of a kind that is not read.
+/// Reads a collision shape; `None` for an unsupported kind.
 fn read_collision(element: Element<'_>, notes: &mut Notes) -> Result<Option<ShapeDef>> {
     let geometry = need_child(element, "geometry")?;
     let Some((tag, of)) = children(geometry).next() else {
         return Err(malformed(geometry, "it has no shape"));
     };
     let number = |key: &str| need(of, key)?.not_negative();
-    // Round shapes lie along the file's z and along our y.
+    // Round shapes are along z in the file, and along y in Sinew.
     let upright = Transform::new(Vec3::ZERO, Rotation::from_axis_angle(Vec3::X, FRAC_PI_2));
     let (shape, turned) = match tag {
         "box" => {
@@ -265,7 +265,7 @@ fn read_kind(element: Element<'_>) -> Result<Kind> {
         if lo > hi {
             return Err(malformed(limit, "`lower` is above `upper`"));
         }
-        // A hinge that turns all around is not limited.
+        // A hinge with a range of a full turn or more has no limit.
         Ok((lo > -most || hi < most)
             .then_some(Range { lo: sinew_math::max(lo, -most), hi: sinew_math::min(hi, most) }))
     };
@@ -288,7 +288,7 @@ fn read_kind(element: Element<'_>) -> Result<Kind> {
     Ok(Kind::Held(joint, axis))
 }
 
-/// Links, parents before children, each with the joint that it hangs on.
+/// Links with the joint to their parent, parents before children.
 fn ordered<'a>(
     root: Element<'a>,
     links: &[Link<'a>],
@@ -304,7 +304,7 @@ fn ordered<'a>(
     let mut below: Vec<Vec<usize>> = vec![Vec::new(); links.len()];
     joints.iter().for_each(|joint| below[joint.parent].push(joint.child));
     let mut order = Vec::with_capacity(links.len());
-    // A list of what is still to come, and no recursion: the depth of the file is not that of our stack.
+    // Use a list of open links instead of recursion, so that the depth of the file cannot overflow the stack.
     let mut open: Vec<usize> = (0..links.len()).rev().filter(|&link| above[link].is_none()).collect();
     while let Some(link) = open.pop() {
         order.push((link, above[link]));
@@ -329,7 +329,7 @@ fn model(
     let stands = BodyDef { kind: BodyKind::Static, rotation: y_up.rotation, ..BodyDef::default() };
     let mut bodies = vec![MjcfBody { name: WORLD.to_owned(), def: stands }];
     let mut made = Vec::new();
-    // Index of each link's body, and its place.
+    // Index of each link's body, and its pose.
     let mut placed = vec![(0, y_up); links.len()];
     for &(link, above) in order {
         let own = &mut links[link];
@@ -371,7 +371,7 @@ fn model(
     }
 }
 
-/// The joint between two bodies; none where the child floats.
+/// The joint between two bodies; `None` for a floating child.
 fn joined(joint: &Joint<'_>, parent: usize, child: usize) -> Option<MjcfJoint> {
     let Kind::Held(kind, axis) = joint.kind else { return None };
     let frame_b = Transform::new(Vec3::ZERO, Rotation::from_arc(Vec3::X, axis));
@@ -418,7 +418,7 @@ mod tests {
         assert!(model.notes.iter().any(|note| note.contains("without mass")), "{:?}", model.notes);
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
         let there = model.spawn(&mut world);
-        // x stays, z becomes y.
+        // The x axis stays, z becomes y.
         let tip = world.transform(there.bodies[3]).translation;
         assert!((tip - Vec3::new(0.6, 0.05, 0.0)).length() < 1e-5, "{tip}");
         (0..60).for_each(|_| world.step());

@@ -1,10 +1,10 @@
 //! A character, its motion and its ragdoll as a USD text file (`.usda`): UsdSkel for skeleton, skin and animation, UsdPhysics for bodies, joints and limits.
 //!
-//! Lengths of the stage are metres, +Y is up, time codes are frames. What is under `/Character` is the rig in its file's unit, under a transform that makes
-//! metres of it; what is under `/Physics` are the bodies in the pose of the definition.
+//! Lengths of the stage are in metres, +Y is up, and time codes are frames. `/Character` holds the rig in its file's unit, under a
+//! transform that converts to metres. `/Physics` holds the bodies in the pose of the definition.
 //!
-//! What is lost, and said so in [`UsdText::notes`]: pictures and colours of the skin; hulls, which become the box around them; the ellipse of a
-//! cone (UsdPhysics limits each axis by itself); joint friction; rigid meshes that hang on a joint.
+//! Lost content is listed in [`UsdText::notes`]: textures and colours of the skin; hulls, which become bounding boxes; elliptic cone limits
+//! (UsdPhysics limits each axis by itself); joint friction; rigid meshes attached to joints.
 //!
 //! ```
 //! use sinew_formats::{UsdInput, write_usda};
@@ -24,7 +24,7 @@ use sinew_physics::{JointKind, Shape};
 use sinew_ragdoll::RagdollDef;
 use std::collections::BTreeSet;
 
-/// A file, and what it cannot hold.
+/// A USD file as text, and notes on lost content.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UsdText {
     /// The file.
@@ -44,14 +44,14 @@ pub struct UsdInput<'a> {
     pub fps: f32,
     /// From the rig's model space to the world, metres.
     pub world_from_model: Affine,
-    /// The ragdoll; `None`: there is no physics in the file.
+    /// The ragdoll; `None` writes no physics.
     pub ragdoll: Option<&'a RagdollDef>,
 }
 
 /// Writes a character with its motion and its ragdoll.
 ///
 /// # Panics
-/// If the clip or the ragdoll is not the rig's, or there is less than a frame a second.
+/// If the clip or the ragdoll does not belong to the rig, or `fps` is below 1.
 pub fn write_usda(input: &UsdInput<'_>) -> UsdText {
     assert!(input.fps >= 1.0, "a frame a second at least");
     let mut writer = Writer { out: String::new(), notes: Vec::new() };
@@ -83,7 +83,7 @@ struct Writer {
     notes: Vec<String>,
 }
 
-/// Names that USD takes, each once, for names that files have.
+/// Converts names to unique USD identifiers.
 fn identifiers<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken = BTreeSet::new();
     names
@@ -122,7 +122,7 @@ fn quaternion(q: Rotation) -> String {
     format!("({}, {}, {}, {})", q.w, q.x, q.y, q.z)
 }
 
-/// Rows as USD multiplies them: a row vector stands to the left.
+/// Rows in USD's convention: a row vector is multiplied from the left.
 fn matrix(m: &Affine) -> String {
     let row = |v: Vec3, w: u8| format!("({}, {}, {}, {w})", v.x, v.y, v.z);
     let (l, t) = (&m.linear, m.translation);
@@ -361,7 +361,7 @@ impl Writer {
     }
 }
 
-/// Bind pose of each joint in model space: of its skin, or else of the rest pose.
+/// Bind pose of each joint in model space: that of its skin, or else the rest pose.
 fn bind_of(rig: &Rig) -> Vec<Affine> {
     let mut bind = Vec::new();
     local_to_model(rig, &rest_pose(rig), &Affine::IDENTITY, &mut bind);

@@ -118,7 +118,7 @@ fn what_was_compressed_comes_back() {
         let mesh = &document.rig.meshes[0];
         let part = &mesh.primitives[0];
         assert_eq!((mesh.skin, part.positions.len()), (Some(0), SIDE * SIDE), "method {method}");
-        // The order of vertices is the encoder's: each is known by its place.
+        // The encoder reorders vertices, so they are matched by position.
         let known = |at: Vec3| {
             let i = (0..SIDE * SIDE)
                 .min_by(|&a, &b| (place(a) - at).length().total_cmp(&(place(b) - at).length()));

@@ -1,9 +1,9 @@
-//! A body of an island, and how it answers to impulses by itself.
+//! A body of an island, and its response to impulses without joints.
 
 use crate::spatial::{Vec6, add_scaled, angular, dot, join, linear};
 use sinew_math::{Sym3, Transform, Vec3};
 
-/// A body of the island. Moving ones come first, in tree order; fixed ones (static, kinematic, asleep) follow.
+/// A body of the island. Moving bodies come first, in tree order; fixed bodies (static, kinematic, asleep) follow.
 #[derive(Clone, Debug)]
 pub(crate) struct SolverBody {
     /// World index.
@@ -12,24 +12,24 @@ pub(crate) struct SolverBody {
     pub mass: f32,
     /// Principal moments.
     pub inertia: Vec3,
-    /// Moments added for stability, kg·m²: geometric stiffness beyond what the inertia can carry.
+    /// Moments added for stability, kg·m²: the geometric stiffness that exceeds the inertia.
     pub excess: Vec3,
-    /// Factor on mass and inertia in the body's answer to forces and impulses: 1 unless it is squeezed.
+    /// Factor on the mass and inertia that respond to forces and impulses; 1 without mass scaling.
     pub mass_scale: f32,
-    /// Inverse of inertia and excess with mass scaling, world axes.
+    /// Inverse of inertia plus excess, with mass scaling, world axes.
     pub inverse_inertia: Sym3,
-    /// Gravity's, the user's and those of fields, N and N·m.
+    /// Force and torque of gravity, the user and fields, N and N·m.
     pub force: Vec3,
     pub torque: Vec3,
     /// Angular momentum that the body would have at the substep's end without impulses, N·m·s.
     pub(super) momentum: Vec3,
     pub linear_damping: f32,
     pub angular_damping: f32,
-    /// In a substep of this step it was faster than the world lets it be.
+    /// True if it exceeded the world's speed limits in a substep of this step.
     pub is_limited: bool,
 }
 
-/// A row's answer to its own impulse if nothing held the bodies; those from `moving` on are fixed.
+/// A row's response to its own impulse, ignoring all joints. Bodies from `moving` on are fixed.
 pub(super) fn free_response(bodies: &[SolverBody], moving: usize, ends: [(u32, &Vec6); 2]) -> f32 {
     let on = |(body, row): (u32, &Vec6)| match bodies.get(body as usize) {
         Some(of) if (body as usize) < moving => dot(row, &of.velocity_change(row)),
@@ -39,18 +39,18 @@ pub(super) fn free_response(bodies: &[SolverBody], moving: usize, ends: [(u32, &
 }
 
 impl SolverBody {
-    /// N·m·s, without what geometric stiffness adds.
+    /// Angular momentum, N·m·s, without the added stiffness moments.
     pub(super) fn angular_momentum(&self, w: Vec3) -> Vec3 {
         self.pose.rotation.turn(self.pose.rotation.inverse().turn(w) * self.inertia)
     }
 
-    /// Answer to an impulse if no joint held it.
+    /// Response to an impulse, ignoring all joints.
     pub(super) fn velocity_change(&self, p: &Vec6) -> Vec6 {
         join(linear(p) / (self.mass * self.mass_scale), self.inverse_inertia * angular(p))
     }
 }
 
-/// Pose after moving with a velocity for `h` seconds.
+/// Pose after moving at velocity `v` for `h` seconds.
 pub(super) fn advance(pose: &Transform, v: &Vec6, h: f32) -> Transform {
     Transform::new(pose.translation + linear(v) * h, pose.rotation.integrate(angular(v), h))
 }

@@ -1,7 +1,7 @@
-//! Bodies in flight: nothing touches or holds them, so that a step of eight of them side by side is all their own motion.
+//! Bodies in flight: nothing touches or holds them, so a step integrates eight of them side by side without a solve.
 //!
-//! The angular momentum stays as it is in the world but for torque and damping; spin and rotation follow from it, substep by substep,
-//! by [`middle_of_spin`].
+//! The angular momentum in world axes changes only by torque and damping. Spin and rotation follow from it, substep by substep, by
+//! [`middle_of_spin`].
 
 use super::boundary::solution::SolvedBody;
 use super::motion::{Turn, divided, middle_of_spin, over, within};
@@ -17,10 +17,10 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Rotation, Transform, Vec3, min};
 
-/// A number of each of eight bodies.
+/// One number for each of eight bodies.
 pub(super) type Eight = [f32; WIDTH];
 
-/// True of an island of one body on which nothing acts but gravity and the forces and torques of this step.
+/// Returns true for an island of one body on which only gravity and the forces and torques of this step act.
 pub(crate) fn flies(island: &Island<'_>, view: &View<'_>) -> bool {
     let &[body] = island.bodies else { return false };
     let held = !(island.joints.is_empty() && island.contacts.is_empty() && island.groups.is_empty());
@@ -28,7 +28,7 @@ pub(crate) fn flies(island: &Island<'_>, view: &View<'_>) -> bool {
     !held && !has_own_substeps && view.fields.is_empty() && view.bodies.at(body).forces.list.is_empty()
 }
 
-/// All bodies in flight, eight to a flock.
+/// All bodies in flight, eight in each flock.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Flight {
     flocks: Vec<Flock>,
@@ -36,7 +36,7 @@ pub(crate) struct Flight {
 }
 
 impl Flight {
-    /// Begins with none.
+    /// Removes all bodies.
     pub fn clear(&mut self) {
         self.flocks.clear();
         self.count = 0;
@@ -54,7 +54,7 @@ impl Flight {
         }
     }
 
-    /// Takes all of them through a step.
+    /// Steps all bodies.
     pub fn run(&mut self, view: &View<'_>, context: &StepContext<'_>) {
         let (h, substeps) = (view.pace.h, view.pace.substeps);
         let [max_speed, max_spin] = [view.def.max_speed, min(view.def.max_turn, MOST_FLIGHT_TURN) / h];
@@ -93,7 +93,7 @@ struct Flock {
     torque: [Eight; 3],
     linear_damping: Eight,
     angular_damping: Eight,
-    /// Bit `k`: the body in lane `k` was faster than the world lets it be.
+    /// Bit `k`: the body in lane `k` exceeded the world's speed limits.
     limited: u8,
 }
 
@@ -106,7 +106,7 @@ pub(super) fn put(v: Vec3, to: &mut [Eight; 3], lane: usize) {
     }
 }
 
-/// A lane's vector.
+/// Reads the vector of a lane.
 pub(super) fn take(from: &[Eight; 3], lane: usize) -> Vec3 {
     Vec3::from_array([from[0][lane], from[1][lane], from[2][lane]])
 }
@@ -159,13 +159,13 @@ impl Flock {
     }
 }
 
-/// A step of a flock.
+/// Steps a flock.
 struct Fly<'a> {
     flock: &'a mut Flock,
     /// Substep, seconds.
     h: f32,
     substeps: u32,
-    /// Limits, m/s and rad/s.
+    /// Limits of speed and spin, m/s and rad/s.
     max_speed: f32,
     max_spin: f32,
 }

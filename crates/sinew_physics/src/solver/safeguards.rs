@@ -1,6 +1,6 @@
-//! Safeguards that keep violent hits from adding energy. Rows are linear and hold at the pose they were made at; a limb that a
-//! hit turns by a good part of a radian within a substep leaves that pose, and impulses that were right before can do
-//! work. None of this acts at rest or in ordinary falls.
+//! Safeguards that keep violent hits from adding energy. Rows are linear and valid at the pose at which they were built. A hit that turns a
+//! limb by a good part of a radian within a substep leaves that pose, and impulses that were right before can add energy. None of the
+//! safeguards acts at rest or in ordinary falls.
 
 use crate::joint::DIRECTIONS;
 use crate::solver::IslandSolver;
@@ -16,8 +16,8 @@ use sinew_math::dispatch;
 use sinew_math::{Vec3, max, min};
 
 impl IslandSolver {
-    /// Impulses that hold up weights take energy away; those of an impact, repeated at another pose, add it. If they did,
-    /// the substep starts without them.
+    /// Drops the warm start of a substep if it adds energy. Impulses that support weights remove energy; those of an impact, repeated at
+    /// another pose, may add it.
     pub(in crate::solver) fn drop_bad_warm_start(&mut self) {
         let moving = self.links.len();
         let before = self.kinetic_energy(&self.unconstrained) + self.push_energy;
@@ -57,9 +57,9 @@ impl IslandSolver {
         self.bodies[..self.links.len()].iter().fold(0.0, |sum, body| sum + body.mass)
     }
 
-    /// Slows the inner motion of trees with links that would turn too far within the substep: towards the rigid motion
-    /// with the same momentum, by one factor for the whole tree. Joints hold as before, since their rows are linear, and
-    /// momentum stays; a clamp of single links would tear them apart. Only whips in violent hits come here.
+    /// Slows the inner motion of trees with links that would turn too far within the substep. One factor for the whole tree moves it
+    /// towards the rigid motion with the same momentum. Joints stay satisfied, since their rows are linear, and momentum is conserved;
+    /// clamping single links would tear the joints. Only whips in violent hits are slowed.
     pub(in crate::solver) fn limit_inner_turn(&mut self) {
         let most = MAX_INNER_TURN / self.h;
         let mut first = 0;
@@ -96,10 +96,9 @@ impl IslandSolver {
         }
     }
 
-    /// Rows that cannot all hold (a body dragged into the floor, joints that contradict each other) may have no solution
-    /// that means anything: not finite or beyond all measure, or one that leaves joints `torn` by so much, m or rad. Then the
-    /// island moves as one piece for this pass, with the momentum that the forces left it: no joint opens, and no energy comes
-    /// of it.
+    /// Falls back to a rigid motion if the solution is invalid: not finite, beyond all limits, or leaving joints open by `torn`, m or rad.
+    /// This happens with rows that contradict each other (a body dragged into the floor, conflicting joints). The island then moves as one
+    /// rigid piece for this pass, with the momentum that the forces gave it: no joint opens, and no energy is added.
     pub(in crate::solver) fn fall_back_to_rigid(&mut self, torn: f32) {
         let moving = self.links.len();
         let most = [DIVERGED_SPEED * self.max_speed, DIVERGED_SPIN];
@@ -115,13 +114,12 @@ impl IslandSolver {
         self.forget_impulses();
     }
 
-    /// Motion of the island as if it were one piece with the momentum of the given velocities: at rest if it touches or hangs on a
-    /// fixed body.
+    /// Rigid motion of the island with the momentum of the given velocities; at rest if the island touches or hangs on a fixed body.
     fn motion_as_one(&self, velocities: &[Vec6]) -> RigidMotion {
         if self.is_held() { RigidMotion::default() } else { RigidMotion::of(&self.bodies, velocities) }
     }
 
-    /// Motion of the island as one piece with the momentum that the forces left it, at the present poses.
+    /// Rigid motion of the island with the momentum that the forces gave it, at the present poses.
     fn meant_as_one(&self) -> RigidMotion {
         if self.is_held() {
             RigidMotion::default()
@@ -130,12 +128,12 @@ impl IslandSolver {
         }
     }
 
-    /// Something fixed is in reach.
+    /// Returns true if the island touches or hangs on a fixed body.
     fn is_held(&self) -> bool {
         self.bodies.len() > self.links.len()
     }
 
-    /// Momentum of the moving bodies as the forces leave them.
+    /// Momentum of the moving bodies after the forces have acted.
     pub(in crate::solver) fn momentum_of_start(&self) -> Momentum {
         let mut momentum = Momentum::default();
         let center = center_of_mass(&self.bodies[..self.links.len()]).1;
@@ -145,13 +143,13 @@ impl IslandSolver {
         momentum
     }
 
-    /// Rigid joints and stops cannot give energy, springs and motors no more than their work. What rounding, redundant rows
-    /// or stops met at another pose than foreseen have given all the same is taken from the motion of the island beside
-    /// that as a whole: joints hold as before, since their rows are linear, and momentum stays.
+    /// Limits the energy that the solve adds. Rigid joints and stops cannot add energy, springs and motors at most their work. Energy added
+    /// by rounding, redundant rows, or stops at a mispredicted pose is removed from the motion relative to the rigid motion of the island:
+    /// joints stay satisfied, since their rows are linear, and momentum is conserved.
     ///
-    /// What stands on something pays for the height to which soft contacts push it: a heavy leg on a light foot would
-    /// rock higher and higher, by 0.1 J for each edge that it sinks in with and comes up from. A little is free where something
-    /// is crushed: a hand under a thigh must get out.
+    /// The potential energy by which soft contacts raise a standing body counts as added: a heavy leg on a light foot would rock higher and
+    /// higher, by 0.1 J for each edge that sinks in and comes up again. A small amount is free where something is crushed, since a hand
+    /// under a thigh must get out.
     pub(in crate::solver) fn bound_energy(&mut self) {
         let moving = self.links.len();
         if self.pushed_from_outside || !self.is_passive() {
@@ -169,7 +167,7 @@ impl IslandSolver {
         if after <= most {
             return;
         }
-        // Whatever went wrong inside the island, its momentum is what the forces left it.
+        // Momentum is corrected to that after the forces, whatever happened inside the island.
         let (now, meant) = (self.motion_as_one(&self.velocities[..moving]), self.meant_as_one());
         let s = &mut self.scratch;
         s.dv.clear();
@@ -187,9 +185,9 @@ impl IslandSolver {
         }
     }
 
-    /// Stops that were passed push back, joints that rounding has opened close, and springs may resist: what is wound up
-    /// by that must be there as kinetic energy, or motors pay for it. Where it is not, the whole motion beside that of the island as one piece is
-    /// slowed, and the rest is done later. Joints that are open by more are closed at any price.
+    /// Limits the energy of position corrections. Violated stops push back, joints opened by rounding close, and springs may resist this.
+    /// The energy that springs absorb has to come from kinetic energy or from motors. If there is too little, the motion relative to the
+    /// rigid motion is slowed, and the rest of the correction follows later. Joints with larger gaps are closed at any cost.
     pub(in crate::solver) fn bound_position_energy(&mut self) {
         if self.pushed_from_outside || !self.is_passive() || !self.has_joints() {
             return;
@@ -219,7 +217,7 @@ impl IslandSolver {
         if square + linear <= there {
             return;
         }
-        // square s² + linear s = there, by the form that does not cancel.
+        // Solve square s² + linear s = there by the form without cancellation.
         let root = (linear * linear + 4.0 * square * there).sqrt();
         let keep =
             if linear > 0.0 { 2.0 * there / (linear + root) } else { (root - linear) / (2.0 * square) };
@@ -230,13 +228,14 @@ impl IslandSolver {
         }
     }
 
-    /// No joint is left open by what it may not close in this substep.
+    /// Returns true if no joint is left open by more than this substep may leave.
     fn joints_close_in_time(&self) -> bool {
         !self.joints.iter().any(|joint| joint.left_open[..joint.rigid].iter().any(|left| *left != 0.0))
     }
 
-    /// Points that bounce at once, each with its own speed, may ask for more energy than came in. Then the velocities go only as far
-    /// along the bounce as there is: momentum stays, and what parts goes on parting.
+    /// Limits the energy of bounces. Points that bounce at once, each with its own speed, may request more energy than came in. The
+    /// velocities then change only by the share of the bounce that the energy allows: momentum is conserved, and separating points keep
+    /// separating.
     pub(in crate::solver) fn limit_bounce(&mut self) {
         if self.pushed_from_outside || !self.is_passive() {
             return;
@@ -248,7 +247,7 @@ impl IslandSolver {
         if after <= allowed || start >= allowed {
             return;
         }
-        // Energy along the bounce is E(0) + b s + a s², with a that of the change itself.
+        // The energy along the bounce is E(0) + b s + a s², where a is the energy of the change itself.
         let s = &mut self.scratch;
         s.dv.clear();
         s.dv.extend(self.velocities.iter().zip(&self.bounced_from).map(|(v, from)| difference(v, from)));
@@ -263,17 +262,17 @@ impl IslandSolver {
         }
     }
 
-    /// Nothing that rows push against moves by itself.
+    /// Returns true if no kinematic body or moving surface drives the rows.
     pub(in crate::solver) fn is_passive(&self) -> bool {
         !self.driven && self.velocities[self.links.len()..].iter().all(|v| *v == ZERO6)
     }
 
-    /// `relax` cannot give energy, but impulses taken back at another pose than they were given at can, in violent
-    /// hits. Then the velocities go only as far along the change as energy falls: joints hold on the whole way.
+    /// Limits the energy that `relax` adds. It cannot add any, except that impulses taken back at another pose than they were given at can,
+    /// in violent hits. The velocities then change only by the share along which energy falls; joints stay satisfied all the way.
     ///
-    /// [`bound_energy`](Self::bound_energy) does not make up for it: what `solve` lost it lets `relax` give, and it takes
-    /// nothing from the island's motion as one piece. Without this, of 400 random worlds as many hold, but two of the others
-    /// explode (to 8e4 and 2e14 times their energy), and a figure thrown at a wall sinks in by 10 mm instead of 1.
+    /// [`bound_energy`](Self::bound_energy) does not cover this: it lets `relax` return the energy that `solve` lost, and removes none from
+    /// the rigid motion of the island. Without this limit, of 400 random worlds as many pass, but two of the failing ones explode (to 8e4
+    /// and 2e14 times their energy), and a figure thrown at a wall sinks in by 10 mm instead of 1.
     pub(in crate::solver) fn keep_energy(&mut self) {
         let moving = self.links.len();
         let before = &self.scratch.before[..moving];
@@ -282,7 +281,7 @@ impl IslandSolver {
         if rise <= ENERGY_SLACK * max(start, self.mass()) {
             return;
         }
-        // Energy along the change is E(0) + b s + a s², with a that of the change itself.
+        // The energy along the change is E(0) + b s + a s², where a is the energy of the change itself.
         let s = &mut self.scratch;
         s.dv.clear();
         s.dv.extend(self.velocities.iter().zip(&s.before).map(|(v, before)| difference(v, before)));

@@ -26,7 +26,7 @@ pub(crate) struct View<'a> {
 }
 
 impl View<'_> {
-    /// Quality that a body asks for.
+    /// Quality requested for a body.
     pub fn quality(&self, body: u32) -> Quality {
         self.bodies.at(body).quality.unwrap_or(self.def.quality)
     }
@@ -35,7 +35,7 @@ impl View<'_> {
 /// Substeps of the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace {
-    /// Length of one, seconds, and how many a step has.
+    /// Length of a substep, seconds, and the number of substeps in a step.
     pub h: f32,
     pub substeps: u32,
     pub grading: Grading,
@@ -46,22 +46,22 @@ impl Pace {
         Self { h: context.h, substeps: context.substeps, grading }
     }
 
-    /// Length of substeps that are some times as long, seconds, and how many a step has.
+    /// Length of substeps `times` as long, seconds, and their number in a step.
     pub fn stretched(&self, times: f32) -> (f32, u32) {
         (self.h * times, (self.substeps as f32 / times) as u32)
     }
 }
 
-/// Rule by which an island may take fewer substeps than the world.
+/// Rule that decides whether an island may take fewer substeps than the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Grading {
-    /// It follows from what the island holds.
+    /// The content of the island decides.
     ByContent,
-    /// All take those of the world.
+    /// All islands take the world's substeps.
     None,
 }
 
-/// Force and torque that act on a body all through the step: gravity and the user's.
+/// Force and torque that act on a body for the whole step: gravity and the user's.
 pub(super) fn lasting_force(body: &Body, view: &View<'_>) -> (Vec3, Vec3) {
     (body.force + view.def.gravity * (body.gravity_scale * body.mass), body.torque)
 }

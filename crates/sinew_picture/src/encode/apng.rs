@@ -6,7 +6,7 @@ use crate::image::Image;
 use png::chunk::{IDAT, fcTL, fdAT};
 use png::{BitDepth, ColorType, Compression, Encoder};
 
-/// Frames are compressed as they come; the file is put together at the end, because its head tells their number.
+/// Frames are compressed as they arrive; the file is assembled at the end, because its header contains their number.
 pub(super) struct ApngWriter {
     width: u32,
     height: u32,
@@ -43,7 +43,7 @@ impl ApngWriter {
         let mut file = Vec::new();
         let mut encoder = encoder(&mut file, self.width, self.height);
         encoder.set_animated(self.frames.len() as u32, 0)?;
-        // The frames go in as ready chunks, of which the encoder keeps no account.
+        // The frames are written as finished chunks, which the encoder does not track.
         encoder.validate_sequence(false);
         let mut writer = encoder.write_header()?;
         let mut sequence = 0u32;
@@ -72,7 +72,7 @@ fn encoder(file: &mut Vec<u8>, width: u32, height: u32) -> Encoder<'static, &mut
     encoder
 }
 
-/// Data of a frame's control chunk: sequence number, rectangle and time. The last two bytes, zeros, say: left as it is, drawn over.
+/// Data of a frame's control chunk: sequence number, rectangle and time. The last two bytes, zeros, mean: keep the frame, and draw over it.
 fn frame_control(sequence: u32, rect: Rect, fps: u32) -> Vec<u8> {
     let numbers = [sequence, rect.width as u32, rect.height as u32, rect.left as u32, rect.top as u32];
     let mut data: Vec<u8> = numbers.into_iter().flat_map(u32::to_be_bytes).collect();

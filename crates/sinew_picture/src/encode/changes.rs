@@ -1,4 +1,4 @@
-//! Changes from image to image: lossless animations store the rectangle of what is new alone.
+//! Changes between images: lossless animations store only the changed rectangle.
 
 use super::{Rect, bounds};
 use crate::image::Image;

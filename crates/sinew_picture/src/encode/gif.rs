@@ -6,8 +6,8 @@ use crate::image::Image;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use std::borrow::Cow;
 
-/// A pixel whose channels all moved by at most this much since it was last drawn is left as it is: nobody sees it,
-/// and long runs of untouched pixels are what keeps the file small.
+/// Largest change per channel since a pixel was last drawn at which it is left unchanged: the change is invisible, and long runs of
+/// unchanged pixels keep the file small.
 const UNSEEN_CHANGE: u8 = 5;
 
 /// Strength of the dither, in steps of 1/255. Enough to break the bands of a clear sky; more would cost bytes.
@@ -29,10 +29,10 @@ pub(super) struct GifWriter {
     changed: Vec<bool>,
 }
 
-/// Pixels that are looked at together: most stretches of a picture stay as they are.
+/// Number of pixels compared at once: most stretches of a picture stay unchanged.
 const STRETCH: usize = 32;
 
-/// Marks the pixels of a stretch that must be drawn, and takes their colours over.
+/// Marks the pixels of a stretch that must be drawn, and stores their colours.
 fn redraw(drawn: &mut [[u8; 4]], changed: &mut [bool], rgba: &[u8]) {
     let mut most = 0;
     for (a, b) in drawn.as_flattened().iter().zip(rgba) {

@@ -38,7 +38,7 @@ impl PictureFormat {
     }
 }
 
-/// Why no picture file came of it.
+/// Reason why no picture file was made.
 #[derive(Debug, thiserror::Error)]
 pub enum EncodeError {
     /// No image was given.

@@ -1,4 +1,4 @@
-//! The 255 colours that show a frame best: boxes in colour space, split where they are widest.
+//! The 255 colours that represent a frame best: boxes in colour space, split along their widest axis.
 
 /// Bits kept of each channel: boxes and look-ups work on 2¹⁸ cells of colour.
 const BITS: u32 = 6;

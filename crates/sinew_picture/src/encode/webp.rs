@@ -5,8 +5,7 @@ use super::{EncodeError, Rect};
 use crate::image::Image;
 use image_webp::{ColorType, WebPEncoder};
 
-/// Frames are compressed as they come; the file is put together at the end, because only then is it known whether
-/// it is an animation.
+/// Frames are compressed as they arrive; the file is assembled at the end, because only then it is known whether it is an animation.
 pub(super) struct WebpWriter {
     width: u32,
     height: u32,
@@ -73,7 +72,7 @@ impl WebpWriter {
         let numbers = [halves[0], halves[1], sizes[0], sizes[1], milliseconds];
         let mut data: Vec<u8> = numbers.into_iter().flat_map(uint24).collect();
         data.push(DO_NOT_BLEND);
-        // A still file of ours is its header and the one chunk with the pixels, which a frame takes as it is.
+        // A still file consists of its header and the pixel chunk, which a frame uses unchanged.
         data.extend(&webp[FILE_HEADER..]);
         data
     }

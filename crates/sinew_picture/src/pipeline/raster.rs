@@ -174,13 +174,13 @@ impl Band<'_> {
         self.ids.fill(NOTHING);
     }
 
-    /// Empties the band so that only what is nearer than `behind` will show.
+    /// Clears the band so that only surfaces nearer than `behind` are drawn.
     pub(crate) fn clear_in_front_of(&mut self, behind: &Self) {
         self.depth.copy_from_slice(behind.depth);
         self.ids.fill(NOTHING);
     }
 
-    /// Draws triangles in their order, each where it is nearer than what is there. At equal depths the first drawn stays.
+    /// Draws triangles in order, each where it is nearer than the present content. At equal depths the first one stays.
     pub(crate) fn draw(&mut self, footprints: &[Footprint]) {
         dispatch::run(Draw { band: self, footprints });
     }
@@ -220,7 +220,7 @@ impl Cells for Nearest<'_> {
         let old = L::load(depth);
         let is_nearer = L::gt(z, old) & inside;
         L::select(is_nearer, z, old).store(depth);
-        // Whole numbers are selected by their bits; that they would be odd floats is of no matter.
+        // Whole numbers are selected by their bits; it does not matter that they are unusual floats.
         let (mut bits, mut chosen) = ([0.0; WIDTH], [0.0; WIDTH]);
         for i in 0..WIDTH {
             bits[i] = f32::from_bits(ids[i]);

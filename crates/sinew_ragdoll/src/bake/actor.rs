@@ -1,4 +1,4 @@
-//! A character of a bake: what is done to it at its moments, and what is measured of it.
+//! A character of a bake: applies its scheduled pushes and measures its fall.
 
 use super::frames::Frames;
 use super::{BakeDrive, BakeInput, Baked, HitEffect, keys};
@@ -14,25 +14,25 @@ pub(super) struct Actor<'a> {
     pub character: Character,
     pub meter: QualityMeter,
     frames: Frames,
-    /// Place where it started, and seconds into its looped clip.
+    /// Place at which it started, and its time in the looped clip, seconds.
     start: Transform,
     phase: f32,
-    /// Not yet done, the latest first.
+    /// Pushes that are not yet applied, the latest first.
     pending: Vec<(f32, Push<'a>)>,
     events: Vec<(f32, CharacterEvent)>,
-    /// Events of pushes that are noted, and told again by the next update.
+    /// Number of events of pushes that are already recorded and that the next update reports again.
     ahead: usize,
 }
 
-/// The character as it starts: in the world, if pushes or drives may move a part of it, others may meet it, or it wears garments, for that
-/// takes bodies.
+/// Creates the character. It gets bodies in the world from the start if pushes or drives may move a part of it, other characters may hit
+/// it, or it wears garments, which need bodies.
 fn spawned(input: &BakeInput<'_>, is_alone: bool, world: &mut World) -> Character {
     let falls = input.hit_effect == HitEffect::Falls;
     if falls && is_alone && input.drives.is_empty() && input.character.garments().is_empty() {
         return Character::new(input.character.clone(), input.world_from_character, input.phase);
     }
     let mut def = CharacterDef::clone(&input.character);
-    // It goes where its clips go, and feels what it is told of.
+    // It follows its clips and reacts only to the scheduled hits.
     def.in_world = InWorld { mover: None, feels: f32::INFINITY, ..def.in_world };
     if falls {
         def.in_world.toughness = Toughness::None;
@@ -42,7 +42,7 @@ fn spawned(input: &BakeInput<'_>, is_alone: bool, world: &mut World) -> Characte
     character
 }
 
-/// Intervention in the bake at a moment.
+/// A scheduled action of the bake.
 #[derive(Clone, Copy)]
 enum Push<'a> {
     Limp { topple: Vec3 },
@@ -52,7 +52,7 @@ enum Push<'a> {
 }
 
 impl<'a> Actor<'a> {
-    /// `is_alone`: it is the only character of the bake.
+    /// `is_alone` is true if it is the only character of the bake.
     pub fn new(input: &BakeInput<'a>, is_alone: bool, world: &mut World) -> Self {
         let limp = input.limp_at.map(|time| (time, Push::Limp { topple: input.topple }));
         let hits =
@@ -61,7 +61,7 @@ impl<'a> Actor<'a> {
         let returns =
             input.returns.map(|back| (back.time - back.seconds, Push::Return { seconds: back.seconds }));
         let mut pending: Vec<_> = limp.into_iter().chain(drives).chain(hits).chain(returns).collect();
-        // Stable, so that pushes at one moment keep their order.
+        // The sort is stable, so that simultaneous pushes keep their order.
         pending.sort_by(|a, b| a.0.total_cmp(&b.0));
         pending.reverse();
         Self {
@@ -76,24 +76,24 @@ impl<'a> Actor<'a> {
         }
     }
 
-    /// Does what is due at the start, and keeps the first frame.
+    /// Applies what is scheduled for the start, and records the first frame.
     pub fn begin(&mut self, world: &mut World) {
         self.push_due(world);
         self.frames.add_until(&self.character, world.time() as f32);
     }
 
-    /// Measures the step that the world has taken.
+    /// Measures the last step of the world.
     pub fn measure(&mut self, world: &World) {
         match (self.character.ragdoll(), self.character.state()) {
             (Some(ragdoll), State::Limp) => self.meter.after_step(world, ragdoll),
-            // Led by clips: what they do is no matter of physics.
+            // Clips lead the bodies; their motion is not measured as physics.
             (Some(_), State::Flinching) => {}
             (Some(ragdoll), _) => self.meter.after_driven_step(world, ragdoll),
             (None, _) => {}
         }
     }
 
-    /// Follows the step that the world has taken, and does what is due at its end.
+    /// Updates the character after a step of the world, and applies what is scheduled for the step's end.
     pub fn update(&mut self, world: &mut World) {
         self.character.update(world);
         self.note_events(self.ahead, world);
@@ -101,7 +101,7 @@ impl<'a> Actor<'a> {
         self.frames.add_until(&self.character, world.time() as f32);
     }
 
-    /// Pushes whose time has come.
+    /// Applies all pushes that are due.
     fn push_due(&mut self, world: &mut World) {
         let noted = self.character.events().len();
         // Half a step early is nearer than half a step late.
@@ -138,7 +138,7 @@ impl<'a> Actor<'a> {
         self.ahead = self.character.events().len() - noted;
     }
 
-    /// Turns a limp body as a whole about the ground under its middle, so that its highest part gets that velocity besides.
+    /// Rotates a limp body as a whole about the ground under its centre, so that its highest part gains the given velocity.
     fn topple(&mut self, velocity: Vec3, world: &mut World) {
         let Some(ragdoll) = self.character.ragdoll().filter(|_| velocity != Vec3::ZERO) else { return };
         let ids: Vec<BodyId> = ragdoll.own_bodies().map(|(_, id)| id).collect();
@@ -159,7 +159,7 @@ impl<'a> Actor<'a> {
         self.meter.pushed(world.energy().kinetic - before);
     }
 
-    /// Keeps the character's events from the `first` on.
+    /// Records the character's events from index `first` on.
     fn note_events(&mut self, first: usize, world: &World) {
         let time = world.time() as f32;
         for &event in &self.character.events()[first..] {
@@ -170,11 +170,11 @@ impl<'a> Actor<'a> {
         }
     }
 
-    /// Clip, frames and figures. `hash`: of world and character at the end.
+    /// Returns clip, frames and figures. `hash` is that of world and character at the end.
     pub fn finish(self, input: &BakeInput<'_>, steps: u64, hash: u64) -> Baked {
         let rig = &input.character.rig;
         let world_from_model = input.character.mapping().world_from_model(input.world_from_character);
-        // Seen from where the character starts: far from the world's origin small ways drown in rounding.
+        // Frames are relative to the character's start: far from the world's origin, small motions would be lost to rounding.
         let root = input.character.mapping().character_from_model();
         let every_key = keys::clip(rig, input.name, &self.frames.list);
         let Reduced { clip, error, keys } = reduce_keys(rig, &every_key, &root, input.key_bound);

@@ -5,7 +5,7 @@ use crate::character::Character;
 use sinew_anim::LocalTransform;
 use sinew_math::{Transform, clamp};
 
-/// Frames at their own rate out of the steps at theirs.
+/// Resamples poses at step times to frames at the clip's rate.
 pub(super) struct Frames {
     pub list: Vec<Frame>,
     fps: f32,
@@ -34,7 +34,7 @@ impl Frames {
     pub fn add_until(&mut self, character: &Character, time: f32) {
         self.now.clear();
         self.now.extend_from_slice(character.pose());
-        // All frames are seen from where the character started.
+        // All frames are relative to the character's start.
         character.def().mapping().reframe(
             &mut self.now,
             character.world_from_character(),
@@ -59,7 +59,7 @@ impl Frames {
 }
 
 fn between(a: &LocalTransform, b: &LocalTransform, t: f32) -> LocalTransform {
-    // What lies still has the same bits in all frames.
+    // A joint at rest keeps the same bits in all frames.
     if a == b {
         return *a;
     }

@@ -4,8 +4,7 @@ use super::Frame;
 use sinew_anim::{Channel, Clip, Interpolation, JointIdx, LocalTransform, Property, Rig};
 use sinew_math::Rotation;
 
-/// Linear channels for values that differ from the rest pose in any frame; joints without a channel stay in their rest
-/// pose.
+/// Creates linear channels for values that differ from the rest pose in any frame; joints without a channel stay in their rest pose.
 pub(super) fn clip(rig: &Rig, name: &str, frames: &[Frame]) -> Clip {
     let times: Vec<f32> = frames.iter().map(|frame| frame.time).collect();
     let mut channels = Vec::new();
@@ -34,7 +33,7 @@ fn values(frames: &[Frame], joint: JointIdx, property: Property) -> Vec<f32> {
             Property::Translation => values.extend(local.translation.to_array()),
             Property::Scale => values.extend(local.scale.to_array()),
             Property::Rotation => {
-                // Players that blend keys by component must take the short way round.
+                // Choose the sign for the shorter arc, since some players blend quaternions by component.
                 let q = last.map_or(local.rotation, |last| local.rotation.toward(last));
                 values.extend([q.x, q.y, q.z, q.w]);
                 last = Some(q);
@@ -44,7 +43,7 @@ fn values(frames: &[Frame], joint: JointIdx, property: Property) -> Vec<f32> {
     values
 }
 
-/// True if a value differs from the rest pose's by more than the rounding of blending it with itself.
+/// Returns true if a value differs from the rest pose by more than the rounding of blending it with itself.
 fn differs(property: Property, a: &LocalTransform, rest: &LocalTransform) -> bool {
     const ROUNDING: f32 = 1e-6;
     match property {

@@ -1,4 +1,4 @@
-//! A simulated stretch of a character's life, back as a clip on the user's own rig.
+//! Bakes a simulated character to a clip on the user's own rig.
 //!
 //! ```
 //! use sinew_math::Vec3;
@@ -43,8 +43,8 @@ pub struct BakeHit {
     pub impulse: Vec3,
 }
 
-/// Change of what moves a part of the character at a moment: [`Character::set_drive`](crate::Character::set_drive). It counts while the
-/// character stands; one that has fallen is driven as [`CharacterDef::falling`] says.
+/// Change of the drive of a part of the character at a given time: [`Character::set_drive`](crate::Character::set_drive). It applies while
+/// the character stands; [`CharacterDef::falling`] sets the drive of a fallen one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeDrive<'a> {
     /// Seconds from the start.
@@ -53,21 +53,21 @@ pub struct BakeDrive<'a> {
     pub part: Part<'a>,
     /// Mode of those drives from then on.
     pub mode: DriveMode,
-    /// Half of the change is made within so many seconds.
+    /// Time in which half of the change is made, seconds.
     pub half_life: f32,
 }
 
-/// Return to the looped clip, as if nothing had happened: [`Character::return_to_clip`](crate::Character::return_to_clip) at the place where
-/// the character started, at the moment of the clip that it would have reached.
+/// Return to the looped clip by [`Character::return_to_clip`](crate::Character::return_to_clip), at the place where the character started
+/// and at the clip time that it would have reached without interruption.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeReturn {
-    /// Seconds from the start at which the clip alone has the pose again.
+    /// Time from the start at which the pose is that of the clip alone, seconds.
     pub time: f32,
-    /// Seconds before that in which the simulated pose dies away.
+    /// Duration of the blend from the simulated pose before that, seconds.
     pub seconds: f32,
 }
 
-/// Input of a bake: what is to be simulated.
+/// Input of a bake.
 #[derive(Clone, Debug)]
 pub struct BakeInput<'a> {
     /// The character.
@@ -80,19 +80,19 @@ pub struct BakeInput<'a> {
     pub world: WorldDef,
     /// Bodies of the world besides the character's own.
     pub bodies: &'a [BodyDef],
-    /// Bodies of the world that go by keys.
+    /// Keyframed bodies of the world.
     pub movers: &'a [BakeMover<'a>],
     /// Wind, water and other fields of the world.
     pub fields: &'a [FieldDef],
-    /// Changes of drives, in any order. With any the character has its bodies in the world from the start.
+    /// Changes of drives, in any order. If there are any, the character has its bodies in the world from the start.
     pub drives: &'a [BakeDrive<'a>],
-    /// Return to the looped clip; `None`: only by getting up.
+    /// Return to the looped clip; `None`: the character returns only by getting up.
     pub returns: Option<BakeReturn>,
     /// Pushes, in any order.
     pub hits: &'a [BakeHit],
-    /// Effect of pushes. Default: each one fells.
+    /// Effect of pushes. Default: each one makes the character fall.
     pub hit_effect: HitEffect,
-    /// When it goes limp without a push, seconds; `None`: only by a hit.
+    /// Time at which it goes limp without a push, seconds; `None`: only hits make it limp.
     pub limp_at: Option<f32>,
     /// Length, seconds.
     pub seconds: f32,
@@ -101,8 +101,7 @@ pub struct BakeInput<'a> {
     /// Extra velocity of its highest point when it goes limp at [`limp_at`](Self::limp_at), m/s, world axes: the whole
     /// body rotates about the ground under it. Default zero. A body with broad feet stays upright without it.
     pub topple: Vec3,
-    /// Largest distance of any joint of the clip from the frames, metres and radians; keys that are not needed for that
-    /// are dropped.
+    /// Largest error of any joint of the clip against the frames, metres and radians; keys that are not needed for that are removed.
     pub key_bound: KeyBound,
     /// Name of the clip.
     pub name: &'a str,
@@ -111,19 +110,18 @@ pub struct BakeInput<'a> {
 /// Effect of a push in a bake.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HitEffect {
-    /// It fells. Default.
+    /// The character falls. Default.
     #[default]
     Falls,
-    /// It makes the limb flinch, or fells, by [`InWorld::toughness`](crate::InWorld::toughness).
+    /// The limb flinches or the character falls, depending on [`InWorld::toughness`](crate::InWorld::toughness).
     FlinchesOrFalls,
 }
 
-/// The bound on the keys that [`BakeInput::new`] sets: a tenth of a millimetre and a hundredth of a degree.
+/// Key error bound set by [`BakeInput::new`]: a tenth of a millimetre and a hundredth of a degree.
 pub const KEY_BOUND: KeyBound = KeyBound { distance: 1e-4, angle: 1.745_329_3e-4 };
 
 impl<'a> BakeInput<'a> {
-    /// Ten seconds at 30 frames a second at the world's origin, nothing in the world and nothing done; keys within
-    /// [`KEY_BOUND`].
+    /// Ten seconds at 30 frames a second at the world's origin, in an empty world without pushes, with keys within [`KEY_BOUND`].
     pub fn new(character: Arc<CharacterDef>) -> Self {
         Self {
             character,
@@ -158,16 +156,16 @@ pub struct Frame {
     pub pose: Vec<LocalTransform>,
 }
 
-/// The result.
+/// The result of a bake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Baked {
-    /// Linear keys at frame times for every joint that moves: rotations, and translations that change. It starts where
-    /// the file's character stands, and all root motion is in the pelvis.
+    /// Linear keys at frame times for every joint that moves: rotations, and translations that change. The clip starts at the place of the
+    /// file's character. The pelvis contains all root motion.
     pub clip: Clip,
     /// Largest error of the clip's joints against the frames, at the times of frames: metres and radians, within
     /// [`BakeInput::key_bound`].
     pub key_error: KeyError,
-    /// Keys of the clip's channels: with one per frame, and as reduced.
+    /// Number of keys in the clip's channels: with one per frame, and after reduction.
     pub keys: [usize; 2],
     /// The frames of the clip.
     pub frames: Vec<Frame>,
@@ -181,21 +179,21 @@ pub struct Baked {
     pub bodies: usize,
     /// Steps that were simulated.
     pub steps: u64,
-    /// Hash of the snapshots of world and character at the end; the world alone says nothing about the fall once the
-    /// character is up and its bodies are gone.
+    /// Hash of the snapshots of world and character at the end. The world's hash alone would not cover the fall once the character has got
+    /// up and its bodies are removed.
     pub hash: u64,
 }
 
 impl Baked {
-    /// The clip for the character's own file: at the height of the played clip, if its floor is not that of the rest
-    /// pose ([`CharacterDef::raised`]).
+    /// The clip for the character's own file. It is moved to the height of the played clip if the clip's floor differs from that of the
+    /// rest pose ([`CharacterDef::raised`]).
     pub fn clip_for_file(&self, character: &CharacterDef) -> Clip {
         let down = character.mapping().character_from_model().inverse().vector(Vec3::Y * -character.raised());
         moved(&character.rig, &character.ragdoll, &self.clip, down, down)
     }
 }
 
-/// Simulates a character in a world. Same bits on every target and for every frame rate.
+/// Simulates a character in a world. The result has the same bits on every target. The frame rate does not affect the simulation.
 ///
 /// # Panics
 /// If a number is not finite, `fps` is below 1, the key bound is negative, or a hit or drive names a body that is not there.
@@ -204,10 +202,10 @@ pub fn bake(input: &BakeInput<'_>) -> Baked {
     baked.as_mut().and_then(Vec::pop).expect("nothing stops it, and there is one for each input")
 }
 
-/// [`bake`] of several characters in one world, which meet each other; the bodies, movers and fields of all inputs are in it. `watch` is told the
-/// simulated seconds after every step, and ends the bake if it breaks: the result is then `None`.
+/// Bakes several characters in one world, where they collide with each other. The world contains the bodies, movers and fields of all
+/// inputs. `watch` is called with the simulated seconds after every step; if it breaks, the bake ends and the result is `None`.
 ///
-/// Figures that a world has as a whole (energy, work) are the same for each of several characters.
+/// Figures of the world as a whole (energy, work) are the same for all characters.
 ///
 /// # Panics
 /// As [`bake`]; or if the inputs differ in their world or their length.

@@ -1,16 +1,17 @@
-//! Bodies of a bake that go by keys: a door, a lift, a swinging beam.
+//! Keyframed bodies of a bake: a door, a lift, a swinging beam.
 
 use sinew_math::Transform;
 use sinew_physics::{BodyDef, BodyId, BodyKind, World};
 
-/// Body that goes by keys whatever is in its way.
+/// Body that follows keys regardless of obstacles.
 #[derive(Clone, Debug)]
 pub struct BakeMover<'a> {
     /// The body; it is kinematic, and its pose and velocity are those of the keys.
     pub body: BodyDef,
     /// Times of the keys, seconds from the start, ascending; at least one.
     pub times: &'a [f32],
-    /// Pose of the body in the world at each time. Between two keys it goes straight; before the first and after the last it stands.
+    /// Pose of the body in the world at each time, interpolated linearly between keys; it is at rest before the first and after the last
+    /// key.
     pub poses: &'a [Transform],
 }
 
@@ -35,20 +36,20 @@ impl BakeMover<'_> {
         Transform::new(translation, a.rotation.nlerp(b.rotation, share))
     }
 
-    /// Puts it into a world.
+    /// Adds the body to a world.
     ///
     /// # Panics
-    /// If the body is not one that a world takes.
+    /// If the body is not valid.
     pub fn enter(&self, world: &mut World) -> BodyId {
         let at = self.pose(0.0);
         let (position, rotation) = (at.translation, at.rotation);
         world.add_body(&BodyDef { kind: BodyKind::Kinematic, position, rotation, ..self.body.clone() })
     }
 
-    /// Sends its body where it is to be at the end of the next step of the world.
+    /// Moves its body to its pose at the end of the next step of the world.
     ///
     /// # Panics
-    /// If there is no such body.
+    /// If the body does not exist.
     pub fn lead(&self, id: BodyId, world: &mut World) {
         let dt = world.def().dt();
         world.move_to(id, self.pose(world.time() as f32 + dt), dt);

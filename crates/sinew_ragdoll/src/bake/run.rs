@@ -1,4 +1,4 @@
-//! The world of a bake, its characters and what goes by keys, step by step.
+//! Steps the world of a bake with its characters and keyframed bodies.
 
 use super::actor::Actor;
 use super::{BakeInput, BakeMover, Baked};
@@ -6,7 +6,7 @@ use sinew_math::Writer;
 use sinew_math::hash::hash_bytes;
 use sinew_physics::{BodyId, World};
 
-/// A bake on its way.
+/// A bake in progress.
 pub(super) struct Run<'a> {
     world: World,
     actors: Vec<Actor<'a>>,
@@ -40,7 +40,7 @@ impl<'a> Run<'a> {
         self.world.time() as f32
     }
 
-    /// One step of the world, and what is due at its end.
+    /// Steps the world once, and applies what is scheduled for the step's end.
     pub fn step(&mut self) {
         let Self { world, actors, movers } = self;
         for (id, mover) in movers {
@@ -52,7 +52,7 @@ impl<'a> Run<'a> {
         actors.iter_mut().for_each(|actor| actor.update(world));
     }
 
-    /// Clips and figures.
+    /// Returns clips and figures.
     pub fn finish(self, inputs: &[BakeInput<'_>]) -> Vec<Baked> {
         let Self { world, actors, .. } = self;
         let of_world = {

@@ -46,7 +46,7 @@ pub enum AfterSettling {
 /// First action of a character that lies unlike the start of all get-up clips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GettingReady {
-    /// Nothing: the difference dies away in the clip.
+    /// Nothing: the difference is blended out during the clip.
     AtOnce,
     /// It is rolled over and its limbs are driven to the start of the nearest clip, within bounds of force and time.
     RollOver,

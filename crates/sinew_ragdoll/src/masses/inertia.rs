@@ -1,4 +1,4 @@
-//! Inertias that a solver can live with.
+//! Limits inertias to the range that the solver supports.
 
 use crate::tuning::LARGEST_MOMENTS;
 use sinew_math::{Vec3, clamp, max, max3, min};

@@ -162,7 +162,7 @@ fn momentum_is_that_of_any_mixture_of_clips_and_transitions() {
                 let clip = TrackDef {
                     start: random.range(0.0, 1.0),
                     speed: random.range(0.3, 1.5),
-                    // Who begins to lie down again where he stood up is somewhere else at once.
+                    // A looped get-up clip would jump from standing back to lying, so it plays once.
                     loop_mode: if clip < 2 { LoopMode::Loop } else { LoopMode::Once },
                     ..TrackDef::new(def.clip(clip))
                 };

@@ -139,7 +139,7 @@ fn eight_frames_back_and_forth() {
             held.extend((actor.held().count() > 0).then(|| format!("{:?}", actor.state())));
             stumbled += u32::from(actor.stumbles());
         }
-        // Every 11 frames what came last is not believed.
+        // Every 11 frames the latest inputs count as mispredicted.
         if frame % 11 == 10 {
             let from = frame + 1 - BACK;
             game.load(&frames[from as usize]);

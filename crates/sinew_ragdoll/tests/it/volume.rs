@@ -1,4 +1,4 @@
-//! Mass of creatures: what their skin encloses, once, of what they are made of.
+//! Mass of creatures, from the volume inside their skin and their tissue.
 
 use crate::build::built;
 use needs_data::needs_data;

@@ -6,7 +6,7 @@ use sinew::math::{Vec3, trig};
 use sinew::physics::{Hull, Material, Shape, Sleeping};
 use std::sync::Arc;
 
-/// Half the span, and what the middle of the stones has for the parameter of its catenary, metres: `y = −a cosh(x / a)`.
+/// Half the span, and the parameter `a` of the stones' centre line, a catenary `y = −a cosh(x / a)`, metres.
 const HALF_SPAN: f32 = 3.5;
 const PARAMETER: f32 = 2.0;
 /// Thickness of the stones across the line of thrust, and half of their width along the arch's axis, metres.
@@ -17,11 +17,11 @@ const PIER_HALF: Vec3 = Vec3::new(0.6, 0.25, 0.5);
 const BLOCK_HALF: Vec3 = Vec3::new(0.3, 0.15, 0.25);
 const MASONRY: Material = Material { friction: 0.6, restitution: 0.0, rolling: 0.0, ..Material::DEFAULT };
 
-/// A catenary of so many stones, an odd number, without mortar on two level piers, and blocks on top of the keystone: the
+/// A catenary arch of `stones` stones (an odd number) without mortar on two level piers, with blocks on top of the keystone. Order: the
 /// piers, the stones from −x to +x, the blocks.
 ///
-/// The middle of the stones is the line of thrust of a chain turned upside down (Hooke 1675), so that their own weight presses
-/// each squarely against the next.
+/// The centre line of the stones is the line of thrust of a chain turned upside down (Hooke 1675), so the own weight presses each stone
+/// squarely against the next.
 pub fn arch(stones: usize, blocks: usize) -> Blueprint {
     let mut scene = Blueprint::new("arch", Sleeping::On, 600);
     for side in [-1.0, 1.0] {
@@ -46,14 +46,14 @@ pub fn arch(stones: usize, blocks: usize) -> Blueprint {
 /// Joint between two stones, or between one and its pier, in the plane z = 0.
 #[derive(Clone, Copy)]
 pub(crate) struct Joint {
-    /// Half-way between its ends.
+    /// Midpoint between its ends.
     pub middle: Vec3,
-    /// From there to its outer end.
+    /// Vector from the midpoint to its outer end.
     pub half: Vec3,
 }
 
 impl Joint {
-    /// The outer one, the inner one.
+    /// The outer and the inner end.
     pub fn ends(&self) -> [Vec3; 2] {
         [self.middle + self.half, self.middle - self.half]
     }
@@ -64,10 +64,10 @@ impl Joint {
     }
 }
 
-/// The joints of so many stones, from −x to +x: square to the catenary, as far apart along it, but for the level ones at its
-/// feet.
+/// The joints of `stones` stones, from −x to +x: perpendicular to the catenary and equally spaced along it, except for the level ones at
+/// its feet.
 ///
-/// With `s` along the catenary from its crown `y = −√(a² + s²)`, and the way out of it is along `(s, a)`.
+/// With `s` along the catenary from its crown `y = −√(a² + s²)`, the outward normal is along `(s, a)`.
 pub(crate) fn joints(stones: usize) -> Vec<Joint> {
     let a = PARAMETER;
     let (grown, shrunk) = (trig::exp(HALF_SPAN / a), trig::exp(-HALF_SPAN / a));
@@ -76,7 +76,7 @@ pub(crate) fn joints(stones: usize) -> Vec<Joint> {
         let s = foot * (2.0 * i as f32 / stones as f32 - 1.0);
         let y = (a * a + s * s).sqrt();
         if i == 0 || i == stones {
-            // As wide as a level cut through the thickness.
+            // The width of a horizontal cut through the thickness.
             let half = Vec3::X * (0.5 * THICKNESS * foot_height / s);
             return Joint { middle: Vec3::X * (HALF_SPAN * s / foot), half };
         }

@@ -73,16 +73,16 @@ pub fn box_rain_of(count: usize) -> Blueprint {
     scene
 }
 
-/// 10,000 boxes of all sizes, put loosely beside and over each other into a pit, sink into one heap.
+/// 10,000 boxes of all sizes, placed loosely beside and above each other in a pit, collapse to one heap.
 pub fn boxes_10000() -> Blueprint {
     box_heap(20, 25)
 }
 
 /// The same with `side` × `side` boxes in each of `layers` layers.
 pub fn box_heap(side: usize, layers: usize) -> Blueprint {
-    /// From one box to the next, metres: turned as little as they are, none reaches further than half of it along an axis.
+    /// Spacing of the boxes, metres: with their limited rotation, no box reaches further than half of it along an axis.
     const APART: f32 = 0.86;
-    /// Most that one is turned, radians.
+    /// Largest rotation of a box, radians.
     const TURN: f32 = 0.35;
     let mut scene = Blueprint::new("boxes_10000", Sleeping::Off, 240);
     let half = 0.5 * APART * side as f32;

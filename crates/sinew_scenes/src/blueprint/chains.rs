@@ -1,16 +1,16 @@
-//! Weights on chains of light links, which no iteration holds together. Nothing collides, nothing is damped.
+//! Weights on chains of light links, which iterative solvers cannot hold together. Nothing collides, nothing is damped.
 
 use super::{Blueprint, weighed_ghost};
 use crate::parts::{ball, cuboid, hook, level_rod};
 use sinew::math::{Rotation, Vec3};
 use sinew::physics::Sleeping;
 
-/// 10 level rods of 1 kg, and at their end a ball of `ratio` kg, let go.
+/// 10 horizontal rods of 1 kg with a ball of `ratio` kg at their end, released from rest.
 pub fn chain_swing(ratio: f32, link_length: f32) -> Blueprint {
     ten_links("chain_swing", ratio, link_length, Vec3::X)
 }
 
-/// 10 plumb rods of 1 kg and 1 m, and below them a ball of `ratio` kg, at rest.
+/// 10 vertical rods of 1 kg and 1 m with a ball of `ratio` kg below them, at rest.
 pub fn chain_hang(ratio: f32) -> Blueprint {
     ten_links("chain_hang", ratio, 1.0, Vec3::NEG_Y)
 }
@@ -35,7 +35,7 @@ fn ten_links(name: &'static str, ratio: f32, link_length: f32, along: Vec3) -> B
     scene
 }
 
-/// 10 level chains of 100 capsules of 1 kg and 0.25 m, at the end of each a ball of 100 kg, let go.
+/// 10 horizontal chains of 100 capsules of 1 kg and 0.25 m, each with a ball of 100 kg at its end, released from rest.
 pub fn chain_100_links() -> Blueprint {
     const LINKS: usize = 100;
     const LENGTH: f32 = 0.25;
@@ -47,7 +47,7 @@ pub fn chain_100_links() -> Blueprint {
         let mut last = scene.body(anchor);
         for i in 0..LINKS {
             let start = LENGTH * i as f32;
-            // Capsules a little longer than the distance between joints would be: 0.1 m and a cap of 0.05 m each way.
+            // Capsules a little longer than the distance between joints: 0.1 m and a cap of 0.05 m each way.
             let mut rod = level_rod(start - 0.025, 0.3, 0.05);
             rod.position += origin;
             let link = scene.body(weighed_ghost(1.0, rod));
@@ -61,7 +61,7 @@ pub fn chain_100_links() -> Blueprint {
     scene
 }
 
-/// A level rope of 19 links of 1 m and 1 kg from a fixed one, at its end a block of 30 m and 1,800 kg, let go.
+/// A horizontal rope of 19 links of 1 m and 1 kg on a fixed link, with a block of 30 m and 1,800 kg at its end, released from rest.
 ///
 /// Sizes and masses of `HeavyRope` in the demonstration of Augmented Vertex Block Descent (Giles, Diaz & Yuksel 2025),
 /// 0.5 m thick.
@@ -69,9 +69,9 @@ pub fn heavy_rope() -> Blueprint {
     rope("heavy_rope", 20, Vec3::X, Vec3::new(0.5, 0.25, 0.25), 15.0)
 }
 
-/// A plumb rope of 48 links of 1 m and 1 kg from a fixed one, below it a block of 10 m and 200 kg, at rest.
+/// A vertical rope of 48 links of 1 m and 1 kg on a fixed link, with a block of 10 m and 200 kg below it, at rest.
 ///
-/// Sizes and masses of `HangingRope`, from where [`heavy_rope`] comes.
+/// Sizes and masses are those of `HangingRope` in the same demonstration as [`heavy_rope`].
 pub fn hanging_rope() -> Blueprint {
     rope("hanging_rope", 50, Vec3::NEG_Y, Vec3::new(0.25, 0.5, 0.25), 5.0)
 }

@@ -51,12 +51,12 @@ pub fn ragdoll_on_boxes(layers: usize) -> Blueprint {
     scene
 }
 
-/// 300 figures rain on 10 × 10 boxes, three on each, and land in each column of boxes later than in the one before.
+/// 300 figures rain on 10 × 10 boxes, three on each; each column of boxes is hit later than the one before.
 ///
-/// After Box3D's `rain`, whose figures fall on triangle meshes, and appear while it runs: here all start in the air.
+/// Modelled on Box3D's `rain`, whose figures are created during the run and fall on triangle meshes. Here all start in the air.
 pub fn rain() -> Blueprint {
     const CELLS: usize = 10;
-    /// Width of the place of three figures, metres.
+    /// Width of the cell of three figures, metres.
     const CELL: f32 = 15.0;
     let mut scene = Blueprint::new("rain", Sleeping::On, 600);
     let half = 0.5 * CELL * CELLS as f32;
@@ -79,13 +79,13 @@ pub fn rain() -> Blueprint {
     scene
 }
 
-/// 8 figures whose joints have friction fall from 15 m on two by two places of 15 m, each with a tilted box in the middle.
+/// 8 figures with joint friction fall from 15 m on two by two cells of 15 m, each with a tilted box in the middle.
 ///
-/// After Box3D's falling ragdolls, which show by the step at which they all sleep that a run can be repeated; those fall
-/// on meshes, and have springs in their joints.
+/// Modelled on Box3D's falling ragdolls, which verify repeatability by the step at which all sleep. Those fall on meshes, and have springs
+/// in their joints.
 pub fn ragdolls() -> Blueprint {
     const CELL: f32 = 15.0;
-    /// Torque that a joint resists a turn with, N·m.
+    /// Friction torque of a joint, N·m.
     const FRICTION: f32 = 5.0;
     let mut scene = Blueprint::new("ragdolls", Sleeping::On, 600);
     scene.body(fixed(cuboid(Vec3::new(CELL, 0.5, CELL), Vec3::NEG_Y * 0.5)));
@@ -106,18 +106,18 @@ pub fn ragdolls() -> Blueprint {
     scene
 }
 
-/// Along the body's x instead of its y, either way.
+/// Rotation that puts a body's length along x instead of y.
 fn across() -> Rotation {
     tilt(90.0)
 }
 
-/// Adds a standing figure with its arms stretched out sideways, soles at `base`, which it faces +z from, its left toward
-/// +x, but for a turn by `yaw` radians about y: 15 bodies and 14 joints.
+/// Adds a standing figure with its arms stretched out sideways: 15 bodies and 14 joints. Its soles are at `base`; without `yaw` (radians
+/// about y) it faces +z, with its left toward +x.
 fn figure(scene: &mut Blueprint, base: Vec3, yaw: f32) {
     figure_at(scene, Transform::new(base, Rotation::from_axis_angle(Vec3::Y, yaw)), 1.0);
 }
 
-/// Adds a figure as [`figure`] does, but anyhow turned, and `scale` times as large.
+/// Adds a figure as [`figure`] does, at any rotation and scaled by `scale`.
 pub(super) fn figure_at(scene: &mut Blueprint, stand: Transform, scale: f32) {
     let mut figure = Figure { scene, stand, scale };
     let pelvis = figure.cuboid([0.15, 0.09, 0.09], [0.0, 0.95, 0.0]);
@@ -131,7 +131,7 @@ pub(super) fn figure_at(scene: &mut Blueprint, stand: Transform, scale: f32) {
     }
 }
 
-/// A figure being made.
+/// Builder of a figure.
 struct Figure<'a> {
     scene: &'a mut Blueprint,
     /// World from the figure's own frame.

@@ -5,10 +5,9 @@ use crate::parts::{ball, body, fixed, ghost};
 use sinew::math::{Rotation, Vec3, trig};
 use sinew::physics::{BodyDef, BodyKind, Shape, Sleeping};
 
-/// 100 × 100 balls 1 m apart in a plumb plane, neighbours joined halfway between them, the top row fixed, at rest.
+/// 100 × 100 balls 1 m apart in a vertical plane, neighbours joined halfway between them, the top row fixed, at rest.
 ///
-/// Box3D's `joint_grid`: 9,900 balls of radius 0.4 m move. Of its 19,800 ball joints the 99 between fixed balls are left
-/// out: 19,701.
+/// Box3D's `joint_grid`: 9,900 balls of radius 0.4 m move. It has 19,701 ball joints: the 99 of 19,800 between fixed balls are omitted.
 pub fn joint_grid() -> Blueprint {
     joint_grid_of(100)
 }
@@ -30,12 +29,12 @@ pub fn joint_grid_of(side: usize) -> Blueprint {
     scene
 }
 
-/// A net of 8 × 8 knots of 0.1 kg with rods of 0.5 m and 0.1 kg between neighbours, let sag from its two upper corners,
-/// and 20 kg below the middle of its lower edge: 112 rods, 225 ball joints, 49 loops.
+/// A net of 8 × 8 knots of 0.1 kg with rods of 0.5 m and 0.1 kg between neighbours, released to sag from its two upper corners, with 20 kg
+/// below the middle of its lower edge: 112 rods, 225 ball joints, 49 loops.
 pub fn net() -> Blueprint {
     const SIDE: usize = 8;
     const SPACING: f32 = 0.5;
-    /// From the middle of the arc in which each row starts to its ends, radians.
+    /// Half angle of the arc in which each row starts, radians.
     const HALF_ARC: f32 = 1.0;
     let mut scene = Blueprint::new("net", Sleeping::Off, 600);
     // Knots on a circle whose chords are the net's spacing.
@@ -68,7 +67,7 @@ fn cells(side: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..side).flat_map(move |row| (0..side).map(move |column| (row, column)))
 }
 
-/// Pairs of knots of a square net beside or above each other, by their places in [`cells`].
+/// Pairs of neighbouring knots of a square net, by their indices in [`cells`].
 fn neighbors(side: usize) -> impl Iterator<Item = [usize; 2]> {
     cells(side).flat_map(move |(row, column)| {
         let this = row * side + column;

@@ -1,4 +1,4 @@
-//! Our own ragdoll, that of the mannequin, as other engines and MuJoCo can have it.
+//! The ragdoll of the mannequin, in a form that other engines and MuJoCo can build.
 
 use super::{Blueprint, BlueprintJoint};
 use crate::mannequin::mannequin;
@@ -8,25 +8,25 @@ use sinew::math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, cla
 use sinew::physics::{BodyDef, JointKind, Material, Shape, ShapeDef, Sleeping};
 use sinew::ragdoll::{BuildOptions, RagdollDef, RagdollJointDef, build};
 
-/// Friction of everything in these scenes: flesh's.
+/// Friction of everything in these scenes: that of flesh.
 const FRICTION: f32 = 0.7;
 
-/// Gap between a figure that is put down and the ground, metres.
+/// Initial gap between a figure and the ground, metres.
 const ABOVE: f32 = 0.05;
 
-/// Half of the width of the pit of a heap of 100, metres: 16 figures stand in it side by side.
+/// Half width of the pit of a heap of 100, metres: 16 figures fit in it side by side.
 const PIT: f32 = 3.6;
-/// From one figure of a heap to the next, metres: their arms reach that far.
+/// Spacing of figures in a heap, metres, limited by the reach of their arms.
 const APART: f32 = 1.8;
 
-/// The mannequin's ragdoll with plain capsules, its bind pose the one in which all joints are at the zero of their limits: a blueprint's angles are
-/// zero at the start. A hinge that has no zero is at the end of its range that is next to it.
+/// The mannequin's ragdoll with plain capsules. In its bind pose all joints are at the zero of their limits, as blueprints require. A hinge
+/// whose range excludes zero starts at the nearer end of its range.
 pub fn humanoid() -> RagdollDef {
     let rig = mannequin().rig;
     let analysis = analyze(&rig).expect("the mannequin has a skin");
     let (mut def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
     for body in &mut def.bodies {
-        // Masses stay: other engines have no capsules that taper.
+        // Masses stay unchanged: other engines have no tapered capsules.
         if let Shape::TaperedCapsule { half_height, radius_bottom, radius_top } = body.shape {
             body.shape = Shape::Capsule { half_height, radius: 0.5 * (radius_bottom + radius_top) };
         }
@@ -53,13 +53,13 @@ fn start_angle(kind: JointKind) -> f32 {
 /// Limits of a figure in a blueprint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Limits {
-    /// Limits of the ragdoll, and its joints' friction.
+    /// The ragdoll's own limits and joint friction.
     Own,
-    /// Limits that every engine has: round cones as wide as the ellipse in the mean, hinges, and no friction in joints.
+    /// Limits that every engine supports: round cones with the mean width of the ellipse, hinges, and no joint friction.
     Common,
 }
 
-/// The figure lies where it was put down on its back, and does not sleep.
+/// A figure lies on its back where it was placed, and does not sleep.
 pub fn humanoid_lying() -> Blueprint {
     let mut scene = Blueprint::new("humanoid_lying", Sleeping::Off, 600);
     scene.body(made_of_flesh(floor()));
@@ -68,17 +68,17 @@ pub fn humanoid_lying() -> Blueprint {
     scene
 }
 
-/// `count` figures fall into a pit, in which they become one heap that does not sleep.
+/// `count` figures fall into a pit and form one heap that does not sleep.
 pub fn humanoid_pile(count: usize) -> Blueprint {
     heap("humanoid_pile", count, Limits::Own)
 }
 
-/// 100 figures fall into a pit and become one heap; with limits that every engine has.
+/// 100 figures fall into a pit and form one heap, with limits that every engine supports.
 pub fn crowd_pile() -> Blueprint {
     heap("crowd_pile", 100, Limits::Common)
 }
 
-/// In layers, the pit as wide as the heap is to be high.
+/// Builds a heap in layers, in a pit as wide as the heap is to be high.
 fn heap(name: &'static str, count: usize, limits: Limits) -> Blueprint {
     let mut scene = Blueprint::new(name, Sleeping::Off, 600);
     scene.body(made_of_flesh(floor()));
@@ -150,7 +150,7 @@ fn figure(scene: &mut Blueprint, def: &RagdollDef, stand: Transform, limits: Lim
     scene.apart.extend(def.disabled_pairs.iter().map(|&(a, b)| (first + a, first + b)));
 }
 
-/// The joint from where it starts, with the limits asked for.
+/// The joint in its start pose, with the requested limits.
 fn kind(joint: &RagdollJointDef, limits: Limits) -> JointKind {
     let start = start_angle(joint.kind);
     let from_start = |range: Range| Range::new(range.lo - start, range.hi - start);
@@ -162,7 +162,7 @@ fn kind(joint: &RagdollJointDef, limits: Limits) -> JointKind {
         (JointKind::Ball { limit: Some(limit) }, Limits::Common) => {
             JointKind::Ball { limit: Some(rounded(&limit, from_start(limit.twist))) }
         }
-        // Whose twist is locked: other engines have a range for it, which may be small.
+        // Its twist is locked. Other engines have a range for it, which may be small.
         (JointKind::Universal { limit: Some(limit) }, Limits::Common) => {
             JointKind::Ball { limit: Some(rounded(&limit, Range::symmetric(LOCKED))) }
         }
@@ -170,17 +170,17 @@ fn kind(joint: &RagdollJointDef, limits: Limits) -> JointKind {
     }
 }
 
-/// Range of a twist that should have none, radians (1°).
+/// Range of a locked twist, radians (1°).
 const LOCKED: f32 = 0.0175;
 
-/// With a round cone of the same area, to first order.
+/// Replaces an elliptic cone by a round one of the same area, to first order.
 fn rounded(limit: &SwingTwistLimit, twist: Range) -> SwingTwistLimit {
     let half = |range: Range| 0.5 * (range.hi - range.lo);
     let cone = Range::symmetric((half(limit.swing_y) * half(limit.swing_z)).sqrt());
     SwingTwistLimit { swing_y: cone, swing_z: cone, twist }
 }
 
-/// Places in a blueprint of the figures' first bodies: one after the other.
+/// Indices in a blueprint of the first body of each figure.
 pub fn roots(scene: &Blueprint) -> Vec<usize> {
     scene.dynamic().filter(|&place| scene.joints.iter().all(|joint| joint.b != place)).collect()
 }

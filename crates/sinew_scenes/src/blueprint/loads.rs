@@ -1,4 +1,4 @@
-//! Jointed things that lie on, hang from and lean on what stands.
+//! Jointed loads that lie on, hang from and lean on standing bodies.
 
 use super::figure::figure_at;
 use super::{Blueprint, BlueprintJoint, stack_mass_ratio};
@@ -7,8 +7,7 @@ use core::f32::consts::FRAC_PI_2;
 use sinew::math::{Rotation, Transform, Vec3, trig};
 use sinew::physics::{BodyDef, JointKind, Shape};
 
-/// Two boxes end to end on a level place, `half` long each way from its middle, `mass` heavy in all, with a ball joint
-/// where they meet.
+/// Two boxes end to end on a level place, `half` long each way from its middle and of total mass `mass`, with a ball joint where they meet.
 pub(crate) fn pair(scene: &mut Blueprint, place: Transform, half: f32, mass: f32) {
     let side = half * Vec3::new(0.45, 0.15, 0.3);
     let [a, b] = [-1.0, 1.0].map(|way| {
@@ -20,13 +19,13 @@ pub(crate) fn pair(scene: &mut Blueprint, place: Transform, half: f32, mass: f32
     scene.ball(a, b, place.point(Vec3::Y * side.y));
 }
 
-/// A rope through these points, a link from each to the next, `mass` heavy in all; gives its first link.
+/// Adds a rope through these points, with one link between each two and total mass `mass`. Returns its first link.
 pub(crate) fn rope(scene: &mut Blueprint, points: &[Vec3], radius: f32, mass: f32) -> usize {
     let first = scene.bodies.len();
     let links = points.len() - 1;
     for (i, ends) in points.windows(2).enumerate() {
         let along = ends[1] - ends[0];
-        // Ends of links that meet do not collide: they reach up to the joint.
+        // The meeting ends of links do not collide, so they reach up to the joint.
         let half_height = 0.5 * along.length() - radius;
         let link = body(Shape::Capsule { half_height, radius }, 0.5 * (ends[0] + ends[1]));
         let rotation = Rotation::from_arc(Vec3::Y, along.normalize());
@@ -38,7 +37,7 @@ pub(crate) fn rope(scene: &mut Blueprint, points: &[Vec3], radius: f32, mass: f3
     first
 }
 
-/// Points of a rope over a level top from −x to +x, `half` wide each way, down both sides.
+/// Points of a rope over a level top of half width `half` and down both sides, from −x to +x.
 pub(crate) fn over(top: Vec3, half: f32, radius: f32) -> Vec<Vec3> {
     let out = half + radius;
     let link = 0.5 * out;
@@ -49,15 +48,15 @@ pub(crate) fn over(top: Vec3, half: f32, radius: f32) -> Vec<Vec3> {
     [left.as_slice(), &across, &right].concat()
 }
 
-/// A rope of four links of length `link` that hangs down from a point of a body, to which it is joined.
+/// A rope of four links of length `link` that hangs from a point of a body.
 pub(crate) fn hanging(scene: &mut Blueprint, from: usize, at: Vec3, link: f32, mass: f32) {
     let points = [0.0, 1.0, 2.0, 3.0, 4.0].map(|down| at - Vec3::Y * (down * link));
     let first = rope(scene, &points, 0.1 * link, mass);
     scene.ball(from, first, at);
 }
 
-/// A plank of two halves welded together that stands on the plane y = 0 and leans by `degrees` from the plumb line, toward −x, so
-/// that its upper edge touches a wall at `touch`; as long as that takes.
+/// A plank of two halves welded together that stands on the plane y = 0 and leans by `degrees` from the vertical, toward −x, so that its
+/// upper edge touches a wall at `touch`. Its length follows from that.
 pub(crate) fn leaning(scene: &mut Blueprint, touch: Vec3, degrees: f32, mass: f32) {
     let length = touch.y / trig::cos(degrees.to_radians());
     let half = Vec3::new(0.04, 0.25, 0.1) * length;
@@ -77,10 +76,9 @@ pub(crate) fn leaning(scene: &mut Blueprint, touch: Vec3, degrees: f32, mass: f3
     });
 }
 
-/// A limp figure, `scale` times as large as a man, on its back along x, its centre of mass over the middle of a level
-/// place.
+/// A limp figure, `scale` times as large as a man, on its back along x, with its centre of mass over the centre of a level place.
 pub(crate) fn figure(scene: &mut Blueprint, place: Transform, scale: f32) {
-    /// Height of its centre of mass over its soles, and half of its chest's depth, metres.
+    /// Height of its centre of mass above its soles, and half the depth of its chest, metres.
     const CENTER: f32 = 1.04;
     const BACK: f32 = 0.1;
     let on_its_back = Rotation::from_axis_angle(Vec3::X, -FRAC_PI_2);
@@ -96,7 +94,7 @@ pub(crate) fn stack(boxes: usize) -> Blueprint {
     scene
 }
 
-/// The same of another density, so that it weighs so much.
+/// Changes the density so that the body has the given mass.
 fn weighing(mut def: BodyDef, mass: f32) -> BodyDef {
     let shape = &mut def.shapes[0];
     shape.density = mass / shape.shape.mass_properties(1.0).mass;

@@ -1,4 +1,4 @@
-//! Scenes as plain data, so that Sinew and other engines are built from the same words.
+//! Scenes as plain data, so that Sinew and other engines build them from the same description.
 //!
 //! Metres, kilograms, y up, gravity 9.81 m/s² down, steps of 1/60 s. Unless a scene says otherwise: friction 0.6,
 //! restitution 0, density 1000 kg/m³.
@@ -31,7 +31,7 @@ use sinew::physics::{
     BodyDef, BodyId, BodyKind, JointDef, JointId, JointKind, ShapeDef, Sleeping, World, WorldDef,
 };
 
-/// A scene before any engine has it.
+/// A scene as data, independent of any engine.
 #[derive(Clone, Debug)]
 pub struct Blueprint {
     /// Name of the scene.
@@ -40,32 +40,32 @@ pub struct Blueprint {
     pub gravity: Vec3,
     /// Sleeping mode: tells if bodies may fall asleep.
     pub sleeping: Sleeping,
-    /// Steps of 1/60 s that it is run for.
+    /// Number of steps of 1/60 s in a run.
     pub steps: u32,
-    /// All bodies; joints name them by their places here. One whose shapes have filter mask 0 collides with nothing.
+    /// All bodies; joints refer to them by index. A body whose shapes have filter mask 0 collides with nothing.
     pub bodies: Vec<BodyDef>,
     /// All joints.
     pub joints: Vec<BlueprintJoint>,
-    /// Pairs of bodies that do not collide, beside those that a joint holds.
+    /// Pairs of bodies that do not collide, besides those with a joint.
     pub apart: Vec<(usize, usize)>,
 }
 
 /// A joint of a [`Blueprint`]: its angles are zero in the start pose, and its two bodies do not collide.
 #[derive(Clone, Copy, Debug)]
 pub struct BlueprintJoint {
-    /// Place of the first body, the parent where there is one.
+    /// Index of the first body, the parent if there is one.
     pub a: usize,
-    /// Place of the second body.
+    /// Index of the second body.
     pub b: usize,
     /// Anchor and axes in the start pose; hinges and twists are about x.
     pub world_from_joint: Transform,
-    /// Kind of the joint: the motion that is free.
+    /// Kind of the joint: its free motions.
     pub kind: JointKind,
-    /// Torque that resists what is free, N·m.
+    /// Torque that resists the free motions, N·m.
     pub friction_torque: f32,
 }
 
-/// Ids of what a [`Blueprint`] has become in a world, in its order.
+/// Ids of a [`Blueprint`]'s bodies and joints in a world, in its order.
 #[derive(Clone, Debug, Default)]
 pub struct Built {
     /// One for each body.
@@ -75,13 +75,13 @@ pub struct Built {
 }
 
 impl Blueprint {
-    /// Without bodies, in Earth's gravity.
+    /// Creates a blueprint without bodies, with Earth's gravity.
     fn new(name: &'static str, sleeping: Sleeping, steps: u32) -> Self {
         let gravity = Vec3::NEG_Y * GRAVITY;
         Self { name, gravity, sleeping, steps, bodies: Vec::new(), joints: Vec::new(), apart: Vec::new() }
     }
 
-    /// A world of its own.
+    /// Builds a world of its own.
     pub fn build(&self) -> (World, Vec<BodyId>, Vec<JointId>) {
         let Self { gravity, sleeping, .. } = *self;
         let mut world = World::new(WorldDef { gravity, sleeping, ..WorldDef::default() });
@@ -89,7 +89,7 @@ impl Blueprint {
         (world, bodies, joints)
     }
 
-    /// Adds its bodies and joints to a world, whose gravity and sleeping are its own.
+    /// Adds its bodies and joints to a world, which keeps its own gravity and sleeping mode.
     pub fn build_into(&self, world: &mut World) -> Built {
         let bodies: Vec<_> = self.bodies.iter().map(|def| world.add_body(def)).collect();
         let joint = |joint: &BlueprintJoint| {
@@ -102,7 +102,7 @@ impl Blueprint {
         Built { bodies, joints }
     }
 
-    /// The same, moved.
+    /// Moves the whole scene.
     pub fn moved(mut self, by: Vec3) -> Self {
         for body in &mut self.bodies {
             body.position += by;
@@ -113,8 +113,8 @@ impl Blueprint {
         self
     }
 
-    /// The same from another start: each body that moves is put aside by up to `most` metres, as the `seed` says. Joints go with
-    /// their second bodies. Heaps are chaotic: what holds of one start may not hold of the next.
+    /// Perturbs the start: each moving body is displaced by up to `most` metres, depending on `seed`. Joints move with their second bodies.
+    /// Heaps are chaotic: a result for one start may not hold for another.
     pub fn perturbed(mut self, seed: u64, most: f32) -> Self {
         let mut random = Random::new(seed);
         let aside: Vec<Vec3> = self.bodies.iter().map(|_| in_box(&mut random, -most, most)).collect();
@@ -129,12 +129,12 @@ impl Blueprint {
         self
     }
 
-    /// Places of the bodies that move.
+    /// Indices of the moving bodies.
     pub fn dynamic(&self) -> impl Iterator<Item = usize> {
         (0..self.bodies.len()).filter(|&place| self.bodies[place].kind == BodyKind::Dynamic)
     }
 
-    /// Adds a body; gives its place.
+    /// Adds a body and returns its index.
     fn body(&mut self, def: BodyDef) -> usize {
         self.bodies.push(def);
         self.bodies.len() - 1
@@ -152,25 +152,24 @@ fn pose(def: &BodyDef) -> Transform {
     Transform::new(def.position, def.rotation)
 }
 
-/// The same, colliding with nothing and `mass` heavy, its inertia that of its one shape.
+/// Makes a body collide with nothing and have the given mass, with the inertia of its one shape.
 fn weighed_ghost(mass: f32, def: BodyDef) -> BodyDef {
     let ShapeDef { ref shape, density, .. } = def.shapes[0];
     BodyDef { mass: Some(shape.mass_properties(density).scaled_to(mass)), ..ghost(def) }
 }
 
-/// The same, losing 5 % of its speeds per second: what the piles are made of.
+/// Makes a body lose 5 % of its speeds per second; all piles use this.
 fn damped(def: BodyDef) -> BodyDef {
     BodyDef { linear_damping: 0.05, angular_damping: 0.05, ..def }
 }
 
-/// Three numbers of `lo..hi`, x first.
+/// Vector of three random numbers in `lo..hi`, x first.
 pub fn in_box(random: &mut Random, lo: f32, hi: f32) -> Vec3 {
     let mut next = || random.range(lo, hi);
     Vec3::new(next(), next(), next())
 }
 
-/// Uniform over all rotations (Shoemake 1992: three numbers, without rejection, so that other programs can draw the
-/// same).
+/// Uniform random rotation (Shoemake 1992). It uses exactly three numbers, without rejection, so that other programs can draw the same.
 pub fn rotation(random: &mut Random) -> Rotation {
     let [u, v, w] = [random.unit(), random.unit(), random.unit()];
     let (sin_v, cos_v) = trig::sin_cos(core::f32::consts::TAU * v);

@@ -1,4 +1,4 @@
-//! Things put so that they stand: stacks, a tower, a house of cards.
+//! Structures built to stand: stacks, a tower, a house of cards.
 
 use super::Blueprint;
 use crate::parts::{cuboid, floor, made_of};
@@ -6,11 +6,11 @@ use core::f32::consts::{FRAC_PI_2, PI};
 use sinew::math::{Rotation, Transform, Vec3, trig};
 use sinew::physics::{BodyDef, Material, Sleeping};
 
-/// Cubes of 0.5 m on top of each other, each `ratio` times as heavy as the one that it stands on.
+/// Cubes of 0.5 m on top of each other, each `ratio` times as heavy as the one below.
 pub fn stack_mass_ratio(boxes: usize, ratio: f32) -> Blueprint {
     const HALF: f32 = 0.25;
     let mut scene = on_floor("stack_mass_ratio");
-    // Of the lowest, kg/m³.
+    // Density of the lowest cube, kg/m³.
     let mut density = 1.0;
     for i in 0..boxes {
         let mut def = cuboid(Vec3::splat(HALF), Vec3::Y * (HALF * (2 * i + 1) as f32));
@@ -21,7 +21,7 @@ pub fn stack_mass_ratio(boxes: usize, ratio: f32) -> Blueprint {
     scene
 }
 
-/// Cubes on top of each other, the lowest of 0.125 m, each twice as large as the one that it stands on.
+/// Cubes on top of each other, the lowest of 0.125 m, each twice as large as the one below.
 pub fn stack_ratio(boxes: usize) -> Blueprint {
     let mut scene = on_floor("stack_ratio");
     let (mut half, mut height) = (0.0625, 0.0);
@@ -51,8 +51,8 @@ pub fn jenga(levels: usize) -> Blueprint {
     scene
 }
 
-/// A house of cards 0.4 m long, 0.2 m wide and 2 mm thick, with so many pairs that lean against each other below, one
-/// fewer in each storey; friction 0.7.
+/// A house of cards 0.4 m long, 0.2 m wide and 2 mm thick, with `pairs` leaning pairs in the lowest storey and one fewer in each storey
+/// above; friction 0.7.
 pub fn cards(pairs: usize) -> Blueprint {
     const SURFACE: Material = Material { friction: 0.7, ..Material::DEFAULT };
     let mut scene = Blueprint::new("cards", Sleeping::On, 600);
@@ -74,15 +74,15 @@ fn on_floor(name: &'static str) -> Blueprint {
 const THICKNESS: f32 = 0.002;
 const LENGTH: f32 = 0.4;
 const WIDTH: f32 = 0.2;
-/// Lean of two cards against each other, each from the plumb line, radians.
+/// Tilt of each leaning card from the vertical, radians.
 const LEAN: f32 = 25.0 * PI / 180.0;
-/// From a pair to the next, metres: the lying cards reach over both tops, but not to the feet of the next storey.
+/// Spacing of the pairs, metres: the lying cards reach over both tops, but not to the feet of the next storey.
 const PITCH: f32 = 0.38;
 
 /// Poses of all cards, storey by storey: x along their thickness, y along their length.
 ///
-/// Of the lying cards each but the first rests with its left end on the end of the one before, as shingles do, and what
-/// stands on it leans with it.
+/// Each lying card except the first rests with its left end on the end of the previous one, like shingles, and the pairs on it lean
+/// accordingly.
 fn house_of_cards(pairs: usize) -> Vec<Transform> {
     let flat = Rotation::from_axis_angle(Vec3::Z, FRAC_PI_2);
     let place = |i: usize| Vec3::X * (PITCH * (i as f32 - 0.5 * (pairs - 1) as f32));
@@ -103,7 +103,7 @@ fn house_of_cards(pairs: usize) -> Vec<Transform> {
     cards
 }
 
-/// Height of the middle of a leaning card, metres: half that of its uppermost corner.
+/// Height of the centre of a leaning card, metres: half that of its uppermost corner.
 fn middle() -> f32 {
     let (sin, cos) = trig::sin_cos(LEAN);
     0.5 * (THICKNESS * sin + LENGTH * cos)

@@ -1,5 +1,4 @@
-//! Heaps on wavy ground: as Box3D's wave pile and mesh drop, which show by the step at which they sleep that a run can be
-//! repeated.
+//! Heaps on wavy ground, modelled on Box3D's wave pile and mesh drop, which verify repeatability by the step at which all bodies sleep.
 
 use super::{Blueprint, in_box, rotation};
 use crate::parts::{ball, body, cuboid, fixed, made_of};
@@ -31,7 +30,7 @@ pub fn wave_pile() -> Blueprint {
     scene
 }
 
-/// 400 sticks of 4 × 40 × 8 cm, which meet only the ground, fall onto waves from 5 m, spinning.
+/// 400 sticks of 4 × 40 × 8 cm, which collide with the ground only, fall spinning onto waves from 5 m.
 pub fn mesh_drop() -> Blueprint {
     const SIDE: usize = 20;
     const GROUND: u32 = 1;
@@ -81,7 +80,7 @@ fn rock(random: &mut Random) -> Hull {
     Hull::new(&corners).expect("so many points are a solid")
 }
 
-/// Rolling resistance over the radius of what rolls; a quarter of that of the largest ball inside where nothing is round.
+/// Rolling resistance over the radius of a rolling body; for shapes without roundings, a quarter of that of the largest ball inside.
 const ROLLING: f32 = 0.3;
 
 fn rolling(radius: f32) -> Material {
@@ -92,7 +91,7 @@ fn rolling(radius: f32) -> Material {
 pub(crate) struct Waves {
     /// Number of cells of 1 m along each side.
     pub cells: usize,
-    /// From the middle to the crests, metres.
+    /// Height of the crests above the mean, metres.
     pub height: f32,
     /// Along x and z, 1/m.
     pub frequencies: [f32; 2],
@@ -111,7 +110,7 @@ impl Waves {
         (0..side).flat_map(move |row| (0..side).map(move |column| self.height(row, column)))
     }
 
-    /// Position of its corner if its middle is to be at the origin, metres.
+    /// Position of its corner with its centre at the origin, metres.
     fn corner(&self) -> Vec3 {
         Vec3::new(-0.5, 0.0, -0.5) * self.cells as f32
     }

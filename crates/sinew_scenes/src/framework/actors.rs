@@ -12,7 +12,7 @@ use sinew::math::{Affine, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyId, BodyKind, DebugDraw, DrawKind, Shape, Velocity, World};
 use std::sync::Arc;
 
-/// A character as a picture shows it: by its skin.
+/// A character as drawn in a picture, by its skin.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure<'a> {
     /// Its joints and meshes.
@@ -21,7 +21,7 @@ pub struct Figure<'a> {
     pub world_from_joint: &'a [Affine],
 }
 
-/// A rig and what it can play.
+/// A rig and its clips.
 pub(crate) struct Cast {
     pub rig: Rig,
     pub set: AnimationSet,
@@ -42,7 +42,7 @@ impl Cast {
         self.set.add_clip(clip)
     }
 
-    /// Adds a cycle without the way that it goes, which becomes its root motion; what is in phase are its footfalls.
+    /// Adds a cycle, with its translation converted to root motion and its footfalls as the phase.
     pub fn add_cycle(&mut self, cycle: &Cycle, events: Vec<ClipEvent>) -> ClipId {
         let (still, motion) = extract_root_motion(&cycle.clip, &self.rig, &RootMotionOptions::on_ground(0));
         let clip = self.built(&still);
@@ -61,20 +61,20 @@ impl Cast {
     }
 }
 
-/// A character on its way through its clips.
+/// A character that plays its clips.
 pub(crate) struct Actor {
     pub cast: Arc<Cast>,
     pub animator: Animator,
-    /// World from character: where it stands.
+    /// World from character.
     pub place: Transform,
     pub local: Vec<LocalTransform>,
     /// World from joint.
     pub model: Vec<Affine>,
-    /// Balls that the world knows of, each with its joint.
+    /// Balls in the world that show joints, each with its joint.
     marks: Vec<(BodyId, usize)>,
 }
 
-/// Joints that are marked, as for motion capture.
+/// Marked joints, as in motion capture.
 const MARKED: [&str; 5] = ["head", "leftHand", "rightHand", "leftFoot", "rightFoot"];
 
 impl Actor {
@@ -86,7 +86,7 @@ impl Actor {
         actor
     }
 
-    /// Puts balls into a world that go along with head, hands and feet and touch nothing.
+    /// Adds balls to a world that follow head, hands and feet and collide with nothing.
     pub fn mark(&mut self, world: &mut World) {
         for name in MARKED {
             let joint = self.cast.joint(name);
@@ -96,7 +96,7 @@ impl Actor {
         }
     }
 
-    /// Lets the next step of the world bring the balls to where their joints are.
+    /// Moves the balls to their joints in the next step of the world.
     pub fn lead_marks(&self, world: &mut World) {
         let dt = world.def().dt();
         for &(ball, joint) in &self.marks {
@@ -105,17 +105,17 @@ impl Actor {
         }
     }
 
-    /// Takes the animation forward, and the character along with it.
+    /// Advances the animation and moves the character by its root motion.
     pub fn update(&mut self, seconds: f32) {
         self.animator.update(&self.cast.set, seconds);
     }
 
-    /// Goes where the animation went.
+    /// Moves the character by the animation's root motion.
     pub fn go(&mut self) {
         self.place = self.place * self.animator.root_motion();
     }
 
-    /// Brings the joints to where the animation has them.
+    /// Updates the joints from the animation.
     pub fn pose(&mut self) {
         self.local.clear();
         self.local.extend(self.animator.pose().iter());
@@ -127,20 +127,20 @@ impl Actor {
     }
 }
 
-/// Steps of a world that animation has gone along with. A world that was restored in the middle is ahead: then the animation
-/// catches up from its start.
+/// Number of world steps that the animation has followed. After a world was restored in the middle, the animation catches up from its
+/// start.
 #[derive(Default)]
 pub(crate) struct Gone(u64);
 
 impl Gone {
-    /// Numbers of the steps up to the one that comes next, each told once.
+    /// Numbers of the steps up to the next one, each returned once.
     pub fn due(&mut self, world: &World) -> Range<u64> {
         let next = u64::max(self.0, world.step_count() + 1);
         core::mem::replace(&mut self.0, next)..next
     }
 }
 
-/// Draws a mark of that size (metres) on a floor at y = 0.
+/// Draws a mark of the given size (metres) on a floor at y = 0.
 pub(crate) fn mark_floor(at: Vec3, size: f32, out: &mut dyn DebugDraw) {
     let at = Vec3::new(at.x, 0.01, at.z);
     for arm in [Vec3::X, Vec3::Z, Vec3::new(0.7, 0.0, 0.7), Vec3::new(0.7, 0.0, -0.7)] {

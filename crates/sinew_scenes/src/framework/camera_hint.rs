@@ -3,21 +3,21 @@
 use sinew::math::Vec3;
 use sinew::physics::boxes::Aabb;
 
-/// From where a picture looks at a scene, and at what.
+/// Direction and bounds of a scene's view in a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraHint {
     /// Toward the camera, any length. Default a little from above and from the right of a viewer who looks along −z.
     pub direction: Vec3,
-    /// Bounds of what has to be on the picture, world space, metres. Default whatever moves.
+    /// Bounds that must be visible, world space, metres. Default: all moving bodies.
     pub bounds: Option<Aabb>,
     /// Default those of a few bodies.
     pub trails: Trails,
 }
 
-/// Choice of whether the ways of the bodies' centres of mass are drawn.
+/// Drawing mode of the paths of the bodies' centres of mass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trails {
-    /// If there are no more than a dozen bodies that move and nothing else.
+    /// Only if there are at most a dozen moving bodies and nothing else.
     Few,
     /// Never.
     None,

@@ -1,12 +1,12 @@
-//! Curves beside a world that a picture tells apart.
+//! Curves drawn beside a world and compared in a picture.
 
 use sinew::math::Vec3;
 
-/// Curve of several that are compared: a picture gives each a colour of its own, by its place among them, and writes its name in that colour.
+/// One of several compared curves. A picture gives each a colour by its index, and writes its name in that colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// Name in the legend.
     pub name: String,
-    /// Its pieces, from and to, world space, metres. Later curves are drawn over earlier ones.
+    /// Line segments of the curve, world space, metres. Later curves are drawn over earlier ones.
     pub pieces: Vec<[Vec3; 2]>,
 }

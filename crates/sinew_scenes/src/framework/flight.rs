@@ -1,12 +1,12 @@
-//! Free fall of bodies that hang together.
+//! Free fall of connected bodies.
 
 use super::metric::{Expected, Metric};
 use crate::parts::GRAVITY;
 use sinew::math::{Vec3, trig};
 use sinew::physics::{BodyId, World};
 
-/// Watches how the momentum of some bodies changes until they meet another: by their weight alone, whatever their
-/// joints and contacts do among themselves.
+/// Measures how the momentum of some bodies changes until they hit another body: only by their weight, whatever their joints and contacts
+/// do among themselves.
 pub(crate) struct Flight {
     bodies: Vec<BodyId>,
     mass: f32,
@@ -39,7 +39,7 @@ impl Flight {
         }
     }
 
-    /// True if they have met another.
+    /// Returns true if they have hit another body.
     pub fn landed(&self) -> bool {
         self.landed
     }

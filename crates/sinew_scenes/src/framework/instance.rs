@@ -1,4 +1,4 @@
-//! A scene that runs.
+//! A running scene.
 
 use super::actors::Figure;
 use super::camera_hint::CameraHint;
@@ -9,23 +9,23 @@ use sinew::math::{ReadError, Reader, Vec3, Writer, max};
 use sinew::physics::stage::{NoProfiler, Profiler};
 use sinew::physics::{BodyId, DebugDraw, Energy, LoadError, Serial, TaskRunner, Update, World};
 
-/// The part of a scene that goes along with its world.
+/// The part of a scene that accompanies its world.
 pub trait Script: Send {
-    /// Before each step: moves what is led by hand, such as bodies that follow an animation. As with
-    /// [`after_step`](Self::after_step), what it does depends on the world alone.
+    /// Runs before each step and moves scripted bodies, such as those that follow an animation. Like [`after_step`](Self::after_step), it
+    /// depends on the world alone.
     fn before_step(&mut self, _world: &mut World) {}
 
-    /// After each step: watches, and pushes what the next step is to feel. What it pushes depends on the world alone,
-    /// so that a restored world goes on as the saved one did.
+    /// Runs after each step: measures, and applies impulses for the next step. These depend on the world alone, so that a restored world
+    /// continues as the saved one did.
     fn after_step(&mut self, _world: &mut World) {}
 
-    /// [`after_step`](Self::after_step) for a host that reads a clock: `done` is told of each part of the work as soon as it is
-    /// done. The same work in the same order.
+    /// [`after_step`](Self::after_step) for a host that measures time: `done` is called after each part of the work. The work and its order
+    /// are the same.
     fn after_step_in_parts(&mut self, world: &mut World, _done: &mut dyn FnMut(Part)) {
         self.after_step(world);
     }
 
-    /// Writes what the script itself knows and the future depends on, if there is anything beside the world.
+    /// Writes the script's own state that affects the future, if it has any.
     fn save(&self, _out: &mut Writer) {}
 
     /// Reads what [`save`](Self::save) wrote.
@@ -36,8 +36,7 @@ pub trait Script: Send {
         Ok(())
     }
 
-    /// Energy that drives have given the world since the start, less what they took, J; asked after
-    /// [`after_step`](Self::after_step).
+    /// Net energy that drives have given the world since the start, J; called after [`after_step`](Self::after_step).
     fn work_in(&self, _world: &World) -> f32 {
         0.0
     }
@@ -50,7 +49,7 @@ pub trait Script: Send {
         CameraHint::default()
     }
 
-    /// Draws what a picture shows beside the world, such as what it asks the world for.
+    /// Draws additional content of a picture, such as query results.
     fn draw(&self, _world: &World, _out: &mut dyn DebugDraw) {}
 
     /// Curves that are compared, each in a colour of its own.
@@ -58,17 +57,17 @@ pub trait Script: Send {
         Vec::new()
     }
 
-    /// Characters that a picture shows by their skins.
+    /// Characters that a picture draws by their skins.
     fn figures(&self) -> Vec<Figure<'_>> {
         Vec::new()
     }
 
-    /// Bodies that those skins show.
+    /// Bodies that these skins replace in a picture.
     fn bodies_of_figures(&self) -> Vec<BodyId> {
         Vec::new()
     }
 
-    /// Lets the character that a person may lead walk from the next step on, m/s, world space; nobody in most scenes.
+    /// Sets the velocity of the character that a user may control, from the next step on, m/s, world space. Most scenes have none.
     fn steer(&mut self, _way: Vec3) {}
 
     /// Place of that character, metres, world space.
@@ -77,16 +76,16 @@ pub trait Script: Send {
     }
 }
 
-/// A part of the work that goes along with a step.
+/// A part of the work of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// For whom, such as characters in a state; always in the same order.
+    /// Name of the part, such as characters in a state; the parts are always in the same order.
     pub name: &'static str,
     /// Number of them.
     pub count: u32,
 }
 
-/// Nothing but the world itself.
+/// Script of a world alone.
 struct Unwatched;
 
 impl Script for Unwatched {
@@ -107,7 +106,7 @@ impl Instance {
         Self { world, script: Box::new(script), health: Health::default() }
     }
 
-    /// Instance of a world that no scene made, such as a file's.
+    /// Instance of a world that no scene created, such as that of a file.
     pub fn of_world(world: World) -> Self {
         Self::new(world, Unwatched)
     }
@@ -127,17 +126,17 @@ impl Instance {
         self.script.curves()
     }
 
-    /// Characters that a picture shows by their skins.
+    /// Characters that a picture draws by their skins.
     pub fn figures(&self) -> Vec<Figure<'_>> {
         self.script.figures()
     }
 
-    /// Bodies that those skins show.
+    /// Bodies that these skins replace in a picture.
     pub fn bodies_of_figures(&self) -> Vec<BodyId> {
         self.script.bodies_of_figures()
     }
 
-    /// Lets the character that a person may lead walk from the next step on, m/s, world space.
+    /// Sets the velocity of the character that a user may control, from the next step on, m/s, world space.
     pub fn steer(&mut self, way: Vec3) {
         self.script.steer(way);
     }
@@ -147,12 +146,12 @@ impl Instance {
         self.script.steered()
     }
 
-    /// Its world, for questions, drawing, snapshots.
+    /// Its world, for queries, drawing and snapshots.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// Its world, to be pushed about or to load a snapshot of the same scene into.
+    /// Its world, to change it or to load a snapshot of the same scene into it.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
@@ -167,9 +166,8 @@ impl Instance {
         self.step_in_parts(runner, profiler, &mut |_| {});
     }
 
-    /// One step, as [`step_with`](Self::step_with); `done` is told when the world has taken its step (a part named
-    /// [`WORLD`](Self::WORLD), for all its bodies), and then of each part of what goes along with it, so that a host with a
-    /// clock knows what took how long.
+    /// One step, like [`step_with`](Self::step_with). `done` is called after the world's step (a part named [`WORLD`](Self::WORLD), for all
+    /// its bodies) and after each further part of the work, so that a host can measure the time of each.
     pub fn step_in_parts(
         &mut self,
         runner: &dyn TaskRunner,
@@ -183,7 +181,7 @@ impl Instance {
     /// Name of the part that is the world's step.
     pub const WORLD: &'static str = "world";
 
-    /// Writes the world and what the script knows beside it.
+    /// Writes the world and the script's state.
     pub fn save(&self, out: &mut Writer) {
         self.world.save(out);
         self.script.save(out);
@@ -198,7 +196,7 @@ impl Instance {
         Ok(self.script.load(bytes)?)
     }
 
-    /// Runs the whole steps that `time` more holds, as [`World::update`] does; the script sees each.
+    /// Takes all whole steps due after another `time`, as [`World::update`] does; the script runs for each.
     pub fn update(&mut self, time: Duration) -> Update {
         let Self { world, script, health } = self;
         world.update_with(time, |world| step(world, script.as_mut(), health, &World::step, &mut |_| {}))
@@ -226,21 +224,21 @@ fn step(
     script.before_step(world);
     let before = world.energy();
     step(world);
-    // What the script pushes, lets go and leads again is no work of this step.
+    // Work that the script does by pushes, releases and restarted animations is not part of this step.
     let (after, mass) = (world.energy(), mass_of(world));
     done(Part { name: Instance::WORLD, count: world.body_ids().count() as u32 });
     script.after_step_in_parts(world, done);
     health.after_step(world, [before, after], mass, script.work_in(world));
 }
 
-/// Mass of all that forces move, kg: a character weighs while nothing leads it.
+/// Mass of all bodies moved by forces, kg; characters count while no clip moves them.
 fn mass_of(world: &World) -> f32 {
     let of_bodies: f32 = world.body_ids().map(|id| world.mass(id).mass).sum();
     let of_particles: f32 = world.group_ids().flat_map(|id| world.particles(id).masses()).sum();
     of_bodies + of_particles
 }
 
-/// Faults that no scene may show, however long it runs.
+/// Errors that no scene may show, however long it runs.
 #[derive(Default)]
 struct Health {
     /// Energy that drives have put in, J.
@@ -251,7 +249,7 @@ struct Health {
 
 impl Health {
     fn after_step(&mut self, world: &World, [before, after]: [Energy; 2], mass: f32, work_in: f32) {
-        // Each kind by itself: their sums are large and lose digits.
+        // Subtract each kind of energy by itself: their sums are large and lose digits.
         let rise = (after.kinetic - before.kinetic) + (after.potential - before.potential)
             - (work_in - self.work_in);
         self.work_in = work_in;

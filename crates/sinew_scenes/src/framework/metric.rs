@@ -3,7 +3,7 @@
 /// Expectation of a figure at the end of a scene's steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Expected {
-    /// A closed form, and how far from it is still right.
+    /// A closed form and its tolerance.
     Near {
         /// The closed form.
         value: f64,
@@ -24,13 +24,13 @@ impl Expected {
     }
 }
 
-/// A figure of a run, from queries to the world alone. Its unit is the end of its name: `_m`, `_s`, `_j`, `_deg` …; none
-/// where it is a share or a count.
+/// A figure of a run, computed from queries to the world alone. The unit is the end of its name: `_m`, `_s`, `_j`, `_deg` …; shares and
+/// counts have none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
     /// Unique in its scene.
     pub name: &'static str,
-    /// `None` as long as what it tells has not happened.
+    /// `None` if the measured event has not happened yet.
     pub value: Option<f64>,
     /// Expectation of the value.
     pub expected: Expected,
@@ -46,7 +46,7 @@ impl Metric {
         Self { name, value: value.map(f64::from), expected }
     }
 
-    /// True if the figure is as expected. What is expected of something must have happened.
+    /// Returns true if the figure meets its expectation. An event with an expectation must have happened.
     pub fn is_met(&self) -> bool {
         match (self.expected, self.value) {
             (Expected::Anything, _) => true,

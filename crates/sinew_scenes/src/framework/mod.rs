@@ -1,4 +1,4 @@
-//! Framework of scenes: what each of them is made of, and what several of them measure.
+//! Framework of scenes: their building blocks and shared measurements.
 
 pub(crate) mod actors;
 pub(crate) mod camera_hint;

@@ -1,4 +1,4 @@
-//! One actor's captured motion, and how it is carried over to others.
+//! One actor's captured motion, and its retargeting to other characters.
 
 use crate::mannequin::mannequin;
 use sinew::anim::retarget::{Body, Pace, RetargetError, RetargetOptions, Retargeted, retarget, stand};
@@ -13,11 +13,11 @@ pub(crate) struct Performance {
     analysis: RigAnalysis,
 }
 
-/// Longest motion that is taken, seconds.
+/// Longest accepted motion, seconds.
 const LONGEST: f32 = 600.0;
 
 impl Performance {
-    /// Performance of a file, or why it cannot be carried over.
+    /// Reads a performance from a file; returns the reason if it cannot be retargeted.
     pub fn of(document: BvhDocument) -> Result<Self, String> {
         let BvhDocument { rig, clip, rest_pose, .. } = document;
         if clip.duration > LONGEST {
@@ -39,7 +39,7 @@ impl Performance {
     pub fn fitted(&self, rig: &Rig) -> Result<Retargeted, RetargetError> {
         let analysis =
             analyze_skeleton(rig, &rest_pose(rig)).expect("what is made of the mannequin has bones");
-        // A giant is not taken for a human in other units.
+        // Fix the unit, so that a giant does not count as a human in other units.
         let analysis = analysis.with_unit_scale(1.0);
         let (from, to) =
             (Body { rig: &self.rig, analysis: &self.analysis }, Body { rig, analysis: &analysis });

@@ -6,7 +6,7 @@ use sinew::math::{Rotation, Transform, Vec3, min};
 use sinew::physics::{Velocity, World};
 use sinew::ragdoll::{BodySettings, BodyState, BuildOptions, Ragdoll, RagdollDef, build};
 
-/// A character in a pose, turned and moving as one, its lowest point at the height of `place`.
+/// Spawns a character in a pose, rotated and moving as one rigid piece, with its lowest point at the height of `place`.
 pub(crate) fn spawn_at(
     world: &mut World,
     def: &RagdollDef,
@@ -21,7 +21,7 @@ pub(crate) fn spawn_at(
     Ragdoll::spawn(world, def, &states, &BodySettings::default())
 }
 
-/// Transforms of the bodies of a pose that is turned, its lowest point at the height of `place`.
+/// Transforms of the bodies of a rotated pose, with its lowest point at the height of `place`.
 pub(crate) fn placed(
     def: &RagdollDef,
     pose: &[Transform],

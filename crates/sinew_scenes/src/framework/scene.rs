@@ -3,7 +3,7 @@
 use super::instance::Instance;
 use super::setting::{Setting, Settings, Setup};
 
-/// Chapter of scenes: what they are about.
+/// Topic of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Chapter {
     /// Bodies that nothing touches.
@@ -59,7 +59,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Its settings, all at their defaults.
+    /// Its settings at their defaults.
     pub fn settings(&self) -> Settings {
         Settings::new(self.settings)
     }
@@ -72,8 +72,8 @@ impl Scene {
         self.start_under(settings, 1.0)
     }
 
-    /// Builds it in a world whose gravity is wrong by a factor, while its expectations remain those of the right one:
-    /// they must fail wherever gravity matters.
+    /// Builds it in a world with gravity scaled by a factor, with the expectations of the unscaled gravity. The expectations must fail
+    /// wherever gravity matters.
     ///
     /// # Panics
     /// If the settings are those of another scene.

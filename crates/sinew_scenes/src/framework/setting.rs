@@ -10,20 +10,20 @@ use sinew::math::Vec3;
 use sinew::physics::{Sleeping, World, WorldDef};
 use sinew::ragdoll::RagdollDef;
 
-/// Values that a setting takes: numbers, ends included, or a file.
+/// Allowed values of a setting: numbers (bounds included) or a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Domain {
     /// Any number from the first to the second.
     Number(f32, f32),
     /// Any whole number from the first to the second.
     Whole(u16, u16),
-    /// Path of a model in MJCF, which is read when it is set.
+    /// Path of an MJCF model, which is read when it is set.
     Model,
-    /// Path of a level, a GLB or OBJ, likewise.
+    /// Path of a level, GLB or OBJ, read when it is set.
     Level,
-    /// Path of a character, a GLB, likewise; need not be set.
+    /// Path of a character, GLB, read when it is set; optional.
     Character,
-    /// Path of a captured motion, a BVH, likewise.
+    /// Path of a captured motion, BVH, read when it is set.
     Motion,
 }
 
@@ -34,7 +34,7 @@ pub struct Setting {
     pub key: &'static str,
     /// Description, with its unit.
     pub about: &'static str,
-    /// Value unless set; 0 for a file.
+    /// Default value; 0 for a file.
     pub default: f32,
     /// Values that it may have.
     pub domain: Domain,
@@ -88,7 +88,7 @@ impl Setting {
     }
 }
 
-/// Why a setting was refused. One line each.
+/// Reason why a setting was refused, in one line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingError {
     /// It is not `key=value`.
@@ -97,9 +97,9 @@ pub enum SettingError {
     /// The scene has no such setting.
     #[error("no setting `{key}`; there is {}", list(.known))]
     UnknownKey {
-        /// Key that was asked for.
+        /// Requested key.
         key: String,
-        /// Keys that there are.
+        /// Existing keys.
         known: Vec<&'static str>,
     },
     /// Its value is not one that it takes.
@@ -159,7 +159,7 @@ impl Settings {
         Self { declared, values, model: None, level: None, character: None, motion: None }
     }
 
-    /// Settings that there are.
+    /// Declared settings.
     pub fn declared(&self) -> &'static [Setting] {
         self.declared
     }
@@ -187,7 +187,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Reads the file that a setting names; false if it is no file.
+    /// Reads the file named by a setting; returns false if the setting is no file.
     fn read(&mut self, domain: Domain, path: &str) -> Result<bool, SettingError> {
         let refused = |what: String| sinew::formats::Error::malformed(what, "").with_file(path);
         match domain {
@@ -218,7 +218,7 @@ impl Settings {
     /// Checks that the scene can start.
     ///
     /// # Errors
-    /// A file that has to be set is not.
+    /// If a required file is missing.
     pub fn check(&self) -> Result<(), SettingError> {
         let missing = |setting: &&Setting| match setting.domain {
             Domain::Model => self.model.is_none(),
@@ -247,7 +247,7 @@ impl Settings {
 /// Input from which a scene is built.
 pub(crate) struct Setup<'a> {
     pub settings: &'a Settings,
-    /// Factor of the world's gravity over the one that expectations are made for.
+    /// Scale of the world's gravity relative to that of the expectations.
     pub gravity_factor: f32,
 }
 
@@ -282,12 +282,12 @@ impl Setup<'_> {
         self.settings.character.as_ref()
     }
 
-    /// An empty world.
+    /// Creates an empty world.
     pub fn world(&self) -> World {
         self.world_with(Sleeping::On)
     }
 
-    /// An empty world in which nothing falls asleep: for what swings or flies for ever.
+    /// Creates an empty world without sleep, for bodies that swing or fly for ever.
     pub fn sleepless_world(&self) -> World {
         self.world_with(Sleeping::Off)
     }
@@ -296,7 +296,7 @@ impl Setup<'_> {
         World::new(WorldDef { sleeping, ..self.world_def() })
     }
 
-    /// For a world that differs from the usual one in more than sleep.
+    /// Definition of a world that differs from the usual one in more than sleep.
     pub fn world_def(&self) -> WorldDef {
         WorldDef { gravity: Vec3::NEG_Y * (GRAVITY * self.gravity_factor), ..WorldDef::default() }
     }

@@ -1,4 +1,4 @@
-//! Things that should stay where they are put.
+//! Bodies that should stay where they are placed.
 
 use super::camera_hint::{CameraHint, Trails};
 use super::flight::Flight;
@@ -8,14 +8,14 @@ use sinew::math::{Transform, Vec3, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::{BodyId, World};
 
-/// Most that bodies that stand may give.
+/// Largest allowed motion of standing bodies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bars {
     /// Sideways, any body, metres.
     pub shift: f64,
     /// Sideways, the last body, metres.
     pub top_drift: f64,
-    /// Down, any body, metres: contacts give by the weight above them.
+    /// Downward, any body, metres: contacts sink by the weight above them.
     pub sink: f64,
     /// Turn of any body, degrees.
     pub turn: f64,
@@ -25,11 +25,11 @@ pub(crate) struct Bars {
     pub asleep: Expected,
 }
 
-/// Watches bodies that stand.
+/// Measures standing bodies.
 pub(crate) struct Stand {
-    /// Transform at which each belongs, the top one last.
+    /// Target transform of each body, the top one last.
     placed: Vec<(BodyId, Transform)>,
-    /// Free fall of a body, for gravity's sake.
+    /// Free fall of a body, to verify gravity.
     flight: Flight,
     bars: Bars,
     /// Around all of them.

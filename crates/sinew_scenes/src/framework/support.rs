@@ -1,14 +1,13 @@
-//! Support of a world that hangs.
+//! Support forces of a hanging world.
 
 use super::metric::{Expected, Metric};
 use crate::parts::GRAVITY;
 use sinew::math::{Vec3, max};
 use sinew::physics::{BodyKind, JointId, World};
 
-/// The joints to static bodies of a world that touches nothing: what they carry is its weight and what its momentum
-/// gains.
+/// The joints to static bodies of a world without contacts: they carry its weight and the change of its momentum.
 pub(crate) struct Support {
-    /// To static bodies, and whether the static one is the first.
+    /// Joints to static bodies, and whether the static one is the first.
     joints: Vec<(JointId, bool)>,
     /// Weight of the world, N.
     weight: f32,

@@ -1,6 +1,6 @@
-//! Angles that go round.
+//! Angles of more than a full turn.
 
-/// Counts how far an angle has gone that moves by less than half a turn a step.
+/// Sums the motion of an angle that moves by less than half a turn a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Turn {
     last: Option<f32>,

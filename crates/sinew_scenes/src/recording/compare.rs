@@ -1,4 +1,4 @@
-//! The first step at which two recordings differ, and in what.
+//! Finds the first step at which two recordings differ, and how.
 
 use super::format::{KeyFrame, Recording};
 use super::record::Replay;
@@ -10,14 +10,14 @@ use sinew::physics::{BodyId, World};
 pub enum Difference {
     /// They are of different scenes or settings.
     Scene,
-    /// After that many steps their states differ; before, they were equal.
+    /// Their states differ after that many steps, and were equal before.
     State {
         /// Steps taken.
         step: u64,
-        /// First body whose pose differs, with both poses; `None` where no pose does, or where neither recording can be played again.
+        /// First body whose pose differs, with both poses; `None` if no pose differs, or if neither recording can be replayed.
         body: Option<(BodyId, [Transform; 2])>,
     },
-    /// All steps that both have are equal; one has more.
+    /// One has more steps; all common steps are equal.
     Length {
         /// Steps that both have.
         common: u64,
@@ -37,13 +37,13 @@ pub fn compare(a: &Recording, b: &Recording) -> Option<Difference> {
     let step = place as u64 + 1;
     let body = match (state_at(a, step), state_at(b, step)) {
         (Some(a), Some(b)) => first_body(&poses(a.instance().world()), &poses(b.instance().world())),
-        // What this version cannot play again it knows by its key frames alone.
+        // Recordings that this version cannot replay are compared by their key frames.
         _ => first_of_key_frames(a, b, step),
     };
     Some(Difference::State { step, body })
 }
 
-/// A recording played up to a step; `None` if it came to another state on the way.
+/// Replays a recording up to a step; `None` if its state diverged on the way.
 fn state_at(recording: &Recording, step: u64) -> Option<Replay> {
     let mut replay = Replay::start(recording.clone()).ok()?;
     for _ in 0..step {

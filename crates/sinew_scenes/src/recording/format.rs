@@ -8,17 +8,17 @@ use sinew::physics::BodyId;
 
 /// First bytes of the file.
 const MAGIC: &[u8; 8] = b"sinewrec";
-/// Version of the format. What is added later comes with a higher one.
+/// Version of the format. Additions increase it.
 pub const FORMAT: u32 = 2;
-/// Version without checksums, which is read as well.
+/// Version without checksums, which can still be read.
 const UNCHECKED: u32 = 1;
-/// Steps of a block, at most.
+/// Largest number of steps in a block.
 const STEPS_OF_BLOCK: usize = 64;
 
-/// Record of what was done to a scene, and of what became of it.
+/// Operations on a scene and their results.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
-    /// Version of Sinew that made it: only this one is known to have the same bits.
+    /// Version of Sinew that recorded it: only this one is known to reproduce the bits.
     pub made_by: String,
     /// Name of the scene.
     pub scene: String,
@@ -28,14 +28,14 @@ pub struct Recording {
     pub dt: f32,
     /// All steps, in order.
     pub steps: Vec<RecordedStep>,
-    /// Poses at times, in the order of their steps; the first is the start.
+    /// Poses at some steps, in order; the first is the start.
     pub key_frames: Vec<KeyFrame>,
 }
 
 /// A step of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedStep {
-    /// Done before the step.
+    /// Operations before the step.
     pub operations: Vec<Operation>,
     /// Hash of the world's state after it.
     pub hash: u64,
@@ -44,7 +44,7 @@ pub struct RecordedStep {
 /// Poses of all bodies at a time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KeyFrame {
-    /// Steps that have been taken.
+    /// Number of steps taken.
     pub step: u64,
     /// World from body, for each body in the order of ids.
     pub bodies: Vec<(BodyId, Transform)>,
@@ -81,7 +81,7 @@ impl Recording {
     /// Reads a file.
     ///
     /// # Errors
-    /// Bytes that are no recording, are not those that were written, end too early, or come from a later format.
+    /// Bytes that are no recording, fail their checksums, end too early, or have a later format.
     pub fn read(bytes: &[u8]) -> Result<Self, Error> {
         if bytes.get(..MAGIC.len()) != Some(MAGIC) {
             return Err(Error::malformed("is no recording", "byte 0"));
@@ -156,7 +156,7 @@ fn write_checked(out: &mut Writer, write: impl FnOnce(&mut Writer)) {
     out.u64(hash_bytes(content.as_bytes()));
 }
 
-/// A block whose content has the hash that it was written with.
+/// Reads a block and verifies the hash of its content.
 fn checked<'a>(reader: &mut Reader<'a>) -> Result<Reader<'a>, ReadError> {
     let block = reader.block()?;
     let content = block.clone().raw(block.remaining())?;
@@ -169,7 +169,7 @@ fn checked<'a>(reader: &mut Reader<'a>) -> Result<Reader<'a>, ReadError> {
 fn write_step(out: &mut Writer, step: &RecordedStep) {
     out.u64(step.hash);
     out.count(step.operations.len());
-    // Each in a block: a reader passes over the kinds that it does not know.
+    // Write each in a block, so that a reader can skip unknown kinds.
     step.operations.iter().for_each(|operation| out.block(|out| write_operation(out, operation)));
 }
 
@@ -199,7 +199,7 @@ fn read_key_frame(reader: &mut Reader<'_>) -> Result<KeyFrame, ReadError> {
     Ok(KeyFrame { step, bodies })
 }
 
-/// A pose that can be drawn.
+/// Reads a finite pose.
 fn transform(reader: &mut Reader<'_>) -> Result<Transform, ReadError> {
     let place = reader.transform()?;
     let rotation = place.rotation;
@@ -211,7 +211,7 @@ fn wrong(error: &ReadError) -> Error {
     Error::malformed(error.what, format!("byte {}", error.at + MAGIC.len()))
 }
 
-/// Kinds of operations in the file. Never used again for something else.
+/// Kinds of operations in the file. A number is never reused.
 mod kind {
     pub const GRAB: u8 = 1;
     pub const LEAD: u8 = 2;

@@ -1,4 +1,4 @@
-//! Hands of a person in a running scene.
+//! User interaction with a running scene.
 
 use crate::framework::instance::Instance;
 use sinew::math::{Transform, Vec3, max};
@@ -7,35 +7,35 @@ use sinew::physics::{
     Softness, World,
 };
 
-/// Deed of a person in a running scene, between two steps. Lengths in metres, world space.
+/// User operation on a running scene, between two steps. Lengths in metres, world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operation {
     /// Takes hold of a body at a point.
     Grab {
-        /// The body; nothing happens if it is not there or does not move.
+        /// The body; if it does not exist or does not move, nothing happens.
         body: BodyId,
-        /// Point at which it is held.
+        /// Point at which it is grabbed.
         point: Vec3,
     },
-    /// Pulls what is held toward a point.
+    /// Pulls the grabbed body toward a point.
     Lead {
         /// The point.
         to: Vec3,
     },
     /// Lets go.
     Release,
-    /// Strikes a body.
+    /// Applies an impulse to a body.
     Push {
-        /// The body; nothing happens if it is not there or does not move.
+        /// The body; if it does not exist or does not move, nothing happens.
         body: BodyId,
         /// N·s.
         impulse: Vec3,
-        /// Point at which it strikes.
+        /// Point of application.
         point: Vec3,
     },
     /// Throws a ball.
     Throw {
-        /// Its middle.
+        /// Its centre.
         position: Vec3,
         /// m/s.
         velocity: Vec3,
@@ -44,14 +44,14 @@ pub enum Operation {
         /// kg/m³, above 0.
         density: f32,
     },
-    /// Lets the character that a person may lead walk so; nothing happens in scenes that have none.
+    /// Sets the velocity of the character that a user may control; in scenes without one, nothing happens.
     Steer {
         /// m/s.
         way: Vec3,
     },
-    /// Puts a box into the world.
+    /// Adds a box to the world.
     Put {
-        /// Its middle.
+        /// Its centre.
         position: Vec3,
         /// Half of each side, metres, above 0.
         half_extents: Vec3,
@@ -60,15 +60,15 @@ pub enum Operation {
     },
 }
 
-/// Frequency at which what hangs together swings on the hand that holds it, Hz: lower lags behind the hand, higher jerks.
+/// Frequency at which connected bodies swing on the hand, Hz. Lower: they lag behind the hand; higher: they jerk.
 const HERTZ: f32 = 2.5;
-/// Force of a hand, in weights of what hangs together on it (at 9.81 m/s²): lower cannot lift what lies under other things, higher
-/// tears at joints.
+/// Force of a hand, in weights of the connected bodies (at 9.81 m/s²). Lower: it cannot lift what lies under other things; higher: it tears
+/// joints.
 const STRENGTH: f32 = 12.0;
 /// Weight of a kilogram, N.
 const WEIGHT: f32 = 9.81;
 
-/// Hands of a person in a world: what they hold. Plain data beside the world; what they do to it is in its snapshot.
+/// Hands of a user in a world: the grabbed body. Plain data beside the world; their effects are in its snapshot.
 #[derive(Clone, Debug, Default)]
 pub struct Hands {
     grip: Option<Grip>,
@@ -79,12 +79,12 @@ struct Grip {
     hand: BodyId,
     joint: JointId,
     body: BodyId,
-    /// In the body.
+    /// Grab point in the body's frame.
     held: Vec3,
     pull: Pull,
 }
 
-/// Spring of a hand, whose force has an end.
+/// Spring of a hand with a limited force.
 #[derive(Clone, Copy, Debug)]
 struct Pull {
     /// N.
@@ -93,7 +93,7 @@ struct Pull {
 }
 
 impl Pull {
-    /// On what weighs so much, kg: critically damped.
+    /// Critically damped spring for a mass, kg.
     fn on(mass: f32) -> Self {
         let omega = HERTZ * core::f32::consts::TAU;
         let softness = Softness::Stiffness { stiffness: mass * omega * omega, damping: 2.0 * mass * omega };
@@ -107,7 +107,7 @@ impl Pull {
 }
 
 impl Hands {
-    /// Does it to the world. What makes no sense there (a body that is gone, numbers that are not finite) does nothing.
+    /// Applies an operation to the world. Invalid ones (a removed body, non-finite numbers) have no effect.
     pub fn apply(&mut self, world: &mut World, operation: &Operation) {
         if !operation.is_sound() {
             return;
@@ -116,7 +116,7 @@ impl Hands {
             Operation::Grab { body, point } => self.grab(world, body, point),
             Operation::Lead { to } => self.lead(world, to),
             Operation::Release => self.release(world),
-            // No matter of the world's.
+            // Steering is not an operation on the world.
             Operation::Steer { .. } => {}
             Operation::Push { body, impulse, point } => {
                 if moves(world, body) {
@@ -136,7 +136,7 @@ impl Hands {
         }
     }
 
-    /// Ends of the spring between what is held and where it is pulled, metres, world space.
+    /// Ends of the spring: the grab point and its target, metres, world space.
     pub fn spring(&self, world: &World) -> Option<[Vec3; 2]> {
         let grip = self.grip.filter(|grip| world.contains(grip.body) && world.contains_joint(grip.joint))?;
         let to = world.joint(grip.joint).motor?.target.translation;
@@ -180,7 +180,7 @@ fn moves(world: &World, body: BodyId) -> bool {
     world.contains(body) && world.kind(body) == BodyKind::Dynamic
 }
 
-/// Mass of a body and of all that hangs on it by joints, kg.
+/// Mass of a body and of all bodies connected to it by joints, kg.
 fn mass_together(world: &World, body: BodyId) -> f32 {
     let (mut found, mut next) = (vec![body], 0);
     while let Some(&body) = found.get(next) {
@@ -198,7 +198,7 @@ fn mass_together(world: &World, body: BodyId) -> f32 {
 }
 
 impl Operation {
-    /// The same on the body of that number in whatever world: ids know the world that they are of, and another one plays the recording.
+    /// The same operation on the body with that number in any world: ids belong to one world, and a replay runs in another.
     pub(super) fn of_any_world(mut self) -> Self {
         if let Self::Grab { body, .. } | Self::Push { body, .. } = &mut self {
             *body = BodyId::from_bits(body.to_bits());
@@ -206,14 +206,14 @@ impl Operation {
         self
     }
 
-    /// Does to a scene what its world alone cannot be told.
+    /// Applies operations that need the scene, not only its world.
     pub(super) fn apply_to(&self, instance: &mut Instance) {
         if let (Self::Steer { way }, true) = (*self, self.is_sound()) {
             instance.steer(way);
         }
     }
 
-    /// True if its numbers are finite, no farther than 10⁶ m, and its sizes above 0.
+    /// Returns true if its numbers are finite and at most 10⁶ m, and its sizes above 0.
     fn is_sound(&self) -> bool {
         let near = |v: Vec3| v.to_array().into_iter().all(|x| x.abs() < 1e6);
         let positive = |x: f32| x > 1e-4 && x < 1e6;

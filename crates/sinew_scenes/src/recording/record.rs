@@ -1,4 +1,4 @@
-//! Making recordings, and playing them again.
+//! Records and replays scenes.
 
 use super::format::{KeyFrame, RecordedStep, Recording};
 use super::hands::{Hands, Operation};
@@ -12,16 +12,16 @@ use sinew::physics::{BodyId, Serial, TaskRunner, World};
 /// Steps between key frames.
 const KEY_FRAME_STEPS: u64 = 30;
 
-/// A scene that runs, and the recording of it.
+/// A running scene and its recording.
 pub struct Recorder {
     instance: Instance,
     hands: Hands,
     recording: Recording,
-    /// For the step that comes next.
+    /// Operations for the next step.
     operations: Vec<Operation>,
 }
 
-/// A scene with settings, `key=value` each, ready to run.
+/// Creates an instance of a scene with settings, each `key=value`.
 fn instance_of(scene: &str, settings: &[String]) -> Result<Instance, Error> {
     let refused = |what: String| Error::unsupported(what, "scene");
     let scene = find(scene).ok_or_else(|| refused(format!("no scene '{scene}'")))?;
@@ -37,12 +37,12 @@ impl Recorder {
     /// Starts a scene by name, with settings `key=value`.
     ///
     /// # Errors
-    /// If there is no such scene, or it refuses a setting.
+    /// If the scene does not exist or refuses a setting.
     pub fn start(scene: &str, settings: &[String]) -> Result<Self, Error> {
         Ok(Self::of(instance_of(scene, settings)?, scene, settings))
     }
 
-    /// Recorder of an instance that has not taken a step yet, made from that scene with those settings.
+    /// Recorder of an instance without steps so far, made from that scene with those settings.
     pub fn of(instance: Instance, scene: &str, settings: &[String]) -> Self {
         let world = instance.world();
         let recording = Recording {
@@ -66,7 +66,7 @@ impl Recorder {
         &self.hands
     }
 
-    /// Does something to the scene now; it is recorded for the step that comes next.
+    /// Applies an operation now; it is recorded for the next step.
     pub fn apply(&mut self, operation: Operation) {
         self.hands.apply(self.instance.world_mut(), &operation);
         operation.apply_to(&mut self.instance);
@@ -109,14 +109,14 @@ fn key_frame(world: &World) -> KeyFrame {
     KeyFrame { step: world.step_count(), bodies }
 }
 
-/// A recording that is played again, by doing the same anew.
+/// A recording in replay: the operations are applied again.
 pub struct Replay {
     instance: Instance,
     hands: Hands,
     recording: Recording,
 }
 
-/// State in the middle of a recording that is played, to which it can go again.
+/// Saved state in the middle of a replay, to which it can return.
 #[derive(Clone, Debug)]
 pub struct Mark {
     step: u64,
@@ -136,14 +136,14 @@ impl Mark {
     }
 }
 
-/// A step that was played again.
+/// A replayed step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReplayedStep {
     /// Steps taken, this one included.
     pub step: u64,
-    /// Hash of the state that was recorded.
+    /// Recorded hash of the state.
     pub recorded: u64,
-    /// Hash of the state that it came to now.
+    /// Hash of the state in the replay.
     pub found: u64,
 }
 
@@ -151,7 +151,7 @@ impl Replay {
     /// Starts at the recording's first step.
     ///
     /// # Errors
-    /// If this version has no such scene, or it refuses a setting.
+    /// If this version does not have the scene, or it refuses a setting.
     pub fn start(recording: Recording) -> Result<Self, Error> {
         let instance = instance_of(&recording.scene, &recording.settings)?;
         Ok(Self { instance, hands: Hands::default(), recording })
@@ -172,7 +172,7 @@ impl Replay {
         &self.recording
     }
 
-    /// The state as it is now, to go to again.
+    /// Saves the present state, to return to it.
     pub fn mark(&self) -> Mark {
         let mut out = Writer::new();
         self.instance.save(&mut out);
@@ -180,16 +180,16 @@ impl Replay {
         Mark { step, state: out.into_bytes(), hands: self.hands.clone() }
     }
 
-    /// Goes to a state in which this recording has been; false if the scene cannot be taken there, in which case it is of no use
-    /// any more. Figures are those of when it was played last, but for what a scene saves of them.
+    /// Returns to a state of this recording. Returns false if the scene cannot be restored; the replay is then unusable. Figures are those
+    /// of the last playback, except those that a scene saves.
     pub fn go_to(&mut self, mark: &Mark) -> bool {
         let loaded = self.instance.load(&mut Reader::new(&mark.state));
         self.hands = mark.hands.clone();
         loaded.is_ok() && self.instance.world().step_count() == mark.step
     }
 
-    /// Body whose pose is another than a key frame of this step has it, or that is there in one of the two alone; `None` where none is, or
-    /// there is no key frame.
+    /// First body whose pose differs from the key frame of this step, or that exists in only one of the two; `None` without a difference or
+    /// a key frame.
     pub fn misplaced(&self) -> Option<BodyId> {
         let world = self.instance.world();
         let taken = world.step_count();

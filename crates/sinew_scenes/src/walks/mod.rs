@@ -1,5 +1,5 @@
-//! Random walks of a capsule over uneven ground, for our mover and for others: the ground, the wishes, and a flood fill that says where there is
-//! room to go.
+//! Random walks of a capsule over uneven ground, for Sinew's mover and others: the ground, the wanted velocities, and a flood fill that
+//! finds the reachable places.
 
 mod room;
 mod terrain;
@@ -11,34 +11,34 @@ use sinew::math::trig::{cos, sin};
 use sinew::math::{Random, Vec3, max};
 use sinew::physics::{MoverDef, MoverId, World};
 
-/// Steps of a random walk, and after how many it turns elsewhere.
+/// Number of steps of a random walk, and of steps between turns.
 pub const STEPS: usize = 120;
 const TURNS: usize = 20;
-/// Steps in which it comes to rest before its room is looked at.
+/// Steps in which it comes to rest before its surroundings are checked.
 const SETTLES: usize = 60;
-/// Depth from which a capsule counts as inside of something, metres.
+/// Depth from which a capsule counts as inside a body, metres.
 pub const INSIDE: f32 = 0.005;
-/// Way in a step from which a walk may have gone through something, metres: less leaves the capsule's axis on the side it was on.
+/// Displacement in a step from which a walk may have gone through a body, metres: a smaller one leaves the capsule's axis on the same side.
 const LONG: f32 = 0.25;
 
-/// One that walks: our mover, or the controller of another engine.
+/// A walker: Sinew's mover, or the controller of another engine.
 pub trait Walker {
     /// Lowest point of its capsule, world, metres.
     fn feet(&self) -> Vec3;
 
-    /// True if the ground bears it.
+    /// Returns true if the ground supports it.
     fn is_grounded(&self) -> bool;
 
-    /// One step of 1/60 s with a velocity over the ground that is wanted, m/s.
+    /// One step of 1/60 s with a wanted velocity over the ground, m/s.
     fn step(&mut self, wish: Vec3);
 }
 
-/// Capsule of all walks: that of [`MoverDef`]'s defaults, which is on its way within a few steps.
+/// Capsule of all walks: that of [`MoverDef`]'s defaults, with an acceleration of a few steps.
 pub fn capsule() -> MoverDef {
     MoverDef { ground_acceleration: 300.0, ..MoverDef::default() }
 }
 
-/// A mover of ours in a world of its own.
+/// Sinew's mover in a world of its own.
 pub struct Ours {
     world: World,
     id: MoverId,
@@ -51,7 +51,7 @@ impl Ours {
         Self { world, id }
     }
 
-    /// Its world again, without it.
+    /// Returns its world without it.
     pub fn leave(mut self) -> World {
         self.world.remove_mover(self.id);
         self.world
@@ -73,28 +73,28 @@ impl Walker for Ours {
     }
 }
 
-/// Tally of walks.
+/// Counts of walks.
 #[derive(Clone, Debug)]
 pub struct Tally {
     /// Free space around a capsule that counts as room, metres. Default 8 mm: more than a mover's skin.
     pub margin: f32,
     /// Number of walks, and of their steps.
     pub walks: usize,
-    /// Steps of all walks, those to where there is room left out.
+    /// Number of steps of all walks, without those to reachable places.
     pub steps: usize,
-    /// Steps after which the capsule was inside of something by more than [`INSIDE`].
+    /// Number of steps after which the capsule was inside a body by more than [`INSIDE`].
     pub inside: usize,
-    /// Deepest that it was inside of anything, metres.
+    /// Largest depth inside a body, metres.
     pub deepest: f32,
-    /// Walks that went through something or under the ground, and ended there.
+    /// Number of walks that went through a body or under the ground, and ended there.
     pub through: usize,
-    /// Walks that ended on ground from which a flood looked for room.
+    /// Number of walks that ended on ground from which a flood searched for room.
     pub floods: usize,
-    /// Places that the floods found, all together.
+    /// Number of places found by all floods.
     pub places: usize,
-    /// Floods whose last place was not come to.
+    /// Number of floods whose last place was not reached.
     pub stuck: usize,
-    /// Each fault in words, with its seed.
+    /// Description of each fault, with its seed.
     pub wrong: Vec<String>,
 }
 
@@ -116,8 +116,8 @@ impl Default for Tally {
 }
 
 impl Tally {
-    /// Two seconds of random walk from where a walker is, at up to `fast` m/s, another way every third of a second; then to the farthest place to
-    /// which a flood finds room.
+    /// Walks at random for two seconds from the walker's place, at up to `fast` m/s, with a new direction every third of a second; then
+    /// walks to the farthest place that a flood finds.
     pub fn walk(
         &mut self,
         on: &Terrain,
@@ -135,7 +135,7 @@ impl Tally {
         }
     }
 
-    /// Walks; what was worst.
+    /// Walks at random and returns the worst fault.
     fn wander(
         &mut self,
         on: &Terrain,
@@ -168,8 +168,8 @@ impl Tally {
         if worst > INSIDE { Err(format!("{worst} m inside at {place}")) } else { Ok(()) }
     }
 
-    /// Lets a walker stand, and sends it to the farthest place to which there is room; where it is stuck. What slides off a rim on the way looks around
-    /// again from where it is then.
+    /// Lets a walker stand, and sends it to the farthest reachable place; returns where it is stuck. A walker that slides off a rim on the
+    /// way searches again from there.
     fn explore(&mut self, on: &Terrain, walker: &mut dyn Walker) -> Result<(), String> {
         const TRIES: usize = 3;
         let (mut places, mut stuck) = (0, None);

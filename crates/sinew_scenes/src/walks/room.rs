@@ -1,4 +1,4 @@
-//! Room that a walker has: a flood fill over moves that its step height and slope limit allow, and walks along it.
+//! Reachable places of a walker: a flood fill over moves within its step height and slope limit, and walks along it.
 
 use super::{Terrain, Walker, capsule};
 use sinew::math::{Transform, Vec3, min, trig};
@@ -6,21 +6,21 @@ use sinew::physics::ray::Ray;
 use sinew::physics::{BodyHit, Probe, Shape, ShapeCast};
 use std::collections::{BTreeMap, VecDeque};
 
-/// Side of a cell, metres, and how many are looked at each way.
+/// Side of a cell, metres, and number of cells searched in each direction.
 const CELL: f32 = 0.1;
 const FAR: i32 = 12;
-/// Share of the step height and of the slope limit that is asked of it.
+/// Share of the step height and of the slope limit that the flood uses.
 const SHARE: f32 = 0.9;
-/// Distances behind an edge, and over and under it, at which a tread is looked for, metres.
+/// Distances behind an edge, and above and below it, at which a tread is searched, metres.
 const BEHIND_EDGE: f32 = 0.02;
 const OVER_EDGE: f32 = 0.04;
-/// Distance at which a place is reached, metres, and steps in which it must be.
+/// Distance at which a place counts as reached, metres, and the largest number of steps for that.
 const REACHED: f32 = 0.02;
 const PATIENCE: u32 = 60;
 /// Speed of the walk, m/s.
 const SPEED: f32 = 1.5;
 
-/// Places to which a walker can go from where it is, each with the one before it.
+/// Places that a walker can reach, each with the one before it.
 pub struct Room {
     /// Positions of its feet, metres.
     places: Vec<Vec3>,
@@ -28,8 +28,8 @@ pub struct Room {
 }
 
 impl Room {
-    /// Floods the cells around feet that stand. `margin`: free space around the capsule that counts as room, metres, more than what it keeps
-    /// from what it meets.
+    /// Floods the cells around standing feet. `margin` is the free space around the capsule that counts as room, metres; it must exceed the
+    /// mover's own skin.
     pub fn around(on: &Terrain, feet: Vec3, margin: f32) -> Self {
         let mut room = Self { places: vec![feet], before: vec![0] };
         let mut cells = BTreeMap::from([((0, 0), 0)]);
@@ -59,10 +59,10 @@ impl Room {
         self.places.len()
     }
 
-    /// Walks to the place that was found last.
+    /// Walks to the place found last.
     ///
     /// # Errors
-    /// The place it does not get to, and the one before that.
+    /// The place that it does not reach, and the one before that.
     pub fn walk(&self, walker: &mut dyn Walker) -> Result<(), [Vec3; 2]> {
         let mut path = vec![self.len() - 1];
         while let Some(&at) = path.last().filter(|at| **at != 0) {
@@ -87,7 +87,7 @@ impl Room {
     }
 }
 
-/// The place of the feet after a move of a cell; `None` where there is no room or no ground to walk on.
+/// The position of the feet after a move by a cell; `None` without room or walkable ground.
 fn step(on: &Terrain, feet: Vec3, way: Vec3, margin: f32) -> Option<Vec3> {
     let def = capsule();
     let cast = |feet: Vec3, translation: Vec3| -> Option<BodyHit> {
@@ -116,7 +116,7 @@ fn step(on: &Terrain, feet: Vec3, way: Vec3, margin: f32) -> Option<Vec3> {
         direction: Vec3::NEG_Y * (2.0 * OVER_EDGE),
     };
     let tread = || on.world.query().accept(|body, _| body == hit.body).first(&looks);
-    // A ray that begins within a solid meets it at once.
+    // A ray that begins within a solid hits it at once.
     let is_tread = || tread().is_some_and(|tread| tread.fraction > 0.0 && tread.normal.y > steepest);
     let is_low = hit.point.y - feet.y < high.y;
     (hit.normal.y > steepest || is_low && is_tread()).then_some(place)

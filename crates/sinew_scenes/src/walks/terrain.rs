@@ -1,4 +1,4 @@
-//! Ground of the walks: fixed bodies, and what is asked of them.
+//! Ground of the walks: static bodies, and queries about them.
 
 use super::capsule;
 use crate::cabin::Site;
@@ -8,13 +8,13 @@ use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, Hull, OverlapWith, PenetrationOf, Probe, Shape, World, WorldDef};
 
-/// Fixed bodies to walk among.
+/// Static bodies to walk among.
 pub struct Terrain {
     /// All bodies.
     pub bodies: Vec<BodyDef>,
-    /// A world of them, for questions.
+    /// World with these bodies, for queries.
     pub(super) world: World,
-    /// Triangles of its meshes, which are solid from their fronts alone.
+    /// Triangles of its meshes, which are solid from the front only.
     triangles: Vec<[Vec3; 3]>,
     /// Box in which walks begin, world, metres.
     within: Aabb,
@@ -56,7 +56,7 @@ impl Terrain {
         Self::new(bodies, corners(mesh, &Transform::IDENTITY), [Vec3::new(low.x, 0.05, low.z), high])
     }
 
-    /// Stairs among four walls that stand askew.
+    /// Stairs among four oblique walls.
     ///
     /// # Panics
     /// If a mesh has no triangle with an area.
@@ -72,7 +72,7 @@ impl Terrain {
         Self::new(bodies, triangles, [Vec3::new(-6.0, 0.05, -6.0), Vec3::new(6.0, 3.0, 6.0)])
     }
 
-    /// Forty solids, turned at random, half in the floor or in the air, within four walls.
+    /// Forty randomly rotated solids, half in the floor or in the air, within four walls.
     pub fn clutter(seed: u64) -> Self {
         const HALF: f32 = 6.0;
         let random = &mut Random::new(seed);
@@ -94,7 +94,7 @@ impl Terrain {
         Self::new(bodies, Vec::new(), [Vec3::new(-5.5, 0.05, -5.5), Vec3::new(5.5, 2.5, 5.5)])
     }
 
-    /// A tread across the way along +x, its edge at the origin, of a height in metres.
+    /// A step across +x, with its edge at the origin, of a height in metres.
     pub fn tread(height: f32) -> Self {
         let half_extents = Vec3::new(5.0, 0.5 * height, 20.0);
         let tread = BodyDef::fixed(Shape::Box { half_extents }).at(Vec3::new(5.0, 0.5 * height, 0.0));
@@ -126,7 +126,7 @@ impl Terrain {
         found.first().map_or(0.0, |deepest| deepest.depth)
     }
 
-    /// True if something lies between the axes of the capsule at two places.
+    /// Returns true if a body is between the axes of the capsule at two places.
     pub(super) fn parts(&self, before: Vec3, now: Vec3) -> bool {
         let middle = Vec3::Y * (0.5 * capsule().height);
         let blocked = |over: Vec3| {
@@ -136,7 +136,7 @@ impl Terrain {
         blocked(middle) && blocked(middle + Vec3::Y * 0.4)
     }
 
-    /// True if a point sees the outside of what is next to it in every direction.
+    /// Returns true if the nearest surface in every direction faces the point.
     fn is_in_front(&self, point: Vec3) -> bool {
         let mut random = Random::new(1);
         let mut direction = || random.rotation() * Vec3::X;
@@ -171,7 +171,7 @@ fn probe(feet: Vec3, margin: f32) -> Probe {
     Probe { shape, world_from_shape: Transform::from_translation(feet + Vec3::Y * (0.5 * def.height)) }
 }
 
-/// A box, a cylinder, a capsule or a hull by turns.
+/// Alternately a box, a cylinder, a capsule or a hull.
 fn solid(kind: u32, random: &mut Random) -> Shape {
     let size = random.range(0.1, 1.2);
     let mut length = || size * random.range(0.2, 1.0);

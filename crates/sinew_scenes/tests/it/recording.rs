@@ -112,7 +112,7 @@ fn a_kept_file_is_read() {
     assert_eq!(refused(&later), "is a recording of format 9; this version reads 1 and 2 (byte 8)");
 }
 
-/// A single bit that is another is told, wherever it is.
+/// A single flipped bit is reported, wherever it is.
 #[test]
 fn every_flipped_bit_is_seen() {
     let bytes = played(1.0).to_bytes();

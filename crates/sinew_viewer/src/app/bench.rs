@@ -1,4 +1,4 @@
-//! Hands on a ragdoll that is edited: a body is chosen, limits and sizes are drawn by handles, keys change them too.
+//! Interactive editing of a ragdoll: selects a body, and changes its limits and sizes by handles and keys.
 
 use super::App;
 use crate::layers::{Cone, add_cone, cone_of};
@@ -12,25 +12,25 @@ use sinew::ragdoll::doctor::scaled;
 use sinew::ragdoll::settings::BoneSettings;
 use sinew_picture::{LineDepth, draw};
 
-/// Distance from a handle at which it is taken, points.
+/// Largest distance at which a handle can be grabbed, points.
 const REACH: f32 = 11.0;
-/// Change of a limit by a key, radians (5°).
+/// Change of a limit by one key press, radians (5°).
 const KEY_TURN: f32 = 5.0 * core::f32::consts::PI / 180.0;
 /// Widest swing to each side, radians: a swing of half a turn has no direction.
 const WIDEST: f32 = 170.0 * core::f32::consts::PI / 180.0;
 /// Smallest and largest factor on a fitted shape.
 pub(super) const SCALES: [f32; 2] = [0.3, 3.0];
-/// Linear colour of what is chosen.
+/// Linear colour of the selection.
 const CHOSEN: [f32; 3] = [1.0, 0.35, 0.05];
 
-/// Choice on the workbench.
+/// Selection on the workbench.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bench {
-    /// Body that is chosen, by its place in the definition.
+    /// Selected body, by its index in the definition.
     pub chosen: Option<usize>,
-    /// Its changes as they are being made.
+    /// Its changes in progress.
     pub draft: BoneSettings,
-    /// Handle that is held.
+    /// Grabbed handle.
     held: Option<Handle>,
 }
 
@@ -49,13 +49,13 @@ impl Bench {
     }
 }
 
-/// The body that is chosen, in the world.
+/// The selected body in the world.
 fn body_of(app: &App) -> Option<(usize, BodyId)> {
     let chosen = app.bench.chosen?;
     Some((chosen, *app.session.ragdoll().get(chosen)?))
 }
 
-/// Chooses a body by its place in the definition, or none.
+/// Selects a body by its index in the definition, or none.
 pub(super) fn choose(app: &mut App, body: Option<usize>) {
     let Some(workbench) = app.session.workbench() else { return };
     let body = body.filter(|&body| body < workbench.def().bodies.len());
@@ -70,7 +70,7 @@ pub(super) fn choose(app: &mut App, body: Option<usize>) {
     }
 }
 
-/// Chooses the next body of the ragdoll, or the one before.
+/// Selects the next or the previous body of the ragdoll.
 pub(super) fn choose_next(app: &mut App, by: isize) {
     let Some(count) = app.session.workbench().map(|it| it.def().bodies.len()) else { return };
     let next = match app.bench.chosen {
@@ -81,7 +81,7 @@ pub(super) fn choose_next(app: &mut App, by: isize) {
     choose(app, Some(next));
 }
 
-/// Chooses what is seen at a place, points; nothing where it is no body of the ragdoll.
+/// Selects the body at a point, or nothing if it is not one of the ragdoll.
 pub(super) fn pick(app: &mut App, body: Option<BodyId>) {
     let found = app.session.ragdoll().iter().position(|&it| Some(it) == body);
     if found.is_some() || app.bench.chosen.is_some() {
@@ -89,7 +89,7 @@ pub(super) fn pick(app: &mut App, body: Option<BodyId>) {
     }
 }
 
-/// Takes over the draft: the ragdoll is made anew and falls again.
+/// Applies the draft: the ragdoll is rebuilt and dropped again.
 pub(super) fn commit(app: &mut App) {
     let Some(chosen) = app.bench.chosen else { return };
     let draft = app.bench.draft;
@@ -114,7 +114,7 @@ pub(super) fn commit(app: &mut App) {
     app.tell(line);
 }
 
-/// Ranges of the joint of the chosen body as they are being made, radians.
+/// Ranges of the selected body's joint, with the changes in progress, radians.
 pub(super) fn ranges(app: &App) -> [Option<Range>; 3] {
     let joint = app
         .bench
@@ -135,7 +135,7 @@ pub(super) fn set_range(app: &mut App, axis: usize, range: Range) {
     *[&mut draft.swing_y, &mut draft.swing_z, &mut draft.twist][axis] = Some(range);
 }
 
-/// Widens all ranges of the chosen joint by a key's step, or narrows them.
+/// Widens or narrows all ranges of the selected joint by one key step.
 pub(super) fn widen(app: &mut App, sign: f32) {
     let ranges = ranges(app);
     if ranges == [None; 3] {
@@ -171,7 +171,7 @@ fn tell_limits(app: &mut App) {
     app.tell(line);
 }
 
-/// Hands out the ragdoll, to be written.
+/// Exports the ragdoll as a file to be written.
 pub(super) fn save(app: &mut App) {
     match app.session.workbench().map(crate::session::Workbench::to_file) {
         Some(file) => app.files.push(file),
@@ -179,7 +179,7 @@ pub(super) fn save(app: &mut App) {
     }
 }
 
-/// Turns the camera to the body that is chosen.
+/// Points the camera at the selected body.
 pub(super) fn look_at_chosen(app: &mut App) {
     let Some((_, body)) = body_of(app) else { return };
     let world = app.session.world();
@@ -189,18 +189,18 @@ pub(super) fn look_at_chosen(app: &mut App) {
     app.orbit.distance = clamp(4.0 * size, 0.3, max(app.orbit.distance, 0.3));
 }
 
-/// The chosen joint's limits as they are being made.
+/// The limits of the selected joint, with the changes in progress.
 fn cone(app: &App) -> Option<Cone> {
     let (_, body) = body_of(app)?;
     let world = app.session.world();
-    // The joint to the parent is the one whose second body it is.
+    // The joint to the parent has the body as its second one.
     let mut joints = world.joints_of(body).map(|id| world.joint(id));
     let joint = joints.find(|joint| joint.body_b == body)?;
     let cone = cone_of(world, &joint)?;
     Some(Cone { ranges: ranges(app), ..cone })
 }
 
-/// World from shape of the chosen body, its shape, and the radius across it, metres.
+/// World from shape, shape, and radius, metres, of the selected body.
 fn shape(app: &App) -> Option<(Transform, Shape, f32)> {
     let (_, body) = body_of(app)?;
     let (shape, place) = app.session.world().shapes(body).next()?;
@@ -213,7 +213,7 @@ fn shape(app: &App) -> Option<(Transform, Shape, f32)> {
     Some((place, shape, radius))
 }
 
-/// Handles of what is chosen, each with its place in the world.
+/// Handles of the selection, each with its position in the world.
 fn handles(app: &App) -> Vec<(Handle, Vec3)> {
     let mut list = Vec::new();
     if let Some(cone) = cone(app) {
@@ -237,7 +237,7 @@ fn handles(app: &App) -> Vec<(Handle, Vec3)> {
 }
 
 impl App {
-    /// Handles of the ragdoll's chosen body, each with its name and place in the window, points.
+    /// Handles of the ragdoll's selected body, each with its name and position in the window, points.
     pub fn handles(&self) -> Vec<(&'static str, Pos2)> {
         let name = |handle: &Handle| match handle {
             Handle::Limit(axis, upper) => [
@@ -252,7 +252,7 @@ impl App {
     }
 }
 
-/// Takes the handle at a place of the window, if there is one.
+/// Grabs the handle at a point of the window, if there is one.
 pub(super) fn take(app: &mut App, at: Pos2) -> bool {
     let near = handles(app).into_iter().filter_map(|(handle, point)| {
         let distance = (app.on_screen(point)? - at).length();
@@ -263,7 +263,7 @@ pub(super) fn take(app: &mut App, at: Pos2) -> bool {
     nearest.is_some()
 }
 
-/// Draws the handle that is held to where a ray meets its way.
+/// Drags the grabbed handle to the point of its path that a ray meets.
 pub(super) fn drag(app: &mut App, ray: &Ray) {
     match app.bench.held {
         Some(Handle::Limit(axis, is_upper)) => {
@@ -289,7 +289,7 @@ pub(super) fn drag(app: &mut App, ray: &Ray) {
     }
 }
 
-/// Lets go of the handle: what it has come to is made.
+/// Releases the handle and applies its changes.
 pub(super) fn release(app: &mut App) {
     let held = app.bench.held.take();
     commit(app);
@@ -309,7 +309,7 @@ fn angle_of(cone: &Cone, axis: usize, ray: &Ray) -> Option<f32> {
     let point = if slope.abs() > 0.1 {
         origin - way * (origin.dot(normal) / slope)
     } else {
-        // Seen from the edge: what is nearest to the joint.
+        // For an edge-on view, use the point nearest to the joint.
         origin - way * origin.dot(way)
     };
     let angle = match axis {
@@ -320,7 +320,7 @@ fn angle_of(cone: &Cone, axis: usize, ray: &Ray) -> Option<f32> {
     angle.is_finite().then_some(angle)
 }
 
-/// Place on a line, metres from its origin, that is nearest to a ray.
+/// Position on a line, metres from its origin, nearest to a ray.
 fn along_line(origin: Vec3, way: Vec3, ray: &Ray) -> f32 {
     let eye = normalize_or(ray.direction, Vec3::Z);
     let between = ray.origin - origin;
@@ -328,7 +328,7 @@ fn along_line(origin: Vec3, way: Vec3, ray: &Ray) -> f32 {
     (between.dot(way) - between.dot(eye) * cos) / max(1.0 - cos * cos, 1e-4)
 }
 
-/// Adds what is chosen to the picture: its outline and its limits.
+/// Draws the selection: its outline and its limits.
 pub(super) fn draw(app: &App, stage: &mut Stage<'_>) {
     if let Some((place, mut shape, radius)) = shape(app) {
         if let Some((Handle::Size(_, drawn), _)) = handles(app).last() {

@@ -1,4 +1,4 @@
-//! The part of the panel at the right that tells of a ragdoll and changes it.
+//! The part of the right panel that shows and edits a ragdoll.
 
 use super::{App, bench, style};
 use crate::session::limits;
@@ -12,7 +12,7 @@ use sinew::ragdoll::settings::ShapeWish;
 /// Names of the ranges of a joint.
 const RANGES: [&str; 3] = ["swing y", "swing z", "twist"];
 
-/// Findings of the doctor; a click chooses the body and turns the camera to it.
+/// Lists the doctor's findings; a click selects the body and points the camera at it.
 pub(super) fn findings(app: &mut App, ui: &mut egui::Ui) {
     let Some(workbench) = app.session.workbench() else { return };
     let findings = workbench.findings().to_vec();
@@ -35,7 +35,7 @@ pub(super) fn findings(app: &mut App, ui: &mut egui::Ui) {
     }
 }
 
-/// Bodies of the ragdoll, and what can be changed of the one that is chosen.
+/// Lists the bodies of the ragdoll, and the settings of the selected one.
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     let Some(workbench) = app.session.workbench() else { return };
     let names: Vec<String> = workbench.def().bodies.iter().map(|body| body.role.clone()).collect();
@@ -69,7 +69,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     }
 }
 
-/// Fields of a body; true if a change is to be made now.
+/// Shows the fields of a body; returns true if a change is to be applied now.
 fn fields(app: &mut App, ui: &mut egui::Ui, chosen: usize) -> bool {
     let Some(workbench) = app.session.workbench() else { return false };
     let (body, has_rig) = (workbench.def().bodies[chosen].clone(), workbench.has_rig());
@@ -110,7 +110,7 @@ fn fields(app: &mut App, ui: &mut egui::Ui, chosen: usize) -> bool {
     is_done
 }
 
-/// True if a field's value is to be taken over: once it is let go of or left, not on the way.
+/// Returns true if a field's value is final: when it was released or lost focus.
 fn finished(field: &egui::Response) -> bool {
     field.drag_stopped() || field.lost_focus() || field.changed() && !field.dragged() && !field.has_focus()
 }

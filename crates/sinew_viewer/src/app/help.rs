@@ -1,9 +1,9 @@
-//! Hints of the first minute, all keys, and the line that says what just happened.
+//! Initial hints, the list of keys, and the line with the last message.
 
 use super::{App, style};
 use egui::{Align2, Color32, FontId, Grid, RichText};
 
-/// Hints of the first minute.
+/// Hints shown at the start.
 const HINTS: [&str; 3] = [
     "Drag a body with the left button; drag the background to look around",
     "Press B to throw a ball, Space to pause, R to start again",
@@ -54,7 +54,7 @@ pub(super) fn overlay(app: &App, ui: &mut egui::Ui) {
     }
 }
 
-/// A line of text on a dark plate, readable over any picture; its place.
+/// Draws a line of text on a dark plate, readable over any picture; returns its place.
 fn plate(ui: &egui::Ui, at: egui::Pos2, align: Align2, text: &str, font: &FontId) -> egui::Rect {
     let width = 0.7 * ui.max_rect().width();
     let galley = ui.painter().layout(text.to_owned(), font.clone(), Color32::WHITE, width);
@@ -64,7 +64,7 @@ fn plate(ui: &egui::Ui, at: egui::Pos2, align: Align2, text: &str, font: &FontId
     rect
 }
 
-/// All keys.
+/// Shows all keys.
 pub(super) fn window(app: &mut App, ctx: &egui::Context) {
     let mut open = app.shows_help;
     let window = egui::Window::new("Keys").open(&mut open).collapsible(false).resizable(false);

@@ -1,4 +1,4 @@
-//! The panel at the right: what the scene is about, its settings, figures, layers, stages and state.
+//! The right panel: the scene's description, settings, figures, layers, stage times and state.
 
 use super::{App, editor, style, timeline};
 use crate::layers::Layer;
@@ -50,7 +50,7 @@ fn section(ui: &mut egui::Ui, title: &str, open: bool, add: impl FnOnce(&mut egu
     egui::CollapsingHeader::new(RichText::new(title).strong()).default_open(open).show(ui, add);
 }
 
-/// Sliders of the scene's settings, and its start with them.
+/// Shows sliders of the scene's settings, and a button to restart it with them.
 fn settings(app: &mut App, ui: &mut egui::Ui) {
     let Subject::Scene(scene, current, _) = app.session.subject().clone() else { return };
     let declared = scene.settings().declared();
@@ -112,7 +112,7 @@ fn legend(app: &App, ui: &mut egui::Ui) {
 fn figures(app: &App, ui: &mut egui::Ui) {
     legend(app, ui);
     let metrics = app.session.metrics();
-    // What a scene expects holds once it has run its course.
+    // The scene's expectations hold once it has run to its end.
     let is_over = match app.session.subject() {
         Subject::Scene(scene, ..) => app.session.world().step_count() >= u64::from(scene.steps),
         _ => true,
@@ -148,7 +148,7 @@ fn figures(app: &App, ui: &mut egui::Ui) {
 /// Rounding of a figure that was found in 32 bits, a ratio.
 const ROUNDING: f64 = 1e-6;
 
-/// The way of a figure, and the line that it should come to.
+/// Plots the history of a figure, and a line at its expected value.
 fn plot(ui: &mut egui::Ui, history: &VecDeque<f64>, metric: &Metric) {
     let known: Vec<(usize, f64)> =
         history.iter().enumerate().filter(|(_, it)| it.is_finite()).map(|(i, &it)| (i, it)).collect();
@@ -159,7 +159,7 @@ fn plot(ui: &mut egui::Ui, history: &VecDeque<f64>, metric: &Metric) {
     };
     let all = || known.iter().map(|it| it.1).chain(wanted);
     let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
-    // What moves by the rounding of its numbers stands still.
+    // Changes within rounding count as constant.
     if high - low < ROUNDING * high.abs().max(1e-9) {
         return;
     }

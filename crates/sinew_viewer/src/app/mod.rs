@@ -1,4 +1,4 @@
-//! The viewer without its window: what is shown, what hands do, the panels around it.
+//! The viewer without its window: the subject, user operations, and the panels.
 
 mod bench;
 mod browser;
@@ -26,46 +26,46 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use web_time::{Duration, Instant};
 
-/// Longest that a frame may step, so that the window stays awake in scenes that are slower than real time.
+/// Longest stepping time of a frame, so that the window stays responsive in scenes slower than real time.
 const MOST_STEPPING: Duration = Duration::from_millis(60);
-/// Longest stretch of real time that a frame makes up for, seconds.
+/// Longest real time that a frame catches up, seconds.
 const LONGEST_FRAME: f64 = 0.1;
-/// Time that a message is shown.
+/// Display time of a message.
 const MESSAGE: Duration = Duration::from_secs(6);
-/// Values of a metric that its plot shows.
+/// Number of metric values in a plot.
 const HISTORY: usize = 600;
 
-/// Start of a viewer.
+/// Start options of a viewer.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Shown first; by default the demo of a first minute.
+    /// First subject; the default is the introductory demo.
     pub subject: Option<Subject>,
     /// True to start without running.
     pub paused: bool,
-    /// Steps that are taken as fast as it goes, after which it is paused and tells its hash; `None` runs in real time.
+    /// Number of steps taken at full speed, after which it pauses and shows its hash; `None` runs in real time.
     pub steps: Option<u64>,
     /// True to print each message to stderr as well.
     pub log: bool,
-    /// File in which choices are kept from one start to the next; `None` keeps none.
+    /// File in which preferences are kept; `None` keeps none.
     pub preferences: Option<PathBuf>,
     /// Size of the window, points.
     pub size: Option<[f32; 2]>,
     /// A second recording of the same scene, which is shown beside the first.
     pub ghost: Option<PathBuf>,
-    /// True to show no list of scenes: for a small window on one of them.
+    /// True to hide the list of scenes, for a small window on one scene.
     pub hides_browser: bool,
-    /// True to show no times of this machine: for pictures that are compared.
+    /// True to hide measured times, for pictures that are compared.
     pub hides_times: bool,
-    /// File to which a picture of the window is written once the steps are taken, after which it is closed.
+    /// File to which a picture of the window is written after the steps; then the window closes.
     pub screenshot: Option<PathBuf>,
 }
 
-/// Frames in which panels find their sizes.
+/// Number of frames until panels have their final sizes.
 const SETTLING: u8 = 4;
 
-/// Scene of the first minute, with its settings: figures in colour walk, are hit, fall and get up. The camera goes along.
+/// Introductory scene with its settings: coloured figures walk, are hit, fall and get up. The camera follows.
 const FIRST: (&str, &str) = ("crowd", "n=6");
-/// Time in which a camera that goes along makes up for two thirds of its distance, seconds: limbs that swing do not shake it.
+/// Time in which a following camera covers two thirds of its distance, seconds: swinging limbs do not shake it.
 const FOLLOWING: f32 = 0.4;
 
 /// The viewer without its window.
@@ -73,49 +73,49 @@ pub struct App {
     session: Session,
     orbit: Orbit,
     running: bool,
-    /// Step up to which it goes as fast as it can.
+    /// Step up to which it runs at full speed.
     goal: Option<u64>,
-    /// Simulated over real time.
+    /// Ratio of simulated to real time.
     speed: f32,
-    /// Real time that has not been stepped yet, seconds of simulation.
+    /// Real time not yet stepped, in seconds of simulation.
     pending: f64,
     last_frame: Option<Instant>,
     frame_time: f32,
-    /// Time from the last frame to this, seconds.
+    /// Time since the last frame, seconds.
     passed: f32,
     layers: Vec<Layer>,
     search: String,
     focuses_search: bool,
-    /// Settings of the scene as its sliders have them.
+    /// Scene settings as set by the sliders.
     sliders: Vec<(&'static str, f32)>,
     /// Values of each metric so far.
     history: Vec<VecDeque<f64>>,
     message: Option<(String, Instant)>,
     shows_help: bool,
-    /// Seen since the start, until something is done.
+    /// True until the first user action.
     shows_hints: bool,
     mouse: Mouse,
     bench: Bench,
-    /// Step of a recording to which it is on its way.
+    /// Target step while seeking in a recording.
     seeking: Option<u64>,
-    /// Middle of the scene when the camera last went along with it.
+    /// Centre of the scene when the camera last followed it.
     follows: Option<Vec3>,
-    /// Way of the character that keys lead, m/s; `None` while they move the camera.
+    /// Velocity of the character controlled by keys, m/s; `None` while keys move the camera.
     leads: Option<Vec3>,
     hides_times: bool,
     hides_browser: bool,
     area: Rect,
-    /// True once the camera has been set for the size that the picture really has.
+    /// True once the camera has been set for the actual size of the picture.
     is_framed: bool,
-    /// Sessions that were started.
+    /// Number of started sessions.
     starts: u64,
     log: bool,
     preferences: Option<PathBuf>,
-    /// Files to be written by whoever shows it.
+    /// Files for the host to write.
     files: Vec<NamedFile>,
     wants_screenshot: bool,
     wants_to_close: bool,
-    /// File for a picture of the window, and frames until it is taken: panels find their sizes in the first ones.
+    /// File for a picture of the window, and number of frames until then: panels need the first frames to find their sizes.
     screenshot: Option<(PathBuf, u8)>,
 }
 
@@ -123,7 +123,7 @@ impl App {
     /// A viewer of the subject, or of the demo.
     ///
     /// # Errors
-    /// One line: the subject cannot be started.
+    /// One line: the reason why the subject cannot start.
     pub fn new(options: Options) -> Result<Self, String> {
         let preferences = options.preferences.as_deref().map(Preferences::load).unwrap_or_default();
         let shows_hints = options.subject.is_none();
@@ -208,12 +208,12 @@ impl App {
         stage
     }
 
-    /// The line that is shown, if there is one.
+    /// The displayed message, if any.
     pub fn message(&self) -> Option<&str> {
         self.message.as_ref().map(|(line, _)| line.as_str())
     }
 
-    /// Place in the window, points, at which a point of the world (metres) is seen; `None` behind the eye.
+    /// Window position, points, of a point of the world (metres); `None` behind the camera.
     pub fn on_screen(&self, point: Vec3) -> Option<egui::Pos2> {
         let camera = self.camera();
         let axes = camera.axes(self.area.width() / self.area.height());
@@ -224,7 +224,7 @@ impl App {
         (depth > 0.0).then(|| self.area.min + Vec2::new(x * self.area.width(), y * self.area.height()))
     }
 
-    /// Key of what is shown: another one for each start.
+    /// Key of the subject; each start has a new one.
     pub(crate) fn subject_key(&self) -> u64 {
         self.starts
     }
@@ -234,7 +234,7 @@ impl App {
         self.area
     }
 
-    /// True if the next frame differs from this one by itself.
+    /// Returns true if the next frame differs from this one without input.
     pub fn is_moving(&self) -> bool {
         self.running
             || self.mouse.is_busy()
@@ -243,12 +243,12 @@ impl App {
             || self.message.is_some()
     }
 
-    /// True once, if a picture of the window was asked for.
+    /// Returns true once if a picture of the window was requested.
     pub fn takes_screenshot(&mut self) -> bool {
         std::mem::take(&mut self.wants_screenshot)
     }
 
-    /// File for a picture of the window, once what it was asked for is shown; then it is to end.
+    /// Returns the file for the requested picture of the window once the steps are done; the viewer then ends.
     pub(crate) fn due_screenshot(&mut self) -> Option<PathBuf> {
         if self.goal.is_some() {
             return None;
@@ -262,12 +262,12 @@ impl App {
         Some(path)
     }
 
-    /// True if it is to end.
+    /// Returns true if the viewer is to end.
     pub fn is_closing(&self) -> bool {
         self.wants_to_close
     }
 
-    /// Shows a line for a while.
+    /// Shows a message for a while.
     pub fn tell(&mut self, line: impl Into<String>) {
         let line = line.into();
         if self.log {
@@ -276,7 +276,7 @@ impl App {
         self.message = Some((line, Instant::now()));
     }
 
-    /// Shows another subject, from its start. What cannot be started is a message.
+    /// Opens another subject from its start. If it cannot start, a message is shown.
     pub fn open(&mut self, subject: Subject) {
         let threads = self.session.threads();
         match Session::start(subject) {
@@ -291,7 +291,7 @@ impl App {
         }
     }
 
-    /// Shows a file that was dropped on the window. What cannot be read is a message.
+    /// Opens a file dropped on the window. If it cannot be read, a message is shown.
     pub fn open_file(&mut self, path: &Path) {
         match Subject::file(path) {
             Ok(subject) => self.open_or_compare(subject),
@@ -299,7 +299,7 @@ impl App {
         }
     }
 
-    /// Shows a subject; a second recording of the scene that is played goes along with the first as its ghost.
+    /// Opens a subject; a second recording of the same scene is shown as a ghost of the first.
     fn open_or_compare(&mut self, subject: Subject) {
         let (Subject::Recording(_, second), Subject::Recording(_, first)) =
             (&subject, self.session.subject())
@@ -313,7 +313,7 @@ impl App {
         self.compare_with(&title, recording);
     }
 
-    /// Shows a second recording of the same scene beside the one that is played. What cannot be is a message.
+    /// Shows a second recording of the same scene beside the current one. If that is impossible, a message is shown.
     pub fn compare_with(&mut self, name: &str, recording: Recording) {
         let line = match self.session.set_ghost(name, recording) {
             Ok(()) => {
@@ -325,7 +325,7 @@ impl App {
         self.tell(line);
     }
 
-    /// Plays what was just done from its start, as a recording that can be scrubbed.
+    /// Replays the last run from its start, as a recording with a timeline.
     fn replay(&mut self) {
         let Some(recording) = self.session.recording().cloned() else {
             return self.tell("only scenes can be played again");
@@ -338,7 +338,7 @@ impl App {
         self.seek(length);
     }
 
-    /// Goes to a step of the recording that is played.
+    /// Seeks to a step of the recording.
     pub fn seek(&mut self, step: u64) {
         let Some(length) = self.session.length() else { return };
         self.seeking = Some(step.min(length));
@@ -358,7 +358,7 @@ impl App {
         self.history = (0..count).map(values).collect();
     }
 
-    /// Shows files that were dropped on a page. What cannot be read is a message.
+    /// Opens files dropped on a page. If they cannot be read, a message is shown.
     pub fn open_dropped(&mut self, files: Vec<NamedFile>) {
         match Subject::dropped(files) {
             Ok(subject) => self.open_or_compare(subject),
@@ -366,12 +366,12 @@ impl App {
         }
     }
 
-    /// Files to be kept for the person in front of it, once.
+    /// Returns the files for the user to keep, once.
     pub fn take_files(&mut self) -> Vec<NamedFile> {
         std::mem::take(&mut self.files)
     }
 
-    /// Begins with a new session: its camera, its sliders, its plots.
+    /// Starts with a new session: its camera, sliders and plots.
     fn begin(&mut self) {
         self.begin_again();
         self.bench = Bench::default();
@@ -386,7 +386,7 @@ impl App {
         self.frame();
     }
 
-    /// Begins anew with the same: nothing of its last run is left.
+    /// Restarts the session without any state of the last run.
     fn begin_again(&mut self) {
         self.starts += 1;
         self.pending = 0.0;
@@ -396,7 +396,7 @@ impl App {
         self.history.clear();
     }
 
-    /// Turns the camera to all that the scene is about.
+    /// Points the camera at the whole scene.
     fn frame(&mut self) {
         let instance = self.session.instance();
         let aspect = self.area.width().max(1.0) / self.area.height().max(1.0);
@@ -417,7 +417,7 @@ impl App {
         }
     }
 
-    /// One step, whether it runs or not.
+    /// Takes one step, paused or not.
     pub fn step(&mut self) {
         if !self.session.step() {
             self.running = false;
@@ -437,7 +437,7 @@ impl App {
         }
     }
 
-    /// Steps as much as real time has gone on.
+    /// Takes the steps due in real time.
     pub fn advance(&mut self) {
         let now = Instant::now();
         let passed = self.last_frame.map_or(0.0, |last| (now - last).as_secs_f64());
@@ -464,7 +464,7 @@ impl App {
         }
     }
 
-    /// Steps as fast as it goes, up to a step, for as long as a frame may take.
+    /// Steps at full speed up to a goal, within the time of a frame.
     fn hurry(&mut self, goal: u64, start: Instant) {
         while self.running && self.session.world().step_count() < goal && start.elapsed() < MOST_STEPPING {
             self.step();
@@ -477,7 +477,7 @@ impl App {
         }
     }
 
-    /// The panels, and what is done in them and in the picture between.
+    /// Shows the panels and handles input in them and in the picture.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         style::apply(ui.ctx());
         self.keys(ui);
@@ -497,7 +497,7 @@ impl App {
             }
             if let Some(before) = self.follows {
                 let goal = view::bounds(self.session.instance()).center();
-                // A picture of a moment has no time to come after.
+                // A still picture needs no fade.
                 let share = if self.hides_times { 1.0 } else { self.passed / (self.passed + FOLLOWING) };
                 let now = before + (goal - before) * share;
                 self.orbit.target += now - before;
@@ -575,7 +575,7 @@ impl App {
     /// Keys that change a ragdoll, or go through a recording.
     fn bench_keys(&mut self, ctx: &egui::Context) {
         let pressed = |key: Key| ctx.input(|input| input.key_pressed(key));
-        // Ctrl may be up again at the end of a slow frame, so what counts is the event.
+        // Ctrl may be released by the end of a slow frame, so the event's own modifiers count.
         let is_save = |event: &egui::Event| matches!(event, egui::Event::Key { key: Key::S, pressed: true, modifiers, .. } if modifiers.command);
         let saves = |input: &egui::InputState| input.events.iter().any(is_save);
         if ctx.input(saves) {
@@ -632,7 +632,7 @@ impl App {
         }
     }
 
-    /// Keeps the choices for the next start, if they are to be kept. What cannot be written is no fault worth a line.
+    /// Stores the preferences, if they are kept. A failed write is ignored.
     pub fn keep_preferences(&self) {
         if let Some(path) = &self.preferences {
             let kept = Preferences { layers: self.layers.clone(), threads: self.session.threads() };
@@ -640,7 +640,7 @@ impl App {
         }
     }
 
-    /// Hands out what was just played as a GLB, to be written.
+    /// Exports the last run as a GLB to be written.
     pub fn save_glb(&mut self) {
         match self.session.to_glb() {
             Ok(file) => self.files.push(file),
@@ -648,7 +648,7 @@ impl App {
         }
     }
 
-    /// Hands out the recording of the scene so far, to be written.
+    /// Exports the recording of the scene so far to be written.
     fn save_recording(&mut self) {
         let Some(recording) = self.session.recording() else {
             return self.tell("only scenes can be recorded");

@@ -1,4 +1,4 @@
-//! Hands in the picture: grab, pull, throw; turn, shift and near the camera.
+//! Mouse input in the picture: grab, pull, throw; rotate, pan and zoom the camera.
 
 use super::{App, bench};
 use egui::{PointerButton, Pos2, Sense};
@@ -11,15 +11,15 @@ use sinew_scenes::recording::Operation;
 const BALL: f32 = 0.12;
 /// Density of water, kg/m³: such a ball weighs 7 kg.
 const DENSITY: f32 = 1000.0;
-/// Speed at which it is thrown, m/s.
+/// Speed of a thrown ball, m/s.
 const THROW: f32 = 14.0;
-/// Turn of the camera by a point of the mouse's way, radians.
+/// Rotation of the camera per point of mouse motion, radians.
 const TURN: f32 = 0.0065;
 
 /// State of the mouse.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Mouse {
-    /// Distance along the view at which something is held, metres.
+    /// Distance along the view of the grabbed point, metres.
     held: Option<f32>,
 }
 
@@ -29,7 +29,7 @@ impl Mouse {
     }
 }
 
-/// Does what the mouse does in the picture.
+/// Handles mouse input in the picture.
 pub(super) fn act(app: &mut App, ui: &mut egui::Ui) {
     let response = ui.allocate_rect(app.area, Sense::click_and_drag());
     if response.drag_started_by(PointerButton::Primary)
@@ -81,12 +81,12 @@ pub(super) fn act(app: &mut App, ui: &mut egui::Ui) {
     }
 }
 
-/// Throws a ball from the eye at what the mouse points at, or straight ahead.
+/// Throws a ball from the camera at the mouse position, or straight ahead.
 pub(super) fn throw(app: &mut App, ui: &egui::Ui) {
     let at = ui.input(|input| input.pointer.hover_pos()).filter(|at| app.area.contains(*at));
     let ray = ray(app, at.unwrap_or(app.area.center()));
     let way = ray.direction.normalize();
-    // A world of another size has balls of its size.
+    // The ball scales with the world.
     let size = (app.orbit.distance / 6.0).clamp(0.2, 20.0);
     let position = ray.origin + way * (2.5 * BALL * size);
     let velocity = way * (THROW * size.sqrt());

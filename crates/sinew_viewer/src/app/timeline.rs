@@ -1,4 +1,4 @@
-//! The timeline of a recording: where it is, where it first differs, and where a second run parts from it.
+//! The timeline of a recording: current step, first divergence, and first difference to a second run.
 
 use super::{App, style};
 use egui::{Color32, RichText, Sense, Stroke};
@@ -18,7 +18,7 @@ fn parting(app: &App) -> Option<u64> {
     }
 }
 
-/// Shows it; a click or a drag goes there.
+/// Shows it; a click or a drag seeks.
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     let Some(length) = app.session.length() else { return };
     let at = app.seeking.unwrap_or(app.session.world().step_count());
@@ -67,7 +67,7 @@ pub(super) fn ghost(app: &mut App, ui: &mut egui::Ui) {
     }
 }
 
-/// A difference as a line.
+/// Describes a difference in a line.
 pub(super) fn told(difference: Option<&Difference>) -> String {
     match difference {
         None => "equal in every step".to_owned(),

@@ -1,4 +1,4 @@
-//! The bar below: run, pause, step, how fast, and what it costs.
+//! The bottom bar: run, pause, step, speed, and step time.
 
 use super::{App, style, timeline};
 use egui::{RichText, Slider};

@@ -1,4 +1,4 @@
-//! Keys that lead a character.
+//! Keys that control a character.
 
 use super::App;
 use sinew::math::{Vec3, normalize_or};
@@ -6,10 +6,10 @@ use sinew_scenes::recording::Operation;
 
 /// Speed of a walk, and of a run, m/s.
 const SPEEDS: [f32; 2] = [1.4, 3.2];
-/// Height of what the camera looks at above the soles, metres.
+/// Height of the camera's target above the soles, metres.
 const EYES: f32 = 1.1;
 
-/// Keys lead the scene's character, or the camera again.
+/// Switches the keys between the scene's character and the camera.
 pub(super) fn toggle(app: &mut App) {
     let place = app.session.instance().steered().filter(|_| app.session.is_live());
     match (app.leads, place) {
@@ -29,7 +29,7 @@ pub(super) fn toggle(app: &mut App) {
     }
 }
 
-/// Leads it to the right and ahead as the camera sees it.
+/// Moves the character to the right and ahead, relative to the camera.
 pub(super) fn lead(app: &mut App, right: f32, ahead: f32, fast: bool) {
     let axes = app.camera().axes(1.0);
     let level = |v: Vec3| normalize_or(Vec3::new(v.x, 0.0, v.z), Vec3::ZERO);

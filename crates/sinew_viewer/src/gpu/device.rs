@@ -1,4 +1,4 @@
-//! A device that draws, or the line that says what is missing.
+//! A graphics device, or the reason why there is none, in a line.
 
 /// A device that draws, with the queue of its work.
 #[derive(Clone, Debug)]
@@ -8,7 +8,7 @@ pub struct Gpu {
     pub(crate) queue: wgpu::Queue,
 }
 
-/// Why nothing can be drawn by a graphics card. One line each.
+/// Reason why the graphics card cannot draw, in one line.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// There is no driver.
@@ -17,7 +17,7 @@ pub enum GpuError {
          `sinew view SCENE --picture OUT.png` needs none"
     )]
     NoDriver(String),
-    /// The driver cannot do what is needed.
+    /// The driver lacks a needed feature.
     #[error("the driver '{name}' is not enough: {what}; `sinew view SCENE --picture OUT.png` needs none")]
     Driver {
         /// Its name.
@@ -34,10 +34,10 @@ pub enum GpuError {
 }
 
 impl Gpu {
-    /// A device for pictures without a window; pages have none.
+    /// Opens a device for pictures without a window; pages have none.
     ///
     /// # Errors
-    /// If there is no driver, or it cannot do what is needed.
+    /// If there is no driver, or it lacks a needed feature.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn open() -> Result<Self, GpuError> {
         let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
@@ -53,7 +53,7 @@ impl Gpu {
         let adapter = instance.request_adapter(&options).await;
         let adapter = adapter.map_err(|error| GpuError::NoDriver(one_line(&error)))?;
         let name = adapter.get_info().name;
-        // Nothing here asks for more than WebGL2 has, so that a page draws what a window draws.
+        // Only WebGL2's limits are used, so that a page draws the same as a window.
         let limits = wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits());
         let limits = wgpu::Limits { max_buffer_size: adapter.limits().max_buffer_size, ..limits };
         let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
@@ -73,7 +73,7 @@ fn one_line(error: &dyn std::fmt::Display) -> String {
     error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ")
 }
 
-/// Result of work that the driver does at once: on the desktop nothing that is waited for here sleeps.
+/// Result of work that the driver completes at once: on the desktop, none of the awaited calls suspends.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn wait<T>(work: impl Future<Output = T>) -> T {
     use std::task::{Context, Poll, Waker};

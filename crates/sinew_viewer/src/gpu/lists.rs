@@ -1,4 +1,4 @@
-//! Draws of one picture, as numbers for the card.
+//! Draw lists of one picture, as numbers for the card.
 
 use super::device::Gpu;
 use super::meshes::{RigMeshes, Solids, push_vertices};
@@ -17,9 +17,9 @@ pub(crate) struct Lists {
     pub palette: Vec<f32>,
     pub vertices: Vec<f32>,
     pub indices: Vec<u32>,
-    /// Lines that surfaces hide, then those that they do not.
+    /// Lines hidden by surfaces, then lines on top.
     pub lines: Vec<f32>,
-    /// Number of those that surfaces hide.
+    /// Number of lines hidden by surfaces.
     pub hidden_lines: u32,
     /// Instances of each mesh of the solids.
     pub solids: Vec<Range<u32>>,
@@ -28,7 +28,7 @@ pub(crate) struct Lists {
     sorted: Vec<Vec<usize>>,
 }
 
-/// A model that is there for one picture.
+/// A model used in one picture.
 #[derive(Debug)]
 pub(crate) struct ModelDraw {
     /// In the scene.
@@ -39,7 +39,7 @@ pub(crate) struct ModelDraw {
     pub casts: bool,
 }
 
-/// All figures of a rig, a part of it.
+/// All figures of a rig, for one of its parts.
 #[derive(Debug)]
 pub(crate) struct FigureDraw {
     /// Address of the rig.
@@ -54,7 +54,7 @@ pub(crate) fn address(rig: &Rig) -> usize {
 }
 
 impl Lists {
-    /// Fills them from a stage; `meshes_of` gives the meshes of a rig.
+    /// Fills the lists from a stage; `meshes_of` returns the meshes of a rig.
     pub fn fill<'m>(
         &mut self,
         gpu: &Gpu,
@@ -166,7 +166,7 @@ impl Lists {
         }
     }
 
-    /// Appends the matrices of a figure's meshes; the number of the first of each mesh.
+    /// Appends the matrices of a figure's meshes; returns the index of the first matrix of each mesh.
     fn push_palette(&mut self, figure: &Figure<'_>) -> Vec<f32> {
         let Figure { rig, world_from_joint } = figure;
         let palette = &mut self.palette;

@@ -19,12 +19,12 @@ pub(crate) struct Mesh {
     pub count: u32,
 }
 
-/// The meshes of solids, each once.
+/// Unique meshes of the solids.
 #[derive(Debug, Default)]
 pub(crate) struct Solids {
     by_key: HashMap<Key, usize>,
     pub list: Vec<Mesh>,
-    /// Shapes whose address is a key: they must live as long.
+    /// Shapes whose address is a key, kept alive for that.
     kept: Vec<Shape>,
 }
 
@@ -42,7 +42,7 @@ enum Key {
 }
 
 impl Solids {
-    /// Number of the mesh of a form.
+    /// Index of the mesh of a form.
     pub fn number(&mut self, gpu: &Gpu, form: &Form) -> usize {
         let key = key(form);
         if let Some(&number) = self.by_key.get(&key) {
@@ -122,7 +122,7 @@ fn push_vertex(numbers: &mut Vec<f32>, position: Vec3, normal: Vec3, uv: Vec2, c
 impl Mesh {
     fn new(gpu: &Gpu, vertices: &[f32], indices: &[u32]) -> Self {
         let count = vertices.len() / VERTEX;
-        // Triangles with a corner that is not there are left out, as a picture leaves them out.
+        // Triangles with missing corners are skipped, as in pictures.
         let whole = |corners: &&[u32]| corners.iter().all(|&corner| (corner as usize) < count);
         let indices: Vec<u32> =
             indices.chunks_exact(3).filter(whole).flat_map(|corners| corners.iter().copied()).collect();
@@ -148,7 +148,7 @@ fn filled(gpu: &Gpu, label: &str, usage: wgpu::BufferUsages, bytes: &[u8]) -> wg
     buffer
 }
 
-/// A buffer that is written anew for each picture, and grows.
+/// A buffer that is rewritten for each picture, and grows.
 #[derive(Debug)]
 pub(crate) struct Stream {
     pub buffer: wgpu::Buffer,
@@ -161,7 +161,7 @@ impl Stream {
         Self { buffer: filled(gpu, label, usage, &[0; 256]), label, usage }
     }
 
-    /// Writes it; true if it is another buffer since.
+    /// Writes it; returns true if the buffer was replaced.
     pub fn write(&mut self, gpu: &Gpu, bytes: &[u8]) -> bool {
         if bytes.len() as u64 <= self.buffer.size() {
             gpu.queue.write_buffer(&self.buffer, 0, bytes);
@@ -179,12 +179,12 @@ impl Stream {
     }
 }
 
-/// Matrices in a row of the palette's texture: the shader has the same number. Three texels each, so that a row fits every card.
+/// Matrices in a row of the palette's texture, the same as in the shader. Each takes three texels, so that a row fits every card.
 const PALETTE_ROW: usize = 512;
 /// Numbers of a row.
 const PALETTE_NUMBERS: usize = PALETTE_ROW * 12;
 
-/// The matrices of all figures as a texture that is written anew for each picture, and grows.
+/// The matrices of all figures as a texture that is rewritten for each picture, and grows.
 #[derive(Debug)]
 pub(crate) struct Palette {
     texture: wgpu::Texture,
@@ -205,7 +205,7 @@ impl Palette {
         self.texture.create_view(&Default::default())
     }
 
-    /// Writes it, with the last row filled up; true if it is another texture since.
+    /// Writes it, with the last row padded; returns true if the texture was replaced.
     pub fn write(&mut self, gpu: &Gpu, numbers: &mut Vec<f32>) -> bool {
         numbers.resize(numbers.len().next_multiple_of(PALETTE_NUMBERS), 0.0);
         let rows = (numbers.len() / PALETTE_NUMBERS) as u32;
@@ -246,7 +246,7 @@ pub(crate) struct RigPart {
 
 impl RigMeshes {
     pub fn new(gpu: &Gpu, pipelines: &Pipelines, white: &Arc<wgpu::BindGroup>, rig: &Rig) -> Self {
-        // A picture that is none leaves its surface in its plain colour.
+        // A surface with an invalid image keeps its plain colour.
         let picture = |image: &TextureImage| {
             let texture = Texture::new(image.width, image.height, image.rgba.clone()).ok()?;
             Some(Arc::new(upload(gpu, pipelines, &texture)))
@@ -283,7 +283,7 @@ fn surface(primitive: &Primitive) -> Model {
     }
 }
 
-/// Slots and weights of a primitive; what has none goes with the first slot.
+/// Joint slots and weights of a primitive; without any, it follows the first slot.
 fn skin(gpu: &Gpu, primitive: &Primitive, is_skinned: bool) -> wgpu::Buffer {
     let mut numbers = Vec::with_capacity(SKIN * primitive.positions.len());
     for vertex in 0..primitive.positions.len() {

@@ -6,7 +6,7 @@ use super::samples::{Target, texture};
 use crate::stage::Stage;
 use sinew_picture::{Camera, Image, add_captions};
 
-/// Format of pictures that come back: we write the sRGB bytes ourselves.
+/// Format of pictures that are read back: sRGB bytes are written directly.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// Draws pictures of one size without a window.
@@ -65,7 +65,7 @@ pub(crate) fn rows_of(gpu: &Gpu, picture: &wgpu::Texture) -> wgpu::Buffer {
     })
 }
 
-/// The picture that a texture of four bytes a pixel holds once the encoder's work is done; `rows` has room for it.
+/// Reads back a texture of four bytes a pixel after the encoder's work; `rows` must have room for it.
 pub(crate) fn read_back(
     gpu: &Gpu,
     picture: &wgpu::Texture,
@@ -84,7 +84,7 @@ pub(crate) fn read_back(
     let lost = |error: &dyn std::fmt::Display| GpuError::Lost(error.to_string());
     let (told, heard) = std::sync::mpsc::channel();
     rows.map_async(wgpu::MapMode::Read, .., move |result| {
-        // Nobody hears it where the wait below has failed.
+        // If the wait below failed, nobody receives this.
         let _ = told.send(result);
     });
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| lost(&error))?;
@@ -95,7 +95,7 @@ pub(crate) fn read_back(
     if matches!(picture.format(), wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb) {
         rgba.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
     }
-    // What a window shows is opaque.
+    // The picture of a window is opaque.
     rgba.chunks_exact_mut(4).for_each(|pixel| pixel[3] = 255);
     drop(bytes);
     rows.unmap();

@@ -13,12 +13,12 @@ use std::sync::Arc;
 
 /// Texels along a side of the shadow map.
 const SHADOW_TEXELS: u32 = 2048;
-/// Depth of the room in which things throw shadows, to each side of the camera's target, in shadow radii.
+/// Depth of the shadow volume to each side of the camera's target, in shadow radii.
 const SHADOW_DEPTH: f32 = 6.0;
 /// Half the width of a line, pixels.
 const LINE_HALF_WIDTH: f32 = 0.8;
 
-/// Draws stages. Keeps what is on the card from picture to picture.
+/// Draws stages. Keeps meshes and textures on the card between pictures.
 #[derive(Debug)]
 pub struct StageRenderer {
     format: wgpu::TextureFormat,
@@ -27,7 +27,7 @@ pub struct StageRenderer {
     solids: Solids,
     rigs: HashMap<usize, RigMeshes>,
     white: Arc<wgpu::BindGroup>,
-    /// By address of the picture, which is kept so that no other has it.
+    /// By address of the image, which is kept alive so that no other gets it.
     textures: HashMap<usize, (Arc<Texture>, Arc<wgpu::BindGroup>)>,
     view: wgpu::Buffer,
     /// The frame, as the sun and as the eye sees it: the same data.
@@ -42,7 +42,7 @@ pub struct StageRenderer {
 }
 
 impl StageRenderer {
-    /// Renderer of stages into targets of that format.
+    /// Creates a renderer of stages for targets of that format.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         let pipelines = Pipelines::new(gpu, format);
         let white = Texture::new(1, 1, vec![255; 4]).expect("four bytes are a texel");
@@ -77,7 +77,7 @@ impl StageRenderer {
         }
     }
 
-    /// Forgets the meshes of what was shown: it is gone, and another may be where it was.
+    /// Drops the meshes of the last subject: it is gone, and another may get its addresses.
     pub fn forget(&mut self) {
         self.rigs.clear();
         self.textures.clear();
@@ -303,7 +303,7 @@ fn view_numbers(scene: &Scene, camera: &Camera, [width, height]: [f32; 2], encod
         [0.0, 0.0, 0.0, 1.0],
     ];
     for rows in [picture, sun] {
-        // Columns, as the shader has them.
+        // The shader expects columns.
         numbers.extend((0..16).map(|i| rows[i % 4][i / 4]));
     }
     let texel = 2.0 * radius / SHADOW_TEXELS as f32;

@@ -4,10 +4,10 @@ use sinew::physics::{BodyId, BodyKind, World};
 use sinew_picture::{Line, LineDepth, draw, world::body_color};
 use std::collections::HashMap;
 
-/// Linear colour of what sleeps.
+/// Linear colour of sleeping bodies.
 const ASLEEP: [f32; 3] = [0.32, 0.36, 0.42];
 
-/// Adds the outlines of all dynamic bodies. An island is what touches or is joined, over dynamic bodies alone.
+/// Adds the outlines of all dynamic bodies. An island is a set of dynamic bodies connected by contacts or joints.
 pub(super) fn add(world: &World, lines: &mut Vec<Line>) {
     let dynamic: Vec<BodyId> = world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic).collect();
     let places: HashMap<BodyId, usize> = dynamic.iter().enumerate().map(|(place, &id)| (id, place)).collect();

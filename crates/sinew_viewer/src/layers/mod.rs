@@ -1,4 +1,4 @@
-//! Layers over the picture: what the world draws of itself, and what else one wants to see of bodies.
+//! Layers over the picture: the world's debug drawing, and additional views of bodies.
 
 mod islands;
 mod limits;
@@ -19,19 +19,19 @@ pub enum Layer {
     Shapes,
     /// From bodies to their joints.
     Joints,
-    /// Contact normals, as long as what they carry.
+    /// Contact normals, scaled by their load.
     Contacts,
     /// Axes at centres of mass.
     Centers,
-    /// Way of each centre of mass in a tenth of a second.
+    /// Displacement of each centre of mass in a tenth of a second.
     Velocities,
     /// Boxes around bodies.
     Bounds,
-    /// Bodies in place of the skins of characters.
+    /// Bodies instead of the skins of characters.
     Bones,
-    /// Cones of joint limits, and where the joint is in them.
+    /// Cones of joint limits, with the present rotation of the joint.
     Limits,
-    /// Outlines in the colour of the island that is solved together, grey where it sleeps.
+    /// Outlines in the colour of the island, grey for sleeping ones.
     Islands,
     /// Forces of fields on bodies.
     Fields,
@@ -73,7 +73,7 @@ impl Layer {
     }
 }
 
-/// Linear colours of what the world draws.
+/// Linear colours of the world's debug drawing.
 fn color(kind: DrawKind) -> [f32; 3] {
     match kind {
         DrawKind::Static => [0.30, 0.32, 0.35],
@@ -87,7 +87,7 @@ fn color(kind: DrawKind) -> [f32; 3] {
     }
 }
 
-/// Seconds of way that an arrow of a velocity is long.
+/// Time that scales the arrow of a velocity, seconds.
 const WAY: f32 = 0.1;
 /// Length of the axes at a centre of mass, as a share of the body's size.
 const AXES: f32 = 0.35;
@@ -142,7 +142,7 @@ pub fn draw(world: &World, figures: &[Figure<'_>], layers: &[Layer], lines: &mut
     }
 }
 
-/// An arrow as long as a force is large beside the weight of so much mass, kg.
+/// Adds an arrow scaled by the ratio of a force to the weight of a mass, kg.
 fn add_force(at: Vec3, force: Vec3, mass: f32, size: f32, color: [f32; 3], lines: &mut Vec<Line>) {
     let weights = force.length() / max(mass * WEIGHT, 1e-9);
     if weights < 1e-4 {
@@ -159,7 +159,7 @@ fn add_force(at: Vec3, force: Vec3, mass: f32, size: f32, color: [f32; 3], lines
     }
 }
 
-/// Forces of contacts on the second body of each, and points that carry nothing as crosses.
+/// Adds contact forces on the second body of each contact, and crosses for points without load.
 fn add_contacts(world: &World, lines: &mut Vec<Line>) {
     let red = color(DrawKind::Contact);
     for contact in world.contacts() {
@@ -188,7 +188,7 @@ fn add_box(bounds: &Aabb, lines: &mut Vec<Line>) {
     lines.extend(draw::wire(&shape, place, [0.45, 0.25, 0.65], LineDepth::Tested));
 }
 
-/// Lines of the world whose layers are on.
+/// Lines of the world in the enabled layers.
 struct Chosen<'a> {
     layers: &'a [Layer],
     lines: &'a mut Vec<Line>,
@@ -199,7 +199,7 @@ impl DebugDraw for Chosen<'_> {
         let layer = match kind {
             DrawKind::Static | DrawKind::Kinematic | DrawKind::Awake | DrawKind::Asleep => Layer::Shapes,
             DrawKind::Joint => Layer::Joints,
-            // Painted always, or with their forces.
+            // Always drawn, or drawn with their forces.
             DrawKind::Spring | DrawKind::Object | DrawKind::Contact => return,
         };
         if self.layers.contains(&layer) {

@@ -1,4 +1,4 @@
-//! Springs of characters and backstops of cloth: what swings, how wide it is, and what it comes up against.
+//! Springs of characters and backstops of cloth: swinging bones, their hit radii, and their colliders.
 
 use sinew::anim::Springs;
 use sinew::anim::springs::{ColliderShape, SpringBone};
@@ -7,13 +7,13 @@ use sinew::physics::{Shape, World};
 use sinew_picture::{Line, LineDepth, draw};
 use sinew_scenes::scenes::Figure;
 
-/// Linear colours of bones that swing and their hit radii, of colliders, and of the way that a particle has to its backstop.
+/// Linear colours of swinging bones and their hit radii, of colliders, and of the distance of a particle to its backstop.
 const SWINGS: [f32; 3] = [0.85, 0.10, 0.55];
 const COLLIDER: [f32; 3] = [0.05, 0.60, 0.75];
 const BACKSTOP: [f32; 3] = [0.10, 0.65, 0.15];
-/// Colour of the line to its backstop of a particle that lies on it.
+/// Colour of the line from a particle to the backstop that stops it.
 const STOPPED: [f32; 3] = [0.95, 0.15, 0.05];
-/// Gap below which a particle lies on its backstop, metres.
+/// Gap below which a particle rests on its backstop, metres.
 const LIES: f32 = 1e-3;
 /// Half of the square that stands for a plane, in lengths of a file's unit.
 const PLANE: f32 = 0.25;
@@ -80,7 +80,7 @@ fn add_collider(shape: &ColliderShape, frame: &Affine, lines: &mut Vec<Line>) {
     }
 }
 
-/// Adds the way from each particle to the ball that stops it, red where it lies on it.
+/// Adds a line from each particle to its backstop, red where it rests on it.
 pub(super) fn add_backstops(world: &World, lines: &mut Vec<Line>) {
     for group in world.group_ids().map(|id| world.particles(id)) {
         for stop in group.backstops() {

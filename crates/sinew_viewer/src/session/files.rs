@@ -1,4 +1,4 @@
-//! Files as worlds: the bodies of a world, or a character or a ragdoll on the workbench.
+//! Opens files: as the bodies of a world, or as a character or ragdoll on the workbench.
 
 use super::subject::{NamedFile, has_extension};
 use super::workbench::Workbench;
@@ -14,9 +14,9 @@ use std::path::Path;
 
 /// Content of a file.
 pub(super) enum Opened {
-    /// Bodies, and lines that tell of them.
+    /// Bodies, and lines that describe them.
     World(Box<Instance>, Vec<String>),
-    /// A motion without a skin, which plays, and lines that tell of it.
+    /// A motion without a skin, which plays, and lines that describe it.
     Motion(Box<Instance>, Vec<String>),
     /// A ragdoll, which can be edited.
     Workbench(Box<Workbench>),
@@ -40,7 +40,7 @@ pub(super) fn open_dropped(files: &[NamedFile]) -> Result<Opened, Error> {
     if has_extension(Path::new(name), "json") {
         return of_json(bytes, name).map_err(|error| error.with_file(name.clone()));
     }
-    // A page is told names without folders.
+    // Pages give names without folders.
     let last = |path: &str| path.rsplit('/').next().unwrap_or(path).to_owned();
     let mut resolve = |relative: &str| {
         let found = beside.iter().find(|file| file.name == last(relative));

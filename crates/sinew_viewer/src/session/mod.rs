@@ -1,4 +1,4 @@
-//! Subjects that run: a scene with hands on it, a character on the workbench, or a recording.
+//! A running subject: a scene with user operations, a character on the workbench, or a recording.
 
 mod files;
 mod playback;
@@ -28,14 +28,14 @@ enum Run {
     Replay(Box<Playback>),
 }
 
-/// Most poses that are kept to be written: five minutes.
+/// Largest number of poses kept for export: five minutes.
 const MOST_POSES: usize = 18_000;
 
 fn is_glb(path: &Path) -> bool {
     ["glb", "vrm"].into_iter().any(|extension| subject::has_extension(path, extension))
 }
 
-/// Longest that a ghost may keep the window waiting.
+/// Longest time that a ghost may block the window.
 const LONGEST_WAIT: Duration = Duration::from_secs(5);
 
 /// A subject that runs.
@@ -49,7 +49,7 @@ pub struct Session {
     step_time: Duration,
     report: Vec<String>,
     workbench: Option<Box<Workbench>>,
-    /// Bodies of the ragdoll, where no figure tells them.
+    /// Bodies of the ragdoll, if no figure lists them.
     bodies: Vec<BodyId>,
     ghost: Option<Box<Ghost>>,
     /// Poses of the character on the workbench at its start and after each step, world from joint.
@@ -60,7 +60,7 @@ impl Session {
     /// Starts a subject.
     ///
     /// # Errors
-    /// One line: a file that cannot be read, a recording of a scene that is not there.
+    /// One line: a file that cannot be read, or a recording of an unknown scene.
     pub fn start(subject: Subject) -> Result<Self, Error> {
         let opened = match &subject {
             Subject::Scene(scene, settings, assignments) => {
@@ -130,7 +130,7 @@ impl Session {
         workbench.to_glb(&self.poses, self.world().def().dt(), original.as_deref())
     }
 
-    /// Starts the same anew: a scene with its settings, a ragdoll with what was changed of it.
+    /// Restarts it: a scene with its settings, a ragdoll with its edits.
     ///
     /// # Errors
     /// As [`start`](Self::start).
@@ -163,7 +163,7 @@ impl Session {
     /// Changes a body of the ragdoll and its joint to the parent, and lets the ragdoll fall again.
     ///
     /// # Errors
-    /// One line: there is no ragdoll, or it cannot be built so; then everything is as before.
+    /// One line: there is no ragdoll, or the edit is invalid; nothing changes then.
     pub fn edit(&mut self, body: usize, wish: BoneSettings) -> Result<(), String> {
         let workbench = self.workbench.as_mut().ok_or("only ragdolls of files can be edited")?;
         workbench.set_wish(body, wish)?;
@@ -201,20 +201,20 @@ impl Session {
         self.threads
     }
 
-    /// Runs the steps to come on so many threads, at least 1: the same bits.
+    /// Sets the number of threads for the next steps, at least 1. The bits do not depend on it.
     pub fn set_threads(&mut self, threads: usize) {
         self.threads = threads.max(1);
         self.runner = if self.threads == 1 { Box::new(Serial) } else { Box::new(Threads::new(self.threads)) };
     }
 
-    /// Does something to the scene; nothing to a recording.
+    /// Applies an operation to the scene; ignored in a recording.
     pub fn apply(&mut self, operation: Operation) {
         if let Run::Live(recorder) = &mut self.run {
             recorder.apply(operation);
         }
     }
 
-    /// True if hands reach into it.
+    /// Returns true if it accepts operations.
     pub fn is_live(&self) -> bool {
         matches!(self.run, Run::Live(_))
     }
@@ -237,7 +237,7 @@ impl Session {
         went_on
     }
 
-    /// Figures so far; of a recording as they were when the step was first played.
+    /// Figures so far; for a recording, those when the step was first played.
     pub fn metrics(&self) -> Vec<Metric> {
         match &self.run {
             Run::Live(recorder) => recorder.instance().metrics(),
@@ -245,7 +245,7 @@ impl Session {
         }
     }
 
-    /// Figures of a recording up to now, after each number of steps; empty of what is live.
+    /// Figures of a recording up to now, after each number of steps; empty for live subjects.
     pub fn past_metrics(&self) -> &[Vec<Metric>] {
         match &self.run {
             Run::Live(_) => &[],
@@ -253,7 +253,7 @@ impl Session {
         }
     }
 
-    /// Number of steps of the recording that is played; `None` of what is live.
+    /// Number of steps in the recording; `None` for live subjects.
     pub fn length(&self) -> Option<u64> {
         match &self.run {
             Run::Live(_) => None,
@@ -261,7 +261,7 @@ impl Session {
         }
     }
 
-    /// Goes toward a number of steps of a recording, forth or back, until then; true once it is there.
+    /// Seeks to a step of a recording, in either direction, until a time limit; returns true when it is there.
     pub fn seek(&mut self, goal: u64, until: Instant) -> bool {
         let Run::Replay(playback) = &mut self.run else { return true };
         let arrived = playback.seek(goal, &*self.runner, until);
@@ -269,11 +269,11 @@ impl Session {
         arrived
     }
 
-    /// Takes the ghost to the step at which the first run is.
+    /// Moves the ghost to the step of the first run.
     fn follow(&mut self) {
         let at = self.world().step_count();
         if let Some(ghost) = &mut self.ghost {
-            // It is never far behind, for it goes along with each step.
+            // It is never far behind, since it follows each step.
             let until = Instant::now() + LONGEST_WAIT;
             ghost.playback.seek(at, &*self.runner, until);
         }
@@ -308,12 +308,12 @@ impl Session {
         self.step_time
     }
 
-    /// Lines that tell of a file that was opened.
+    /// Lines that describe an opened file.
     pub fn report(&self) -> &[String] {
         self.workbench.as_ref().map_or(&self.report, |workbench| workbench.report())
     }
 
-    /// First step of a recording that came to another state than was recorded.
+    /// First step of a recording whose state differs from the recorded one.
     pub fn diverged(&self) -> Option<u64> {
         match &self.run {
             Run::Live(_) => None,
@@ -321,7 +321,7 @@ impl Session {
         }
     }
 
-    /// Recording of what was done so far and what became of it; `None` of what no scene made, which cannot be started again elsewhere.
+    /// Recording of the run so far; `None` for subjects not created by a scene, which cannot be restarted elsewhere.
     pub fn recording(&self) -> Option<&Recording> {
         match (&self.run, &self.subject) {
             (Run::Live(recorder), Subject::Scene(..)) => Some(recorder.recording()),

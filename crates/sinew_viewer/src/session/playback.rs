@@ -1,4 +1,4 @@
-//! A recording that is played forth and back.
+//! Playback of a recording in both directions.
 
 use sinew::formats::Error;
 use sinew::physics::TaskRunner;
@@ -9,10 +9,10 @@ use web_time::Instant;
 
 /// Steps between marks at first.
 const MARK_STEPS: u64 = 30;
-/// Most bytes of all marks: of more, every second one goes.
+/// Largest total size of the marks, bytes; above it, every second one is dropped.
 const MARK_BYTES: usize = 128 << 20;
 
-/// A recording that is played. Steps that have been played before are as they were, with all that was measured.
+/// A recording in playback. Steps played before are restored with all their measurements.
 pub(super) struct Playback {
     pub replay: Replay,
     /// By the number of steps taken, in order.
@@ -74,7 +74,7 @@ impl Playback {
         true
     }
 
-    /// Keeps a way back to now. Characters beside a world are not taken back with it, so that their scenes are played anew.
+    /// Stores a mark of the present state. Characters beside a world cannot be restored, so their scenes are replayed from the start.
     fn mark(&mut self) {
         if !self.at().is_multiple_of(self.mark_steps) || !self.replay.instance().figures().is_empty() {
             return;
@@ -87,7 +87,7 @@ impl Playback {
         }
     }
 
-    /// Goes toward a number of steps, forth or back, until then; true once it is there.
+    /// Seeks to a step, in either direction, until a time limit; returns true when it is there.
     pub fn seek(&mut self, goal: u64, runner: &dyn TaskRunner, until: Instant) -> bool {
         let goal = goal.min(self.length());
         let at = self.at();
@@ -107,7 +107,7 @@ impl Playback {
         self.at() >= goal
     }
 
-    /// From the start, now and always: the scene cannot be taken back.
+    /// Replays from the start, now and always, because the scene cannot be restored.
     fn play_anew(&mut self) {
         self.marks.clear();
         self.mark_steps = u64::MAX;

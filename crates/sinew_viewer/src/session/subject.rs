@@ -1,4 +1,4 @@
-//! Subjects: what a session shows and can be started from anew.
+//! Subjects: the content of a session, from which it can be restarted.
 
 use sinew::formats::{Error, read_bytes};
 use sinew_scenes::recording::Recording;
@@ -6,14 +6,14 @@ use sinew_scenes::scenes::{Scene, Settings, find};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Subject of a session, from which it can be started anew.
+/// Content of a session, from which it can be restarted.
 #[derive(Clone, Debug)]
 pub enum Subject {
     /// A named scene with its settings, and those of them that are not at their defaults, `key=value`.
     Scene(&'static Scene, Box<Settings>, Vec<String>),
     /// A file: a world, a character, a ragdoll.
     File(PathBuf),
-    /// Files without a folder, as a page is given them: what [`File`](Self::File) may be, and the files beside it.
+    /// Files without a folder, as a page receives them: those that [`File`](Self::File) supports, and the files beside it.
     Dropped(Arc<[NamedFile]>),
     /// A recording, and where it comes from.
     Recording(PathBuf, Box<Recording>),
@@ -54,7 +54,7 @@ impl Subject {
         Ok(Self::File(path.to_owned()))
     }
 
-    /// Files that were dropped together. The first of a kind that can be shown by itself is shown, the others are beside it.
+    /// Files dropped together. The first that can be shown on its own is shown; the others are its companions.
     ///
     /// # Errors
     /// One line that names the file.
@@ -107,7 +107,7 @@ impl Subject {
     }
 }
 
-/// Extensions of files that are shown by themselves; others lie beside them.
+/// Extensions of files that can be shown on their own; others are companions.
 const SHOWN: [&str; 7] = ["sinewrec", "json", "glb", "gltf", "vrm", "fbx", "bvh"];
 
 pub(super) fn has_extension(path: &Path, extension: &str) -> bool {

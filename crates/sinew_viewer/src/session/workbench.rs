@@ -1,4 +1,4 @@
-//! A ragdoll on the workbench: built from a file's rig or read from a file, edited, dropped again.
+//! A ragdoll on the workbench: built from a file's rig or read from a file, then edited and dropped again.
 
 use super::subject::NamedFile;
 use super::takes;
@@ -17,7 +17,7 @@ use sinew_scenes::scenes::Instance;
 pub struct Workbench {
     name: String,
     source: Source,
-    /// Wishes so far, by the name of a body's bone.
+    /// Edits so far, by the name of a body's bone.
     wishes: Vec<(String, BoneSettings)>,
     def: RagdollDef,
     findings: Vec<Finding>,
@@ -27,7 +27,7 @@ pub struct Workbench {
 /// Source of a ragdoll.
 #[derive(Clone, Debug)]
 enum Source {
-    /// A rig, from which it is built anew after each change.
+    /// A rig, from which it is rebuilt after each edit.
     Rig(Box<Character>),
     /// A definition, whose numbers are changed.
     Bodies(Box<RagdollDef>),
@@ -80,12 +80,12 @@ impl Workbench {
         &self.def
     }
 
-    /// Troubles that the doctor sees in it, the worst first.
+    /// Problems found by the doctor, the worst first.
     pub fn findings(&self) -> &[Finding] {
         &self.findings
     }
 
-    /// Lines that tell of it.
+    /// Lines that describe it.
     pub fn report(&self) -> &[String] {
         &self.report
     }
@@ -102,10 +102,10 @@ impl Workbench {
         found.map(|(_, wish)| *wish).unwrap_or_default()
     }
 
-    /// Makes the changes of a body these, and the ragdoll anew with all that were made. Without effect if it cannot be made.
+    /// Replaces the edits of a body and rebuilds the ragdoll with all edits. If that fails, nothing changes.
     ///
     /// # Errors
-    /// One line: why it cannot be made.
+    /// One line: the reason for the failure.
     pub fn set_wish(&mut self, body: usize, wish: BoneSettings) -> Result<(), String> {
         let bone = self.def.bodies.get(body).map(|body| body.bone.clone()).ok_or("there is no such body")?;
         let mut wishes = self.wishes.clone();
@@ -117,7 +117,7 @@ impl Workbench {
         Ok(())
     }
 
-    /// The ragdoll as it falls, and its bodies, where no figure tells them.
+    /// The falling ragdoll, and its bodies if no figure lists them.
     pub(super) fn fall(&self) -> (Instance, Vec<BodyId>) {
         match &self.source {
             Source::Rig(it) => {
@@ -169,7 +169,7 @@ impl Workbench {
 }
 
 impl Character {
-    /// Its ragdoll by those wishes, and notes on how it came about.
+    /// Builds the ragdoll with those edits; returns it with notes on the build.
     fn built(&self, wishes: &[(String, BoneSettings)]) -> Result<(RagdollDef, Vec<String>), String> {
         let settings = Settings { bones: wishes.to_vec(), ..Settings::default() };
         let built = build_with(&self.rig, &self.analysis, &BuildOptions::default(), &settings);
@@ -179,7 +179,7 @@ impl Character {
     }
 }
 
-/// A definition with other masses and limits: what needs no rig.
+/// A definition with other masses and limits, which need no rig.
 fn changed(def: &RagdollDef, wishes: &[(String, BoneSettings)]) -> Result<RagdollDef, String> {
     let mut def = def.clone();
     for (bone, wish) in wishes {

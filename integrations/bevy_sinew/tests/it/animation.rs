@@ -1,4 +1,4 @@
-//! Characters whose joints something else animates: here a system where Bevy's `AnimationPlayer` has its own.
+//! Characters with externally animated joints: here by a system in place of Bevy's `AnimationPlayer`.
 
 use super::characters::scene;
 use super::*;
@@ -9,7 +9,7 @@ use bevy_sinew::sinew::ragdoll::{CharacterDef, State};
 use bevy_transform::TransformSystems;
 use std::sync::Arc;
 
-/// Joints of a character, what they are given in this frame, and who of them is given nothing.
+/// Joints of a character, their poses in this frame, and the joints without animation.
 #[derive(Resource)]
 struct Player {
     joints: Vec<Entity>,
@@ -17,7 +17,7 @@ struct Player {
     still: usize,
 }
 
-/// Bevy's animation, but for its curves: it writes joints, and knows of nobody else who does.
+/// Bevy's animation without curves: it writes joints, regardless of other writers.
 fn play(player: Res<Player>, mut transforms: Query<&mut Transform>) {
     for (index, (&joint, local)) in player.joints.iter().zip(&player.pose).enumerate() {
         let mut transform = transforms.get_mut(joint).expect("it is there");
@@ -34,7 +34,7 @@ fn apart(a: &[LocalTransform], b: &[LocalTransform]) -> f32 {
     a.iter().zip(b).map(|(a, b)| a.rotation.angle_to(b.rotation)).fold(0.0, f32::max)
 }
 
-/// A walker on the spot: the frames that it was given, and which character it is.
+/// A walker on the spot: its frames and its character.
 struct Walker {
     app: App,
     entity: Entity,
@@ -61,7 +61,7 @@ impl Walker {
         Self { app, entity, def, travels, given: Vec::new() }
     }
 
-    /// A frame, in which the player goes on with the walk.
+    /// Runs a frame, in which the player advances the walk.
     fn frame(&mut self) {
         let def = &self.def;
         let walk = &def.motions().clips[def.motions().looped.expect("it walks")];
@@ -87,7 +87,7 @@ impl Walker {
         self.app.world().get::<CharacterHandle>(self.entity).expect("it has one")
     }
 
-    /// Angle to the pose of the frame before the last, radians: a step comes before its frame's animation.
+    /// Angle to the pose of the frame before the last, radians: a step runs before its frame's animation.
     fn off(&self) -> f32 {
         apart(self.handle().pose_without_springs(), &self.given[self.given.len() - 2])
     }
@@ -118,7 +118,7 @@ fn what_animates_the_joints_is_what_the_character_strives_for() {
         }
     }
     assert!(most > 0.3, "the walk moves it by {most} rad");
-    // It goes where it is told, not where its clips would.
+    // It moves at the requested velocity, not by its clips.
     assert!(walker.handle().world_from_character().translation.length() < 0.01);
     let mut handle = walker.app.world_mut().get_mut::<CharacterHandle>(walker.entity).expect("it has one");
     handle.set_move(Vec3::Z);
@@ -146,7 +146,7 @@ fn who_is_animated_by_bevy_falls_and_gets_up() {
         assert!(shown.angle_between(of) < 1e-3);
     }
     assert!(walker.off() > 0.3, "it lies as it fell");
-    // Up again it is what the player plays; the head, too, which nobody has animated since.
+    // Up again, it shows the player's pose, including the head, which nobody has animated since.
     for _ in 0..900 {
         walker.frame();
         if walker.handle().state() == State::Animated && walker.off() < 0.02 {

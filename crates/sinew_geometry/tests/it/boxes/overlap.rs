@@ -249,7 +249,7 @@ fn flat_boxes_meet_like_what_they_are() {
     assert!((way.depth - 0.2).abs() < 1e-6 && (way.direction - Vec3::Y).length() < 1e-6, "{way:?}");
 }
 
-/// A motion of both changes neither whether nor how deep.
+/// Moving both boxes changes neither the overlap test nor the depth.
 #[test]
 fn overlaps_move_with_the_boxes() {
     let mut random = Random::new(56);

@@ -1,4 +1,4 @@
-//! Masses that a joint's springs and motors move: each side of the joint as one rigid piece.
+//! Effective masses of joint springs and motors, computed with each side of the joint as one rigid piece.
 
 use crate::joint::{DIRECTIONS, JointRows, TWIST};
 use crate::solver::IslandSolver;
@@ -10,7 +10,7 @@ use crate::spatial::{Vec6, ZERO6, ZERO66, spd_inverse};
 use sinew_math::{Vec3, max};
 
 impl IslandSolver {
-    /// Masses of all joints that need them, at the step's beginning.
+    /// Computes the masses of all joints that need them when the step begins.
     pub(in crate::solver) fn find_joint_masses(&mut self) {
         if self.joints.iter().all(|joint| !joint.drive.needs_mass()) {
             return;
@@ -31,7 +31,7 @@ impl IslandSolver {
                 let on_side = &on_side[..rows.count];
                 let Some(link) = self.links.get(side as usize) else { continue };
                 let center = self.bodies[side as usize].pose.translation;
-                // Below this joint the subtree, above it the rest of the tree, unless a fixed body holds that.
+                // One side is the subtree below this joint. The other side is the rest of the tree, unless a fixed body holds the tree.
                 let (piece, reference) = if let Some(piece) = self.pins.piece(j) {
                     (Some(piece), self.reference(link.tree))
                 } else if link.joint as usize == j {
@@ -62,7 +62,7 @@ impl IslandSolver {
         }
     }
 
-    /// Each link's piece: itself with everything below.
+    /// Sums the piece of each link: the link with all links below it.
     fn sum_pieces(&mut self) {
         self.scratch.pieces.clear();
         for (i, link) in self.links.iter().enumerate() {
@@ -92,17 +92,17 @@ impl IslandSolver {
     }
 }
 
-/// Open rows that are held while the mass along one of them is computed.
+/// Open rows that are locked while the mass along one of them is computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Together {
     Nothing,
-    /// If it is a rotation, the other ones.
+    /// For a rotation, the other open rotations.
     Rotations,
 }
 
-/// By direction: the mass that answers an impulse along each row while the rigid rows hold. Open rotations are driven all
-/// together, and each counts while the others hold: the axes of a shoulder do not lie along the arm, and a row that the arm
-/// could give way to by spinning about itself would weigh next to nothing.
+/// Effective mass along each row, by direction, with the rigid rows locked. Open rotations are driven together, so the mass of each is
+/// computed with the other two locked. The axes of a shoulder do not lie along the arm: if the others were free, the arm could evade a row
+/// by spinning about itself, and the mass along that row would be almost zero.
 fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS], together: Together) -> Vec6 {
     let rigid = if joint.drive.weld.is_some() { 0 } else { rows.locked };
     let turns =
@@ -124,7 +124,7 @@ fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS], 
         }
         let inverse = spd_inverse(&held, count);
         let alone = response[row][row];
-        // Rows that depend on each other (a gimbal's end) leave the row by itself.
+        // If the rows are dependent (gimbal lock), use the mass of the row alone.
         let mass = inverse.map_or(if alone > 0.0 { 1.0 / alone } else { 0.0 }, |m| m[count - 1][count - 1]);
         let least = if rows.turns(row) { LEAST_ROW_MOMENT } else { LEAST_ROW_MASS };
         out[rows.direction(row)] = max(mass, least);

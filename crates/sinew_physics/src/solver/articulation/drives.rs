@@ -1,5 +1,5 @@
-//! Drives in a joint's directions beside the hard constraint: springs, welds that give, motors, dry friction. Each is a
-//! row of the tree factor with compliance, so that any stiffness is stable.
+//! Drives act along a joint's directions in addition to the hard constraint: springs, soft welds, motors, dry friction. Each is a row with
+//! compliance in the tree factor, so any stiffness is stable.
 
 use crate::joint::def::{Gains, Motor};
 use crate::joint::{DIRECTIONS, JointPose, JointRows, TWIST, displacement, locked_error, open_row};
@@ -23,7 +23,7 @@ pub(in crate::solver) struct MotorImpulse {
 }
 
 impl Motor {
-    /// Most force or torque in a direction.
+    /// Largest force (N) or torque (N·m) in a direction.
     pub(crate) fn cap(&self, direction: usize) -> f32 {
         if direction < TWIST { self.max_force } else { self.max_torque }
     }
@@ -35,7 +35,7 @@ impl Motor {
 }
 
 impl SolverJoint {
-    /// Rows and their softness at the present pose.
+    /// Updates the rows and their softness for the present pose.
     pub(in crate::solver) fn refresh_rows(&mut self, velocities: &[Vec6], h: f32) {
         let motor = |i: usize| self.drive.motor.is_some_and(|m| m.cap(i) > 0.0) && self.saturated[i] == 0;
         let always = self.drive.spring.is_some() || self.drive.friction > 0.0;
@@ -73,18 +73,18 @@ impl SolverJoint {
             soft.add_spring(spring.softness, [self.mass[direction]; 2], x, 0.0, h);
         }
         if self.drive.friction > 0.0 {
-            // Dry friction as the viscosity τ/|ω| of the present rate, implicit, so it cannot overshoot.
+            // Dry friction is the viscosity τ/|ω| at the present rate. It is implicit, so it cannot overshoot.
             let least = if direction >= TWIST { STICK_SPIN } else { STICK_SPEED };
             let rate = max(rates[usize::from(direction >= TWIST)], least);
             soft.add_viscosity(h * self.drive.friction / rate, 0.0);
         }
         soft.add(&self.driven[row]);
-        // A spring of no stiffness and no damping would be a row of infinite compliance.
+        // A spring without stiffness and damping would be a row of infinite compliance.
         soft.gain = max(soft.gain, 1e-12);
         soft
     }
 
-    /// Row of the motor in a direction as if it had no cap.
+    /// Row of the motor in a direction, without its cap.
     fn motor_row(&self, direction: usize, h: f32) -> SoftRow {
         let mut row = SoftRow::default();
         let Some(motor) = self.drive.motor.filter(|motor| motor.cap(direction) > 0.0) else { return row };
@@ -99,7 +99,7 @@ impl SolverJoint {
         row
     }
 
-    /// Speed of the anchors and of rotation relative to each other.
+    /// Relative speed of the anchors, m/s, and relative angular speed of the bodies, rad/s.
     pub(in crate::solver) fn anchor_rates(&self, velocities: &[Vec6]) -> [f32; 2] {
         let (a, b) = (&velocities[self.a as usize], &velocities[self.b as usize]);
         let turn = angular(b) - angular(a);
@@ -114,7 +114,7 @@ impl SolverJoint {
         dot(&row.a, &velocities[self.a as usize]) + dot(&row.b, &velocities[self.b as usize])
     }
 
-    /// True if its motor is saturated in some direction.
+    /// Returns true if the motor is saturated in any direction.
     fn pushes(&self) -> bool {
         self.drive.motor.is_some() && self.saturated != [0; DIRECTIONS]
     }
@@ -125,13 +125,13 @@ impl SolverJoint {
         crate::joint::open_directions(kind).filter(move |&i| motor.is_some_and(|m| m.cap(i) > 0.0))
     }
 
-    /// Most impulse of the motor within a substep.
+    /// Largest impulse of the motor within a substep.
     fn motor_cap(&self, direction: usize, h: f32) -> f32 {
         self.drive.motor.map_or(0.0, |motor| motor.cap(direction) * h)
     }
 
-    /// Notes in which directions the motor of a pin that only pulls (a hand, a grip) has come to push with more than its cap: it resists contacts and stops as inertia
-    /// does. Pins that turn bodies as well are drives, which hold them as firmly as that.
+    /// Marks the directions in which the motor of a linear pin (a hand, a grip) exceeds its cap. This happens because a pin resists
+    /// contacts and stops as inertia does. Pins that also turn bodies are drives, which may hold with more than the cap.
     pub(in crate::solver) fn note_exceeded(&mut self, h: f32) {
         self.exceeded = [0; DIRECTIONS];
         if self.drive.motor.is_none_or(|motor| motor.max_torque > 0.0) {
@@ -145,7 +145,7 @@ impl SolverJoint {
         }
     }
 
-    /// Impulses of the motor on A and on B, if it is saturated in that direction.
+    /// Impulses of the motor on A and on B if it is saturated in that direction.
     pub(in crate::solver) fn push_of_motor(&self, direction: usize, h: f32) -> Option<[Vec6; 2]> {
         if self.saturated[direction] == 0 || self.drive.motor.is_none() {
             return None;
@@ -155,8 +155,8 @@ impl SolverJoint {
         Some([row.a.map(|x| x * impulse), row.b.map(|x| x * impulse)])
     }
 
-    /// Change that rows with `rate` are to make to it: `solve` removes the position error within the substep and lets soft rows
-    /// act, `relax` stops the rigid ones and leaves soft ones as they are, or they would act twice.
+    /// Rate change that the rows with the given rate request. `solve` removes the position error within the substep and applies the soft
+    /// rows. `relax` stops the rigid rows and leaves the soft rows unchanged, or they would act twice.
     pub(in crate::solver) fn residual(&self, rate: &Vec6, solve: bool, h: f32) -> Vec6 {
         let mut out = ZERO6;
         for row in 0..self.rows.count {
@@ -170,35 +170,34 @@ impl SolverJoint {
         out
     }
 
-    /// Rate that a soft row goes to where it moves nothing.
+    /// Rate that a soft row approaches where it moves no mass.
     pub(in crate::solver) fn wanted(&self, row: usize) -> f32 {
         self.soft[row].wanted(self.start_rate[self.rows.direction(row)])
     }
 
-    /// Γ of a row.
+    /// Compliance Γ of a row.
     pub(in crate::solver) fn compliance(&self, row: usize) -> f32 {
         if row < self.rigid { 0.0 } else { self.soft[row].compliance() }
     }
 
-    /// 1/Γ of a row that is not rigid.
+    /// Gain 1/Γ of a row that is not rigid.
     pub(in crate::solver) fn gain(&self, row: usize) -> f32 {
         self.soft[row].gain
     }
 
-    /// True if the anchors are held together exactly and rotations are all that is left, none of them held.
+    /// Returns true for a ball joint: the anchors are locked together and all rotations are open.
     pub(in crate::solver) fn is_point(&self) -> bool {
         self.rigid == TWIST && self.rows.locked == TWIST && self.rows.locks_point()
     }
 
-    /// `J v`, row by row; bodies that `velocities` does not have stand still.
+    /// Computes `J v`, row by row. Bodies outside `velocities` are at rest.
     pub(in crate::solver) fn rate(&self, velocities: &[Vec6]) -> Vec6 {
         let of = |body: u32| velocities.get(body as usize).unwrap_or(&ZERO6);
         self.rows.rate(of(self.a), of(self.b))
     }
 
-    /// Position error of a weld that gives at other poses of the bodies, beyond what its rows foresaw and what is made up
-    /// for: a body on a soft weld that turns would drift outward by `½ ω² r h²` in each substep, and a damper takes long to
-    /// take that back.
+    /// Position error of a soft weld at other poses of the bodies, beyond what its rows predicted and what has been corrected. Without
+    /// this, a rotating body on a soft weld would drift outward by `½ ω² r h²` in each substep, and a damper takes long to pull it back.
     fn bend_error(&self, pose: &JointPose, velocities: &[Vec6], h: f32) -> Vec6 {
         let mut bend = ZERO6;
         if self.drive.weld.is_none() {
@@ -215,7 +214,7 @@ impl SolverJoint {
         bend
     }
 
-    /// Position errors that are to be corrected at other poses of the bodies, to which these velocities have led.
+    /// Position errors to correct at other poses of the bodies, which these velocities lead to.
     pub(in crate::solver) fn position_error(&self, poses: &[Transform], velocities: &[Vec6], h: f32) -> Vec6 {
         let [a, b] = [self.a, self.b].map(|body| &poses[body as usize]);
         let pose = JointPose::new(&self.geometry, a, b);
@@ -227,7 +226,7 @@ impl SolverJoint {
         error
     }
 
-    /// Takes from the errors of the rigid rows what this substep leaves open.
+    /// Subtracts the part of the rigid rows' errors that this substep may leave open.
     #[inline(always)]
     pub(in crate::solver) fn leave_open(&self, error: &mut Vec6) {
         for row in 0..self.rigid {
@@ -237,7 +236,7 @@ impl SolverJoint {
 }
 
 impl IslandSolver {
-    /// Before the forces of a substep: rates of the soft rows and of motors.
+    /// Updates the rates of the soft rows and motors, before the forces of a substep act.
     pub(in crate::solver) fn begin_drives(&mut self) {
         for joint in &mut self.joints {
             if joint.rigid < joint.rows.count {
@@ -254,7 +253,7 @@ impl IslandSolver {
         }
     }
 
-    /// After the forces of a substep: puts the full push of all saturated motors on their bodies.
+    /// Applies the full impulse of all saturated motors to their bodies, after the forces of a substep.
     pub(in crate::solver) fn push_saturated(&mut self) {
         (self.push_energy, self.push_work) = (0.0, 0.0);
         if !self.joints.iter().any(SolverJoint::pushes) {
@@ -265,7 +264,7 @@ impl IslandSolver {
         self.push_energy = self.kinetic_energy(&self.velocities[..self.links.len()]) - free;
     }
 
-    /// Puts the push of [`push_saturated`](Self::push_saturated) on velocities that were set back to those before it.
+    /// Applies the impulses of [`push_saturated`](Self::push_saturated) again, to velocities that were reset to those before it.
     pub(in crate::solver) fn push_again(&mut self) {
         for j in 0..self.joints.len() {
             if self.joints[j].pushes() {
@@ -287,8 +286,8 @@ impl IslandSolver {
         }
     }
 
-    /// Adds the work of the drives in this substep: impulse times the rate after it. Kinetic energy rises by that at most, less
-    /// by half of what the change of velocity would hold by itself. Motors are not asked for what they take.
+    /// Adds the work of the drives in this substep: impulse times the rate after it. Kinetic energy rises by at most that amount, less half
+    /// of the energy of the velocity change itself. Work that motors absorb is not counted.
     pub(in crate::solver) fn add_drive_work(&mut self) {
         let (mut given, mut by_motors) = (0.0, 0.0);
         for joint in self.joints.iter().filter(|joint| joint.rigid < joint.rows.count) {
@@ -312,8 +311,8 @@ impl IslandSolver {
         self.note_motor_impulses();
     }
 
-    /// Kinetic energy that the pushes of saturated motors bring, J: impulse times the mean of the rates before and after it. What they would
-    /// give bodies that no joint held says nothing: that may be a thousand times as much.
+    /// Kinetic energy that saturated motors add, J: impulse times the mean of the rates before and after it. The energy they would add to
+    /// bodies without joints is no measure: it may be a thousand times as large.
     pub(in crate::solver) fn work_of_saturated(&self) -> f32 {
         let mut sum = 0.0;
         for joint in self.joints.iter().filter(|joint| joint.pushes()) {
@@ -325,7 +324,7 @@ impl IslandSolver {
         sum
     }
 
-    /// Impulses of motors in this substep, and the rates on the way that the bodies are about to go: joint, direction, impulse, rate.
+    /// Visits the motor impulses of this substep with the rates that the bodies are about to move at: joint, direction, impulse, rate.
     fn each_motor_impulse(&self, mut see: impl FnMut(usize, usize, f32, f32)) {
         for (j, joint) in self.joints.iter().enumerate().filter(|(_, joint)| joint.drive.motor.is_some()) {
             let rate = joint.rate(&self.velocities);
@@ -341,7 +340,8 @@ impl IslandSolver {
         }
     }
 
-    /// On the way that the bodies are about to go, J: force times way. Kinetic and potential energy together rise by no more.
+    /// Work of the motors along the displacement that the bodies are about to make, J: force times distance. The sum of kinetic and
+    /// potential energy rises by at most that amount.
     pub(in crate::solver) fn work_of_motors(&self) -> f32 {
         let mut sum = 0.0;
         self.each_motor_impulse(|_, _, impulse, rate| sum += impulse * rate);
@@ -358,10 +358,10 @@ impl IslandSolver {
         self.scratch.motor_impulses = noted;
     }
 
-    /// Adds the work of motors in this substep, J, at its end: impulse times the rate that bodies are left with. Kinetic and potential energy
-    /// together rise by that at most, less by half of what the change of velocity would hold by itself. In the rates between the passes are
-    /// the ways on which joints, stops and contacts close, too: a stop that pushes a limb back against its muscle would seem to draw work
-    /// out of it.
+    /// Adds the work of the motors at the end of this substep, J: impulse times the final rate of the bodies. The sum of kinetic and
+    /// potential energy rises by at most that amount, less half of the energy of the velocity change itself. The rates between the passes
+    /// include the motions that close joints, stops and contacts, so they are not used: with them, a stop that pushes a limb back against
+    /// its muscle would appear to take work from the muscle.
     pub(in crate::solver) fn add_motor_work(&mut self) {
         for &MotorImpulse { joint, direction, impulse } in &self.scratch.motor_impulses {
             let joint = &self.joints[joint];
@@ -370,7 +370,7 @@ impl IslandSolver {
         }
     }
 
-    /// Energy that springs take, J, at `s` times the present velocities: the coefficients of `s²` and `s`.
+    /// Energy that springs absorb, J, at `s` times the present velocities: the coefficients of `s²` and `s`.
     pub(in crate::solver) fn resistance_of_springs(&self) -> (f32, f32) {
         let (mut square, mut linear) = (0.0, 0.0);
         let passive = |joint: &&SolverJoint| joint.rigid < joint.rows.count && joint.drive.motor.is_none();
@@ -386,9 +386,9 @@ impl IslandSolver {
         (square, linear)
     }
 
-    /// Motors that ask for more than their caps push with these from now on; then the substep's joints are solved again
-    /// from `started`, its velocities before them. A motor stays saturated until it asks for less, see
-    /// [`release_motors`](Self::release_motors): without that memory the wrong ones of a chain of motors saturate.
+    /// Saturates motors that request more than their caps: from now on they push with the cap. The joints of the substep are then solved
+    /// again from `started`, the velocities before them. A motor stays saturated until it requests less, see
+    /// [`release_motors`](Self::release_motors). Without that memory, the wrong motors of a chain saturate.
     pub(in crate::solver) fn saturate_motors(&mut self) {
         if self.joints.iter().all(|joint| joint.drive.motor.is_none()) {
             return;
@@ -396,7 +396,7 @@ impl IslandSolver {
         for _ in 0..SATURATION_ROUNDS {
             let mut changed = false;
             self.scratch.started.swap_with_slice(&mut self.velocities[..self.links.len()]);
-            // `velocities` are now those of the beginning, `started` those that the joints led to.
+            // `velocities` now holds the velocities at the beginning, `started` those after the joint solve.
             for j in 0..self.joints.len() {
                 if self.joints[j].drive.motor.is_none() {
                     continue;
@@ -424,14 +424,14 @@ impl IslandSolver {
         }
     }
 
-    /// Rows, factor and response at the same pose, since other motors push with all they have than before.
+    /// Rebuilds rows, factor and response at the same pose, since the set of saturated motors has changed.
     pub(in crate::solver) fn renew_rows(&mut self) {
         self.refresh_rows();
         self.factor_joints();
         self.refresh_response();
     }
 
-    /// Impulse that a motor would give for the velocities in `scratch.started`; 0 where there is none.
+    /// Impulse that a motor requests at the velocities in `scratch.started`; 0 where there is no motor.
     fn asked_of_motor(&self, j: usize, direction: usize) -> f32 {
         let joint = &self.joints[j];
         if !joint.motor_directions().any(|i| i == direction) {
@@ -446,8 +446,8 @@ impl IslandSolver {
         joint.motor_row(direction, self.h).impulse(joint.start_rate[direction], rate)
     }
 
-    /// Saturated motors that no longer ask for all they have are released, for the next substep, and pins that contacts have brought beyond their caps saturate: gives
-    /// whether there are any. Their rows change when they are refreshed.
+    /// Releases saturated motors that no longer request their cap, and saturates pins that contacts have pushed beyond their caps, for the
+    /// next substep. Returns whether any changed. The rows change when they are refreshed.
     pub(in crate::solver) fn release_motors(&mut self) -> bool {
         let mut released = false;
         for joint in self.joints.iter_mut().filter(|joint| joint.drive.motor.is_some()) {

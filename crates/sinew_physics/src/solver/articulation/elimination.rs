@@ -1,6 +1,6 @@
-//! Elimination of a joint's open directions from the articulated inertia of its child (Featherstone 1983), at the joint's
-//! anchor: what the joint holds passes on to the parent as it is, what it leaves open goes out by a pivot in which springs,
-//! motors and friction (gains `G = 1/Γ`) count.
+//! Eliminates a joint's open directions from the articulated inertia of its child (Featherstone 1983), at the joint's anchor. The locked
+//! directions pass the inertia on to the parent unchanged. An open direction is eliminated by a pivot that includes the gains `G = 1/Γ` of
+//! springs, motors and friction.
 //!
 //! With inertia `I` and impulse `p` of the child at the anchor, the velocities `V = V_p + u` of child and parent
 //! there, and an open direction `s` of gain `g`:
@@ -8,22 +8,22 @@
 //! w = I s        d = sᵀw + g        u = (sᵀp − wᵀV_p)/d
 //! I −= w wᵀ/d    p −= w sᵀp/d
 //! ```
-//! Several go one after the other, or three rotations at once with a pivot of 3×3.
+//! Several directions are eliminated one after the other, or three rotations at once with a 3×3 pivot.
 //!
-//! Residuals are not eliminated: those of gains are impulses on both bodies. Where held rows ask for a velocity `t` of the child
-//! at the anchor, the parent gets `−I' t` of the inertia `I'` that is passed on, and the child follows `t` as it follows its
-//! parent ([`Elimination::follow`]): to send up `p − I t` would leave the difference of two large numbers to the solve.
+//! Residuals are not eliminated. Residuals of gains are impulses on both bodies. If locked rows request a velocity `t` of the child at the
+//! anchor, the parent gets `−I' t` of the inertia `I'` that is passed on, and the child follows `t` as it follows its parent
+//! ([`Elimination::follow`]). Passing on `p − I t` instead would leave the solve with the difference of two large numbers.
 //!
-//! All is generic over [`Real`]: one tree, or eight of the same shape side by side. Numbers that are the same in all lanes are
-//! [`Spread`] over them.
+//! The code is generic over [`Real`]: one tree, or eight of the same shape side by side. Numbers that are equal in all lanes are broadcast
+//! by [`Spread`].
 
 use crate::solver::tuning::LEAST_PIVOT;
 use sinew_math::Vec3;
 use sinew_math::lanes::{Real, Vector3};
 
-/// A number, or one for each lane, as it is kept in memory.
+/// A number as stored in memory: one for all lanes, or one for each lane.
 pub(crate) trait Spread<R>: Copy {
-    /// In the lanes.
+    /// Loads the number into the lanes.
     fn spread(self) -> R;
 }
 
@@ -46,11 +46,11 @@ fn spread<N: Spread<R>, R: Real>(v: Vector3<N>) -> Vector3<R> {
     Vector3::new(v.x.spread(), v.y.spread(), v.z.spread())
 }
 
-/// Symmetric 3×3: xx, xy, xz, yy, yz, zz.
+/// Symmetric 3×3 matrix: xx, xy, xz, yy, yz, zz.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Symmetric<R>(pub [R; 6]);
 
-/// 3×3, row by row.
+/// 3×3 matrix, row by row.
 pub(crate) type Matrix<R> = [Vector3<R>; 3];
 
 #[inline(always)]
@@ -58,7 +58,7 @@ fn spread_rows<N: Spread<R>, R: Real>(m: &Matrix<N>) -> Matrix<R> {
     [spread(m[0]), spread(m[1]), spread(m[2])]
 }
 
-/// With twice the digits: masses of 1 : 100,000 in one tree cancel all that `f32` has.
+/// Converts to double precision: in trees with mass ratios of 1 : 100,000, cancellation uses up all digits of `f32`.
 #[inline(always)]
 pub(crate) fn wide(v: Vec3) -> Vector3<f64> {
     Vector3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z))
@@ -93,7 +93,7 @@ pub(crate) fn columns<R: Real>(m: &Matrix<R>) -> Matrix<R> {
     [Vector3::new(a.x, b.x, c.x), Vector3::new(a.y, b.y, c.y), Vector3::new(a.z, b.z, c.z)]
 }
 
-/// `1/pivot`, or zero where it is not safely positive.
+/// Computes `1/pivot`, or zero if the pivot is not safely positive.
 #[inline(always)]
 fn reciprocal<R: Real>(pivot: R, of: R) -> R {
     let safe = R::gt(pivot, of * R::splat(LEAST_PIVOT));
@@ -140,7 +140,7 @@ impl<R: Real> Symmetric<R> {
         Self([a - g, b - h, c - i, d - j, e - k, f - l])
     }
 
-    /// Inertia of a mass that depends on the direction, about a point `r` from it.
+    /// Inertia of a direction-dependent mass, about a point `r` away from it.
     #[inline(always)]
     pub fn at(&self, r: Vector3<R>) -> Inertia<R> {
         let [a0, a1, a2] = self.rows();
@@ -157,7 +157,7 @@ impl<R: Real> Symmetric<R> {
         *self = self.plus(&Self([u.x * v.x, u.x * v.y, u.x * v.z, u.y * v.y, u.y * v.z, u.z * v.z]));
     }
 
-    /// Inverse of a positive definite matrix by LDLᵀ; nothing along a pivot that is not safely positive.
+    /// Inverse of a positive definite matrix by LDLᵀ. A pivot that is not safely positive contributes nothing.
     #[inline(always)]
     pub fn inverse(&self) -> Self {
         let [xx, xy, xz, yy, yz, zz] = self.0;
@@ -167,14 +167,14 @@ impl<R: Real> Symmetric<R> {
         let t = yz - l20 * xy;
         let l21 = t * d1;
         let d2 = reciprocal(zz - l20 * xz - l21 * t, zz);
-        // Rows of L⁻¹ below its diagonal of ones: (−l10), (l10 l21 − l20, −l21).
+        // The rows of L⁻¹ below its unit diagonal are (−l10) and (l10 l21 − l20, −l21).
         let i20 = l10 * l21 - l20;
         let (a, b, c) = (i20 * d2, l21 * d2, l10 * d1);
         Self([d0 + l10 * c + i20 * a, -(c + a * l21), a, d1 + l21 * b, -b, d2])
     }
 }
 
-/// Inertia of a body with what hangs on it, about some point: momentum `A v + C ω`, angular momentum `Cᵀ v + B ω`.
+/// Inertia of a body with the links that hang on it, about some point: momentum `A v + C ω`, angular momentum `Cᵀ v + B ω`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia<R> {
     pub mass: Symmetric<R>,
@@ -183,7 +183,7 @@ pub(crate) struct Inertia<R> {
     pub rotation: Symmetric<R>,
 }
 
-/// A velocity, or an impulse: linear and angular part.
+/// Velocity or impulse: linear and angular part.
 pub(crate) type Twist<R> = [Vector3<R>; 2];
 
 impl<R: Real> Inertia<R> {
@@ -199,7 +199,7 @@ impl<R: Real> Inertia<R> {
         Self { mass: Symmetric::zero(), coupling: zeros(), rotation: Symmetric::zero() }
     }
 
-    /// About a point `r` from the present one, of whatever is fixed to the same body.
+    /// The same inertia about a point `r` away from the present reference point.
     #[inline(always)]
     pub fn shifted(&self, r: Vector3<R>) -> Self {
         let [a0, a1, a2] = self.mass.rows();
@@ -223,7 +223,7 @@ impl<R: Real> Inertia<R> {
         self.rotation = self.rotation.plus(&other.rotation);
     }
 
-    /// Adds that of a spring, `j jᵀ k` with `j = (force, torque)`.
+    /// Adds the inertia of a spring, `j jᵀ k` with `j = (force, torque)`.
     #[inline(always)]
     pub fn add_row(&mut self, force: Vector3<R>, torque: Vector3<R>, k: R) {
         self.mass.add_outer(force, k);
@@ -240,7 +240,7 @@ impl<R: Real> Inertia<R> {
         [p + q, l + m]
     }
 
-    /// Momentum of a velocity without rotation, or of a rotation alone.
+    /// Momentum of a pure translation or of a pure rotation.
     #[inline(always)]
     fn times_part(&self, turns: bool, way: Vector3<R>) -> Twist<R> {
         if turns {
@@ -250,7 +250,7 @@ impl<R: Real> Inertia<R> {
         }
     }
 
-    /// Takes out a direction that is left open, of some gain; `start` is the inertia before any was. Gives `I s` and `1/d`.
+    /// Eliminates an open direction with the given gain. `start` is the inertia before any elimination. Returns `I s` and `1/d`.
     #[inline(always)]
     pub fn eliminate(&mut self, start: &Self, (turns, way): (bool, Vector3<R>), gain: R) -> (Twist<R>, R) {
         let [force, torque] = self.times_part(turns, way);
@@ -269,23 +269,23 @@ impl<R: Real> Inertia<R> {
 
 /// Elimination of a joint's open directions.
 pub(crate) trait Elimination<N> {
-    /// From the leaves to the root: an impulse on the child at its centre becomes one on the parent at its own. What is kept for
-    /// the way down takes the place of `kept`.
+    /// Ascends: converts an impulse on the child at its centre to one on the parent at the parent's centre. Replaces `kept` by the values
+    /// that the descent needs.
     fn ascend<R: Real>(&self, impulse: Twist<R>, kept: &mut [R; 6]) -> Twist<R>
     where
         N: Spread<R>;
 
-    /// From the root to the leaves: velocity of the child at its centre from that of the parent at its own.
+    /// Descends: computes the velocity of the child at its centre from the velocity of the parent at the parent's centre.
     fn descend<R: Real>(&self, parent: Twist<R>, kept: &[R; 6]) -> Twist<R>
     where
         N: Spread<R>;
 
-    /// The same from the velocity that the anchor has on the parent, or that is asked of the child there.
+    /// Descends from a velocity at the anchor: that of the anchor on the parent, or the requested one of the child.
     fn follow<R: Real>(&self, anchor: Twist<R>, kept: &[R; 6]) -> Twist<R>
     where
         N: Spread<R>;
 
-    /// The same while the parent is held.
+    /// Descends with the parent at rest.
     fn descend_alone<R: Real>(&self, kept: &[R; 6]) -> Twist<R>
     where
         N: Spread<R>;
@@ -294,15 +294,15 @@ pub(crate) trait Elimination<N> {
 /// Motions that a [`Swivel`] leaves open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Freedom {
-    /// All: the body is the first of its tree, and nothing holds it.
+    /// All: the body is the free root of its tree.
     All,
     /// All rotations and no translation.
     Rotation,
-    /// The same with gains.
+    /// All rotations, with gains, and no translation.
     DrivenRotation,
 }
 
-/// Three rotations, eliminated at once.
+/// Three open rotations, eliminated at once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Swivel<N> {
     freedom: Freedom,
@@ -313,14 +313,14 @@ pub(crate) struct Swivel<N> {
     inertia: Inertia<N>,
     /// G.
     pub gain: Symmetric<N>,
-    /// (B + G)⁻¹, and rows of C (B + G)⁻¹; of a free body also the inverse of the mass that is left.
+    /// (B + G)⁻¹, and rows of C (B + G)⁻¹. For a free body also the inverse of the remaining mass.
     pivot: Symmetric<N>,
     coupled: Matrix<N>,
     free: Symmetric<N>,
 }
 
 impl<R: Real> Swivel<R> {
-    /// A swivel whose child has this articulated inertia about its centre.
+    /// Creates a swivel whose child has this articulated inertia about its centre.
     #[inline(always)]
     pub fn new(freedom: Freedom, [arm, parent_arm]: [Vector3<R>; 2], child: &Inertia<R>) -> Self {
         Self {
@@ -335,7 +335,7 @@ impl<R: Real> Swivel<R> {
         }
     }
 
-    /// A swivel whose child has this articulated inertia about the anchor.
+    /// Creates a swivel whose child has this articulated inertia about the anchor.
     #[inline(always)]
     pub fn at_anchor(freedom: Freedom, inertia: Inertia<R>) -> Self {
         let (arm, parent_arm, gain) = (zero(), zero(), Symmetric::zero());
@@ -349,13 +349,13 @@ impl<R: Real> Swivel<R> {
         self.parent_arm
     }
 
-    /// (B + G)⁻¹ and rows of C (B + G)⁻¹; after [`factor`](Self::factor).
+    /// (B + G)⁻¹ and rows of C (B + G)⁻¹; valid after [`factor`](Self::factor).
     #[inline(always)]
     pub fn pivots(&self) -> (Symmetric<R>, Matrix<R>) {
         (self.pivot, self.coupled)
     }
 
-    /// Inverse of the mass that is left of a free body; valid after [`factor`](Self::factor).
+    /// Inverse of a free body's remaining mass; valid after [`factor`](Self::factor).
     #[inline(always)]
     pub fn inverse_mass(&self) -> Symmetric<R> {
         self.free
@@ -367,7 +367,7 @@ impl<R: Real> Swivel<R> {
         self.inertia.along(turns, way)
     }
 
-    /// Gives what the parent gets of the articulated inertia, about its centre.
+    /// Factors and returns the articulated inertia that the parent gets, about its centre.
     #[inline(always)]
     pub fn factor(&mut self) -> Inertia<R> {
         let i = self.inertia;
@@ -457,7 +457,7 @@ impl<N: Copy> Elimination<N> for Swivel<N> {
     }
 }
 
-/// A direction that is left open.
+/// An open direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Opening<N> {
     turns: bool,
@@ -469,7 +469,7 @@ pub(crate) struct Opening<N> {
     inverse: N,
 }
 
-/// Directions that are eliminated one after the other.
+/// Open directions that are eliminated one after the other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sequence<N> {
     /// World arms from the centres of mass of child and parent to the anchor.
@@ -482,7 +482,7 @@ pub(crate) struct Sequence<N> {
 }
 
 impl<R: Real> Sequence<R> {
-    /// A sequence without openings whose child has this articulated inertia about its centre.
+    /// Creates a sequence without open directions whose child has this articulated inertia about its centre.
     #[inline(always)]
     pub fn new([arm, parent_arm]: [Vector3<R>; 2], child: &Inertia<R>) -> Self {
         let none = R::splat(0.0);
@@ -491,7 +491,7 @@ impl<R: Real> Sequence<R> {
         Self { arm, parent_arm, inertia: child.shifted(arm), openings: [opening; 6], open: 0 }
     }
 
-    /// Leaves a direction open, in which the child moves by `way` and a spring or so holds it with `gain`.
+    /// Opens a direction, in which the child moves by `way` and a spring or motor resists with `gain`.
     #[inline(always)]
     pub fn push(&mut self, turns: bool, way: Vector3<R>, gain: R) {
         let opening = &mut self.openings[self.open];
@@ -511,7 +511,7 @@ impl<R: Real> Sequence<R> {
         self.inertia.along(turns, way)
     }
 
-    /// Gives what the parent gets of the articulated inertia, about its centre.
+    /// Factors and returns the articulated inertia that the parent gets, about its centre.
     #[inline(always)]
     pub fn factor(&mut self) -> Inertia<R> {
         let mut left = self.inertia;
@@ -579,10 +579,10 @@ mod tests {
     use super::*;
     use sinew_math::{Random, Rotation, Sym3};
 
-    /// An open direction: whether it turns, its axis, its gain.
+    /// An open direction: rotational or not, its axis, its gain.
     type Open = (bool, Vector3<f64>, f64);
 
-    /// A body of a kilogram or of thousands, of some shape.
+    /// A random body of one kilogram up to thousands.
     fn body(random: &mut Random, mass: f32) -> Inertia<f64> {
         let size = random.range(0.05, 0.5);
         let moments = Vec3::new(random.range(0.5, 1.0), random.range(0.5, 1.0), random.range(0.5, 1.0))
@@ -595,8 +595,8 @@ mod tests {
         wide(random.direction() * random.range(0.1, 0.5))
     }
 
-    /// The joint of two free bodies: what it holds stands still, what it leaves open is pushed by gains alone, and what one body
-    /// gets the other loses.
+    /// Checks the joint of two free bodies: locked directions do not move, gains alone push the open directions, and momentum is conserved
+    /// between the bodies.
     fn check(
         joint: &impl Elimination<f64>,
         through: &Inertia<f64>,

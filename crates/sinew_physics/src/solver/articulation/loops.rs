@@ -1,7 +1,7 @@
-//! Joints that close loops. Few of them are solved exactly, by the Schur complement of the tree (Baraff 1996): with the
-//! tree's inverse inertia `W`, rows `J` of the loops and `S = J W Jᵀ + Γ`, `λ = S⁻¹ (r − J dv)`. Many of them, or loops
-//! between trees, are solved by conjugate gradients on the same equations: `S p` is one pass through the trees, so a net
-//! that hangs by its ropes is carried at once, and each round takes energy out, however early it ends.
+//! Joints that close loops. A few loops are solved exactly by the Schur complement of the tree (Baraff 1996): with the tree's inverse
+//! inertia `W`, the loop rows `J` and `S = J W Jᵀ + Γ`, `λ = S⁻¹ (r − J dv)`. Many loops, or loops between trees, are solved by conjugate
+//! gradients on the same equations. Each product `S p` is one pass through the trees, so a net on ropes is loaded correctly from the first
+//! round on, and every round removes energy, also if the iteration ends early.
 
 use crate::joint::DIRECTIONS;
 use crate::solver::articulation::batches::Batches;
@@ -21,10 +21,10 @@ use sinew_math::{clamp, max};
 #[derive(Clone, Debug)]
 struct Closure {
     tree: u32,
-    /// Its joints among the loops.
+    /// Index of its first joint among the loops.
     first: usize,
     count: usize,
-    /// Rows of them, and where their matrices start.
+    /// Number of its rows, and the offsets of its matrices.
     rows: usize,
     inverse: usize,
     columns: usize,
@@ -33,13 +33,13 @@ struct Closure {
 /// All loops of an island.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Loops {
-    /// Joints of the island; those of a closure are neighbours.
+    /// Joints of the island; the joints of one closure are contiguous.
     pub joints: Vec<u32>,
-    /// None if the loops are iterated.
+    /// Empty if the loops are iterated.
     closures: Vec<Closure>,
     /// S⁻¹ of all closures, row by row.
     inverses: Vec<f32>,
-    /// `W Jᵀ` of all closures: per row, per member of the tree, a velocity change.
+    /// `W Jᵀ` of all closures: for each row, the velocity change of each link of the tree.
     columns: ResponseCache,
     scratch: Vec<f32>,
     gradient: Gradient,
@@ -48,11 +48,11 @@ pub(in crate::solver) struct Loops {
 /// Vectors of conjugate gradients.
 #[derive(Clone, Debug, Default)]
 struct Gradient {
-    /// Per row of the loops.
+    /// For each row of the loops.
     residual: Vec<f32>,
     direction: Vec<f32>,
     answer: Vec<f32>,
-    /// Per moving body: answer to the direction, and to all so far.
+    /// For each moving body: velocity change from the direction, and from all impulses so far.
     dv: Vec<Vec6>,
     sum: Vec<Vec6>,
 }
@@ -71,12 +71,12 @@ impl Loops {
         self.closures.is_empty() && !self.joints.is_empty()
     }
 
-    /// Loop joints that the responses take into account.
+    /// Loop joints that the responses include.
     pub fn closed_exactly(&self) -> &[u32] {
         if self.are_iterated() { &[] } else { &self.joints }
     }
 
-    /// Groups them by tree; many, or some between trees, are left to be iterated.
+    /// Groups the loops by tree. Many loops, or loops between trees, are left to the iteration.
     pub fn group(&mut self, joints: &[SolverJoint], links: &[Link]) {
         let tree = |body: u32| links.get(body as usize).map(|link| link.tree);
         let ends = |joint: u32| (tree(joints[joint as usize].a), tree(joints[joint as usize].b));
@@ -103,7 +103,7 @@ impl Loops {
         }
     }
 
-    /// Matrices for the present rows; the response of each closed tree becomes that with its loops closed.
+    /// Computes the matrices for the present rows. The response of each closed tree then includes its loops.
     pub fn respond(
         &mut self,
         joints: &[SolverJoint],
@@ -158,8 +158,8 @@ impl Loops {
         }
     }
 
-    /// Makes `scratch.dv` the further velocity change by which the loops make up for what it leaves of
-    /// `scratch.loop_residuals` (row by row of each loop joint).
+    /// Sets `scratch.dv` to the additional velocity change by which the loops remove the rest of `scratch.loop_residuals` (row by row of
+    /// each loop joint).
     pub fn close(&mut self, joints: &mut [SolverJoint], links: &[Link], scratch: &mut Scratch) {
         if self.are_iterated() {
             self.iterate(joints, links, scratch);
@@ -170,8 +170,8 @@ impl Loops {
         }
     }
 
-    /// The inverse of a closure whose rows nearly say the same is mostly rounding. Where its answer does not halve what it
-    /// was made for, only as much of it is taken as lessens that most.
+    /// Scales the solution of an ill-conditioned closure. The inverse of a closure with nearly dependent rows is mostly rounding: if its
+    /// solution does not halve the residual, use the fraction that reduces the residual most.
     fn keep_descent(&mut self, joints: &mut [SolverJoint], scratch: &mut Scratch) {
         let Gradient { residual, direction: lambda, .. } = &self.gradient;
         let (mut square, mut along, mut answered, mut row) = (0.0, 0.0, 0.0, 0);
@@ -203,7 +203,7 @@ impl Loops {
         }
     }
 
-    /// Impulses of the loops, put on the bodies.
+    /// Computes the impulses of the loops and applies them to the bodies.
     fn close_exactly(&mut self, joints: &mut [SolverJoint], scratch: &mut Scratch) {
         scratch.impulses.fill(ZERO6);
         let Gradient { residual, direction: lambdas, .. } = &mut self.gradient;
@@ -288,7 +288,7 @@ impl Loops {
     }
 }
 
-/// `S p` for the direction `p`, and the velocities that it gives.
+/// Computes `S p` for the direction `p`, and the velocities that it causes.
 fn answer(loops: &[u32], joints: &[SolverJoint], links: &[Link], scratch: &mut Scratch, g: &mut Gradient) {
     scratch.impulses.fill(ZERO6);
     let mut push = g.direction.iter();
@@ -316,7 +316,7 @@ fn dot_of(a: &[f32], b: &[f32]) -> f32 {
 }
 
 impl IslandSolver {
-    /// Starts iterated loops from the last substep's impulses.
+    /// Warm-starts iterated loops with the impulses of the last substep.
     pub(in crate::solver) fn warm_start_loops(&mut self) {
         if !self.loops.are_iterated() {
             return;
@@ -336,7 +336,7 @@ impl IslandSolver {
         }
     }
 
-    /// Impulses of the substep become memory.
+    /// Stores the impulses of the substep for the next warm start.
     pub(in crate::solver) fn end_loops(&mut self) {
         for &joint in &self.loops.joints {
             let joint = &mut self.joints[joint as usize];
@@ -348,8 +348,8 @@ impl IslandSolver {
     }
 }
 
-/// Inverse of a symmetric positive definite matrix by LDLᵀ, appended to `out`. A pivot that is not positive all the same
-/// drops its row.
+/// Appends the inverse of a symmetric positive definite matrix to `out`, by LDLᵀ. If rounding makes a pivot non-positive, its row is
+/// dropped.
 fn invert(m: &mut [f32], n: usize, out: &mut Vec<f32>) {
     // L below the diagonal, 1/D on it, in place.
     for i in 0..n {
@@ -372,7 +372,7 @@ fn invert(m: &mut [f32], n: usize, out: &mut Vec<f32>) {
     out.resize(start + n * n, 0.0);
     let out = &mut out[start..];
     for column in 0..n {
-        // Row by row of the result, which is symmetric.
+        // Compute the result row by row; it is symmetric.
         let x = &mut out[column * n..(column + 1) * n];
         x[column] = 1.0;
         for i in column..n {

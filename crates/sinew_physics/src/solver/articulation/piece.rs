@@ -1,4 +1,4 @@
-//! Bodies that are held rigidly to each other: their mass and how they answer to rows together.
+//! Bodies locked rigidly to each other: their mass and their response to rows.
 
 use crate::joint::DIRECTIONS;
 use crate::solver::body::SolverBody;
@@ -36,8 +36,8 @@ impl Piece {
         }
     }
 
-    /// Velocity response matrix of rows on this piece; each row is given for a body whose centre is at `arm` from the
-    /// reference point. Nothing for a piece without mass.
+    /// Adds the velocity response matrix of rows on this piece. Each row is given for a body whose centre is at `arm` from the reference
+    /// point. A piece without mass adds nothing.
     pub(super) fn add_response(&self, rows: &[Vec6], arm: Vec3, out: &mut [Vec6; DIRECTIONS]) {
         if self.mass <= 0.0 {
             return;

@@ -1,6 +1,6 @@
-//! Pins: springs and motors between a body and a fixed one that leave all six directions free. They close no loop: with rows
-//! `J` of gains `G`, a pin gives `λ = G (r − J dv)`, so the body moves as if it had `Jᵀ G J` more inertia and were pushed by
-//! `Jᵀ G r`. Both go into the factor of its tree, which stays exact, in linear time, and stable for any stiffness.
+//! Pins: springs and motors between a body and a fixed body that leave all six directions open. A pin closes no loop: with rows `J` of
+//! gains `G` it gives `λ = G (r − J dv)`, so the body moves as if it had `Jᵀ G J` more inertia and were pushed by `Jᵀ G r`. Both go into
+//! the factor of its tree, which stays exact, linear in time, and stable for any stiffness.
 
 use crate::solver::IslandSolver;
 use crate::solver::articulation::elimination::{Inertia, wide};
@@ -14,10 +14,10 @@ use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, linear};
 pub(in crate::solver) struct Pins {
     /// Joints of the island.
     pub joints: Vec<u32>,
-    /// Per moving body: place of the nearest pin in `joints`, and how many joints lie between; `NONE` if what holds its tree
-    /// is nearer, or there is none.
+    /// For each moving body: index of the nearest pin in `joints`, and the number of joints between. `NONE` if there is no pin, or if the
+    /// fixed body that holds the tree is nearer.
     nearest: Vec<(u32, u32)>,
-    /// Per pin: what it carries.
+    /// For each pin: the piece that it carries.
     pieces: Vec<Piece>,
 }
 
@@ -35,7 +35,7 @@ impl Pins {
         self.nearest.reserve(bodies);
     }
 
-    /// Piece that hangs on a joint of the island if it is a pin.
+    /// Piece that hangs on a joint of the island, if the joint is a pin.
     pub fn piece(&self, joint: usize) -> Option<Piece> {
         let place = self.joints.binary_search(&(joint as u32)).ok()?;
         self.pieces.get(place).copied()
@@ -43,7 +43,7 @@ impl Pins {
 }
 
 impl SolverJoint {
-    /// The moving body of a pin; `moving` is the number of those.
+    /// The moving body of a pin; `moving` is the number of moving bodies.
     fn pinned(&self, moving: usize) -> usize {
         (if (self.a as usize) < moving { self.a } else { self.b }) as usize
     }
@@ -53,7 +53,7 @@ impl SolverJoint {
         if self.a as usize == body { self.rows.on_a(row) } else { self.rows.on_b(row) }
     }
 
-    /// Adds `Jᵀ G J` of a pin.
+    /// Adds the `Jᵀ G J` of a pin.
     pub(in crate::solver) fn stiffen(&self, inertia: &mut [Inertia<f64>]) {
         let body = self.pinned(inertia.len());
         for row in 0..self.rows.count {
@@ -64,8 +64,8 @@ impl SolverJoint {
 }
 
 impl IslandSolver {
-    /// Gives each body to the nearest pin of its tree, the first of several; what holds the tree counts as one that lies
-    /// beyond its joint.
+    /// Assigns each body to the nearest pin of its tree, the first one if several are equally near. The fixed body that holds the tree
+    /// counts as one joint beyond its own joint.
     pub(in crate::solver) fn share_out(&mut self) {
         self.pins.nearest.clear();
         self.pins.pieces.clear();
@@ -97,7 +97,7 @@ impl IslandSolver {
             }
         }
         for &pin in &self.pins.joints {
-            // A second pin of a body moves no more than that.
+            // A second pin on the same body moves the same piece.
             let body = self.joints[pin as usize].pinned(moving);
             let first = self.pins.joints[self.pins.nearest[body].0 as usize] == pin;
             let reference = self.reference(self.links[body].tree);
@@ -113,7 +113,7 @@ impl IslandSolver {
         }
     }
 
-    /// Adds `Jᵀ G r` to the impulses that the trees are to answer.
+    /// Adds `Jᵀ G r` to the impulses on the trees.
     pub(in crate::solver) fn pull_pins(&mut self) {
         for &pin in &self.pins.joints {
             let joint = &self.joints[pin as usize];
@@ -125,7 +125,7 @@ impl IslandSolver {
         }
     }
 
-    /// After `solve`: what the pins gave is what their rows ask for at the velocities that came of it.
+    /// Computes the impulses of the pins after `solve`, from the rows at the resulting velocities.
     pub(in crate::solver) fn read_pins(&mut self) {
         for &pin in &self.pins.joints {
             let joint = &mut self.joints[pin as usize];
@@ -138,7 +138,7 @@ impl IslandSolver {
         }
     }
 
-    /// After `relax`, in which pins resist every change as inertia does.
+    /// Computes the impulses of the pins after `relax`, in which a pin resists every change as inertia does.
     pub(in crate::solver) fn settle_pins(&mut self) {
         let moving = self.links.len();
         for &pin in &self.pins.joints {
@@ -154,8 +154,8 @@ impl IslandSolver {
         }
     }
 
-    /// Bodies that move by themselves push what touches them and hang on them along their own ways: they work as their
-    /// reactions would if these moved them.
+    /// Adds the work of kinematic bodies. They push what touches them, and are pulled by what hangs on them, along their prescribed motion:
+    /// their work is that of their reactions along this motion.
     pub(in crate::solver) fn add_kinematic_work(&mut self) {
         let moving = self.links.len();
         if self.velocities[moving..].iter().all(|v| *v == ZERO6) {

@@ -1,6 +1,6 @@
-//! Reactions of the joints: the momentum that the subtree below each gained, less what contacts, loops and particles gave
-//! it; torques about the anchor of B. Summed in two parts, since the pose changes between `solve` and `relax`: with the
-//! arms of the new one, the torque of what `solve` gave is 3 % too high for an arm that turns at 3 rad/s.
+//! Reactions of the joints: the momentum that the subtree below each joint gained, less the impulses of contacts, loops and particles;
+//! torques are about the anchor of B. The reactions are summed in two parts, since the pose changes between `solve` and `relax`: with the
+//! arms of the new pose, the torque of the `solve` impulses would be 3 % too high for an arm that turns at 3 rad/s.
 
 use crate::joint::DIRECTIONS;
 use crate::solver::IslandSolver;
@@ -10,18 +10,17 @@ use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
 use sinew_math::Vec3;
 use sinew_math::dispatch;
 
-/// From when on gains count.
+/// Start time of the measured momentum gains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Since {
-    /// The forces of the substep have acted.
+    /// After the forces of the substep have acted.
     Forces,
-    /// Bodies have moved.
+    /// After the bodies have moved.
     Motion,
 }
 
 impl IslandSolver {
-    /// Adds the reactions to what `solve` gave, with arms and axes of the pose in which it was given: that of the substep's
-    /// beginning.
+    /// Adds the reactions of `solve`, with arms and axes of the pose at the substep's beginning.
     pub(in crate::solver) fn add_solve_reactions(&mut self) {
         if !self.has_joints() {
             return;
@@ -33,8 +32,8 @@ impl IslandSolver {
         self.add_loop_reactions(1.0);
     }
 
-    /// Takes off what the saturated motors of loops and pins have pushed, and adds it to their reactions. Those of a tree's joints are in
-    /// what they give their subtrees.
+    /// Subtracts the impulses of the saturated motors of loops and pins, and adds them to their reactions. Those of tree joints are part of
+    /// what the joints give their subtrees.
     fn take_saturated(&mut self) {
         let sums = &mut self.scratch.impulses;
         for &joint in self.loops.joints.iter().chain(&self.pins.joints) {
@@ -51,7 +50,7 @@ impl IslandSolver {
         }
     }
 
-    /// At the new pose: what bodies have there, and got from contacts and loops, is no reaction of `relax`.
+    /// Begins the reactions of `relax` at the new pose: the present momentum and the impulses of contacts and loops so far do not count.
     pub(in crate::solver) fn begin_relax_reactions(&mut self) {
         if !self.has_joints() {
             return;
@@ -66,7 +65,7 @@ impl IslandSolver {
         self.add_loop_reactions(-1.0);
     }
 
-    /// Adds the reactions to what `relax` gave.
+    /// Adds the reactions of `relax`.
     pub(in crate::solver) fn add_relax_reactions(&mut self) {
         if !self.has_joints() {
             return;
@@ -81,7 +80,7 @@ impl IslandSolver {
         self.add_loop_reactions(1.0);
     }
 
-    /// Sums what each moving body gained about its centre, N·s and N·m·s.
+    /// Sums the momentum that each moving body gained about its centre, N·s and N·m·s.
     fn sum_gains(&mut self, since: Since) {
         let before = match since {
             Since::Forces => &self.unconstrained,
@@ -96,7 +95,7 @@ impl IslandSolver {
         });
     }
 
-    /// Takes off what contacts, loops and pins have given in this substep.
+    /// Subtracts the impulses that contacts, loops and pins gave in this substep.
     fn take_pushes(&mut self) {
         let sums = &mut self.scratch.impulses;
         for rows in &self.manifolds {
@@ -109,7 +108,7 @@ impl IslandSolver {
         }
     }
 
-    /// The impulses of the joints that close loops and of pins, times `sign`.
+    /// Adds the impulses of loop joints and pins, times `sign`.
     fn add_loop_reactions(&mut self, sign: f32) {
         for &joint in self.loops.joints.iter().chain(&self.pins.joints) {
             let joint = &mut self.joints[joint as usize];
@@ -118,7 +117,7 @@ impl IslandSolver {
         }
     }
 
-    /// Leaf to root: a joint gives its child what the child gained and what it passed on.
+    /// Leaf to root: a joint gives its child what the child gained and what the child passed on.
     fn pass_down(&mut self) {
         for i in (0..self.links.len()).rev() {
             let link = &self.links[i];
@@ -147,7 +146,7 @@ impl IslandSolver {
 }
 
 impl crate::solver::SolverJoint {
-    /// Adds to those of the bodies what impulses of its rows are, times `sign`.
+    /// Adds the impulses of the joint's rows, times `sign`, to those of the bodies.
     pub(in crate::solver) fn push(&self, of_rows: &Vec6, impulses: &mut [Vec6], sign: f32) {
         let [on_a, on_b] = self.rows.impulse(of_rows);
         for (body, push, sign) in [(self.a, on_a, -sign), (self.b, on_b, sign)] {
@@ -157,7 +156,7 @@ impl crate::solver::SolverJoint {
         }
     }
 
-    /// Adds the reaction to an impulse on B at its centre; `arm` leads from there to the anchor, world.
+    /// Adds the reaction to an impulse on B at its centre; `arm` points from there to the anchor, world axes.
     pub(in crate::solver) fn add_reaction(&mut self, on_b: &Vec6, arm: Vec3) {
         let torque = angular(on_b) - arm.cross(linear(on_b));
         add_scaled(&mut self.reaction, &join(linear(on_b), torque), 1.0);

@@ -1,11 +1,11 @@
-//! A row of a joint that gives: a spring, a motor, friction.
+//! A soft row of a joint: a spring, a motor, friction.
 
 use crate::joint::def::Softness;
 use crate::solver::tuning::{FASTEST_SPRING, SPRING_MARGIN};
 use sinew_math::trig;
 
-/// Impulse of a soft row: `λ = −(gain v⁺ + carry v + push)`, with `v` its rate when the substep begins and `v⁺` when it
-/// ends.
+/// Soft row with the impulse `λ = −(gain v⁺ + carry v + push)`, where `v` is its rate at the beginning of the substep and `v⁺` that at the
+/// end.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::solver) struct SoftRow {
     pub(super) gain: f32,
@@ -14,11 +14,10 @@ pub(in crate::solver) struct SoftRow {
 }
 
 impl SoftRow {
-    /// A damped oscillator of the given mass, `x` from where it wants to be and meant to move at `rate` there. Its poles
-    /// and its static stiffness are those of the differential equation, whatever the substep: with poles
-    /// `e^(−ζωh ± iω_d h)` and `x⁺ = x + h v⁺`, the update `(1 + α) v⁺ = (1 − γ) v − h ω² x` has determinant
-    /// `(1 − γ)/(1 + α)` and `(1 + α)(1 + det − trace) = (ωh)²`. Implicit Euler would add a damping ratio of ωh/2.
-    /// `least`: what may move by itself while the rest gives way.
+    /// Adds a damped oscillator of the given mass, where `x` is the displacement from the target and `rate` the target rate. Its poles and
+    /// static stiffness are those of the differential equation, for any substep: with poles `e^(−ζωh ± iω_d h)` and `x⁺ = x + h v⁺`, the
+    /// update `(1 + α) v⁺ = (1 − γ) v − h ω² x` has determinant `(1 − γ)/(1 + α)` and `(1 + α)(1 + det − trace) = (ωh)²`. Implicit Euler
+    /// would add a damping ratio of ωh/2. `least` is the smallest mass that may move by itself while the rest yields.
     pub(super) fn add_spring(
         &mut self,
         softness: Softness,
@@ -30,12 +29,12 @@ impl SoftRow {
         let (stiffness, damping) = softness.of_mass(mass);
         let omega2 = stiffness / mass * h * h;
         let a = 0.5 * damping / mass * h;
-        // Faster oscillations than a substep can show, and none at all, are left to implicit Euler.
+        // Oscillations too fast for the substep, and springs without oscillation, use implicit Euler.
         let shown = omega2 > 0.0 && omega2 < FASTEST_SPRING;
         let implicit = (2.0 * a + omega2, 0.0);
         let (mut alpha, mut gamma) = if shown { exact_oscillator(omega2, a) } else { implicit };
-        // With a share `r` of the mass the update is stable as long as `4r + 2(α − γ) > (ωh)²`: what carries a figure by its hand
-        // must not shake when that is all that moves. Implicit Euler is for any.
+        // With a share `r` of the mass the update is stable as long as `4r + 2(α − γ) > (ωh)²`: a pin that carries a figure by its hand
+        // must not shake if only the hand moves. Implicit Euler is stable for any mass.
         if 4.0 * least + 2.0 * mass * (alpha - gamma) < SPRING_MARGIN * mass * omega2 {
             (alpha, gamma) = implicit;
         }
@@ -55,7 +54,7 @@ impl SoftRow {
         self.push += other.push;
     }
 
-    /// Work that the row does from one rate to the other.
+    /// Work of the row from one rate to the other.
     pub(super) fn work(&self, before: f32, after: f32) -> f32 {
         0.5 * self.impulse(before, after) * (before + after)
     }
@@ -64,12 +63,12 @@ impl SoftRow {
         -(self.gain * after + self.carry * before + self.push)
     }
 
-    /// Γ.
+    /// Compliance Γ.
     pub fn compliance(&self) -> f32 {
         1.0 / self.gain
     }
 
-    /// Rate that the row goes to where it moves nothing.
+    /// Rate that the row approaches where it moves no mass.
     pub fn wanted(&self, before: f32) -> f32 {
         -(self.carry * before + self.push) / self.gain
     }
@@ -85,7 +84,7 @@ fn exact_oscillator(omega2: f32, a: f32) -> (f32, f32) {
         fall * fall + 4.0 * trig::exp(-a) * sin * sin
     } else {
         let s = (a * a - omega2).sqrt();
-        // a − s = ω²h²/(a + s) keeps its digits.
+        // Computing a − s as ω²h²/(a + s) avoids cancellation.
         trig::exp_m1(-omega2 / (a + s)) * trig::exp_m1(-a - s)
     };
     let one_plus_alpha = omega2 / distance;

@@ -1,9 +1,8 @@
 //! Joint trees: the joints of a tree are solved exactly, in linear time, from the leaves to the root and back.
 //!
 //! Each joint's open directions are eliminated from the articulated inertia of its child, see
-//! [`elimination`](crate::solver::articulation::elimination): a tree has no fill-in. The answer is that of
-//! `M dv = impulses + Jᵀ λ`, `J dv + Γ λ = residuals`, with Γ zero for rigid rows, and `1/gain` for springs, motors and
-//! dry friction.
+//! [`elimination`](crate::solver::articulation::elimination). A tree has no fill-in. The result solves `M dv = impulses + Jᵀ λ`, `J dv + Γ
+//! λ = residuals`, with Γ zero for rigid rows and `1/gain` for springs, motors and dry friction.
 
 use crate::joint::{DIRECTIONS, JointRows, TWIST};
 use crate::solver::articulation::elimination::{
@@ -20,30 +19,30 @@ use sinew_math::{Vec3, any_orthonormal};
 /// No parent, no joint, no slot.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// One in each of the lanes that six numbers take.
+/// One in each of the six used lanes, zero in the others.
 const SIX: Vec6 = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0];
 
 /// A moving body as a node of its tree. Nodes of a tree are contiguous, parents before children.
 #[derive(Clone, Debug)]
 pub(crate) struct Link {
-    /// Local index of the parent body: a moving one before it, or a fixed one if this root is grounded.
+    /// Local index of the parent body: a moving one with a smaller index, or a fixed one if this root is grounded.
     pub parent: u32,
     /// Local index of the joint to the parent.
     pub joint: u32,
     /// Index of its tree.
     pub tree: u32,
-    /// Number of rows that ask for a velocity, and their indices.
+    /// Number of rows that request a velocity, and their indices.
     asking: usize,
     row: [u8; DIRECTIONS],
-    /// Velocity of this body by a unit residual of each asking row with its parent held, and the impulse that it passes on.
+    /// Velocity of this body for a unit residual of each requesting row with the parent at rest, and the impulse that it passes on.
     follow: [Vec6; DIRECTIONS],
     pass: [Vec6; DIRECTIONS],
-    /// Rows whose gains push both bodies, bit by bit.
+    /// Bit set of the rows whose gains push both bodies.
     pushing: u8,
-    /// Velocity that this body takes on from its parent's when nothing acts below the joint: rows, columns.
+    /// Velocity that this body takes over from its parent when nothing acts below the joint: rows, columns.
     carry: Mat6,
     carry_columns: Mat6,
-    /// Answer to an impulse on this body while its parent is held.
+    /// Response to an impulse on this body with its parent at rest.
     own: Mat6,
 }
 
@@ -64,19 +63,19 @@ impl Link {
         }
     }
 
-    /// Velocity that this body takes on from its parent's when nothing acts below the joint.
+    /// Velocity that this body takes over from its parent when nothing acts below the joint.
     #[inline(always)]
     pub fn carried<L: Lanes>(&self, parent: &Vec6) -> L {
         sum(&self.carry_columns, parent)
     }
 
-    /// Impulse that the parent gets from one on this body.
+    /// Impulse on the parent caused by an impulse on this body.
     #[inline(always)]
     pub fn passed_up<L: Lanes>(&self, impulse: &Vec6) -> L {
         sum(&self.carry, impulse)
     }
 
-    /// Answer to an impulse on this body while its parent is held.
+    /// Response to an impulse on this body with its parent at rest.
     #[inline(always)]
     pub fn alone<L: Lanes>(&self, impulse: &Vec6) -> L {
         sum(&self.own, impulse)
@@ -100,7 +99,7 @@ impl Link {
         sums(&self.own, impulses)
     }
 
-    /// Adds what the gains of rows that ask for nothing push for their residuals.
+    /// Adds the impulses of the residuals of rows with gains that request no velocity.
     pub fn push_gains(&self, joint: &SolverJoint, residuals: &Vec6, impulses: &mut [Vec6]) {
         if self.pushing == 0 {
             return;
@@ -112,14 +111,14 @@ impl Link {
         joint.push(&of_rows, impulses, 1.0);
     }
 
-    /// All rows that are not rigid push, and none asks for a velocity.
+    /// Makes all rows that are not rigid push, so that none requests a velocity.
     pub fn push_all_gains(&mut self, joints: &[SolverJoint]) {
         self.pushing = joints
             .get(self.joint as usize)
             .map_or(0, |joint| (joint.rigid..joint.rows.count).fold(0, |bits, row| bits | 1 << row));
     }
 
-    /// Eliminates what its joint leaves open. Gives what the parent gets of the articulated inertia.
+    /// Eliminates the joint's open directions. Returns the articulated inertia that the parent gets.
     #[inline(always)]
     fn factor<L: Lanes>(
         &mut self,
@@ -151,12 +150,12 @@ impl Link {
         }
         let answered = if holds_point { TWIST } else { 0 };
         self.answer_rows(answered, &sequence, &through, sequence.parent_arm());
-        // With nothing but free directions, all of it is rounding.
+        // If all directions are open, the rest is rounding.
         if joint.rows.count == 0 { Inertia::zero() } else { through }
     }
 
-    /// Computes what an elimination makes of units of velocities and impulses, one in each lane. Formed with twice the digits:
-    /// in single precision light bodies between heavy ones would pass on more rounding than they weigh.
+    /// Applies the elimination to unit velocities and impulses, one in each lane, in double precision: in single precision, light bodies
+    /// between heavy ones would pass on more rounding than they weigh.
     #[inline(always)]
     fn condense<L: Lanes>(&mut self, by: &impl Elimination<f64>) {
         let [x, y, z, u, v, w] = &UNITS;
@@ -170,12 +169,12 @@ impl Link {
             let [x, y, z, u, v, w, ..] = L::transpose([x, y, z, u, v, w, none, none]);
             store([x, y, z, u, v, w], &mut self.carry_columns);
         }
-        // What it passes on is, by symmetry, a column of what the parent's velocities carry over.
+        // By symmetry, what it passes on is a column of what it takes over from the parent's velocity.
         by.ascend(twist(units), &mut kept);
         store(narrow_lanes::<L>(by.descend_alone(&kept)), &mut self.own);
     }
 
-    /// The rows that hold a point: they ask for what units of the parent's velocity make of the anchor.
+    /// Sets the rows that lock a point: they request the anchor velocities caused by unit velocities of the parent.
     #[inline(always)]
     fn answer_point(&mut self, through: &Inertia<f64>, is_b: bool) {
         let sign = if is_b { 1.0 } else { -1.0 };
@@ -185,8 +184,8 @@ impl Link {
         }
     }
 
-    /// From what rows, those from the `first` on, ask of the child at the anchor to what that makes of it and passes on. Both are
-    /// formed with twice the digits: what a heavy child takes along and what it passes on nearly cancel.
+    /// Computes the child's velocity and the passed-on impulse from the anchor velocities that the rows from `first` on request. Both are
+    /// computed in double precision: what a heavy child takes over and what it passes on nearly cancel.
     #[inline(always)]
     fn answer_rows<E: Elimination<f64>>(
         &mut self,
@@ -199,13 +198,13 @@ impl Link {
             let [x, y, z, u, v, w, ..] = follow.map(f64::from);
             let [v, w] = twist([x, y, z, u, v, w]);
             *follow = narrow(by.follow([v, w], &[0.0; 6]));
-            // The velocity of the parent that moves the anchor in that way, resisted.
+            // Impulse that resists the parent motion corresponding to the requested velocity of the anchor.
             let [force, torque] = through.times([v - w.cross(parent_arm), w]);
             *pass = narrow([-force, -torque]);
         }
     }
 
-    /// A point that turns in all directions.
+    /// Eliminates a ball joint.
     #[inline(always)]
     fn swivel(&mut self, joint: &SolverJoint, is_b: bool, inertia: &Inertia<f64>) -> Swivel<f64> {
         let rows = &joint.rows;
@@ -228,7 +227,7 @@ impl Link {
         swivel
     }
 
-    /// Any other joint.
+    /// Eliminates any other joint.
     #[inline(always)]
     fn sequence(&mut self, joint: &SolverJoint, is_b: bool, inertia: &Inertia<f64>) -> Sequence<f64> {
         let rows = &joint.rows;
@@ -240,7 +239,8 @@ impl Link {
                 let row = usize::from(row[k]);
                 let gain = if k >= count { 0.0 } else { f64::from(joint.gain(row)) };
                 if k < count {
-                    // Gains beyond the inertia ask for a velocity, those below push: either would drown in the other.
+                    // Rows with gains above the inertia request a velocity, those below push: the other way round, rounding would swamp
+                    // either.
                     if row < joint.rigid || gain > sequence.weight(turns, wide(way)) {
                         let way = way * sign;
                         self.ask(row, if turns { join(Vec3::ZERO, way) } else { join(way, Vec3::ZERO) });
@@ -257,7 +257,7 @@ impl Link {
         sequence
     }
 
-    /// A row that asks this body to move in a way at the anchor, to be [answered](Self::answer_rows).
+    /// Adds a row that requests a motion of this body at the anchor, for [`answer_rows`](Self::answer_rows).
     #[inline(always)]
     fn ask(&mut self, row: usize, way: Vec6) {
         (self.row[self.asking], self.follow[self.asking]) = (row as u8, way);
@@ -281,7 +281,7 @@ fn flat<R: Real>([v, w]: Twist<R>) -> [R; 6] {
     [v.x, v.y, v.z, w.x, w.y, w.z]
 }
 
-/// With the digits of the solve.
+/// Rounds to single precision.
 #[inline(always)]
 fn narrow(twist: Twist<f64>) -> Vec6 {
     let [x, y, z, u, v, w] = flat(twist);
@@ -293,7 +293,7 @@ fn widen<L: Lanes>(from: &Vec6) -> L::Wide {
     L::load(from).widen()
 }
 
-/// With the digits of the solve; nothing in the lanes that fill a register.
+/// Rounds to single precision, with zeros in the unused lanes of the register.
 #[inline(always)]
 fn narrow_lanes<L: Lanes>(twist: Twist<L::Wide>) -> [L; 6] {
     let six = L::gt(L::load(&SIX), L::splat(0.0));
@@ -315,8 +315,8 @@ fn store<L: Lanes>(rows: [L; 6], to: &mut Mat6) {
     }
 }
 
-/// The ways in which a joint's child moves, of translation or of rotation: each of the first `count` moves its row by a unit and
-/// no other, and the rest move none. A row that others leave next to nothing of has no way.
+/// Directions in which a joint's child translates or rotates: each of the first `count` moves its own row by one unit and no other row, and
+/// the rest move none. A row that is nearly dependent on the others has no direction.
 pub(in crate::solver) struct Ways {
     pub way: [Vec3; 3],
     pub row: [u8; 3],
@@ -360,11 +360,11 @@ impl Ways {
     }
 }
 
-/// True if enough of an axis is left beside others.
+/// Returns true if an axis is sufficiently independent of the others.
 #[inline(always)]
 fn is_apart(axis: Vec3, others: &[Vec3]) -> bool {
     let square = axis.length_squared();
-    // Of a triangle's, of a box's edges: how much of the last one stands off the others.
+    // The share of the last edge of a triangle or box that is perpendicular to the others.
     let (left, of) = match *others {
         [] => return square > LEAST_AXIS_SQUARE,
         [x] => (x.cross(axis).length_squared(), x.length_squared()),
@@ -388,7 +388,7 @@ pub(crate) fn factor(
     dispatch::run(Factor { links, range, joints, inertia });
 }
 
-/// Plain arithmetic, which the compiler puts on the registers that it is entered with.
+/// Plain arithmetic, which the compiler vectorises for the instruction set of its caller.
 struct Factor<'a> {
     links: &'a mut [Link],
     range: Range<usize>,
@@ -413,8 +413,8 @@ impl Kernel for Factor<'_> {
     }
 }
 
-/// Velocity change of every body of some trees, those of `range`, from impulses on the bodies and residuals of the joint rows, but for
-/// [those that push](Link::push_gains); no list of residuals means none. `impulses` are used up.
+/// Computes the velocity change of every body of the trees in `range`, from impulses on the bodies and residuals of the joint rows, except
+/// for [those that push](Link::push_gains). An empty list of residuals means zero residuals. `impulses` are overwritten.
 #[inline(never)]
 pub(crate) fn solve(
     links: &[Link],
@@ -455,7 +455,7 @@ pub(in crate::solver) fn solve_in<L: Lanes>(
     dv: &mut [Vec6],
 ) {
     let (impulses, dv) = (&mut impulses[..links.len()], &mut dv[..links.len()]);
-    // Leaf to root: what the subtree below a joint pushes through it.
+    // Leaf to root: the impulse that the subtree below a joint passes through it.
     for i in range.clone().rev() {
         let link = &links[i];
         let (mut own, mut through) = (L::splat(0.0), link.passed_up::<L>(&impulses[i]));
@@ -493,7 +493,7 @@ pub(crate) fn sum<L: Lanes>(rows: &Mat6, by: &Vec6) -> L {
         + (L::load(r4) * L::splat(by[4]) + L::load(r5) * L::splat(by[5]))
 }
 
-/// Eight times [`sum`], of factors that lie in lanes: number by number, each in all lanes.
+/// Eight times [`sum`], with the factors in lanes: each number is broadcast to all lanes.
 #[inline(always)]
 fn sums<L: Lanes>(rows: &Mat6, by: &Mat6) -> [L; 6] {
     let [x, y, z, u, v, w] = by;

@@ -26,7 +26,7 @@ use crate::solver::view::{View, lasting_force};
 use crate::spatial::{Vec6, ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
 
-/// Bodies and contacts more than an island has for which there is room: those that come and go ask for none.
+/// Spare room for bodies and contacts of an island, so that those that come and go need no allocation.
 const SPARE: usize = 32;
 
 impl IslandSolver {
@@ -44,7 +44,7 @@ impl IslandSolver {
         self.look_for_fields(view);
         self.copy_joints(island, view);
         self.find_joint_masses();
-        // What the user has changed since may ask for less.
+        // The user may have changed motors since the last step, so that they no longer saturate.
         self.release_motors();
         self.refresh_rows();
         self.choose_coupling(island.contacts.len());
@@ -67,7 +67,7 @@ impl IslandSolver {
         self.refresh_response();
     }
 
-    /// Batches of trees in heaps. Loops and pins want the answers of single links.
+    /// Forms batches of trees in heaps. Loops and pins need the responses of single links, so islands with them use none.
     fn form_batches(&mut self) {
         if self.coupling == Coupling::Turns && self.loops.is_empty() && self.pins.joints.is_empty() {
             self.batches.form(&self.links, &self.joints, &self.trees);
@@ -81,7 +81,7 @@ impl IslandSolver {
         }
     }
 
-    /// Reserves memory that only islands with joints need, also for one that has none: it goes on to the next, which may have some.
+    /// Reserves memory that only islands with joints need, also for an island without joints: the next island may reuse it.
     fn make_room(&mut self, island: &Island<'_>) {
         let s = &mut self.scratch;
         let lists = [
@@ -126,8 +126,9 @@ impl IslandSolver {
         self.bounced_from.reserve(island.bodies.len() + SPARE);
     }
 
-    /// Spanning trees: few loops are closed exactly in one tree per thing that hangs together. Where there are too many
-    /// for that, all bodies jointed to fixed ones become roots at once, so that ropes side by side are a tree each.
+    /// Builds the spanning trees. One tree for each connected component keeps the number of loops small, and these are solved exactly. If
+    /// there are too many loops for that, all bodies jointed to fixed ones become roots at once, so that parallel ropes become separate
+    /// trees.
     fn order_trees(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.span(island, view, Roots::InTurn);
         if self.is_entangled(island, view) {
@@ -135,8 +136,8 @@ impl IslandSolver {
         }
     }
 
-    /// Spanning trees by breadth-first search: from bodies jointed to fixed ones (a tree has one ground at most), then from
-    /// the smallest body that is left.
+    /// Builds spanning trees by breadth-first search: first from bodies jointed to fixed ones (a tree has at most one ground), then from
+    /// the remaining body with the smallest index.
     fn span(&mut self, island: &Island<'_>, view: &View<'_>, roots: Roots) {
         let s = &mut self.scratch.build;
         s.seeds.clear();
@@ -170,7 +171,7 @@ impl IslandSolver {
         self.number_links(island);
     }
 
-    /// More loops than can be closed exactly in one of its trees, or loops between trees.
+    /// Returns true if a tree has more loops than can be solved exactly, or if there are loops between trees.
     fn is_entangled(&mut self, island: &Island<'_>, view: &View<'_>) -> bool {
         let mut loop_rows = core::mem::take(&mut self.scratch.build.loop_rows);
         let s = &self.scratch.build;
@@ -198,7 +199,7 @@ impl IslandSolver {
         is_entangled
     }
 
-    /// Local indices, tree by tree, parents first.
+    /// Assigns local indices, tree by tree, parents first.
     fn number_links(&mut self, island: &Island<'_>) {
         let s = &mut self.scratch.build;
         s.seeds.sort_unstable_by_key(|seed| (seed.tree, seed.found));
@@ -214,7 +215,7 @@ impl IslandSolver {
             }
             let parent = if seed.parent == NONE { NONE } else { s.local[seed.parent as usize] };
             s.order.push(island.bodies[seed.place as usize]);
-            // What links answer is written by the factor: its place need not be cleared.
+            // The factor writes the responses of links, so their memory need not be cleared.
             match self.links.get_mut(local) {
                 Some(link) => (link.parent, link.joint, link.tree) = (parent, seed.joint, seed.tree),
                 None => self.links.push(Link::new(parent, seed.joint, seed.tree)),
@@ -315,7 +316,7 @@ impl IslandSolver {
             }
         }
         self.loops.group(&self.joints, &self.links);
-        // A grounded root's parent is the fixed body of its joint.
+        // The parent of a grounded root is the fixed body of its joint.
         for i in 0..self.links.len() {
             let link = &self.links[i];
             if link.parent == NONE && link.joint != NONE {
@@ -325,7 +326,7 @@ impl IslandSolver {
         }
     }
 
-    /// Who touches whom, and what presses on bodies that no joint holds. What lies in lanes is listed for them.
+    /// Lists the touching pairs, and the loads on bodies without joints. Contacts in lanes are collected for them.
     fn note_touches(&mut self, island: &Island<'_>, view: &View<'_>) {
         let mut faces = core::mem::take(&mut self.scratch.build.faces);
         let mut contacts = core::mem::take(&mut self.contacts);
@@ -346,7 +347,7 @@ impl IslandSolver {
             if !in_lanes {
                 continue;
             }
-            // What turns or comes in fast may come down on more points within the step.
+            // A contact whose body spins or approaches fast may get more points within the step.
             let is_fast = contact.approach > FAST_APPROACH || sides[0].turns || sides[1].turns;
             let is_curved = sides[0].is_curved || sides[1].is_curved;
             let of_shapes = !key.is_through_particles();
@@ -377,7 +378,7 @@ impl IslandSolver {
         self.scale_masses();
     }
 
-    /// Contacts in lanes.
+    /// Prepares the contacts in lanes.
     fn prepare_contacts(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         self.starts.clear();
         self.starts.extend(self.bodies.iter().map(|body| body.pose));
@@ -419,10 +420,11 @@ impl IslandSolver {
     }
 }
 
-/// Velocity of a body as rows see it, with the most that bodies move and turn, m/s and rad/s.
+/// Velocity of a body as the rows use it, clamped by the largest speed and spin of bodies, m/s and rad/s.
 ///
-/// Rows go on along tangents: of a kinematic body that turns beyond all measure these lead to where its surface never is. A dynamic body
-/// that was given a speed beyond all measure comes in at a speed that numbers hold, to be slowed when forces act: what bounces from it would have no finite speed.
+/// Rows extrapolate along tangents, so the tangent of a kinematic body with an extreme spin leads to places that its surface never reaches.
+/// A dynamic body that was given an extreme speed keeps a finite approach speed until its forces are integrated and slow it; otherwise its
+/// bounce would have no finite speed.
 fn seen_velocity(body: &Body, [max_speed, max_spin]: [f32; 2]) -> Vec6 {
     let Velocity { linear, angular } = body.velocity;
     match body.kind {
@@ -431,9 +433,9 @@ fn seen_velocity(body: &Body, [max_speed, max_spin]: [f32; 2]) -> Vec6 {
     }
 }
 
-/// A vector with the length of `beyond` times the most, if it is longer.
+/// Clamps the length of a vector to `beyond` times `most`.
 fn held_to(v: Vec3, most: f32, beyond: f32) -> Vec3 {
-    // Squares of what `f32` holds are numbers of `f64`.
+    // Squares of any `f32` are finite in `f64`.
     let square = [v.x, v.y, v.z].map(f64::from).iter().map(|x| x * x).sum::<f64>();
     let bound = f64::from(most) * f64::from(beyond);
     if square <= bound * bound {

@@ -1,4 +1,4 @@
-//! Counts of what an island's step took, for a profiler that counts.
+//! Work counts of an island's step, for profilers that collect counts.
 
 use crate::solver::IslandSolver;
 use crate::solver::articulation::tree::Link;
@@ -10,13 +10,13 @@ use crate::solver::limits::row::LimitRow;
 use crate::spatial::Vec6;
 use crate::stage::{Counter, Profiler};
 
-/// Times that a substep goes over all arrays: once before and once after poses change.
+/// Passes over all arrays in a substep: one before and one after poses change.
 const PER_SUBSTEP: u64 = 2;
-/// Times that the rest of the step does: `prepare` and `store`.
+/// Passes over all arrays in the rest of the step: `prepare` and `store`.
 const PER_STEP: u64 = 2;
 
 impl IslandSolver {
-    /// Tells a profiler the counts of the step, when it is over.
+    /// Reports the counts of the step to a profiler, when the step is over.
     pub(in crate::solver) fn tell_counts(&self, profiler: &dyn Profiler) {
         if !profiler.is_counting() {
             return;
@@ -47,7 +47,7 @@ impl IslandSolver {
         }
     }
 
-    /// Bodies, velocities, joints, manifolds, limits, links, their response and the columns of rows.
+    /// Size of bodies, velocities, joints, manifolds, limits, links, their responses and the row columns.
     fn resident_bytes(&self) -> u64 {
         let bytes = self.bodies.len() * size_of::<SolverBody>()
             + self.velocities.len() * size_of::<Vec6>()

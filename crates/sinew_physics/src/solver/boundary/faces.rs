@@ -1,4 +1,4 @@
-//! Properties of bodies that contacts ask for: looked up once a step for each body, not for each contact.
+//! Body properties used by contacts, looked up once a step for each body instead of for each contact.
 
 use crate::body::material::{ContactMaterial, Material};
 use crate::body::{Body, BodyShape};
@@ -7,19 +7,19 @@ use crate::solver::articulation::tree::NONE;
 use crate::solver::contact_rows::Placed;
 use crate::solver::view::View;
 
-/// Different materials of an island of which pairs are combined once; others are combined for each contact.
+/// Number of materials of an island whose pairs are combined once; pairs of further materials are combined for each contact.
 const MATERIALS: usize = 8;
 
-/// Properties of a body's first shape, the only one that most have.
+/// Properties of a body's first shape, which is the only one for most bodies.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Face {
-    /// Metres.
+    /// Smallest extent, metres.
     pub smallest_extent: f32,
-    /// It has a rounding or a rim.
+    /// True if the shape has a rounding or a rim.
     pub is_curved: bool,
-    /// The body turns so fast that contacts may have other points before the step is over.
+    /// True if the body spins so fast that its contacts may get other points within the step.
     pub turns: bool,
-    /// Place of its material, or [`NONE`] if it has to be looked at.
+    /// Index of its material, or [`NONE`] if it has to be looked up for each contact.
     material: u32,
 }
 
@@ -28,9 +28,9 @@ pub(in crate::solver) struct Face {
 pub(in crate::solver) struct Faces {
     of: Vec<Face>,
     materials: Vec<Material>,
-    /// Combined material of each pair of materials, by their places.
+    /// Combined material of each pair of materials, by their indices.
     pairs: Vec<Option<ContactMaterial>>,
-    /// Combined material that was asked for last, and its pair, or [`NONE`].
+    /// The last combined material that was not in the table, and its pair, or [`NONE`].
     material: ContactMaterial,
     pair: u32,
 }
@@ -44,7 +44,7 @@ impl Face {
 }
 
 impl Faces {
-    /// For so many bodies.
+    /// Reserves memory for `bodies` bodies.
     pub fn make_room(&mut self, bodies: usize) {
         self.of.clear();
         self.of.reserve(bodies);
@@ -69,7 +69,7 @@ impl Faces {
         self.of.push(face);
     }
 
-    /// Place of a material, known or new.
+    /// Index of a material, added if it is new.
     fn place(&mut self, material: &Material) -> u32 {
         if material.runs() {
             return NONE;

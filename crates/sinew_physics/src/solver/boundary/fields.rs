@@ -1,5 +1,5 @@
-//! Fields and lasting forces, in `integrate_velocity`: what acts on bodies and particles from where they are and how they
-//! move when a substep begins.
+//! Applies fields and lasting forces in `integrate_velocity`: the forces on bodies and particles that depend on their positions and
+//! velocities at the beginning of a substep.
 
 use crate::body::Velocity;
 use crate::body::force::Wrench;
@@ -20,13 +20,13 @@ pub(in crate::solver) struct Attraction {
 }
 
 impl IslandSolver {
-    /// Finds out whether something in this step depends on how bodies move within it.
+    /// Records whether any force of this step depends on the motion within the step.
     pub(in crate::solver) fn look_for_fields(&mut self, view: &View<'_>) {
         let lasting = |body: &SolverBody| !view.bodies.at(body.index).forces.list.is_empty();
         self.forces_vary = !view.fields.is_empty() || self.bodies[..self.links.len()].iter().any(lasting);
     }
 
-    /// Forces on bodies and particles at the beginning of a substep, beside those that act through the whole step.
+    /// Adds the forces at the beginning of a substep to bodies and particles, besides those that are constant for the whole step.
     pub(in crate::solver) fn add_fields(&mut self, view: &View<'_>, groups: &mut [TakenGroup]) {
         for (body, v) in self.bodies[..self.links.len()].iter_mut().zip(&self.velocities) {
             let load = view.fields.load(&target(view, body, v));
@@ -42,15 +42,15 @@ impl IslandSolver {
         self.attract(view, groups);
     }
 
-    /// After a substep: what it was pushed with is no part of the next one.
+    /// Clears the field forces of a substep after it.
     pub fn drop_fields(&mut self, view: &View<'_>) {
         if self.forces_vary {
             self.renew_forces(view);
         }
     }
 
-    /// Each pair of an attraction's gets the same force, one this way, one that way: nothing holds it back, or momentum
-    /// would be lost.
+    /// Applies equal and opposite forces to each attracting pair. The forces are not limited, since a limit would break conservation of
+    /// momentum.
     fn attract(&mut self, view: &View<'_>, groups: &mut [TakenGroup]) {
         for (field, law) in view.fields.mutual() {
             let Attraction { attractors, forces } = &mut self.attraction;

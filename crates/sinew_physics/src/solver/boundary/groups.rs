@@ -1,4 +1,4 @@
-//! Particle groups in an island: what fields do to them, and which bodies they may touch.
+//! Particle groups in an island: field forces on them, and the bodies they may touch.
 
 use crate::body::Body;
 use crate::boxes::Overlap;
@@ -11,14 +11,15 @@ use core::ops::ControlFlow;
 /// A particle group, taken out of the world until `store`.
 #[derive(Clone, Debug)]
 pub(crate) struct TakenGroup {
-    /// In the world.
+    /// Index in the world.
     pub index: u32,
     pub group: ParticleGroup,
     pub near: Neighbors,
 }
 
 impl TakenGroup {
-    /// Lists the forces of fields on the particles at their present positions, N; no more than would stop them: see [`crate::field`].
+    /// Lists the field forces on the particles at their present positions, N; each force is limited to one that stops its particle, see
+    /// [`crate::field`].
     pub fn feel(&mut self, fields: &Fields<'_>, h: f32) {
         self.group.outer_forces().clear();
         for i in 0..self.group.positions().len() {
@@ -30,19 +31,19 @@ impl TakenGroup {
     }
 }
 
-/// Bodies that a group hangs on or may touch in this step, and their shapes.
+/// Bodies that a group is attached to or may touch in this step, and their shapes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Neighbors {
     /// World body indices, ascending.
     pub bodies: Vec<u32>,
-    /// Position in `bodies`, shape number.
+    /// Index in `bodies`, shape number.
     pub shapes: Vec<(u32, u32)>,
-    /// Body and shape of what is near, body and nothing for each particle that hangs on it or has a backstop there.
+    /// Body and shape of each nearby shape; body and no shape for each particle that is attached to it or has a backstop on it.
     found: Vec<(u32, Option<u32>)>,
 }
 
 impl Neighbors {
-    /// Everything whose bounds the group may reach within the step.
+    /// Finds everything whose bounds the group may reach within the step.
     pub fn find(&mut self, group: &ParticleGroup, view: &View<'_>) {
         let movers = view.activity.movers().map(|index| view.bodies.at(index));
         let reach = 0.02 + (group.fastest() + movers.fold(0.0, fastest_point)) * view.def.dt();
@@ -52,7 +53,7 @@ impl Neighbors {
             let id = view.bodies.id(body);
             let body = view.bodies.at(body);
             let frame = body.world_from_shape(shape as usize);
-            // What is quarantined still holds what hangs on it, as a fixed point.
+            // A quarantined body still holds attached particles, as a fixed point.
             !body.quarantined
                 && group.meets(id, body.surface(shape as usize))
                 && body.shapes[shape as usize].shape.aabb(&frame).overlaps(&bounds)
@@ -66,7 +67,7 @@ impl Neighbors {
         self.list();
     }
 
-    /// From what was found, in order, to the lists.
+    /// Converts the sorted list of found pairs to the lists of bodies and shapes.
     fn list(&mut self) {
         self.bodies.clear();
         self.shapes.clear();

@@ -1,4 +1,4 @@
-//! Trees of joints as they grow over the bodies of an island: in which order, how far, and what is left over as loops.
+//! Grows joint trees over the bodies of an island: their order, their extent, and the remaining loop joints.
 
 use super::faces::Faces;
 use crate::island::Island;
@@ -10,53 +10,53 @@ use core::ops::Range;
 /// Memory for building.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Scratch {
-    /// Bodies in the order in which the trees grew over them.
+    /// Bodies in the order in which the trees reached them.
     pub(super) seeds: Vec<Seed>,
-    /// Per tree: rows of loops.
+    /// For each tree: number of its loop rows.
     pub(super) loop_rows: Vec<usize>,
     /// Number of seeds whose neighbours have been visited.
     pub(super) grown: usize,
-    /// Number of bodies of each tree.
+    /// Number of bodies in each tree.
     pub(super) sizes: Vec<usize>,
-    /// World indices of the moving bodies in tree order.
+    /// World indices of the moving bodies, in tree order.
     pub(super) order: Vec<u32>,
-    /// Per body of the island (by its place there): local index; while trees grow, no more than not `NONE`.
+    /// For each body of the island, by its index there: local index; while trees grow, only whether it is `NONE`.
     pub(super) local: Vec<u32>,
     /// World indices of the fixed bodies, ascending.
     pub(super) fixed: Vec<u32>,
-    /// Per slot of the world's bodies, of those that the island has: the place there while trees grow, then the local index.
+    /// By slot of the world's bodies, for those in the island: index in the island while trees grow, then the local index.
     pub(super) local_of: Vec<u32>,
-    /// Per joint of the island: used by a tree.
+    /// For each joint of the island: true if a tree uses it.
     pub(super) used: Vec<bool>,
-    /// Places of the joints of each body, ascending, body after body, and where those of each body end.
+    /// Joint indices of each body, ascending, body after body, and the end of each body's run.
     pub(super) adjacent: Vec<u32>,
     pub(super) adjacent_ends: Vec<u32>,
     pub(super) faces: Faces,
 }
 
-/// In which order the trees of an island grow.
+/// Order in which the trees of an island grow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Roots {
-    /// Each as far as it can before the next begins.
+    /// Each tree grows as far as it can before the next one starts.
     InTurn,
     /// All trees on fixed bodies grow side by side.
     AtOnce,
 }
 
-/// A body that a tree has grown over.
+/// A body reached by a tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seed {
     pub(super) tree: u32,
-    /// Its number among all.
+    /// Its index in the order of discovery.
     pub(super) found: u32,
-    /// Places in the island: of the body, of its parent, of the joint between them.
+    /// Indices in the island: of the body, of its parent, of the joint between them.
     pub(super) place: u32,
     pub(super) parent: u32,
     pub(super) joint: u32,
 }
 
 impl Scratch {
-    /// A new tree, held by the joint `ground` or free.
+    /// Starts a new tree, held by the joint `ground` or free.
     pub(super) fn plant(&mut self, root: u32, ground: u32) {
         let tree = self.sizes.len() as u32;
         self.sizes.push(0);
@@ -73,7 +73,7 @@ impl Scratch {
         self.seeds.push(Seed { tree, found, place, parent, joint });
     }
 
-    /// Lets all trees grow as far as they can.
+    /// Grows all trees as far as possible.
     pub(super) fn grow(&mut self, island: &Island<'_>, view: &View<'_>) {
         while let Some(&Seed { tree, place, .. }) = self.seeds.get(self.grown) {
             self.grown += 1;
@@ -93,13 +93,13 @@ impl Scratch {
         }
     }
 
-    /// Place in the island of one of the world's bodies, if it moves with it.
+    /// Index in the island of a world body, if it moves with the island.
     pub(super) fn place_of(&self, island: &Island<'_>, body: u32) -> Option<u32> {
         let place = self.local_of[body as usize];
         (island.bodies.get(place as usize) == Some(&body)).then_some(place)
     }
 
-    /// Lists which joints each body has: a counting sort.
+    /// Lists the joints of each body by a counting sort.
     pub(super) fn list_adjacent(&mut self, island: &Island<'_>, view: &View<'_>) {
         if self.local_of.len() < view.bodies.slot_count() {
             self.local_of.resize(view.bodies.slot_count(), NONE);
@@ -119,7 +119,7 @@ impl Scratch {
         }
         let mut start = 0;
         for end in &mut ends {
-            // Where the list starts, until it is filled.
+            // Start of the run until it is filled, then its end.
             start += core::mem::replace(end, start);
         }
         self.adjacent.clear();
@@ -142,7 +142,7 @@ impl Scratch {
 }
 
 impl Scratch {
-    /// True if a body of a joint or a contact is one of those that move.
+    /// Returns true if a body of a joint or a contact is a moving body.
     pub(super) fn moves(&self, body: u32) -> bool {
         self.order.get(self.local_of[body as usize] as usize) == Some(&body)
     }
@@ -155,7 +155,7 @@ impl Scratch {
             let joint = view.joints.at(index);
             fixed.extend([joint.a, joint.b].into_iter().filter(|&body| !self.moves(body)));
         }
-        // Contacts with them come last.
+        // Contacts with fixed bodies come last.
         for &index in island.contacts.iter().rev() {
             let key = view.contacts[index as usize].key;
             let before = fixed.len();

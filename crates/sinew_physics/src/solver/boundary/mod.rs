@@ -1,4 +1,4 @@
-//! Data that pass between the world and an island: its bodies, joints and contacts on the way in, forces between stages, results on the way out.
+//! Data exchange between the world and an island: bodies, joints and contacts in, forces between stages, results out.
 
 pub(in crate::solver) mod build;
 pub(in crate::solver) mod counts;

@@ -1,4 +1,4 @@
-//! Results of the islands' substeps, for the world to take.
+//! Results of the islands' substeps, which the world copies.
 
 use crate::body::Velocity;
 use crate::body::external_work::Work;
@@ -13,34 +13,34 @@ use sinew_math::{Transform, Vec3};
 /// A moving body after the step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SolvedBody {
-    /// In the world.
+    /// Index in the world.
     pub index: u32,
     pub pose: Transform,
     pub velocity: Velocity,
-    /// In a substep it was faster than the world lets it be.
+    /// True if it exceeded the world's speed limits in a substep.
     pub is_limited: bool,
 }
 
-/// Values that a joint carries on.
+/// State that a joint keeps for the next step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SolvedJoint {
-    /// In the world.
+    /// Index in the world.
     pub index: u32,
     pub limits: [LimitImpulse; MAX_LIMITS],
     pub force: Vec3,
     pub warm_impulse: Vec6,
     pub saturated: Saturation,
     pub mass: Vec6,
-    /// Impulses of all substeps on B, torque about its anchor.
+    /// Impulses of all substeps on B, torque about B's anchor.
     pub reaction: Vec6,
 }
 
-/// Values that a contact carries on.
+/// State that a contact keeps for the next step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SolvedContact {
-    /// In the world.
+    /// Index in the world.
     pub index: u32,
-    /// Its manifold, if it was looked for anew within the step.
+    /// Its manifold, if it was recomputed within the step.
     pub found: Option<Manifold>,
     pub memory: ContactMemory,
 }
@@ -56,9 +56,9 @@ pub(crate) struct Solution {
 }
 
 impl Solution {
-    /// Makes room for so many of each.
+    /// Resizes the lists.
     pub fn resize(&mut self, islands: usize, bodies: usize, joints: usize, contacts: usize) {
-        // Islands part and join, but there are never more than bodies.
+        // Islands merge and split, but there are never more than bodies.
         self.work.clear();
         self.work.reserve(bodies);
         self.work.resize(islands, Work::default());
@@ -67,7 +67,7 @@ impl Solution {
         self.contacts.resize(contacts, SolvedContact::default());
     }
 
-    /// The room of all islands, to be split among them.
+    /// The storage of all islands, to be split among them.
     pub fn as_mut(&mut self) -> IslandSolution<'_> {
         IslandSolution {
             bodies: &mut self.bodies,
@@ -78,7 +78,7 @@ impl Solution {
     }
 }
 
-/// Room for what comes of an island, or of several.
+/// Storage for the results of one or several islands.
 pub(crate) struct IslandSolution<'a> {
     pub(super) bodies: &'a mut [SolvedBody],
     pub(super) joints: &'a mut [SolvedJoint],
@@ -87,7 +87,7 @@ pub(crate) struct IslandSolution<'a> {
 }
 
 impl<'a> IslandSolution<'a> {
-    /// Takes the room for the first island out.
+    /// Splits off the storage of the first island.
     pub fn split_off(&mut self, island: &Island<'_>) -> Self {
         Self {
             bodies: split_off(&mut self.bodies, island.bodies.len()),

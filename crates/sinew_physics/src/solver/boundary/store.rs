@@ -1,4 +1,4 @@
-//! `store`: from the arrays of one island's solver to the results that the world takes.
+//! `store`: copies the arrays of one island's solver to the results for the world.
 
 use super::solution::{IslandSolution, SolvedBody, SolvedJoint};
 use crate::body::Velocity;
@@ -9,7 +9,7 @@ use crate::spatial::{angular, linear};
 use crate::stage::Profiler;
 
 impl IslandSolver {
-    /// Writes down what has come of the island.
+    /// Writes the results of the island.
     pub fn store(&self, solution: &mut IslandSolution<'_>, profiler: &dyn Profiler) {
         self.tell_counts(profiler);
         for ((solved, body), v) in solution.bodies.iter_mut().zip(&self.bodies).zip(&self.velocities) {

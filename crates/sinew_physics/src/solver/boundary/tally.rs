@@ -1,22 +1,22 @@
-//! Counts of what the sweeps of an island go through in a step.
+//! Counts of the rows that an island's sweeps visit in a step.
 
 use crate::solver::pass::Pass;
 
-/// Counts of what the sweeps of a step have gone through: cheap enough to be added up whether somebody asks or not.
+/// Counts of the sweeps of a step. They are cheap enough to be collected always.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::solver) struct Tally {
     pub substeps: u64,
-    /// Rows that were not skipped.
+    /// Number of rows that were not skipped.
     pub visits: u64,
-    /// Rows of `relax`, once for each substep.
+    /// Rows of `relax`, counted once for each substep.
     pub(super) pass_rows: u64,
-    /// Rows gone through, sweep by sweep.
+    /// Rows of `solve`, counted in each sweep.
     pub(super) solve_rows: u64,
     pub(super) relax_rows: u64,
 }
 
 impl Tally {
-    /// A sweep of a pass, the `number`th from 1, over so many rows.
+    /// Counts sweep number `number` (from 1) of a pass, over `rows` rows.
     pub fn sweep(&mut self, pass: Pass, number: usize, rows: usize) {
         let rows = rows as u64;
         match pass {

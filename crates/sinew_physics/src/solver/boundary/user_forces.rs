@@ -1,4 +1,4 @@
-//! Effects of the user's objects on the moving bodies of an island between its stages.
+//! Effects of the user's force objects on the moving bodies of an island, between its stages.
 
 use crate::solver::IslandSolver;
 use crate::solver::body::advance;
@@ -7,7 +7,7 @@ use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
 use sinew_math::Vec3;
 
 impl IslandSolver {
-    /// Before a substep: forces that were added for the one before are gone.
+    /// Resets the forces before a substep; those of the last substep are cleared.
     pub fn renew_forces(&mut self, view: &View<'_>) {
         let moving = self.links.len();
         for body in &mut self.bodies[..moving] {
@@ -15,7 +15,7 @@ impl IslandSolver {
         }
     }
 
-    /// Adds to what `integrate_velocity` will apply, N and N·m about the centre of mass.
+    /// Adds to the force that `integrate_velocity` applies, N and N·m about the centre of mass.
     pub fn add_force(&mut self, local: usize, force: Vec3, torque: Vec3) {
         self.disturbed |= force != Vec3::ZERO || torque != Vec3::ZERO;
         let body = &mut self.bodies[local];
@@ -23,14 +23,14 @@ impl IslandSolver {
         body.torque += torque;
     }
 
-    /// An impulse before the substep: what joints make of it comes with `solve`.
+    /// Applies an impulse before the substep to a body alone; `solve` applies the joints' reaction.
     pub fn push_loose(&mut self, local: usize, impulse: &Vec6) {
         self.disturbed |= *impulse != ZERO6;
         let change = self.bodies[local].velocity_change(impulse);
         add_scaled(&mut self.velocities[local], &change, 1.0);
     }
 
-    /// An impulse after bodies have moved, through the joints.
+    /// Applies an impulse through the joints after bodies have moved.
     pub fn push_held(&mut self, local: usize, impulse: &Vec6) {
         self.pushed_from_outside = true;
         self.disturbed |= *impulse != ZERO6;
@@ -40,7 +40,7 @@ impl IslandSolver {
         self.answer_one(local, impulse);
     }
 
-    /// An impulse after bodies have moved, through the joints; bodies go where it would have taken them in the substep that is over.
+    /// Applies an impulse through the joints after bodies have moved, and moves them as it would have in the finished substep.
     pub fn correct(&mut self, local: usize, impulse: &Vec6) {
         let moving = self.links.len();
         self.scratch.before.clear();
@@ -57,7 +57,7 @@ impl IslandSolver {
         self.displaced = true;
     }
 
-    /// Response of a row on a body to its own impulse, joints of the trees included.
+    /// Response of a row on a body to its own impulse, including the tree joints.
     pub fn response_along(&mut self, local: usize, row: &Vec6) -> f32 {
         if !self.has_joints() {
             return dot(row, &self.bodies[local].velocity_change(row));
@@ -72,7 +72,7 @@ impl IslandSolver {
         dot(row, &self.scratch.dv[local])
     }
 
-    /// An object has acted on the island in this step.
+    /// True if a force object acted on the island in this step.
     pub fn is_disturbed(&self) -> bool {
         self.disturbed
     }

@@ -1,4 +1,4 @@
-//! Approach and rebound of a manifold's points: how they come in, and with what speed they leave.
+//! Approach and rebound of a manifold's points: their approach speeds and the speeds at which they leave.
 
 use super::ManifoldRows;
 use crate::collide::MAX_POINTS;
@@ -9,17 +9,17 @@ use sinew_math::max;
 /// Motion of a point along its normal, in a substep.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Approach {
-    /// At its beginning, m/s; negative if it comes nearer.
+    /// Normal rate at the substep's beginning, m/s; negative if the point approaches.
     pub rate: f32,
-    /// Gap at the beginning of the substep, metres; 0 if the surfaces overlap.
+    /// Gap at the substep's beginning, metres; 0 if the surfaces overlap.
     pub gap: f32,
-    /// Speed toward the surface that forces and joints add in the substep before contacts, m/s; not negative.
+    /// Speed toward the surface added by forces and joints in the substep before contacts, m/s; not negative.
     pub pull: f32,
 }
 
 impl Approach {
-    /// Speed at the surface, m/s. A velocity of symplectic Euler is that of half a substep ago, and what pulls goes on between
-    /// here and the surface.
+    /// Speed at the surface, m/s. A velocity of symplectic Euler is that of half a substep ago, and forces keep accelerating the point
+    /// between its present position and the surface.
     fn speed_at_surface(&self, h: f32) -> f32 {
         let now = self.rate - 0.5 * self.pull;
         if now < 0.0 { (now * now + 2.0 * (self.pull / h) * self.gap).sqrt() } else { 0.0 }
@@ -27,7 +27,7 @@ impl Approach {
 }
 
 impl ManifoldRows {
-    /// Records how the points come in when the substep begins.
+    /// Records the approach of the points when the substep begins.
     pub fn begin_approach(&mut self, velocities: &[Vec6]) {
         for i in 0..self.bouncy_count() {
             let rate = self.rows[i].rate(self.pair(), velocities);
@@ -35,7 +35,7 @@ impl ManifoldRows {
         }
     }
 
-    /// Records the speed toward the surface that forces and joints have added.
+    /// Records the speed toward the surface added by forces and joints.
     pub fn pull_approach(&mut self, velocities: &[Vec6]) {
         for i in 0..self.bouncy_count() {
             let rate = self.rows[i].rate(self.pair(), velocities);
@@ -43,7 +43,7 @@ impl ManifoldRows {
         }
     }
 
-    /// Points that came in fast and were hit will bounce, to the height that their speed at the surface is good for.
+    /// Marks points that approached fast and were hit: they bounce as high as their speed at the surface allows.
     pub fn end_approach(&mut self, h: f32) {
         self.rebound = [0.0; MAX_POINTS];
         for i in 0..self.bouncy_count() {
@@ -54,7 +54,7 @@ impl ManifoldRows {
         }
     }
 
-    /// A point that will bounce, but has not touched yet: `relax` must not brake it on its way.
+    /// Returns true if the point will bounce but has not touched yet: `relax` must not brake its approach.
     pub(super) fn comes_to_bounce(&self, i: usize) -> bool {
         self.material.restitution > 0.0 && self.impulse[i] == 0.0
     }

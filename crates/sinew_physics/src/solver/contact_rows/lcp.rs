@@ -4,15 +4,15 @@ use crate::solver::tuning::LCP_PROXIMAL;
 use crate::spatial::{ZERO66, spd_inverse};
 use sinew_math::max;
 
-/// At most this many rows.
+/// Largest number of rows.
 const N: usize = 4;
 
 /// New impulses `x ≥ 0` of `n` unilateral rows with response `k`, gap velocities `v` (at impulses `old`, bias
 /// included) and softness `soft`: `K (x − old) + v + soft x ≥ 0`, complementary to `x`.
 ///
-/// Active set, started from the last impulses, with a proximal term (four coplanar points make K singular). The set may
-/// cycle, and a body explodes about once in five 30 m/s wall hits if that is let pass: then all sets are tried, and if
-/// rounding leaves none, Gauss-Seidel has the last word.
+/// Active set method, started from the last impulses, with a proximal term (four coplanar points make K singular). The set may cycle.
+/// Without a fallback, a body exploded about once in five wall hits at 30 m/s. So if the set cycles, all sets are tried, and if rounding
+/// leaves no valid set, Gauss-Seidel gives the result.
 pub(crate) fn solve(k: &[[f32; N]; N], v: &[f32; N], old: &[f32; N], soft: &[f32; N], n: usize) -> [f32; N] {
     if n == 1 && k[0][0] > 0.0 {
         let response = k[0][0] + soft[0] + LCP_PROXIMAL * k[0][0];
@@ -82,7 +82,7 @@ impl Problem {
         self.solve_set(set).filter(|x| self.wrong(set, x) == (0, 0))
     }
 
-    /// Active rows that pull, and inactive rows that would be penetrated.
+    /// Active rows that pull, and inactive rows that would penetrate.
     fn wrong(&self, set: u32, x: &[f32; N]) -> (u32, u32) {
         let (mut drop, mut add) = (0, 0);
         for i in 0..self.n {
@@ -93,7 +93,7 @@ impl Problem {
         (drop, add)
     }
 
-    /// Inactive rows let go; the equations of the active ones hold.
+    /// Solves the equations of the active rows, with zero impulses of the inactive rows.
     fn solve_set(&self, set: u32) -> Option<[f32; N]> {
         let mut x = [0.0; N];
         let mut index = [0; N];
@@ -168,7 +168,7 @@ mod tests {
                 for j in 0..n {
                     rate += k[i][j] * (new[j] - old[j]);
                 }
-                // The proximal term gives by 1e-5 of the response to the change.
+                // The proximal term allows an error of 1e-5 of the response to the change.
                 let allowed = 1e-4 * (1.0 + k[i][i] * (new[i] - old[i]).abs().max(1.0));
                 let allowed = allowed * 8.0;
                 assert!(new[i] >= 0.0 && rate > -allowed, "case {case}: row {i} {new:?} rate {rate}");

@@ -38,7 +38,7 @@ pub(super) struct ContactImpulses {
 }
 
 impl ContactImpulses {
-    /// With `share` of another.
+    /// Sum of these impulses and `share` times another's.
     pub fn plus(&self, other: &Self, share: f32) -> Self {
         Self {
             normal: core::array::from_fn(|i| self.normal[i] + other.normal[i] * share),
@@ -49,7 +49,7 @@ impl ContactImpulses {
     }
 }
 
-/// Rows of a manifold at most: normals, tangents, twist, rolling.
+/// Largest number of rows of a manifold: normals, tangents, twist, rolling.
 const MOST_ROWS: usize = MAX_POINTS + 2 + 1 + 3;
 
 /// World axes about which torques resist rolling.
@@ -60,25 +60,25 @@ pub(super) type Push = (Vec6, Vec6);
 
 #[derive(Clone, Debug)]
 pub(crate) struct ManifoldRows {
-    /// Place in the world's contact array.
+    /// Index in the world's contact array.
     pub contact: u32,
-    /// Local bodies.
+    /// Local indices of the bodies.
     pub a: u32,
     pub b: u32,
-    /// As last found: at the step's beginning, or since, if a body turned fast.
+    /// The manifold of the step's beginning, or a newer one if a body turned fast.
     pub manifold: Manifold,
-    /// It was found since the step's beginning.
+    /// True if the manifold was recomputed within the step.
     is_new: bool,
     through_particles: bool,
     shapes: [PlacedShape; 2],
-    /// Radii of the shapes' roundings around their cores, where they meet.
+    /// Radii of the shapes' roundings around their cores at the contact.
     rounds: [f32; 2],
-    /// Bodies turn by less than this in a substep or the contact is looked for anew, radians.
+    /// Turn within a substep from which on the contact is recomputed, radians.
     most_turn: f32,
     normal: Vec3,
     count: usize,
-    /// Cores of the surfaces at each point, in the principal frames, and their distances from the surfaces: a ball's
-    /// contact does not turn with it, a box's corner does.
+    /// Cores of the surfaces at each point, in the principal frames, and their distances from the surfaces: the contact point of a ball
+    /// does not rotate with it, that of a box's corner does.
     core_a: [Vec3; MAX_POINTS],
     core_b: [Vec3; MAX_POINTS],
     a_moves: bool,
@@ -86,22 +86,22 @@ pub(crate) struct ManifoldRows {
     material: ContactMaterial,
     slop: f32,
     soft: Softness,
-    /// Firmness of the contact: shares of `soft` and of its bias rate, and the speed with which it pushes apart.
+    /// Firmness of the contact: factors on `soft` and on its bias rate, and the largest push-out speed.
     firmness: Firmness,
-    /// Separations of the points at the present pose, metres; the rows are of that pose, too.
+    /// Separations of the points at the present pose, metres. The rows are of the same pose.
     separation: [f32; MAX_POINTS],
     rows: [Row; MAX_POINTS],
     tangents: [Row; 2],
     tangent_axes: [Vec3; 2],
     spin: Row,
-    /// Share of the load that each point had when the step began: friction acts at the centre of pressure.
+    /// Share of the load of each point when the step began: friction acts at the centre of pressure.
     weight: [f32; MAX_POINTS],
-    /// Weighted distance of the points from that centre: lever of the twist friction.
+    /// Weighted distance of the points from that centre: lever arm of the twist friction.
     lever: f32,
-    /// Columns of its rows: of the points, the tangents, the twist, and of torques about each axis if it resists rolling. None
-    /// as long as it is idle at this pose.
+    /// Columns of its rows: of the points, the tangents, the twist, and of torques about each axis if it resists rolling. `None` while it
+    /// is idle at this pose.
     pub columns: Option<CachedColumns>,
-    /// Responses, with the columns.
+    /// Responses of the point rows to each other, computed with the columns.
     k: [[f32; MAX_POINTS]; MAX_POINTS],
     k_tangent: [[f32; 2]; 2],
     k_spin: f32,
@@ -110,11 +110,11 @@ pub(crate) struct ManifoldRows {
     k_roll: Mat3,
     /// Approach of each point in this substep.
     approach: [Approach; MAX_POINTS],
-    /// Normal speed with which each point leaves what it hit in this substep, m/s; 0 if it does not bounce.
+    /// Normal speed at which each point leaves after a hit in this substep, m/s; 0 if it does not bounce.
     rebound: [f32; MAX_POINTS],
-    /// Impulses of this substep.
+    /// Normal impulses of this substep, N·s.
     impulse: [f32; MAX_POINTS],
-    /// Sum of the normal impulses that friction is limited by.
+    /// Sum of the normal impulses that limit friction.
     load: f32,
     /// Lower bound of each point's impulse in `relax`, N·s.
     floor: [f32; MAX_POINTS],
@@ -124,10 +124,10 @@ pub(crate) struct ManifoldRows {
     pub memory: ContactMemory,
 }
 
-/// Input from which a manifold's rows are made.
+/// Input for a manifold's rows.
 pub(crate) struct ManifoldSource<'a> {
     pub contact: u32,
-    /// Its points are on particles between the shapes: they are not looked for anew.
+    /// True if particles between the shapes carry the points: the manifold is not recomputed.
     pub through_particles: bool,
     pub a: u32,
     pub b: u32,
@@ -193,12 +193,12 @@ impl ManifoldRows {
         rows
     }
 
-    /// Its manifold, if it was found since the step's beginning.
+    /// Its manifold, if it was recomputed within the step.
     pub fn found(&self) -> Option<Manifold> {
         self.is_new.then_some(self.manifold)
     }
 
-    /// Says how hard it is.
+    /// Sets the firmness.
     pub fn set_firmness(&mut self, firmness: Firmness) {
         self.firmness = firmness;
     }
@@ -208,7 +208,7 @@ impl ManifoldRows {
         [self.a, self.b].map(|body| bodies[body as usize].pose)
     }
 
-    /// Cores of the manifold's points, which was found at these poses.
+    /// Computes the cores of the points of the manifold, which was computed at these poses.
     fn take_manifold(&mut self, [pose_a, pose_b]: [Transform; 2]) {
         self.normal = self.manifold.normal;
         self.count = self.manifold.count;
@@ -220,7 +220,7 @@ impl ManifoldRows {
         let [round_a, round_b] =
             if self.through_particles { [0.0; 2] } else { [a.round(in_a), b.round(in_b)] };
         self.rounds = [round_a, round_b];
-        // Of a rim, the points beside the one that it rolls on bear nothing.
+        // For a rim, the points other than the one it rolls on bear no load.
         let (most_turn, bearing) = match a.has_rim(in_a) || b.has_rim(in_b) {
             _ if self.through_particles => (f32::INFINITY, f32::INFINITY),
             true => (REFRESH_TURN_RIM, self.slop),
@@ -239,7 +239,7 @@ impl ManifoldRows {
         Pair { a: self.a, b: self.b }
     }
 
-    /// Separations and Jacobians at these poses.
+    /// Computes separations and Jacobians at these poses.
     pub fn place(&mut self, [pose_a, pose_b]: [Transform; 2]) {
         let n = self.normal;
         let mut points = [Vec3::ZERO; MAX_POINTS];
@@ -249,7 +249,7 @@ impl ManifoldRows {
             let on_b = pose_b.point(self.core_b[i]) - n * self.rounds[1];
             self.separation[i] = (on_b - on_a).dot(n);
             points[i] = match self.rounds.map(|round| round > 0.0).into() {
-                // Where a ball touches goes along with the ball, also on a table that moves away under it.
+                // The contact point moves with a ball, also on a table that moves away under it.
                 (true, false) => on_a,
                 (false, true) => on_b,
                 _ if !self.b_moves => on_a,
@@ -269,7 +269,7 @@ impl ManifoldRows {
         self.tangents = self.tangent_axes.map(|axis| Row::at(axis, arm_a, arm_b));
     }
 
-    /// Computes the columns of its rows and what they answer to each other. Gives where the columns lie.
+    /// Computes the columns of its rows and their responses to each other. Returns the position of the columns.
     pub(in crate::solver) fn respond(
         &mut self,
         bodies: &[SolverBody],
@@ -321,8 +321,8 @@ impl ManifoldRows {
         strip
     }
 
-    /// Puts the starting impulses on the bodies: those of the last substep, unless they jumped up from the one before:
-    /// an impact must not be repeated. Judged for the manifold as a whole, since at rest the load wanders between points.
+    /// Applies the starting impulses to the bodies: those of the last substep, unless they increased sharply over the substep before, since
+    /// an impact must not be repeated. The manifold is judged as a whole: at rest the load wanders between its points.
     pub fn warm_start(&mut self, impulses: &mut [Vec6]) {
         let (mut now, mut before) = (0.0, 0.0);
         for point in &self.memory.points[..self.count] {
@@ -358,8 +358,8 @@ impl ManifoldRows {
         }
     }
 
-    /// Adds a share of impulses to those of this substep; the caller puts them on the bodies. Gives the largest speed that
-    /// one of them makes by itself, m/s or rad/s.
+    /// Adds `share` times impulses to those of this substep; the caller applies them to the bodies. Returns the largest speed change caused
+    /// by any single one, m/s or rad/s.
     pub(super) fn apply(&mut self, more: &ContactImpulses, share: f32) -> f32 {
         let ContactImpulses { normal, friction, twist, rolling } = self.impulses().plus(more, share);
         (self.impulse, self.friction, self.twist, self.rolling) = (normal, friction, twist, rolling);
@@ -371,12 +371,12 @@ impl ManifoldRows {
         most * share
     }
 
-    /// Overlaps by much more than contacts at rest do.
+    /// Returns true if it overlaps by much more than contacts at rest do.
     pub fn is_deep(&self) -> bool {
         self.separation[..self.count].iter().any(|s| *s < -DEEP_SLOPS * self.slop)
     }
 
-    /// Impulses that all rows put on the two bodies in this substep.
+    /// Total impulses of all rows on the two bodies in this substep.
     pub fn total_push(&self) -> Push {
         let mut push = (ZERO6, ZERO6);
         for i in 0..self.count {
@@ -389,7 +389,7 @@ impl ManifoldRows {
         push
     }
 
-    /// Starts from nothing.
+    /// Clears the impulses.
     pub fn forget(&mut self) {
         self.impulse = [0.0; MAX_POINTS];
         self.friction = Vec3::ZERO;
@@ -397,8 +397,8 @@ impl ManifoldRows {
         self.rolling = Vec3::ZERO;
     }
 
-    /// `relax` may take back what `solve` gave too much, but not from bodies that turned by more than a little since: an
-    /// impulse taken back at another pose than it was given at puts energy in (a hand went from 70 to 2,700 rad/s).
+    /// Sets the lower bounds for `relax`, which may take back excess impulses of `solve`, except from bodies that turned by more than a
+    /// small angle since: an impulse taken back at another pose than it was given at adds energy (a hand went from 70 to 2,700 rad/s).
     pub fn begin_relax(&mut self, velocities: &[Vec6], h: f32) {
         let turn = |body: u32| angular(&velocities[body as usize]).length() * h;
         let still = turn(self.a) < RELAX_TURN && turn(self.b) < RELAX_TURN;
@@ -410,7 +410,7 @@ impl ManifoldRows {
         add_scaled(&mut push.1, &row.b, impulse);
     }
 
-    /// Impulses of this substep become memory.
+    /// Stores the impulses of this substep for the next one.
     pub fn end_substep(&mut self, h: f32) {
         for i in 0..self.count {
             let point = &mut self.memory.points[i];

@@ -1,4 +1,4 @@
-//! Shapes where their bodies are, and the contact that two of them have there.
+//! Shapes placed in the world, and the contact between two of them.
 
 use crate::body::shape::Shape;
 use crate::collide::{Half, Manifold, collide, is_on_face, name_as_face};
@@ -38,11 +38,11 @@ impl Placed<'_> {
         )
     }
 
-    /// Radius of the rounding around its core where it meets a normal (in the principal frame); 0 of what has corners.
+    /// Radius of the rounding around its core in the direction of a normal (in the principal frame); 0 for shapes with corners.
     pub fn round(&self, normal: Vec3) -> f32 {
         match *self.shape {
             Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
-            // The thinner end's: what a core is rounded by all around.
+            // Use the radius of the thinner end, since the core is rounded by it on all sides.
             Shape::TaperedCapsule { radius_bottom, radius_top, .. } => min(radius_bottom, radius_top),
             Shape::Cylinder { radius, .. } => {
                 let axis = self.principal_from_shape.rotation * Vec3::Y;
@@ -57,8 +57,8 @@ impl Placed<'_> {
         }
     }
 
-    /// True if it meets a normal (in the principal frame) with a curved part that [`Self::round`] does not cover: as it rolls,
-    /// other points come down.
+    /// Returns true if a curved part not covered by [`Self::round`] faces a normal (in the principal frame): as the shape rolls, other
+    /// points come into contact.
     pub fn has_rim(&self, normal: Vec3) -> bool {
         let axis = || self.principal_from_shape.rotation * Vec3::Y;
         match *self.shape {
@@ -70,8 +70,8 @@ impl Placed<'_> {
     }
 }
 
-/// Margin of two shapes, metres: the largest separation of points that a substep may bring together in which the bodies turn by
-/// `turns` radians and approach by `approach` metres.
+/// Margin of two shapes, metres: the largest separation of points that may touch within a substep in which the bodies turn by `turns`
+/// radians and approach by `approach` metres.
 pub(in crate::solver) fn margin(shapes: &[Placed<'_>; 2], turns: [f32; 2], approach: f32, slop: f32) -> f32 {
     let [a, b] = shapes.map(|placed| placed.shape.bounding_radius());
     let reach = a * turns[0] + b * turns[1];
@@ -79,9 +79,9 @@ pub(in crate::solver) fn margin(shapes: &[Placed<'_>; 2], turns: [f32; 2], appro
     max(4.0 * slop + approach + turning, FAR_CORNER * min(a, b))
 }
 
-/// The contact of two shapes at these poses, if there is one. For a surface, and for a solid of the ground that goes on beside it, stands the
-/// plane that the manifold known so far lies on, through `on_surfaces` of A or B: a surface itself would answer for all its manifolds at once.
-/// What lies on its edges stays as it was found.
+/// Recomputes the contact of two shapes at these poses; `None` if they are apart. A surface, or a ground solid that continues beside the
+/// contact, is replaced by the plane of the known manifold through `on_surfaces` of A or B, since the surface itself would return all its
+/// manifolds at once. Contacts on its edges stay unchanged.
 pub(in crate::solver) fn found_anew(
     [a, b]: [Placed<'_>; 2],
     poses: [Transform; 2],

@@ -1,4 +1,4 @@
-//! The contact of two bodies that turn fast is looked for again within the step.
+//! Recomputes the contact of two fast-turning bodies within the step.
 
 use super::ManifoldRows;
 use super::bounce::Approach;
@@ -11,14 +11,14 @@ use crate::solver::tuning::PREDICTED_DEPTH;
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::{Transform, Vec3, max, min};
 
-/// Angle through which a body turns within a substep, radians.
+/// Angle by which a body turns within a substep, radians.
 fn turn(velocities: &[Vec6], body: u32, h: f32) -> f32 {
     angular(&velocities[body as usize]).length() * h
 }
 
 impl ManifoldRows {
-    /// Looks for the contact anew if a body turned fast in this substep: the points of the step's beginning say nothing
-    /// of the corner that swings in. Impulses go on by feature. A pair that has come apart keeps its rows.
+    /// Recomputes the contact if a body turned fast in this substep: the points of the step's beginning do not include a corner that swings
+    /// in. Impulses are matched by feature. A pair that has separated keeps its rows.
     pub fn refresh_points(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) {
         if self.turns(velocities, h)
             && let Some(manifold) = self.found_anew(self.poses(bodies), self.margin(velocities, h))
@@ -27,9 +27,9 @@ impl ManifoldRows {
         }
     }
 
-    /// Looks where the velocities of this substep lead to: points that its rows do not know may come down there, and would be
-    /// in by far before they are found. Then it takes the contact there, as if it had come that way along a straight line; the
-    /// caller computes its responses. Gives whether it did.
+    /// Predicts the contact at the poses that the velocities of this substep lead to. Points without rows may come into contact there, and
+    /// would penetrate deeply before they are detected. In that case the predicted manifold replaces the present one, shifted along a
+    /// straight line to the present poses, and the caller computes its responses. Returns whether it was replaced.
     pub fn predict_points(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) -> bool {
         if !self.turns(velocities, h) {
             return false;
@@ -55,8 +55,7 @@ impl ManifoldRows {
         true
     }
 
-    /// Gap of the shapes along the present normal if the bodies are at these poses, metres: no more than along the normal that
-    /// parts them best.
+    /// Gap of the shapes along the present normal with the bodies at these poses, metres: at most the gap along the best separating axis.
     fn apart_along_normal(&self, poses: [Transform; 2]) -> f32 {
         let origin = poses[1].translation;
         let extent = |end: usize, core: Vec3, direction: Vec3| {
@@ -66,19 +65,19 @@ impl ManifoldRows {
                     let frame = poses[end] * *principal_from_shape;
                     Posed::new(&solid, &frame, origin).extent(wide(direction)) as f32
                 }
-                // A plane, or a face.
+                // The other side is a plane or a face.
                 None => (poses[end].point(core) - origin).dot(direction),
             }
         };
         -extent(0, self.core_a[0], self.normal) - extent(1, self.core_b[0], -self.normal)
     }
 
-    /// True if a body turns so fast in this substep that other points come down.
+    /// Returns true if a body turns so fast in this substep that other points come into contact.
     fn turns(&self, velocities: &[Vec6], h: f32) -> bool {
         [self.a, self.b].iter().any(|&body| turn(velocities, body, h) >= self.most_turn)
     }
 
-    /// Largest separation of points that this substep may bring together, metres.
+    /// Largest separation of points that may touch within this substep, metres.
     fn margin(&self, velocities: &[Vec6], h: f32) -> f32 {
         let relative = linear(&velocities[self.b as usize]) - linear(&velocities[self.a as usize]);
         let turns = [self.a, self.b].map(|body| turn(velocities, body, h));
@@ -86,7 +85,7 @@ impl ManifoldRows {
         margin(&[a.placed(), b.placed()], turns, relative.length() * h, self.slop)
     }
 
-    /// Takes a manifold that was found at these poses. Impulses go on by feature.
+    /// Adopts a manifold that was computed at these poses. Impulses are matched by feature.
     fn go_on_with(&mut self, manifold: Manifold, poses: [Transform; 2]) {
         let impulse = self.impulse.map(|now| PointImpulse { now, ..PointImpulse::default() });
         let of_substep = ContactMemory { points: impulse, ..self.memory }.matched(&self.manifold, &manifold);
@@ -102,7 +101,7 @@ impl ManifoldRows {
         self.take_manifold(poses);
     }
 
-    /// The contact at these poses, if there is one.
+    /// Recomputes the contact at these poses; `None` if the shapes are apart.
     fn found_anew(&self, poses: [Transform; 2], margin: f32) -> Option<Manifold> {
         let [a, b] = &self.shapes;
         let on_surfaces = [poses[0].point(self.core_a[0]), poses[1].point(self.core_b[0])];

@@ -1,4 +1,4 @@
-//! A row of two bodies, and how softly it gives.
+//! A row of two bodies, and its softness.
 
 use crate::collide::{MAX_POINTS, Manifold};
 use crate::contact::ContactMemory;
@@ -9,7 +9,7 @@ use sinew_math::{Vec3, min};
 /// Coefficients of a soft constraint (Catto, "Soft Constraints", GDC 2011).
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Softness {
-    /// 1/s.
+    /// Rate at which the position error decays, 1/s.
     pub bias_rate: f32,
     pub mass_scale: f32,
     pub impulse_scale: f32,
@@ -54,7 +54,7 @@ impl Row {
         dot(&self.a, &velocities[pair.a as usize]) + dot(&self.b, &velocities[pair.b as usize])
     }
 
-    /// On A and on B.
+    /// Jacobians on A and on B.
     pub fn ends(&self) -> [&Vec6; 2] {
         [&self.a, &self.b]
     }
@@ -64,7 +64,7 @@ impl Row {
     }
 }
 
-/// Distance over time of a point that no substep brings to touch, m/s.
+/// Separation over time of a point that cannot touch in any substep, m/s.
 pub(in crate::solver) const NEVER: f32 = 1e6;
 
 /// Softness of a contact before its firmness is applied, in a substep of `h` seconds.
@@ -73,8 +73,7 @@ pub(in crate::solver) fn contact_softness(both_move: bool, h: f32) -> Softness {
     Softness::new(min(hertz, 0.25 / h), CONTACT_DAMPING, h)
 }
 
-/// Shares of the load by point, smoothed so that a point which is about to bear some has a say: one whose separation is at
-/// most `bearing`, if there is any.
+/// Shares of the load for each point. A point with a separation of at most `bearing` gets a smoothed share before it bears any load.
 pub(in crate::solver) fn weights(
     memory: &ContactMemory,
     manifold: &Manifold,

@@ -24,12 +24,12 @@ struct NormalProblem {
 }
 
 impl ManifoldRows {
-    /// Takes the normal impulses as they are for the load of friction.
+    /// Stores the present normal impulses as the load that limits friction.
     pub fn update_friction_bound(&mut self) {
         self.load = self.impulse[..self.count].iter().fold(0.0, |sum, p| sum + max(*p, 0.0));
     }
 
-    /// Problem of the normal rows at the present velocities.
+    /// Builds the problem of the normal rows at the present velocities.
     fn normal_problem(&self, velocities: &[Vec6], pass: Pass, h: f32) -> NormalProblem {
         let (pair, biased) = (self.pair(), pass == Pass::Solve);
         let mut mean = 0.0;
@@ -38,7 +38,7 @@ impl ManifoldRows {
                 mean += k;
             }
         }
-        // The block's softness is taken at the manifold's centre; taken at each point a 1 kg foot under 69 kg sinks 7 mm.
+        // The block's softness is taken at the manifold's centre; taken at each point, a 1 kg foot under 69 kg sinks by 7 mm.
         let at_center = self.firmness.softness * self.soft.impulse_scale / self.soft.mass_scale * mean
             / self.count as f32;
         let mut problem = NormalProblem::default();
@@ -54,7 +54,7 @@ impl ManifoldRows {
         problem
     }
 
-    /// Velocity bias of a point, m/s: its rate may fall to minus this.
+    /// Velocity bias of a point, m/s: the point may approach at up to this rate.
     fn bias(&self, i: usize, pass: Pass, h: f32) -> f32 {
         let (s, biased) = (self.separation[i], pass == Pass::Solve);
         if pass == Pass::Restitution && self.rebound[i] > 0.0 {
@@ -72,7 +72,7 @@ impl ManifoldRows {
         }
     }
 
-    /// Gives nothing, and has nothing to give at these velocities.
+    /// Returns true if its impulses are zero and stay zero at these velocities.
     pub fn is_idle(&self, velocities: &[Vec6], pass: Pass, h: f32) -> bool {
         let rate = |i: usize| self.rows[i].rate(self.pair(), velocities) + self.bias(i, pass, h);
         let is_apart = |i: usize| self.separation[i] > 0.0 && self.impulse[i] == 0.0;
@@ -94,8 +94,8 @@ impl ManifoldRows {
         change
     }
 
-    /// One visit of friction, limited by the load that was weighed last: a 2×2 row limited to the circle, twist about the
-    /// normal. What static friction does not hold slides.
+    /// One visit of friction, limited by the last stored load: a 2×2 row limited to the circle, then twist about the normal. Slip beyond
+    /// static friction becomes sliding.
     pub fn visit_friction(&mut self, strip: CachedColumns, velocities: &[Vec6]) -> Change {
         let pair = self.pair();
         let mut change = Change::from_column(strip.column(self.count));
@@ -119,8 +119,8 @@ impl ManifoldRows {
         }
         self.friction = self.tangent_axes[0] * new[0] + self.tangent_axes[1] * new[1];
         if self.k_spin > 1e-12 {
-            // After the tangents: a light hand turns far about a contact beside its centre, and to answer both at once
-            // overshoots, sweep by sweep more.
+            // Visit the twist after the tangents: a light hand turns far about a contact beside its centre, and solving both at once
+            // overshoots more in each sweep.
             let [k0, k1] = self.k_spin_tangent;
             let rate = self.spin.rate(pair, velocities)
                 + self.material.spin.dot(self.normal)

@@ -1,19 +1,19 @@
-//! Eight manifolds of one colour, side by side: no two of them push the same body, so that a sweep solves them at once.
+//! Eight manifolds of one colour, side by side. No two of them push the same body, so a sweep can solve them at once.
 
 use crate::slices::SharedRows;
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 
-/// One number of each of the eight manifolds.
+/// One number for each of the eight manifolds.
 pub(super) type Eight = [f32; WIDTH];
-/// A vector of each.
+/// One vector for each of the eight manifolds.
 pub(super) type Eight3 = [Eight; 3];
 
 pub(super) const ZERO8: Eight = [0.0; WIDTH];
 
-/// Set in the index of a body that contacts do not move, and in those of empty lanes.
+/// Flag in the index of a body that contacts do not move, and in those of empty lanes.
 pub(super) const HELD: u32 = 1 << 31;
-/// No contact: an empty lane.
+/// Marks an empty lane, which has no contact.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// Index of `(i, j)` of a symmetric matrix in its packed lower triangle, row by row.
@@ -22,20 +22,20 @@ pub(super) const fn packed(i: usize, j: usize) -> usize {
     if i >= j { i * (i + 1) / 2 + j } else { j * (j + 1) / 2 + i }
 }
 
-/// Data that sweeps read and write of eight manifolds with up to `N` points, whose responses to each other are `T = N (N + 1) / 2`.
+/// Data of eight manifolds with up to `N` points that sweeps read and write; their responses to each other are `T = N (N + 1) / 2` numbers.
 ///
-/// Points lie where they lay when the step began; a body that turns fast has its manifolds written anew. World axes, metres,
-/// kilograms, seconds.
+/// Points stay where they were when the step began; the lanes of a body that turns fast are rewritten. World axes, metres, kilograms,
+/// seconds.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Block<const N: usize, const T: usize> {
-    /// Local bodies A and B, with [`HELD`].
+    /// Local indices of bodies A and B, with the flag [`HELD`].
     pub bodies: [[u32; WIDTH]; 2],
-    /// Unit, from A to B.
+    /// Unit normal, from A to B.
     pub normal: Eight3,
     /// First direction of friction; the second is `normal × tangent`.
     pub tangent: Eight3,
-    /// From the centre of mass of B to that of A: added to an arm of A it gives that of B.
+    /// From the centre of mass of B to that of A; an arm of A plus this is the arm of B.
     pub offset: Eight3,
     /// Inverse masses.
     pub mass: [Eight; 2],
@@ -43,99 +43,99 @@ pub(super) struct Block<const N: usize, const T: usize> {
     pub inertia: [[Eight; 6]; 2],
     /// Arm of each point crossed with the normal, about the centre of A.
     pub levers: [Eight3; N],
-    /// From the centre of A to where friction acts.
+    /// From the centre of A to the point where friction acts.
     pub center: Eight3,
-    /// Velocity bias of each point in this pass, m/s: its rate may fall to minus this.
+    /// Velocity bias of each point in this pass, m/s: the point may approach at up to this rate.
     pub target: [Eight; N],
     /// Response of the points' rates to their impulses, packed.
     pub response: [Eight; T],
-    /// Inverse of each point's own response, softness included.
+    /// Inverse of each point's response to its own impulse, softness included.
     pub gain: [Eight; N],
     /// Response of the tangents (00, 01, 11), of the twist, and of the twist to the tangents.
     pub tangent_response: [Eight; 3],
     pub twist_response: Eight,
     pub twist_to_tangents: [Eight; 2],
-    /// Impulses of this substep, and what `relax` may not go below.
+    /// Impulses of this substep, and their lower bounds in `relax`.
     pub impulse: [Eight; N],
     pub floor: [Eight; N],
     pub friction: [Eight; 2],
     pub twist: Eight,
-    /// Impulses before the last sweep of those that are conjugate steps, and the direction of these.
+    /// Impulses before the last sweep that is a conjugate step, and the search direction.
     pub was: Impulses<N>,
     pub direction: Impulses<N>,
-    /// Sum of the normal impulses that friction is limited by, and that of the last substep.
+    /// Sum of the normal impulses that limit friction, and that of the last substep.
     pub load: Eight,
     pub last_load: Eight,
-    /// Coefficients of sliding and of holding friction.
+    /// Coefficients of sliding and static friction.
     pub sliding: Eight,
     pub holding: Eight,
-    /// Weighted distance of the points from the centre: lever of the twist.
+    /// Weighted distance of the points from the centre: lever arm of the twist friction.
     pub lever: Eight,
     /// Velocity of B's surface less A's along both tangents, and its spin about the normal.
     pub surface: Eight3,
-    /// Place of the rolling resistance of its manifolds, or [`NONE`].
+    /// Index of the rolling resistance of its manifolds, or [`NONE`].
     pub rolling: u32,
-    /// A lane was written anew: the responses are to be computed again.
+    /// True if a lane was rewritten, so that the responses have to be recomputed.
     pub is_stale: bool,
-    /// From the centre of A to each point. Sweeps read neither these nor the gaps.
+    /// From the centre of A to each point. Sweeps read neither the arms nor the separations.
     pub arms: [Eight3; N],
-    /// Gap of each point at the present poses, negative where they overlap.
+    /// Separation of each point at the present poses; negative where the surfaces overlap.
     pub separation: [Eight; N],
 }
 
-/// Data of eight manifolds that is looked at once a substep.
+/// Data of eight manifolds that is used once a substep.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Memory<const N: usize> {
-    /// Places in the world's contact array.
+    /// Indices in the world's contact array.
     pub contacts: [u32; WIDTH],
     /// Separations when the step began, and the radii of both shapes' roundings, summed.
     pub start: [Eight; N],
     pub round: Eight,
-    /// Overlap that is left alone, metres.
+    /// Overlap that is not corrected, metres.
     pub dead_zone: Eight,
-    /// Speed of parting by overlap, 1/s, and the most of it, m/s.
+    /// Rate at which overlap is corrected, 1/s, and the largest push-out speed, m/s.
     pub bias_rate: Eight,
     pub push_speed: Eight,
     /// Softness as a share of the response at the manifold's centre.
     pub softness: Eight,
-    /// Speed with which surfaces are to part, m/s.
+    /// Prescribed separation speed of the surfaces, m/s.
     pub launch: Eight,
     pub restitution: Eight,
-    /// Normal impulses: of the substep before the last, of all substeps, and the load that lasts.
+    /// Normal impulses: of the second last substep, the sums over all substeps, and the lasting load.
     pub before: [Eight; N],
     pub total: [Eight; N],
     pub lasting: [Eight; N],
-    /// Friction of all substeps, along both tangents.
+    /// Friction impulses of all substeps, along both tangents.
     pub total_friction: [Eight; 2],
-    /// Place of how its points come in and leave, or [`NONE`] if none of them may bounce.
+    /// Index of the approach and rebound of its points, or [`NONE`] if none of them may bounce.
     pub bounce: u32,
 }
 
-/// Approach and rebound of the points of eight manifolds, of which some may bounce.
+/// Approach and rebound of the points of eight manifolds, some of which may bounce.
 #[derive(Clone, Debug)]
 pub(super) struct Bounce<const N: usize> {
-    /// Rate and gap when the substep began, m/s and metres; a point that overlaps has no gap.
+    /// Normal rate and gap when the substep began, m/s and metres; the gap of an overlapping point is 0.
     pub rate: [Eight; N],
     pub gap: [Eight; N],
-    /// Speed toward the surface that forces add before contacts, m/s.
+    /// Speed toward the surface added by forces before contacts, m/s.
     pub pull: [Eight; N],
-    /// Speed with which a point leaves, m/s; 0 if it does not.
+    /// Speed at which a point leaves, m/s; 0 if it does not bounce.
     pub rebound: [Eight; N],
     /// Normal impulses before the bounce.
     pub held: [Eight; N],
 }
 
-/// Resistance to rolling of eight manifolds.
+/// Rolling resistance of eight manifolds.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Rolling {
-    /// Lever: of the load, the most torque, metres.
+    /// Lever arm, metres: the largest torque is this times the load.
     pub lever: Eight,
-    /// Response of the relative spin to a torque, inverse: xx, yy, zz, yz, xz, xy; and its trace.
+    /// Inverse response of the relative spin to a torque: xx, yy, zz, yz, xz, xy; and its trace.
     pub inverse: [Eight; 6],
     pub trace: Eight,
-    /// World axes, N·m·s.
+    /// Impulse of the torque, world axes, N·m·s.
     pub impulse: Eight3,
 }
 
@@ -178,13 +178,13 @@ impl<const N: usize, const T: usize> Block<N, T> {
 }
 
 impl<const N: usize> Bounce<N> {
-    /// Bounce of manifolds whose points do not bounce.
+    /// Bounce of manifolds without bouncing points.
     pub const NONE: Self =
         Self { rate: [ZERO8; N], gap: [ZERO8; N], pull: [ZERO8; N], rebound: [ZERO8; N], held: [ZERO8; N] };
 }
 
 impl<const N: usize> Memory<N> {
-    /// Memory of empty lanes.
+    /// The memory of empty lanes.
     pub fn empty() -> Self {
         Self {
             contacts: [NONE; WIDTH],
@@ -205,7 +205,7 @@ impl<const N: usize> Memory<N> {
     }
 }
 
-/// A vector of each of eight manifolds.
+/// Loads one vector for each of eight manifolds.
 #[inline(always)]
 pub(super) fn load3<L: Lanes>(from: &Eight3) -> Vector3<L> {
     Vector3::load(&from[0], &from[1], &from[2])
@@ -230,7 +230,7 @@ pub(super) fn times<L: Lanes>(m: &[Eight; 6], v: Vector3<L>) -> Vector3<L> {
     )
 }
 
-/// One row for each body.
+/// A list with one row for each body.
 pub(super) trait OfBodies {
     fn row(&self, body: usize) -> &Vec6;
 }
@@ -249,7 +249,7 @@ impl OfBodies for SharedRows<'_, Vec6> {
     }
 }
 
-/// SharedRows of bodies that are written.
+/// A writable list with one row for each body.
 pub(super) trait WrittenOfBodies {
     fn row_mut(&mut self, body: usize) -> &mut Vec6;
 }
@@ -268,7 +268,7 @@ impl WrittenOfBodies for SharedRows<'_, Vec6> {
     }
 }
 
-/// Eight rows of a list, by the bodies' indices, field by field.
+/// Gathers eight rows of a list by the bodies' indices, field by field.
 #[inline(always)]
 pub(super) fn gather<L: Lanes>(rows: &(impl OfBodies + ?Sized), bodies: &[u32; WIDTH]) -> [L; WIDTH] {
     let [a, b, c, d, e, f, g, h] = *bodies;
@@ -302,7 +302,7 @@ impl<L: Lanes> Motion<L> {
         Self::of_columns(gather::<L>(velocities, bodies))
     }
 
-    /// Velocities of rows.
+    /// Converts rows to velocities.
     #[inline(always)]
     pub fn of(rows: [L; WIDTH]) -> Self {
         Self::of_columns(L::transpose(rows))
@@ -313,7 +313,7 @@ impl<L: Lanes> Motion<L> {
         Self { linear: Vector3::new(x, y, z), angular: Vector3::new(u, v, w) }
     }
 
-    /// Writes those that move.
+    /// Writes the velocities of bodies that contacts move.
     #[inline(always)]
     pub fn scatter(self, velocities: &mut (impl WrittenOfBodies + ?Sized), bodies: &[u32; WIDTH]) {
         let rows = self.rows();
@@ -324,7 +324,7 @@ impl<L: Lanes> Motion<L> {
         }
     }
 
-    /// One row for each body.
+    /// Converts to one row for each body.
     #[inline(always)]
     pub fn rows(self) -> [L; WIDTH] {
         let Self { linear: v, angular: w } = self;
@@ -332,14 +332,14 @@ impl<L: Lanes> Motion<L> {
         L::transpose([v.x, v.y, v.z, w.x, w.y, w.z, zero, zero])
     }
 
-    /// Takes an impulse and a torque; `inertia` and `mass` inverse.
+    /// Applies an impulse and a torque; `inertia` and `mass` are inverse.
     #[inline(always)]
     pub fn push(&mut self, mass: L, inertia: &[Eight; 6], impulse: Vector3<L>, torque: Vector3<L>) {
         self.linear = self.linear + impulse * mass;
         self.angular = self.angular + times(inertia, torque);
     }
 
-    /// The largest change of a component since.
+    /// The largest component of the change since `before`.
     #[inline(always)]
     pub fn change(self, before: Self) -> L {
         let (v, w) = ((self.linear - before.linear).abs(), (self.angular - before.angular).abs());

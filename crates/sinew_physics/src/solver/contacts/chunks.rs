@@ -1,6 +1,6 @@
-//! Blocks of one colour on several threads: no two of them push the same body, so that threads may take them in any order.
+//! Solves the blocks of one colour on several threads. No two of them push the same body, so threads may take them in any order.
 //!
-//! DETERMINISM: colours are divided in the same way whatever the number of threads, and what parts sum up is added in their order.
+//! DETERMINISM: colours are divided in the same way for every number of threads, and the sums of the parts are added in their order.
 #![allow(unsafe_code)]
 
 use super::Contacts;
@@ -15,30 +15,29 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, WIDTH};
 use sinew_math::max;
 
-/// Blocks of a chunk: a few µs of work, some times what it takes to hand it to a thread.
+/// Blocks in a chunk: a few µs of work, several times the cost of handing it to a thread.
 const CHUNK: usize = 12;
 /// Colours with fewer blocks are not divided.
 const DIVIDED: usize = 3 * CHUNK;
-/// Most chunks of a colour, whose chunks are larger if it has more blocks than these hold.
+/// Largest number of chunks of a colour; a colour with more blocks has larger chunks.
 const MOST_CHUNKS: usize = MOST_NEAR;
 
-/// A visitor of which parts may go to blocks of one colour at the same time. It does not look at bounces.
+/// A visitor that can be split into parts, which visit blocks of one colour at the same time. It does not use bounces.
 pub(super) trait Parted: Visitor + Send {
-    /// A visitor for a part of the blocks.
+    /// Creates a visitor for a part of the blocks.
     fn part(&self) -> Self;
-    /// Takes over what a part has summed up.
+    /// Adds the sums of a part.
     fn join(&mut self, part: &Self);
 }
 
-/// Rows that visitors share: of bodies, or of what is one block's own.
+/// Makes rows that visitors share: those of bodies, or data owned by one block.
 pub(super) fn shared<T>(rows: &mut [T]) -> SharedRows<'_, T> {
-    // SAFETY: a visit writes rows of bodies that move, of which no two blocks of a colour have the same (`Coloring`), and what
-    // belongs to its block; it reads besides rows of bodies that do not move, which none writes. A reference to a row ends within the
-    // visit, and a colour within `for_each_near`.
+    // SAFETY: a visit writes rows of moving bodies, which no two blocks of a colour share (`Coloring`), and data of its own block. It also
+    // reads rows of fixed bodies, which no visit writes. A reference to a row ends within the visit, and a colour within `for_each_near`.
     unsafe { SharedRows::new(rows) }
 }
 
-/// Neighbours in a class.
+/// A run of neighbouring blocks of a class.
 #[derive(Default)]
 pub(super) struct Run<'a, const N: usize, const T: usize> {
     pub blocks: &'a mut [Block<N, T>],
@@ -55,7 +54,7 @@ impl<'a, const N: usize, const T: usize> Run<'a, N, T> {
         Self::of(class, &all)
     }
 
-    /// Takes so many from its front.
+    /// Takes `count` blocks from the front.
     pub fn take(&mut self, count: usize) -> Self {
         let (blocks, rest) = core::mem::take(&mut self.blocks).split_at_mut(count);
         let (memory, of_rest) = core::mem::take(&mut self.memory).split_at_mut(count);
@@ -71,7 +70,7 @@ impl<'a, const N: usize, const T: usize> Run<'a, N, T> {
     }
 }
 
-/// Blocks of one colour, all or some.
+/// All or some of the blocks of one colour.
 struct Chunk<'a> {
     one: Run<'a, 1, 1>,
     two: Run<'a, 2, 3>,
@@ -83,8 +82,8 @@ impl Chunk<'_> {
         self.one.blocks.len() + self.two.blocks.len() + self.four.blocks.len()
     }
 
-    /// Takes the first of so many equal parts of each class. Contacts of a class are in the order of their bodies: so
-    /// the same part of each colour has much the same bodies.
+    /// Takes the first of `parts` equal parts of each class. Contacts of a class are in the order of their bodies, so the same part of each
+    /// colour uses mostly the same bodies.
     fn take_part_of(&mut self, parts: usize) -> Self {
         let of = |blocks: usize| blocks.div_ceil(parts);
         let (one, two, four) = (self.one.blocks.len(), self.two.blocks.len(), self.four.blocks.len());
@@ -92,7 +91,7 @@ impl Chunk<'_> {
     }
 }
 
-/// A visitor goes to the blocks of a chunk.
+/// Visits the blocks of a chunk.
 struct Visit<'a, 'b, V> {
     chunk: &'a mut Chunk<'b>,
     visitor: &'a mut V,
@@ -110,7 +109,7 @@ impl<V: Visitor> Kernel for Visit<'_, '_, V> {
     }
 }
 
-/// A visitor goes to all blocks of a chunk that is as large as a colour, or larger.
+/// Visits all blocks of a chunk that is at least as large as a colour.
 fn visit_all<V: Parted>(mut all: Chunk<'_>, visitor: &mut V, runner: &dyn TaskRunner) {
     let blocks = all.len();
     if blocks < DIVIDED {
@@ -133,7 +132,7 @@ fn visit_all<V: Parted>(mut all: Chunk<'_>, visitor: &mut V, runner: &dyn TaskRu
 }
 
 impl Contacts {
-    /// Does something to each block, colour by colour, on as many threads as there are.
+    /// Visits every block, colour by colour, on all threads.
     pub(super) fn each_parted<V: Parted>(
         &mut self,
         runner: &dyn TaskRunner,
@@ -152,8 +151,7 @@ impl Contacts {
         visitor
     }
 
-    /// Does something to each block, in the order of classes, on as many threads as there are: what looks at no bodies that others
-    /// write.
+    /// Visits every block in the order of classes, on all threads. The visitor must not read body data that other visits write.
     pub(super) fn each_at_once<V: Parted>(&mut self, runner: &dyn TaskRunner, mut visitor: V) -> V {
         let Self { one, two, four, .. } = self;
         let chunk = Chunk { one: Run::all(one), two: Run::all(two), four: Run::all(four) };
@@ -162,7 +160,7 @@ impl Contacts {
     }
 }
 
-/// Declares that parts of a visitor are like it and sum up nothing.
+/// Implements [`Parted`] for visitors whose parts are copies and that sum up nothing.
 macro_rules! parted {
     ($name:ty) => {
         impl Parted for $name {

@@ -1,4 +1,4 @@
-//! Blocks by their number of points, and kernels that go through all of them colour by colour.
+//! Blocks by number of points, and kernels that visit all of them colour by colour.
 
 use super::block::{Block, Bounce, Memory};
 use core::ops::Range;
@@ -11,7 +11,7 @@ pub(super) struct Class<const N: usize, const T: usize> {
     pub(super) blocks: Vec<Block<N, T>>,
     pub(super) memory: Vec<Memory<N>>,
     pub(super) bounces: Vec<Bounce<N>>,
-    /// Blocks in use: memory stays for the next island.
+    /// Number of blocks in use; unused blocks keep their memory for the next island.
     pub(super) count: usize,
 }
 
@@ -24,7 +24,7 @@ pub(super) struct Color {
 }
 
 impl<const N: usize, const T: usize> Class<N, T> {
-    /// Size of the blocks alone.
+    /// Size of the blocks without their memory, bytes.
     pub(super) fn swept_bytes(&self) -> usize {
         self.count * size_of::<Block<N, T>>()
     }
@@ -34,7 +34,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
     }
 }
 
-/// Something that is done to each block.
+/// An operation on each block.
 pub(super) trait Visitor {
     fn visit<L: Lanes, const N: usize, const T: usize>(
         &mut self,
@@ -44,7 +44,7 @@ pub(super) trait Visitor {
     );
 }
 
-/// Blocks of one class, one after the other.
+/// Visits all blocks of one class.
 #[inline(always)]
 pub(super) fn each<L: Lanes, V: Visitor, const N: usize, const T: usize>(
     class: &mut Class<N, T>,
@@ -57,7 +57,7 @@ pub(super) fn each<L: Lanes, V: Visitor, const N: usize, const T: usize>(
     }
 }
 
-/// All blocks, colour by colour.
+/// Visits all blocks, colour by colour.
 pub(super) struct Each<'a, V> {
     pub(super) one: &'a mut Class<1, 1>,
     pub(super) two: &'a mut Class<2, 3>,

@@ -1,23 +1,23 @@
-//! Graph colouring of contacts, to solve them side by side: those of a colour share no body that moves.
+//! Graph colouring of contacts, to solve them side by side: contacts of one colour share no moving body.
 
 use crate::solver::sweep::policy::Firmness;
 
-/// Colours of one round: bits of a mask.
+/// Number of colours of one round: bits of a mask.
 const COLORS: u32 = u64::BITS;
-/// Classes of blocks, by their points.
+/// Number of block classes, by number of points.
 const CLASSES: usize = 3;
 
 /// A contact to be coloured.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
-    /// Place in the world's contact array.
+    /// Index in the world's contact array.
     pub contact: u32,
-    /// Local bodies.
+    /// Local indices of the bodies.
     pub bodies: [u32; 2],
-    /// Class of blocks that it goes to.
+    /// Class of its block.
     pub class: u32,
     pub firmness: Firmness,
-    /// Place of what only few contacts have, or no place.
+    /// Index of its extra data, or `NONE`; only few contacts have any.
     pub extra: u32,
     color: u32,
 }
@@ -28,15 +28,15 @@ impl Edge {
     }
 }
 
-/// Memory for colouring.
+/// Work memory of the colouring.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Coloring {
     pub edges: Vec<Edge>,
-    /// Places of edges, in order of colour, class and place.
+    /// Indices of the edges, sorted by colour, class and index.
     sorted: Vec<u32>,
     /// End of each run of one colour and class in `sorted`.
     ends: Vec<usize>,
-    /// Colours that each moving body has, in the round.
+    /// Colours that each moving body has in this round.
     used: Vec<u64>,
     pending: Vec<u32>,
     left: Vec<u32>,
@@ -47,7 +47,7 @@ impl Coloring {
         self.edges.clear();
     }
 
-    /// For so many bodies and edges.
+    /// Reserves memory for `bodies` bodies and `edges` edges.
     pub fn make_room(&mut self, bodies: usize, edges: usize) {
         self.edges.clear();
         self.edges.reserve(edges);
@@ -61,8 +61,8 @@ impl Coloring {
         self.ends.reserve(COLORS as usize * CLASSES);
     }
 
-    /// Colours by first fit in the order of the edges, then sorts them by colour and class. Bodies from `moving` on do not move;
-    /// contacts with those come last, and have the last colours: what cannot move has the last word. Gives the number of colours.
+    /// Colours the edges by first fit in their order, then sorts them by colour and class. Bodies from `moving` on are fixed. Contacts with
+    /// fixed bodies get the last colours, so that the sweep corrects them last. Returns the number of colours.
     pub fn color(&mut self, moving: usize) -> u32 {
         let is_free = |edge: &Edge| edge.bodies.iter().all(|&body| (body as usize) < moving);
         let (count, free) = (self.edges.len() as u32, self.edges.partition_point(is_free) as u32);
@@ -80,7 +80,7 @@ impl Coloring {
         colors
     }
 
-    /// A counting sort, which keeps the order of the edges.
+    /// Sorts by counting; the order of the edges within a run stays.
     fn sort(&mut self, colors: u32) {
         let Self { edges, sorted, ends, .. } = self;
         ends.clear();
@@ -90,7 +90,7 @@ impl Coloring {
         }
         let mut start = 0;
         for end in ends.iter_mut() {
-            // Where the run starts, until it is filled.
+            // Start of the run until it is filled, then its end.
             start += core::mem::replace(end, start);
         }
         sorted.clear();
@@ -102,8 +102,8 @@ impl Coloring {
         }
     }
 
-    /// Gives colours from `first` on to the edges at some places, as many as a mask has; the others are left. Gives how many
-    /// colours it took.
+    /// Assigns colours from `first` on to the edges at `places`, up to the number of bits in a mask, and leaves the remaining edges.
+    /// Returns the number of colours used.
     fn round(&mut self, places: impl Iterator<Item = u32>, moving: usize, first: u32) -> u32 {
         let Self { edges, used, left, .. } = self;
         used.clear();
@@ -129,7 +129,7 @@ impl Coloring {
         count
     }
 
-    /// Places of the edges of each colour, class by class.
+    /// Indices of the edges of each colour, class by class.
     pub fn runs(&self) -> impl Iterator<Item = [&[u32]; CLASSES]> {
         self.ends.chunks_exact(CLASSES).scan(0, |start, ends| {
             Some(core::array::from_fn(|class| {
@@ -141,7 +141,7 @@ impl Coloring {
 }
 
 impl Edge {
-    /// Number of its colour and class.
+    /// Number of its run, by colour and class.
     fn run(&self) -> usize {
         self.color as usize * CLASSES + self.class as usize
     }
@@ -161,7 +161,7 @@ mod tests {
             coloring.clear();
             for contact in 0..random.index(400) as u32 {
                 let a = random.index(moving) as u32;
-                // A hub among them has more contacts than a round has colours.
+                // One body is a hub with more contacts than a round has colours.
                 let b = if random.unit() < 0.4 { 0 } else { random.index(moving + fixed) as u32 };
                 if a != b {
                     let class = random.index(CLASSES) as u32;

@@ -1,5 +1,5 @@
-//! Faster sweeps where loads have far to go or masses are unequal: each sweep's change of all impulses is a step downhill, and steps
-//! downhill are made conjugate (nonsmooth nonlinear conjugate gradients: Silcowitz, Niebe and Erleben 2010).
+//! Accelerates the sweeps of tall piles and unequal masses: the change of all impulses in a sweep is a descent step, and these steps are
+//! made conjugate (nonsmooth nonlinear conjugate gradients: Silcowitz, Niebe and Erleben 2010).
 
 use super::Contacts;
 use super::block::{Block, Eight};
@@ -12,27 +12,28 @@ use crate::spatial::{Vec6, ZERO6, largest};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
 
-/// State of the conjugate steps of a pass. What lists hold of a pass before is never used: its first sweep has no energy to go on from.
+/// State of the conjugate steps of a pass. Lists left over from an earlier pass are never used: the first sweep of a pass has no previous
+/// energy to extrapolate with.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Conjugate {
-    /// Before the sweep.
+    /// State before the sweep.
     was: State,
-    /// To go on in.
+    /// Search direction.
     direction: State,
     /// Energy of the changes of the last sweep, J.
     energy: f32,
-    /// For the blocks, when the next sweep comes to them.
+    /// Step of the blocks, applied when the next sweep visits them.
     pub step: Step,
 }
 
-/// Velocities of all bodies, and impulses of limits; those of blocks are theirs.
+/// Velocities of all bodies, and impulses of limits; the impulses of blocks are kept in the blocks.
 #[derive(Clone, Debug, Default)]
 struct State {
     velocities: Vec<Vec6>,
     limits: Vec<f32>,
 }
 
-/// One row of eight manifolds goes on.
+/// Moves one row of eight manifolds along the search direction.
 #[inline(always)]
 fn go_on<L: Lanes>(impulse: &mut Eight, was: &mut Eight, direction: &mut Eight, share: f32) {
     let now = L::load(impulse);
@@ -50,7 +51,7 @@ fn go_on<L: Lanes>(impulse: &mut Eight, was: &mut Eight, direction: &mut Eight, 
 }
 
 impl<const N: usize, const T: usize> Block<N, T> {
-    /// Takes part in a conjugate step, before a visit.
+    /// Applies a conjugate step to the block, before a visit.
     #[inline(always)]
     pub fn step<L: Lanes>(&mut self, step: Step) {
         let share = match step {
@@ -73,22 +74,22 @@ impl<const N: usize, const T: usize> Block<N, T> {
     }
 }
 
-/// Bodies go on by a share of the direction so far, if any; then the direction is that share and the change of the sweep.
+/// Moves bodies by a share of the search direction; the new direction is that share plus the change of the sweep.
 struct GoOnBodies<'a> {
     velocities: &'a mut [Vec6],
     /// Velocities before the sweep.
     was: &'a [Vec6],
     direction: &'a mut [Vec6],
     share: f32,
-    /// Largest component by which each body goes on, if anyone asks: m/s or rad/s.
+    /// Largest component by which each body moves, m/s or rad/s; empty if not needed.
     changes: &'a mut [f32],
 }
 
-/// Bodies that a thread takes at once, at least.
+/// Least number of bodies for one thread.
 const BODIES: usize = 256;
 
 impl<'a> GoOnBodies<'a> {
-    /// Divides it where there is much to do.
+    /// Runs on several threads if there are many bodies.
     fn run_on(self, runner: &dyn TaskRunner) {
         let count = usize::min(self.velocities.len() / BODIES, MOST_NEAR);
         if count < 2 {
@@ -106,7 +107,7 @@ impl<'a> GoOnBodies<'a> {
         });
     }
 
-    /// Takes so many bodies from its front.
+    /// Takes `count` bodies from the front.
     fn take(&mut self, count: usize) -> Self {
         let (was, rest) = self.was.split_at(count);
         self.was = rest;
@@ -146,7 +147,7 @@ impl Kernel for GoOnBodies<'_> {
 }
 
 impl Contacts {
-    /// For so many bodies.
+    /// Reserves memory for `bodies` bodies.
     pub(super) fn make_room_for_conjugate(&mut self, bodies: usize) {
         for state in [&mut self.conjugate.was, &mut self.conjugate.direction] {
             state.limits.clear();
@@ -156,13 +157,13 @@ impl Contacts {
         self.changes.reserve(bodies.saturating_sub(self.changes.len()));
     }
 
-    /// Before the first sweep of a pass.
+    /// Starts the conjugate steps, before the first sweep of a pass.
     pub(in crate::solver) fn start_conjugate(&mut self) {
         self.conjugate.energy = 0.0;
         self.conjugate.step = Step::None;
     }
 
-    /// Before a sweep that another may follow. `limits` are impulses of other rows that take part.
+    /// Stores the state before a sweep. `limits` are the impulses of other rows that take part.
     pub(in crate::solver) fn before_conjugate(&mut self, velocities: &[Vec6], limits: &[f32]) {
         let Conjugate { was, step, .. } = &mut self.conjugate;
         was.velocities.clear();
@@ -174,8 +175,8 @@ impl Contacts {
         }
     }
 
-    /// After a sweep whose changes had this energy, before another: goes on in the direction so far, blocks when that comes to them. What it
-    /// asks too much of rows, the next sweep takes back. Tells `moved`, if there is one, of the bodies, in order, and by how much.
+    /// Moves along the search direction after a sweep whose changes had this energy; blocks move when the next sweep visits them. The next
+    /// sweep corrects rows that this moved too far. If `moved` is given, it receives the bodies, in order, and how far each moved.
     pub(in crate::solver) fn after_conjugate(
         &mut self,
         energy: f32,

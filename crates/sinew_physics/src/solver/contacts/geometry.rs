@@ -1,25 +1,25 @@
-//! A manifold as rows take it: points and directions about the centres of its two bodies.
+//! Geometry of a manifold as rows use it: points and directions about the centres of its two bodies.
 
 use super::block::{Block, Memory};
 use crate::collide::{MAX_POINTS, Manifold};
 use sinew_math::{Transform, Vec3, any_orthonormal};
 
-/// Gap of a point that is not there, metres.
+/// Separation of an unused point, metres.
 pub(super) const FAR: f32 = 1e6;
 
-/// Cores of the surfaces at each point of a manifold, in the principal frames: a ball's contact does not turn with it, a box's
-/// corner does.
+/// Cores of the surfaces at each point of a manifold, in the principal frames: the contact point of a ball does not rotate with it, that of
+/// a box's corner does.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cores {
     pub points: [[Vec3; MAX_POINTS]; 2],
-    /// Radii of the shapes' roundings around them where they meet.
+    /// Radii of the shapes' roundings around the cores at the contact.
     pub rounds: [f32; 2],
     pub normal: Vec3,
     pub count: usize,
 }
 
 impl Cores {
-    /// Cores of a manifold that was found at these poses.
+    /// Computes the cores of a manifold that was computed at these poses.
     pub fn new(manifold: &Manifold, poses: [Transform; 2], rounds: [f32; 2]) -> Self {
         let mut points = [[Vec3::ZERO; MAX_POINTS]; 2];
         let n = manifold.normal;
@@ -32,7 +32,7 @@ impl Cores {
     }
 }
 
-/// Surface, of the two, on which a contact acts.
+/// The surface, of the two, to which the contact point is fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     OfA,
@@ -41,7 +41,8 @@ pub(super) enum Side {
 }
 
 impl Side {
-    /// Side of a contact: the touched place goes along with a ball, also on a table that moves away under it; else it is on what does not move.
+    /// Side of a contact. The contact point moves with a ball, also on a table that moves away under it; otherwise it stays on the fixed
+    /// body.
     pub fn new(rounds: [f32; 2], moves: [bool; 2]) -> Self {
         match rounds.map(|round| round > 0.0).into() {
             (true, false) => Self::OfA,
@@ -60,7 +61,7 @@ impl Side {
         }
     }
 
-    /// As a share of the separation, from half-way between the surfaces toward B.
+    /// Position of the contact point as a share of the separation, from the middle between the surfaces toward B.
     pub fn share(self) -> f32 {
         match self {
             Self::OfA => -0.5,
@@ -84,7 +85,7 @@ pub(super) struct Geometry {
 }
 
 impl Geometry {
-    /// Geometry of cores at these poses. Friction acts at the centre of the points, each with its weight.
+    /// Geometry of cores at these poses. Friction acts at the weighted centre of the points.
     pub fn new(cores: &Cores, poses: [Transform; 2], moves: [bool; 2], weights: &[f32; MAX_POINTS]) -> Self {
         let n = cores.normal;
         let on = |end: usize, i: usize| poses[end].point(cores.points[end][i]);
@@ -111,7 +112,7 @@ impl Geometry {
         geometry
     }
 
-    /// Lever of the twist; points that are not there answer like the first one, and are never reached.
+    /// Computes the lever arm of the twist. Unused points repeat the first point, and are never reached.
     fn finish(&mut self, count: usize, weights: &[f32; MAX_POINTS], round: f32) {
         let first = self.arms[0];
         self.arms[count..].fill(first);
@@ -123,7 +124,7 @@ impl Geometry {
         }
     }
 
-    /// Writes it to a lane. The impulses of friction are given along the tangents.
+    /// Writes the geometry to a lane. The impulses of friction are along the tangents.
     pub fn write<const N: usize, const T: usize>(
         &self,
         block: &mut Block<N, T>,

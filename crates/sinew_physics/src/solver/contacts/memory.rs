@@ -1,4 +1,4 @@
-//! Impulses from substep to substep: warm start, memory, bounce.
+//! Impulses from substep to substep: warm start, stored impulses, bounce.
 
 use super::block::{Block, Bounce, Memory, Motion, NONE, Rolling, load3, store3};
 use super::visit::sum;
@@ -7,8 +7,8 @@ use crate::solver::tuning::{BOUNCE_SPEED, IMPACT_JUMP, LASTING};
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3};
 
-/// Puts the starting impulses on the bodies: those of the last substep, unless they jumped up from the one before: an impact must
-/// not be repeated. Judged for the manifold as a whole, since at rest the load wanders between points.
+/// Applies the starting impulses to the bodies: those of the last substep, unless they increased sharply over the substep before, since an
+/// impact must not be repeated. The manifold is judged as a whole: at rest the load wanders between its points.
 #[inline(always)]
 pub(super) fn warm_start<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -17,7 +17,7 @@ pub(super) fn warm_start<L: Lanes, const N: usize, const T: usize>(
     velocities: &mut SharedRows<'_, Vec6>,
 ) {
     let now = sum::<L, N>(&block.impulse);
-    // A conjugate step may leave a little less than nothing.
+    // A conjugate step may leave slightly negative impulses.
     let before = L::max(sum::<L, N>(&memory.before), L::splat(0.0));
     let jumps = L::gt(now, L::splat(IMPACT_JUMP) * before);
     let one = L::splat(1.0);
@@ -45,7 +45,7 @@ pub(super) fn warm_start<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// Impulses that all rows of a block give: the sum on B, and torques about both centres; A gets the opposite.
+/// Total impulses of all rows of a block: the impulse on B, and torques about both centres; A gets the opposite.
 struct Given<L> {
     impulse: Vector3<L>,
     torques: [Vector3<L>; 2],
@@ -76,7 +76,7 @@ impl<L: Lanes> Given<L> {
     }
 }
 
-/// Adds what all rows of a block give, times `sign`, to the impulses of its bodies.
+/// Adds the total impulses of a block, times `sign`, to those of its bodies.
 #[inline(always)]
 pub(super) fn add_impulses<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,
@@ -94,7 +94,7 @@ pub(super) fn add_impulses<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// Impulses of this substep become memory.
+/// Stores the impulses of this substep for the next one.
 #[inline(always)]
 pub(super) fn end_substep<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,
@@ -114,7 +114,7 @@ pub(super) fn end_substep<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// Rates of the points.
+/// Normal rates of the points.
 #[inline(always)]
 fn rates<L: Lanes, const N: usize, const T: usize>(block: &Block<N, T>, velocities: &[Vec6]) -> [L; N] {
     let (n, offset) = (load3::<L>(&block.normal), load3::<L>(&block.offset));
@@ -129,7 +129,7 @@ fn rates<L: Lanes, const N: usize, const T: usize>(block: &Block<N, T>, velociti
     rates
 }
 
-/// Records how the points come in when the substep begins.
+/// Records the approach of the points when the substep begins.
 #[inline(always)]
 pub(super) fn begin_approach<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,
@@ -145,7 +145,7 @@ pub(super) fn begin_approach<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// Records the speed toward the surface that forces have added.
+/// Records the speed toward the surface added by forces.
 #[inline(always)]
 pub(super) fn pull_approach<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,
@@ -158,8 +158,8 @@ pub(super) fn pull_approach<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// Points that came in fast and were hit will bounce, to the height that their speed at the surface is good for. A velocity of
-/// symplectic Euler is that of half a substep ago, and what pulls goes on between here and the surface.
+/// Marks points that approached fast and were hit: they bounce as high as their speed at the surface allows. A velocity of symplectic Euler
+/// is that of half a substep ago, and forces keep accelerating the point between its present position and the surface.
 #[inline(always)]
 pub(super) fn end_approach<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,
@@ -180,7 +180,7 @@ pub(super) fn end_approach<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// Takes what the bounce of this substep added into the sums, and the impulses back to those before it.
+/// Adds the bounce impulses of this substep to the sums, and restores the impulses to those before the bounce.
 #[inline(always)]
 pub(super) fn end_bounce<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,

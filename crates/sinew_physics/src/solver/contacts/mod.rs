@@ -1,8 +1,8 @@
-//! Contacts of an island in lanes: eight manifolds that share no moving body are solved at once, by block Gauss-Seidel in impulse
-//! space over the bodies' own masses, colour after colour.
+//! Contacts of an island in lanes: eight manifolds without a common moving body are solved at once, by block Gauss-Seidel in impulse space
+//! over the bodies' own masses, colour after colour.
 //!
-//! Rows are made once a step; from substep to substep only separations change, exactly, by how bodies have moved. The manifold of
-//! a body that turns fast is looked for anew and written to its lane.
+//! Rows are built once a step. From substep to substep only separations change; they are updated exactly from the motion of the bodies. The
+//! manifold of a body that turns fast is recomputed and written to its lane.
 
 mod block;
 mod chunks;
@@ -52,10 +52,10 @@ pub(crate) struct Contacts {
     colors: Vec<Color>,
     rolling: Vec<Rolling>,
     coloring: Coloring,
-    /// Records of the contacts that were added, in that order, and extras of few of them.
+    /// Records of the contacts in the order in which they were added, and the extra data that few of them have.
     records: Vec<Record>,
     extras: Vec<Extra>,
-    /// A surface moves along its body, or throws off what touches it.
+    /// True if a surface moves along its body, or launches what touches it.
     drives: bool,
     /// Inverse mass and inertia of each body: 1/m, then xx, yy, zz, yz, xz, xy.
     inverse: Vec<Vec6>,
@@ -67,25 +67,25 @@ pub(crate) struct Contacts {
     turned: Vec<f32>,
     found: Vec<Found>,
     conjugate: Conjugate,
-    /// Per body: largest component by which it goes on in a conjugate step, m/s or rad/s.
+    /// For each body: largest component by which a conjugate step moves it, m/s or rad/s.
     changes: Vec<f32>,
-    /// Energy of the sweep of this substep that changed most, J.
+    /// Energy of the sweep of this substep with the largest change, J.
     most_energy: f32,
     is_spoiled: bool,
     tally: Tally,
 }
 
-/// Counts of what the sweeps of a step have gone through.
+/// Counts of the sweeps in a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tally {
     pub manifolds: u64,
     pub points: u64,
-    /// Manifolds that sweeps have visited, and their blocks' bytes.
+    /// Number of manifolds that sweeps visited, and the bytes of their blocks.
     pub visits: u64,
     pub visited_bytes: u64,
 }
 
-/// Declares a visitor: its fields, and what it does to a block.
+/// Declares a visitor: its fields, and its operation on a block.
 macro_rules! visitor {
     ($(#[$doc:meta])* $name:ident $(<$life:lifetime>)? { $($field:ident: $type:ty),* },
      |$self:ident, $block:ident, $memory:ident, $bounces:ident| $body:expr) => {
@@ -107,7 +107,7 @@ macro_rules! visitor {
 }
 
 visitor!(
-    /// Responses of blocks that were written.
+    /// Recomputes the responses of rewritten blocks.
     Respond<'a> { inverse: &'a [Vec6], all: bool },
     |self, block, _memory, _bounces| {
         if core::mem::take(&mut block.is_stale) || self.all {
@@ -120,7 +120,7 @@ visitor!(
 parted!(Respond<'_>);
 
 visitor!(
-    /// Separations at the present poses.
+    /// Computes separations at the present poses.
     Measure<'a> { moved: &'a [Vec6] },
     |self, block, memory, _bounces| place::measure::<L, N, T>(block, memory, &place::Moved(self.moved))
 );
@@ -128,7 +128,7 @@ visitor!(
 parted!(Measure<'_>);
 
 visitor!(
-    /// Sets what the points are to reach in a pass.
+    /// Sets the target rates of the points in a pass.
     Aim { pass: Pass, h: f32 },
     |self, block, memory, bounces| {
         if self.pass == Pass::Restitution && memory.bounce != block::NONE {
@@ -141,13 +141,13 @@ visitor!(
 parted!(Aim);
 
 visitor!(
-    /// Raises the impulses below which `relax` may not go.
+    /// Raises the lower bounds of impulses in `relax`.
     RaiseFloor<'a> { velocities: &'a [Vec6], h: f32 },
     |self, block, _memory, _bounces| place::raise_floor::<L, N, T>(block, self.velocities, self.h)
 );
 
 visitor!(
-    /// Starting impulses.
+    /// Applies the starting impulses.
     WarmStart<'a> { rolling: SharedRows<'a, Rolling>, velocities: SharedRows<'a, Vec6> },
     |self, block, memory, _bounces| {
         memory::warm_start::<L, N, T>(block, memory, &mut self.rolling, &mut self.velocities);
@@ -157,7 +157,7 @@ visitor!(
 parted!(WarmStart<'_>);
 
 visitor!(
-    /// Impulses of all rows, added to those of bodies.
+    /// Adds the impulses of all rows to those of the bodies.
     AddImpulses<'a> { rolling: &'a [Rolling], impulses: &'a mut [Vec6], sign: f32 },
     |self, block, _memory, _bounces| {
         memory::add_impulses::<L, N, T>(block, self.rolling, self.impulses, self.sign);
@@ -165,7 +165,7 @@ visitor!(
 );
 
 visitor!(
-    /// Impulses become memory.
+    /// Stores the impulses for the next substep.
     EndSubstep { h: f32 },
     |self, block, memory, _bounces| memory::end_substep::<L, N, T>(block, memory, self.h)
 );
@@ -173,7 +173,7 @@ visitor!(
 parted!(EndSubstep);
 
 visitor!(
-    /// Records how the points come in.
+    /// Records the approach of the points.
     BeginApproach<'a> { velocities: &'a [Vec6] },
     |self, block, memory, bounces| {
         if memory.bounce != block::NONE {
@@ -183,7 +183,7 @@ visitor!(
 );
 
 visitor!(
-    /// Records the speed toward the surface that forces add.
+    /// Records the speed toward the surface added by forces.
     PullApproach<'a> { velocities: &'a [Vec6] },
     |self, block, memory, bounces| {
         if memory.bounce != block::NONE {
@@ -205,7 +205,7 @@ visitor!(
 );
 
 visitor!(
-    /// After the bounce.
+    /// Restores the impulses after the bounce.
     EndBounce {},
     |self, block, memory, bounces| {
         if memory.bounce != block::NONE {
@@ -229,9 +229,9 @@ impl Visitor for Sweep<'_> {
 /// Result of one sweep.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Swept {
-    /// Largest change of a velocity component.
+    /// Largest change of a velocity component, m/s or rad/s.
     pub largest: f32,
-    /// Energy that the changes have block by block, J.
+    /// Sum of the energies of the blocks' changes, J.
     pub energy: f32,
 }
 
@@ -240,13 +240,13 @@ impl Contacts {
         self.colors.is_empty()
     }
 
-    /// Does something to each block, colour by colour.
+    /// Visits every block, colour by colour.
     fn each<V: Visitor>(&mut self, visitor: V) -> V {
         let Self { one, two, four, colors, .. } = self;
         dispatch::run(Each { one, two, four, colors, visitor })
     }
 
-    /// Separations at the poses to which bodies have come; manifolds of what turns fast are written anew by the caller.
+    /// Computes separations at the present poses. The caller rewrites the manifolds of bodies that turn fast.
     fn measure(&mut self, bodies: &[SolverBody], starts: &[sinew_math::Transform], runner: &dyn TaskRunner) {
         self.moved.clear();
         for (body, start) in bodies.iter().zip(starts) {
@@ -259,7 +259,7 @@ impl Contacts {
         self.moved = moved;
     }
 
-    /// Inverse masses and inertias of bodies at their present poses; those from `moving` on have none.
+    /// Takes inverse masses and inertias of bodies at their present poses; those of fixed bodies, from `moving` on, are zero.
     fn take_inertias(&mut self, bodies: &[SolverBody], moving: usize) {
         self.inverse.clear();
         self.inverse.extend(bodies.iter().enumerate().map(|(i, body)| {
@@ -280,26 +280,26 @@ impl Contacts {
         self.inverse = inverse;
     }
 
-    /// Inertias have changed: all responses are to be computed anew when bodies are placed.
+    /// Marks all responses for recomputation after inertias have changed.
     pub fn spoil(&mut self) {
         self.is_spoiled = true;
     }
 
-    /// Records how the points come in when the substep begins.
+    /// Records the approach of the points when the substep begins.
     pub fn begin_approach(&mut self, velocities: &[Vec6]) {
         if self.may_bounce() {
             self.each(BeginApproach { velocities });
         }
     }
 
-    /// Records the speed toward the surface that forces have added.
+    /// Records the speed toward the surface added by forces.
     pub fn pull_approach(&mut self, velocities: &[Vec6]) {
         if self.may_bounce() {
             self.each(PullApproach { velocities });
         }
     }
 
-    /// Finds the points that will bounce. Gives whether there are any.
+    /// Finds the points that will bounce. Returns whether there are any.
     pub fn end_approach(&mut self, h: f32) -> bool {
         self.may_bounce() && self.each(EndApproach { h, any: false }).any
     }
@@ -308,7 +308,7 @@ impl Contacts {
         !(self.one.bounces.is_empty() && self.two.bounces.is_empty() && self.four.bounces.is_empty())
     }
 
-    /// Puts the starting impulses on the bodies.
+    /// Applies the starting impulses to the bodies.
     pub fn warm_start(&mut self, velocities: &mut [Vec6], runner: &dyn TaskRunner) {
         let mut rolling = core::mem::take(&mut self.rolling);
         let visitor = WarmStart { rolling: shared(&mut rolling), velocities: shared(velocities) };
@@ -316,7 +316,7 @@ impl Contacts {
         self.rolling = rolling;
     }
 
-    /// Sweeps over all blocks until the velocities change no more. Gives how often.
+    /// Sweeps over all blocks until the velocities stop changing. Returns the number of sweeps.
     pub fn sweep(
         &mut self,
         pass: Pass,
@@ -337,7 +337,7 @@ impl Contacts {
                 self.before_conjugate(velocities, &[]);
             }
             let swept = self.sweep_once((pass, sweeps, done), velocities, runner);
-            // Friction learns what really presses from the second sweep on.
+            // From the second sweep on, friction uses the present loads.
             self.most_energy = max(self.most_energy, swept.energy);
             let is_small = swept.energy < sweeps.small * self.most_energy;
             if (done > 1 || pass == Pass::Solve) && (is_small || swept.largest < sweeps.tolerance) {
@@ -350,7 +350,7 @@ impl Contacts {
         sweeps.most
     }
 
-    /// Before the first sweep of a pass.
+    /// Prepares the first sweep of a pass.
     pub fn begin_pass(&mut self, pass: Pass, velocities: &[Vec6], h: f32, runner: &dyn TaskRunner) {
         if self.may_bounce() {
             self.each(Aim { pass, h });
@@ -395,7 +395,7 @@ impl Contacts {
         self.tally
     }
 
-    /// Size of what a sweep goes through, bytes.
+    /// Size of the data that a sweep visits, bytes.
     fn swept_bytes(&self) -> usize {
         self.one.swept_bytes() + self.two.swept_bytes() + self.four.swept_bytes()
     }
@@ -405,7 +405,7 @@ impl Contacts {
         self.one.bytes() + self.two.bytes() + self.four.bytes()
     }
 
-    /// Adds what all rows give in this substep, times `sign`, to the impulses of moving bodies.
+    /// Adds the impulses of all rows in this substep, times `sign`, to those of the moving bodies.
     pub fn add_impulses(&mut self, impulses: &mut [Vec6], sign: f32) {
         if self.is_empty() {
             return;
@@ -420,12 +420,12 @@ impl Contacts {
         (self.rolling, self.moved) = (rolling, given);
     }
 
-    /// Impulses of this substep become memory.
+    /// Stores the impulses of this substep for the next one.
     pub fn end_substep(&mut self, h: f32, runner: &dyn TaskRunner) {
         self.each_at_once(runner, EndSubstep { h });
     }
 
-    /// After the bounce.
+    /// Restores the impulses after the bounce.
     pub fn end_bounce(&mut self) {
         self.each(EndBounce {});
     }

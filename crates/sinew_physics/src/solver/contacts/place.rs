@@ -1,4 +1,4 @@
-//! Values that follow from where bodies are: separations, what points are to reach in a pass, and the responses of rows.
+//! Values that depend on body poses: separations, target rates of the points in a pass, and responses of rows.
 
 use super::block::{Block, Bounce, HELD, Memory, Motion, NONE, ZERO8, gather, load3, packed, store3, times};
 use crate::solver::contact_rows::NEVER;
@@ -18,7 +18,7 @@ fn leaned<L: Lanes>(rotation: [L; 4], n: Vector3<L>) -> Vector3<L> {
     (u.cross(across) - across * rotation[3]) * two
 }
 
-/// Separations at the present poses, with the normals and points of the step's beginning.
+/// Computes separations at the present poses, with the normals and points of the step's beginning.
 #[inline(always)]
 pub(super) fn measure<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -40,7 +40,7 @@ pub(super) fn measure<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// Sets what each point is to reach in a pass, and how softly.
+/// Sets the target rate and softness of each point in a pass.
 #[inline(always)]
 pub(super) fn aim<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -75,7 +75,7 @@ pub(super) fn aim<L: Lanes, const N: usize, const T: usize>(
     if memory.bounce != NONE && pass != Pass::Solve {
         let bounce = &bounces[memory.bounce as usize];
         for i in 0..N {
-            // A point that will bounce, but has not touched yet, is not braked on its way; one that was hit leaves.
+            // A point that will bounce but has not touched yet is not braked; a point that was hit leaves with its rebound speed.
             let comes = L::gt(L::load(&block.separation[i]), zero)
                 & L::gt(L::load(&memory.restitution), zero)
                 & L::eq(L::load(&block.impulse[i]), zero);
@@ -89,9 +89,8 @@ pub(super) fn aim<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// Raises the impulses below which `relax` may not go: it may take back what `solve` gave too much, but not from bodies that
-/// turned by more than a little since. An impulse taken back at another pose than it was given at puts energy in (a hand went
-/// from 70 to 2,700 rad/s).
+/// Raises the lower bounds of impulses in `relax`. It may take back excess impulses of `solve`, except from bodies that turned by more than
+/// a small angle since: an impulse taken back at another pose than it was given at adds energy (a hand went from 70 to 2,700 rad/s).
 #[inline(always)]
 pub(super) fn raise_floor<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -109,7 +108,7 @@ pub(super) fn raise_floor<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// The block's softness is taken at the manifold's centre; taken at each point a 1 kg foot under 69 kg sinks 7 mm.
+/// Softness of the block, taken at the manifold's centre; taken at each point, a 1 kg foot under 69 kg sinks by 7 mm.
 #[inline(always)]
 fn softness_at_center<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,
@@ -124,7 +123,7 @@ fn softness_at_center<L: Lanes, const N: usize, const T: usize>(
     L::load(&memory.softness) * sum
 }
 
-/// Levers of the points, and responses of all rows to each other, from arms, masses and inertias.
+/// Computes the levers of the points, and the responses of all rows to each other, from arms, masses and inertias.
 #[inline(always)]
 pub(super) fn respond<L: Lanes, const N: usize, const T: usize>(block: &mut Block<N, T>) {
     let zero = L::splat(0.0);
@@ -163,7 +162,7 @@ pub(super) fn respond<L: Lanes, const N: usize, const T: usize>(block: &mut Bloc
     n.dot(ia1 + ib1).store(&mut block.twist_to_tangents[1]);
 }
 
-/// Inverse masses and inertias of the bodies of a block: mass, then xx, yy, zz, yz, xz, xy. What is held, and empty lanes, have none.
+/// Inverse masses and inertias of the bodies of a block: mass, then xx, yy, zz, yz, xz, xy. Fixed bodies and empty lanes have zeros.
 #[inline(always)]
 pub(super) fn take_inertias<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,

@@ -1,4 +1,4 @@
-//! From the world's contacts to blocks: once a step.
+//! Builds blocks from the world's contacts, once a step.
 
 use super::Contacts;
 use super::block::{Block, Bounce, Memory, NONE, Rolling, ZERO8};
@@ -25,23 +25,23 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, WIDTH};
 use sinew_math::{Sym3, Vec3};
 
-/// Blocks for which there is room at once where another is needed.
+/// Number of blocks reserved at once when another one is needed.
 pub(super) const SPARE_BLOCKS: usize = 8;
 
-/// Input from which an island's contacts are made when a step begins.
+/// Input for an island's contacts when a step begins.
 pub(in crate::solver) struct OfStep<'a> {
     pub view: &'a View<'a>,
     /// Bodies of the island; the first `moving` of them move.
     pub bodies: &'a [SolverBody],
     pub moving: usize,
-    /// Substep of the island, seconds, and how many times as long as the world's it is.
+    /// Substep of the island, seconds, and its length relative to the world's.
     pub h: f32,
     pub stretch: f32,
     pub runner: &'a dyn TaskRunner,
 }
 
 impl Contacts {
-    /// Begins a list of contacts.
+    /// Begins a new list of contacts.
     pub fn clear(&mut self) {
         self.tally = Default::default();
         self.coloring.clear();
@@ -56,7 +56,7 @@ impl Contacts {
         self.four.clear();
     }
 
-    /// Lists for so many bodies and contacts, also for an island that has none: memory goes on to the next.
+    /// Reserves memory for `bodies` bodies and `contacts` contacts, also if this island has none: the next island reuses it.
     pub fn make_room(&mut self, bodies: usize, contacts: usize) {
         for list in [&mut self.inverse, &mut self.moved, &mut self.centers] {
             list.clear();
@@ -76,7 +76,7 @@ impl Contacts {
         self.coloring.make_room(bodies, contacts);
     }
 
-    /// Colours what was added and writes it to blocks. Gives whether a surface moves along its body, or throws off what touches it.
+    /// Colours the added contacts and writes them to blocks. Returns whether a surface moves along its body, or launches what touches it.
     pub fn prepare(&mut self, of: &OfStep<'_>) -> bool {
         if self.coloring.edges.is_empty() {
             return false;
@@ -120,27 +120,27 @@ impl Contacts {
     }
 }
 
-/// Data from which lanes are written.
+/// Input for the lanes.
 pub(super) struct Source<'a> {
     pub of: &'a OfStep<'a>,
     pub edges: &'a [Edge],
-    /// Records of the edges, and extras of few of them.
+    /// Records of the edges, and the extra data that few of them have.
     pub records: &'a [Record],
     pub extras: &'a [Extra],
-    /// Per body: where its centre is, its inverse mass and inertia.
+    /// For each body: its centre, inverse mass and inverse inertia.
     pub centers: &'a [Vec6],
     inverse: &'a [Vec6],
-    /// Softness between moving bodies, and against fixed ones.
+    /// Softness between two moving bodies, and against a fixed one.
     pub soft: [Softness; 2],
 }
 
-/// Lists beside the blocks.
+/// Lists that accompany the blocks.
 struct Lists<'a> {
     rolling: &'a mut Vec<Rolling>,
     found: &'a mut Vec<Found>,
 }
 
-/// Blocks of a class, and the edges that are written to them, eight to a block.
+/// Blocks of a class, and the edges to write to them, eight for each block.
 enum Job<'a> {
     One(Run<'a, 1, 1>, &'a [u32]),
     Two(Run<'a, 2, 3>, &'a [u32]),
@@ -213,7 +213,7 @@ fn write_all(
     }
 }
 
-/// Place of bounces that is still to be given.
+/// Placeholder for the bounce index of a block that may bounce.
 const MAY_BOUNCE: u32 = 0;
 
 impl<const N: usize, const T: usize> Class<N, T> {
@@ -222,19 +222,19 @@ impl<const N: usize, const T: usize> Class<N, T> {
         self.bounces.clear();
     }
 
-    /// For so many blocks and what may bounce in them.
+    /// Reserves memory for `blocks` blocks and their bounces.
     fn make_room(&mut self, blocks: usize) {
         self.blocks.reserve(blocks.saturating_sub(self.blocks.len()));
         self.memory.reserve(blocks.saturating_sub(self.memory.len()));
         self.bounces.reserve(blocks);
     }
 
-    /// Appends a block of whatever numbers.
+    /// Appends a block with unspecified contents.
     #[inline(always)]
     fn append(&mut self) -> usize {
         self.count += 1;
         if self.blocks.len() < self.count {
-            // Room for some that come and go, so that a pile which settles asks for no more.
+            // Reserve spare blocks for contacts that come and go, so that a settling pile does not allocate.
             self.blocks.reserve(SPARE_BLOCKS);
             self.memory.reserve(SPARE_BLOCKS);
             self.bounces.reserve(SPARE_BLOCKS);
@@ -244,7 +244,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
         self.count - 1
     }
 
-    /// Appends blocks for so many contacts. Gives which.
+    /// Appends blocks for `contacts` contacts. Returns their range.
     fn append_for(&mut self, contacts: usize) -> Range<usize> {
         let first = self.count;
         for _ in 0..contacts.div_ceil(WIDTH) {
@@ -253,7 +253,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
         first..self.count
     }
 
-    /// Gives places to what may bounce.
+    /// Assigns bounce indices to the blocks that may bounce.
     fn list_bounces(&mut self) {
         for memory in self.memory[..self.count].iter_mut().filter(|memory| memory.bounce != NONE) {
             memory.bounce = self.bounces.len() as u32;
@@ -261,7 +261,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
         }
     }
 
-    /// Lists what only few of the contacts have that were written to blocks from `first` on.
+    /// Lists the extra data of the contacts written to blocks from `first` on.
     fn list_extras(
         &mut self,
         class: u32,
@@ -284,7 +284,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
 }
 
 impl Lists<'_> {
-    /// Adds what only few contacts have. Gives the place of the rolling resistance of its block.
+    /// Adds the extra data of a contact. Returns the index of the rolling resistance of its block.
     fn add(&mut self, source: &Source<'_>, edge: &Edge, at: [u32; 3], rolling: u32) -> u32 {
         let OfStep { view, bodies, moving, stretch, .. } = *source.of;
         let extra = &source.extras[edge.extra as usize];
@@ -341,7 +341,7 @@ pub(super) fn write_material<const N: usize, const T: usize>(
     memory.restitution[lane] = material.restitution;
 }
 
-/// Impulses of the last substep, and sums of the step so far.
+/// Writes the impulses of the last substep, and the sums of the step so far.
 pub(super) fn write_impulses<const N: usize, const T: usize>(
     block: &mut Block<N, T>,
     memory: &mut Memory<N>,
@@ -391,6 +391,6 @@ fn write_rolling(
 }
 
 impl Rolling {
-    /// Rolling resistance of lanes that do not resist.
+    /// Rolling resistance of lanes without any.
     const NONE: Self = Self { lever: ZERO8, inverse: [ZERO8; 6], trace: ZERO8, impulse: [ZERO8; 3] };
 }

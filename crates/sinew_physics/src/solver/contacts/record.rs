@@ -1,5 +1,4 @@
-//! Contacts on their way to lanes: what of the world's contact the solver needs, packed, so that the world's list is read once
-//! and in its own order.
+//! Packed copies of the contact data that the solver needs, so that the world's list is read once and in its own order.
 
 use super::Contacts;
 use super::block::NONE;
@@ -15,18 +14,18 @@ use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, WIDTH};
 use sinew_math::{Transform, Vec3};
 
-/// Indices of a record's rows.
+/// Row numbers of a record.
 pub(super) const SHAPE: usize = 0;
 pub(super) const POINTS: usize = 1;
 pub(super) const IMPULSES: usize = 3;
 pub(super) const FRICTION: usize = 5;
 
-/// One contact, eight numbers to a row:
+/// One contact, eight numbers in each row:
 ///
 /// - normal, roundings of A and of both, slop, share of the separation, number of points;
 /// - two points: position, separation; two more;
-/// - impulses of two points: of the last substep, the one before, the step, what lasts; two more;
-/// - friction, twist, coefficients of sliding and holding, restitution, launch.
+/// - impulses of two points: of the last substep, the one before, the step, the lasting load; two more;
+/// - friction, twist, coefficients of sliding and static friction, restitution, launch.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Record {
@@ -39,23 +38,23 @@ pub(super) struct Extra {
     /// Velocity and spin of B's surface less A's, m/s and rad/s.
     pub velocity: Vec3,
     pub spin: Vec3,
-    /// Rolling resistance: its lever, and the impulse of the last substep.
+    /// Rolling resistance: its lever arm, and the impulse of the last substep.
     pub rolling: f32,
     pub impulse: Vec3,
     pub rounds: [f32; 2],
-    /// Other points come down as it rolls.
+    /// True if other points come into contact as it rolls.
     pub rolls: bool,
 }
 
 /// A contact of an island.
 pub(in crate::solver) struct Added<'a> {
-    /// Place in the world's contact array.
+    /// Index in the world's contact array.
     pub index: u32,
     pub contact: &'a Contact,
-    /// Local bodies, and whether they are moved.
+    /// Local indices of the bodies, and whether contacts move them.
     pub bodies: [u32; 2],
     pub moves: [bool; 2],
-    /// So many it may have within the step.
+    /// Largest number of points that it may have within the step.
     pub points: usize,
     pub firmness: Firmness,
     pub slop: f32,
@@ -64,7 +63,7 @@ pub(in crate::solver) struct Added<'a> {
     pub curved: Option<[Placed<'a>; 2]>,
 }
 
-/// Radii of the roundings where two shapes meet, and whether one meets the other with a rim.
+/// Radii of the roundings at the contact, and whether a shape touches with a rim.
 fn rounds(shapes: &[Placed<'_>; 2], poses: [&Transform; 2], normal: Vec3) -> ([f32; 2], bool) {
     let (mut rounds, mut rolls) = ([0.0; 2], false);
     for end in 0..2 {
@@ -77,7 +76,7 @@ fn rounds(shapes: &[Placed<'_>; 2], poses: [&Transform; 2], normal: Vec3) -> ([f
     (rounds, rolls)
 }
 
-/// Class of blocks that a contact of so many points goes to.
+/// Class of the block for a contact of `points` points.
 fn class_of(points: usize) -> u32 {
     match points {
         0 | 1 => 0,
@@ -124,7 +123,7 @@ fn two_impulses(p: &PointImpulse, q: &PointImpulse) -> Vec6 {
     [p.now, p.before, p.total, p.lasting, q.now, q.before, q.total, q.lasting]
 }
 
-/// A row of eight records, field by field.
+/// Loads a row of eight records, field by field.
 #[inline(always)]
 pub(super) fn fields<L: Lanes>(records: &[Record], places: &[u32; WIDTH], row: usize) -> [L; WIDTH] {
     let [a, b, c, d, e, f, g, h] = *places;
@@ -146,14 +145,14 @@ fn at<L: Lanes>(records: &[Record], place: u32, row: usize) -> L {
 }
 
 impl Contacts {
-    /// Gives a contact that was added the impulses that it starts with.
+    /// Sets the starting impulses of an added contact.
     pub fn start_with(&mut self, place: usize, points: &[PointImpulse; MAX_POINTS]) {
         let [p, q, r, s] = points;
         let rows = &mut self.records[place].rows;
         (rows[IMPULSES], rows[IMPULSES + 1]) = (two_impulses(p, q), two_impulses(r, s));
     }
 
-    /// Adds a contact: first those of two moving bodies, then those with fixed ones.
+    /// Adds a contact. Contacts between moving bodies come first, then those with fixed bodies.
     #[inline]
     pub fn push(&mut self, added: &Added<'_>, bodies: &[SolverBody]) {
         let Added { contact, material, .. } = added;

@@ -1,4 +1,4 @@
-//! Manifolds of bodies that turn fast are looked for again within the step, and written to their lanes.
+//! Recomputes the manifolds of fast-turning bodies within the step, and writes them to their lanes.
 
 use super::Contacts;
 use super::block::{Block, HELD, Memory};
@@ -19,21 +19,21 @@ use crate::spatial::{Vec6, angular, linear};
 use sinew_math::lanes::WIDTH;
 use sinew_math::{Transform, max, min};
 
-/// A manifold whose lane is written in each substep.
+/// A manifold whose lane is rewritten in each substep.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
     /// Class, block and lane.
     place: [u32; 3],
     contact: u32,
-    /// Local bodies.
+    /// Local indices of the bodies.
     bodies: [u32; 2],
     manifold: Manifold,
     cores: Cores,
-    /// The manifold is looked for when a body has turned by more than this since it was found last, radians.
+    /// The manifold is recomputed when a body has turned by more than this since the last time, radians.
     most_turn: f32,
-    /// Turn of the faster body from the beginning of the step to then, radians.
+    /// Turn of the faster body from the step's beginning to the last computation, radians.
     turned: f32,
-    /// Found in this substep, and not written yet.
+    /// Manifold recomputed in this substep and not yet written.
     anew: Option<Manifold>,
 }
 
@@ -52,11 +52,11 @@ impl Found {
     }
 }
 
-/// Bodies as a substep has left them.
+/// Bodies after a substep.
 pub(in crate::solver) struct Substep<'a> {
     pub view: &'a View<'a>,
     pub bodies: &'a [SolverBody],
-    /// When the step began.
+    /// Poses when the step began.
     pub starts: &'a [Transform],
     pub velocities: &'a [Vec6],
     pub moving: usize,
@@ -65,14 +65,14 @@ pub(in crate::solver) struct Substep<'a> {
 }
 
 impl Substep<'_> {
-    /// Angle through which a body turns in this substep, radians.
+    /// Angle by which a body turns in this substep, radians.
     fn turn(&self, body: u32) -> f32 {
         angular(&self.velocities[body as usize]).length() * self.h
     }
 }
 
 impl Contacts {
-    /// Takes the poses to which bodies have come: separations, and what turns fast anew.
+    /// Updates the contacts to the present poses: computes separations and recomputes the manifolds of fast-turning bodies.
     pub fn place(&mut self, substep: &Substep<'_>) {
         if self.is_empty() {
             return;
@@ -96,11 +96,11 @@ impl Contacts {
         self.respond(substep.runner);
     }
 
-    /// Lists what turns fast for the first time.
+    /// Lists the contacts of bodies that turn fast for the first time.
     fn find_fast(&mut self, substep: &Substep<'_>) {
         for (turned, body) in self.turned.iter_mut().zip(0..) {
             let turn = substep.turn(body);
-            // What is led and turns slowly, as limbs of clips do, is seen well enough from the step's beginning.
+            // The manifold of the step's beginning is accurate enough for slowly turning kinematic bodies, such as limbs of clips.
             if (body as usize) < substep.moving || turn >= REFRESH_TURN_LED {
                 *turned += turn;
             }
@@ -117,7 +117,7 @@ impl Contacts {
 }
 
 impl<const N: usize, const T: usize> Class<N, T> {
-    /// Adds what turns fast to the list, of which the first `known` are sorted.
+    /// Adds contacts of fast-turning bodies to the list, the first `known` entries of which are sorted.
     fn find_fast(
         &self,
         class: u32,
@@ -166,15 +166,15 @@ fn slop_of(shapes: &[Placed<'_>; 2]) -> f32 {
     slop(min(shapes[0].shape.smallest_extent(), shapes[1].shape.smallest_extent()))
 }
 
-/// Radii of the roundings of a contact's shapes where they meet.
+/// Radii of the roundings of a contact's shapes at the contact.
 fn rounds(view: &View<'_>, contact: u32, poses: [Transform; 2], manifold: &Manifold) -> [f32; 2] {
     let shapes = placed(view, &view.contacts[contact as usize]);
     [0, 1].map(|end: usize| shapes[end].round(poses[end].rotation.inverse() * manifold.normal))
 }
 
 impl Found {
-    /// Looks for the contact anew if a body turned fast in this substep: the points of the step's beginning say nothing of the
-    /// corner that swings in.
+    /// Recomputes the contact if a body turned fast in this substep: the points of the step's beginning do not include a corner that swings
+    /// in.
     fn look(&mut self, turned: &[f32], substep: &Substep<'_>) {
         let turned = self.bodies.iter().fold(0.0, |most, &body| max(most, turned[body as usize]));
         if turned - self.turned < self.most_turn {
@@ -189,7 +189,7 @@ impl Found {
         self.anew = found_anew(shapes, poses, margin, &self.manifold, on_surfaces);
     }
 
-    /// Writes the contact to its lane as it is now. Impulses go on by feature. A pair that has come apart keeps its rows.
+    /// Writes the present contact to its lane. Impulses are matched by feature. A pair that has separated keeps its rows.
     fn update<const N: usize, const T: usize>(
         &mut self,
         class: &mut Class<N, T>,
@@ -245,7 +245,7 @@ impl Found {
         }
     }
 
-    /// Largest separation of points that this substep may bring together, metres.
+    /// Largest separation of points that may touch within this substep, metres.
     fn margin(&self, substep: &Substep<'_>, shapes: &[Placed<'_>; 2], slop: f32) -> f32 {
         let [a, b] = self.bodies.map(|body| linear(&substep.velocities[body as usize]));
         let turns = self.bodies.map(|body| substep.turn(body));
@@ -264,13 +264,13 @@ impl Found {
         self.contact
     }
 
-    /// As it was found last.
+    /// The manifold computed last.
     pub fn manifold(&self) -> Manifold {
         self.manifold
     }
 }
 
-/// The deepest points of a manifold, as many as a lane has room for.
+/// The deepest points of a manifold, limited to the size of the lane.
 fn fitted(manifold: &Manifold, room: usize) -> Manifold {
     if manifold.count <= room {
         return *manifold;
@@ -282,7 +282,7 @@ fn fitted(manifold: &Manifold, room: usize) -> Manifold {
     fitted
 }
 
-/// Speeds with which points leave go on by feature; what is new leaves with the mean.
+/// Rebound speeds are matched by feature; new points get the mean.
 fn carry_rebounds<const N: usize>(
     rebounds: &mut [[f32; WIDTH]; N],
     lane: usize,

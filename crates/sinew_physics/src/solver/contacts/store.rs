@@ -1,4 +1,4 @@
-//! From blocks back to the world's contacts.
+//! Copies the results of blocks back to the world's contacts.
 
 use super::Contacts;
 use super::block::{Block, Memory, NONE, Rolling};
@@ -11,12 +11,12 @@ use crate::spatial::Vec6;
 use sinew_math::Vec3;
 use sinew_math::lanes::WIDTH;
 
-/// A vector of a lane.
+/// The vector of a lane.
 fn vector(rows: &[[f32; WIDTH]; 3], lane: usize) -> Vec3 {
     Vec3::new(rows[0][lane], rows[1][lane], rows[2][lane])
 }
 
-/// Impulses that a lane's contact carries on to substeps `times` as long.
+/// Impulses that a lane's contact keeps for substeps `times` as long.
 pub(super) fn memory_of<const N: usize, const T: usize>(
     block: &Block<N, T>,
     memory: &Memory<N>,
@@ -52,14 +52,14 @@ impl<const N: usize, const T: usize> Class<N, T> {
         (0..self.count).flat_map(move |place| used(place).map(move |lane| (place, lane)))
     }
 
-    /// Adds to the room for solved contacts.
+    /// Adds to the list of solved contacts.
     fn store(
         &self,
         (class, stretch): (u32, f32),
         of: &Contacts,
         room: &mut core::slice::IterMut<'_, SolvedContact>,
     ) {
-        // Those of this class, in order of their places.
+        // The recomputed manifolds of this class, in order of their lanes.
         let mut found = of.found.iter().skip_while(|found| found.class() < class).peekable();
         for (place, lane) in self.lanes() {
             let index = self.memory[place].contacts[lane];
@@ -80,7 +80,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
         }
     }
 
-    /// Takes off what kinematic bodies gave: the work of pushes on bodies that are not moved.
+    /// Subtracts the work of pushes on kinematic bodies.
     fn work_on_held(&self, rolling: &[Rolling], velocities: &[Vec6], moving: usize) -> f32 {
         let mut given = 0.0;
         for (place, lane) in self.lanes() {
@@ -125,7 +125,7 @@ fn push_on<const N: usize, const T: usize>(
 }
 
 impl Contacts {
-    /// Writes to `room` what contacts carry on, from substeps `stretch` times as long as the world's.
+    /// Writes the state that contacts keep for the next step to `room`, from substeps `stretch` times as long as the world's.
     pub fn store(&self, stretch: f32, room: &mut [SolvedContact]) {
         let mut room = room.iter_mut();
         self.one.store((0, stretch), self, &mut room);
@@ -133,21 +133,21 @@ impl Contacts {
         self.four.store((2, stretch), self, &mut room);
     }
 
-    /// Adds who touches, and with what impulse along the normal in this substep.
+    /// Adds the touching pairs and their normal impulses in this substep.
     pub fn list_pushes(&self, touches: &mut Vec<Touch>) {
         self.one.list_pushes(touches);
         self.two.list_pushes(touches);
         self.four.list_pushes(touches);
     }
 
-    /// Work that bodies which move by themselves do in this substep by what they push, J.
+    /// Work that kinematic bodies do by pushing in this substep, J.
     pub fn work_of_kinematic(&self, velocities: &[Vec6], moving: usize) -> f32 {
         self.one.work_on_held(&self.rolling, velocities, moving)
             + self.two.work_on_held(&self.rolling, velocities, moving)
             + self.four.work_on_held(&self.rolling, velocities, moving)
     }
 
-    /// Starts from nothing.
+    /// Clears all impulses.
     pub fn forget(&mut self) {
         self.one.forget();
         self.two.forget();

@@ -8,18 +8,18 @@ use crate::solver::tuning::{IMPACT_JUMP, MANIFOLD_ROUNDS, POINT_PROXIMAL, SLIP_S
 use crate::spatial::Vec6;
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 
-/// Data that a sweep over blocks works on.
+/// State of a sweep over blocks.
 pub(super) struct Sweep<'a> {
     pub velocities: SharedRows<'a, Vec6>,
     pub rolling: SharedRows<'a, Rolling>,
     pub pass: Pass,
-    /// Share of the blocks in conjugate steps.
+    /// Conjugate step applied to the blocks.
     pub step: Step,
-    /// Friction takes its loads from the impulses as they are.
+    /// True if friction takes its loads from the present impulses.
     pub updates_friction_bound: bool,
     /// Largest change of a velocity component in the sweep so far, lane by lane, m/s or rad/s.
     pub largest: Eight,
-    /// Energy that the changes of the sweep have block by block, lane by lane, J.
+    /// Sum of the energies of the blocks' changes, lane by lane, J.
     pub energy: Eight,
 }
 
@@ -72,10 +72,10 @@ impl Sweep<'_> {
         ])
     }
 
-    /// Writes velocities of those that move.
+    /// Writes the velocities of moving bodies.
     #[inline(always)]
     fn write<L: Lanes>(&mut self, bodies: &[u32; WIDTH], places: &Places, motion: Motion<L>) {
-        // Copies, which no write through them can change.
+        // Work on copies, which writes through them cannot change.
         let (mut velocities, places) = (self.velocities, *places);
         let rows = motion.rows();
         for k in 0..WIDTH {
@@ -100,8 +100,8 @@ pub(super) fn sum<L: Lanes, const N: usize>(rows: &[Eight; N]) -> L {
     sum
 }
 
-/// Friction is limited by the normal impulses that the last substep ended with, unless this is a hit: what few sweeps know of
-/// this one's is off to one side, that sum is not, since it is what held the body up.
+/// Limits friction by the final normal impulses of the last substep, unless this is a hit. After few sweeps the impulses of this substep
+/// may be off to one side; the sum of the last substep is not, since it supported the body.
 #[inline(always)]
 fn update_friction_bound<L: Lanes, const N: usize, const T: usize>(block: &mut Block<N, T>) {
     let (now, last) = (sum::<L, N>(&block.impulse), L::load(&block.last_load));
@@ -130,7 +130,7 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
     }
     let old = given;
     let points = Points::new(block, &rates, &given);
-    // To and fro: all one way would leave a little motion to the side that comes first.
+    // Alternate directions: always the same one would leave a small motion toward the first side.
     if N == 1 {
         points.visit::<true>(0, &mut given);
     } else {
@@ -162,11 +162,12 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
     energy
 }
 
-/// The points of a block in a visit, each as a line for its own impulse: what that is to be, if the other points give nothing, and what
-/// each of them takes from it. A visit waits for the point before by a product, a difference and a maximum, and for no rate.
+/// The points of a block in a visit, each as a linear function for its own impulse: its value without impulses of the other points, and the
+/// share that each of them subtracts. This keeps the dependency between consecutive points to a product, a difference and a maximum,
+/// without a rate.
 struct Points<L, const N: usize> {
     alone: [L; N],
-    /// Row by row; on the diagonal, what stays of its own.
+    /// Coefficients, row by row; the diagonal is the share of its own impulse that stays.
     taken: [[L; N]; N],
     floor: [L; N],
 }
@@ -190,8 +191,8 @@ impl<L: Lanes, const N: usize> Points<L, N> {
         points
     }
 
-    /// The point takes the impulse that it is to have, the one before it in the order of the visits coming last. Loops that call it run
-    /// over constants, so that what it reads and writes stays in registers.
+    /// Sets the new impulse of a point; the previous point in the visiting order contributes last. Callers loop over constants, so that the
+    /// values stay in registers.
     #[inline(always)]
     fn visit<const FORWARD: bool>(&self, i: usize, given: &mut [L; N]) {
         let mut new = self.alone[i] + self.taken[i][i] * given[i];
@@ -253,8 +254,8 @@ fn visit_friction<L: Lanes, const N: usize, const T: usize>(
     change[0] * answer[0] + change[1] * answer[1]
 }
 
-/// After the tangents: a light body turns far about a contact beside its centre, and to answer both at once overshoots, sweep by
-/// sweep more. Gives the change.
+/// Visits the twist, after the tangents: a light body turns far about a contact beside its centre, and solving both at once overshoots more
+/// in each sweep. Returns the change.
 #[inline(always)]
 fn visit_twist<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -275,7 +276,7 @@ fn visit_twist<L: Lanes, const N: usize, const T: usize>(
     new - old
 }
 
-/// A torque against the relative spin, at most the lever times the load.
+/// Applies a torque against the relative spin, limited to the lever arm times the load.
 #[inline(always)]
 fn visit_rolling<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,
@@ -295,14 +296,13 @@ fn visit_rolling<L: Lanes, const N: usize, const T: usize>(
     ends[1].push(zero, &block.inertia[1], none, change);
 }
 
-/// Share of a block in conjugate steps when a sweep comes to it, before its visit.
+/// Conjugate step of a block, applied before its visit in a sweep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Step {
     #[default]
     None,
-    /// Writes its impulses down.
+    /// Stores the block's impulses.
     Begin,
-    /// Goes on by a share of the direction so far, and writes down where that leads. Then the direction is that share and the change of
-    /// the last sweep.
+    /// Moves by a share of the search direction and stores the result. The new direction is that share plus the change of the last sweep.
     GoOn(f32),
 }

@@ -1,5 +1,5 @@
-//! Eight contacts to a block: what a manifold is about the centres of its two bodies, in lanes. Each lane has the bits that
-//! `Geometry` and `weights` have of its contact.
+//! Writes eight contacts to a block: converts manifolds to geometry about the centres of their bodies, in lanes. Each lane has the same
+//! bits as `Geometry` and `weights` compute for its contact.
 
 use super::block::{Block, Eight, HELD, Memory, NONE, ZERO8, gather, store3};
 use super::geometry::FAR;
@@ -9,27 +9,27 @@ use crate::solver::contact_rows::Softness;
 use crate::solver::tuning::{DEAD_ZONE, WEIGHT_EVENLY, WEIGHT_OF_LOAD};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 
-/// Input that is collected lane by lane, before lanes are written side by side.
+/// Input collected lane by lane before the lanes are written side by side.
 struct Each {
     places: [u32; WIDTH],
-    /// 1 of two bodies that are moved.
+    /// 1 if both bodies are moved by contacts.
     both_move: Eight,
     softness: Eight,
     bias: Eight,
     push_speed: Eight,
-    /// Gap below which points bear.
+    /// Separation below which points bear load.
     bearing: Eight,
     /// Velocity of B's surface less A's, then its spin.
     surface: [Eight; 6],
 }
 
-/// Normal and directions of friction of eight manifolds.
+/// Normal and friction directions of eight manifolds.
 struct Axes<L> {
     normal: Vector3<L>,
     tangents: [Vector3<L>; 2],
 }
 
-/// Writes a block but for the responses of its rows. Gives whether any of its contacts may bounce.
+/// Writes a block except for the responses of its rows. Returns whether any of its contacts may bounce.
 #[inline(always)]
 pub(super) fn write<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -45,7 +45,7 @@ pub(super) fn write<L: Lanes, const N: usize, const T: usize>(
     L::gt(L::load(&memory.restitution), L::splat(0.0)).any()
 }
 
-/// Bodies and contacts. Empty lanes repeat the last contact, and hold its bodies.
+/// Writes bodies and contacts. Empty lanes repeat the last contact with its bodies flagged as held.
 #[inline(always)]
 fn write_ends<const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -98,7 +98,7 @@ impl Each {
     }
 }
 
-/// Points, separations, and where friction acts.
+/// Writes points, separations, and the point where friction acts.
 #[inline(always)]
 fn write_shape<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -134,7 +134,7 @@ fn write_shape<L: Lanes, const N: usize, const T: usize>(
             zero.store(&mut memory.total[i]);
         }
     }
-    // Shares of the load, smoothed, of those that bear.
+    // Smoothed shares of the load of the points that bear.
     let (bearing, mut heirs) = (L::load(&each.bearing), zero);
     for i in 0..N {
         heirs = heirs + one.masked(there[i] & L::le(gaps[i], bearing));
@@ -147,7 +147,7 @@ fn write_shape<L: Lanes, const N: usize, const T: usize>(
         let part = L::select(loaded, now[i] / load, even);
         weights[i] = L::splat(WEIGHT_OF_LOAD) * part + L::splat(WEIGHT_EVENLY) * even;
         center = select3(there[i], center + at[i] * weights[i], center);
-        // Points that are not there answer like the first one, and are never reached.
+        // Unused points repeat the first one, and are never reached.
         arms[i] = select3(there[i], at[i] - normal * round_a, arms[0]);
         let gap = L::select(there[i], gaps[i], L::splat(FAR));
         store3(arms[i], &mut block.arms[i]);
@@ -177,7 +177,7 @@ fn write_softness<L: Lanes, const N: usize>(memory: &mut Memory<N>, each: &Each,
     let bias_rate = L::load(&each.bias) * pick::<L>(both_move, moving.bias_rate, fixed.bias_rate);
     bias_rate.store(&mut memory.bias_rate);
     memory.push_speed = each.push_speed;
-    // Of the mean response of the points: its sum is divided here.
+    // Softness of the mean response of the points; the division of their sum is done here.
     let softness = L::load(&each.softness) * pick::<L>(both_move, moving.impulse_scale, fixed.impulse_scale)
         / pick::<L>(both_move, moving.mass_scale, fixed.mass_scale)
         / L::splat((N * N) as f32);

@@ -9,7 +9,8 @@ use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 use sinew_math::{Transform, Vec3};
 
-/// Residuals, link by link, that would remove the position errors of the joints of a tree within a substep. Gives the largest error, m or rad.
+/// Computes the residuals, link by link, that would remove the position errors of a tree's joints within a substep. Returns the largest
+/// error, m or rad.
 pub(in crate::solver) struct FindErrors<'a> {
     pub links: &'a [Link],
     pub joints: &'a [SolverJoint],
@@ -21,12 +22,12 @@ pub(in crate::solver) struct FindErrors<'a> {
     pub residuals: &'a mut [Vec6],
 }
 
-/// Joints whose errors are found in lanes.
+/// Kinds of joints whose errors are computed in lanes.
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
-    /// Holds a point.
+    /// Locks a point.
     Point,
-    /// Holds a point and an axis.
+    /// Locks a point and an axis.
     Hinge,
     Other,
 }
@@ -42,7 +43,7 @@ impl Form {
     }
 }
 
-/// Rows of an anchor, and of a hinge: two more of its axis.
+/// Rows of an anchor, and of a hinge, which has two more for its axis.
 const POINT_ROWS: usize = 3;
 const HINGE_ROWS: usize = 5;
 
@@ -89,7 +90,8 @@ impl Kernel for FindErrors<'_> {
     }
 }
 
-/// Errors of eight joints, row by row: the gap between the anchors, and how far the axis of B is out of two planes of A if any of them is a hinge.
+/// Errors of eight joints, row by row: the gap between the anchors and, if any joint is a hinge, the deviation of B's axis from two planes
+/// of A.
 #[inline(always)]
 fn errors_of<L: Lanes>(eight: &[&SolverJoint; WIDTH], poses: &[Transform]) -> [L; WIDTH] {
     let (mut at_a, mut at_b) = ([&Transform::IDENTITY; WIDTH], [&Transform::IDENTITY; WIDTH]);

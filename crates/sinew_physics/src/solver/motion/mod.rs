@@ -1,4 +1,4 @@
-//! Motion of the island's bodies, eight side by side: forces to velocities, velocities to poses, inertias, energies.
+//! Motion of the island's bodies, eight side by side: velocity and position integration, inertias, energies.
 
 use super::articulation::elimination::{Inertia, Symmetric};
 use crate::solver::body::{SolverBody, advance};
@@ -45,7 +45,7 @@ mod gaps;
 
 pub(super) use gaps::FindErrors;
 
-/// Eight bodies from the `first` on; the last of all stands for those that are not there.
+/// Returns eight bodies from index `first` on; the last body is repeated beyond the end.
 #[inline(always)]
 fn eight_from<T>(all: &[T], first: usize) -> [&T; WIDTH] {
     let mut eight = [&all[first]; WIDTH];
@@ -55,7 +55,7 @@ fn eight_from<T>(all: &[T], first: usize) -> [&T; WIDTH] {
     eight
 }
 
-/// Linear and angular velocities of eight bodies from the `first` on; zero of those that are not there.
+/// Linear and angular velocities of eight bodies from index `first` on; zero beyond the end.
 #[inline(always)]
 fn velocities_from<L: Lanes>(all: &[Vec6], first: usize) -> [Vector3<L>; 2] {
     let mut rows = [L::splat(0.0); WIDTH];
@@ -75,13 +75,13 @@ fn store_velocities<L: Lanes>([linear, angular]: [Vector3<L>; 2], to: &mut [Vec6
     }
 }
 
-/// Forces to velocities, and the momenta that bodies have from then on. Gives their kinetic energy, J.
+/// Integrates forces to velocities and stores the resulting momenta. Returns the kinetic energy, J.
 pub(super) struct IntegrateVelocity<'a> {
     pub bodies: &'a mut [SolverBody],
     pub velocities: &'a mut [Vec6],
     /// Substep, seconds.
     pub h: f32,
-    /// Limits, m/s and rad/s.
+    /// Limits of speed and spin, m/s and rad/s.
     pub max_speed: f32,
     pub max_spin: f32,
 }
@@ -111,7 +111,7 @@ impl Kernel for IntegrateVelocity<'_> {
                     off.z * torque.x + diagonal.y * torque.y + off.x * torque.z,
                     off.y * torque.x + off.x * torque.y + diagonal.z * torque.z,
                 );
-            // Geometric stiffness beyond the inertia acts as inertia: the spin it takes part in is shared with it.
+            // Geometric stiffness beyond the inertia acts as inertia, so the spin is distributed over both.
             let total = inertia + vector!(eight, excess);
             let exact = rotation.exact();
             let spin = over(times(exact.turned_back(angular), inertia), total);
@@ -137,7 +137,7 @@ impl Kernel for IntegrateVelocity<'_> {
     }
 }
 
-/// Velocities to poses. Momenta go on as they are, with what impulses gave since the velocities `before`; spins follow from them.
+/// Integrates velocities to poses. Impulses since the velocities `before` are added to the momenta, from which the spins follow.
 pub(super) struct IntegratePosition<'a> {
     pub bodies: &'a mut [SolverBody],
     pub velocities: &'a mut [Vec6],
@@ -157,7 +157,7 @@ impl Kernel for IntegratePosition<'_> {
             let [linear, angular] = velocities_from::<L>(velocities, first);
             let [_, unconstrained] = velocities_from::<L>(before, first);
             let (rotation, inertia) = (rotation!(eight, pose.rotation), vector!(eight, inertia));
-            // What impulses gave. Geometric stiffness is no inertia of the body.
+            // Momentum added by impulses. Geometric stiffness is no inertia of the body.
             let given = rotation.angular_momentum(angular - unconstrained, inertia);
             let momentum = vector!(eight, momentum) + given;
             let position = vector!(eight, pose.translation);
@@ -174,7 +174,7 @@ impl Kernel for IntegratePosition<'_> {
     }
 }
 
-/// Poses to which velocities lead within `h` seconds, body by body.
+/// Predicts the poses to which velocities lead within `h` seconds, body by body.
 pub(super) struct Predict<'a> {
     pub bodies: &'a [SolverBody],
     pub velocities: &'a [Vec6],
@@ -241,7 +241,8 @@ fn advanced<L: Lanes>(
     poses
 }
 
-/// Computes by how much geometric stiffness (held in `excess` until now) exceeds the inertia, and inverse inertias in world axes.
+/// Computes the part of the geometric stiffness (held in `excess` until now) that exceeds the inertia, and the inverse inertias in world
+/// axes.
 pub(super) struct RefreshInertia<'a>(pub &'a mut [SolverBody]);
 
 impl Kernel for RefreshInertia<'_> {
@@ -268,7 +269,7 @@ impl Kernel for RefreshInertia<'_> {
     }
 }
 
-/// Masses and inertias at the centres of mass, world axes, geometric stiffness and mass scaling included.
+/// Computes masses and inertias at the centres of mass, world axes, including geometric stiffness and mass scaling.
 pub(super) struct ListInertias<'a> {
     pub bodies: &'a [SolverBody],
     pub list: &'a mut Vec<Inertia<f64>>,
@@ -302,7 +303,7 @@ impl Kernel for ListInertias<'_> {
     }
 }
 
-/// Kinetic energy with the given velocities, J.
+/// Computes the kinetic energy with the given velocities, J.
 pub(super) struct KineticEnergy<'a> {
     pub bodies: &'a [SolverBody],
     pub velocities: &'a [Vec6],
@@ -331,7 +332,7 @@ impl Kernel for KineticEnergy<'_> {
     }
 }
 
-/// Momentum and angular momentum about their centres that bodies gained since the velocities `before`, N·s and N·m·s.
+/// Computes the momentum and angular momentum (about their centres) that bodies gained since the velocities `before`, N·s and N·m·s.
 pub(super) struct ListGains<'a> {
     pub bodies: &'a [SolverBody],
     pub velocities: &'a [Vec6],

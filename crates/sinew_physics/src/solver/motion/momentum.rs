@@ -1,10 +1,10 @@
-//! Momentum of bodies, and the rigid motion that has it.
+//! Momentum of bodies, and the rigid motion with the same momentum.
 
 use crate::solver::body::SolverBody;
 use crate::spatial::{Vec6, angular, join, linear};
 use sinew_math::{Sym3, Vec3};
 
-/// The motion of several bodies as if they were one.
+/// Motion of several bodies as one rigid piece.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::solver) struct RigidMotion {
     pub(in crate::solver) center: Vec3,
@@ -13,7 +13,7 @@ pub(in crate::solver) struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// With the momentum and angular momentum that the bodies have.
+    /// Computes the rigid motion with the bodies' momentum and angular momentum.
     pub(in crate::solver) fn of(bodies: &[SolverBody], velocities: &[Vec6]) -> Self {
         let center = center_of_mass(bodies).1;
         let mut momentum = Momentum::default();
@@ -53,7 +53,7 @@ impl Momentum {
     }
 }
 
-/// Total mass, and where its centre is.
+/// Total mass, kg, and centre of mass.
 pub(in crate::solver) fn center_of_mass(bodies: &[SolverBody]) -> (f32, Vec3) {
     let (mut mass, mut center) = (0.0, Vec3::ZERO);
     for body in bodies {

@@ -1,10 +1,10 @@
-//! Turns of eight bodies side by side, and the spin of a free body through a substep.
+//! Rotations of eight bodies side by side, and the spin of a free body through a substep.
 
 use crate::solver::tuning::{MIDPOINT_STEPS, MIDPOINT_TOLERANCE, MOST_HALF_TURN};
 use sinew_math::lanes::{LaneMask, Lanes, Real, Vector3, WIDTH};
 use sinew_math::{Rotation, Vec3};
 
-/// Half of the angle up to which the series of a turn are exact, radians. Beyond it, bodies are turned one by one.
+/// Half of the angle up to which the series of a rotation are accurate, radians. Bodies that turn farther are rotated one by one.
 pub const MOST_SERIES: f32 = 1.5;
 
 /// Eight [rotations](Rotation), or one.
@@ -15,14 +15,14 @@ pub struct Turn<R> {
 }
 
 impl<R: Real> Turn<R> {
-    /// After turning by another, which is given in this one's own axes.
+    /// This rotation followed by `by`, which is given in this one's own axes.
     #[inline(always)]
     pub fn then_own(self, by: Self) -> Self {
         let vector = self.vector * by.real + by.vector * self.real + self.vector.cross(by.vector);
         Self { vector, real: self.real * by.real - self.vector.dot(by.vector) }.normalized()
     }
 
-    /// Product of two rotations, as it is: the other first.
+    /// Product of two rotations without normalisation; `first` is applied first.
     #[inline(always)]
     pub fn product(self, first: Self) -> Self {
         let (a, b) = (self.vector, first.vector);
@@ -30,7 +30,7 @@ impl<R: Real> Turn<R> {
         Self { vector, real: self.real * first.real - a.x * b.x - (a.y * b.y + a.z * b.z) }
     }
 
-    /// After turning by another, which is given in the axes of the world.
+    /// This rotation followed by `by`, which is given in world axes.
     #[inline(always)]
     pub fn then(self, by: Self) -> Self {
         by.then_own(self)
@@ -48,26 +48,26 @@ impl<R: Real> Turn<R> {
         Self { vector: -self.vector, real: self.real }
     }
 
-    /// A vector after the rotation.
+    /// Rotates a vector.
     #[inline(always)]
     pub fn turned(self, v: Vector3<R>) -> Vector3<R> {
         let across = self.vector.cross(v) * R::splat(2.0);
         v + across * self.real + self.vector.cross(across)
     }
 
-    /// One axis after each of the rotations.
+    /// Rotates one axis by each of the rotations.
     #[inline(always)]
     pub fn turned_axis(self, axis: Vec3) -> Vector3<R> {
         self.turned(Vector3::new(R::splat(axis.x), R::splat(axis.y), R::splat(axis.z)))
     }
 
-    /// A vector before the rotation.
+    /// Rotates a vector by the inverse.
     #[inline(always)]
     pub fn turned_back(self, v: Vector3<R>) -> Vector3<R> {
         self.inverse().turned(v)
     }
 
-    /// Turn about `half` by twice its length, radians, up to twice [`MOST_SERIES`].
+    /// Rotation about `half` by twice its length, radians; valid up to twice [`MOST_SERIES`].
     #[inline(always)]
     pub fn by_half_angles(half: Vector3<R>) -> Self {
         let angle = half.length();
@@ -86,7 +86,7 @@ impl<R: Real> Turn<R> {
         ]
     }
 
-    /// A tensor with principal moments `d` in the axes of the world: diagonal, and xy, xz, yz.
+    /// Rotates a tensor with principal moments `d` to world axes: diagonal, and xy, xz, yz.
     #[inline(always)]
     pub fn rotated_diagonal(self, d: Vector3<R>) -> [Vector3<R>; 2] {
         let [x, y, z] = self.columns();
@@ -105,7 +105,7 @@ impl<R: Real> Turn<R> {
 }
 
 impl<L: Lanes> Turn<L> {
-    /// Rotations with twice the digits and what is over their squared length: for [`turn`](Rotation::turn).
+    /// Rotations in double precision with 2 over their squared length, for [`turn`](Rotation::turn).
     #[inline(always)]
     pub fn exact(self) -> Exact<L> {
         let vector = widen(self.vector);
@@ -114,7 +114,7 @@ impl<L: Lanes> Turn<L> {
         Exact { vector, real, scale: L::Wide::splat(2.0) / square }
     }
 
-    /// Angular momenta for spins, or as much of them as inertias of 1/`moments` give.
+    /// Converts spins to angular momenta, for inertias of 1/`moments`.
     #[inline(always)]
     pub fn angular_momentum(self, spin: Vector3<L>, moments: Vector3<L>) -> Vector3<L> {
         let exact = self.exact();
@@ -134,7 +134,7 @@ impl<L: Lanes> Turn<L> {
     }
 }
 
-/// Eight times [`Rotation::turn`]: without what the quaternions' lengths are off from 1 by.
+/// Eight times [`Rotation::turn`], corrected for quaternion lengths that differ from 1.
 #[derive(Clone, Copy)]
 pub struct Exact<L: Lanes> {
     vector: Vector3<L::Wide>,
@@ -143,7 +143,7 @@ pub struct Exact<L: Lanes> {
 }
 
 impl<L: Lanes> Exact<L> {
-    /// A vector after the rotation.
+    /// Rotates a vector.
     #[inline(always)]
     pub fn turned(self, v: Vector3<L>) -> Vector3<L> {
         let v = widen(v);
@@ -151,7 +151,7 @@ impl<L: Lanes> Exact<L> {
         narrow(v + (across * self.real + self.vector.cross(across)) * self.scale)
     }
 
-    /// A vector before the rotation.
+    /// Rotates a vector by the inverse.
     #[inline(always)]
     pub fn turned_back(self, v: Vector3<L>) -> Vector3<L> {
         Self { vector: -self.vector, ..self }.turned(v)
@@ -168,13 +168,12 @@ pub fn narrow<L: Lanes>(v: Vector3<L::Wide>) -> Vector3<L> {
     Vector3::new(L::narrow(v.x), L::narrow(v.y), L::narrow(v.z))
 }
 
-/// Angular velocity in the middle of a substep that turns a free body as its inertia lets it, from that at its beginning; principal
-/// axes.
+/// Angular velocity in the middle of a substep of a free body, from that at its beginning; principal axes.
 ///
-/// The implicit midpoint `I (m − ω) + τ m × I m = 0` keeps energy and the length of the momentum to
-/// rounding, and with the Cayley map for the turn, `2 atan(τ|m|)` about `m`, the momentum itself (after Austin,
-/// Krishnaprasad and Wang 1993), whatever `τ`. With `τ = tan(½h|m|) / |m|` that turn is `h|m|`: `m` is the spin that joints
-/// and contacts feel, no slower one. The explicit torque explodes; leaving it out makes wrong tops.
+/// The implicit midpoint `I (m − ω) + τ m × I m = 0` conserves energy and the length of the momentum to rounding. With the Cayley map for
+/// the rotation, `2 atan(τ|m|)` about `m`, it conserves the momentum itself (after Austin, Krishnaprasad and Wang 1993), for any `τ`. With
+/// `τ = tan(½h|m|) / |m|` the angle is `h|m|`, so `m` is the actual spin that joints and contacts use. An explicit gyroscopic torque would
+/// explode; without the torque, tops move wrongly.
 #[inline(always)]
 pub fn middle_of_spin<L: Lanes>(start: Vector3<L>, i: Vector3<L>, h: L) -> Vector3<L> {
     let half = h * L::splat(0.5);
@@ -188,7 +187,7 @@ pub fn middle_of_spin<L: Lanes>(start: Vector3<L>, i: Vector3<L>, h: L) -> Vecto
         let angle = L::min(half * m.length(), L::splat(MOST_HALF_TURN));
         let tau = half * (sin_over(angle) / cos(angle));
         let [x, y, z] = (m * tau).to_array();
-        // Columns of the Jacobian I + τ (m× I − (I m)×), but for what τ changes with m.
+        // Columns of the Jacobian I + τ (m× I − (I m)×), ignoring the dependency of τ on m.
         let a = Vector3::new(i.x, z * (i.x - i.z), y * (i.y - i.x));
         let b = Vector3::new(z * (i.z - i.y), i.y, x * (i.y - i.x));
         let c = Vector3::new(y * (i.z - i.y), x * (i.x - i.z), i.z);
@@ -229,10 +228,10 @@ fn series<R: Real>(x: R, terms: [f32; 7]) -> R {
     sum
 }
 
-/// Numbers whose squares are beyond 32 bits are made smaller first by this factor.
+/// Scale for numbers whose squares exceed the range of `f32`.
 const OF_HUGE: f32 = 1e-20;
 
-/// Factor, 1 at most, that makes a vector no longer than `most`.
+/// Factor, at most 1, that limits the length of a vector to `most`.
 #[inline(always)]
 pub fn within<L: Lanes>(v: Vector3<L>, most: f32) -> L {
     let largest = L::max(L::max(v.x.abs(), v.y.abs()), v.z.abs());

@@ -1,5 +1,5 @@
-//! Loads of contacts that do not know theirs yet: level by level from the top, each body shares what it bears among those that it
-//! stands on. A wall of a hundred rows that began without them sank by 0.15 m before sweeps had found them.
+//! Guesses the loads of new contacts: level by level from the top, each body distributes its load over the bodies that it stands on. A wall
+//! of a hundred rows without guessed loads sank by 0.15 m before the sweeps had found them.
 
 use crate::solver::IslandSolver;
 use crate::solver::body::SolverBody;
@@ -7,22 +7,22 @@ use crate::solver::piles::touch::Touch;
 use crate::solver::tuning::STANDING_COSINE;
 use core::cmp::Reverse;
 
-/// A moving body, while loads are handed down.
+/// A moving body while loads are passed down.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::solver) struct Bearer {
-    /// Load that it bears and weight of its own, as an impulse of a substep, N·s.
+    /// Its load and its own weight, as an impulse of a substep, N·s.
     load: f32,
-    /// Contacts below that it stands on.
+    /// Number of contacts below that it stands on.
     supports: u32,
-    /// A contact of it knows its load, or a joint holds it: nothing is to be guessed of what is below.
+    /// True if one of its contacts has a known load or a joint holds it: the loads below are not guessed.
     is_settled: bool,
 }
 
-/// Memory for handing down.
+/// Work memory of the guess.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Scratch {
     bearers: Vec<Bearer>,
-    /// Level of the upper body and place of each touch that supports one, from the top.
+    /// Level of the upper body and index of each supporting touch, from the top.
     supports: Vec<(Reverse<u32>, u32)>,
 }
 
@@ -35,13 +35,13 @@ impl Scratch {
     }
 }
 
-/// Cosine between what pulls at a body and the way from it through a contact, whose normal leads to it times `sign`.
+/// Cosine between the force on a body and the direction from it through a contact, whose normal points to the contact times `sign`.
 fn slope(body: &SolverBody, touch: &Touch, sign: f32) -> f32 {
     -sign * touch.normal.dot(body.force) / body.force.length()
 }
 
 impl IslandSolver {
-    /// Gives contacts between bodies that know nothing of their loads what stands on them, when a step begins.
+    /// Guesses the loads of new contacts between bodies when a step begins.
     pub(in crate::solver) fn guess_loads(&mut self) {
         if !self.touches.iter().any(|touch| touch.is_new) {
             return;
@@ -96,7 +96,7 @@ impl IslandSolver {
         supports.sort_unstable();
     }
 
-    /// Body of a touch that is nearer to what cannot move, the other one, and 1 if the normal leads to that one, else -1.
+    /// The body of a touch nearer to the ground, the other body, and 1 if the normal points to the other body, else −1.
     fn standing(&self, place: u32) -> (u32, u32, f32) {
         let [a, b] = self.touches[place as usize].bodies;
         if self.support.of(a) < self.support.of(b) { (a, b, 1.0) } else { (b, a, -1.0) }

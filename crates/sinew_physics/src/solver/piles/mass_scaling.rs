@@ -1,9 +1,8 @@
-//! Bodies between others that press on them with far more than they weigh.
+//! Mass scaling for bodies squeezed by loads far above their weight.
 //!
-//! In 32 bits an ulp of the impulses on such a body, over its mass, may be more than any speed that it could have: under a
-//! tower of ten cubes, each ten times as heavy as the one that it stands on, 4 m/s. What presses from both sides gives it
-//! mass scaling: it answers to forces and impulses as if it were heavier, for as long as they press. That changes neither its weight
-//! nor what hits it from one side alone.
+//! In 32 bits, one ulp of the impulses on such a body, divided by its mass, may exceed any realistic speed: 4 m/s under a tower of ten
+//! cubes, each ten times as heavy as the one below. Loads that press from both sides scale its mass: it responds to forces and impulses as
+//! if it were heavier, while the loads last. Its weight does not change, nor does its response to a hit from one side.
 
 use crate::solver::IslandSolver;
 use crate::solver::piles::touch::{Pressing, Touch};
@@ -11,7 +10,7 @@ use crate::solver::tuning::MASS_SCALE;
 use sinew_math::max;
 
 impl IslandSolver {
-    /// Derives mass scales from what presses in this substep, where masses are very unequal.
+    /// Computes mass scales from the loads of this substep, where masses are very unequal.
     pub(in crate::solver) fn refresh_mass_scale(&mut self) {
         if self.is_unequal {
             self.touches.clear();
@@ -21,7 +20,7 @@ impl IslandSolver {
         }
     }
 
-    /// Gives a mass scale to what was squeezed in the last substep.
+    /// Applies mass scales to the bodies that were squeezed in the last substep.
     pub(in crate::solver) fn scale_masses(&mut self) {
         self.pressing.clear();
         self.pressing.resize(self.links.len(), Pressing::default());

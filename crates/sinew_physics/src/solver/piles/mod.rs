@@ -1,4 +1,4 @@
-//! Piles of free bodies: how high each body stands, the loads that contacts begin with, and mass scaling of what is squeezed.
+//! Piles of free bodies: support depth, initial loads of contacts, and mass scaling of squeezed bodies.
 
 pub(in crate::solver) mod loads;
 pub(in crate::solver) mod mass_scaling;

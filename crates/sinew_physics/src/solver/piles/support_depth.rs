@@ -1,29 +1,30 @@
-//! Support depth of the bodies of a pile: how high each of them stands.
+//! Support depth of the bodies of a pile: the number of levels from the ground.
 
 use crate::solver::piles::touch::Touch;
 
-/// The level of a body of which no way to what cannot move is known.
+/// The level of a body without a known path to the ground.
 const UNSUPPORTED: u32 = u32::MAX;
 
-/// Per body: bodies on the shortest way of touch down to what cannot move, itself among them.
+/// For each body: number of bodies on the shortest path of touches down to a fixed body, itself included.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct SupportDepth {
     of: Vec<u32>,
 }
 
 impl SupportDepth {
-    /// Counts the levels of `bodies` bodies, of which the first `moving` move.
+    /// Computes the levels of `bodies` bodies, of which the first `moving` move.
     pub fn count(&mut self, moving: usize, bodies: usize, touches: &[Touch]) {
         self.of.clear();
         self.of.resize(moving, UNSUPPORTED);
         self.of.resize(bodies, 0);
-        // What touches the ground comes last. Then to and fro, since bodies are numbered from the bottom up or from the top down more often than at random.
+        // Touches with the ground come last. Then alternate directions, since bodies are usually numbered from the bottom up or from the
+        // top down.
         let moves = |touch: &Touch| touch.bodies.iter().all(|&body| (body as usize) < moving);
         self.climb(touches[touches.iter().rposition(moves).map_or(0, |last| last + 1)..].iter());
         while self.climb(touches.iter()) && self.climb(touches.iter().rev()) {}
     }
 
-    /// Lowers each body to one level above what it touches; false if all were there already.
+    /// Lowers each body to one level above a body that it touches; returns false if nothing changed.
     fn climb<'a>(&mut self, touches: impl Iterator<Item = &'a Touch>) -> bool {
         let mut lowered = false;
         for &Touch { bodies: [a, b], .. } in touches {
@@ -37,12 +38,12 @@ impl SupportDepth {
         lowered
     }
 
-    /// 0 of what cannot move.
+    /// Level of a body; 0 for a fixed body.
     pub fn of(&self, body: u32) -> u32 {
         self.of.get(body as usize).copied().unwrap_or(0)
     }
 
-    /// 0 if nothing stands on what cannot move.
+    /// The highest level; 0 if no body stands on a fixed one.
     pub fn highest(&self) -> u32 {
         self.of.iter().copied().filter(|&level| level != UNSUPPORTED).fold(0, u32::max)
     }

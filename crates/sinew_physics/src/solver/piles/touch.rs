@@ -1,39 +1,39 @@
-//! Who touches whom in a pile, and how hard.
+//! Touching pairs of a pile, and their loads.
 
 use crate::collide::{MAX_POINTS, ManifoldPoint};
 use crate::contact::{Contact, PointImpulse};
 use crate::solver::tuning::STANDING_SPEED;
 use sinew_math::Vec3;
 
-/// Impulses that press on a body in a substep, N·s: their vector sum, and the sum of their sizes.
+/// Impulses on a body in a substep, N·s: their vector sum, and the sum of their magnitudes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::solver) struct Pressing {
     sum: Vec3,
     size: f32,
 }
 
-/// Two bodies that touch, when a step begins.
+/// Two touching bodies when a step begins.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Touch {
-    /// Local.
+    /// Local indices of the bodies.
     pub bodies: [u32; 2],
-    /// From A to B.
+    /// Normal from A to B.
     pub normal: Vec3,
-    /// Impulse on B along the normal in the last substep, or guessed for this one, N·s.
+    /// Impulse on B along the normal in the last substep, or the guess for this one, N·s.
     pub load: f32,
-    /// Gap below which points are taken for touching, metres.
+    /// Gap below which points count as touching, metres.
     slop: f32,
-    /// They touch, and do not know their load yet.
+    /// True if they touch but their load is not known yet.
     pub is_new: bool,
 }
 
 impl Touch {
-    /// Two bodies with what presses between them in a substep.
+    /// Two bodies with the load between them in a substep.
     pub fn pressing(bodies: [u32; 2], normal: Vec3, load: f32) -> Self {
         Self { bodies, normal, load, slop: 0.0, is_new: false }
     }
 
-    /// A contact in substeps `stretch` times as long as the world's. What comes in fast does not stand there.
+    /// A contact in substeps `stretch` times as long as the world's. A fast approach does not count as standing.
     pub fn new(bodies: [u32; 2], contact: &Contact, stretch: f32, slop: f32) -> Self {
         let points = contact.manifold.points();
         let load =
@@ -44,8 +44,8 @@ impl Touch {
         Self { bodies, normal: contact.manifold.normal, load, slop, is_new }
     }
 
-    /// Impulses that the points of the contact start with if its load is guessed, in substeps of the world's: equal parts to
-    /// those that touch.
+    /// Starting impulses of the contact's points if its load is guessed, in substeps of the world's length: equal parts for the touching
+    /// points.
     pub fn started(&self, contact: &Contact, stretch: f32) -> Option<[PointImpulse; MAX_POINTS]> {
         if !self.is_new || self.load == 0.0 {
             return None;
@@ -69,7 +69,7 @@ impl Pressing {
         self.size += size;
     }
 
-    /// The part that cancels itself.
+    /// The part of the load that cancels itself.
     pub(super) fn scaled_load(&self) -> f32 {
         0.5 * (self.size - self.sum.length())
     }

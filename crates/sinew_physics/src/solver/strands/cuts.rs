@@ -1,8 +1,8 @@
-//! Long strands, cut into eight pieces that go side by side.
+//! Long strands, cut into eight pieces that are solved side by side.
 //!
-//! Each piece is a free strand of its own, one to a lane. What its two ends answer to a force at either makes one block of three rows
-//! for each joint that was cut, and the one that holds the strand: a tridiagonal system (Schur complement of the joints within
-//! pieces), solved with 64 bits. With the impulses of those joints the pieces move as one strand.
+//! Each piece is a free strand in its own lane. The responses of its two ends to forces at either end make one 3×3 block for each cut joint
+//! and one for the joint that holds the strand. Together they form a tridiagonal system (the Schur complement of the joints within pieces),
+//! which is solved in 64 bits. With the impulses of those joints the pieces move as one strand.
 
 use super::super::articulation::elimination::{Matrix, Symmetric, columns, times, transposed_times, zero};
 use super::super::flight::{Eight, ZERO, load, put, store};
@@ -14,15 +14,15 @@ use crate::solver::motion::Turn;
 use sinew_math::Vec3;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 
-/// The joints between the pieces of a strand, each in the lane of the piece below it; in the first lane that which holds the strand.
+/// The joints between the pieces of a strand, each in the lane of the piece below it; the first lane has the joint that holds the strand.
 #[derive(Clone, Debug)]
 pub(super) struct Cuts {
     /// From the centre of the last link of each piece to the joint below it, world axes, metres.
     arm: [Eight; 3],
-    /// The factor: inverses of the pivots, and what each joint makes of the rate that is left of the one below it.
+    /// The factor: inverses of the pivots, and the share of each joint's remaining rate that it passes to the joint above.
     inverse: [Symmetric<f64>; WIDTH],
     through: [Matrix<f64>; WIDTH],
-    /// Impulses on the pieces' first links by the last solve, and in all since they were [taken](Self::take_given), N·s.
+    /// Impulses on the pieces' first links by the last solve, and their sums since the last [`take_given`](Self::take_given), N·s.
     last: [Eight; 3],
     given: [Eight; 3],
 }
@@ -53,7 +53,7 @@ impl Cuts {
         store(handed_up(load::<L>(&links[0].parent_arm)), &mut self.arm);
     }
 
-    /// Gaps at the present poses.
+    /// Computes the gaps at the present poses.
     #[inline(always)]
     pub fn place_gaps<L: Lanes>(&self, links: &mut [Link], hook: Option<&Hook>, tips: Tips<L>) {
         let [last, before] = tips.of(links).map(|link| &link.position);
@@ -64,7 +64,7 @@ impl Cuts {
         keep_gap(gap, link, hook.is_some());
     }
 
-    /// Gaps at the poses that velocities lead to. Gives them.
+    /// Computes and returns the gaps at the poses that the velocities lead to.
     #[inline(always)]
     pub fn look_ahead<L: Lanes>(&self, links: &mut [Link], hook: Option<&Hook>, tips: Tips<L>) -> Vector3<L> {
         let [last, before] = tips.of(links);
@@ -80,7 +80,7 @@ impl Cuts {
         keep_gap(gap, link, hook.is_some())
     }
 
-    /// Velocities with which the joints open; nothing in the first lane of a free strand.
+    /// Opening velocities of the joints; zero in the first lane of a free strand.
     #[inline(always)]
     pub fn slide<L: Lanes>(&self, links: &[Link], is_held: bool, tips: Tips<L>) -> Vector3<L> {
         let [last, before] = tips.of(links);
@@ -90,11 +90,11 @@ impl Cuts {
         masked(slide(&links[0], None) - above, holds::<L>(is_held))
     }
 
-    /// The factor, from the pieces'.
+    /// Computes the factor from those of the pieces.
     #[inline(always)]
     pub fn factor<L: Lanes>(&mut self, links: &[Link], is_held: bool, tips: Tips<L>) {
         let (one, none) = (L::splat(1.0), L::splat(0.0));
-        // Answer of each piece's last end to a force there, and of its first end to that force.
+        // Responses of each piece's last end and first end to a force at the last end.
         let first = kept::<L>(&links[0].passed);
         let (mut own, mut across) = (first, first.rows());
         for (i, link) in links.iter().enumerate() {
@@ -136,7 +136,7 @@ impl Cuts {
         self.eliminate(&Ends::new(first, own, across), is_held);
     }
 
-    /// From the last joint to the first.
+    /// Eliminates the blocks from the last joint to the first.
     fn eliminate(&mut self, ends: &Ends, is_held: bool) {
         for k in (0..WIDTH).rev() {
             let mut pivot = symmetric_in(&ends.first, k);
@@ -155,8 +155,8 @@ impl Cuts {
         }
     }
 
-    /// After the pieces have been gone through from their ends on as if they were free: the joints between them get what they are asked
-    /// for.
+    /// Closes the joints between pieces, after the pieces have been solved from their ends on as if they were free: each joint gets its
+    /// requested motion.
     #[inline(always)]
     pub fn close<L: Lanes>(
         &mut self,
@@ -194,7 +194,7 @@ impl Cuts {
         store(load::<L>(&links[0].asked) + moved, &mut links[0].asked);
     }
 
-    /// Impulses from the rates that are asked for, in `last`.
+    /// Solves for the impulses, from the requested rates in `last`.
     fn solve(&mut self) {
         let mut left = [zero::<f64>(); WIDTH];
         for k in (0..WIDTH).rev() {
@@ -216,13 +216,14 @@ impl Cuts {
         }
     }
 
-    /// Takes back what the last solve gave.
+    /// Subtracts the impulses of the last solve.
     #[inline(always)]
     pub fn take_back<L: Lanes>(&mut self) {
         store(load::<L>(&self.given) - load(&self.last), &mut self.given);
     }
 
-    /// Impulse and angular impulse on the joint below by the last link of each piece, about its centre; then begins anew.
+    /// Returns impulse and angular impulse of the last link of each piece on the joint below it, about the link's centre, and resets the
+    /// sums.
     #[inline(always)]
     pub fn take_given<L: Lanes>(&mut self) -> [Vector3<L>; 2] {
         let force = handed_up(load::<L>(&self.given));
@@ -238,13 +239,13 @@ impl Cuts {
     }
 }
 
-/// Rotations of the links that the first ones of the pieces hang on.
+/// Rotations of the links above the first links of the pieces.
 #[inline(always)]
 fn turn_above<L: Lanes>(last: &[Eight; 4], before: &[Eight; 4], tips: Tips<L>) -> Turn<L> {
     let [last, before] = [load_turn::<L>(last), load_turn::<L>(before)];
     let vector = handed_down(tips.pick(last.vector, before.vector), Vec3::ZERO);
     let real = L::select(tips.full, last.real, before.real);
-    // In the first lane there is no link, and any rotation will do.
+    // The first lane has no link above; any rotation will do.
     let real = handed_down(Vector3::new(real, real, real), Vec3::ONE).x;
     Turn { vector, real }
 }
@@ -264,11 +265,11 @@ fn keep_gap<L: Lanes>(gap: Vector3<L>, link: &mut Link, is_held: bool) -> Vector
     gap
 }
 
-/// Answers of the ends of the pieces to forces at them, m/s per N·s.
+/// Responses of the ends of the pieces to forces at them, m/s per N·s.
 struct Ends {
     first: [Eight; 6],
     last: [Eight; 6],
-    /// Rows of the first end's answers to forces at the last.
+    /// Rows of the first end's response to forces at the last end.
     across: [[Eight; 3]; 3],
 }
 

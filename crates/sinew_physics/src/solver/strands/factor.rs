@@ -1,4 +1,4 @@
-//! Arms, gaps and the factor at the pose to which the links have come.
+//! Arms, gaps and the factor at the present pose of the links.
 
 use super::super::articulation::elimination::{Freedom, Inertia, Swivel, Symmetric, zero};
 use super::super::flight::{Eight, load, store};
@@ -25,7 +25,7 @@ pub(super) fn place_arms<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_,
     }
 }
 
-/// Gaps of the joints, from their arms.
+/// Computes the gaps of the joints from their arms.
 #[inline(always)]
 pub(super) fn place_gaps<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>) {
     for i in 0..links.len() {
@@ -43,8 +43,8 @@ pub(super) fn place_gaps<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>)
     }
 }
 
-/// The factor, from the end of the strand on, with geometric stiffness `h² k_g` of the joints' forces as far as it exceeds the
-/// inertia. All that a link feels of those below it is a mass at the joint, which depends on the direction.
+/// Computes the factor, from the end of the strand on, with the geometric stiffness `h² k_g` of the joints' forces where it exceeds the
+/// inertia. The links below a link act on it as a direction-dependent mass at the joint.
 #[inline(always)]
 pub(super) fn factor<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, pace: &Pace) {
     factor_pieces::<L>(links, ends, pace);
@@ -92,7 +92,7 @@ fn stiffness_above<L: Lanes>(link: &Link, h2: L) -> Vector3<L> {
     load::<L>(&link.parent_stiffness) * pull
 }
 
-/// In the lanes of the mask, and nothing elsewhere.
+/// Keeps the values in the lanes of the mask, and sets zero elsewhere.
 #[inline(always)]
 fn within<L: Lanes>(
     Symmetric(mut numbers): Symmetric<L::Wide>,
@@ -104,7 +104,7 @@ fn within<L: Lanes>(
     Symmetric(numbers)
 }
 
-/// Inertia that a link feels of those below it.
+/// Inertia of the links below, as it acts on a link.
 struct Below<L: Lanes> {
     /// At the joint, kg.
     mass: Symmetric<L::Wide>,
@@ -114,7 +114,7 @@ struct Below<L: Lanes> {
     stiffness: Vector3<L>,
 }
 
-/// Articulated inertia about the anchor of a link with such a tensor about its centre: diagonal, and yz, xz, xy.
+/// Articulated inertia about the anchor of a link with the given tensor about its centre: diagonal, and yz, xz, xy.
 #[inline(always)]
 fn at_anchor<L: Lanes>(
     [diagonal, off]: [Vector3<L>; 2],
@@ -138,7 +138,7 @@ fn at_anchor<L: Lanes>(
     whole
 }
 
-/// With the digits of the solve.
+/// Rounds to the precision of the solve and stores the matrix.
 #[inline(always)]
 fn keep<L: Lanes>(Symmetric(from): &Symmetric<L::Wide>, to: &mut [Eight; 6]) {
     for (number, row) in from.iter().zip(to) {
@@ -146,7 +146,7 @@ fn keep<L: Lanes>(Symmetric(from): &Symmetric<L::Wide>, to: &mut [Eight; 6]) {
     }
 }
 
-/// As it was kept.
+/// Loads a stored matrix.
 #[inline(always)]
 pub(super) fn kept<L: Lanes>([a, b, c, d, e, f]: &[Eight; 6]) -> Symmetric<L> {
     Symmetric([L::load(a), L::load(b), L::load(c), L::load(d), L::load(e), L::load(f)])

@@ -1,4 +1,4 @@
-//! The exact solve of a strand's joints, up to its first link and down again.
+//! The exact solve of a strand's joints: up to its first link, and down again.
 
 use super::super::articulation::elimination::{times, transposed_times, zero};
 use super::super::flight::{Eight, load, store};
@@ -9,28 +9,28 @@ use super::link::{Hook, Link, load_turn, store_turn};
 use super::pieces::{Tips, all, masked, select, whole_max};
 use sinew_math::lanes::{Lanes, Vector3};
 
-/// Ends of strands: fixed bodies that hold them, or cuts that make pieces of one.
+/// Ends of strands: fixed bodies that hold them, or the cuts between the pieces of one strand.
 pub(super) struct StrandEnds<'a, L: Lanes> {
-    /// In the first lane only, if the strand is cut.
+    /// Used in the first lane only, if the strand is cut.
     pub hook: Option<&'a Hook>,
     pub cuts: Option<&'a mut Cuts>,
     pub tips: Tips<L>,
 }
 
 impl<'a, L: Lanes> StrandEnds<'a, L> {
-    /// True if the first link of every lane hangs on a fixed body.
+    /// Returns true if the first link of every lane hangs on a fixed body.
     #[inline(always)]
     pub fn holds_first(&self) -> bool {
         self.hook.is_some() && self.cuts.is_none()
     }
 
-    /// True if a joint holds the first link of most lanes.
+    /// Returns true if a joint holds the first link of most lanes.
     #[inline(always)]
     pub fn joins_first(&self) -> bool {
         self.hook.is_some() || self.cuts.is_some()
     }
 
-    /// Impulses and angular impulses on the joints that are cut by the last links, about their centres, since it was last asked.
+    /// Returns impulses and angular impulses of the last links on the cut joints, about the links' centres, since the last call.
     #[inline(always)]
     pub fn take_given(&mut self) -> [Vector3<L>; 2] {
         match &mut self.cuts {
@@ -39,25 +39,26 @@ impl<'a, L: Lanes> StrandEnds<'a, L> {
         }
     }
 
-    /// Bodies that the first links of all lanes hang on.
+    /// Bodies on which the first links of all lanes hang.
     #[inline(always)]
     pub fn hooks(&self) -> Option<&'a Hook> {
         if self.cuts.is_none() { self.hook } else { None }
     }
 }
 
-/// Motions that joints are asked for.
+/// Motion requested of the joints.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Asked {
-    /// To stop.
+    /// Stop.
     Rest,
-    /// To close their gaps within the substep.
+    /// Close their gaps within the substep.
     Closed,
-    /// To close those that they will have with the present velocities.
+    /// Close the gaps that they will have with the present velocities.
     Corrected,
 }
 
-/// From the end of the strand to its first link: what is asked of each joint, and what the links below push through it.
+/// Ascends from the end of the strand to its first link: computes the requested motion of each joint and the impulse that the links below
+/// pass through it.
 #[inline(always)]
 pub(super) fn ascend<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, asked: Asked, h: f32) {
     ascend_pieces::<L>(links, ends, asked, h);
@@ -96,7 +97,7 @@ fn ascend_pieces<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>, asked: 
     }
 }
 
-/// Velocity of a body's anchor against that of its parent; fixed ones stand still.
+/// Velocity of a body's anchor relative to that of its parent; a fixed parent is at rest.
 #[inline(always)]
 pub(super) fn slide<L: Lanes>(link: &Link, parent: Option<&Link>) -> Vector3<L> {
     let of_body = load::<L>(&link.velocity) + load::<L>(&link.spin).cross(load(&link.arm));
@@ -108,7 +109,7 @@ pub(super) fn slide<L: Lanes>(link: &Link, parent: Option<&Link>) -> Vector3<L> 
     }
 }
 
-/// Answer of a link, from the answer of its parent.
+/// Velocity change of a link, from that of its parent.
 #[inline(always)]
 pub(super) fn answer<L: Lanes>(link: &Link, [v, w]: [Vector3<L>; 2]) -> [Vector3<L>; 2] {
     let at = (v + w.cross(load(&link.parent_arm))) + load(&link.asked);
@@ -122,14 +123,14 @@ pub(super) fn rows<L: Lanes>([x, y, z]: &[[Eight; 3]; 3]) -> [Vector3<L>; 3] {
     [load(x), load(y), load(z)]
 }
 
-/// Fastest velocities of a strand, component by component, and how fast its joints still open, m/s and rad/s.
+/// Largest velocity components of a strand, and the remaining opening rate of its joints, m/s and rad/s.
 #[derive(Clone, Copy)]
 pub(super) struct Left<L> {
     pub fastest: L,
     pub rate: L,
 }
 
-/// Down the strand in the lanes of the mask, for velocities alone.
+/// Descends the strand in the lanes of the mask and updates the velocities only.
 #[inline(always)]
 pub(super) fn descend<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>, going: L::Mask) -> Left<L> {
     let none = L::splat(0.0);
@@ -157,7 +158,7 @@ pub(super) fn descend<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>, go
     left
 }
 
-/// Goes down the strand in the lanes of the mask, and on to the poses that the velocities lead to. Gives the largest gap there, m.
+/// Descends the strand in the lanes of the mask and computes the poses that the velocities lead to. Returns the largest gap there, m.
 #[inline(always)]
 pub(super) fn descend_ahead<L: Lanes>(
     links: &mut [Link],
@@ -179,7 +180,7 @@ pub(super) fn descend_ahead<L: Lanes>(
         parent = look_ahead(link, parent, i > 0 || ends.holds_first(), h);
         let gap = masked(load::<L>(&link.gap), ends.tips.within(all::<L>(), i));
         store(gap, &mut link.gap);
-        // At a cut it is as it was before.
+        // The state above a cut is not updated here.
         if i > 0 || ends.cuts.is_none() {
             most = L::max(most, largest(gap));
         }
@@ -187,7 +188,7 @@ pub(super) fn descend_ahead<L: Lanes>(
     look_ahead_of_cuts(links, ends, most)
 }
 
-/// Gaps at cuts, after those within pieces, of which the largest is `most`. Gives the largest of the strand.
+/// Computes the gaps at cuts, after those within pieces, the largest of which is `most`. Returns the largest gap of the strand.
 #[inline(always)]
 fn look_ahead_of_cuts<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>, most: L) -> L {
     match &ends.cuts {
@@ -196,7 +197,7 @@ fn look_ahead_of_cuts<L: Lanes>(links: &mut [Link], ends: &StrandEnds<'_, L>, mo
     }
 }
 
-/// Takes the last correction back in the lanes of the mask.
+/// Undoes the last correction in the lanes of the mask.
 #[inline(always)]
 pub(super) fn take_back<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, mask: L::Mask, h: f32) {
     let mut parent = Parent::<L>::of_hook(ends.hooks());
@@ -214,12 +215,12 @@ pub(super) fn take_back<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, 
     }
 }
 
-/// Place at which a parent will be.
+/// Predicted placement of a parent.
 #[derive(Clone, Copy)]
 struct Parent<L> {
     position: Vector3<L>,
     rotation: Turn<L>,
-    /// Arm of a fixed one to the anchor.
+    /// Arm of a fixed parent to the anchor.
     arm: Vector3<L>,
     is_fixed: bool,
 }
@@ -236,7 +237,7 @@ impl<L: Lanes> Parent<L> {
     }
 }
 
-/// Pose that a body's velocities lead to, and the gap that its joint will have there.
+/// Predicts the pose that a body's velocities lead to, and the gap of its joint there.
 #[inline(always)]
 fn look_ahead<L: Lanes>(link: &mut Link, parent: Parent<L>, is_jointed: bool, h: f32) -> Parent<L> {
     let position = load::<L>(&link.position) + load::<L>(&link.velocity) * L::splat(h);

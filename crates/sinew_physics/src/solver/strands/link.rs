@@ -1,4 +1,4 @@
-//! A link of eight strands, or of eight pieces of one, side by side.
+//! A link of eight strands, or of eight pieces of one strand, side by side.
 
 use super::super::flight::{Eight, ZERO, put, take};
 use super::super::motion::Turn;
@@ -10,7 +10,7 @@ use crate::spatial::join;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 use sinew_math::{Rotation, Transform, Vec3};
 
-/// Bodies and the joints that hold them to the link before, or to what holds the strand ("parent").
+/// Bodies and the joints that attach them to the previous link or to the body that holds the strand ("parent").
 #[derive(Clone, Debug)]
 pub(super) struct Link {
     /// Indices in the world.
@@ -24,10 +24,10 @@ pub(super) struct Link {
     /// Anchor of the joint on body and parent, in their principal frames, metres.
     pub anchor: [Eight; 3],
     pub parent_anchor: [Eight; 3],
-    /// Amount that a unit of pull there adds to the moments of body and parent.
+    /// Moments that a unit of pull at the anchor adds to body and parent.
     pub stiffness: [Eight; 3],
     pub parent_stiffness: [Eight; 3],
-    /// By gravity and the forces of this step, m/s², and the torque of this step, N·m, world axes.
+    /// Acceleration by gravity and the forces of this step, m/s², and the torque of this step, N·m, world axes.
     pub acceleration: [Eight; 3],
     pub torque: [Eight; 3],
     pub linear_damping: Eight,
@@ -36,37 +36,37 @@ pub(super) struct Link {
     pub rotation: [Eight; 4],
     pub velocity: [Eight; 3],
     pub spin: [Eight; 3],
-    /// Bit `k`: the body in lane `k` was faster than the world lets it be.
+    /// Bit `k`: the body in lane `k` exceeded the world's speed limits.
     pub limited: u8,
     /// Angular momentum, world axes, N·m·s.
     pub momentum: [Eight; 3],
-    /// On the body by the joint in the last substep, N.
+    /// Force of the joint on the body in the last substep, N.
     pub force: [Eight; 3],
-    /// Impulses of the substeps so far on the body, torque about the anchor, N·s and N·m·s.
+    /// Impulses of the joint on the body in the substeps so far, torque about the anchor, N·s and N·m·s.
     pub pushed: [Eight; 3],
     pub turned: [Eight; 3],
-    /// From the centres of mass of body and parent to the anchor, world axes; a fixed parent has none.
+    /// From the centres of mass of body and parent to the anchor, world axes; zero for a fixed parent.
     pub arm: [Eight; 3],
     pub parent_arm: [Eight; 3],
-    /// Anchor of the body less that of the parent, world axes.
+    /// Anchor of the body minus that of the parent, world axes.
     pub gap: [Eight; 3],
-    /// Amount that stability adds to the moments, kg·m².
+    /// Moments added for stability, kg·m².
     pub excess: [Eight; 3],
-    /// The factor: see [`Swivel`](super::super::articulation::elimination::Swivel). Of the first link of free strands, the last is the inverse of
-    /// the mass that is left.
+    /// The factor, see [`Swivel`](super::super::articulation::elimination::Swivel). For the first link of free strands, the last field is
+    /// the inverse of the remaining mass.
     pub pivot: [Eight; 6],
     pub coupled: [[Eight; 3]; 3],
     pub passed: [Eight; 6],
-    /// Velocity that is asked of the anchor on top of the parent's motion, m/s, and what torque is left to turn the body, N·m·s.
+    /// Requested velocity of the anchor relative to the parent's motion, m/s, and the remaining torque on the body, N·m·s.
     pub asked: [Eight; 3],
     pub left: [Eight; 3],
-    /// Velocities from which impulses are reckoned: as the forces leave them, then as bodies have moved.
+    /// Reference velocities for impulses: after the forces have acted, then after the bodies have moved.
     pub start_velocity: [Eight; 3],
     pub start_spin: [Eight; 3],
     /// Velocities before the last correction.
     pub before_velocity: [Eight; 3],
     pub before_spin: [Eight; 3],
-    /// Pose that the velocities lead to.
+    /// Predicted pose.
     pub ahead: [Eight; 3],
     pub ahead_rotation: [Eight; 4],
 }
@@ -155,7 +155,7 @@ impl Link {
         put(force, &mut self.force, lane);
     }
 
-    /// Empties a lane: a body at rest that nothing holds and nothing moves.
+    /// Empties a lane: a body at rest without joints and forces.
     pub fn clear(&mut self, lane: usize) {
         (self.bodies[lane], self.joints[lane]) = (NONE, NONE);
         (self.mass[lane], self.linear_damping[lane], self.angular_damping[lane]) = (1.0, 0.0, 0.0);
@@ -168,7 +168,7 @@ impl Link {
         }
     }
 
-    /// Copies what was written into a lane of another.
+    /// Copies a lane of another link into a lane of this one.
     #[cfg(test)]
     pub fn copy_lane(&mut self, lane: usize, from: &Self, of: usize) {
         self.mass[lane] = from.mass[of];
@@ -182,7 +182,7 @@ impl Link {
         }
     }
 
-    /// Vectors that are written at the beginning of a step.
+    /// Vectors that are written when a step begins.
     fn vectors(&mut self) -> [&mut [Eight; 3]; 11] {
         [
             &mut self.inertia,
@@ -199,7 +199,7 @@ impl Link {
         ]
     }
 
-    /// Lanes from `lanes` on are copies of the first, so that nothing in them takes longer than that.
+    /// Copies the first lane into the lanes from `lanes` on, so that no unused lane takes longer than a used one.
     pub fn fill(&mut self, lanes: usize) {
         let fill = |row: &mut Eight| {
             for lane in lanes..WIDTH {
@@ -223,7 +223,7 @@ impl Link {
         }
     }
 
-    /// State that the joint carries on: a plain one has neither limits nor motors.
+    /// State that the joint keeps for the next step. A plain joint has neither limits nor motors.
     pub fn joint(&self, lane: usize) -> SolvedJoint {
         let sign = self.sign[lane];
         SolvedJoint {
@@ -252,7 +252,7 @@ pub(super) fn store_turn<L: Lanes>(turn: Turn<L>, [x, y, z, w]: &mut [Eight; 4])
 /// Fixed bodies that hold eight strands.
 #[derive(Clone, Debug)]
 pub(super) struct Hook {
-    /// Centre of the fixed body, and from there to the anchor, world axes.
+    /// Centre of the fixed body, and the arm from there to the anchor, world axes.
     pub position: [Eight; 3],
     pub arm: [Eight; 3],
 }
@@ -260,7 +260,7 @@ pub(super) struct Hook {
 impl Hook {
     pub const EMPTY: Self = Self { position: ZERO3, arm: ZERO3 };
 
-    /// Writes what holds a strand with that first link.
+    /// Writes the fixed body that holds the strand with the given first link.
     pub fn write(&mut self, lane: usize, first: &Placed, view: &View<'_>) {
         let joint = view.joints.at(first.joint);
         let Transform { translation, rotation } = view.bodies.at(first.parent).world_from_principal;
@@ -274,7 +274,7 @@ impl Hook {
         [take(&self.position, 0), take(&self.arm, 0)]
     }
 
-    /// Fills the other lanes as for [links](Link::fill).
+    /// Fills the unused lanes as [`Link::fill`] does.
     pub fn fill(&mut self, lanes: usize) {
         for row in self.position.iter_mut().chain(&mut self.arm) {
             for lane in lanes..WIDTH {

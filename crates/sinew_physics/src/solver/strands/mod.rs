@@ -1,9 +1,9 @@
-//! Strands: unbranched chains of plain ball joints that nothing touches, up to eight of one length side by side.
+//! Strands: unbranched chains of plain ball joints without contacts, up to eight of one length side by side.
 //!
 //! The method is that of the islands ([`joints`](super::articulation::joints)): SHAKE and RATTLE over the exact factor of the chain, with
-//! geometric stiffness. What an unbranched chain of points saves is everything around it: there are no rows, no residuals but of three
-//! directions a joint, no impulses from outside, and what one link hands to the next stays in registers. A strand that comes to where
-//! a safeguard of the islands would act has its step solved by them, from its beginning.
+//! geometric stiffness. An unbranched chain of ball joints needs less bookkeeping: it has no rows, residuals only in three directions a
+//! joint, and no external impulses, and the values passed from link to link stay in registers. If a strand reaches a state in which a
+//! safeguard of the islands would act, the islands' solver repeats its whole step.
 
 mod cuts;
 mod factor;
@@ -33,13 +33,13 @@ use sinew_math::dispatch;
 use sinew_math::lanes::WIDTH;
 use substep::{Advance, Alone, Pace};
 
-/// Bundles, from the last one on, in which room is looked for: more would cost more than half-empty ones where all lengths differ.
+/// Number of most recent bundles searched for a free lane. Where all lengths differ, searching more costs more than half-empty bundles do.
 const OPEN: usize = 32;
 
 /// All strands of a step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Strands {
-    /// Bundles in use, and memory of earlier steps behind them.
+    /// Bundles in use, followed by the memory of earlier steps.
     bundles: Vec<Bundle>,
     used: usize,
     order: Order,
@@ -48,7 +48,7 @@ pub(crate) struct Strands {
 /// Up to eight strands of one length, each held by a fixed body or all free.
 #[derive(Clone, Debug)]
 struct Bundle {
-    /// Numbers of the islands, lane by lane.
+    /// Indices of the islands, lane by lane.
     islands: Vec<u32>,
     /// From the held end on.
     links: Vec<Link>,
@@ -56,29 +56,29 @@ struct Bundle {
     hook: Hook,
     /// The lanes are the pieces of one strand.
     is_cut: bool,
-    /// The joints between these.
+    /// The joints between these pieces.
     cuts: Box<Cuts>,
-    /// 1 in the lanes whose last place is filled.
+    /// 1 in the lanes whose last place is filled, 0 in the others.
     full: Eight,
-    /// Length of its substeps over that of the world's.
+    /// Length of its substeps relative to the world's.
     stretch: f32,
-    /// Strands beside which the other lanes have last been filled.
+    /// Number of used lanes when the unused lanes were last filled.
     filled: usize,
-    /// Lanes that the islands' solver is to take, bit by bit.
+    /// Bit set of the lanes whose step the islands' solver has to repeat.
     left: u8,
 }
 
-/// A strand that has been through the step.
+/// A strand after its step.
 pub(crate) struct SolvedStrand<'a> {
     bundle: &'a Bundle,
-    /// Its own, or those of its pieces.
+    /// Its lane, or the lanes of its pieces.
     lanes: Range<usize>,
-    /// Number of its island.
+    /// Index of its island.
     pub island: usize,
 }
 
 impl Strands {
-    /// Begins with none.
+    /// Removes all strands.
     pub fn clear(&mut self) {
         self.used = 0;
     }
@@ -117,7 +117,7 @@ impl Strands {
         }
     }
 
-    /// Adds the strand that was found as eight pieces.
+    /// Adds the strand found last as eight pieces.
     fn add_pieces(&mut self, number: usize, stretch: f32, view: &View<'_>) {
         let (count, is_held) = (self.order.links.len(), self.order.is_held());
         let (least, longer) = (count / WIDTH, count % WIDTH);
@@ -144,7 +144,7 @@ impl Strands {
         }
     }
 
-    /// Another bundle, of strands or pieces of so many links.
+    /// Opens another bundle, for strands or pieces of `count` links.
     fn open(&mut self, count: usize) -> usize {
         if self.used == self.bundles.len() {
             self.bundles.push(Bundle::empty());
@@ -161,7 +161,7 @@ impl Strands {
         self.used - 1
     }
 
-    /// Takes all of them through a step.
+    /// Steps all strands.
     pub fn run(&mut self, view: &View<'_>, context: &StepContext<'_>) {
         for_each_mut(context.runner, &mut self.bundles[..self.used], |bundle| {
             let (h, substeps) = view.pace.stretched(bundle.stretch);
@@ -178,7 +178,7 @@ impl Strands {
         }
     }
 
-    /// Strands that the islands' solver need not take.
+    /// Strands whose step is valid, so that the islands' solver does not repeat it.
     pub fn solved(&self) -> impl Iterator<Item = SolvedStrand<'_>> {
         self.bundles[..self.used].iter().flat_map(|bundle| {
             let done = (0..bundle.islands.len()).filter(|lane| bundle.left & 1 << lane == 0);
@@ -233,7 +233,7 @@ impl SolvedStrand<'_> {
         self.links().map(|(link, lane)| link.body(lane))
     }
 
-    /// State that its joints carry on.
+    /// State that its joints keep for the next step.
     pub fn joints(&self) -> impl Iterator<Item = SolvedJoint> {
         self.joint_links().map(|(link, lane)| link.joint(lane))
     }
@@ -251,14 +251,14 @@ impl SolvedStrand<'_> {
     }
 }
 
-/// True of a joint that holds a point and does nothing else.
+/// Returns true for a joint that locks a point and does nothing else.
 fn is_plain(joint: &Joint) -> bool {
     use crate::joint::def::JointKind;
     joint.kind == JointKind::Ball { limit: None } && joint.drive.is_limp() && joint.drive.friction == 0.0
 }
 
-/// Geometric stiffness about the principal axes that a unit of pull at an anchor adds to the moments: row sums of `1 − r̂ r̂ᵀ`, so
-/// that the inertia stays diagonal.
+/// Geometric stiffness about the principal axes that a unit of pull at an anchor adds to the moments: row sums of `1 − r̂ r̂ᵀ`, so that the
+/// inertia stays diagonal.
 fn stiffness_of(anchor: Vec3) -> Vec3 {
     let axis = sinew_math::normalize_or(anchor, Vec3::X);
     let off = sinew_math::abs3(axis);

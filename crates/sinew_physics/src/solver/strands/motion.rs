@@ -1,4 +1,4 @@
-//! Forces to velocities, and velocities to poses with what the joints gave.
+//! Integrates forces to velocities, and velocities to poses, including the joint impulses.
 
 use super::super::articulation::elimination::zero;
 use super::super::flight::{load, store};
@@ -8,15 +8,15 @@ use super::link::{Link, load_turn, store_turn};
 use super::substep::Pace;
 use sinew_math::lanes::{LaneMask, Lanes, Vector3};
 
-/// Kinetic energies, J.
+/// Kinetic energies of a strand, J.
 #[derive(Clone, Copy)]
 pub(super) struct Kinetic<L> {
-    /// Before the forces acted, and after.
+    /// Before and after the forces have acted.
     pub before: L,
     pub start: L,
 }
 
-/// Forces to velocities, as for [bodies of islands](super::super::motion::IntegrateVelocity).
+/// Integrates forces to velocities, as for [bodies of islands](super::super::motion::IntegrateVelocity).
 #[inline(always)]
 pub(super) fn integrate_velocity<L: Lanes>(links: &mut [Link], pace: &Pace) -> Kinetic<L> {
     let (h, one) = (L::splat(pace.h), L::splat(1.0));
@@ -33,7 +33,7 @@ pub(super) fn integrate_velocity<L: Lanes>(links: &mut [Link], pace: &Pace) -> K
             divided(velocity, one + h * L::load(&link.linear_damping)) + load(&link.acceleration) * h;
         let given = over(turn.turned_back(load::<L>(&link.torque) * h), total);
         let spin = divided(spin, one + h * L::load(&link.angular_damping)) + given;
-        // Geometric stiffness beyond the inertia acts as inertia: the spin it takes part in is shared with it.
+        // Geometric stiffness beyond the inertia acts as inertia, so the spin is distributed over both.
         let spin = over(times(spin, inertia), total);
         let [share, linear_share] = [within(spin, pace.max_spin), within(velocity, pace.max_speed)];
         link.limited |= (L::gt(one, share) | L::gt(one, linear_share)).bits();
@@ -51,8 +51,8 @@ pub(super) fn integrate_velocity<L: Lanes>(links: &mut [Link], pace: &Pace) -> K
     Kinetic { before: twice.before * half, start: twice.start * half }
 }
 
-/// Velocities to the poses that were [foreseen](super::joints::descend_ahead); the impulses of the joints from the end of the strand
-/// on. Momenta go on with what they gave, spins follow from them.
+/// Moves the links to the [predicted](super::joints::descend_ahead) poses and stores the joint impulses, from the end of the strand on. The
+/// joint impulses are added to the momenta, from which the spins follow.
 #[inline(always)]
 pub(super) fn integrate_position<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, pace: &Pace) {
     let rate = L::splat(1.0 / pace.h);
@@ -79,7 +79,7 @@ pub(super) fn integrate_position<L: Lanes>(links: &mut [Link], ends: &mut Strand
     }
 }
 
-/// Notes what joints gave in `relax`. Gives the kinetic energy, J.
+/// Adds the joint impulses of `relax`. Returns the kinetic energy, J.
 #[inline(always)]
 pub(super) fn end_substep<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>) -> L {
     let of_cuts = ends.take_given();
@@ -102,7 +102,7 @@ pub(super) fn end_substep<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_
     twice * L::splat(0.5)
 }
 
-/// Momentum and angular momentum about its centre that a body gained since velocities were the `start` ones.
+/// Momentum and angular momentum (about its centre) that a body gained since the `start` velocities.
 #[inline(always)]
 fn gains<L: Lanes>(link: &Link) -> [Vector3<L>; 2] {
     let exact = load_turn::<L>(&link.rotation).exact();
@@ -112,7 +112,7 @@ fn gains<L: Lanes>(link: &Link) -> [Vector3<L>; 2] {
     [velocity * L::load(&link.mass), turned]
 }
 
-/// Notes what the joint gives the body, about its centre. Gives that about the parent's centre.
+/// Adds the impulse of the joint on the body, about its centre. Returns the impulse on the parent, about the parent's centre.
 #[inline(always)]
 fn push<L: Lanes>(link: &mut Link, [force, torque]: [Vector3<L>; 2]) -> [Vector3<L>; 2] {
     let torque = torque - load::<L>(&link.arm).cross(force);
@@ -121,7 +121,7 @@ fn push<L: Lanes>(link: &mut Link, [force, torque]: [Vector3<L>; 2]) -> [Vector3
     [force, torque + load::<L>(&link.parent_arm).cross(force)]
 }
 
-/// Work of the forces on the way that the bodies are about to go, J.
+/// Work of the forces along the displacement that the bodies are about to make, J.
 #[inline(always)]
 pub(super) fn work_of_forces<L: Lanes>(links: &[Link], pace: &Pace) -> L {
     let mut power = L::splat(0.0);

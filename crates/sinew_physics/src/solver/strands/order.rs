@@ -1,46 +1,46 @@
-//! Islands that are strands, and the order in which their links follow each other.
+//! Finds the islands that are strands, and the order of their links.
 
 use super::is_plain;
 use crate::island::Island;
 use crate::solver::view::View;
 
-/// No body, no joint.
+/// Marks the absence of a body or joint.
 pub(super) const NONE: u32 = u32::MAX;
-/// The joints of a body that the island does not have.
+/// Joints of a body that is not in the island.
 const ABSENT: [u32; 2] = [NONE - 1; 2];
 
-/// A link in its place; indices of the world.
+/// A link at its position in the strand; indices of the world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
     pub body: u32,
-    /// To the link before, or to what holds the strand.
+    /// Joint to the previous link, or to the body that holds the strand.
     pub joint: u32,
     pub parent: u32,
-    /// The body is the joint's second one.
+    /// True if the body is the joint's second one.
     pub is_b: bool,
 }
 
-/// The links of the strand that was found last, from the held end on; of a free one from that with the smaller index.
+/// The links of the strand found last, from the held end on. A free strand starts at the end with the smaller body index.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Order {
     pub links: Vec<Placed>,
-    /// By slot of the world's bodies: the joints of a body of the island.
+    /// By slot of the world's bodies: the joints of each body of the island.
     joints_of: Vec<[u32; 2]>,
 }
 
 impl Order {
-    /// A fixed body holds the first link.
+    /// Returns true if a fixed body holds the first link.
     pub fn is_held(&self) -> bool {
         self.links.first().is_some_and(|first| first.joint != NONE)
     }
 
-    /// Lists the links of an island, if it is a strand; the answer depends on the island alone.
+    /// Lists the links of an island if it is a strand. The result depends on the island alone.
     pub fn find(&mut self, island: &Island<'_>, view: &View<'_>) -> bool {
         self.links.clear();
         let (bodies, joints) = (island.bodies.len(), island.joints.len());
         let is_tree = joints == bodies || joints + 1 == bodies;
         let is_apart = island.contacts.is_empty() && island.groups.is_empty() && view.fields.is_empty();
-        // Nothing acts but gravity and the forces and torques of this step.
+        // Only gravity and the forces and torques of this step act on the body.
         let is_left_alone = |&body: &u32| view.bodies.at(body).forces.list.is_empty();
         if joints == 0 || !is_tree || !is_apart || !island.bodies.iter().all(is_left_alone) {
             return false;
@@ -59,8 +59,8 @@ impl Order {
         self.links.len() == bodies
     }
 
-    /// Notes the joints of each body. Gives that which begins the strand, and the body with it; nothing where links branch, a joint
-    /// is not plain or what holds the strand moves.
+    /// Records the joints of each body. Returns the joint and the body that begin the strand, or `None` where links branch, a joint is not
+    /// plain, or the holding body moves.
     fn join(&mut self, island: &Island<'_>, view: &View<'_>) -> Option<(u32, u32)> {
         let mut held = None;
         for &index in island.joints {
@@ -84,7 +84,7 @@ impl Order {
         held.or_else(|| island.bodies.iter().find(is_end).map(|&body| (NONE, body)))
     }
 
-    /// From the first link on, as far as joints lead.
+    /// Walks from the first link along the joints.
     fn walk(&mut self, (mut through, mut body): (u32, u32), is_held: bool, view: &View<'_>) {
         if is_held != (through != NONE) {
             return;

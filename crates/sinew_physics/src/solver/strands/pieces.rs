@@ -1,22 +1,23 @@
-//! Lanes that hold the pieces of one strand: what is in the last place of each, what goes from one to the next, and what counts for all.
+//! Lanes that hold the pieces of one strand: the last place of each piece, the values passed between pieces, and reductions over the
+//! strand.
 
 use super::super::flight::{Eight, ZERO, load, put, store};
 use super::link::Link;
 use sinew_math::Vec3;
 use sinew_math::lanes::{LaneMask, Lanes, Real, Vector3, WIDTH};
 
-/// Last places of a strand's pieces: not all are filled where the links cannot be shared out evenly.
+/// Last places of a strand's pieces. Where the links do not divide evenly, some last places are empty.
 #[derive(Clone, Copy)]
 pub(super) struct Tips<L: Lanes> {
     /// Lanes whose last place is filled.
     pub full: L::Mask,
-    /// The same for numbers of 64 bits.
+    /// The same mask for 64-bit numbers.
     pub full_wide: <L::Wide as Real>::Mask,
     pub place: usize,
 }
 
 impl<L: Lanes> Tips<L> {
-    /// Last of so many places; `full` is 1 where the last place is filled.
+    /// Creates the tips of pieces with `links` places; `full` is 1 where the last place is filled.
     #[inline(always)]
     pub fn new(full: &Eight, links: usize) -> Self {
         let full = L::load(full);
@@ -24,13 +25,13 @@ impl<L: Lanes> Tips<L> {
         Self { full: L::lt(L::splat(0.5), full), full_wide, place: links - 1 }
     }
 
-    /// In the last place those lanes of a mask in which it is filled.
+    /// Restricts a mask to the lanes whose place `i` is filled.
     #[inline(always)]
     pub fn within(self, mask: L::Mask, i: usize) -> L::Mask {
         if i == self.place { mask & self.full } else { mask }
     }
 
-    /// Vector that comes to link `i` from the link below, if `of_cut` comes to the last one of each piece.
+    /// Vector passed to link `i` from the link below; the last link of each piece gets `of_cut`.
     #[inline(always)]
     pub fn below(self, i: usize, of_link: Vector3<L>, of_cut: Vector3<L>) -> Vector3<L> {
         if i == self.place {
@@ -42,20 +43,20 @@ impl<L: Lanes> Tips<L> {
         }
     }
 
-    /// Links in the last place and in the one before: a lane's last link is in one of them. There are two places at least.
+    /// Links in the last place and in the one before: a lane's last link is one of them. There are at least two places.
     #[inline(always)]
     pub fn of(self, links: &[Link]) -> [&Link; 2] {
         [&links[self.place], &links[self.place - 1]]
     }
 
-    /// Vector of the last link of each piece, from what is in the last place and in the one before.
+    /// Selects the vector of each piece's last link, from the last place and the one before.
     #[inline(always)]
     pub fn pick(self, last: Vector3<L>, before: Vector3<L>) -> Vector3<L> {
         select(self.full, last, before)
     }
 }
 
-/// One lane on: what piece `k − 1` has in lane `k`, and something else in the first.
+/// Shifts by one lane: the value of piece `k − 1` goes to lane `k`, and `first` to the first lane.
 #[inline(always)]
 pub(super) fn handed_down<L: Lanes>(v: Vector3<L>, first: Vec3) -> Vector3<L> {
     let (mut from, mut to) = ([ZERO; 3], [ZERO; 3]);
@@ -67,7 +68,7 @@ pub(super) fn handed_down<L: Lanes>(v: Vector3<L>, first: Vec3) -> Vector3<L> {
     load(&to)
 }
 
-/// One lane back: what piece `k + 1` has in lane `k`, and nothing in the last.
+/// Shifts back by one lane: the value of piece `k + 1` goes to lane `k`, and zero to the last lane.
 #[inline(always)]
 pub(super) fn handed_up<L: Lanes>(v: Vector3<L>) -> Vector3<L> {
     let (mut from, mut to) = ([ZERO; 3], [ZERO; 3]);
@@ -78,13 +79,13 @@ pub(super) fn handed_up<L: Lanes>(v: Vector3<L>) -> Vector3<L> {
     load(&to)
 }
 
-/// All lanes.
+/// The mask of all lanes.
 #[inline(always)]
 pub(super) fn all<L: Lanes>() -> L::Mask {
     L::eq(L::splat(0.0), L::splat(0.0))
 }
 
-/// The largest of the pieces, in each lane; NaN if one is.
+/// The largest value of the pieces, in all lanes; NaN if one is NaN.
 #[inline(always)]
 pub(super) fn whole_max<L: Lanes>(of_pieces: L) -> L {
     let (mut numbers, mut most) = (ZERO, 0.0);
@@ -97,7 +98,7 @@ pub(super) fn whole_max<L: Lanes>(of_pieces: L) -> L {
     L::splat(most)
 }
 
-/// The sum of the pieces, in each lane.
+/// The sum over the pieces, in all lanes.
 #[inline(always)]
 pub(super) fn whole_sum<L: Lanes>(of_pieces: L) -> L {
     let (mut numbers, mut sum) = (ZERO, 0.0);
@@ -108,7 +109,7 @@ pub(super) fn whole_sum<L: Lanes>(of_pieces: L) -> L {
     L::splat(sum)
 }
 
-/// True in each lane where it is so in all of them.
+/// True in all lanes if the mask is true in every lane.
 #[inline(always)]
 pub(super) fn whole_all<L: Lanes>(of_pieces: L::Mask) -> L::Mask {
     if of_pieces.all() { of_pieces } else { of_pieces & !of_pieces }

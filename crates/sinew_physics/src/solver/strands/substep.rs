@@ -14,33 +14,33 @@ use crate::solver::tuning::{
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{First, LaneMask, Lanes, WIDTH};
 
-/// Pace at which strands go through a step.
+/// Substep length and limits of the strands' step.
 #[derive(Clone, Copy)]
 pub(super) struct Pace {
     /// Substep, seconds.
     pub h: f32,
     pub substeps: u32,
-    /// Limits, m/s and rad/s.
+    /// Limits of speed and spin, m/s and rad/s.
     pub max_speed: f32,
     pub max_spin: f32,
 }
 
-/// A step of a bundle. Gives the lanes in which a safeguard of the islands would have acted, bit by bit: what has come of these means
-/// nothing.
+/// Steps a bundle. Returns the bit set of the lanes in which a safeguard of the islands would have acted; the results of these lanes are
+/// invalid.
 pub(super) struct Advance<'a> {
     pub links: &'a mut [Link],
-    /// Fixed bodies that hold the strands, if any do.
+    /// Fixed bodies that hold the strands, if there are any.
     pub hook: Option<&'a Hook>,
-    /// The joints between the lanes, if they are pieces of one strand.
+    /// The joints between the lanes if they are pieces of one strand.
     pub cuts: Option<&'a mut Cuts>,
     /// 1 in the lanes whose last place is filled.
     pub full: &'a Eight,
     pub pace: Pace,
-    /// Strands or pieces there are, from the first lane on.
+    /// Number of strands or pieces, from the first lane on.
     pub lanes: usize,
 }
 
-/// The same of a single strand, without the other lanes.
+/// The step of a single strand, without the other lanes.
 pub(super) struct Alone<'a>(pub Advance<'a>);
 
 impl Kernel for Alone<'_> {
@@ -75,7 +75,7 @@ impl Kernel for Advance<'_> {
             relax(links, &mut ends, pace.h, used);
             let end = end_substep(links, &mut ends);
             let end = ends.sum(end);
-            // Joints cannot give energy.
+            // Joints cannot add energy.
             let slack = L::max(kinetic.start, bounds.mass) * L::splat(ENERGY_SLACK);
             sound = ends.every(sound & L::le(end, kinetic.start + slack));
             if !sound.any() {
@@ -86,7 +86,7 @@ impl Kernel for Advance<'_> {
     }
 }
 
-/// Mass and reach of eight strands, which their bounds grow with.
+/// Mass and reach of eight strands, which scale their bounds.
 #[derive(Clone, Copy)]
 struct Bounds<L> {
     /// Mass of all links, kg.
@@ -107,7 +107,7 @@ impl<L: Lanes> Bounds<L> {
     }
 }
 
-/// So many lanes.
+/// Mask of the first `count` lanes.
 #[inline(always)]
 fn first_lanes<L: Lanes>(count: usize) -> L::Mask {
     let mut numbers = [0.0; WIDTH];
@@ -118,27 +118,27 @@ fn first_lanes<L: Lanes>(count: usize) -> L::Mask {
 }
 
 impl<L: Lanes> StrandEnds<'_, L> {
-    /// The sum over a strand, of what its lanes have.
+    /// The sum over the lanes of each strand.
     #[inline(always)]
     fn sum(&self, of_lanes: L) -> L {
         if self.cuts.is_some() { whole_sum(of_lanes) } else { of_lanes }
     }
 
-    /// The largest of a strand, of what its lanes have.
+    /// The largest value over the lanes of each strand.
     #[inline(always)]
     fn largest(&self, of_lanes: L) -> L {
         if self.cuts.is_some() { whole_max(of_lanes) } else { of_lanes }
     }
 
-    /// True where it is so in every lane of the strand.
+    /// True where the mask is true in every lane of the strand.
     #[inline(always)]
     fn every(&self, in_lanes: L::Mask) -> L::Mask {
         if self.cuts.is_some() { whole_all::<L>(in_lanes) } else { in_lanes }
     }
 }
 
-/// Joints exactly, then SHAKE: a correction that does not halve the gap is the last one, and one that widens it is taken back. Gives
-/// the lanes in which no safeguard acts.
+/// Solves the joints exactly, then by SHAKE. A correction that does not halve the gap is the last one; a correction that widens the gap is
+/// undone. Returns the lanes in which no safeguard acts.
 #[inline(always)]
 fn solve<L: Lanes>(
     links: &mut [Link],
@@ -154,7 +154,7 @@ fn solve<L: Lanes>(
         widest = L::max(widest, largest(load::<L>(&link.gap)));
     }
     let widest = ends.largest(widest);
-    // Joints that are open by more close over several substeps.
+    // Joints with larger gaps close over several substeps.
     let mut sound = L::le(widest, L::splat(CLOSING_SPEED * h));
     ascend(links, ends, Asked::Closed, h);
     let mut error = descend_ahead(links, ends, all::<L>(), h);
@@ -177,14 +177,14 @@ fn solve<L: Lanes>(
     }
     sound = sound & L::lt(error, L::splat(TORN)) & is_sane::<L>(links, pace);
     if ends.hook.is_some() {
-        // What hangs rises by what it has.
+        // Links rise at most as far as their kinetic energy allows.
         let there = kinetic.before + L::max(kinetic.before, bounds.mass) * L::splat(ENERGY_SLACK);
         sound = sound & L::le(-ends.sum(work_of_forces::<L>(links, pace)), there);
     }
     sound
 }
 
-/// RATTLE: joint velocities to zero at the new pose, by as many solves as masses that differ by far need.
+/// RATTLE: brings the joint velocities to zero at the new pose. Very unequal masses need more than one solve.
 #[inline(always)]
 fn relax<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, h: f32, used: L::Mask) {
     let mut going = used;
@@ -198,7 +198,7 @@ fn relax<L: Lanes>(links: &mut [Link], ends: &mut StrandEnds<'_, L>, h: f32, use
     }
 }
 
-/// No link turns faster, rad/s.
+/// Lanes in which every link turns slower than the limit, rad/s.
 #[inline(always)]
 fn turn_within<L: Lanes>(links: &[Link], most: f32) -> L::Mask {
     let most = L::splat(most * most);
@@ -210,7 +210,7 @@ fn turn_within<L: Lanes>(links: &[Link], most: f32) -> L::Mask {
     within
 }
 
-/// All velocities are of this world.
+/// Lanes in which all velocities are finite and within the limits of the world.
 #[inline(always)]
 fn is_sane<L: Lanes>(links: &[Link], pace: &Pace) -> L::Mask {
     let (speed, turn) = (L::splat(DIVERGED_SPEED * pace.max_speed), L::splat(DIVERGED_SPIN));
@@ -235,7 +235,7 @@ mod tests {
         Advance { links, hook, cuts: None, full: &[1.0; WIDTH], pace: PACE, lanes }
     }
 
-    /// Level strands that swing, each with masses and velocities of its own.
+    /// Horizontal strands that swing, each with its own masses and velocities.
     fn random_links(count: usize) -> Vec<Link> {
         let mut random = Random::new(5);
         let mut links = vec![Link::EMPTY; count];
@@ -303,7 +303,7 @@ mod tests {
         }
     }
 
-    /// Deals links of the first lane out to eight lanes.
+    /// Distributes the links of the first lane over eight lanes.
     fn cut(whole: &[Link]) -> (Vec<Link>, Eight) {
         let (least, longer) = (whole.len() / WIDTH, whole.len() % WIDTH);
         let mut links = vec![Link::EMPTY; whole.len().div_ceil(WIDTH)];
@@ -319,7 +319,7 @@ mod tests {
         (links, full)
     }
 
-    /// The largest gap of all joints, metres; lanes that do not count have none.
+    /// The largest gap of all joints, metres; unused lanes have none.
     fn widest(links: &[Link]) -> f32 {
         links.iter().flat_map(|link| link.gap.as_flattened()).fold(0.0, |most, gap| f32::max(most, gap.abs()))
     }
@@ -357,7 +357,7 @@ mod tests {
                     }
                 }
                 assert!(whole.next().is_none());
-                // Corrections end where the whole strand's do: the gaps that are left are alike.
+                // Corrections end when those of the whole strand do, so the remaining gaps are similar.
                 assert!(widest(&links) < 2.0 * open + 1e-6, "{count} links: {} m", widest(&links));
             }
             assert!(results.iter().all(|result| *result == results[0]), "{count} links");

@@ -1,4 +1,4 @@
-//! Random worlds with something of everything.
+//! Random worlds with every kind of object.
 
 use super::deeds;
 use crate::solids::pebble;

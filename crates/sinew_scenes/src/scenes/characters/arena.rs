@@ -1,4 +1,4 @@
-//! An arena: powered characters walk up to each other and push; who falls gets up and goes on.
+//! An arena: powered characters walk up to each other and push; fallen ones get up and continue.
 
 use super::street::apart;
 use crate::framework::actors::Figure;
@@ -34,7 +34,7 @@ const SPEED: f32 = 0.9;
 const ARM: f32 = 0.85;
 /// Steps between two pushes of one.
 const RESTS: u32 = 75;
-/// Step in which the referee, who stands beside the ring, jumps.
+/// Step at which the referee, who stands beside the ring, jumps.
 const JUMPS: u64 = 60;
 /// Sides of the ring.
 const SIDES: usize = 12;
@@ -75,7 +75,7 @@ fn arena(setup: &Setup<'_>) -> Instance {
 
 struct Fighter {
     character: Character,
-    /// Steps until it pushes again.
+    /// Steps until its next push.
     rests: u32,
     /// World from joint.
     model: Vec<Affine>,
@@ -103,9 +103,9 @@ struct Watch {
     nearest: f32,
     /// Greatest height of the referee's soles, metres.
     highest: f32,
-    /// Steps in which one that stands was outside of the ring.
+    /// Steps in which a standing character was outside the ring.
     outside: u32,
-    /// Bodies that the world gave up on.
+    /// Number of quarantined bodies.
     lost: u32,
     pushes: u32,
     stumbles: u32,
@@ -127,7 +127,7 @@ struct Arena {
 }
 
 impl Arena {
-    /// The nearest that stands, by index and way.
+    /// The nearest standing character, by index and direction.
     fn nearest(&self, of: usize) -> Option<(usize, Vec3)> {
         let from = self.fighters[of].place();
         let others = self.fighters[..self.fighters.len() - 1].iter().enumerate();
@@ -137,7 +137,7 @@ impl Arena {
             .reduce(|a, b| if b.1.length() < a.1.length() { b } else { a })
     }
 
-    /// Each goes to the nearest, and pushes whom it can reach.
+    /// Each character walks to the nearest one and pushes those in reach.
     fn fight(&mut self, world: &mut World) {
         let chest = self.def.body_named("chest").expect("a mannequin has a chest");
         for index in 0..self.fighters.len() - 1 {

@@ -81,11 +81,11 @@ struct TwoTracks {
     first: (f32, f32),
     second: (f32, f32),
     gone: Gone,
-    /// When the second track was a whole lap ahead, seconds.
+    /// Time at which the second track was a whole lap ahead, seconds.
     beat: Option<f32>,
-    /// Largest difference of the chest's yaw from the closed form, degrees.
+    /// Largest deviation of the chest's yaw from the closed form, degrees.
     worst: f32,
-    /// Joints and steps in which two tracks of one speed were not the one track.
+    /// Number of joints and steps in which two tracks of equal speed differed from the single track.
     differ: u32,
 }
 
@@ -152,7 +152,7 @@ pub(in crate::scenes) fn facing() -> CameraHint {
     CameraHint { direction: Vec3::new(0.75, 0.28, 1.0), ..CameraHint::default() }
 }
 
-/// Speeds asked for, m/s.
+/// Requested speeds, m/s.
 const SPEEDS: [f32; 4] = [WALK_SPEED, 1.8, 2.4, RUN_SPEED];
 /// From one runner to the next, metres.
 const APART: f32 = 1.0;
@@ -172,12 +172,12 @@ fn walk_run(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Runners { runners, gone: Gone::default() })
 }
 
-/// One of them, on the spot.
+/// A runner in place.
 struct Runner {
     actor: Actor,
-    /// Asked for, m/s.
+    /// Requested speed, m/s.
     speed: f32,
-    /// Laps per second that go with it: of both clips, as they are in phase.
+    /// Laps per second at that speed: of both clips, as they are in phase.
     cadence: f32,
     /// Along z so far, metres.
     way: f32,
@@ -211,7 +211,7 @@ impl Runner {
         self.phase_gap = max(self.phase_gap, self.apart());
     }
 
-    /// Difference of the two tracks' laps.
+    /// Difference of the two tracks' lap counts.
     fn apart(&self) -> f32 {
         let mut laps = self.laps();
         laps.next().zip(laps.next()).map_or(0.0, |(walk, run)| (walk - run).abs() as f32)

@@ -1,5 +1,5 @@
-//! A brawl in a room: characters walk about at random among crates and stairs and are struck; who falls gets up. Its figures say
-//! how well all that characters do goes together.
+//! A brawl in a room: characters walk at random among crates and stairs and are hit; fallen ones get up. The figures measure how well all
+//! character features work together.
 
 mod watch;
 
@@ -37,10 +37,10 @@ pub(in crate::scenes) const BRAWL: Scene = Scene {
 const ROOM: f32 = 6.0;
 /// Distance from a wall at which a walker turns back, metres.
 const TURNS_BACK: f32 = 0.9;
-/// Speeds at which they walk, m/s, and seconds for which they keep their way.
+/// Range of walking speeds, m/s, and seconds between changes of direction.
 const SPEEDS: (f32, f32) = (0.7, 1.4);
 const KEEPS: (f32, f32) = (1.0, 4.0);
-/// Seconds for which one who fell may go on moving before it gets up all the same: in a crowd others keep it from lying still.
+/// Time after which a fallen character gets up although it still moves, seconds: in a crowd others keep it from lying still.
 const PATIENCE: f32 = 2.0;
 /// Impulses of blows, N·s.
 const BLOWS: (f32, f32) = (5.0, 90.0);
@@ -81,7 +81,7 @@ fn brawl(setup: &Setup<'_>) -> Instance {
     Instance::new(world, script)
 }
 
-/// Ground on which all stand.
+/// Static boxes that all stand on.
 fn ground(setup: &Setup<'_>) -> Vec<BodyDef> {
     if setup.whole("tiles") == 0 {
         return vec![floor()];
@@ -113,7 +113,7 @@ fn walls_and_stairs() -> Vec<(Vec3, Vec3)> {
     boxes
 }
 
-/// Height of the stairs under a place of the grid on which all stand at first, by its way from the room's corner.
+/// Height of the stairs under a place of the initial grid, given from the room's corner.
 fn on_stairs(place: Vec3, apart: f32) -> Vec3 {
     let (steps, height, depth, half) = STAIRS;
     let (x, z) = (place.x - 0.9 * ROOM, place.z - 0.9 * ROOM);
@@ -124,7 +124,7 @@ fn on_stairs(place: Vec3, apart: f32) -> Vec3 {
 
 pub(super) struct Fighter {
     character: Character,
-    /// Velocity that it wants, m/s, and seconds for which it keeps that.
+    /// Wanted velocity, m/s, and seconds until it changes.
     way: Vec3,
     keeps: f32,
     /// World from joint.
@@ -139,7 +139,7 @@ impl Fighter {
         local_to_model(&character.def().rig, character.pose(), &root, &mut self.model);
     }
 
-    /// Goes on its way, and takes another one when it has gone for long enough or comes to a wall.
+    /// Walks on, and changes direction after its time or at a wall.
     fn walk(&mut self, random: &mut Random, dt: f32) {
         self.keeps -= dt;
         let place = self.character.world_from_character().translation;
@@ -160,10 +160,10 @@ impl Fighter {
 struct Brawl {
     def: Arc<CharacterDef>,
     fighters: Vec<Fighter>,
-    /// Each second.
+    /// Hits per second.
     hits: f32,
     powered: bool,
-    /// Blows that are due.
+    /// Hits that are due.
     due: f32,
     seed: u64,
     watch: Watch,

@@ -67,13 +67,13 @@ fn footsteps(setup: &Setup<'_>) -> Instance {
     Instance::new(world, script)
 }
 
-/// A footfall that was heard.
+/// A footfall reported by an event.
 #[derive(Clone, Copy)]
 struct Heard {
     foot: usize,
     /// Seconds from the start.
     time: f64,
-    /// Position of the ball of the foot in that moment's step, in the world.
+    /// World position of the ball of the foot in the step of the event.
     place: Vec3,
 }
 
@@ -81,7 +81,7 @@ struct Footsteps {
     actor: Actor,
     track: TrackId,
     plan: Vec<Stretch>,
-    /// When each foot falls, clip seconds.
+    /// Time of each footfall, clip seconds.
     falls: [f32; 2],
     /// Seconds.
     lap: f32,
@@ -117,8 +117,8 @@ impl Footsteps {
         }
     }
 
-    /// When a foot should have been heard up to now: wherever `T = e + k L` is passed, forward up to the end of a stretch,
-    /// backward down to it.
+    /// Times at which a foot should have been reported so far: when `T = e + k L` is passed, forward up to the end of a stretch, backward
+    /// down to it.
     fn expected(&self, foot: usize, world: &World) -> Vec<f64> {
         let dt = f64::from(world.def().dt());
         let (lap, fall) = (f64::from(self.lap), f64::from(self.falls[foot]));
@@ -199,7 +199,7 @@ fn punched(setup: &Setup<'_>) -> Instance {
     let cast = Arc::new(cast);
     let mut actor = Actor::new(&cast, Transform::IDENTITY);
     actor.animator.play(&cast.set, &TrackDef::new(clip));
-    // Where the fist will be: a hand's length beyond its wrist.
+    // Target of the fist: a hand's length beyond its wrist.
     let mut rehearsal = Actor::new(&cast, Transform::IDENTITY);
     rehearsal.animator.play(&cast.set, &TrackDef { start: PUNCH_ARRIVES, ..TrackDef::new(clip) });
     rehearsal.update(0.0);
@@ -231,22 +231,22 @@ fn punched(setup: &Setup<'_>) -> Instance {
 /// From the wrist to the knuckles, metres.
 const HAND: f32 = 0.1;
 
-/// Hit of which the callback told.
+/// A hit reported by the callback.
 #[derive(Clone, Copy)]
 struct Hit {
     step: u64,
     /// Seconds from the start.
     time: f64,
-    /// From the knuckles to where they were to be, metres.
+    /// Distance of the knuckles from their target, metres.
     miss: f32,
 }
 
 struct Punched {
     actor: Actor,
     ball: BodyId,
-    /// Asked for, N·s.
+    /// Requested impulse, N·s.
     impulse: f32,
-    /// Position at which the knuckles should be, in the world.
+    /// Target of the knuckles in the world.
     fist: Vec3,
     hit: Option<Hit>,
     /// Heights of the ball, at three moments of its flight, metres.
@@ -257,7 +257,7 @@ struct Punched {
 }
 
 impl Punched {
-    /// The payload of the punch that came by in a step, N·s.
+    /// The payload of a punch event in this step, N·s.
     fn step(&mut self, step: u64, dt: f32) -> Option<f32> {
         self.actor.update(dt);
         let fired = self.actor.animator.events().first().copied()?;
@@ -276,7 +276,7 @@ impl Script for Punched {
     fn before_step(&mut self, world: &mut World) {
         let dt = world.def().dt();
         for step in self.gone.due(world) {
-            // One that was heard while catching up has struck already.
+            // A punch reported while catching up has already hit.
             let heard = self.step(step, dt).filter(|_| step == world.step_count());
             if let Some(impulse) = heard {
                 world.apply_impulse_at_center(self.ball, Vec3::Z * impulse);

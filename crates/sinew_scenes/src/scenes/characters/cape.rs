@@ -1,4 +1,4 @@
-//! A cape that is worn through a walk, a fall down the stairs, and getting up.
+//! A cape worn during a walk, a fall down the stairs, and getting up.
 
 use crate::cabin::Site;
 use crate::framework::actors::Figure;
@@ -33,16 +33,16 @@ const NAPE: Vec3 = Vec3::new(0.0, 1.42, -0.09);
 /// Width and length, metres.
 const WIDE: f32 = 0.36;
 const LONG: f32 = 0.96;
-/// Springs along its edges: apart by less than two of the particles.
+/// Number of springs along its edges; its particles are less than two radii apart.
 const COLUMNS: u32 = 9;
 const ROWS: u32 = 24;
-/// Threads from the shoulders straight back, clear of the arms; from there it hangs.
+/// Number of threads that go straight back from the shoulders, clear of the arms, before the cape hangs down.
 const STANDS_OFF: u32 = 2;
 /// Radius of each particle, metres.
 const RADIUS: f32 = 0.02;
 /// Distance before the edge of the porch at which the hit comes, metres.
 const HIT_BEFORE_EDGE: f32 = 0.45;
-/// Role of the body that wears it, and is hit.
+/// Role of the body that wears it and is hit.
 const SHOULDERS: &str = "chest";
 
 fn cape(setup: &Setup<'_>) -> Instance {
@@ -71,7 +71,7 @@ fn cape(setup: &Setup<'_>) -> Instance {
     Instance::new(world, script)
 }
 
-/// Cloth whose first row is held at points of a body.
+/// Cloth with its first row attached to points of a body.
 fn worn(world: &World, body: BodyId, nape: Vec3, mass: f32) -> GroupDef {
     let mut cloth = ClothDef {
         corner: nape + Vec3::X * (0.5 * WIDE),
@@ -106,7 +106,7 @@ fn worn(world: &World, body: BodyId, nape: Vec3, mass: f32) -> GroupDef {
 
 #[derive(Clone, Copy, Default)]
 struct Watch {
-    /// Depth of a free particle's middle in a body of the wearer, and in anything else, metres; 0: it was in none.
+    /// Largest depth of a free particle's centre in a body of the wearer, and in anything else, metres; 0 if it was outside.
     deepest_in_wearer: f32,
     deepest_in_world: f32,
     wear: Wear,
@@ -123,7 +123,7 @@ struct Worn {
     watch: Watch,
 }
 
-/// Number of threads, along both ways; what braces cells diagonally is none.
+/// Number of threads along both directions, without the diagonal braces of cells.
 const THREADS: u32 = COLUMNS * (ROWS + 1) + ROWS * (COLUMNS + 1);
 
 impl Worn {
@@ -163,7 +163,7 @@ impl Worn {
         watch.wear.note_stretch(stretch(group, THREADS as usize));
     }
 
-    /// From the middle of the first row to that of the last, in the wearer's axes, metres.
+    /// Vector from the middle of the first row to that of the last, in the wearer's axes, metres.
     fn hem(&self, world: &World) -> Vec3 {
         let positions = world.particles(self.cape).positions();
         let row = COLUMNS as usize + 1;

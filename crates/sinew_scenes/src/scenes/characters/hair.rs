@@ -26,13 +26,13 @@ pub(in crate::scenes) const HAIR_RATES: Scene = Scene {
     build: hair,
 };
 
-/// Frames a second.
+/// Frame rates, frames a second.
 const RATES: [u64; 4] = [30, 60, 144, 240];
-/// Steps of the world after which all of them have a frame: a sixth of a second.
+/// Number of world steps after which all of them have a frame: a sixth of a second.
 const COMMON: u64 = 10;
 /// From one runner to the next, metres.
 const APART: f32 = 1.0;
-/// Way of a tip to the side that counts as a swing, metres.
+/// Sideways displacement of a tip that counts as a swing, metres.
 const LEAST_SWING: f32 = 0.1;
 /// Sway of the runners from side to side, metres and turns a second, and how far they turn, radians.
 const SWAY: f32 = 0.12;
@@ -81,7 +81,7 @@ struct Runner {
     rate: u64,
     /// Frames so far.
     frames: u64,
-    /// Place about which it sways.
+    /// Position about which it sways.
     middle: Vec3,
     /// Tips of its bones as seen from the middle, metres.
     tips: Vec<Vec3>,
@@ -95,7 +95,7 @@ impl Runner {
         self.swing_on(def, 1.0 / self.rate as f32);
     }
 
-    /// Goes on by so many seconds, to the time of its frame; by none all hair hangs at rest.
+    /// Advances to the time of its next frame by `seconds`; at the start all hair hangs at rest.
     fn swing_on(&mut self, def: &CharacterDef, seconds: f32) {
         let time = self.frames as f32 / self.rate as f32;
         let phase = sin(core::f32::consts::TAU * PACE * time);
@@ -134,7 +134,7 @@ struct Hair {
     gone: Gone,
     /// Largest distance between the same tips at one time, over the length of their bone.
     apart: f32,
-    /// Most that the ponytail's tip was to the side of its root, metres.
+    /// Largest sideways distance of the ponytail's tip from its root, metres.
     swung: f32,
 }
 
@@ -169,7 +169,7 @@ impl Script for Hair {
 
     fn metrics(&self, _: &World) -> Vec<Metric> {
         vec![
-            // Hair that hangs still is no evidence.
+            // Hair that hangs still proves nothing.
             Metric::awaited(
                 "apart_over_length",
                 (self.swung > LEAST_SWING).then_some(self.apart),
@@ -183,7 +183,7 @@ impl Script for Hair {
         CameraHint { direction: Vec3::new(-0.1, 0.12, -1.0), ..CameraHint::default() }
     }
 
-    /// The finest curve whole, each coarser one over it in shorter dashes: where they lie on each other, all are seen.
+    /// The finest curve is solid, each coarser one is drawn over it in shorter dashes: where they coincide, all are visible.
     fn curves(&self) -> Vec<Curve> {
         let place =
             |&(time, side): &(f32, f32)| GRAPH + Vec3::new(time * GRAPH_SECOND, side * GRAPH_METRE, 0.0);

@@ -1,4 +1,4 @@
-//! A skirt and a cape of bones that are worn through a walk, a fall, and getting up.
+//! A skirt and a cape of bones worn during a walk, a fall, and getting up.
 
 use crate::dressed::{CAPE, SKIRT, dressed};
 use crate::framework::actors::Figure;
@@ -54,7 +54,7 @@ fn skirt(setup: &Setup<'_>) -> Instance {
 
 #[derive(Clone, Copy, Default)]
 struct Watch {
-    /// Depth of a free particle's middle in a body of the wearer, metres; 0: it was in none.
+    /// Largest depth of a free particle's centre in a body of the wearer, metres; 0 if it was outside.
     deepest_in_wearer: f32,
     /// Depth of a free particle that is pinched between two bodies, metres.
     deepest_pinched: f32,
@@ -75,7 +75,7 @@ struct Dressed {
     watch: Watch,
 }
 
-/// Number of threads of a garment, along both ways; what braces cells diagonally is none.
+/// Number of threads of a garment along both directions, without the diagonal braces of cells.
 fn threads(group: &ParticleGroup, closed: bool) -> usize {
     let lines = group.attachments().len();
     let rows = group.positions().len() / lines - 1;

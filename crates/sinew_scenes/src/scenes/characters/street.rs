@@ -35,9 +35,9 @@ const SPEEDS: (f32, f32) = (0.8, 1.5);
 /// Steps between turns of the lift, and its speed, m/s.
 const LIFT_TURNS: u64 = 150;
 const LIFT: f32 = 0.8;
-/// The one that a person may lead: it stands in the open.
+/// Index of the character that a user may control: it stands in the open.
 const LED: usize = 1;
-/// Step in which the last of them jumps.
+/// Step at which the last of them jumps.
 const JUMPS: u64 = 90;
 
 fn street(setup: &Setup<'_>) -> Instance {
@@ -130,7 +130,7 @@ struct Watch {
     /// Largest drift of the rider on its lift, metres.
     drift: f32,
     highest: f32,
-    /// Steps in which one that stands was outside the walls.
+    /// Steps in which a standing character was outside the walls.
     outside: u32,
     flinches: u32,
     falls: u32,
@@ -143,18 +143,18 @@ struct Street {
     walkers: Vec<Walker>,
     lift: BodyId,
     half_width: f32,
-    /// Each second.
+    /// Hits per second.
     hits: f32,
     /// Hits that are due.
     due: f32,
     seed: u64,
     watch: Watch,
-    /// Way of the one in the open that a person leads, m/s.
+    /// Velocity of the character controlled by a user, m/s.
     led: Option<Vec3>,
 }
 
 impl Street {
-    /// Hits whoever is next, lightly or hard.
+    /// Hits the next character, lightly or hard.
     fn hit(&mut self, world: &mut World) {
         self.due += self.hits * world.def().dt();
         while self.due >= 1.0 {
@@ -210,7 +210,7 @@ impl Script for Street {
             let up = if (step / LIFT_TURNS).is_multiple_of(2) { LIFT } else { -LIFT };
             world.set_velocity(self.lift, Velocity { linear: Vec3::Y * up, ..Velocity::default() });
         }
-        // Who is led jumps when it is told to.
+        // A controlled character jumps only on command.
         if step == JUMPS && self.led.is_none() {
             self.walkers[1].character.jump(world);
         }

@@ -1,4 +1,4 @@
-//! From one motion to another: cut, crossfaded, inertialised.
+//! Transitions between motions: cut, crossfaded, inertialised.
 
 use super::blending::facing;
 use crate::framework::actors::{Actor, Cast, Figure, Gone};
@@ -23,7 +23,7 @@ pub(in crate::scenes) const TRANSITION: Scene = Scene {
     build: transition,
 };
 
-/// Step before which the transition begins.
+/// Step before which the transition starts.
 const START: u64 = 50;
 /// From one character to the next, metres.
 const APART: f32 = 1.1;
@@ -93,7 +93,7 @@ fn velocity(a: &LocalTransform, b: &LocalTransform, dt: f32) -> Vec3 {
     a.rotation.angular_velocity_to(b.rotation, dt)
 }
 
-/// A character that goes over from one clip to the other in its own way.
+/// A character that changes from one clip to the other by one kind of transition.
 struct Subject {
     actor: Actor,
     transition: Transition,
@@ -103,7 +103,7 @@ struct Subject {
 }
 
 impl Subject {
-    /// Largest of the joints' peaks over what they may be.
+    /// Largest ratio of the joints' peaks to their bounds.
     fn worst(&self, bounds: &[f32]) -> f32 {
         self.peaks.iter().zip(bounds).map(|(peak, bound)| peak / bound).fold(0.0, max)
     }
@@ -112,12 +112,11 @@ impl Subject {
 struct Transitions {
     /// Cut, crossfaded, inertialised.
     subjects: [Subject; 3],
-    /// Each clip by itself, unseen: what its joints do anyway.
+    /// Each clip on its own, not drawn: the motion of its joints without a transition.
     alone: [(Actor, History); 2],
     clips: [ClipId; 2],
     seconds: f32,
-    /// Bound of each joint's acceleration, rad/s²: what it is in either clip, and `6 |x₀|/t₁² + 4 |v₀|/t₁`, each as much
-    /// as it was at most so far.
+    /// Bound of each joint's acceleration, rad/s²: its value in either clip, and `6 |x₀|/t₁² + 4 |v₀|/t₁`, each the largest so far.
     bounds: Vec<f32>,
     gone: Gone,
 }
@@ -147,7 +146,7 @@ impl Transitions {
         }
     }
 
-    /// A transition is held against how far the clips are apart, and how fast they part, at most while it lasts.
+    /// The bound uses the largest distance of the clips, and the largest rate at which they separate, during the transition.
     fn watch(&mut self, dt: f32) {
         let [(_, first), (_, second)] = &self.alone;
         let joints = self.subjects[0].actor.animator.pose().len();
@@ -170,7 +169,7 @@ impl Transitions {
     }
 }
 
-/// Rounding error of accelerations that are told by differences of poses, rad/s².
+/// Rounding error of accelerations computed from differences of poses, rad/s².
 const ROUNDING: f32 = 0.5;
 
 impl Script for Transitions {

@@ -1,4 +1,4 @@
-//! Cloth that a figure wears through a fall: its measures, and the course of its wearer.
+//! Cloth worn by a figure during a fall: its measurements, and the state of its wearer.
 
 use crate::framework::metric::{Expected, Metric};
 use sinew::math::{ReadError, Reader, Writer, max};
@@ -9,15 +9,15 @@ use sinew::ragdoll::{Character, CharacterEvent};
 /// Figures of a wearer and its cloth since the start.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Wear {
-    /// Largest mean over the threads of how much a thread is longer or shorter than at rest, over its length.
+    /// Largest mean over the threads of the relative length error.
     stretch: f32,
     /// Sum of that mean over steps.
     stretch_sum: f32,
-    /// Furthest that a held particle was from its place, metres.
+    /// Largest distance of an attached particle from its attachment, metres.
     pub torn: f32,
-    /// Times that the wearer went limp.
+    /// Number of times that the wearer went limp.
     falls: u32,
-    /// Time at which it was up again, seconds; 0: it was not.
+    /// Time at which it was up again, seconds; 0 if it was not.
     up: f32,
     /// Work of drives and led bodies, J.
     pub work_in: f32,
@@ -36,13 +36,13 @@ impl Wear {
         }
     }
 
-    /// Takes in the stretch of a step.
+    /// Adds the stretch of a step.
     pub fn note_stretch(&mut self, mean: f32) {
         self.stretch = max(self.stretch, mean);
         self.stretch_sum += mean;
     }
 
-    /// Figures of stretch and hold; then of the wearer, which is to be up within so many seconds.
+    /// Figures of stretch and attachment, then of the wearer, which must be up within `up_within` seconds.
     pub fn metrics(&self, world: &World, up_within: f64) -> [Vec<Metric>; 2] {
         let mean = (world.step_count() > 0).then_some(self.stretch_sum / world.step_count() as f32);
         let up = (self.up > 0.0).then_some(self.up);
@@ -73,7 +73,7 @@ impl Wear {
     }
 }
 
-/// Mean over the first so many springs, the threads, of how far their lengths are from those at rest, as a share.
+/// Mean relative length error of the first `threads` springs, which are the threads.
 pub(super) fn stretch(group: &ParticleGroup, threads: usize) -> f32 {
     let positions = group.positions();
     let off = group.springs()[..threads].iter().map(|thread| {
@@ -83,7 +83,7 @@ pub(super) fn stretch(group: &ParticleGroup, threads: usize) -> f32 {
     off.sum::<f32>() / threads as f32
 }
 
-/// Distance of the particle that is farthest from where a body holds it, metres.
+/// Largest distance of an attached particle from its attachment, metres.
 pub(super) fn torn(world: &World, group: &ParticleGroup) -> f32 {
     let off = group.attachments().iter().map(|held| match held.target {
         AttachmentTarget::Body { body, point } => {

@@ -1,4 +1,4 @@
-//! Boxes: what bounds along the axes waste, and how deep a point is in a turned box.
+//! Boxes: the empty space in their axis-aligned bounds, and the depth of a point in a rotated box.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -139,15 +139,15 @@ fn point_in_obb(setup: &Setup<'_>) -> Instance {
 struct Probe {
     id: BodyId,
     x: f32,
-    /// Signed distance to the box after the step before, metres.
+    /// Signed distance to the box in the last step, metres.
     last: Option<f32>,
-    /// When it went in and came out, seconds.
+    /// Times at which it entered and left, seconds.
     entered: Option<f64>,
     left: Option<f64>,
 }
 
 impl Probe {
-    /// Notes when the surface was passed within the last step, in which the distance changed all but evenly.
+    /// Records when the surface was crossed within the last step, in which the distance changed almost linearly.
     fn pass(&mut self, distance: f32, world: &World) {
         if let Some(last) = self.last.filter(|last| (*last > 0.0) != (distance > 0.0)) {
             let left_over = f64::from(distance / (distance - last));
@@ -162,11 +162,11 @@ struct Probes {
     obb: BodyId,
     rotation: Rotation,
     probes: [Probe; LINES.len()],
-    /// The largest that a depth was off its closed form, metres.
+    /// Largest deviation of a depth from its closed form, metres.
     depth_off: f32,
-    /// The largest that a direction was off the normal of the nearer face, radians.
+    /// Largest deviation of a direction from the normal of the nearer face, radians.
     turned: f32,
-    /// Number of times that the world said that a probe was inside where its distance said outside, or the other way round.
+    /// Number of times that the world's inside test and the sign of the distance disagreed.
     wrong_sides: u32,
 }
 

@@ -27,9 +27,9 @@ pub(in crate::scenes) const COIN: Scene = Scene {
 /// Metres.
 const RADIUS: f32 = 0.5;
 const HALF_THICKNESS: f32 = 0.02;
-/// Time for which its rate is measured, seconds.
+/// Duration of the rate measurement, seconds.
 const MEASURED: f64 = 0.5;
-/// Lever of its rolling resistance from then on, metres: without any it would whirl for minutes.
+/// Rolling resistance after that, metres: without any it would whirl for minutes.
 const ROLLING: f32 = 0.02;
 
 fn build(setup: &Setup<'_>) -> Instance {
@@ -38,7 +38,7 @@ fn build(setup: &Setup<'_>) -> Instance {
     let degrees = setup.number("tilt");
     let (sin, cos) = trig::sin_cos(degrees.to_radians());
     let rotation = tilt(degrees);
-    // About the line from the centre to the point that touches, so that neither moves.
+    // Rotate about the line from the centre to the contact point, so that neither moves.
     let line = rotation * Vec3::new(1.0, HALF_THICKNESS / RADIUS, 0.0);
     let cylinder = Shape::Cylinder { half_height: HALF_THICKNESS, radius: RADIUS };
     let coin = world.add_body(&BodyDef {
@@ -51,9 +51,9 @@ fn build(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Coin { coin, turn: Turn::default(), due: 0.0, looks: 0, asleep: None, flight })
 }
 
-/// At which the point that touches goes round while the centre of mass stays where it is, rad/s, for sine and cosine of
-/// the tilt. The weight turns round the angular momentum, which leans. Of a thin disc `√(4 g / (a sin θ))`: Moffatt 2000,
-/// "Euler's disk and its finite-time singularity".
+/// Rate at which the contact point circles while the centre of mass stays at rest, rad/s, for sine and cosine of the tilt: the torque of
+/// the weight turns the tilted angular momentum. For a thin disc it is `√(4 g / (a sin θ))` (Moffatt 2000, "Euler's disk and its
+/// finite-time singularity").
 fn rate(sin: f32, cos: f32) -> f32 {
     let (a, h) = (RADIUS, HALF_THICKNESS);
     // Moments of inertia over the mass.
@@ -65,9 +65,9 @@ struct Coin {
     coin: BodyId,
     /// Turn of its axis about the vertical.
     turn: Turn,
-    /// Sum of the rates at which it should turn at the tilts that it had, rad/s.
+    /// Sum of the theoretical rates at the observed tilts, rad/s.
     due: f32,
-    /// Tilts in that sum.
+    /// Number of tilts in that sum.
     looks: u16,
     /// Seconds.
     asleep: Option<f32>,

@@ -1,4 +1,4 @@
-//! Hits that lose nothing: pairs, Newton's cradle, balls that bounce for ever.
+//! Elastic impacts: pairs, Newton's cradle, balls that bounce for ever.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -12,7 +12,7 @@ use sinew::physics::{BodyDef, BodyId, Material, Sleeping, World, WorldDef};
 
 const ELASTIC: Material = Material { friction: 0.0, restitution: 1.0, ..Material::DEFAULT };
 
-/// A ball of a mass in kg that loses nothing in a hit.
+/// A ball of a mass in kg without energy loss in impacts.
 fn elastic_ball(mass: f32, radius: f32, position: Vec3) -> BodyDef {
     let mut def = made_of(ball(radius, position), ELASTIC);
     def.shapes[0].density = mass / (4.0 / 3.0 * core::f32::consts::PI * radius * radius * radius);
@@ -37,7 +37,7 @@ const PAIRS: [(f32, [&str; 2]); 3] = [
     (3.0, ["first_at_3_m_s", "second_at_3_m_s"]),
     (100.0, ["first_at_100_m_s", "second_at_100_m_s"]),
 ];
-/// Between balls of a row, metres: more than the fastest moves in a substep, so that hits follow each other.
+/// Gap between balls of a row, metres: more than the fastest moves in a substep, so that the impacts are sequential.
 const ROW_GAP: f32 = 0.02;
 
 fn elastic_pairs(_: &Setup<'_>) -> Instance {
@@ -136,7 +136,7 @@ struct Cradle {
     lift: f32,
     /// Angle of the first ball from hanging straight one step ago, degrees.
     before: f32,
-    /// When it first hung straight, s.
+    /// Time at which it first hung straight, s.
     quarter: Option<f32>,
     /// Largest angle of the last ball from hanging straight, degrees.
     out: f32,

@@ -46,7 +46,7 @@ pub(in crate::scenes) const ROLLS: Scene = Scene {
     settings: &[Setting::number("angle", 35.0, (0.0, 60.0), "of the slope, degrees"), FRICTION],
     build: |setup| {
         let (world, slope) = incline(setup, ball(BALL_RADIUS, Vec3::Y * BALL_RADIUS));
-        // Of a homogeneous ball `1 / (1 + 2/5)` of the pull is left to move it.
+        // For a homogeneous ball, `1 / (1 + 2/5)` of the pull accelerates it.
         let pull = slope.pull * 5.0 / 7.0;
         Instance::new(world, Slides { slope, pull, settled: None })
     },
@@ -60,14 +60,14 @@ const FRICTION: Setting = Setting::number("friction", 0.5, (0.0, 2.0), "coeffici
 const HALF_EXTENTS: Vec3 = Vec3::new(0.3, 0.1, 0.3);
 /// Distance uphill from the origin, along the slope, at which the box starts, metres.
 const UPHILL: f32 = 10.0;
-/// Steps until the contact has taken the weight, on a millimetre: until then friction is not all there.
+/// Steps until the contact carries the weight, sinking by a millimetre: until then friction is incomplete.
 const SETTLING: u64 = 60;
 
 fn box_on_incline(setup: &Setup<'_>) -> (World, Slope) {
     incline(setup, cuboid(HALF_EXTENTS, Vec3::Y * HALF_EXTENTS.y))
 }
 
-/// With a body that would lie at the origin of a level floor.
+/// A slope with a body given at the origin of a level floor.
 fn incline(setup: &Setup<'_>, body_at_origin: BodyDef) -> (World, Slope) {
     let mut world = setup.world();
     let (angle, friction) = (setup.number("angle"), setup.number("friction"));
@@ -90,7 +90,7 @@ struct Slope {
     uphill: Vec3,
     /// Weight along the slope, m/s².
     pull: f32,
-    /// Most acceleration that friction can resist, m/s².
+    /// Largest acceleration that friction can resist, m/s².
     hold: f32,
 }
 
@@ -118,7 +118,7 @@ impl Slope {
 
 struct Holds {
     slope: Slope,
-    /// That the push gives, m/s.
+    /// Speed after the push, m/s.
     speed: f32,
     pushed: Option<Motion>,
     stopped: Option<Motion>,
@@ -152,7 +152,7 @@ impl Script for Holds {
 
 struct Slides {
     slope: Slope,
-    /// That is left of its weight along the slope, m/s².
+    /// Remaining acceleration of its weight along the slope, m/s².
     pull: f32,
     settled: Option<Motion>,
 }

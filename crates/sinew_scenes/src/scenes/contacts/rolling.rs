@@ -31,20 +31,20 @@ pub(in crate::scenes) const SLIDE_TO_ROLL: Scene = Scene {
 };
 
 const BALL_RADIUS: f32 = 0.2;
-/// Steps until the contact has taken the weight, on a millimetre: until then friction is not all there.
+/// Steps until the contact carries the weight, sinking by a millimetre: until then friction is incomplete.
 const SETTLING: u64 = 60;
 /// Share of the speed below which a ball that slips counts as rolling.
 const ROLLING: f32 = 0.01;
 
 struct SlideToRoll {
     ball: BodyId,
-    /// That the push gives, m/s.
+    /// Speed after the push, m/s.
     speed: f32,
     friction: f32,
     pushed: Option<Moment>,
-    /// One step ago, as long as it slides.
+    /// Motion one step ago, while it slides.
     sliding: Option<Moment>,
-    /// When it began to roll, between two steps.
+    /// Motion at the start of rolling, between two steps.
     rolling: Option<Moment>,
 }
 
@@ -57,7 +57,7 @@ struct Moment {
     x: f32,
     /// m/s.
     speed: f32,
-    /// Speed of the ball over the floor where they touch, m/s.
+    /// Speed of the contact point over the floor, m/s.
     slip: f32,
 }
 
@@ -86,7 +86,7 @@ impl Script for SlideToRoll {
             if now.slip > ROLLING * self.speed {
                 self.sliding = Some(now);
             } else {
-                // What slip was left went at the pace that friction sets.
+                // The remaining slip decays at the rate set by friction.
                 let left = before.slip / (3.5 * self.friction * GRAVITY);
                 let x = before.x + 0.5 * (before.speed + now.speed) * left;
                 self.rolling = Some(Moment { time: before.time + left, x, ..now });
@@ -131,7 +131,7 @@ fn rolling_balls(setup: &Setup<'_>) -> Instance {
     let step_nanoseconds = (setup.number("step_ms") * 1e6) as u64;
     let sleeping = Sleeping::Off;
     let mut world = World::new(WorldDef { step_nanoseconds, sleeping, ..setup.world_def() });
-    // Of two surfaces the geometric mean counts.
+    // The friction of two surfaces is the geometric mean.
     let rubbing = |friction: f32| Material { friction, ..Material::default() };
     world.add_body(&made_of(floor(), rubbing(ON_FLOOR * ON_FLOOR / ON_BOX)));
     let mut tray = made_of(cuboid(BOX_HALF, Vec3::Y * BOX_HALF.y), rubbing(ON_BOX));

@@ -1,4 +1,4 @@
-//! Surfaces that do more than stop things: they hold, carry, let pass, and notice.
+//! Surfaces with special behaviour: static friction, conveyor belts, one-way platforms, sensors.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -50,7 +50,7 @@ pub(in crate::scenes) const SENSORS: Scene = Scene {
     build: sensors,
 };
 
-/// Steps until contacts have taken the weight, on a millimetre: until then friction is not all there.
+/// Steps until contacts carry the weight, sinking by a millimetre: until then friction is incomplete.
 const SETTLING: u64 = 60;
 
 const HALF_EXTENTS: Vec3 = Vec3::new(0.3, 0.1, 0.3);
@@ -87,9 +87,9 @@ struct StaticFriction {
     /// The blocks, with the directions downhill.
     holds: (BodyId, Vec3),
     slides: (BodyId, Vec3),
-    /// m/s² that is left of the weight along the slope.
+    /// Remaining acceleration of the weight along the slope, m/s².
     pull: f32,
-    /// Place of the one, speed of the other, time.
+    /// Position of the first, speed of the second, time.
     settled: Option<(f32, f32, f32)>,
 }
 
@@ -136,11 +136,11 @@ struct Conveyor {
     /// Speed of the belt, m/s.
     speed: f32,
     friction: f32,
-    /// That friction has put in, J.
+    /// Energy added by friction, J.
     work: f32,
     /// Speed of the load a step ago, m/s.
     before: f32,
-    /// Speed of the load when it had half the time that it needs, and that time since the start.
+    /// Speed of the load after half the needed time, and that time since the start.
     half_way: Option<(f32, f32)>,
 }
 
@@ -206,7 +206,7 @@ impl Script for Thrown {
     }
 
     fn metrics(&self, world: &World) -> Vec<Metric> {
-        // Symplectic Euler loses half a substep of gravity.
+        // Symplectic Euler is ahead by half a substep of gravity.
         let speed = self.speed - 0.5 * GRAVITY * substep(world);
         let risen = Expected::near(speed * speed / (2.0 * GRAVITY), 0.003);
         let rests = Expected::Near { value: f64::from(TOP + BALL_RADIUS), tolerance: 0.002 };
@@ -232,15 +232,15 @@ fn sensors(setup: &Setup<'_>) -> Instance {
 
 struct Gate {
     falling: BodyId,
-    /// Through which it falls until it comes to the gate, metres.
+    /// Height of its fall to the gate, metres.
     height: f32,
-    /// Moments at which it came in and went out, seconds.
+    /// Times at which it entered and left, seconds.
     entered: Vec<f32>,
     left: Vec<f32>,
 }
 
 impl Gate {
-    /// When the ball was at a height: what is told of is what the step began with, so it was there within the step before.
+    /// Time at which the ball was at a height: events refer to the state at the step's beginning, so it was there within the previous step.
     fn moment(&self, world: &World, height: f32) -> f32 {
         let Velocity { linear, .. } = world.velocity(self.falling);
         let beyond = height - world.transform(self.falling).translation.y;
@@ -248,7 +248,7 @@ impl Gate {
         world.time() as f32 - beyond / mean
     }
 
-    /// Time of a fall, seconds, as symplectic Euler has it.
+    /// Duration of a fall by symplectic Euler, seconds.
     fn fall(world: &World, height: f32) -> f32 {
         let h = substep(world);
         0.5 * ((h * h + 8.0 * height / GRAVITY).sqrt() - h)

@@ -1,4 +1,4 @@
-//! Air: what wind carries along, how far it tilts what hangs in it, and how fast things fall through it.
+//! Air: bodies carried by wind, tilt of hanging bodies in wind, and terminal velocities.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -72,7 +72,7 @@ fn wind(setup: &Setup<'_>) -> Instance {
     let plate = world.add_body(&BodyDef { gravity_scale: 0.0, ..plate });
     let mut def = ghost(ball(BALL_RADIUS, Vec3::NEG_Y * STRING));
     def.shapes[0].density = BALL_DENSITY;
-    // It comes to rest: else it would swing about its place.
+    // Damping lets it come to rest instead of swinging.
     def.linear_damping = 2.0;
     let hung = world.add_body(&def);
     let hook = world.add_body(&hook());
@@ -101,7 +101,7 @@ struct Windy {
 }
 
 impl Windy {
-    /// Speed of what starts at rest: `m v̇ = ½ ρ C A (w − v)²`, so `v = w² t/(L + w t)` with `L = 2 m/(ρ C A)`.
+    /// Speed of a body that starts at rest: `m v̇ = ½ ρ C A (w − v)²`, so `v = w² t/(L + w t)` with `L = 2 m/(ρ C A)`.
     fn carried(&self, time: f32, mass: f32, area: f32) -> f32 {
         let length = 2.0 * mass / (AIR * DRAG * area);
         self.speed * self.speed * time / (length + self.speed * time)
@@ -114,7 +114,7 @@ impl Script for Windy {
     }
 
     fn work_in(&self, world: &World) -> f32 {
-        // The particle's share is all that it has.
+        // All energy of the particle is work of the wind.
         self.work.sum + world.group_energy(self.leaf).kinetic
     }
 

@@ -1,4 +1,4 @@
-//! An explosion: what it gives by distance, and what it does not reach.
+//! An explosion: its impulse by distance, and bodies that it does not reach.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -47,7 +47,7 @@ struct Blast {
     near: BodyId,
     far: BodyId,
     above: BodyId,
-    /// Behind the wall, and beyond its reach.
+    /// Bodies behind the wall and out of reach.
     spared: [BodyId; 2],
     impulse: f32,
     /// Greatest height of the one above, metres over where it was.
@@ -71,7 +71,7 @@ impl Script for Blast {
         let momentum = |body| world.velocity(body).linear * world.mass(body).mass;
         let spared: f32 = self.spared.iter().map(|&body| momentum(body).length()).sum();
         let speed = self.expected(ABOVE) / world.mass(self.above).mass;
-        // v²/2g, less what symplectic Euler falls ahead.
+        // v²/2g, less the lead of symplectic Euler.
         let h = world.def().dt() / world.def().substeps as f32;
         let rise = speed * speed / (2.0 * GRAVITY) - 0.5 * speed * h;
         let near = |gap: f32| Expected::near(self.expected(gap), 1e-4);

@@ -1,4 +1,4 @@
-//! Pushes: opposed and joined, through the centre and beside it, and by a bullet.
+//! Forces: opposed and added, through the centre and off-centre, and of a bullet.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -30,7 +30,7 @@ fn two_men(setup: &Setup<'_>) -> Instance {
     world.add_body(&made_of(floor(), iron));
     let (first, second) = (setup.number("first"), setup.number("second"));
     let mut cart = |place: f32, forces: [f32; 2]| {
-        // Low and long, so that friction below does not tip what is pushed at its middle.
+        // Low and long, so that friction does not tip it when it is pushed at its middle.
         let half = Vec3::new(0.8, 0.1, 0.3);
         let mut def = made_of(cuboid(half, Vec3::new(0.0, half.y, place)), iron);
         def.shapes[0].density = CART_MASS / def.shapes[0].shape.volume();
@@ -55,7 +55,7 @@ impl Cart {
         world.transform(self.body).translation.x
     }
 
-    /// Coulomb: it rests while the push is no more than `μ m g`, else `a = (F − μ m g)/m`.
+    /// Coulomb friction: it rests while the push is at most `μ m g`, else `a = (F − μ m g)/m`.
     fn metric(&self, world: &World, name: &'static str) -> Metric {
         let free = self.sum / CART_MASS - CART_FRICTION * GRAVITY;
         if free <= 0.0 {
@@ -68,7 +68,7 @@ impl Cart {
 }
 
 struct TwoMen {
-    /// Both forward, one against the other, one against himself.
+    /// Two forces forward, two opposed, and one internal.
     carts: [Cart; 3],
 }
 
@@ -108,8 +108,8 @@ fn push(setup: &Setup<'_>) -> Instance {
     Instance::new(world, pushed)
 }
 
-/// Three balls: one is pushed through the centre, one at its top as by a string that unwinds, one at the top and the other
-/// way at the bottom.
+/// Three balls: one is pushed through the centre, one at its top as by an unwinding string, and one at top and bottom in opposite
+/// directions.
 struct Pushed {
     bodies: [BodyId; 3],
     force: Vec3,
@@ -117,7 +117,7 @@ struct Pushed {
 }
 
 impl Pushed {
-    /// Force and lever of each push.
+    /// Force and point of application of each push.
     fn pushes(&self) -> [(BodyId, Vec3, Vec3); 4] {
         let [through, beside, couple] = self.bodies;
         let top = Vec3::Y * RADIUS;
@@ -201,7 +201,7 @@ fn bullet(setup: &Setup<'_>) -> Instance {
 }
 
 struct Shot {
-    /// Struck in the middle, beside it, and one that hangs.
+    /// Hit in the middle, off-centre, and a hanging one.
     blocks: [BodyId; 3],
     mass: f32,
     speed: f32,
@@ -217,7 +217,7 @@ impl Script for Shot {
             let velocity = Vec3::X * self.speed;
             for (block, aside) in [(middle, 0.0), (beside, ASIDE), (hung, 0.0)] {
                 let Transform { translation, .. } = world.transform(block);
-                // It comes to rest in the middle of its way.
+                // The bullet stops in the middle of the block.
                 let point = translation + Vec3::Y * aside;
                 world.apply_bullet_impact(block, self.mass, velocity, point);
             }
@@ -229,13 +229,13 @@ impl Script for Shot {
         let block = world.mass(self.blocks[0]);
         let (m, inertia) = (block.mass, block.inertia.diagonal.z);
         let momentum = self.mass * self.speed;
-        // Beside the centre: the bullet flies on with the point that it struck.
+        // Off-centre, the bullet moves on with the point that it hit.
         let spin = -beside.angular.z;
         let struck = beside.linear.x + spin * ASIDE;
         let reduced = 1.0 / (1.0 / self.mass + 1.0 / m);
         let yields = 1.0 + reduced * ASIDE * ASIDE / inertia;
         let speed = reduced * self.speed / m;
-        // The rope takes no angular momentum about the hook.
+        // The rope transmits no angular momentum about the hook.
         let about_hook = m * ROPE * ROPE + inertia;
         let swing = m * speed * ROPE / about_hook;
         let rise = about_hook * swing * swing / (2.0 * m * GRAVITY);

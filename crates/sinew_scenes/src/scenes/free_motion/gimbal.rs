@@ -1,4 +1,4 @@
-//! Rings within rings: what three angles in a row cannot do.
+//! Nested gimbal rings, which show the limits of three Euler angles.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -24,7 +24,7 @@ const RINGS: EulerConvention = EulerOrder::Yxz.intrinsic();
 
 /// To which the gimbals are pitched, degrees.
 const PITCHES: [f32; 4] = [0.0, 45.0, 80.0, 90.0];
-/// Steps in which they are.
+/// Number of steps for the pitch.
 const PITCHING: u64 = 60;
 /// Inertia of the body inside, about any axis, kg·m².
 const INERTIA: f32 = 0.02;
@@ -45,7 +45,7 @@ fn gimbal(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Gimbals { gimbals, free, free_spin: None, flyer })
 }
 
-/// The same with as much inertia about every axis: a share of that of the body inside.
+/// Gives a body equal inertia about every axis: a share of that of the body inside.
 fn round(def: BodyDef, share: f32) -> BodyDef {
     let inertia = Sym3::from_diagonal(Vec3::splat(share * INERTIA));
     BodyDef { mass: Some(MassProperties { mass: share, center: Vec3::ZERO, inertia }), ..def }
@@ -75,9 +75,9 @@ struct Gimbal {
     pitch: f32,
     /// Work of the motor, J.
     work: f32,
-    /// Angular velocity of the body about the axis of the kick right after it, rad/s.
+    /// Angular velocity of the body about the kick's axis right after it, rad/s.
     answer: Option<f32>,
-    /// From lock before the kick, as three angles have it, radians.
+    /// Distance from gimbal lock before the kick, by the three angles, radians.
     margin: Option<f32>,
 }
 
@@ -100,7 +100,7 @@ impl Gimbal {
     }
 
     fn after_pitching(&mut self, world: &World) {
-        // It turns by an equal part of the whole in each step.
+        // It turns by equal angles in each step.
         self.work += world.reaction(self.motor).torque.x * self.pitch / PITCHING as f32;
     }
 
@@ -114,9 +114,9 @@ impl Gimbal {
         world.apply_angular_impulse(self.body, Vec3::Z * (KICK * INERTIA));
     }
 
-    /// Share of the kick that the body follows. Rings turn about `A = (y, x, z″)`, the body with `A q̇`: an impulse L gives
-    /// `A (Aᵀ I A + J)⁻¹ Aᵀ L`. Of L along z, with r for the inertia of both rings over the body's and c for the cosine of
-    /// the pitch, it is `c² (1 + r) / (c² + r)`.
+    /// Share of the kick that the body follows. Rings turn about `A = (y, x, z″)`, the body with `A q̇`: an impulse L gives `A (Aᵀ I A +
+    /// J)⁻¹ Aᵀ L`. For L along z, with the inertia r of both rings relative to the body's and the cosine c of the pitch, it is `c² (1 + r)
+    /// / (c² + r)`.
     fn expected(&self) -> f32 {
         let c = trig::cos(self.pitch);
         let (square, r) = (c * c, 2.0 * RING);
@@ -124,17 +124,17 @@ impl Gimbal {
     }
 }
 
-/// A body without rings that turns on at constant speed, past a place where three angles would lock.
+/// A body without rings that rotates at constant speed, past an orientation where three angles would lock.
 struct Flyer {
     body: BodyId,
     spin: Vec3,
-    /// From lock where it is closest, radians.
+    /// Smallest distance from gimbal lock, radians.
     miss: f32,
     last: Transform,
     /// Largest turn of the outermost of the rings that could carry it, within a step, radians.
     heading_step: f32,
     margin: f32,
-    /// The farthest that its angular velocity was from constant, rad/s.
+    /// Largest deviation of its angular velocity from constant, rad/s.
     unsteady: f32,
 }
 

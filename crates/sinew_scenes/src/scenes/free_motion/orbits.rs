@@ -1,4 +1,4 @@
-//! Gravitation: a planet about a place, two bodies about each other, three on one path.
+//! Gravitation: a planet around a fixed centre, two bodies around each other, three on one path.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -14,7 +14,7 @@ use sinew::physics::{
     PointGravity, World,
 };
 
-/// A ball of a mass of its own that meets nothing.
+/// A ball with a given mass that collides with nothing.
 fn star(mass: f32, radius: f32, position: Vec3, linear_velocity: Vec3) -> BodyDef {
     let inertia = Sym3::from_diagonal(Vec3::splat(0.4 * mass * radius * radius));
     let mass = Some(MassProperties { mass, center: Vec3::ZERO, inertia });
@@ -55,7 +55,7 @@ struct Orbit {
     velocity: Vec3,
     /// Steps at which it was farthest from the centre, between steps.
     far: Vec<f32>,
-    /// Toward the nearest point, the first and the last time it was farthest.
+    /// Directions of the nearest point at the first and the last time of the largest distance.
     axes: Option<[Vec3; 2]>,
 }
 
@@ -97,7 +97,7 @@ struct Kepler {
     /// Angular momentum and energy at the start.
     start: Vec3,
     energy: f32,
-    /// The farthest they were off, as shares.
+    /// Largest relative deviation.
     drift: f32,
     turned: f32,
 }
@@ -164,7 +164,7 @@ fn sun_earth(setup: &Setup<'_>) -> Instance {
     Instance::new(world, SunEarth { sun, earth, field, scale, velocities, gained: [0.0; 2], angle, momentum })
 }
 
-/// Angle by which something has turned about y, radians.
+/// Angle by which an object has turned about y, radians.
 struct AngleTurned {
     direction: Vec3,
     sum: f32,
@@ -269,7 +269,7 @@ impl Script for Eight {
     }
 
     fn metrics(&self, world: &World) -> Vec<Metric> {
-        // Where they would have been at the whole round: the rest of the time is flown back.
+        // Extrapolates back to the time of the full period.
         let rest = world.time() as f32 - EIGHT_PERIOD;
         let off = self.bodies.iter().zip(self.places).map(|(&body, place)| {
             (world.center_of_mass(body) - world.velocity(body).linear * rest - place).length()

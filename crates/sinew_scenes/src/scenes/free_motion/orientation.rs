@@ -22,7 +22,7 @@ pub(in crate::scenes) const MATRIX_DRIFT: Scene = Scene {
     build: matrix_drift,
 };
 
-/// Unit axis of a turn that favours no axis of the body.
+/// Unit axis of a rotation in a general direction.
 fn oblique() -> Vec3 {
     Vec3::new(1.0, 2.0, 2.0) / 3.0
 }
@@ -44,9 +44,9 @@ fn matrix_drift(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Drift { body, polar, gram_schmidt, tips, spin })
 }
 
-/// The world holds the matrices: the bare one as three points, the mended ones as poses of bodies.
+/// Bodies that show the matrices: the uncorrected one as three points, the orthonormalised ones as poses.
 struct Drift {
-    /// That turns as the world has it.
+    /// A body that the world rotates.
     body: BodyId,
     polar: BodyId,
     gram_schmidt: BodyId,
@@ -90,7 +90,7 @@ impl Script for Drift {
         let step = self.spin.length() * world.def().dt();
         let growth = (0..steps).fold(1.0, |growth, _| growth * (1.0 + f64::from(step * step)));
         let lag = steps as f32 * (step - trig::atan2(step, 1.0));
-        // Rounding of each step's mending comes on top.
+        // Rounding of each step's correction is added.
         let lag = Expected::Near { value: lag.into(), tolerance: 0.005 * f64::from(lag) + 5e-5 };
         let bare = MatrixDrift::of(&self.bare(world));
         let body = Self::rotation(world, self.body);
@@ -135,7 +135,7 @@ fn versor(_: &Setup<'_>) -> Instance {
     Instance::new(world, journey)
 }
 
-/// A body that goes from one place to another, and beyond, by equal turns and equal factors.
+/// A body that moves from one place to another, and beyond, by equal rotations and equal factors.
 struct Journey {
     from: BodyId,
     to: BodyId,
@@ -151,7 +151,7 @@ impl Journey {
         Quaternion::quotient(at(self.to), at(self.from)).expect("no place is the origin")
     }
 
-    /// Sends the body to where a part of the quotient takes it within a step.
+    /// Moves the body by a step's fraction of the quotient.
     fn go_on(&self, world: &mut World) {
         let (q, dt) = (self.quotient(world), world.def().dt());
         let axis = q.axis().expect("the places do not lie in line with the origin");
@@ -177,7 +177,7 @@ impl Script for Journey {
         let [from, to, now] = [self.from, self.to, self.walker].map(|id| world.center_of_mass(id));
         let q = self.quotient(world);
         let gap = |place: Option<Vec3>, expected: Vec3| place.map(|place| (place - expected).length());
-        // Half the way is the geometric mean of the lengths on the line that halves the angle.
+        // The midpoint is the geometric mean of the lengths, on the line that halves the angle.
         let middle = (from.normalize() + to.normalize()).normalize() * (from.length() * to.length()).sqrt();
         let turned = self.arrived.map(|pose| (pose.rotation * from.normalize() - to.normalize()).length());
         let scale = f64::from(to.length()) / f64::from(from.length());

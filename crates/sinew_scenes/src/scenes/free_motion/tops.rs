@@ -1,4 +1,4 @@
-//! Free and spinning rigid bodies: what Euler's equations say.
+//! Free and spinning rigid bodies, compared to Euler's equations.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -25,7 +25,7 @@ pub(in crate::scenes) const DZHANIBEKOV: Scene = Scene {
 
 /// Half of 0.4 × 0.2 × 0.1 m: longest along x, which has the smallest moment of inertia.
 const BRICK: Vec3 = Vec3::new(0.2, 0.1, 0.05);
-/// Turns that are held against the closed form.
+/// Number of flips that are compared to the closed form.
 const FLIPS: usize = 5;
 
 fn dzhanibekov(setup: &Setup<'_>) -> Instance {
@@ -66,11 +66,11 @@ struct Flips {
     start: Momentum,
     /// Kinetic, at the start, J.
     energy: f32,
-    /// Part of the angular momentum along the middle axis, one step ago.
+    /// Component of the angular momentum along the middle axis, one step ago.
     before: f32,
-    /// When it turned over, s.
+    /// Times of the flips, s.
     flips: Vec<f64>,
-    /// The farthest that the angular momentum was from the start, as a share.
+    /// Largest relative deviation of the angular momentum from the start.
     turned: f32,
     /// The same of the energy.
     gained: f32,
@@ -92,7 +92,7 @@ impl Script for Flips {
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let flips = self.flips.get(..FLIPS);
         let every = flips.map(|flips| (flips[FLIPS - 1] - flips[0]) / (FLIPS - 1) as f64);
-        // It starts half-way between two.
+        // It starts halfway between two flips.
         let off = |(i, time): (usize, &f64)| (time / self.period - (i as f64 + 0.5)).abs() as f32;
         let off = flips.map(|flips| flips.iter().enumerate().map(off).fold(0.0, max));
         vec![
@@ -202,7 +202,7 @@ fn spinning_top(setup: &Setup<'_>) -> Instance {
     let rate = precession(spin, lean);
     let mut def = disc(axis * STEM, Vec3::NEG_Y * STEM);
     def.rotation = turn;
-    // Of the angular velocity `spin` lies along the axis, whatever the precession.
+    // The component `spin` of the angular velocity is along the axis, whatever the precession.
     def.angular_velocity = axis * spin + (Vec3::Y - axis * axis.y) * rate;
     def.linear_velocity = def.angular_velocity.cross(axis * STEM);
     let top = world.add_body(&def);
@@ -217,7 +217,7 @@ fn precession(spin: f32, lean: f32) -> f32 {
     let torque = DISC_MASS * GRAVITY * STEM;
     let a = (0.5 * DISC_MOMENT + DISC_MASS * STEM * STEM) * trig::cos(lean.to_radians());
     let b = DISC_MOMENT * spin;
-    // Without the difference of two large numbers.
+    // This form avoids the difference of two large numbers.
     2.0 * torque / (b + (b * b - 4.0 * a * torque).sqrt())
 }
 
@@ -231,7 +231,7 @@ struct Top {
     support: Support,
     /// Turn of the axis about the vertical.
     turn: Turn,
-    /// The farthest that the lean was from the start, degrees.
+    /// Largest deviation of the lean from the start, degrees.
     nods: f32,
     gap: f32,
 }

@@ -77,7 +77,7 @@ pub(in crate::scenes) const HANGING_ROPE: Scene = Scene {
 
 const LINK: Setting = Setting::number("link", 0.0, (0.0, 10.0), "length of a link, m; 0: 1, 0.5 and 0.25 m");
 
-/// Expectations to which a chain is held.
+/// Bounds for a chain.
 struct Musts {
     gap: Expected,
     gap_per_link: Expected,
@@ -154,15 +154,15 @@ impl Chain {
     }
 }
 
-/// Chains and how they fare.
+/// Chains and their measurements.
 struct Hung {
     chains: Vec<Chain>,
     musts: Musts,
     /// Energy, J.
     start: f32,
-    /// Energy that the weights have at the horizontal above their lowest points, J.
+    /// Energy of the weights at the height of the horizontal above their lowest points, J.
     depth: f32,
-    /// The farthest that the energy was from the start, J.
+    /// Largest deviation of the energy from the start, J.
     drift: f32,
     /// Slowest downward acceleration of a weight in the first step, m/s², where the chains are level.
     first: Option<f32>,

@@ -43,9 +43,9 @@ struct FourBars {
     hinges: [JointId; 4],
     /// Energy, J.
     start: f32,
-    /// The farthest that the energy was from the start, J.
+    /// Largest deviation of the energy from the start, J.
     drift: f32,
-    /// The farthest that the lower bar was from the level, radians.
+    /// Largest angle of the lower bar from the horizontal, radians.
     tilt: f32,
 }
 
@@ -104,7 +104,7 @@ struct Crank {
     hinges: [JointId; 4],
     /// rad/s.
     speed: f32,
-    /// The farthest that the piston was from where it should be, metres.
+    /// Largest deviation of the piston from its expected position, metres.
     error: f32,
     /// J.
     work_in: f32,
@@ -153,13 +153,13 @@ impl Crank {
     }
 }
 
-/// A weight on a joint that is pulled ever harder until it breaks.
+/// A weight on a joint whose load grows until it breaks.
 struct Overloaded {
     weight: BodyId,
     joint: JointId,
     /// N.
     strength: f32,
-    /// Load of the joint in the step in which it broke, by the weight and the pull, N.
+    /// Load of the joint, from the weight and the pull, in the step in which it broke, N.
     broken_at: Option<f32>,
 }
 
@@ -200,7 +200,7 @@ impl Overloaded {
     }
 }
 
-/// A ball that is kept at a distance.
+/// A ball held at a distance.
 struct Tied {
     body: BodyId,
     joint: JointId,
@@ -226,7 +226,7 @@ struct Linkage {
     rod: Tied,
     /// Energy of the ball on the rod, J.
     rod_start: f32,
-    /// The farthest that it was from the start, J.
+    /// Largest deviation of the energy from the start, J.
     rod_drift: f32,
     gap: f32,
 }

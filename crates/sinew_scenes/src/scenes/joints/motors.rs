@@ -28,12 +28,12 @@ const MASS: f32 = 2.0;
 const MOMENT: f32 = MASS * LENGTH * LENGTH / 3.0;
 /// Torque of its weight about the hinge while it is level, N·m.
 const LEVEL_TORQUE: f32 = 0.5 * MASS * GRAVITY * LENGTH;
-/// Angle to which arms are swung, radians from where they start.
+/// Target angle of the arms, radians from their start.
 const GOAL: f32 = 0.2;
-/// Most that the weak motor may, N·m: half of what it takes to hold its arm.
+/// Torque limit of the weak motor, N·m: half of the torque that holds its arm.
 const CAP: f32 = 0.5 * LEVEL_TORQUE;
-/// Angle below level to which an arm falls that has half of the torque that it takes: the positive root of `sin x = x / 2`,
-/// where its weight has done the work that the motor took, radians.
+/// Angle below level to which an arm falls with half of the holding torque: the positive root of `sin x = x / 2`, where its weight has done
+/// the work that the motor absorbed, radians.
 const WEAK_FALL: f32 = 1.895_494_3;
 
 fn motor_arm(setup: &Setup<'_>) -> Instance {
@@ -50,7 +50,7 @@ fn motor_arm(setup: &Setup<'_>) -> Instance {
     for &hertz in &all {
         let softness = Softness::Frequency { hertz, damping_ratio };
         let oscillator = Oscillator { omega: core::f32::consts::TAU * hertz, damping_ratio };
-        // About z the weight bears on the motor; about the vertical only on the hinge.
+        // About z the weight loads the motor; about the vertical it loads only the hinge.
         let held = attach(&mut world, Vec3::Z, Motor::toward(Transform::IDENTITY, softness));
         let swung = attach(&mut world, Vec3::Y, Motor::toward(turned(GOAL), softness));
         arms.push(Arm {
@@ -95,7 +95,7 @@ struct Oscillator {
 }
 
 impl Oscillator {
-    /// Its way from 0, at rest, toward 1: `1 − e^(−ζωt) (cos φ + ζωt sin φ / φ)`, `φ² = (1 − ζ²)(ωt)²`.
+    /// Its motion from 0, at rest, toward 1: `1 − e^(−ζωt) (cos φ + ζωt sin φ / φ)`, `φ² = (1 − ζ²)(ωt)²`.
     fn step_response(&self, t: f32) -> f32 {
         let Self { omega, damping_ratio } = *self;
         let turned = omega * t;
@@ -129,12 +129,12 @@ impl Oscillator {
     }
 }
 
-/// The first maximum of what is looked at step by step.
+/// The first maximum of a sampled value.
 #[derive(Default)]
 struct Peak {
     /// The last two values, the later one last.
     last: [f32; 2],
-    /// When it was, in steps, and what it was.
+    /// Step and value of the maximum.
     found: Option<(f32, f32)>,
 }
 
@@ -150,12 +150,12 @@ impl Peak {
     }
 }
 
-/// Two arms on like motors.
+/// Two arms on equal motors.
 struct Arm {
     oscillator: Oscillator,
-    /// Bears its weight.
+    /// Joint of the arm that carries its weight.
     held: JointId,
-    /// Swings to its goal.
+    /// Joint of the arm that swings to its target.
     swung: JointId,
     /// The farthest that the swung arm was from the formula, as a share of its way.
     error: f32,
@@ -175,20 +175,20 @@ impl Arm {
         self.formula.see(world.step_count(), expected);
     }
 
-    /// Errors of the sag and of the torque that bears it, as shares of what they should be.
+    /// Errors of the sag and of the holding torque, relative to their expected values.
     fn static_errors(&self, world: &World) -> [f32; 2] {
         let sag = self.oscillator.sag();
         let torque = LEVEL_TORQUE * trig::cos(sag);
         [-angle(world, self.held) / sag - 1.0, world.reaction(self.held).torque.z / torque - 1.0]
     }
 
-    /// Errors of the time of the peak and of the overshoot, as shares of what they should be; none without overshoot.
+    /// Errors of the peak time and of the overshoot, relative to their expected values; `None` without overshoot.
     fn peak_errors(&self) -> Option<[f32; 2]> {
         let ((time, top), (right_time, right_top)) = self.found.found.zip(self.formula.found)?;
         Some([time / right_time - 1.0, (top - 1.0) / (right_top - 1.0) - 1.0])
     }
 
-    /// J that the motors have put in: what a spring would have lost.
+    /// Energy added by the motors, J: that which a spring would have lost.
     fn work_in(&self, world: &World) -> f32 {
         let spent = |hinge: JointId, goal: f32| {
             let off = angle(world, hinge) - goal;

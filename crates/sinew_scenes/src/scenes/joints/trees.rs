@@ -19,10 +19,10 @@ pub(in crate::scenes) const HEAVY_FOOT: Scene = Scene {
 };
 
 const FOOT_HALF: Vec3 = Vec3::new(0.05, 0.03, 0.11);
-/// Limit of the ankle either way, degrees: a leg that falls onto its stop has not the energy to tip over its toes.
+/// Limit of the ankle either way, degrees: a leg that falls onto its stop has too little energy to tip over its toes.
 const ANKLE: f32 = 2.0;
 
-/// A leg of 69 kg, a little tilted, on a foot that it is hinged to.
+/// A slightly tilted leg of 69 kg on a hinged foot.
 fn heavy_foot(setup: &Setup<'_>) -> Instance {
     let mut world = setup.world();
     let floor = world.add_body(&floor());
@@ -174,7 +174,7 @@ impl Tree {
         self.joints.push(Anchors { joint, a, b });
     }
 
-    /// Fastest that the two sides of a joint part, as a share of how fast joints move.
+    /// Largest relative speed of the two sides of a joint, as a share of the joint speeds.
     fn residual(&self, world: &World) -> f32 {
         let velocity = |(id, point): (BodyId, Vec3)| {
             world.velocity(id).at(world.transform(id).point(point) - world.center_of_mass(id))
@@ -190,7 +190,7 @@ impl Tree {
 }
 
 struct Uneven {
-    /// The hung one and the free one.
+    /// The suspended tree and the free one.
     trees: [Tree; 2],
     flight: Flight,
     residual: f32,

@@ -1,4 +1,4 @@
-//! Springs that bear what is far heavier than they are.
+//! Springs that carry loads much heavier than they are.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -20,10 +20,10 @@ pub(in crate::scenes) const TRAMPOLINE: Scene = Scene {
 
 /// Half of a box, metres.
 const BOX: Vec3 = Vec3::new(0.3, 0.1, 0.3);
-/// Particles along each edge of the mat that it lies on, and from one to the next, metres.
+/// Particles along each edge of the mat below it, and their spacing, metres.
 const SIDE: u32 = 3;
 const SPACING: f32 = 0.25;
-/// Each is tied both ways along x, to places so far away, metres.
+/// Length of the ties to both sides along x, metres.
 const SPAN: f32 = 1.0;
 const TIES: u32 = 2 * SIDE * SIDE;
 /// Stiffness of each tie, N/m.
@@ -33,11 +33,11 @@ const TAUT: f32 = 0.9;
 /// Mass and radius of each particle, kg and metres.
 const KNOT: f32 = 0.05;
 const KNOT_RADIUS: f32 = 0.02;
-/// Depth at which a box is let go, metres: short of where it comes to rest.
+/// Depth at which a box is released, metres: less than its rest depth.
 const LET_GO: f32 = 0.12;
 
 fn trampoline(setup: &Setup<'_>) -> Instance {
-    // Within the few millimetres in which a swing counts as rest they would not hang where they should.
+    // With sleep, they would stop within the few millimetres in which a swing counts as rest.
     let mut world = setup.sleepless_world();
     let mass = setup.number("mass");
     let boxes = [(false, -0.8), (true, 0.8)].map(|(is_net, z)| {
@@ -50,7 +50,7 @@ fn trampoline(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Trampoline { boxes, sag: sag(weight), heights: [0.0; 2], moved: 0.0 })
 }
 
-/// A square of particles, each on two ties. Those of a net are joined to their neighbours; under a box that lies level these springs keep their
+/// A square of particles, each on two ties. In a net they are connected to their neighbours; under a level box these springs keep their
 /// length.
 fn mat(mass: f32, is_net: bool, center: Vec3) -> GroupDef {
     let mut group = GroupDef { iterations: 4, ..GroupDef::default() };
@@ -82,7 +82,7 @@ fn mat(mass: f32, is_net: bool, center: Vec3) -> GroupDef {
     group
 }
 
-/// Depth at which `n k (l − l₀) d/l` with `l = √(a² + d²)` bears a weight, metres, by bisection.
+/// Depth at which `n k (l − l₀) d/l` with `l = √(a² + d²)` supports a weight, metres, by bisection.
 fn sag(weight: f32) -> f64 {
     let (span, stiffness) = (f64::from(SPAN), f64::from(STIFFNESS * TIES as f32));
     let (mut low, mut high) = (0.0, 10.0);

@@ -35,7 +35,7 @@ const RADIUS: f32 = 0.12;
 const SKIN: f32 = 0.005;
 /// From which they fall, of their lowest points, metres.
 const HEIGHT: f32 = 1.0;
-/// Steps in which they surely fall.
+/// Number of steps in which they certainly fall.
 const FALLING: u64 = 20;
 
 fn soft(setup: &Setup<'_>, subdivisions: usize) -> BlobDef {
@@ -59,10 +59,10 @@ fn middle(group: &ParticleGroup) -> (Vec3, Vec3) {
 
 struct Dropped {
     blob: GroupId,
-    /// When nothing presses, m³.
+    /// Volume without pressure, m³.
     volume: f32,
     fall: Option<f32>,
-    /// Least share of its height that it had.
+    /// Smallest share of its height.
     squeezed: f32,
 }
 
@@ -79,7 +79,7 @@ impl Script for Dropped {
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let group = world.particles(self.blob);
         let fastest = group.velocities().iter().fold(0.0, |most, v| max(most, v.length()));
-        // Air resists its drag, too.
+        // Its drag is air resistance.
         vec![
             Metric::awaited("fall_m_s2", self.fall, Expected::near(0.967 * GRAVITY, 0.005)),
             Metric::new(
@@ -134,13 +134,13 @@ struct Bounce {
     contact: u32,
     /// Highest since then, of the lowest point of a round ball, metres.
     rebound: Option<f32>,
-    /// Fastest just before and after, m/s.
+    /// Largest speed just before and after, m/s.
     before: f32,
     after: f32,
 }
 
 impl Bounce {
-    /// After a step at whose end the middle is there, and the floor touched or not.
+    /// Updates after a step that ends with this height and contact state.
     fn after_step(&mut self, world: &World, height: f32, speed: f32, touches: bool) {
         if world.step_count() == FALLING {
             self.fall = Some(-speed);
@@ -157,7 +157,7 @@ impl Bounce {
         self.after = max(self.after, speed);
     }
 
-    /// On the floor, s: not exact by more than a step.
+    /// Contact time, s; accurate to a step.
     fn contact(&self, world: &World) -> f32 {
         self.contact as f32 * world.def().dt()
     }

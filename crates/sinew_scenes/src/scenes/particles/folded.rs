@@ -44,7 +44,7 @@ const HEIGHT: f32 = 0.1;
 const BOX: Vec3 = Vec3::new(0.08, 0.03, 0.08);
 /// Middle of the cloth, and the height of the box at first, metres.
 const ABOVE: Vec3 = Vec3::new(0.1, 0.5, 0.12);
-/// Steps after which the box lies, and at the end of which what it presses with is measured.
+/// Step after which the box lies, at whose end its pressure is measured.
 const LIES: u64 = 240;
 /// Steps in which the box falls freely.
 const FALLS: u64 = 12;
@@ -97,14 +97,14 @@ fn folded(setup: &Setup<'_>) -> Instance {
 
 #[derive(Default)]
 struct Watch {
-    /// Threads that pierced the cloth, in all steps looked at.
+    /// Number of threads that pierced the cloth, in all checked steps.
     crossings: u32,
     /// Least distance of particles of different layers, metres.
     least: f32,
     /// Sum over steps of the force on the box, N, and the number of these.
     pressed: f32,
     steps: u32,
-    /// Way of the box in free fall, before it meets the cloth, over what it should be.
+    /// Distance of the box's free fall before the cloth, relative to the expected one.
     fall: Option<f32>,
 }
 
@@ -156,7 +156,7 @@ fn pierces([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
     sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0)
 }
 
-/// Least distance of two particles that are further than a spring from each other in the cloth, metres.
+/// Smallest distance of two particles more than a spring apart in the cloth, metres.
 fn least_apart(positions: &[Vec3]) -> f32 {
     let wide = COLUMNS as usize + 1;
     let mut least = f32::INFINITY;

@@ -1,4 +1,4 @@
-//! Cloth in the wind, and in the way.
+//! Cloth in the wind and as an obstacle.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -69,14 +69,15 @@ fn flag(setup: &Setup<'_>) -> Instance {
         let field = world.add_field(&FieldDef { layers: layer, ..FieldDef::new(FieldKind::Wind(air)) });
         let mut group = cloth.group;
         group.filter = filter;
-        // It comes to rest: else it would swing about its place.
+        // Damping lets it come to rest instead of swinging.
         group.linear_damping = 1.0;
         (world.add_particles(&group), field)
     });
     Instance::new(world, Flag { banners, wind, work: 0.0 })
 }
 
-/// Lean of a flat sheet that hangs in a wind, along the wind over down: at the angle `φ` from down the pressure `½ ρ C v² cos² φ` bears what of its weight is
+/// Slope of a flat sheet in a wind: horizontal over vertical extent. At the angle `φ` from the vertical the pressure `½ ρ C v² cos² φ`
+/// balances the weight's component across it, `μ g sin φ`.
 /// across it, `μ g sin φ`.
 fn slope(wind: f32) -> f32 {
     let pressure = 0.5 * AIR * DRAG * wind * wind / (MASS / (WIDE * LONG) * GRAVITY);
@@ -85,11 +86,11 @@ fn slope(wind: f32) -> f32 {
 }
 
 struct Flag {
-    /// With the wind that each hangs in.
+    /// Each with its wind.
     banners: [(GroupId, FieldId); 2],
     /// That the first one hangs in, m/s.
     wind: f32,
-    /// That the winds have done, J.
+    /// Work of the winds, J.
     work: f32,
 }
 
@@ -166,9 +167,9 @@ struct Curtain {
     held: usize,
     /// N.
     weight: f32,
-    /// That a particle has been in the ball, metres.
+    /// Largest depth of a particle in the ball, metres.
     deepest: f32,
-    /// Furthest that it was pushed, metres.
+    /// Largest displacement, metres.
     pushed: f32,
 }
 

@@ -1,4 +1,4 @@
-//! An arch of stones without mortar: nothing but thrust and friction holds it.
+//! An arch of stones without mortar, held by thrust and friction alone.
 
 use crate::blueprint::arch::{Joint, arch, joints};
 use crate::framework::camera_hint::CameraHint;
@@ -27,7 +27,7 @@ pub(in crate::scenes) const ARCH: Scene = Scene {
 };
 
 fn build(setup: &Setup<'_>) -> Instance {
-    // Contacts give way until they bear the weight; what they bear then is asked for.
+    // Contacts yield until they carry the weight; the load is measured then.
     let sleep_thresholds = SleepThresholds { time: 2.0, ..SleepThresholds::default() };
     let mut world = World::new(WorldDef { sleep_thresholds, ..setup.world_def() });
     let (stones, blocks) = (setup.whole("stones") | 1, setup.whole("blocks"));
@@ -88,7 +88,7 @@ impl Script for Arch {
 struct Pier {
     /// N.
     weight: f32,
-    /// Holds it in the middle of its joint with the arch.
+    /// Holds it at the centre of its joint with the arch.
     held: JointId,
 }
 
@@ -103,13 +103,13 @@ impl Pier {
 
     /// Reaction of the pier on the arch, about the middle of their joint.
     fn load(self, world: &World) -> Reaction {
-        // Its own weight is right below that.
+        // Its own weight acts right below that.
         let Reaction { force, torque } = world.reaction(self.held);
         Reaction { force: force - Vec3::Y * self.weight, torque }
     }
 }
 
-/// Weights of an arch, and the joints at which they are handed on.
+/// Weights of an arch, and the joints that transmit them.
 struct Masonry {
     /// From −x to +x.
     joints: Vec<Joint>,

@@ -1,4 +1,4 @@
-//! Things that stand on each other, or do not for long: stack, pyramid, dominoes.
+//! Standing and toppling blocks: stack, pyramid, dominoes.
 
 use crate::framework::flight::Flight;
 use crate::framework::instance::{Instance, Script};
@@ -53,7 +53,7 @@ fn standing(setup: &Setup<'_>, places: impl Iterator<Item = Vec3>) -> Instance {
 }
 
 struct Standing {
-    /// With the places where they belong.
+    /// Boxes with their target positions.
     boxes: Vec<(BodyId, Vec3)>,
     flight: Flight,
     asleep: Option<f32>,
@@ -77,7 +77,7 @@ impl Script for Standing {
         vec![
             self.flight.metric(),
             Metric::new("shift_max_m", shift, Expected::AtMost(0.01)),
-            // Soft contacts give by the weight above them.
+            // Soft contacts sink by the weight above them.
             Metric::new("sink_max_m", sink, Expected::AtMost(0.04)),
             Metric::awaited("asleep_s", self.asleep, Expected::AtMost(8.0)),
         ]
@@ -129,9 +129,9 @@ fn dominoes(setup: &Setup<'_>) -> Instance {
 struct Dominoes {
     row: Vec<BodyId>,
     striker: BodyId,
-    /// Energy that the ball has at its lowest point, J.
+    /// Energy of the ball at its lowest point, J.
     swing: f32,
-    /// The most that it had so far, J.
+    /// Largest energy so far, J.
     strike: f32,
     all_down: Option<f32>,
 }

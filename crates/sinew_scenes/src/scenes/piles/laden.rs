@@ -1,4 +1,4 @@
-//! Things that stand with something jointed on them, hanging from them, leaning on them: they stand as well as without.
+//! Structures with jointed loads on them, hanging from them or leaning on them: they must stand as well as without.
 
 use crate::blueprint::{self, Blueprint, arch, loads};
 use crate::framework::flight::Flight;
@@ -69,7 +69,7 @@ pub(in crate::scenes) const STACK: Scene = laden(
     |setup| side_by_side(setup, &tower(blueprint::loads::stack(10))),
 );
 
-/// Host on which jointed things are put.
+/// A structure that carries jointed loads.
 struct Host {
     plan: Blueprint,
     /// True if its first body is a floor, which all copies share.
@@ -78,15 +78,15 @@ struct Host {
     top: Transform,
     /// Half of the top's width along x, metres.
     half: f32,
-    /// Over a man's, of the figure that lies there.
+    /// Size of the figure on it, relative to a man.
     figure: f32,
-    /// Mass of one of the bodies that bear what lies there, kg.
+    /// Mass of one of the supporting bodies, kg.
     mass: f32,
-    /// Points of the rope over it.
+    /// Points of the rope over the top.
     rope: Vec<Vec3>,
-    /// From which body a rope hangs, and where.
+    /// Body from which a rope hangs, and the point.
     edge: (usize, Vec3),
-    /// Point at which a plank touches it, and the degrees by which the plank leans.
+    /// Point at which a plank touches it, and the plank's tilt in degrees.
     touch: (Vec3, f32),
     /// Mass of the plank, kg.
     plank: f32,
@@ -122,7 +122,7 @@ impl Host {
         }
     }
 
-    /// The same with a load.
+    /// The same structure with a load.
     fn laden(&self, setup: &Setup<'_>, load: &Load) -> Blueprint {
         let mut plan = self.plan.clone();
         (load.add)(setup, self, &mut plan);
@@ -135,7 +135,7 @@ fn mass_of(plan: &Blueprint, place: usize) -> f32 {
     shape.shape.mass_properties(shape.density).mass
 }
 
-/// A way to load a host, and what its figures are called.
+/// A kind of load, and the names of its figures.
 struct Load {
     shift: &'static str,
     sink: &'static str,
@@ -262,7 +262,7 @@ fn masonry() -> Host {
     Host { on_floor: false, ..Host::level(plan, top, 0.3, (touch, 40.0)) }
 }
 
-/// Copies of a host, the first as it is, each other one with one of the loads.
+/// Copies of a structure: the first without a load, each other one with one of the loads.
 fn side_by_side(setup: &Setup<'_>, host: &Host) -> Instance {
     let mut world = World::new(WorldDef { sleeping: Sleeping::On, ..setup.world_def() });
     let apart = 4.0 * host.half + 2.0 * host.figure;
@@ -280,7 +280,7 @@ fn side_by_side(setup: &Setup<'_>, host: &Host) -> Instance {
     Instance::new(world, Laden { copies, flight, asleep: None })
 }
 
-/// A host and its load.
+/// A structure and its load.
 struct Copy {
     /// Poses in which the host's bodies belong.
     placed: Vec<(BodyId, Transform)>,
@@ -299,7 +299,7 @@ impl Copy {
         self.placed.iter().fold(0.0, |worst, &(id, from)| max(worst, of(from, center(world, id))))
     }
 
-    /// Aside, down, into each other.
+    /// Shift, sink and depth.
     fn figures(&self, world: &World) -> [f32; 3] {
         let sink = self.worst(world, |a, b| a.translation.y - b.translation.y);
         let depth = deepest(world, self.placed.iter().map(|&(id, _)| id));
@@ -312,15 +312,15 @@ impl Copy {
 }
 
 struct Laden {
-    /// The first without a load.
+    /// Copies of the structure; the first has no load.
     copies: Vec<Copy>,
-    /// Free fall of a ball, for gravity's sake.
+    /// Free fall of a ball, to verify gravity.
     flight: Flight,
     asleep: Option<f32>,
 }
 
-/// Shift, sink and depth that a laden stand may have in any case, metres: twice of next to nothing says little. What a bare one may
-/// shift is 5 mm in its own scene.
+/// Shift, sink and depth that are always allowed for a loaded structure, metres: twice a value near zero says little. An unloaded one may
+/// shift by 5 mm in its own scene.
 const ROOM: [f32; 3] = [0.005, 0.005, 0.001];
 
 impl Script for Laden {

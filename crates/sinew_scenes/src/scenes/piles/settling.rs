@@ -1,4 +1,4 @@
-//! Heaps that fall asleep. How many steps it takes is held against Box3D where `bench/peers` runs it on the same scene.
+//! Heaps that fall asleep. The number of steps is compared to Box3D where `bench/peers` runs it on the same scene.
 
 use crate::blueprint::{self, Blueprint};
 use crate::framework::flight::Flight;
@@ -49,7 +49,7 @@ pub(in crate::scenes) const ROCKS: Scene = Scene {
 /// Bodies of two figures, which touch from the start.
 const FIGURES: usize = 30;
 
-/// Scene of a plan, of which the first bodies touch no other before they land; all of it has to sleep after so many steps.
+/// Scene of a blueprint whose first bodies touch no other before they land; all of it has to sleep after the given number of steps.
 fn settling(setup: &Setup<'_>, plan: &Blueprint, first: usize, asleep_within: u32) -> Instance {
     let mut world = setup.world();
     let built = plan.build_into(&mut world);
@@ -72,7 +72,7 @@ struct Settling {
     asleep: Option<u64>,
 }
 
-/// Lower than this nothing lies that has not fallen through the ground, metres.
+/// Height below which a body has fallen through the ground, metres.
 const LOWEST: f32 = -1.0;
 
 impl Script for Settling {

@@ -1,4 +1,4 @@
-//! Ragdolls that are driven: held up, led through a walk, hit.
+//! Driven ragdolls: held up, guided through a walk, hit.
 
 use crate::framework::actors::Gone;
 use crate::framework::camera_hint::{CameraHint, Trails};
@@ -68,7 +68,7 @@ fn mass(def: &RagdollDef) -> f32 {
     def.bodies.iter().map(|body| body.mass.mass).sum()
 }
 
-/// One that stays where it is.
+/// A ragdoll held in place.
 struct Held {
     def: RagdollDef,
     ragdoll: Ragdoll,
@@ -203,7 +203,7 @@ impl Walk {
     }
 }
 
-/// One that follows a walk.
+/// A ragdoll that follows a walk.
 struct Led {
     walk: Walk,
     ragdoll: Ragdoll,

@@ -97,7 +97,7 @@ fn stairs(setup: &Setup<'_>) -> Instance {
     Instance::new(world, limp)
 }
 
-/// Expectations to which joints are held while they are struck.
+/// Joint bounds during a hit.
 struct Requirements {
     gap_p99: Expected,
     gap_max: Expected,
@@ -121,7 +121,7 @@ const FAST: Requirements = Requirements {
     overshoot_max: Expected::Anything,
 };
 
-/// A limp mannequin and how it fares.
+/// A limp mannequin and its measurements.
 pub(in crate::scenes) struct Limp {
     def: RagdollDef,
     ragdoll: Ragdoll,
@@ -139,9 +139,9 @@ pub(in crate::scenes) struct Limp {
     left: Option<f32>,
 }
 
-/// Time in which a hit takes what energy it takes, seconds.
+/// Duration of a hit's energy loss, seconds.
 const IMPACT: f32 = 0.1;
-/// Step after which the push comes: in mid-stumble.
+/// Step of the push, during the stumble.
 const PUSH_STEP: u64 = 12;
 
 impl Limp {
@@ -182,7 +182,7 @@ impl Limp {
 
     fn push(&mut self, world: &mut World) {
         let chest = self.def.bodies.iter().position(|body| body.role == "chest");
-        // What has no chest is pushed at its root.
+        // Without a chest, the root is pushed.
         let chest = self.ragdoll.bodies[chest.unwrap_or(0)];
         let before = world.body_energy(chest).kinetic;
         world.apply_impulse_at_center(chest, self.push);

@@ -93,15 +93,15 @@ fn drop(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Fallen { figures, flight })
 }
 
-/// Treatment of the static body of a model.
+/// Handling of the static body of a model.
 #[derive(Clone, Copy, PartialEq)]
 enum Ground {
     Keep,
-    /// There is one already, and a second floor in the same place would push everything twice.
+    /// There is a floor already, and a second one in the same place would push everything twice.
     Remove,
 }
 
-/// A model that falls, and how it fares.
+/// A falling model and its measurements.
 struct Figure {
     start: &'static Start,
     bodies: Vec<BodyId>,

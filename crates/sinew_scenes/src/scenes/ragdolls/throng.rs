@@ -1,4 +1,4 @@
-//! A crowd that walks, is hit in waves, falls over each other and gets up again.
+//! A crowd that walks, is hit in waves, falls and gets up again.
 
 use crate::demo::walking_mannequin;
 use crate::framework::actors::Figure;
@@ -33,10 +33,10 @@ const SPACING: f32 = 0.9;
 /// Time of the first wave, and time from one to the next, seconds.
 const FIRST_HIT: f32 = 0.75;
 const BETWEEN_WAVES: f32 = 1.5;
-/// From the hit until it is up, seconds: the most that it may take. A body on which others fall has six to come to rest, one
-/// and a half to be rolled over, and three to get up in.
+/// Longest time from the hit until it is up, seconds. A body under others has six to come to rest, one and a half to be rolled over, and
+/// three to get up.
 const UP_WITHIN: f64 = 10.6;
-/// States in the order in which characters are brought forward, with the names of what they cost.
+/// States in the order of updates, with the names of their cost figures.
 const STATES: [(State, &str); 4] = [
     (State::Animated, "animated"),
     (State::Limp, "limp"),
@@ -77,7 +77,7 @@ fn crowd(setup: &Setup<'_>) -> Instance {
     Instance::new(world, throng)
 }
 
-/// One of the crowd.
+/// A member of the crowd.
 struct Member {
     character: Character,
     /// N·s.
@@ -91,7 +91,7 @@ struct Member {
 }
 
 impl Member {
-    /// Brings its joints to where a picture shows them.
+    /// Updates its joints for pictures.
     fn show(&mut self) {
         let character = &self.character;
         local_to_model(

@@ -1,4 +1,4 @@
-//! The engine's loop: frames of any length, and a kind of object that the engine does not know.
+//! The engine's loop: frames of any length, and a user-defined kind of object.
 
 use crate::framework::instance::{Instance, Script};
 use crate::framework::metric::{Expected, Metric};
@@ -38,7 +38,7 @@ fn frame_rates(setup: &Setup<'_>) -> Instance {
 /// The ball falls from here, m.
 const DROP: f32 = 100.0;
 
-/// A bit of everything, and a ball that falls past it.
+/// Bodies of several kinds, and a ball that falls past them.
 fn crowd(setup: &Setup<'_>) -> (World, BodyId) {
     let mut world = setup.world();
     world.add_body(&floor());
@@ -73,13 +73,13 @@ enum Frames {
 
 /// The same world at another frame rate.
 struct Other {
-    /// Name of the figure that tells of it.
+    /// Name of its figure.
     name: &'static str,
     frames: Frames,
     world: World,
     /// Time that it was given.
     time: Duration,
-    /// Number of times that its state was another one.
+    /// Number of times that its state differed.
     differed: u32,
 }
 
@@ -88,7 +88,7 @@ impl Other {
         Self { name, frames, world, time: Duration::ZERO, differed: 0 }
     }
 
-    /// Frame by frame; the last one is as long as it takes, so that no time waits for a step: it would be part of the state.
+    /// Advances frame by frame; the last frame is as long as needed, so that no time is left over, which would be part of the state.
     fn advance(&mut self, until: Duration) {
         while self.time < until {
             let frame = match &mut self.frames {
@@ -106,7 +106,7 @@ struct FrameRates {
     dropped: BodyId,
     /// Number of times that states were compared.
     compared: u32,
-    /// The world step by step, whatever the frames of who runs the scene.
+    /// The world stepped without frames.
     stepped: World,
     others: Vec<Other>,
 }
@@ -163,7 +163,7 @@ const CIRCLE: f32 = 0.25;
 /// Radius of a bead, metres.
 const BEAD: f32 = 0.03;
 
-/// Cycloids side by side along z, open to above, with a bead on each: a wire is no shape and no joint of the engine.
+/// Cycloids side by side along z, open upwards, with a bead on each; a wire is neither a shape nor a joint of the engine.
 struct Wire {
     beads: Vec<OnWire>,
 }
@@ -187,8 +187,8 @@ impl OnWire {
         Vec3::new(1.0 + cos, sin, 0.0) * CIRCLE
     }
 
-    /// Rolls to where a place comes onto the wire along the normal from which the bead came (SHAKE: along the one where it
-    /// arrives, it would lose energy in every bend), by Newton's steps.
+    /// Rolls to the position at which a place meets the wire along the normal of the bead's old position (SHAKE; with the normal of the new
+    /// one it would lose energy in every bend), by Newton's method.
     fn follow(&mut self, place: Vec3) {
         let came = self.tangent();
         for _ in 0..4 {

@@ -68,14 +68,14 @@ fn grounds() -> [(&'static str, BodyDef); 4] {
     ]
 }
 
-/// A shape, how it lies at rest, and how high its centre of mass is then, metres.
+/// A shape, its rest orientation, and the height of its centre of mass then, metres.
 struct Exhibit {
     shape: Shape,
     lies: Rotation,
     height: f32,
 }
 
-/// Place of the ball among the exhibits, which tilts no nearer to the floor.
+/// Index of the ball among the exhibits, which cannot tilt.
 const BALL: usize = 1;
 
 fn exhibits() -> [Exhibit; 7] {
@@ -104,9 +104,9 @@ fn exhibits() -> [Exhibit; 7] {
 
 /// Exhibits on one floor.
 struct Floor {
-    /// Name of the figure that tells of it.
+    /// Name of its figure.
     figure: &'static str,
-    /// With the height at which its centre of mass belongs.
+    /// Bodies with the expected heights of their centres of mass.
     shown: Vec<(BodyId, f32)>,
 }
 

@@ -1,4 +1,4 @@
-//! Answers of one tree of a batch to impulses of up to eight rows, one in each lane.
+//! Velocity changes of one batched tree from unit impulses of up to eight rows, one row in each lane.
 
 use super::Batch;
 use super::node::One;
@@ -9,8 +9,8 @@ use crate::spatial::Vec6;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::Lanes;
 
-/// Makes columns, `stride` apart from each other, the velocity changes of all links of a tree from impulses: each column from those on
-/// one or two links, which are given with their places.
+/// Writes columns, `stride` apart: the velocity changes of all links of a tree. Each column is for one row, whose impulse acts on one or
+/// two links, given with their indices in the tree.
 pub(super) struct AnswerRows<'a> {
     pub batch: &'a Batch,
     /// Lane of the tree in the batch.
@@ -30,7 +30,7 @@ impl Kernel for AnswerRows<'_> {
         let (view, nodes) = (One(lane), &batch.nodes[..]);
         let ways = &mut ways[..nodes.len()];
         begin(ways);
-        // Bit by bit: links on which something acts, or to which it comes on its way to the root.
+        // Bit set of the links that receive an impulse, directly or on its way to the root.
         let mut pushed = 0_u32;
         for (k, pushes) in pushes.iter().enumerate() {
             for &(place, impulse) in pushes.iter().flatten() {

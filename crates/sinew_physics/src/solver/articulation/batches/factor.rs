@@ -1,4 +1,4 @@
-//! The factor of eight trees: open directions are eliminated from the leaves to the roots, with twice the digits.
+//! Factors eight trees: eliminates the open directions of the joints from the leaves to the roots, in double precision.
 
 use super::MOST_LINKS;
 use super::node::{Axis, Kind, Node};
@@ -98,7 +98,7 @@ fn keep_passed<L: Lanes>(node: &mut Node, through: &Inertia<L::Wide>) {
     keep::<L>(&through.rotation, &mut node.passed_rotation);
 }
 
-/// With the digits of the solve.
+/// Rounds to the precision of the solve and stores the result.
 #[inline(always)]
 fn keep<L: Lanes>(Symmetric(from): &Symmetric<L::Wide>, to: &mut [Eight; 6]) {
     for (number, row) in from.iter().zip(to) {
@@ -113,7 +113,7 @@ fn keep_rows<L: Lanes>(from: [Vector3<L::Wide>; 3], to: &mut [[Eight; 3]; 3]) {
     }
 }
 
-/// With twice the digits.
+/// Loads a stored matrix in double precision.
 #[inline(always)]
 fn wide<L: Lanes>(from: &[Eight; 6]) -> Symmetric<L::Wide> {
     let [a, b, c, d, e, f] = from;

@@ -1,11 +1,11 @@
 //! Batches: joint trees of one shape, up to eight side by side, one in each lane.
 //!
 //! Factor and solve are those of [`tree`](crate::solver::articulation::tree), but a joint's elimination is stored as its pivot and coupling
-//! instead of as 6×6 matrices of a link, which needs fewer operations in lanes. A shape is the parent of each link and the number of rotations that each
-//! joint holds, so figures of one kind share a batch whatever their sizes and poses.
+//! instead of as 6×6 matrices of a link, which needs fewer operations in lanes. Two trees have the same shape if each link has the same
+//! parent and each joint locks the same number of rotations. Figures of one kind therefore share a batch, whatever their sizes and poses.
 //!
-//! Islands solved by [turns](crate::solver::Coupling::Turns) use batches. Trees held by fixed bodies, with motors, or with joints that do not
-//! hold a point, are solved one by one.
+//! Only islands solved by [turns](crate::solver::Coupling::Turns) use batches. Trees held by fixed bodies, trees with motors, and trees
+//! with joints that do not lock a point are solved one by one.
 
 mod answer;
 mod factor;
@@ -27,39 +27,39 @@ use sinew_math::{dispatch, max};
 use solve::{SolveBatch, Way};
 use turn::TurnOfBatch;
 
-/// Number of last batches searched for a free lane. A longer search costs more than half-empty batches where all shapes differ.
+/// Number of most recent batches searched for a free lane. Where all shapes differ, a longer search costs more than half-empty batches do.
 const OPEN: usize = 16;
-/// Most links of a tree in a batch: the factor keeps their inertias on the stack.
+/// Largest number of links of a batched tree: the factor keeps their inertias on the stack.
 const MOST_LINKS: usize = 32;
 
 /// Batches of an island.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Batches {
-    /// Batches in use, then unused ones whose memory is kept.
+    /// Batches in use, followed by unused batches whose memory is kept.
     batches: Vec<Batch>,
     used: usize,
-    /// Batch and lane of each tree; `NONE` of those that are solved alone.
+    /// Batch and lane of each tree; `NONE` for a tree that is solved alone.
     places: Vec<(u32, u32)>,
-    /// Ranges of links of the trees that are solved one by one.
+    /// Link ranges of the trees that are solved one by one.
     pub alone: Vec<Range<usize>>,
     shape: Vec<Site>,
-    /// Memory for solves.
+    /// Work memory of the solves.
     ways: Vec<Way>,
 }
 
 /// Velocities in a sweep by turns.
 pub(in crate::solver) struct TurnVelocities<'a> {
-    /// Velocities before the sweep, and after the limits had their turn.
+    /// Velocities before the sweep, with the changes made by the limits in this sweep.
     pub before: &'a [Vec6],
     pub limited: &'a [Vec6],
-    /// Velocities after the contacts had their turn.
+    /// Velocities with the changes made by the contacts in this sweep.
     pub now: &'a mut [Vec6],
 }
 
 /// Up to eight trees of one shape.
 #[derive(Clone, Debug)]
 pub(in crate::solver) struct Batch {
-    /// Number of each tree and its first link, lane by lane; lanes that are not filled repeat the first tree.
+    /// Index of each tree and of its first link, lane by lane; unused lanes repeat the first tree.
     trees: [u32; WIDTH],
     first: [usize; WIDTH],
     lanes: usize,
@@ -67,7 +67,7 @@ pub(in crate::solver) struct Batch {
 }
 
 impl Batches {
-    /// Reserves memory for so many trees; the next island may have them.
+    /// Reserves memory for `trees` trees, also if this island has none: the memory is reused for the next island.
     pub fn make_room(&mut self, trees: usize) {
         self.places.clear();
         self.places.reserve(trees);
@@ -75,7 +75,7 @@ impl Batches {
         self.alone.reserve(trees + 1);
     }
 
-    /// Removes all batches: all trees are solved one by one.
+    /// Removes all batches, so that all trees are solved one by one.
     pub fn clear(&mut self, links: usize) {
         self.used = 0;
         self.ways.resize(MOST_LINKS, Way::NONE);
@@ -84,7 +84,7 @@ impl Batches {
         self.alone.push(0..links);
     }
 
-    /// Forms batches of the trees that can share one.
+    /// Forms batches of trees with equal shapes.
     pub fn form(&mut self, links: &[Link], joints: &[SolverJoint], trees: &[Range<usize>]) {
         self.clear(links.len());
         self.alone.clear();
@@ -120,7 +120,7 @@ impl Batches {
         }
     }
 
-    /// Reads the shape of a tree into `shape`. False if it cannot be in a batch.
+    /// Reads the shape of a tree into `shape`. Returns false if the tree cannot be in a batch.
     fn read_shape(&mut self, links: &[Link], joints: &[SolverJoint], range: &Range<usize>) -> bool {
         self.shape.clear();
         if range.len() > MOST_LINKS {
@@ -143,7 +143,7 @@ impl Batches {
         true
     }
 
-    /// Opens another batch of the shape that was read.
+    /// Opens another batch for the shape that was read last.
     fn open(&mut self) -> usize {
         if self.used == self.batches.len() {
             let (trees, first) = ([0; WIDTH], [0; WIDTH]);
@@ -159,8 +159,8 @@ impl Batches {
         self.used - 1
     }
 
-    /// Writes the velocity change of every body from impulses on the bodies and residuals of the rows that joints hold; no list of
-    /// residuals means none.
+    /// Writes the velocity change of every body, from impulses on the bodies and residuals of the locked joint rows. An empty list of
+    /// residuals means zero residuals.
     pub fn solve(&mut self, impulses: &[Vec6], residuals: &[Vec6], dv: &mut [Vec6]) {
         let ways = &mut self.ways[..];
         for batch in &self.batches[..self.used] {
@@ -168,8 +168,9 @@ impl Batches {
         }
     }
 
-    /// Solves the trees for the impulses of limits and contacts of this sweep, from the velocities before it, and marks how far they moved.
-    /// `impulses` holds those of limits; those of contacts are added. Returns the largest change beside those that contacts made.
+    /// Solves the trees for the impulses that limits and contacts applied in this sweep, starting from the velocities before it, and marks
+    /// how far the bodies moved. `impulses` holds those of the limits; the contact impulses are added. Returns the largest velocity change,
+    /// not counting the changes that the contacts made.
     pub fn take_turns(
         &mut self,
         impulses: &mut [Vec6],
@@ -185,7 +186,7 @@ impl Batches {
     }
 
     /// Writes columns, `stride` apart: the velocity changes of all links of a tree from impulses on one or two links, given with their
-    /// positions. False if the tree is solved alone.
+    /// indices. Returns false if the tree is solved alone.
     pub fn answer(
         &mut self,
         tree: u32,
@@ -207,12 +208,12 @@ impl Batches {
         }
     }
 
-    /// True for a tree in a batch.
+    /// Returns true if the tree is in a batch.
     pub fn have(&self, tree: usize) -> bool {
         self.places.get(tree).is_some_and(|place| place.0 != NONE)
     }
 
-    /// Bytes that are filled.
+    /// Size of the memory in use, bytes.
     pub fn bytes(&self) -> usize {
         self.batches[..self.used].iter().map(|batch| size_of_val(&batch.nodes[..])).sum()
     }
@@ -234,7 +235,7 @@ impl Batch {
     }
 }
 
-/// Elimination of a joint in a batch; `None` if it has to be solved alone.
+/// Elimination kind of a joint in a batch; `None` if its tree has to be solved alone.
 fn kind_of(joint: &SolverJoint) -> Option<Kind> {
     let rows = &joint.rows;
     if joint.rigid != rows.locked || !rows.locks_point() || joint.drive.motor.is_some() {

@@ -12,18 +12,18 @@ use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 pub(super) enum Kind {
     /// No joint: the first link of its tree.
     Root,
-    /// A point that turns freely.
+    /// A ball joint without springs or friction.
     Point,
-    /// A point whose rotation springs or friction resist.
+    /// A ball joint whose rotation is resisted by springs or friction.
     DrivenPoint,
-    /// A point with so many rotations held; the others, which may be resisted, go one after the other.
+    /// A point with `held` locked rotations; the open rotations, with or without resistance, are eliminated one after the other.
     Axes { held: usize },
 }
 
-/// Place of a link in its tree.
+/// Position of a link in its tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Site {
-    /// Place of the parent.
+    /// Index of the parent link.
     pub parent: u32,
     pub kind: Kind,
 }
@@ -33,38 +33,38 @@ pub(super) struct Site {
 #[repr(C, align(32))]
 pub(super) struct Node {
     pub site: Site,
-    /// Mass that answers to impulses, kg.
+    /// Effective mass for impulses, kg.
     pub mass: Eight,
-    /// Moments about the principal axes that answer to impulses, kg·m², and the rotation of these axes.
+    /// Effective moments about the principal axes, kg·m², and the rotation of these axes.
     pub moments: [Eight; 3],
     pub rotation: [Eight; 4],
-    /// Inertia in the axes of the world, kg·m²: xx, xy, xz, yy, yz, zz.
+    /// Inertia in world axes, kg·m²: xx, xy, xz, yy, yz, zz.
     pub tensor: [Eight; 6],
     /// World arms from the centres of mass of child and parent to the anchor.
     pub arm: [Eight; 3],
     pub parent_arm: [Eight; 3],
     /// 1 if the body is the joint's second one, −1 if it is the first.
     pub sign: Eight,
-    /// Gains that resist a point's rotation.
+    /// Gains of the springs and friction that resist a ball joint's rotation.
     pub gain: [Eight; 6],
     /// (B + G)⁻¹, and rows of C (B + G)⁻¹, see [`Swivel`](crate::solver::articulation::elimination::Swivel).
     pub pivot: [Eight; 6],
     pub coupled: [[Eight; 3]; 3],
-    /// Articulated inertia about the anchor that is passed on to the parent; of a root, `passed_mass` is the inverse of the mass that
-    /// is left.
+    /// Articulated inertia about the anchor that is passed on to the parent. For a root, `passed_mass` is the inverse of the remaining
+    /// mass.
     pub passed_mass: [Eight; 6],
     pub passed_coupling: [[Eight; 3]; 3],
     pub passed_rotation: [Eight; 6],
     pub axes: [Axis; 3],
 }
 
-/// A rotation that is held, or one that is left open.
+/// A rotation axis, locked or open.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axis {
-    /// Turn of the child by a unit of the row.
+    /// Rotation of the child for one unit of the row.
     pub way: [Eight; 3],
     pub gain: Eight,
-    /// Momentum and inverse pivot of an open one: see [`Sequence`](crate::solver::articulation::elimination::Sequence).
+    /// Momentum and inverse pivot of an open axis, see [`Sequence`](crate::solver::articulation::elimination::Sequence).
     pub force: [Eight; 3],
     pub torque: [Eight; 3],
     pub inverse: Eight,
@@ -135,11 +135,12 @@ impl Node {
         }
     }
 
-    /// Ways of the rotations that are held, in the order of their rows, then of those that are open.
+    /// Writes the axes of the locked rotations in the order of their rows, then those of the open rotations.
     fn write_axes(&mut self, lane: usize, joint: &SolverJoint, held: usize) {
         let rows = &joint.rows;
         let Ways { way, row, count } = Ways::new(rows, true);
-        // A direction that others leave next to nothing of has no way: of what is torn like that, none is asked for.
+        // An axis that is nearly dependent on the others has no direction. Joints with such an axis are not asked to correct their rows
+        // here.
         let is_whole = count >= held && (0..held).all(|k| usize::from(row[k]) == TWIST + k);
         for (k, axis) in self.axes.iter_mut().enumerate() {
             let is_asked = k >= held || is_whole;
@@ -148,7 +149,7 @@ impl Node {
         }
     }
 
-    /// Lanes from `lanes` on are copies of the first, so that nothing in them takes longer than that.
+    /// Copies the first tree into the lanes from `lanes` on, so that no unused lane takes longer than a used one.
     pub fn fill(&mut self, lanes: usize) {
         if lanes == WIDTH {
             return;
@@ -167,7 +168,7 @@ impl Node {
     }
 }
 
-/// Lanes filled with the numbers of a node: those of eight trees, or those of one tree in all lanes.
+/// Access to the numbers of a node in lanes: those of eight trees, or those of one tree in all lanes.
 pub(super) trait View<L: Lanes>: Copy {
     fn number(self, of: &Eight) -> L;
 
@@ -188,7 +189,7 @@ impl<L: Lanes> View<L> for Side {
     }
 }
 
-/// The tree of one lane, in all of them.
+/// The tree of one lane, repeated in all lanes.
 #[derive(Clone, Copy)]
 pub(super) struct One(pub usize);
 

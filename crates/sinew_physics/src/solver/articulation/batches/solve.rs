@@ -1,4 +1,4 @@
-//! The exact solve of eight trees, from the leaves to the roots and back.
+//! The exact solve of eight trees: leaves to roots, then roots to leaves.
 
 use super::Batch;
 use super::node::{Kind, Node, Side, View};
@@ -9,15 +9,15 @@ use crate::spatial::Vec6;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 
-/// Notes of a solve about a link.
+/// Intermediate results of a solve for one link.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Way {
-    /// Impulse that has come up to it from those below; on the way down its answer.
+    /// Impulse accumulated from the links below; on the way down, the velocity change of the link.
     pub twist: [Eight; 6],
-    /// Torque that is left to turn the child of a swivel, of a root also the force; of axes the impulse along each.
+    /// Remaining torque on the child of a ball joint (for a root also the force), or the impulse along each open axis.
     along: [Eight; 6],
-    /// Velocity that is asked of the child at the anchor on top of the parent's motion.
+    /// Requested velocity of the child at the anchor, relative to the parent's motion.
     asked: [Eight; 6],
 }
 
@@ -55,7 +55,8 @@ fn rows<L: Lanes>(view: impl View<L>, [x, y, z]: &[[Eight; 3]; 3]) -> Matrix<L> 
 }
 
 impl Node {
-    /// From an impulse on the child at its centre, and what is asked of it at the anchor, to the impulse on the parent at its own.
+    /// Converts an impulse on the child at its centre and the requested velocity at the anchor to the impulse on the parent at the parent's
+    /// centre.
     #[inline(always)]
     fn ascend<L: Lanes>(
         &self,
@@ -93,7 +94,7 @@ impl Node {
         }
         if let Some([v, w]) = asked {
             store6([v, w], &mut way.asked);
-            // The velocity of the parent that moves the anchor in that way, resisted.
+            // Impulse that resists the parent motion corresponding to the requested velocity of the anchor.
             let mass = symmetric(view, &self.passed_mass);
             through[0] = through[0] - mass.times(v);
             if self.site.kind != Kind::Point {
@@ -107,8 +108,8 @@ impl Node {
         [force, torque + view.vector(&self.parent_arm).cross(force)]
     }
 
-    /// Velocity of the child at its centre from that of the parent at its own; unless something has come up through the joint, by that
-    /// alone.
+    /// Velocity of the child at its centre from the velocity of the parent at the parent's centre. If no impulse came up through the joint,
+    /// only the parent's velocity contributes.
     #[inline(always)]
     fn descend<L: Lanes>(&self, view: impl View<L>, [v, w]: Twist<L>, way: &Way, noted: Noted) -> Twist<L> {
         let is_pushed = noted != Noted::Nothing;
@@ -149,7 +150,8 @@ impl Node {
         [v + view.vector(&self.arm).cross(w), w]
     }
 
-    /// Velocity that residuals of the joint's rows ask of the child at the anchor; those of open rows push, and ask for nothing.
+    /// Velocity of the child at the anchor that the residuals of the locked rows request. Open rows apply impulses instead and request no
+    /// velocity.
     #[inline(always)]
     fn asked<L: Lanes>(&self, residuals: [L; WIDTH]) -> Twist<L> {
         let sign = L::load(&self.sign);
@@ -165,7 +167,7 @@ impl Node {
 }
 
 impl Batch {
-    /// One record of each tree for link `i`, field by field.
+    /// Loads one record of each tree for link `i`, field by field.
     #[inline(always)]
     pub(super) fn load<L: Lanes>(&self, i: usize, from: &[Vec6]) -> [L; WIDTH] {
         let mut records = [L::splat(0.0); WIDTH];
@@ -193,7 +195,7 @@ impl Batch {
     }
 }
 
-/// Notes made about a link on the way up.
+/// Values that the ascent stored for a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Noted {
     Nothing,
@@ -201,7 +203,7 @@ pub(super) enum Noted {
     PushesAndAsked,
 }
 
-/// The way up through link `i`, on which an impulse acts beside what has come to it.
+/// Ascends through link `i`, on which an impulse acts in addition to the accumulated one.
 #[inline(always)]
 pub(super) fn up<L: Lanes>(
     ways: &mut [Way],
@@ -218,7 +220,7 @@ pub(super) fn up<L: Lanes>(
     }
 }
 
-/// The way down to link `i`. Gives its answer.
+/// Descends to link `i`. Returns its velocity change.
 #[inline(always)]
 pub(super) fn down<L: Lanes>(
     ways: &mut [Way],
@@ -232,7 +234,7 @@ pub(super) fn down<L: Lanes>(
     answer
 }
 
-/// Clears what has come to the links.
+/// Clears the accumulated impulses.
 #[inline(always)]
 pub(super) fn begin(ways: &mut [Way]) {
     for way in ways {
@@ -240,8 +242,8 @@ pub(super) fn begin(ways: &mut [Way]) {
     }
 }
 
-/// Velocity change of every body of a batch from impulses on the bodies and residuals of the rows that joints hold; no list of
-/// residuals means none.
+/// Computes the velocity change of every body of a batch from impulses on the bodies and residuals of the locked joint rows. An empty list
+/// of residuals means zero residuals.
 pub(super) struct SolveBatch<'a> {
     pub batch: &'a Batch,
     pub ways: &'a mut [Way],

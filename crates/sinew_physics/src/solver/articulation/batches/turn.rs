@@ -1,4 +1,4 @@
-//! The turn of the trees of a batch in a sweep by turns.
+//! The solve of a batch's trees within a sweep by turns.
 
 use super::node::Side;
 use super::solve::{Noted, Way, begin, down, up};
@@ -10,12 +10,12 @@ use crate::spatial::Vec6;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
 
-/// Solves the trees of a batch for the impulses of limits and contacts of this sweep, from the velocities before it, and marks how far they
-/// moved. Returns the largest change beside those that contacts made.
+/// Solves the trees of a batch for the impulses that limits and contacts applied in this sweep, starting from the velocities before it, and
+/// marks how far the bodies moved. Returns the largest velocity change, not counting the changes that the contacts made.
 pub(super) struct TurnOfBatch<'a, 'b> {
     pub batch: &'a Batch,
     pub ways: &'a mut [Way],
-    /// Impulses of limits; those of contacts, computed from their velocity changes, are added.
+    /// Impulses of the limits. The contact impulses, computed from their velocity changes, are added.
     pub impulses: &'a mut [Vec6],
     pub velocities: &'a mut TurnVelocities<'b>,
     pub dirty: &'a mut DirtyRows,
@@ -64,7 +64,7 @@ impl Kernel for TurnOfBatch<'_, '_> {
     }
 }
 
-/// True if an impulse acted on a tree in this sweep.
+/// Returns true if an impulse acted on any of the trees in this sweep.
 #[inline(always)]
 fn is_pushed<L: Lanes>(batch: &Batch, impulses: &[Vec6], swept: &[Vec6], velocities: &[Vec6]) -> bool {
     let none = L::splat(0.0);

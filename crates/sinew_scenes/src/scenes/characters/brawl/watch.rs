@@ -6,31 +6,31 @@ use sinew::math::{ReadError, Reader, Vec3, Writer, max};
 use sinew::physics::{BodyId, World};
 use sinew::ragdoll::{CharacterEvent, State};
 
-/// States of a character; figures of each are kept apart.
+/// States of a character that have separate figures.
 pub(super) const STATES: [State; 6] =
     [State::Animated, State::Flinching, State::Powered, State::Limp, State::Preparing, State::GettingUp];
-/// Steps between two looks at how deep bodies are in what is fixed.
+/// Number of steps between measurements of the penetration into static bodies.
 const LOOKS: u64 = 4;
-/// Steps after a blow in which the speed of a limb is the blow's.
+/// Number of steps after a hit in which a limb's speed is attributed to the hit.
 const BLOW_LASTS: u32 = 30;
-/// Steps after which one who has not got up is stuck.
+/// Number of steps after which a character that has not got up is stuck.
 const STUCK: u32 = 480;
-/// Speed of the pelvis below which one that fell lies, m/s.
+/// Speed of the pelvis below which a fallen character lies, m/s.
 const LIES: f32 = 0.3;
-/// Distance of a stander's place from a pelvis that leaves room to get up, metres.
+/// Distance from a standing character to a pelvis that leaves room to get up, metres.
 const ROOM_TO_RISE: f32 = 0.6;
-/// Depth that is seen, metres.
+/// Visible depth, metres.
 const SEEN: f64 = 0.02;
 
 /// Record of one character from step to step.
 #[derive(Clone, Default)]
 pub(super) struct Watched {
-    /// Joints of the bodies in the last three frames, the latest first.
+    /// Joint positions in the last three frames, the latest first.
     frames: [Vec<Vec3>; 3],
-    /// States after the last two updates, by index, the latest first; and whether a blow fell before them.
+    /// States after the last two updates, by index, the latest first; and whether a hit came before them.
     states: [u8; 2],
     blows: [bool; 2],
-    /// Steps since the last blow, since it fell, and those in which it lay and had room.
+    /// Steps since the last hit, since the fall, and number of steps in which it lay with room to get up.
     since_blow: u32,
     down: u32,
     roomy: u32,
@@ -74,7 +74,7 @@ impl Watched {
         Ok(())
     }
 
-    /// Largest way of a joint in the frame before the last beyond those of its neighbours, metres.
+    /// Largest displacement of a joint in the frame before the last, beyond those of the neighbouring frames, metres.
     fn jump(&self, now: &[Vec3]) -> f32 {
         let [c, b, a] = &self.frames;
         if a.len() != now.len() || b.len() != now.len() || c.len() != now.len() {
@@ -270,7 +270,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Figures so far; expectations are the bars of a crowd that can be shown in a game.
+    /// Figures so far; the expectations are the bars of a crowd fit for a game.
     pub fn metrics(&self) -> Vec<Metric> {
         let count = |name: &str| {
             f64::from(self.counts[COUNTS.iter().position(|&other| other == name).expect("it is counted")])
@@ -298,7 +298,7 @@ impl Watch {
     }
 }
 
-/// True if a body of another touches one of its.
+/// Returns true if another character's body touches one of its bodies.
 fn is_touched(world: &World, fighter: &Fighter) -> bool {
     let own = fighter.character.bodies();
     let owned = |body: BodyId| world.body_owner(body).is_some();
