@@ -42,18 +42,12 @@ pub(super) const CALM_TURN: f32 = 0.25;
 /// sweeps that they do not need. Shown by `stack_ratio`, `stack_mass_ratio`, and the tests of `stacks` with towers of any masses.
 pub(super) const GRADED_RATIO: f32 = 100.0;
 
-/// Number of joint trees above which an island without loops is solved by turns.
+/// Trees of joints beyond which an island is solved by turns, a number.
 ///
-/// The response of all links grows with trees times contacts (ADR 0017). Sensible from 2 to 8. Larger: heaps of several figures take
-/// longer: with 8 instead of 2, a heap of ten takes 1.5 times as long, and its 99th percentile twice as long. Smaller: with 1 a heap of ten
-/// rests 2 to 30 mm deep (`humanoid_pile_10` of `cargo xtask bench`). Shown by `ragdoll_pile` (beyond) and `ragdoll_poses` (below).
-pub(super) const RESPONSE_TREES: usize = 2;
-
-/// Number of joint trees above which an island with loops is solved by turns.
-///
-/// Loops are iterated between the turns, and the contact impulses on them in between may add energy: with 2, nets of welds and springs gain
-/// energy in 1 of 100 random worlds. Larger and smaller: as for [`RESPONSE_TREES`]. Shown by the test `random_worlds`.
-pub(super) const RESPONSE_TREES_WITH_LOOPS: usize = 8;
+/// The response of all links grows with trees times contacts (ADR 0017). Sensible from 2 to 16. Larger: heaps of some figures take longer.
+/// Smaller: few figures agree less exactly with their contacts: with 2 a heap of ten takes two thirds of the time, but limp limbs of the brawl reach 27 m/s
+/// instead of 17 (means of eight seeds). Shown by `ragdoll_pile` (beyond), `ragdoll_poses` (below) and `brawl`.
+pub(super) const RESPONSE_TREES: usize = 8;
 
 /// Number of contacts, without those of [`RESPONSE_CONTACTS_PER_LINK`], above which an island with joints is solved by turns.
 ///

@@ -9,7 +9,7 @@ use crate::solver::pass::Coupling;
 use crate::solver::sweep::policy::{Firmness, SweepPolicy};
 use crate::solver::tuning::{
     BOUNCE_SPEED, CALM_TURN, DAMPED_CONTACTS, DAMPED_CONTACTS_JOINTED, DAMPED_CONTACTS_PER_BODY,
-    GRADED_RATIO, RESPONSE_CONTACTS, RESPONSE_CONTACTS_PER_LINK, RESPONSE_TREES, RESPONSE_TREES_WITH_LOOPS,
+    GRADED_RATIO, RESPONSE_CONTACTS, RESPONSE_CONTACTS_PER_LINK, RESPONSE_TREES,
 };
 use crate::solver::view::{Grading, View};
 use sinew_math::{max, min};
@@ -27,11 +27,12 @@ impl IslandSolver {
     /// Chooses the coupling of contacts and joints: the response of all links for few trees, turns for more.
     pub(in crate::solver) fn choose_coupling(&mut self, contacts: usize) {
         let jointed = self.trees.iter().filter(|tree| tree.len() > 1 || self.links[tree.start].joint != NONE);
-        let most_trees = if self.loops.is_empty() { RESPONSE_TREES } else { RESPONSE_TREES_WITH_LOOPS };
         let (trees, links) = jointed.fold((0, 0), |(trees, links), tree| (trees + 1, links + tree.len()));
         self.coupling = match trees {
             0 if self.pins.joints.is_empty() => Coupling::Free,
-            _ if trees > most_trees || contacts > RESPONSE_CONTACTS + RESPONSE_CONTACTS_PER_LINK * links => {
+            _ if trees > RESPONSE_TREES
+                || contacts > RESPONSE_CONTACTS + RESPONSE_CONTACTS_PER_LINK * links =>
+            {
                 Coupling::Turns
             }
             _ => Coupling::Response,
