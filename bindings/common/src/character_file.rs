@@ -101,7 +101,7 @@ pub struct Motions {
     pub looped: Option<String>,
     /// Rule by which that clip moves it over the ground. Default by the clip.
     pub locomotion: Locomotion,
-    /// Whether Sinew's own motions fill in where the file has none to get up by. Default true.
+    /// Adds Sinew's own get-up motions if the file has none. Default: true.
     pub builtin: bool,
     /// Action once it lies still. Default get up.
     pub after_settling: AfterSettling,

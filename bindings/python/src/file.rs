@@ -20,7 +20,7 @@ pub struct CharacterFile {
     pub file: Arc<sinew_bindings::CharacterFile>,
 }
 
-/// What the arguments of a loading function say.
+/// Corrections of a character from the arguments of a loading function.
 fn corrections(
     settings: Option<&Bound<'_, PyAny>>,
     roles: Option<HashMap<String, String>>,

@@ -238,7 +238,7 @@ impl Ragdoll {
         self.repair.def.unit_scale
     }
 
-    /// A copy with all mended that the doctor mends, and what it found.
+    /// Copy with the doctor's cures applied, and the doctor's findings.
     fn cured<'py>(&self, py: Python<'py>) -> PyResult<(Self, Bound<'py, PyDict>)> {
         let (repair, found) = py.detach(|| guarded(|| cure(&self.repair)))?;
         let ragdoll = Self { repair, notes: self.notes.clone(), mean_error: self.mean_error };

@@ -1,4 +1,4 @@
-//! What the native library computes and takes for the scenes of `tests/scenes.mjs`: node checks the package against it. Arguments: the folder of
+//! Prints hashes and times of the native library for the scenes of `tests/scenes.mjs`, which compares the package with them. Arguments: the folder of
 //! rigs, their names, and `--measure` for times. Prints JSON.
 
 use sinew::formats::{ReadOptions, no_files, read_gltf, write_gltf};

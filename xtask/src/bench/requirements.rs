@@ -52,7 +52,7 @@ pub enum Measure {
     Limp(&'static str),
     /// The bake of one character, in seconds per second.
     Bake,
-    /// How often a rig of 6,000 vertices is converted to a ragdoll in 100 ms.
+    /// Number of conversions of a rig of 6,000 vertices to a ragdoll in 100 ms.
     Build,
     /// Wall time of a scene on one thread over that on two.
     Threads(&'static str),

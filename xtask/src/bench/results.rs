@@ -10,7 +10,7 @@ pub struct Results {
     pub scenes: Vec<SceneResult>,
     /// Simulated seconds per processor second of a bake on one thread, if that was measured.
     pub bake: Option<f64>,
-    /// How often a rig of 6,000 vertices becomes a ragdoll in 100 ms, if that was measured with the bake.
+    /// Number of conversions of a rig of 6,000 vertices to a ragdoll in 100 ms, if measured with the bake.
     pub build: Option<f64>,
     /// Simulated seconds per processor second of characters that fall limp until they sleep: `median` of all rigs and `slowest_humanoid`,
     /// where that was measured.

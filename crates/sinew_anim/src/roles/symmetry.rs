@@ -37,8 +37,8 @@ impl Symmetry {
         symmetry
     }
 
-    /// From the root down: the image of a joint is sought among the children of its parent's image, the best fit first.
-    /// Of several in one place, as fingers at the wrist, the one whose whole subtree is nearest to the mirrored
+    /// Pairs joints with their mirror images from the root down. The image of a joint is a child of its parent's image, the best fit first.
+    /// Among several joints in one place, as fingers at the wrist, the one whose whole subtree is nearest to the mirrored
     /// subtree.
     fn pair_up(&mut self, graph: &Graph, tolerance: f32) {
         let middles = graph.middles();

@@ -1,4 +1,4 @@
-//! Sleeping particle groups: what wakes them, and what they wake.
+//! Wakes sleeping particle groups, and the bodies that hang on them.
 
 use super::Activity;
 use crate::arena::Arena;

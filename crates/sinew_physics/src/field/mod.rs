@@ -6,7 +6,7 @@
 //!
 //! **Stiffness.** A damping field (wind, drag, water) is evaluated at the velocity at the start of the substep, so the
 //! load on a held body is exact, and so is every terminal velocity. That is stable while `h b < m`, with `b = −∂F/∂v`.
-//! Where it is not (a leaf of silk in a storm), the total force on the body is divided by `h b / m`, so that it
+//! If `h b` exceeds `m` (a silk leaf in a storm), the total force on the body is divided by `h b / m`, so that it
 //! approaches its terminal velocity within the substep and never passes it. The same holds for torque.
 //!
 //! **Sleep.** A field acts on awake items. Adding, changing or removing one wakes everything it reaches or reached. A
