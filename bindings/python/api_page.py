@@ -48,7 +48,7 @@ def signature(function: ast.FunctionDef) -> str:
     arguments = ast.unparse(drop_types(function.args))
     arguments = arguments.removeprefix("self, ").removeprefix("cls, ").removeprefix("self").removeprefix("cls")
     result = ast.unparse(function.returns) if function.returns else "None"
-    return plain(f"({arguments}) -> {result}")
+    return plain(f"({arguments})" + ("" if result == "None" else f" -> {result}"))
 
 
 def rows(nodes: list[ast.stmt]) -> list[str]:
