@@ -1,4 +1,4 @@
-//! Ids of what was removed and of other worlds are refused, with what is wrong, at the caller.
+//! Ids of removed objects and of other worlds panic at the caller with a message.
 
 use crate::build::sphere_body;
 use sinew_math::{Random, Reader, Transform, Vec3, Writer};
@@ -8,11 +8,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
 
 thread_local! {
-    /// File in which the last panic of this thread is said to be.
+    /// File that the last panic of this thread named.
     static PLACE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Text of the panic of `f`, and the file in which it is said to be.
+/// Returns the message of the panic of `f`, and the file that it named.
 fn panic_of<T>(f: impl FnOnce() -> T) -> (String, String) {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -45,7 +45,7 @@ fn what_was_removed_is_named_at_the_caller() {
     assert!(!world.contains(gone));
 }
 
-/// By every call that changes a body or asks for one.
+/// For every call that changes or reads a body.
 #[test]
 fn every_setter_names_what_was_removed() {
     let mut world = world();
@@ -81,7 +81,7 @@ fn every_setter_names_what_was_removed() {
     }
 }
 
-/// Numbers that are none are refused before anything is changed.
+/// Bad numbers are refused before anything changes.
 #[test]
 fn every_setter_refuses_bad_numbers() {
     let mut world = world();
@@ -129,7 +129,7 @@ fn ids_of_another_world_are_refused() {
     assert_eq!(panic_of(|| one.field(field)).0, "FieldId 0v0 is of another world");
 }
 
-/// Bits do not tell the world: a game keeps them in its own files.
+/// The bits of an id do not hold the world, because games store ids in their own files.
 #[test]
 fn ids_from_bits_go_with_any_world() {
     let (mut one, mut other) = (world(), world());
@@ -141,7 +141,7 @@ fn ids_from_bits_go_with_any_world() {
     assert_eq!(panic_of(|| one.transform(BodyId::from_bits(7))).0, "BodyId 7v0 was never in this world");
 }
 
-/// Who loads the snapshot of another world goes on using that one's ids, and neither hash tells which world it is.
+/// A world that loads the snapshot of another accepts the other's ids, and the hashes are equal.
 #[test]
 fn a_snapshot_goes_with_any_world() {
     let (mut one, mut other) = (world(), world());
@@ -160,7 +160,7 @@ fn a_snapshot_goes_with_any_world() {
     assert_eq!(panic_of(|| one.transform(mine)).0, "BodyId 0v0 was removed");
 }
 
-/// A body goes in the same moment in which a shape leaves its bounds: the pairs of both are looked for at once, and those of the one that went
+/// A body is removed in the moment in which a shape leaves its bounds: both search for pairs at once, and the pairs of the removed body
 /// must not be among them.
 #[test]
 fn a_body_that_goes_takes_its_pairs_along() {

@@ -1,4 +1,4 @@
-//! Chains of plain ball joints, up to eight side by side: as they swing alone, and as they would as islands.
+//! Chains of plain ball joints, up to eight side by side: they move as alone, and as they would as islands.
 
 use crate::build::{ball, capsule_body};
 use sinew_math::{Random, ReadError, Reader, Transform, Vec3, Writer};
@@ -6,7 +6,7 @@ use sinew_physics::*;
 
 const LENGTH: f32 = 0.3;
 
-/// A chain of links of 1 to 50 kg that swings, number `i` of a crowd in which none comes near another.
+/// Returns a swinging chain of links of 1 to 50 kg, number `i` of a crowd in which no two meet.
 struct Chain {
     bodies: Vec<BodyId>,
     joints: Vec<JointId>,
@@ -56,7 +56,7 @@ impl Chain {
     }
 }
 
-/// Pushes bodies by as good as nothing, so that their islands are solved as such.
+/// Pushes bodies by nearly nothing, so that their islands are solved as such.
 struct Touch(Vec<BodyId>);
 
 impl PhysicsObject for Touch {
@@ -78,7 +78,7 @@ fn run(world: &mut World, steps: usize) {
 
 #[test]
 fn bits_are_the_same_alone_and_beside_others() {
-    // From 24 links on a strand is cut into pieces, one to a lane.
+    // From 24 links on a strand is cut into pieces, one per lane.
     let lengths = |i: u32| [4, 7, 7, 26][i as usize % 4];
     let mut crowd = World::new(WorldDef::default());
     let chains: Vec<_> = (0..15).map(|i| Chain::new(&mut crowd, i, lengths(i), i != 8)).collect();
@@ -221,7 +221,7 @@ fn a_joint_that_is_open_closes_as_in_an_island() {
     island.add_object(Box::new(Touch(b.bodies.clone())));
     run(&mut strand, 1);
     run(&mut island, 1);
-    // The islands' solver has it: to the bit.
+    // The islands' solver takes it: equal to the bit.
     assert_eq!(a.state(&strand), b.state(&island));
     run(&mut strand, 30);
     assert!(strand.joint_gap(a.joints[2]) < 1e-5, "{}", strand.joint_gap(a.joints[2]));

@@ -1,4 +1,4 @@
-//! The pool behind `Threads`: every call is made, whatever the batch, and nothing is left behind.
+//! The pool behind `Threads`: every call is made for any batch, and nothing is left behind.
 
 use core::sync::atomic::{AtomicUsize, Ordering};
 use sinew_math::Random;
@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::thread;
 use std::time::Duration;
 
-/// Calls that a batch of `count` makes.
+/// Returns the calls that a batch of `count` makes.
 fn calls(threads: &Threads, count: usize) -> usize {
     let made = AtomicUsize::new(0);
     threads.run(count, &|| _ = made.fetch_add(1, Ordering::Relaxed));
@@ -59,7 +59,7 @@ fn work_is_shared() {
     });
 }
 
-/// The caller has nothing left to do and sleeps until the last call has returned.
+/// The caller has no more work and sleeps until the last call has returned.
 #[test]
 fn long_calls_are_waited_for() {
     let threads = Threads::new(3);

@@ -1,4 +1,4 @@
-//! Numeric trouble: what is not finite is stopped and told of, and the rest goes on.
+//! Numeric trouble: bodies with numbers that are not finite are stopped and reported, and the rest continues.
 
 use crate::build::{floor, sphere_body};
 use sinew_math::{Transform, Vec3};
@@ -6,7 +6,7 @@ use sinew_physics::field::PARAMETERS;
 use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef};
 use sinew_physics::*;
 
-/// On what is faster than 1 m/s.
+/// Acts on bodies faster than 1 m/s.
 fn poison(point: &FieldPoint, _: &[f32; PARAMETERS]) -> Wrench {
     let force = if point.velocity.length() > 1.0 { Vec3::splat(f32::NAN) } else { Vec3::ZERO };
     Wrench { force, ..Wrench::default() }
@@ -109,7 +109,7 @@ fn a_pose_is_turned_not_scaled() {
     assert_eq!(world.transform(ball).rotation.length(), 1.0);
 }
 
-/// A velocity beyond all measure is reduced to what the world allows, in its direction, and told of once: also where squares of it are beyond
+/// A huge velocity is reduced to the world's limit in its direction and reported once, also where its square exceeds
 /// 32 bits.
 #[test]
 fn impulses_beyond_all_measure_are_limited_and_told_of() {
@@ -157,8 +157,8 @@ fn spins_beyond_all_measure_are_limited_and_told_of() {
     }
 }
 
-/// Rows see the surface of what is led at such a spin go on along its tangent, to where it never is: they pushed a cone on a
-/// slider away for good, and told that it touches.
+/// Rows extrapolate the surface of a body that spins this fast along its tangent, to where it never is: they once pushed a cone on a
+/// slider away for good, and reported a touch.
 #[test]
 fn a_kinematic_spin_beyond_all_measure_pushes_nothing_far_away() {
     for spin in [1e4, 1e6, 1e12] {

@@ -1,4 +1,4 @@
-//! Frames of any length: the same state after every step, and no frame that takes for ever.
+//! Frames of any length: the same state after every step, and bounded time per frame.
 
 use crate::objects::inhabited;
 use core::time::Duration;
@@ -7,10 +7,10 @@ use sinew_physics::particles::{GroupDef, ParticleDef};
 use sinew_physics::stage::NoProfiler;
 use sinew_physics::*;
 
-/// Steps that are compared.
+/// Number of compared steps.
 const STEPS: u64 = 180;
 
-/// Hash after every tenth step, when no time waits for the next.
+/// Returns the hash after every tenth step, taken when no time is left over.
 fn hashes(mut frame: impl FnMut() -> Duration) -> Vec<u64> {
     let mut world = inhabited();
     let step = world.def().step_nanoseconds;
@@ -18,7 +18,7 @@ fn hashes(mut frame: impl FnMut() -> Duration) -> Vec<u64> {
     for k in (10..=STEPS).step_by(10) {
         let mut left = Duration::from_nanos(step * k) - Duration::from_nanos(step * (k - 10));
         while left > Duration::ZERO {
-            // The last one is as long as it takes.
+            // The last frame has the length that is missing.
             let time = Duration::min(frame(), left);
             assert_eq!(world.update(time).dropped, Duration::ZERO);
             left -= time;
@@ -114,7 +114,7 @@ fn what_is_drawn_lies_between_two_steps() {
         let alpha = world.update(frame).alpha;
         time += frame.as_secs_f32();
         if world.step_count() > 0 {
-            // One step behind what has passed.
+            // One step behind the time that has passed.
             let expected = time - world.def().dt();
             let of_particle = world.particles(group).interpolated(alpha).next();
             for x in [world.interpolated(body, alpha).translation.x, of_particle.map_or(0.0, |at| at.x)] {

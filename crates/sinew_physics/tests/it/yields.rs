@@ -4,7 +4,7 @@ use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Reader, Rotation, Vec3, Writer, max};
 use sinew_physics::*;
 
-/// A kinematic arm, an upright capsule of 10 cm, that goes with a velocity.
+/// Returns a kinematic arm, an upright capsule of 10 cm, with a velocity.
 fn arm(world: &mut World, at: Vec3, velocity: Vec3) -> BodyId {
     let shape = Shape::Capsule { half_height: 0.4, radius: 0.1 };
     let rule = ContactRule::Yields(Yields::default());
@@ -24,7 +24,7 @@ fn level() -> World {
     world
 }
 
-/// A ball of 0.43 kg that bounces.
+/// Returns a ball of 0.43 kg that bounces.
 fn ball(world: &mut World, at: Vec3, velocity: Vec3) -> BodyId {
     let mut def = sphere_body(0.11, at);
     (def.linear_velocity, def.mass) = (velocity, Some(Shape::Sphere { radius: 0.11 }.mass_properties(77.0)));
@@ -77,7 +77,7 @@ fn what_is_jammed_against_a_wall_is_not_crushed() {
     let mut world = level();
     let wall = Shape::Box { half_extents: Vec3::new(0.2, 1.0, 1.0) };
     world.add_body(&BodyDef::fixed(wall).at(Vec3::new(0.45, 1.0, 0.0)));
-    // So slow that the force for it would do.
+    // Slow enough for the force to suffice.
     arm(&mut world, Vec3::new(-0.4, 0.5, 0.0), Vec3::X * 0.05);
     let mut def = box_body(Vec3::splat(0.25), Vec3::Y * 0.25);
     def.mass = Some(Shape::Box { half_extents: Vec3::splat(0.25) }.mass_properties(80.0));

@@ -161,7 +161,7 @@ fn drag_far_beyond_stability_stops_and_never_turns_back() {
     close(-world.velocity(id).linear.y, 0.001 * 9.81 / 1e4, 1e-3, "it creeps");
 }
 
-/// Force of a wind of 10 m/s along x on a body at rest that nothing holds up.
+/// Returns the force of a wind of 10 m/s along x on a free body at rest.
 fn blown(def: &BodyDef, wind: Wind) -> Wrench {
     let mut world = weightless();
     let id = world.add_body(def);

@@ -108,7 +108,7 @@ fn threads_do_not_matter() {
 
 #[test]
 fn a_warm_step_with_fields_allocates_nothing() {
-    // So far apart that none meets another: contacts come and go in a test of their own.
+    // Far apart, so that no two meet: another test covers contacts.
     let mut world = crowded(40.0);
     run(&mut world, 20);
     let seen = allocation_counter::measure(|| run(&mut world, 50));

@@ -114,9 +114,9 @@ fn a_jump_is_as_high_as_its_speed_says() {
             world.mover_jump(id, speed);
             assert!(steps < 200);
         }
-        // The step in which it lands must not take the last wish.
+        // The step in which it lands must not use up the last jump request.
         let expected = speed * speed / (2.0 * 9.81);
-        // The highest point may lie half a step off the nearest step.
+        // The highest point may lie half a step from the nearest step.
         let between = 9.81 * 0.5 * (0.5 * world.def().dt()) * (0.5 * world.def().dt());
         assert!(top <= expected + 1e-4 && top >= expected - between - 1e-4, "{top} of {expected}");
         let seconds = steps as f32 * world.def().dt();

@@ -32,8 +32,8 @@ fn a_lift_carries_it() {
     }
 }
 
-/// It leaves a lift with the lift's velocity and the jump's, whichever way the lift goes and however fast: over the lift it rises by the jump's
-/// own speed.
+/// A mover that jumps off a lift has the lift's velocity plus the jump's, for either direction and any speed: over the lift it rises by the jump's
+/// own height.
 #[test]
 fn a_jump_from_a_lift_rises_over_it_by_its_own_speed() {
     let mut random = Random::new(3);
@@ -46,7 +46,7 @@ fn a_jump_from_a_lift_rises_over_it_by_its_own_speed() {
         let id = world.add_mover(&MoverDef::at(Vec3::Y * 0.005));
         let (mut apex, mut left) = (0.0, Vec3::ZERO);
         for step in 0..420 {
-            // It gathers speed for 3 s, so that the mover rides all the time.
+            // The lift accelerates for 3 s, so that the mover rides all the time.
             let share = sinew_math::min(step as f32 / 180.0, 1.0);
             let linear = Vec3::new(side, speed, 0.0) * share;
             world.set_velocity(lift, Velocity { linear, angular: Vec3::ZERO });
@@ -66,7 +66,7 @@ fn a_jump_from_a_lift_rises_over_it_by_its_own_speed() {
         let (g, dt) = (9.81, world.def().dt());
         let expected = Vec3::new(side, speed + jump - g * dt, 0.0);
         assert!((left - expected).length() < 1e-3, "case {case}: {left} for {expected}");
-        // Between two steps the apex may be missed by half a step.
+        // The apex may lie half a step from the nearest step.
         let rise = jump * jump / (2.0 * g);
         assert!(
             (apex - rise).abs() < 2e-3 + 0.01 * rise,
@@ -174,7 +174,7 @@ fn movers_stop_each_other() {
     }
     let apart = (world.mover(b).position() - world.mover(a).position()).x;
     assert!(apart < 0.61, "they meet: {apart}");
-    // One that may not meet the other passes.
+    // A mover with another filter passes.
     let ghost = Filter { mask: 0, ..world.mover(b).def().filter };
     world.set_mover_filter(b, ghost);
     for _ in 0..120 {
@@ -206,7 +206,7 @@ fn a_mover_stands_on_another_and_a_filter_lets_it_through_walls() {
     assert!(world.mover(high).position().x > 2.0);
 }
 
-/// A hand on which somebody stands is jerked away from under the soles: it slips, and he stands.
+/// A hand is pulled away from under a mover: the mover slips and stays.
 #[test]
 fn what_is_jerked_away_under_it_slips() {
     let mut world = level();

@@ -1,4 +1,4 @@
-//! Snapshots, rollback, threads, frames, memory, and settings that make no sense.
+//! Snapshots, rollback, threads, frames, memory, and invalid settings.
 
 use super::{block, level};
 use sinew_math::trig::{cos, sin};
@@ -66,7 +66,7 @@ fn a_snapshot_holds_all_that_decides() {
     }
 }
 
-/// Back by eight steps, in which a mover came and another one went.
+/// Rolls back by eight steps, in which one mover was added and one removed.
 #[test]
 fn rollback_goes_the_same_way_again() {
     let (mut world, mut ids) = busy();
@@ -106,7 +106,7 @@ fn threads_change_nothing() {
     assert!(hashes[0] == hashes[1] && hashes[1] == hashes[2], "{hashes:?}");
 }
 
-/// Frames of 30, 60 and 144 a second: movers move in steps, and where they are is a matter of steps alone.
+/// Frames of 30, 60 and 144 a second: movers move in steps, so their place depends on the number of steps alone.
 #[test]
 fn frames_of_any_length_come_to_the_same() {
     let after = |frames: u32| {
@@ -130,7 +130,7 @@ fn frames_of_any_length_come_to_the_same() {
     assert_eq!(after(144), expected);
 }
 
-/// The same two seconds again and again: after the first times there is room for all that they need.
+/// The same two seconds are repeated: after the first times nothing more is allocated.
 #[test]
 fn a_warm_step_with_movers_does_not_allocate() {
     let (mut world, ids) = busy();

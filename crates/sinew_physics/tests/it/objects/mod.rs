@@ -1,4 +1,4 @@
-//! Objects of the user's own: when they are asked, what they can do, and that nothing else notices them.
+//! Objects of the user: when they are called, what they can do, and that they affect nothing else.
 
 mod kinds;
 mod state;
@@ -46,14 +46,14 @@ fn particles(world: &World) -> Vec<Vec3> {
     world.group_ids().flat_map(|id| world.particles(id).positions()).copied().collect()
 }
 
-/// Runs one step with an object that acts once, and takes it out again.
+/// Runs one step with an object that acts once, and removes it.
 fn act_once(world: &mut World, act: impl FnOnce(&mut Forces<'_>) + Send + Sync + 'static) {
     let id = world.add_object(Box::new(Once { act: Some(act) }));
     world.step();
     world.remove_object(id);
 }
 
-/// Runs one step with an object that acts once, when everything has moved, and takes it out again.
+/// Runs one step with an object that acts once after everything has moved, and removes it.
 fn act_once_moved(world: &mut World, act: impl FnOnce(&mut Corrections<'_>) + Send + Sync + 'static) {
     let id = world.add_object(Box::new(OnceMoved { act: Some(act) }));
     world.step();
@@ -90,7 +90,7 @@ fn a_force_acts_substep_by_substep() {
     }
 }
 
-/// The force of an object adds to what the world does, once: gravity as a field, and a force that lasts.
+/// The force of an object adds to the world's own, once: gravity as a field, and a lasting force.
 #[test]
 fn a_force_adds_to_fields_and_to_forces_that_last() {
     let mut world = weightless();
@@ -119,12 +119,12 @@ fn forces_and_impulses_do_what_newton_says() {
         forces.apply_impulse(body, Vec3::new(0.0, 2.0, 0.0), Vec3::ZERO);
         forces.apply_torque(body, Vec3::new(0.0, 0.0, 5.0));
     });
-    // A force lasts for one substep of the four.
+    // A force lasts for one of the four substeps.
     let Velocity { linear, angular } = world.velocity(body);
     assert!((linear - Vec3::new(30.0 * h, 2.0, 0.0) / mass).length() < 1e-6, "{linear}");
     let moment = mass / 3.0 * (0.01 + 0.04);
     assert!((angular - Vec3::Z * (5.0 * h / moment)).length() < 1e-6, "{angular}");
-    // Off the centre it turns: p × of an arm of 0.3 m.
+    // Off the centre it also rotates: p × of an arm of 0.3 m.
     act_once_moved(&mut world, move |corrections| {
         let point = corrections.center_of_mass(body) + Vec3::Z * 0.3;
         corrections.apply_impulse(body, Vec3::X, point);
@@ -191,7 +191,7 @@ fn a_correction_goes_through_the_joints() {
         joints.push(world.add_joint(&ball(&world, last, link, at - Vec3::X * 0.1)));
         last = link;
     }
-    // The last link's centre, 1.1 m from the hook, hangs on a thread of 0.2 m besides.
+    // The last link's centre, 1.1 m from the hook, also hangs on a thread of 0.2 m.
     let (place, length) = (Vec3::new(1.1, 0.2, 0.0), 0.2);
     world.add_object(Box::new(Leash { body: last, place, length }));
     let (mut off, mut gap) = (0.0, 0.0);

@@ -1,4 +1,4 @@
-//! Particles and sleepers.
+//! Particles and sleeping bodies.
 
 use super::{Nap, linear, nap, run, slab};
 use crate::build::{box_body, floor};
@@ -27,7 +27,7 @@ fn what_particles_strike_wakes_as_they_come() {
     assert!(world.is_awake(sleeper));
 }
 
-/// Sleepers wake by contact, not by whether their bounds overlap: a world loaded from a snapshot has other bounds.
+/// Bodies wake by contact, not by overlapping bounds: a world loaded from a snapshot has other bounds.
 #[test]
 fn what_is_within_its_bounds_but_far_from_it_does_not_wake_a_sleeper() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -35,7 +35,7 @@ fn what_is_within_its_bounds_but_far_from_it_does_not_wake_a_sleeper() {
     let plank = BodyDef::dynamic(Shape::cuboid(Vec3::new(3.0, 0.05, 0.5))).turned(slope);
     let sleeper = world.add_body(&plank);
     world.put_to_sleep(sleeper);
-    // 1.4 m over the plank, in its bounds, toward it at 1 m/s.
+    // 1.4 m above the plank, in its bounds, toward it at 1 m/s.
     let away = slope * Vec3::Y;
     let mut flying = grains(0.0);
     for grain in &mut flying.particles {
@@ -73,7 +73,7 @@ fn what_flies_past_wakes_nobody() {
     assert!(!world.is_awake(sleeper));
 }
 
-/// A cloth that hangs by two corners, and has come to rest asleep.
+/// Returns a cloth that hangs by two corners, asleep.
 fn curtain() -> (World, GroupId) {
     let mut cloth = ClothDef {
         corner: Vec3::new(-0.5, 2.0, 0.0),
@@ -102,7 +102,7 @@ fn curtain() -> (World, GroupId) {
     (world, id)
 }
 
-/// `act` on a sleeping curtain wakes it at once or within so many steps.
+/// Checks that `act` on a sleeping curtain wakes it at once or within `steps` steps.
 fn wakes_curtain(what: &str, steps: usize, act: impl FnOnce(&mut World, GroupId)) {
     let (mut world, id) = curtain();
     act(&mut world, id);
@@ -167,7 +167,7 @@ fn what_comes_to_particles_wakes_them() {
     assert!(!world.particles(id).is_awake(), "what flies past wakes nobody");
 }
 
-/// A box that hangs on a rope, both asleep.
+/// Returns a box that hangs on a rope, both asleep.
 fn hung() -> (World, GroupId, BodyId) {
     let mut world = World::new(WorldDef::default());
     let calm =
@@ -254,7 +254,7 @@ fn what_a_rope_swings_over_sleeps() {
     assert!(!world.is_awake(body) && way < 1e-3, "the box has gone {way} m");
 }
 
-/// A net of a square metre at a height of 1 m.
+/// Returns a net of a square metre at a height of 1 m.
 fn net(damping_ratio: f32) -> GroupDef {
     let net = ClothDef {
         corner: Vec3::new(-0.5, 1.0, -0.5),
@@ -272,7 +272,7 @@ fn net(damping_ratio: f32) -> GroupDef {
     net.build().group
 }
 
-/// A net that is not calm and a ball that sleeps on it all the same.
+/// A ball sleeps on a net that still moves.
 fn netted() -> (World, GroupId, BodyId) {
     let mut world = World::new(WorldDef::default());
     let mut net = net(1.0);

@@ -1,4 +1,4 @@
-//! Who falls asleep, when, and with whom.
+//! Which bodies fall asleep, when, and with which others.
 
 use super::{Nap, all_asleep, linear, nap, run, slab, steps_to_sleep};
 use crate::build::{ball, box_body, floor, half_space_tilted, sphere_body};
@@ -43,7 +43,7 @@ fn what_creeps_does_not_sleep() {
 
 #[test]
 fn what_creeps_down_a_slope_does_not_sleep() {
-    // Without friction, braked by the air: v = g sin θ (1/c + h), since what brakes comes before what pulls.
+    // Without friction, with air drag: v = g sin θ (1/c + h), since drag acts before gravity.
     let (angle, damping) = (0.2, 200.0);
     let mut world = World::new(WorldDef::default());
     half_space_tilted(&mut world, angle, 0.0);
@@ -55,7 +55,7 @@ fn what_creeps_down_a_slope_does_not_sleep() {
     assert!(world.is_awake(id) && (speed - expected).abs() < 0.03 * expected, "{speed} m/s, not {expected}");
 }
 
-/// At the top of its way up a slope a ball is slow for seconds and turns back all the same; a crate that friction holds there sleeps.
+/// At the top of its way up a slope a ball is slow for seconds and still rolls back; a crate held by friction there sleeps.
 #[test]
 fn what_turns_back_on_a_slope_does_not_sleep() {
     for k in 0..15 {
@@ -103,7 +103,7 @@ fn what_is_pushed_slowly_does_not_sleep() {
     assert!(steps_to_sleep(&mut world) <= 40);
 }
 
-/// Shakes a body to and fro, `amplitude` metres either way, ten times a second.
+/// Shakes a body back and forth by `amplitude` metres, ten times a second.
 struct Shaker {
     body: BodyId,
     amplitude: f32,
@@ -131,7 +131,7 @@ impl PhysicsObject for Shaker {
 #[test]
 fn what_trembles_in_its_place_may_sleep() {
     for (amplitude, sleeps) in [(0.0005, true), (0.005, false)] {
-        // So that it swings about where it starts: x = −a cos ωt.
+        // It swings about its start: x = −a cos ωt.
         let (mut world, body) = adrift(Velocity::default());
         world.add_object(Box::new(Shaker { body, amplitude }));
         let mut slept = false;

@@ -1,4 +1,4 @@
-//! Waking: what wakes a sleeper, and what does not.
+//! Waking: what wakes a sleeping body, and what does not.
 
 use super::{ENOUGH, Nap, all_asleep, linear, nap, run, slab, steps_to_sleep};
 use crate::build::{ball, box_body, joint, sphere_body};
@@ -6,7 +6,7 @@ use sinew_math::{Range, Reader, Transform, Vec3, Writer};
 use sinew_physics::ray::Ray;
 use sinew_physics::*;
 
-/// `act` on a crate that sleeps on a floor wakes it at once, or within the next step.
+/// Checks that `act` wakes a crate that sleeps on a floor at once, or within the next step.
 fn wakes(what: &str, act: impl FnOnce(&mut Nap)) {
     let mut nap = nap();
     act(&mut nap);
@@ -14,7 +14,7 @@ fn wakes(what: &str, act: impl FnOnce(&mut Nap)) {
     assert!(nap.world.is_awake(nap.sleeper), "{what} wakes");
 }
 
-/// `act` leaves a crate that sleeps on a floor asleep, where it is.
+/// Checks that `act` leaves a crate that sleeps on a floor asleep, in its place.
 fn leaves_asleep(what: &str, act: impl FnOnce(&mut Nap)) {
     let mut nap = nap();
     let at = nap.world.transform(nap.sleeper);
@@ -131,7 +131,7 @@ fn a_kinematic_body_wakes_what_it_carries_and_what_it_runs_into() {
     assert!(ahead > 0.295, "it is pushed along, {ahead} m ahead");
 }
 
-/// A ball that hangs asleep from a kinematic hook by a hinge about z.
+/// Returns a ball that hangs asleep from a kinematic hook by a hinge about z.
 fn hanging() -> (World, BodyId, BodyId, JointId) {
     let mut world = World::new(WorldDef::default());
     let hook = world.add_body(&slab(0.05, Vec3::ZERO));
