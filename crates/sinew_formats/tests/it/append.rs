@@ -1,4 +1,4 @@
-//! A clip written into the user's own file: everything old is still there, and what comes back is what went in.
+//! A clip written into the user's own file: all old content stays, and the clip reads back equal.
 
 use crate::data::{GLTF, files, shared_data};
 use needs_data::needs_data;
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use sinew_anim::{Channel, Clip, Interpolation, Property};
 use sinew_formats::{Container, Document, ReadOptions, append_clip, load_gltf, no_files, read_gltf};
 
-/// A motion of every joint that has neither a matrix nor a skinned mesh, with every kind of channel.
+/// Returns a motion of every joint that has neither a matrix nor a skinned mesh, with every kind of channel.
 fn motion(document: &Document) -> Clip {
     let free = |joint: &usize| {
         let node = &document.json["nodes"][document.rig.joints[*joint].source];
@@ -40,7 +40,7 @@ fn motion(document: &Document) -> Clip {
     clip
 }
 
-/// Everything in `old` is in `new` at the same place; lists may be longer. Places in `allowed` may differ.
+/// Checks that `new` has everything in `old` at the same place; lists may be longer. Places in `allowed` may differ.
 fn assert_kept(old: &Value, new: &Value, path: &str, allowed: &dyn Fn(&str) -> bool) {
     if allowed(path) {
         return;
@@ -74,7 +74,7 @@ fn the_old_file_is_still_in_the_new_one() {
         let clip = motion(&old);
         let extras = json!({"sinew_events": []});
         let bytes = append_clip(&old, &clip, "Moved", Some(extras.clone())).unwrap();
-        // For a run of the Khronos glTF validator over the outputs.
+        // For runs of the Khronos glTF validator over the outputs.
         if let Some(folder) = std::env::var_os("SINEW_KEEP_OUTPUTS") {
             let name = path.file_name().unwrap().to_str().unwrap();
             std::fs::write(std::path::Path::new(&folder).join(format!("{name}.glb")), &bytes).unwrap();
@@ -173,7 +173,7 @@ fn morph_targets_are_kept() {
     assert_eq!(new.clips.len(), old.clips.len() + 1);
 }
 
-/// A mannequin whose last vertices hang on `neutral_bone`.
+/// Returns a mannequin whose last vertices are bound to `neutral_bone`.
 fn with_loose_vertices(count: usize) -> sinew_anim::Rig {
     let mut rig = sinew::mannequin::mannequin().rig;
     let mesh = rig.meshes.iter_mut().find(|mesh| mesh.skin.is_some()).expect("a skin");

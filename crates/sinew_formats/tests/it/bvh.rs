@@ -1,4 +1,4 @@
-//! BVH: real files, files made of all that can differ, and the way back.
+//! BVH: real files, files with every variation, and round trips.
 
 use crate::data::{files, shared_data};
 use needs_data::needs_data;
@@ -18,7 +18,7 @@ fn read(text: &str) -> BvhDocument {
     read_bvh(text.as_bytes(), BvhOptions { unit: BvhUnit::Metres(1.0), ..AS_IT_IS }).unwrap()
 }
 
-/// Error of the reader for a text, or "" if it accepts it.
+/// Returns the error of the reader for a text, or "" if it accepts it.
 fn complaint(text: &str) -> String {
     read_bvh(text.as_bytes(), AS_IT_IS).err().map(|e| e.to_string()).unwrap_or_default()
 }
@@ -68,7 +68,7 @@ fn channels_turn_in_the_order_in_which_they_stand() {
     let found = read(TWO_JOINTS);
     let at = |frame: usize, joint: usize| model(&found.rig, &pose(&found, frame))[joint].translation;
     let near = |a: Vec3, b: [f32; 3]| assert!((a - Vec3::from_array(b)).length() < 1e-5, "{a}");
-    // A quarter turn about z carries the arm from x up to y.
+    // A quarter turn about z moves the arm from x up to y.
     near(at(0, 1), [5.0, 8.0, 7.0]);
     near(at(0, 2), [5.0, 9.0, 7.0]);
     // The arm turns about y, then about its new z: its end, along x, goes to y. The hips' turn about x makes that z.
@@ -246,7 +246,7 @@ fn options_of(document: &BvhDocument) -> BvhWriteOptions<'_> {
 }
 
 /// Largest difference of two motions of one skeleton, frame by frame: radians, metres. In model space, so that a rig
-/// whose joints have other axes in rest is the same motion.
+/// whose joints have other rest axes has the same motion.
 fn difference(a: &BvhDocument, b: &BvhDocument) -> (f32, f32) {
     assert_eq!(a.frames, b.frames);
     let (mut turn, mut shift) = (0.0, 0.0);
@@ -284,14 +284,14 @@ fn every_file_comes_back_as_it_was() {
     }
 }
 
-/// A skeleton and a motion of all that the format can hold.
+/// Returns a skeleton and a motion with everything that the format can hold.
 fn random_motion(random: &mut Random) -> (Rig, Clip, Vec<Vec<BvhChannel>>) {
     let (joints, frames) = (1 + random.index(12), 1 + random.index(5));
     let (mut rig, mut clip, mut layout) = (Rig::default(), Clip::default(), Vec::new());
     let times: Vec<f32> = (0..frames).map(|i| (i as f64 * 0.125) as f32).collect();
     clip.duration = times[frames - 1];
     for i in 0..joints {
-        // Some joints sit right on their parents.
+        // Some joints are exactly at their parents.
         let translation = if random.index(4) == 0 { Vec3::ZERO } else { random.in_cube() };
         let parent = (i > 0).then(|| random.index(i));
         let rest = LocalTransform { translation, ..LocalTransform::default() };
@@ -353,7 +353,7 @@ fn random_motions_come_back_as_they_were() {
     }
 }
 
-/// Joints of a glTF rig have axes of their own at rest; in the file they have those of the model.
+/// Joints of a glTF rig have their own axes at rest; in the file they have the model's.
 #[needs_data]
 #[test]
 fn a_rig_with_turned_joints_keeps_its_motion() {
@@ -400,7 +400,7 @@ fn writing_refuses_what_makes_no_file() {
     assert!(write_bvh(&Rig::default(), &clip, &plain()).is_err());
 }
 
-/// Reads, and where that works holds the result against the promises of the types.
+/// Reads the bytes and, if that works, checks the promises of the types.
 fn read_and_check(bytes: &[u8]) -> Option<String> {
     let options = BvhOptions { rows: BvhRows::AsPresent, ..BvhOptions::default() };
     let strict = read_bvh(bytes, BvhOptions::default());
@@ -431,7 +431,7 @@ fn read_and_check(bytes: &[u8]) -> Option<String> {
 fn a_file_cut_anywhere_is_refused() {
     let end = TWO_JOINTS.trim_end().len();
     for length in 0..end {
-        // The last number may lose digits and still be one.
+        // The last number may lose digits and still be valid.
         assert!(read_and_check(&TWO_JOINTS.as_bytes()[..length]).is_some(), "{length}");
     }
     let data = shared_data();
@@ -451,7 +451,7 @@ fn a_file_cut_anywhere_is_refused() {
     }
 }
 
-/// Random bytes changed. 10,000 cases when `SINEW_FULL` is set, a tenth of that otherwise.
+/// Random bytes changed: 10,000 cases with `SINEW_FULL` set, otherwise a tenth.
 #[test]
 fn mutated_files_do_no_harm() {
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 10_000 } else { 1000 };

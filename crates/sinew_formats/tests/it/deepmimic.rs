@@ -43,7 +43,7 @@ fn clips_are_what_the_manifest_says() {
     }
 }
 
-/// The get-up starts on the back and ends on the feet; the run never touches the ground with more than its feet.
+/// The get-up starts on the back and ends on the feet; in the run only the feet touch the ground.
 #[needs_data]
 #[test]
 fn bodies_are_where_they_should_be() {

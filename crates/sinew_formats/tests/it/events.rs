@@ -88,7 +88,7 @@ fn extras_of_an_animation() {
         append_clip(&document, &document.clips[0], "again", events_extras(&[ClipEvent::new(0.2, "clap")]));
     let document = read_gltf(&more.unwrap(), ReadOptions::default(), &mut no_files).unwrap();
     assert_eq!(document.events, [vec![punch()], vec![ClipEvent::new(0.2, "clap")]]);
-    // The extras of others are none of our business.
+    // Unknown extras are ignored.
     let foreign = append_clip(&document, &document.clips[0], "x", Some("text".into())).unwrap();
     assert!(read_gltf(&foreign, ReadOptions::default(), &mut no_files).unwrap().events[2].is_empty());
     let bare = serde_json::json!({"sinew_events": [{"time": 0.25, "name": "tap"}]});

@@ -1,4 +1,4 @@
-//! Ragdolls and animations of Jolt: a small one written here, bytes that want to break the reader, and Jolt's own human.
+//! Ragdolls and animations of Jolt: a small one written here, malicious bytes, and Jolt's own human.
 
 use crate::data::shared_data;
 use needs_data::needs_data;
@@ -9,7 +9,7 @@ use sinew_physics::{BodyDef, JointKind, Shape, World, WorldDef};
 use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
 use sinew_ragdoll::{BodySettings, BodyState, DriveMode, Drives, Muscle, Pin, Ragdoll};
 
-/// Two parts: a ball, and a capsule half a metre above it whose joint is half way.
+/// Two parts: a ball, and a capsule half a metre above it, with the joint half way between.
 const SMALL: &str = r#"TOS 1.00
 
 declare RagdollSettings 2
@@ -276,7 +276,7 @@ fn every_prefix_and_every_changed_byte_gives_an_answer() {
     }
 }
 
-/// Jolt's human and a clip of its.
+/// Jolt's human and one of its clips.
 fn human(clip: &str) -> (JoltRagdoll, Clip) {
     let folder = shared_data().join("peers/jolt");
     let ragdoll = read_jolt_ragdoll(&std::fs::read(folder.join("Human.tof")).unwrap()).unwrap();
@@ -303,7 +303,7 @@ fn jolts_human_is_whole() {
     assert_eq!(role("L_Leg_sjnt_1"), Some("leftLowerLeg"));
     assert_eq!(role("R_Arm_sjnt_1"), Some("rightLowerArm"));
     assert!((2.0..4.0).contains(&clip.duration) && clip.channels.len() == 46, "{} s", clip.duration);
-    // At rest its joints' anchors meet, and no joint is far beyond its limits.
+    // At rest its joints' anchors coincide, and no joint is far beyond its limits.
     for joint in &def.joints {
         let [a, b] = [(joint.parent, joint.frame_parent), (joint.child, joint.frame_child)]
             .map(|(body, frame)| def.bodies[body].character_from_body * frame);
@@ -324,7 +324,7 @@ fn model_poses(rig: &Rig, pose: &[LocalTransform]) -> Vec<Transform> {
     model
 }
 
-/// World poses of the bodies as a clip has them.
+/// World poses of the bodies in a clip.
 struct Stage {
     ragdoll: JoltRagdoll,
     clip: Clip,
@@ -360,8 +360,8 @@ impl Stage {
             .collect()
     }
 
-    /// Root mean square over joints and over time after the first second of the angle between a joint as it is and as the
-    /// clip has it, degrees; and the largest mean force of the pins, N.
+    /// Root mean square, over joints and over time after the first second, of the angle between a joint and the
+    /// clip, degrees; and the largest mean force of the pins, N.
     fn track(&self, mode: DriveMode) -> (f32, f32) {
         let def = &self.ragdoll.def;
         let mut world = World::new(WorldDef::default());

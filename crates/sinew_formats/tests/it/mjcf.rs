@@ -1,4 +1,4 @@
-//! MJCF: MuJoCo's humanoid against what MuJoCo makes of it, small models against closed forms, and hostile bytes.
+//! MJCF: MuJoCo's humanoid compared with MuJoCo, small models against closed forms, and malicious bytes.
 
 use crate::data::shared_data;
 use core::f32::consts::FRAC_1_SQRT_2 as H;
@@ -71,7 +71,7 @@ fn the_bodies_of_the_humanoid_are_those_that_mujoco_makes() {
     assert!((total - 40.844_02).abs() < 1e-4, "{total} kg");
 }
 
-/// Full tensors of two bodies that have none of the axes for principal ones: MuJoCo 4.0.0.
+/// Full tensors of two bodies whose principal axes are not the frame's: MuJoCo 4.0.0.
 #[needs_data]
 #[test]
 fn inertia_is_turned_like_the_body() {
@@ -127,7 +127,7 @@ fn assert_range(found: Range, lo: f32, hi: f32) {
     assert!(max((found.lo - expected.lo).abs(), (found.hi - expected.hi).abs()) < 1e-6, "{found:?}");
 }
 
-/// Limits of a joint that swings about one axis and twists.
+/// Returns the limits of a joint that swings about one axis and twists.
 fn two_ranges(joint: &MjcfJoint) -> [Range; 2] {
     let JointKind::SixDof(six) = joint.kind else { panic!("{:?}", joint.kind) };
     assert_eq!((six.linear, six.swing_z), ([AxisMotion::Locked; 3], AxisMotion::Locked));
@@ -147,7 +147,7 @@ fn the_ranges_of_the_humanoid_are_those_of_its_classes() {
         JointKind::Ball { limit: Some(limit) } => limit,
         kind => panic!("{child}: {kind:?}"),
     };
-    // Hips: twist about y, and swings about x and z. Turned right-handed, the z axis of one side points down.
+    // Hips: twist about y, and swings about x and z. Right-handed, the z axis of one side points down.
     for (side, z) in [("thigh_right", (-35.0, 60.0)), ("thigh_left", (-35.0, 60.0))] {
         let hip = limit(side);
         assert_range(hip.twist, -150.0, 20.0);
@@ -171,7 +171,7 @@ fn what_mujoco_keeps_from_colliding_is_kept_from_it() {
         });
         joined || model.excluded_pairs.contains(&(a.min(b), a.max(b)))
     };
-    // Joined, excluded by the file, part of a part, jointed to what it is a part of.
+    // Jointed, excluded by the file, part of a part, jointed to its whole.
     assert!(excluded("thigh_left", "shin_left") && excluded("waist_lower", "thigh_left"));
     assert!(excluded("head", "torso") && excluded("head", "upper_arm_left"));
     assert!(excluded("hand_right", "upper_arm_right") && excluded("head", "waist_lower"));
@@ -268,7 +268,7 @@ fn rotations_mean_what_they_mean_in_mujoco() {
     }
 }
 
-/// A turned box, a capsule of given mass and a ball; and a given tensor: MuJoCo 4.0.0.
+/// A rotated box, a capsule of given mass and a ball; and a given tensor: MuJoCo 4.0.0.
 #[test]
 fn masses_of_turned_shapes_are_those_of_mujoco() {
     let geoms = "<geom type='box' size='.1 .2 .3' pos='.5 0 0' euler='20 0 0' density='500'/>
@@ -330,7 +330,7 @@ fn three_hinges_keep_their_ranges_one_by_one() {
         angles[used] = random.range(-1.5, 1.5);
         let model = on_hinges(&axes, &angles, [-60.0, 30.0]);
         let JointKind::Ball { limit: Some(limit) } = model.joints[0].kind else { panic!("a ball") };
-        // Each hinge alone is stopped where its own range ends, whatever the handedness of the three axes.
+        // Each hinge alone stops at the end of its own range, for either handedness of the three axes.
         let beyond = Range::degrees(-60.0, 30.0).excess(angles[used]);
         let found = limit.overshoot(model.keyframes[0].moved[0].1.rotation);
         assert!((found - beyond).abs() < 1e-4, "hinge {used} at {}: {found} for {beyond}", angles[used]);
@@ -391,7 +391,7 @@ fn shapes_meet_where_either_is_affine_to_the_other() {
     assert_eq!(with_last, [true, true, false, false, false]);
 }
 
-/// Error of the reader for contents of a `<mujoco>`, or "" if it accepts them.
+/// Returns the error of the reader for contents of a `<mujoco>`, or "" if it accepts them.
 fn complaint(contents: &str) -> String {
     let text = format!("<mujoco>\n{contents}</mujoco>");
     read_mjcf(text.as_bytes()).err().map(|error| error.to_string()).unwrap_or_default()
@@ -445,7 +445,7 @@ fn complaints_name_the_place() {
     assert_eq!(read_mjcf(b"\xff<").unwrap_err().to_string(), "not UTF-8 (byte 0)");
 }
 
-/// The depth of a file is not that of our stack.
+/// Deeply nested files do not cause deep recursion.
 #[test]
 fn deep_nesting_is_refused_and_no_overflow() {
     let nested = |tag: &str, end: &str, count: usize| tag.repeat(count) + &end.repeat(count);
@@ -475,7 +475,7 @@ fn assert_one_line(error: &Error) {
     assert!(!error.where_.is_empty(), "{text}");
 }
 
-/// A model that is read can be put into a world in each of its poses, and stepped.
+/// A model can be put into a world in each of its poses, and stepped.
 fn read_and_try(bytes: &[u8]) -> Result<(), Error> {
     let model = read_mjcf(bytes)?;
     let poses = model.keyframes.iter().map(|keyframe| model.pose(keyframe));
@@ -498,15 +498,15 @@ fn every_prefix_of_the_humanoid_is_refused() {
     }
 }
 
-/// Random bytes of the humanoid changed, and numbers of it replaced by hostile ones. 10,000 cases when `SINEW_FULL` is
-/// set, a hundredth of that otherwise.
+/// Random bytes of the humanoid changed, and its numbers replaced by extreme ones: 10,000 cases with `SINEW_FULL`
+/// set, otherwise a hundredth.
 #[needs_data]
 #[test]
 fn mutated_humanoids_do_no_harm() {
     const WORDS: [&str; 10] = ["0", "-1", "1e9", "1e-30", "nan", "1e40", "", "\"", "<body>", "0 0 0 0"];
     let text = humanoid_text();
     let cases = if std::env::var_os("SINEW_FULL").is_some() { 10_000 } else { 100 };
-    // Behind the comment at its head.
+    // After the comment at its head.
     let start = text.find("<mujoco").expect("the root");
     let mut random = Random::new(5);
     let (mut read, mut refused) = (0, 0);
@@ -571,7 +571,7 @@ fn springs_and_slides_are_those_of_the_file() {
     assert!(rest.rotation.angle_to(quarter) < 1e-3, "{rest:?}");
 }
 
-/// ζ = 0.2 gives back `exp(−0.2π/√0.96)`, whichever way it is written.
+/// ζ = 0.2 returns `exp(−0.2π/√0.96)` in either notation.
 #[test]
 fn geoms_rub_roll_and_bounce_as_the_file_says() {
     let material = |attributes: &str| {

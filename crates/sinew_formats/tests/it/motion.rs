@@ -1,4 +1,4 @@
-//! Any file with clips by one function.
+//! Reading of any file with clips by one function.
 
 use crate::data::{bar, files, shared_data};
 use needs_data::needs_data;

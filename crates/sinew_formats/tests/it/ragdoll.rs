@@ -88,7 +88,7 @@ fn what_is_written_reads_back_equal() {
     }
     let back = read_ragdoll(write_ragdoll(&def).as_bytes()).unwrap();
     assert_eq!(back, def);
-    // Equality takes −0 for 0; a snapshot does not.
+    // Equality treats −0 as 0; a snapshot does not.
     assert_eq!(format!("{back:?}"), format!("{def:?}"));
 }
 
@@ -191,7 +191,7 @@ fn bytes_changed_at_random_do_no_harm() {
     }
 }
 
-/// Numbers that lie, in a whole body: refused, or examined, mended and written again, whatever they say.
+/// Wrong numbers in a whole body are refused, or examined, fixed and written again.
 #[needs_data]
 #[test]
 fn lies_are_refused_or_examined() {
@@ -224,7 +224,7 @@ fn lies_are_refused_or_examined() {
     assert!(10 * read > cases, "only {read} of {cases} were read");
 }
 
-/// JSON pointers of all numbers.
+/// Returns JSON pointers to all numbers.
 fn numbers(value: &Value, at: String, places: &mut Vec<String>) {
     match value {
         Value::Number(_) => places.push(at),

@@ -90,7 +90,7 @@ fn bytes_changed_at_random_do_no_harm() {
     }
 }
 
-/// Settings that are taught are those that are read.
+/// The documented settings are those that are read.
 #[test]
 fn the_examples_of_the_page_are_read() {
     let page = include_str!("../../../../docs/ragdoll.md");
@@ -137,7 +137,7 @@ fn garments_are_named_or_listed() {
         (r#"[{"chains": ["a"], "radius": 0}]"#, "garments[0].radius"),
         (r#"[{"chains": ["a"]}, {"chains": ["b"], "closed": 1}]"#, "garments[1].closed"),
         (r#"[{"chains": ["a"], "shearing": -1}]"#, "garments[0].shearing"),
-        // What no particle could weigh, or no spring be.
+        // Values that no particle or spring can have.
         (r#"[{"chains": ["a"], "area_density": 3e38}]"#, "between 0.001 and 1000"),
         (r#"[{"chains": ["a"], "area_density": 1e-44}]"#, "between 0.001 and 1000"),
         (r#"[{"mesh": "a", "spacing": 1e-30}]"#, "garments[0].spacing"),

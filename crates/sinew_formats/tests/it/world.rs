@@ -50,7 +50,7 @@ fn the_example_of_the_page_is_read_and_stands() {
     assert_eq!(bodies[4].mass.map(|mass| mass.mass), Some(0.01));
     assert_eq!(read_world(write_world(&bodies).as_bytes()).unwrap(), bodies);
 
-    // A set-up that reads back equal is the same world, to the last bit, and stays so.
+    // A set-up that reads back equal is the same world to the last bit, and stays so.
     let [mut world, mut again] =
         [bodies.clone(), read_world(write_world(&bodies).as_bytes()).unwrap()].map(|bodies| {
             let mut world = World::new(WorldDef::default());
@@ -66,7 +66,7 @@ fn the_example_of_the_page_is_read_and_stands() {
     }
 }
 
-/// Every key that the page lists is known, and every shape and kind that is known is on the page.
+/// Every key on the page is known, and every known shape and kind is on the page.
 #[test]
 fn the_page_lists_what_there_is() {
     let page = include_str!("../../../../docs/world.md");

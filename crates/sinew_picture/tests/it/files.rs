@@ -1,4 +1,4 @@
-//! Files read back by the crates that read everyone's.
+//! Encoded files read back by common decoders.
 
 use crate::stairs;
 use sinew_picture::{EncodeError, Image, PictureFormat, RenderSettings, Renderer, encode};
@@ -6,7 +6,7 @@ use std::io::Cursor;
 
 const FPS: u32 = 30;
 
-/// Movement, a frame like its predecessor, one pixel of difference, and sides that are odd numbers.
+/// Movement, a repeated frame, one pixel of difference, and odd sides.
 fn frames() -> Vec<Image> {
     let settings = RenderSettings { width: 161, height: 91, shadow_texels: 256, ..RenderSettings::default() };
     let mut renderer = Renderer::new(settings);

@@ -1,4 +1,4 @@
-//! The crowd: saved at any moment it goes on as it was, and costs no memory while it walks.
+//! The crowd: a save at any moment continues equally, and walking allocates nothing.
 
 use sinew::math::{Reader, Writer};
 use sinew_scenes::scenes::{Instance, find};
@@ -52,7 +52,7 @@ fn goes_on_from_any_moment() {
 
 #[test]
 fn walks_without_a_byte_of_memory() {
-    // Before the first of them is hit.
+    // Before the first hit.
     let mut run = started(&["n=5"]);
     (0..14).for_each(|_| run.step());
     let counted = allocation_counter::measure(|| (0..30).for_each(|_| run.step()));
