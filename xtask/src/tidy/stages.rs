@@ -1,4 +1,4 @@
-//! One name per stage: the code's list of stages is the manual's.
+//! The code's list of stages equals the manual's.
 
 use super::lexer::{self, Kind};
 use super::{Finding, Repo};
@@ -8,7 +8,7 @@ const STAGE: &str = "crates/sinew_physics/src/stage.rs";
 const MANUAL: &str = "docs/step.md";
 const STEP_LINES_MAX: usize = 80;
 
-/// `step/mod.rs` is short, and `enum Stage` has the stages of `docs/step.md` in the same order.
+/// Checks that `step/mod.rs` is short, and `enum Stage` has the stages of `docs/step.md` in the same order.
 pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
     if let Some(step) = repo.file(STEP) {
@@ -51,7 +51,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     findings
 }
 
-/// Number of words in the manual's first diagram that are the stages in their order; `None` if it has no diagram.
+/// Returns the number of words in the manual's first diagram that are the stages in their order; `None` if it has no diagram.
 fn drawn(text: &str, stages: &[(String, usize)]) -> Option<usize> {
     let diagram = text.split("```").nth(1)?.strip_prefix("text\n")?;
     let words = diagram.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty());
@@ -59,18 +59,18 @@ fn drawn(text: &str, stages: &[(String, usize)]) -> Option<usize> {
     Some(words.filter(|word| left.next_if_eq(word).is_some()).count())
 }
 
-/// Stages by heading: "## `name`".
+/// Returns stages by heading: "## `name`".
 fn headings(text: &str) -> Vec<(String, usize)> {
     let stage = |line: &str| Some(line.strip_prefix("## `")?.strip_suffix('`')?.to_owned());
     text.lines().enumerate().filter_map(|(index, line)| Some((stage(line)?, index + 1))).collect()
 }
 
-/// Variants of `enum Stage`, in snake case.
+/// Returns the variants of `enum Stage`, in snake case.
 fn variants(text: &str) -> Vec<(String, usize)> {
     let tokens = lexer::tokens(text);
     let Some(open) = lexer::find(&tokens, "enum Stage {").next().map(|at| at + 2) else { return Vec::new() };
     let body = &tokens[open..=lexer::closing(&tokens, open)];
-    // A variant stands before a comma or the closing brace, and is no part of an attribute.
+    // A variant is before a comma or the closing brace, and not part of an attribute.
     let pairs =
         body.windows(2).filter(|pair| pair[0].kind == Kind::Word && matches!(pair[1].text, "," | "}"));
     pairs.map(|pair| (snake_case(pair[0].text), pair[0].line)).collect()

@@ -41,7 +41,7 @@ fn start(scene: &Blueprint) -> Vec<BodyState> {
     scene.bodies.iter().map(|def| BodyState::at(def.position, def.rotation)).collect()
 }
 
-/// Of a run whose steps end in these states.
+/// Returns the result of a run whose steps end in these states.
 fn judge(scene: &Blueprint, steps: &[Vec<BodyState>]) -> Quality {
     let mut meter = QualityMeter::new(scene, 1);
     for states in steps {
@@ -70,7 +70,7 @@ fn a_gap_is_measured_where_the_joint_is() {
     let scene = two_links();
     let whole = start(&scene);
     let mut torn = whole.clone();
-    // The first link turns a quarter about its own middle: both its joints open by √½ m.
+    // The first link rotates by a quarter turn about its own centre: both its joints open by √½ m.
     torn[1].world_from_body.rotation = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_2);
     let opening = 0.5f32.sqrt();
     let quality = judge(&scene, &[torn.clone(), whole]).joints.expect("joints");
@@ -123,7 +123,7 @@ fn each_limit_is_exceeded_by_what_the_body_is_turned() {
     assert_eq!((inside.cone.joints, inside.cone.exceeded_run, inside.twist.exceeded_run), (1, 0, 0));
     close(inside.cone.worst_run, 0.0);
 
-    // The whole swing counts, not its components, and what has come back in counts for the run alone.
+    // The whole swing counts, not its components; a joint that came back counts for the run alone.
     let cone = turned(kinds[0], &[about(Vec3::new(0.0, 1.0, 1.0), 0.8), about(Vec3::Z, 0.55)]).cone;
     close(cone.worst_run, 0.3);
     close(cone.worst_end, 0.05);
@@ -147,7 +147,7 @@ fn each_limit_is_exceeded_by_what_the_body_is_turned() {
 fn depth_is_the_least_way_out() {
     let scene = scene(vec![floor(), cube(Vec3::Y * 0.5), cube(Vec3::Y * 1.5)], vec![]);
     let mut states = start(&scene);
-    // 20 mm in the floor, 50 mm in the cube above, which has its edge down there.
+    // 20 mm in the floor, 50 mm in the cube above, whose edge is down there.
     states[1].world_from_body.translation.y = 0.48;
     states[2].world_from_body.translation.y = 0.98 + 0.5f32.sqrt() - 0.05;
     states[2].world_from_body.rotation = Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_4);
@@ -156,7 +156,7 @@ fn depth_is_the_least_way_out() {
     close(quality.run_max, 0.05);
 }
 
-/// Parry's own `contact` says 3 m to some of these.
+/// Parry's own `contact` returns 3 m for some of these.
 #[test]
 fn cubes_that_merely_touch_are_not_deep() {
     for x in -8..=8 {
