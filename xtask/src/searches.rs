@@ -48,7 +48,9 @@ impl Of {
         match self {
             Self::Worlds => ("lives", ["sinew_physics", "lives", "lives_hold"]),
             Self::Characters => ("characters", ["sinew_ragdoll", "lives", "lives_hold"]),
-            Self::Strangers => ("strangers", ["sinew_physics", "it", "strangers_have_the_same_future"]),
+            Self::Strangers => {
+                ("strangers", ["sinew_physics", "it", "unrelated_worlds_have_the_same_future"])
+            }
         }
     }
 }
@@ -135,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_search_goes_on_where_it_ended() {
+    fn a_search_continues_where_it_ended() {
         let log = env::temp_dir().join(format!("sinew-search-{}.log", std::process::id()));
         assert_eq!(next_seed(&log).expect("no log is a beginning"), 0);
         fs::write(&log, "seeds 0..60, 60 lives\nseeds 60..1790, 1730 lives\n").expect("a file");

@@ -85,7 +85,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn a_report_without_its_falls_is_no_pass() {
+    fn a_report_without_its_falls_fails() {
         assert_eq!(broken(&json!({ "spawns": 100, "failed": 0 }), 100).ok(), Some(0));
         assert_eq!(broken(&json!({ "spawns": 100, "failed": 3 }), 100).ok(), Some(3));
         assert!(broken(&json!({ "spawns": 1, "failed": 0 }), 100).is_err());

@@ -182,7 +182,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read() {
+    fn written_text_reads_back_equal() {
         let counts = parse("# rustc 1.95.0 x86_64\nstep.a 10\nstep.b 20\n").expect("well formed");
         assert_eq!(parse(&text(&counts)).expect("well formed"), counts);
         let error = parse("# rustc\nstep.a 10\nstep.b many").expect_err("`many` is no number");

@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn what_came_apart_is_known() {
+    fn open_joints_are_detected() {
         let of = |quality| engine("jolt", &[1.0], &quality);
         assert!(came_apart(&of(json!({ "joint_gap_peak_m": 11.0 }))));
         assert!(came_apart(&of(json!({ "joint_gap_peak_m": 0.2, "stretch_peak": 16.6 }))));

@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn a_torn_line_is_an_error() {
+    fn a_malformed_line_is_an_error() {
         assert!(parse("Avx2 point_in_obb 2e9").is_err());
     }
 }

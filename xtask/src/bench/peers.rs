@@ -274,7 +274,7 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn a_run_ends_well_dies_or_is_stopped() {
+    fn a_run_succeeds_fails_or_times_out() {
         let long = Duration::from_secs(60);
         assert_eq!(shell("echo 1", long), Ok("1\n".to_owned()));
         assert_eq!(shell("exit 3", long), Err("exit status: 3".to_owned()));

@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_is_open_but_what_dies_is_missed() {
+    fn unsupported_scenes_are_open_and_crashes_are_missed() {
         let ours =
             |key: &str| EngineResult { name: "sinew".into(), reports: vec![json!({ key: "no cloth" })] };
         let cloth = |key| of("cloth", ours(key), engine("jolt", &[3.0], &json!({ "stretch_mean": 0.03 })));
@@ -380,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn a_peer_that_comes_apart_is_no_rival() {
+    fn peers_with_open_joints_set_no_bar() {
         let gap = |metres: f64| json!({ "joint_gap_peak_m": metres });
         let judge = |gap_of_peer| {
             let (ours, theirs) =
@@ -392,7 +392,7 @@ mod tests {
     }
 
     #[test]
-    fn cloth_that_stretches_more_is_no_rival_and_falls_short() {
+    fn stretching_cloth_sets_no_bar_and_misses() {
         let cloth = |stretch: f64| json!({ "stretch_mean": stretch });
         let judge = |ours: f64, theirs: f64| {
             let (ours, theirs) =
@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn what_never_sleeps_falls_short() {
+    fn scenes_that_never_sleep_miss() {
         let asleep = |step: Option<u32>| json!({ "asleep_step": step });
         let ragdolls = STANDS.iter().find(|hold| hold.scene == "ragdolls").expect("the table has it");
         let judge = |ours| {

@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_re_exported_counts_where_it_is_defined() {
+    fn re_exports_count_where_they_are_defined() {
         let files = [
             ("lib.rs", "mod room;"),
             ("room/mod.rs", "mod low; mod high; pub use low::Low; pub use high::High;"),

@@ -140,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_page_that_leads_nowhere_is_found() {
+    fn a_page_with_a_missing_file_is_found() {
         let page = "`trig.rs`, `sinew_math/trig.rs` and `sinew_math/src/trig.rs`, `crates/sinew_math/src/trig.rs`,\n`sine.rs`";
         let repo = Repo::planted(&[("docs/step.md", page), ("crates/sinew_math/src/trig.rs", "")]);
         let found: Vec<String> = check(&repo).iter().map(ToString::to_string).collect();
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_named_is_there_and_what_is_there_is_named() {
+    fn map_and_code_agree() {
         let found = |map: &str| -> Vec<String> {
             let files = [
                 (MAP, map),

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn other_crates_may_go_without() {
+    fn other_crates_need_no_examples() {
         check_lines(check, "crates/sinew_physics/src/lib.rs", "pub mod b;\n", &[]);
         check_lines(check, "crates/sinew_formats/src/lib.rs", "pub mod b;\n", &[1]);
     }

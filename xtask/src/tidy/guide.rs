@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_that_nobody_lists_or_tests_is_found() {
+    fn an_unlisted_or_untested_page_is_found() {
         let page = ("docs/guide/src/a.md", "```rust\nlet x = 1;\n```\n");
         let contents = (CONTENTS, "- [A](a.md)\n");
         assert!(found(&[page, contents, (TESTED, TEST)]).is_empty());
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_link_that_leads_nowhere_is_found() {
+    fn a_broken_link_is_found() {
         let contents = (CONTENTS, "- [A](a.md)\n");
         let links =
             "[b](../../b.md#there), [web](https://bevy.org), [here](#here)\n\n[c](c.md) ![p](p.png)\n";

@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn innocent_code_is_not() {
+    fn allowed_code_is_not_found() {
         check_lines(
             check,
             FILE,

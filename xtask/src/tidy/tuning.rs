@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_says_where_it_is_to_be_seen() {
+    fn a_constant_names_its_scene_or_test() {
         assert_eq!(lines("step/tuning.rs", "/// Speed, m/s.\npub const SLOW: f32 = 0.5;"), [2]);
         let told = "/// Speed, m/s.\n///\n/// Larger: it sleeps. Shown by `coin`.\npub const SLOW: f32 = 0.5;\n\n/// Spin, rad/s.\n///\n/// As [`SLOW`].\nconst SPIN: f32 = 1.0;";
         assert!(lines("step/tuning.rs", told).is_empty());

@@ -199,7 +199,7 @@ mod tests {
     use std::path::PathBuf;
 
     #[test]
-    fn a_refused_file_is_counted_and_told() {
+    fn a_refused_file_is_counted_and_listed() {
         let row = Row {
             file: "rigs/odd.glb".into(),
             report: json!({ "refused": "no skin" }),

@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_stand_beside_and_below_each_other() {
+    fn pictures_form_a_grid() {
         let mut sheet = vec![0; GRID[0] * SIZE[0] * GRID[1] * SIZE[1] * RGB];
         place(&vec![7; SIZE[0] * SIZE[1] * RGB], [1, 2], &mut sheet);
         let at = |x: usize, y: usize| sheet[(y * GRID[0] * SIZE[0] + x) * RGB];

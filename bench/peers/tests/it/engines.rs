@@ -65,7 +65,7 @@ fn after(engine: &dyn Engine, scene: &Blueprint, steps: usize) -> (Vec<BodyState
 
 /// A second of free fall with spin; damped by 5 %/s in the second case.
 #[test]
-fn what_falls_falls_and_spins_on() {
+fn falling_bodies_match_free_fall_and_keep_spin() {
     for engine in engines() {
         let name = engine.describe().name;
         let mut free = body(BodyKind::Dynamic, Shape::Sphere { radius: 0.5 }, Vec3::new(1.0, 50.0, 2.0));

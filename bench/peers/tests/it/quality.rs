@@ -86,7 +86,7 @@ fn a_gap_is_measured_where_the_joint_is() {
 }
 
 #[test]
-fn what_branches_is_no_chain() {
+fn branching_bodies_are_not_a_chain() {
     let mut scene = two_links();
     scene.bodies.push(cube(Vec3::Y));
     scene.joints.push(joint(1, 4, Vec3::Y, JointKind::Ball { limit: None }));
@@ -97,7 +97,7 @@ fn what_branches_is_no_chain() {
 }
 
 #[test]
-fn each_limit_is_exceeded_by_what_the_body_is_turned() {
+fn overshoot_equals_the_rotation_beyond_each_limit() {
     let limit = SwingTwistLimit {
         swing_y: Range::symmetric(0.5),
         swing_z: Range::symmetric(0.5),
@@ -144,7 +144,7 @@ fn each_limit_is_exceeded_by_what_the_body_is_turned() {
 }
 
 #[test]
-fn depth_is_the_least_way_out() {
+fn depth_is_the_shortest_way_out() {
     let scene = scene(vec![floor(), cube(Vec3::Y * 0.5), cube(Vec3::Y * 1.5)], vec![]);
     let mut states = start(&scene);
     // 20 mm in the floor, 50 mm in the cube above, whose edge is down there.
@@ -158,7 +158,7 @@ fn depth_is_the_least_way_out() {
 
 /// Parry's own `contact` returns 3 m for some of these.
 #[test]
-fn cubes_that_merely_touch_are_not_deep() {
+fn touching_cubes_have_no_depth() {
     for x in -8..=8 {
         let at = Vec3::new(x as f32, 0.5 - 1e-6, 0.37 * x as f32);
         let scene = scene(vec![floor(), cube(at)], vec![]);
@@ -168,7 +168,7 @@ fn cubes_that_merely_touch_are_not_deep() {
 }
 
 #[test]
-fn capsules_and_balls_are_as_deep_as_their_radii_say() {
+fn depth_of_capsules_and_balls_follows_their_radii() {
     let capsule = Shape::Capsule { half_height: 0.5, radius: 0.2 };
     let ball = Shape::Sphere { radius: 0.3 };
     let bodies = vec![
@@ -181,7 +181,7 @@ fn capsules_and_balls_are_as_deep_as_their_radii_say() {
 }
 
 #[test]
-fn what_may_not_collide_is_never_deep() {
+fn disabled_pairs_have_no_depth() {
     let ball = JointKind::Ball { limit: None };
     let inside = [cube(Vec3::Y * 3.0), cube(Vec3::Y * 3.2)];
     let jointed = scene(inside.to_vec(), vec![joint(0, 1, Vec3::Y * 3.0, ball)]);
@@ -196,7 +196,7 @@ fn what_may_not_collide_is_never_deep() {
 }
 
 #[test]
-fn depth_in_the_run_is_seen_after_every_nth_step() {
+fn depth_is_measured_every_nth_step() {
     let scene = scene(vec![floor(), cube(Vec3::Y * 0.5)], vec![]);
     let depths = [0.0, 0.3, 0.1, 0.2, 0.0];
     let mut meter = QualityMeter::new(&scene, 2);
@@ -212,7 +212,7 @@ fn depth_in_the_run_is_seen_after_every_nth_step() {
 }
 
 #[test]
-fn energy_is_of_motion_spin_and_height() {
+fn energy_sums_motion_spin_and_height() {
     let mut def = cube(Vec3::Y * 2.0);
     def.linear_velocity = Vec3::X * 3.0;
     let scene = scene(vec![floor(), def], vec![]);
@@ -243,7 +243,7 @@ fn bodies_below_the_floor_or_without_numbers_are_lost() {
 }
 
 #[test]
-fn what_collides_with_nothing_may_hang_below_everything() {
+fn bodies_without_contacts_are_never_lost() {
     let mut hook = floor();
     hook.shapes[0].filter = Filter { mask: 0, ..Filter::default() };
     let hung = scene(vec![hook, cube(Vec3::NEG_Y * 9.0)], vec![]);

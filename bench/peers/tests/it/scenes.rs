@@ -49,7 +49,7 @@ fn every_engine_has_our_ragdolls() {
 }
 
 #[test]
-fn mujoco_is_told_of_every_figure_and_wall() {
+fn mujoco_gets_every_figure_and_wall() {
     let Work::Bodies(scene) = (scenes::find("humanoid_pile_10").expect("a scene").work)() else {
         panic!("no bodies")
     };
@@ -85,7 +85,7 @@ fn the_cloth_is_a_square_of_four_metres() {
 }
 
 #[test]
-fn what_an_engine_cannot_run_it_says() {
+fn unsupported_scenes_are_reported() {
     let cloth = scenes::find("cloth").expect("a scene");
     let report = run(sinew(), cloth, Start::Own, Some(1), Judging::Off);
     assert_eq!(report["scene"], "cloth");

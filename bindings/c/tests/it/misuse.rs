@@ -84,7 +84,7 @@ fn null_pointers_are_named() {
 }
 
 #[test]
-fn ids_of_what_is_gone_or_was_never_there_are_stale() {
+fn removed_and_unknown_ids_are_stale() {
     let (world, other) = (world(), world());
     let id = add(&world);
     let (mut pose, mut gap) = (SinewPose::default(), 0.0);
@@ -105,7 +105,7 @@ fn ids_of_what_is_gone_or_was_never_there_are_stale() {
 }
 
 #[test]
-fn numbers_that_cannot_be_leave_the_world_as_it_was() {
+fn invalid_numbers_leave_the_world_unchanged() {
     let world = world();
     let id = add(&world);
     let hash = || {
@@ -172,7 +172,7 @@ fn numbers_that_cannot_be_leave_the_world_as_it_was() {
 }
 
 #[test]
-fn buffers_that_are_too_small_are_told_how_large_they_must_be() {
+fn small_buffers_return_the_needed_size() {
     let world = world();
     add(&world);
     add(&world);

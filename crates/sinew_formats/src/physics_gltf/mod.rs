@@ -561,7 +561,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_one_line_with_its_place() {
+    fn errors_are_one_line_with_a_place() {
         for (right, wrong, words) in [
             ("\"shape\": 1", "\"shape\": 9", "index 9 is out of range"),
             ("\"joint\": 0", "\"joint\": 4", "out of range"),
@@ -579,7 +579,7 @@ mod tests {
     }
 
     #[test]
-    fn no_part_of_a_file_brings_it_down() {
+    fn damaged_files_do_not_panic() {
         for end in 0..ROPE.len() {
             let _ = read_physics_gltf(&ROPE.as_bytes()[..end]);
             let mut changed = ROPE.as_bytes().to_vec();

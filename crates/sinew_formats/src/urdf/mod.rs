@@ -431,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_one_line_with_its_place() {
+    fn errors_are_one_line_with_a_place() {
         for (wrong, right, words) in [
             ("child link=\"upper\"", "child link=\"wing\"", "no link `wing`"),
             ("lower=\"-0.5\"", "lower=\"2\"", "above `upper`"),
@@ -450,7 +450,7 @@ mod tests {
     }
 
     #[test]
-    fn no_part_of_a_file_brings_it_down() {
+    fn damaged_files_do_not_panic() {
         let bytes = ARM.as_bytes();
         for end in 0..bytes.len() {
             let _ = read_urdf(&bytes[..end]);

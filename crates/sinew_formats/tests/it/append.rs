@@ -67,7 +67,7 @@ fn assert_kept(old: &Value, new: &Value, path: &str, allowed: &dyn Fn(&str) -> b
 
 #[needs_data]
 #[test]
-fn the_old_file_is_still_in_the_new_one() {
+fn appending_keeps_the_old_file() {
     let data = shared_data();
     for path in files(&data.join("rigs"), &GLTF) {
         let old = load_gltf(&path, ReadOptions::default()).unwrap();
@@ -111,7 +111,7 @@ fn shift(joint: usize, to: [f32; 3]) -> Channel {
 }
 
 #[test]
-fn a_matrix_gives_way_only_where_the_clip_moves_its_node() {
+fn a_matrix_is_replaced_only_if_the_clip_moves_its_node() {
     let document = read_gltf(WITH_MATRIX.as_bytes(), ReadOptions::default(), &mut no_files).unwrap();
     let still =
         Clip { channels: vec![shift(0, [5.0, 6.0, 7.0]), shift(1, [1.0, 0.0, 0.0])], ..Clip::default() };
@@ -197,7 +197,7 @@ fn with_loose_vertices(count: usize) -> sinew_anim::Rig {
 }
 
 #[test]
-fn weights_that_loose_vertices_got_are_written() {
+fn inferred_weights_of_loose_vertices_are_written() {
     let file = sinew_formats::write_gltf(&with_loose_vertices(5), &[]).unwrap();
     let read = |bytes: &[u8]| read_gltf(bytes, ReadOptions::default(), &mut no_files).unwrap();
     let document = read(&file);

@@ -64,7 +64,7 @@ Frame Time: 0.5
 ";
 
 #[test]
-fn channels_turn_in_the_order_in_which_they_stand() {
+fn channels_rotate_in_file_order() {
     let found = read(TWO_JOINTS);
     let at = |frame: usize, joint: usize| model(&found.rig, &pose(&found, frame))[joint].translation;
     let near = |a: Vec3, b: [f32; 3]| assert!((a - Vec3::from_array(b)).length() < 1e-5, "{a}");
@@ -172,7 +172,7 @@ fn complaints_name_the_line() {
 }
 
 #[test]
-fn rows_that_are_missing_or_too_many_are_told_of() {
+fn missing_and_extra_rows_are_reported() {
     let options = BvhOptions { rows: BvhRows::AsPresent, ..AS_IT_IS };
     for (declared, note) in [(5, "declares 5 frames, has 2"), (1, "declares 1 frames, has 2")] {
         let text = TWO_JOINTS.replace("Frames: 2", &format!("Frames: {declared}"));
@@ -201,7 +201,7 @@ fn a_hundred_thousand_nested_joints_are_read_and_written() {
 
 #[needs_data]
 #[test]
-fn units_are_told_by_the_length_of_the_bones() {
+fn units_follow_from_bone_lengths() {
     for (name, metres) in [
         ("cmu_12_01_walk.bvh", 0.0254 / 0.45),
         ("cmu_01_01_jumps.bvh", 0.0254 / 0.45),
@@ -264,7 +264,7 @@ fn difference(a: &BvhDocument, b: &BvhDocument) -> (f32, f32) {
 
 #[needs_data]
 #[test]
-fn every_file_comes_back_as_it_was() {
+fn every_file_round_trips() {
     let data = shared_data();
     let found = files(&data.join("mocap"), &["bvh"]);
     assert!(found.len() >= 6);
@@ -325,7 +325,7 @@ fn random_motion(random: &mut Random) -> (Rig, Clip, Vec<Vec<BvhChannel>>) {
 }
 
 #[test]
-fn random_motions_come_back_as_they_were() {
+fn random_motions_round_trip() {
     let mut random = Random::new(11);
     for case in 0..500 {
         let (rig, clip, layout) = random_motion(&mut random);
@@ -380,7 +380,7 @@ fn a_rig_with_turned_joints_keeps_its_motion() {
 }
 
 #[test]
-fn writing_refuses_what_makes_no_file() {
+fn writing_refuses_invalid_clips() {
     let (rig, clip, layout) = random_motion(&mut Random::new(1));
     let with = |options: BvhWriteOptions<'_>| write_bvh(&rig, &clip, &options).unwrap_err().to_string();
     let plain = BvhWriteOptions::default;
@@ -481,7 +481,7 @@ fn mutated_files_do_no_harm() {
 }
 
 #[test]
-fn chains_get_their_ends_where_asked() {
+fn chains_get_end_sites_on_request() {
     let (rig, clip) = crate::data::bar();
     let options = BvhWriteOptions { metres_per_unit: 1.0, ..BvhWriteOptions::default() };
     let unit = BvhUnit::Metres(1.0);

@@ -109,7 +109,7 @@ fn read(json: &Value, stream: &[u8]) -> Result<Document> {
 }
 
 #[test]
-fn what_was_compressed_comes_back() {
+fn compressed_meshes_round_trip() {
     // Sequential, edgebreaker.
     for method in [0, 1] {
         let stream = stream(method);
@@ -193,7 +193,7 @@ fn complaints_about_a_stream_name_its_place() {
 
 /// A stream whose header claims more than it has is refused without allocating it.
 #[test]
-fn a_stream_that_claims_gigabytes_takes_none() {
+fn oversized_counts_allocate_nothing() {
     let honest = stream(1);
     let mut random = Random::new(5);
     for case in 0..cases() {

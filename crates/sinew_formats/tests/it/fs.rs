@@ -33,7 +33,7 @@ fn a_write_replaces_and_leaves_nothing_beside_it() {
 /// A link's target is written, and the link stays; only regular files are replaced.
 #[cfg(unix)]
 #[test]
-fn nothing_but_a_regular_file_is_replaced() {
+fn only_regular_files_are_replaced() {
     use std::os::unix::fs::symlink;
     let folder = folder("replaced");
     fs::create_dir(folder.join("far")).unwrap();
@@ -65,7 +65,7 @@ fn nothing_but_a_regular_file_is_replaced() {
 }
 
 #[test]
-fn of_several_files_none_appears_before_all_are_written() {
+fn several_files_appear_only_when_all_are_written() {
     let folder = folder("several");
     let (good, bad) = (folder.join("a"), folder.join("none/b"));
     let error = write_all_atomic(&[(&good, "one"), (&bad, "two")]).unwrap_err();

@@ -188,7 +188,7 @@ fn assert_one_line(error: &Error) {
 
 #[needs_data]
 #[test]
-fn files_made_to_be_bad_do_no_harm() {
+fn malicious_files_give_errors() {
     let data = shared_data();
     let (mut read, mut refused) = (0, 0);
     for folder in ["bad_input", "negative", "worlds"] {
@@ -210,7 +210,7 @@ fn files_made_to_be_bad_do_no_harm() {
 
 #[needs_data]
 #[test]
-fn valid_files_that_are_no_characters_are_read() {
+fn valid_files_without_characters_are_read() {
     let data = shared_data();
     for path in files(&data.join("negative"), &GLTF) {
         load_gltf(&path, DECODE).unwrap_or_else(|e| panic!("{e}"));
@@ -259,7 +259,7 @@ fn read_as_whatever(bytes: &[u8], path: &Path) {
 
 /// Every file that is not too long, cut at every 64th byte, gives an error or a shorter file, never a panic. Files up to 256 KiB with `SINEW_FULL` set.
 #[test]
-fn files_that_were_cut_do_no_harm() {
+fn truncated_files_give_errors_or_shorter_files() {
     const EXTENSIONS: [&str; 10] = ["glb", "gltf", "vrm", "vrma", "bvh", "fbx", "obj", "xml", "json", "txt"];
     let longest = if std::env::var_os("SINEW_FULL").is_some() { 256 << 10 } else { 6 << 10 };
     let seeds = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds")).to_path_buf();

@@ -230,7 +230,7 @@ fn an_animation_is_keys_by_joint() {
 }
 
 #[test]
-fn what_is_wrong_is_named_with_its_line() {
+fn errors_name_their_line() {
     for (from, to, what) in [
         ("TOS 1.00", "TOF 1.00", "not a text object file: does not begin with `TOS` (line 1)"),
         ("\"root\"\n      \"\"", "\"root\"\n      \"tip\"", "`tip` is no joint before `root` (line 59)"),

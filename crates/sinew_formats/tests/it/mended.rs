@@ -70,7 +70,7 @@ fn spoilt(mut numbers: Vec<f32>, at: usize, with: f32) -> Vec<f32> {
 }
 
 #[test]
-fn what_only_shows_is_mended_with_a_note() {
+fn cosmetic_values_are_replaced_with_a_note() {
     let up: Vec<f32> = [0.0, 1.0, 0.0].repeat(VERTICES);
     for with in [NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let document = file(&[
@@ -96,7 +96,7 @@ fn what_only_shows_is_mended_with_a_note() {
 }
 
 #[test]
-fn weights_that_are_not_finite_are_those_of_the_nearest_skin() {
+fn nonfinite_weights_come_from_the_nearest_skin() {
     let mut lost = weights();
     lost[20..24].fill(NAN);
     // One of several weights remains.

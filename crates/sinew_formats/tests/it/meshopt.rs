@@ -161,7 +161,7 @@ fn part(rig: &Rig) -> &Primitive {
 }
 
 #[test]
-fn quantised_numbers_are_what_they_stand_for() {
+fn quantized_numbers_decode_exactly() {
     let (root, bin, indices) = file(Storage::Plain, 0);
     let document = read(&glb(&root, &bin)).unwrap();
     let part = part(&document.rig);
@@ -217,7 +217,7 @@ fn filtered(filter: &'static str, bytes: &[u8], stride: usize, component: u32, k
 }
 
 #[test]
-fn filters_give_back_what_went_in() {
+fn filters_round_trip() {
     let mut random = Random::new(7);
     // Quaternions: the three smaller numbers of 15 bits, the largest left out.
     let turns: Vec<Rotation> = (0..200).map(|_| random.rotation()).collect();

@@ -52,7 +52,7 @@ const BODIES: [BodyRow; 16] = [
 
 #[needs_data]
 #[test]
-fn the_bodies_of_the_humanoid_are_those_that_mujoco_makes() {
+fn humanoid_bodies_match_mujoco() {
     let model = humanoid();
     assert_eq!(model.bodies.len(), 1 + BODIES.len());
     assert_eq!(model.bodies[0].def.kind, BodyKind::Static);
@@ -96,7 +96,7 @@ fn joint<'a>(model: &'a MjcfModel, child: &str) -> &'a MjcfJoint {
 
 #[needs_data]
 #[test]
-fn the_joints_of_the_humanoid_are_where_mujoco_has_them() {
+fn humanoid_joints_match_mujoco() {
     let model = humanoid();
     assert_eq!(model.joints.len(), 15);
     let pose = model.rest_pose();
@@ -139,7 +139,7 @@ fn two_ranges(joint: &MjcfJoint) -> [Range; 2] {
 
 #[needs_data]
 #[test]
-fn the_ranges_of_the_humanoid_are_those_of_its_classes() {
+fn humanoid_ranges_follow_its_classes() {
     let model = humanoid();
     let JointKind::Hinge { limit: Some(knee) } = joint(&model, "shin_right").kind else { panic!("a hinge") };
     assert_range(knee, -160.0, 2.0);
@@ -161,7 +161,7 @@ fn the_ranges_of_the_humanoid_are_those_of_its_classes() {
 
 #[needs_data]
 #[test]
-fn what_mujoco_keeps_from_colliding_is_kept_from_it() {
+fn disabled_pairs_match_mujoco() {
     let model = humanoid();
     let excluded = |a: &str, b: &str| {
         let (a, b) = (model.body(a).expect(a), model.body(b).expect(b));
@@ -182,7 +182,7 @@ fn what_mujoco_keeps_from_colliding_is_kept_from_it() {
 /// Places of bodies in keyframes, MuJoCo 4.0.0. Feet are left out: their two hinges are 4 cm apart there.
 #[needs_data]
 #[test]
-fn keyframes_are_the_poses_that_mujoco_makes() {
+fn keyframes_match_mujoco() {
     let model = humanoid();
     for (keyframe, rows) in [
         (
@@ -220,7 +220,7 @@ fn keyframes_are_the_poses_that_mujoco_makes() {
 
 #[needs_data]
 #[test]
-fn what_is_left_out_is_said() {
+fn omitted_features_are_noted() {
     let model = humanoid();
     for note in [
         "`ankle_y_right` and `ankle_x_right` are 0.040 m apart; here they are one, in the middle",
@@ -246,7 +246,7 @@ fn one_body(settings: &str, attributes: &str, contents: &str) -> MjcfModel {
 
 /// Quaternions (w, x, y, z) of MuJoCo 4.0.0.
 #[test]
-fn rotations_mean_what_they_mean_in_mujoco() {
+fn rotations_match_mujoco() {
     for (settings, attributes, [w, x, y, z]) in [
         ("", "euler='10 20 30'", [0.9437144, 0.1276794, 0.1448781, 0.2685358]),
         ("<compiler eulerseq='zyX'/>", "euler='10 20 30'", [0.9515485, 0.2392983, 0.1448781, 0.1276794]),
@@ -270,7 +270,7 @@ fn rotations_mean_what_they_mean_in_mujoco() {
 
 /// A rotated box, a capsule of given mass and a ball; and a given tensor: MuJoCo 4.0.0.
 #[test]
-fn masses_of_turned_shapes_are_those_of_mujoco() {
+fn masses_of_rotated_shapes_match_mujoco() {
     let geoms = "<geom type='box' size='.1 .2 .3' pos='.5 0 0' euler='20 0 0' density='500'/>
         <geom type='capsule' size='.05' fromto='0 0 0 0 .3 .4' mass='2'/>
         <geom type='sphere' size='.1' pos='0 0 -.2'/>";
@@ -338,7 +338,7 @@ fn three_hinges_keep_their_ranges_one_by_one() {
 }
 
 #[test]
-fn ranges_follow_the_compiler_the_reference_and_what_is_said() {
+fn ranges_follow_compiler_reference_and_joint() {
     let range = |settings: &str, joint: &str| {
         let model = read(&format!(
             "<mujoco>{settings}<worldbody><body><joint {joint}/><geom size='.1'/></body></worldbody></mujoco>"
@@ -361,7 +361,7 @@ fn ranges_follow_the_compiler_the_reference_and_what_is_said() {
 }
 
 #[test]
-fn classes_nest_and_the_nearest_holds() {
+fn the_nearest_nested_class_applies() {
     let model = read(
         "<mujoco><default><geom size='.1'/><default class='a'><geom size='.2' type='capsule'/>
             <default class='b'><geom size='.3 .5'/></default></default></default>
@@ -459,7 +459,7 @@ fn deep_nesting_is_refused_and_no_overflow() {
 }
 
 #[test]
-fn what_would_take_too_long_or_too_much_is_refused() {
+fn oversized_models_are_refused() {
     let attributes: String = (0..2000).map(|i| format!(" a{i}=''")).collect();
     assert_eq!(complaint(&format!("<size{attributes}/>")), "more than 1000 attributes (line 2)");
     assert_eq!(complaint("<size xmlns:a='b'/>"), "XML namespaces are not read (line 2)");
@@ -548,7 +548,7 @@ fn a_free_body_is_placed_and_its_parts_follow() {
 }
 
 #[test]
-fn springs_and_slides_are_those_of_the_file() {
+fn springs_and_slides_match_the_file() {
     let model = read(
         "<mujoco><worldbody><body pos='0 0 1'><joint type='slide' axis='0 0 2' range='-.5 .25' ref='.125' stiffness='30'
             damping='4' springref='.25' frictionloss='3'/><geom size='.1'/>
@@ -573,7 +573,7 @@ fn springs_and_slides_are_those_of_the_file() {
 
 /// ζ = 0.2 returns `exp(−0.2π/√0.96)` in either notation.
 #[test]
-fn geoms_rub_roll_and_bounce_as_the_file_says() {
+fn contact_properties_match_the_file() {
     let material = |attributes: &str| {
         let model = one_body("", "", &format!("<geom size='.1' {attributes}/>"));
         model.bodies.iter().flat_map(|body| &body.def.shapes).next().expect("it has a geom").material

@@ -56,7 +56,7 @@ fn random_body(random: &mut Random, index: usize) -> RagdollBodyDef {
 }
 
 #[test]
-fn what_is_written_reads_back_equal() {
+fn written_files_read_back_equal() {
     let mut random = Random::new(11);
     let mut def = RagdollDef {
         bodies: (0..40).map(|i| random_body(&mut random, i)).collect(),
@@ -108,7 +108,7 @@ fn zeros_keep_their_sign() {
 }
 
 #[test]
-fn angles_that_people_think_of_stay_short() {
+fn round_angles_stay_short() {
     let mut def = read_ragdoll(example().as_bytes()).unwrap();
     def.joints[0].kind = JointKind::Hinge { limit: Some(Range::degrees(-2.5, 140.0)) };
     let text = write_ragdoll(&def);
@@ -194,7 +194,7 @@ fn bytes_changed_at_random_do_no_harm() {
 /// Wrong numbers in a whole body are refused, or examined, fixed and written again.
 #[needs_data]
 #[test]
-fn lies_are_refused_or_examined() {
+fn wrong_values_are_refused_or_examined() {
     let data = crate::data::shared_data();
     let document = load_gltf(data.join("rigs/mannequiny.glb"), ReadOptions::default()).unwrap();
     let analysis = sinew_anim::analyze(&document.rig).unwrap();

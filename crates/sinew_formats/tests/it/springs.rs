@@ -83,7 +83,7 @@ fn limits_of_springs_hold_for_their_joints() {
 }
 
 #[test]
-fn version_0_swings_all_that_hangs_on_a_root() {
+fn version_0_springs_include_all_descendants() {
     let springs = springs(
         r#"{"VRM":{"secondaryAnimation":{
         "boneGroups":[{"comment":"hair","stiffiness":2,"gravityPower":0.5,"gravityDir":{"x":0,"y":-1,"z":0.5},
@@ -105,7 +105,7 @@ fn version_0_swings_all_that_hangs_on_a_root() {
 }
 
 #[test]
-fn what_lies_is_told_with_its_place() {
+fn wrong_springs_are_refused_with_their_place() {
     let version_1 = |what: &str| format!("{{\"VRMC_springBone\":{{{what}}}}}");
     let version_0 = |what: &str| format!("{{\"VRM\":{{\"secondaryAnimation\":{{{what}}}}}}}");
     for (extensions, what, place) in [
@@ -131,7 +131,7 @@ fn what_lies_is_told_with_its_place() {
 }
 
 #[test]
-fn what_cannot_swing_is_left_out_with_a_warning() {
+fn unusable_springs_are_skipped_with_a_warning() {
     // A joint that is not below the one before it, and one that is in two springs.
     let document = read(
         r#"{"VRMC_springBone":{"springs":[{"joints":[{"node":2},{"node":3},{"node":5}]},
@@ -147,7 +147,7 @@ fn what_cannot_swing_is_left_out_with_a_warning() {
 }
 
 #[test]
-fn groups_that_multiply_are_refused() {
+fn excessive_collider_groups_are_refused() {
     // A few kilobytes that would name millions of colliders.
     let colliders = vec![r#"{"node":1,"shape":{"sphere":{}}}"#; 2000].join(",");
     let members: Vec<String> = (0..2000).map(|index| index.to_string()).collect();

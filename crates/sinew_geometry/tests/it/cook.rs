@@ -294,7 +294,7 @@ fn the_budget_is_kept_at_least_cost() {
 
 /// So many parts that comparing all pairs would take minutes.
 #[test]
-fn thousands_of_parts_end() {
+fn thousands_of_parts_finish_quickly() {
     let mut mesh = Mesh::default();
     for i in 0..4000 {
         let center = Vec3::new((i % 20) as f32, (i / 20 % 10) as f32, (i / 200) as f32);
@@ -357,7 +357,7 @@ fn degenerate_and_repeated_triangles_are_left_out() {
 
 /// Random, mostly invalid meshes: each gives boxes or an error.
 #[test]
-fn nonsense_does_no_harm() {
+fn random_meshes_give_boxes_or_errors() {
     let mut random = Random::new(11);
     for case in 0..21 {
         let count = 3 + random.index(30);

@@ -76,7 +76,7 @@ fn nearest(manifolds: &[Manifold]) -> f32 {
 
 /// 100,000 cases of each kind with `SINEW_FULL` set, otherwise a hundredth.
 #[test]
-fn a_triangle_and_a_shape_are_as_far_apart_as_by_search() {
+fn triangle_distances_match_search() {
     let mut random = Random::new(41);
     for kind in 0..KINDS {
         near_a_triangle(kind, &mut random);
@@ -134,7 +134,7 @@ fn moved_out(frame: &Transform, manifold: &Manifold) -> Transform {
 
 /// Over the triangle the hull's lowest face is not its deepest part: a steeper face beside it is deeper by 23 mm.
 #[test]
-fn what_reaches_deepest_beside_the_lowest_face_counts() {
+fn the_deepest_face_beside_the_lowest_counts() {
     let corners =
         [Vec3::new(-0.967, 0.802, 0.770), Vec3::new(-0.015, -0.123, 0.869), Vec3::new(-0.248, 0.688, -0.870)];
     let points = [
@@ -162,7 +162,7 @@ fn what_reaches_deepest_beside_the_lowest_face_counts() {
 /// An edge of a box above the top of a pyramid has its height as distance: no side of the pyramid takes the top for
 /// a point of an edge, which the other sides would reject.
 #[test]
-fn an_edge_over_a_peak_is_felt() {
+fn an_edge_over_a_peak_has_contacts() {
     let peak = Vec3::Y * 0.5;
     let foot = [(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)].map(|(x, z)| Vec3::new(x, 0.0, z));
     let vertices = [peak, foot[0], foot[1], foot[2], foot[3]];
@@ -250,7 +250,7 @@ fn terrain(random: &mut Random, side: usize) -> (Shape, Shape, Vec<[Vec3; 3]>) {
 
 /// The nearest contact of a shape over terrain is that with the nearest of its triangles, each tested alone.
 #[test]
-fn terrain_is_as_far_away_as_its_nearest_triangle() {
+fn terrain_distance_is_that_of_the_nearest_triangle() {
     let mut random = Random::new(45);
     let (mesh, field, corners) = terrain(&mut random, 12);
     let alone: Vec<Shape> = corners.iter().map(|corners| mesh_of(corners)).collect();
@@ -328,7 +328,7 @@ fn pierced(&[a, b, c]: &[Vec3; 3], ray: &Ray) -> Option<f64> {
 }
 
 #[test]
-fn rays_meet_terrain_as_they_meet_its_triangles() {
+fn terrain_rays_match_triangle_rays() {
     let mut random = Random::new(43);
     let (mesh, field, corners) = terrain(&mut random, 20);
     let mut hits = 0;

@@ -128,7 +128,7 @@ fn long_rays_keep_their_precision() {
 }
 
 #[test]
-fn rays_without_length_or_number_hit_nothing_outside() {
+fn degenerate_rays_hit_nothing_outside() {
     for shape in SHAPES {
         let outside = Vec3::new(0.0, 3.0, 0.0);
         for direction in [Vec3::ZERO, Vec3::Y, Vec3::new(f32::NAN, 0.0, 0.0)] {
@@ -220,7 +220,7 @@ fn mass_properties_match_integration() {
 
 /// A box cut in two and combined again, in a rotated frame.
 #[test]
-fn halves_of_a_box_weigh_as_the_whole() {
+fn masses_of_two_halves_sum_to_the_box() {
     let whole = Shape::Box { half_extents: Vec3::new(0.4, 0.2, 0.1) }.mass_properties(1000.0);
     let half = Shape::Box { half_extents: Vec3::new(0.2, 0.2, 0.1) }.mass_properties(1000.0);
     let frame =
@@ -265,7 +265,7 @@ fn bounds_are_tight() {
 }
 
 #[test]
-fn sizes_that_are_none_are_named() {
+fn invalid_sizes_are_named() {
     for shape in SHAPES {
         assert_eq!(shape.check(), Ok(()));
     }

@@ -27,7 +27,7 @@ fn brute_force(shape: &Shape, at: &Transform, plane: &WaterPlane, cells: i32) ->
 }
 
 #[test]
-fn they_agree_with_brute_force() {
+fn submerged_volumes_match_brute_force() {
     let mut random = Random::new(9);
     let shapes = [
         Shape::Sphere { radius: 0.4 },
@@ -65,7 +65,7 @@ fn they_agree_with_brute_force() {
 }
 
 #[test]
-fn the_two_parts_make_the_whole() {
+fn both_parts_sum_to_the_whole() {
     let mut random = Random::new(4);
     for i in 0..2000 {
         let shape = match i % 6 {

@@ -92,7 +92,7 @@ fn rotations_close_to_lock_round_trip() {
 }
 
 #[test]
-fn angles_come_back_where_they_are_free() {
+fn angles_round_trip_away_from_lock() {
     for convention in EulerConvention::all() {
         let error = worst_of(SHARE, 23, |random| {
             let [lo, hi] = locks(convention);
@@ -154,7 +154,7 @@ fn small_turns_keep_their_digits() {
 }
 
 #[test]
-fn fixed_axes_are_moving_ones_last_first() {
+fn extrinsic_equals_reversed_intrinsic() {
     let mut random = Random::new(25);
     for _ in 0..1000 {
         let [a, b, c] = [0; 3].map(|_| random.range(-PI, PI));

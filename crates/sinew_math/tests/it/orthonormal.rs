@@ -54,7 +54,7 @@ fn rotations_are_kept() {
 }
 
 #[test]
-fn stretch_is_taken_out_whole() {
+fn polar_removes_all_stretch() {
     // M = R S with S symmetric and positive: the polar rotation is R, whatever S.
     let error = worst(32, |random| {
         let (rotation, frame) = (random.rotation(), random.rotation());
@@ -86,7 +86,7 @@ fn polar_is_nearest() {
 }
 
 #[test]
-fn polar_has_no_favourite_axis() {
+fn polar_is_independent_of_axes() {
     // In other axes the answer is the same; Gram-Schmidt's is not.
     let turned = |m: &Mat3, method| {
         let axes = Rotation::from_axis_angle(Vec3::ONE.normalize(), 1.0);

@@ -31,7 +31,7 @@ fn quotient_takes_one_vector_into_the_other() {
 }
 
 #[test]
-fn quotients_that_are_numbers_or_nothing() {
+fn degenerate_vectors_have_stated_quotients() {
     let a = Vec3::new(0.0, 2.0, 0.0);
     assert_eq!(Quaternion::quotient(a, a), Some(Quaternion::ONE));
     assert_eq!(Quaternion::quotient(Vec3::ZERO, a), Some(Quaternion::ZERO));
@@ -137,7 +137,7 @@ fn quotients_in_one_plane_follow_each_other() {
 }
 
 #[test]
-fn parts_make_up_the_whole() {
+fn parts_recombine_to_the_quaternion() {
     let error = worst(45, |random| {
         let (q, t) = (random_quaternion(random), random.range(-2.0, 3.0));
         largest([apart(q.power(t) * q.power(1.0 - t), q), apart(q.power(2.0), q * q)])

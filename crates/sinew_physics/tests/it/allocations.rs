@@ -175,7 +175,7 @@ fn a_warm_step_allocates_nothing() {
 }
 
 #[test]
-fn objects_let_a_warm_step_allocate_nothing() {
+fn a_warm_step_with_objects_allocates_nothing() {
     let mut world = inhabited();
     let mut seen = Seen::default();
     // Each island has its own workspace here, by its number: it takes some steps until each has seen the largest.
@@ -186,7 +186,7 @@ fn objects_let_a_warm_step_allocate_nothing() {
 }
 
 #[test]
-fn the_counter_sees_one_push() {
+fn the_counter_counts_one_allocation() {
     let mut list: Vec<u32> = Vec::new();
     assert_eq!(allocation_counter::measure(|| list.push(1)).count_total, 1);
     list.clear();

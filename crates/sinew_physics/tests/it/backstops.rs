@@ -30,7 +30,7 @@ fn far_from_it(kind: BodyKind, frame: Transform) -> BodyDef {
 /// A particle on a spring beside a frictionless ball comes to rest where spring and gravity act along the normal; a particle without
 /// the ball passes through.
 #[test]
-fn a_particle_rests_where_the_ball_says() {
+fn a_particle_rests_on_its_backstop() {
     let mut world = World::new(WorldDef::default());
     let frame =
         Transform::new(Vec3::new(0.4, 1.0, -0.3), Rotation::from_axis_angle(Vec3::ONE.normalize(), 0.7));
@@ -71,7 +71,7 @@ fn a_particle_rests_where_the_ball_says() {
 
 /// A particle passes through the backstop of another particle, and so does another body.
 #[test]
-fn nothing_else_meets_it() {
+fn backstops_affect_only_their_particle() {
     let mut world = World::new(WorldDef::default());
     let body = world.add_body(&far_from_it(BodyKind::Static, Transform::IDENTITY));
     let at = |x: f32| particle(Vec3::new(x, 1.0, 0.0), 0.1);
@@ -90,7 +90,7 @@ fn nothing_else_meets_it() {
 
 /// A particle hits the backstop of a free body without restitution: both have one speed along the normal; momentum and angular momentum stay.
 #[test]
-fn it_pushes_its_body_as_it_is_pushed() {
+fn backstop_impulses_are_equal_and_opposite() {
     for aside in [0.0, 0.15] {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
         let (radius, mass, speed) = (0.1, 0.3, 2.0);
@@ -133,7 +133,7 @@ fn it_pushes_its_body_as_it_is_pushed() {
 
 /// The particle stays on its backstop while the body moves and rotates.
 #[test]
-fn a_body_takes_it_along() {
+fn a_backstop_moves_with_its_body() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let body = world.add_body(&far_from_it(BodyKind::Kinematic, Transform::IDENTITY));
     // Ahead of it at the start.
@@ -227,7 +227,7 @@ fn threads_and_snapshots_have_the_same_bits() {
 
 /// A group that sleeps on its backstop sleeps with the body, and wakes when the body is moved.
 #[test]
-fn it_sleeps_and_wakes_with_its_body() {
+fn a_backstop_sleeps_and_wakes_with_its_body() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef::fixed(Shape::HalfSpace));
     let body = world.add_body(&box_body(Vec3::splat(0.2), Vec3::Y * 0.2));
@@ -279,7 +279,7 @@ fn definitions_are_checked() {
 
 #[test]
 #[should_panic(expected = "have backstops")]
-fn a_body_with_a_backstop_stays() {
+fn a_body_with_a_backstop_cannot_be_removed() {
     let mut world = World::new(WorldDef::default());
     let body = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     world.add_particles(&GroupDef {

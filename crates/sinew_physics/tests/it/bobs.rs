@@ -59,7 +59,7 @@ impl Row {
 }
 
 #[test]
-fn bobs_that_swing_beneath_stones_go_on() {
+fn bobs_beneath_stones_keep_their_swing() {
     // Slower bobs beneath few stones lose a fifth of their swing in 15 s: a known defect without explanation.
     let few = [(STONES[0], 0.3)];
     for (stones, tilt) in [0.005, 0.02, 0.1, 0.3].map(|tilt| (STONES[1], tilt)).into_iter().chain(few) {
@@ -73,7 +73,7 @@ fn bobs_that_swing_beneath_stones_go_on() {
 }
 
 #[test]
-fn bobs_that_sink_slowly_onto_their_stops_stay_there() {
+fn bobs_lowered_onto_stops_stay() {
     let mut row = Row::new(STONES[1], 0.25, |world, stone, bob, anchor| {
         let mut joint = ball(world, stone, bob, anchor);
         let about_z = Rotation::from_axis_angle(Vec3::Y, -std::f32::consts::FRAC_PI_2);

@@ -32,7 +32,7 @@ fn rebounds(world: &mut World, ball: BodyId, ground: f32, count: usize) -> Vec<f
 }
 
 #[test]
-fn a_ball_comes_back_to_the_square_of_its_restitution() {
+fn rebound_height_is_restitution_squared() {
     // Even the last one comes in at 2 m/s.
     for (restitution, count) in [(0.5f32, 2), (0.8, 5), (1.0, 8)] {
         for height in [2.0f32, 5.0, 10.0] {
@@ -52,7 +52,7 @@ fn a_ball_comes_back_to_the_square_of_its_restitution() {
 }
 
 #[test]
-fn what_lies_on_the_floor_bears_a_bounce() {
+fn a_resting_body_carries_a_bounce() {
     for (planks, share) in [(1, 0.01), (2, 0.02)] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -88,7 +88,7 @@ fn collided(masses: &[f32], speed: f32, gap: f32) -> Vec<f32> {
 }
 
 #[test]
-fn two_balls_part_as_momentum_and_energy_say() {
+fn two_balls_conserve_momentum_and_energy() {
     for [m1, m2] in [[1.0f32, 1.0], [1.0, 3.0], [5.0, 1.0], [0.01, 10.0]] {
         let speeds = collided(&[m1, m2], 3.0, 0.0);
         let expected = [3.0 * (m1 - m2) / (m1 + m2), 3.0 * 2.0 * m1 / (m1 + m2)];
@@ -108,7 +108,7 @@ fn the_last_ball_of_a_cradle_leaves() {
 }
 
 #[test]
-fn bounces_of_a_weightless_heap_give_no_energy() {
+fn bounces_of_a_weightless_heap_add_no_energy() {
     let mut world =
         World::new(WorldDef { gravity: Vec3::ZERO, sleeping: Sleeping::Off, ..WorldDef::default() });
     let mut random = sinew_math::Random::new(7);

@@ -43,7 +43,7 @@ fn bodies_answer_over_all_their_shapes() {
 
 /// Bodies that a region overlaps have sample points in it; bodies that it misses have none.
 #[test]
-fn regions_find_the_bodies_whose_points_they_hold() {
+fn regions_find_bodies_with_points_inside() {
     let mut random = Random::new(95);
     for case in 0..cases(10_000) {
         let mut world = World::new(WorldDef::default());

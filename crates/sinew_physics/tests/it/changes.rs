@@ -101,7 +101,7 @@ fn user_data_is_kept_and_saved() {
 }
 
 #[test]
-fn another_centre_of_mass_leaves_every_point_as_fast_as_it_was() {
+fn changing_the_centre_of_mass_keeps_point_velocities() {
     let mut world = world();
     world.set_gravity(Vec3::ZERO);
     let def = BodyDef {
@@ -130,7 +130,7 @@ fn another_centre_of_mass_leaves_every_point_as_fast_as_it_was() {
 
 /// A mass that is set later acts as one of the definition.
 #[test]
-fn mass_that_is_given_later_is_that_of_the_definition() {
+fn mass_set_later_equals_mass_in_the_definition() {
     let properties = MassProperties {
         mass: 7.0,
         center: Vec3::new(0.05, 0.1, -0.05),
@@ -210,7 +210,7 @@ fn a_body_takes_every_kind() {
 }
 
 #[test]
-fn what_was_dynamic_weighs_again_what_it_weighed() {
+fn a_body_made_dynamic_again_keeps_its_mass() {
     let mut world = world();
     let given =
         MassProperties { center: Vec3::new(0.0, 0.1, 0.0), ..Shape::sphere(0.3).mass_properties(800.0) };
@@ -231,7 +231,7 @@ fn what_was_dynamic_weighs_again_what_it_weighed() {
 }
 
 #[test]
-fn a_joint_holds_what_becomes_static_and_back() {
+fn a_joint_holds_a_body_that_becomes_static_and_back() {
     let mut world = world();
     let (a, b) = (world.add_body(&sphere_body(0.1, Vec3::ZERO)), world.add_body(&sphere_body(0.1, Vec3::X)));
     let joint = world.add_joint(&world.distance(a, b, Vec3::ZERO, Vec3::X, Range { lo: 1.0, hi: 1.0 }));
@@ -295,7 +295,7 @@ fn shapes_come_and_go_with_their_events() {
 }
 
 #[test]
-fn masses_follow_shapes_unless_they_are_to_stay() {
+fn masses_follow_shapes_unless_kept() {
     let mut world = world();
     let ball = world.add_body(&sphere_body(0.5, Vec3::ZERO));
     let one = Shape::sphere(0.5).mass_properties(1000.0).mass;
@@ -332,7 +332,7 @@ fn a_dynamic_body_keeps_a_shape_with_mass() {
 
 #[test]
 #[should_panic(expected = "BodyId 0v0 has no shape 3")]
-fn a_shape_that_is_not_there_is_named() {
+fn a_missing_shape_is_named() {
     let mut world = world();
     let ball = world.add_body(&sphere_body(0.5, Vec3::ZERO));
     world.set_sensing(ShapeId { body: ball, shape: 3 }, Sensing::Sensor);
@@ -386,7 +386,7 @@ fn change(world: &mut World, random: &mut Random) {
 
 /// Derived data must follow the changes: the second world is loaded anew before each step and has no older data.
 #[test]
-fn a_world_that_is_changed_goes_on_as_one_that_is_loaded_anew() {
+fn a_changed_world_equals_a_reloaded_one() {
     let mut random = Random::new(7);
     let mut touched = 0;
     for _ in 0..4 {
@@ -424,7 +424,7 @@ fn a_world_that_is_changed_goes_on_as_one_that_is_loaded_anew() {
 }
 
 #[test]
-fn a_kinematic_body_is_where_it_was_to_move() {
+fn a_kinematic_body_reaches_its_target() {
     let mut world = world();
     let dt = world.def().dt();
     let shape = ShapeDef {
@@ -447,7 +447,7 @@ fn a_kinematic_body_is_where_it_was_to_move() {
 
 /// Near and far moves, small and large rotations, bodies of every kind, at rest or moving.
 #[test]
-fn many_are_led_with_the_bits_of_one() {
+fn batched_moves_equal_single_moves() {
     let mut random = Random::new(9);
     let mut world = world();
     let dt = world.def().dt();
@@ -491,7 +491,7 @@ fn many_are_led_with_the_bits_of_one() {
 type Make = fn(&World, BodyId, BodyId, Vec3) -> JointDef;
 
 #[test]
-fn short_joints_hold_what_they_say() {
+fn short_joints_keep_their_length() {
     let axis = Vec3::new(1.0, 2.0, -2.0);
     let make: [Make; 5] = [
         |world, a, b, _| world.ball(a, b, Vec3::new(0.5, 0.1, 0.0)),
@@ -528,7 +528,7 @@ fn short_joints_hold_what_they_say() {
 }
 
 #[test]
-fn a_rope_is_no_longer_than_it_is() {
+fn a_rope_joint_keeps_its_length() {
     let mut world = world();
     let hook = world.add_body(&BodyDef::fixed(Shape::sphere(0.1)).at(Vec3::Y * 3.0));
     let load = world.add_body(&sphere_body(0.2, Vec3::new(0.5, 3.0, 0.0)));

@@ -336,7 +336,7 @@ fn events_are_what_the_poses_say_for_any_threads_and_across_snapshots() {
 
 /// Putting a body to sleep just outside a sensor ends its overlap; just inside keeps it.
 #[test]
-fn what_is_put_to_sleep_beside_a_sensor_is_not_in_it() {
+fn sleeping_beside_a_sensor_ends_the_overlap() {
     for seed in 0..100 {
         let mut random = Random::new(seed);
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -363,7 +363,7 @@ fn what_is_put_to_sleep_beside_a_sensor_is_not_in_it() {
 
 /// The step limits huge speeds, and its events about them are finite.
 #[test]
-fn hits_beyond_all_measure_are_told_in_numbers() {
+fn extreme_hits_are_reported_finite() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let corners = [(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)];
     let points = corners.map(|(x, z)| Vec3::new(x, 0.0, z));

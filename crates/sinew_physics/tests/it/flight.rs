@@ -33,7 +33,7 @@ fn bits_are_the_same_alone_and_in_a_crowd() {
 }
 
 #[test]
-fn a_flight_is_what_an_island_does() {
+fn flight_matches_islands() {
     // A gravity field makes bodies go through islands.
     let field = FieldKind::Uniform(UniformGravity { acceleration: WorldDef::default().gravity });
     for i in 0..8 {

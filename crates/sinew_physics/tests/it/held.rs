@@ -98,13 +98,13 @@ impl Laden {
 
 /// Ropes bear a body and everything on it: stretch and tension are those of the whole weight.
 #[test]
-fn what_lies_on_a_hung_plank_weighs_on_its_ropes() {
+fn ropes_carry_the_load_on_a_plank() {
     are_weighed_on(false);
 }
 
 /// The same where each rope is its own group.
 #[test]
-fn what_lies_on_a_plank_weighs_on_ropes_of_their_own_groups() {
+fn separate_rope_groups_carry_the_load_on_a_plank() {
     are_weighed_on(true);
 }
 
@@ -134,7 +134,7 @@ fn are_weighed_on(apart: bool) {
 
 /// Snapshots hold the added mass of a body on ropes.
 #[test]
-fn a_laden_plank_goes_on_alike_when_it_is_loaded() {
+fn a_loaded_plank_restores_equally() {
     for apart in [false, true] {
         let mut laden = laden(20.0, 0.1, apart);
         for step in 0..60 {

@@ -32,7 +32,7 @@ fn world() -> World {
 }
 
 #[test]
-fn what_was_removed_is_named_at_the_caller() {
+fn removed_ids_panic_at_the_caller() {
     let mut world = world();
     let gone = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     world.remove_body(gone);
@@ -47,7 +47,7 @@ fn what_was_removed_is_named_at_the_caller() {
 
 /// For every call that changes or reads a body.
 #[test]
-fn every_setter_names_what_was_removed() {
+fn every_setter_names_the_removed_id() {
     let mut world = world();
     let gone = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     let other = world.add_body(&sphere_body(0.1, Vec3::X));
@@ -131,7 +131,7 @@ fn ids_of_another_world_are_refused() {
 
 /// The bits of an id do not hold the world, because games store ids in their own files.
 #[test]
-fn ids_from_bits_go_with_any_world() {
+fn ids_from_bits_work_in_any_world() {
     let (mut one, mut other) = (world(), world());
     let mine = one.add_body(&sphere_body(0.1, Vec3::ZERO));
     let theirs = other.add_body(&sphere_body(0.1, Vec3::X));
@@ -143,7 +143,7 @@ fn ids_from_bits_go_with_any_world() {
 
 /// A world that loads the snapshot of another accepts the other's ids, and the hashes are equal.
 #[test]
-fn a_snapshot_goes_with_any_world() {
+fn a_snapshot_loads_into_any_world() {
     let (mut one, mut other) = (world(), world());
     let mine = one.add_body(&sphere_body(0.1, Vec3::ZERO));
     let theirs = other.add_body(&sphere_body(0.1, Vec3::ZERO));
@@ -163,7 +163,7 @@ fn a_snapshot_goes_with_any_world() {
 /// A body is removed in the moment in which a shape leaves its bounds: both search for pairs at once, and the pairs of the removed body
 /// must not be among them.
 #[test]
-fn a_body_that_goes_takes_its_pairs_along() {
+fn removing_a_body_removes_its_pairs() {
     let sensor = |radius: f32| ShapeDef { sensing: Sensing::Sensor, ..ShapeDef::new(Shape::sphere(radius)) };
     let moving = |def: BodyDef, at: Vec3, linear_velocity: Vec3| BodyDef { linear_velocity, ..def }.at(at);
     for seed in 0..200 {

@@ -244,7 +244,7 @@ fn motors_in_a_chain_saturate_only_where_they_are_weak() {
 }
 
 #[test]
-fn saturated_motors_give_what_they_work_and_no_more() {
+fn saturated_motors_add_only_their_work() {
     // A light piece between two heavy ones: the full push of both motors without a joint would spin it a thousand times faster.
     // fast as it ever does.
     let mut world = world(0.0);
@@ -380,7 +380,7 @@ fn a_soft_weld_bends_under_load_by_its_stiffness() {
 }
 
 #[test]
-fn six_directions_are_free_or_held_as_said() {
+fn six_directions_are_free_or_held_as_defined() {
     use AxisMotion::{Free, Limited, Locked};
     // Free in x and about z alone.
     let six = SixDof {
@@ -408,7 +408,7 @@ fn six_directions_are_free_or_held_as_said() {
 }
 
 #[test]
-fn a_hand_drags_a_body_to_it_and_no_harder_than_it_may() {
+fn a_drag_joint_pulls_with_bounded_force() {
     let mut world = world(G);
     let hand = anchor(&mut world);
     let b = lump(&mut world, Vec3::new(2.0, 0.0, 0.0), 3.0, 0.1);
@@ -442,7 +442,7 @@ fn friction_slows_a_hinge_by_its_torque() {
 }
 
 #[test]
-fn friction_that_comes_later_slows_from_then_on() {
+fn friction_set_later_acts_at_once() {
     let (mut world, b, def) = arm(0.0);
     let id = world.add_joint(&def);
     world.set_velocity(b, Velocity { linear: Vec3::Y * 2.5, angular: Vec3::Z * 5.0 });
@@ -455,7 +455,7 @@ fn friction_that_comes_later_slows_from_then_on() {
 }
 
 #[test]
-fn reactions_are_the_weights_that_hang_below() {
+fn reactions_equal_the_hanging_weights() {
     let mut world = world(G);
     let mut last = anchor(&mut world);
     let mut joints = Vec::new();
@@ -479,7 +479,7 @@ fn reactions_are_the_weights_that_hang_below() {
 }
 
 #[test]
-fn reactions_bear_what_hangs_by_springs() {
+fn reactions_include_weights_on_springs() {
     let mut world = world(G);
     let a = anchor(&mut world);
     let b = lump(&mut world, Vec3::NEG_Y * 0.5, 1.0, 0.1);
@@ -494,7 +494,7 @@ fn reactions_bear_what_hangs_by_springs() {
 }
 
 #[test]
-fn joints_break_above_their_strength_and_tell() {
+fn joints_break_above_their_strength_and_report() {
     for (strength, breaks) in [(18.0, true), (21.0, false)] {
         let mut world = world(G);
         let a = anchor(&mut world);
@@ -533,7 +533,7 @@ fn joints_break_above_their_strength_and_tell() {
 }
 
 #[test]
-fn soft_limits_give_by_their_stiffness() {
+fn soft_limits_yield_by_their_stiffness() {
     let (mut world, b, mut def) = arm(G);
     def.kind = JointKind::Hinge { limit: Some(Range::new(-0.2, 1.0)) };
     def.limit_softness = Some(Softness::Stiffness { stiffness: 100.0, damping: 10.0 });

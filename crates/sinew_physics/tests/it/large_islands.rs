@@ -83,7 +83,7 @@ fn course(runner: &dyn TaskRunner, steps: usize) -> Vec<u64> {
 }
 
 #[test]
-fn threads_together_make_the_bits_that_one_makes() {
+fn several_threads_give_the_bits_of_one() {
     let steps = 40;
     let alone = course(&Serial, steps);
     for runner in

@@ -100,7 +100,7 @@ fn rest_height(def: &GroupDef, mass: f64) -> f64 {
 }
 
 #[test]
-fn a_net_bears_fifty_times_its_mass_where_statics_say() {
+fn a_net_carries_fifty_times_its_mass_at_the_static_height() {
     for (stretching, mass) in [(5e3, 15.0), (5e3, 100.0), (5e4, 100.0)] {
         let def = net(stretching);
         let mut world = World::new(WorldDef::default());
@@ -155,7 +155,7 @@ fn solved(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
 
 /// Random spring networks with some held particles: velocities after a substep solve `(M + h² K + h D) v⁺ = M v + h f`.
 #[test]
-fn loops_are_solved_as_the_whole_matrix_is() {
+fn loops_match_the_dense_solution() {
     const H: f32 = 1.0 / 240.0;
     let mut random = Random::new(24);
     for case in 0..40 {
@@ -283,7 +283,7 @@ fn bridge(tension: f32) -> World {
 ///
 /// Planks move before springs act, so a swing back is stretched by `v h` too much: with 10 kN, `k h²/m` is 2.2 at a plank's corner.
 #[test]
-fn two_ropes_through_the_same_planks_give_little_energy() {
+fn two_ropes_through_planks_add_little_energy() {
     for (tension, most) in [(1e3, 1.5), (1e4, 15.0)] {
         let mut world = bridge(tension);
         let second = world.body_ids().nth(1).unwrap();

@@ -151,7 +151,7 @@ fn friction_on_a_tiled_floor_is_that_of_a_plane() {
 }
 
 #[test]
-fn nothing_catches_on_a_tiled_floor() {
+fn bodies_slide_over_a_tiled_floor_without_catching() {
     for floor in [Floor::Plain, Floor::Shuffled, Floor::Field] {
         let shape = floor_shape(floor);
         for (slider, height) in sliders() {

@@ -28,7 +28,7 @@ fn run_without_gain(world: &mut World, steps: usize) {
 
 /// A strand clamped level bends as a chain of elastic corners: each turns by the moment of the weight beyond it.
 #[test]
-fn a_strand_sinks_as_a_beam() {
+fn a_strand_bends_as_a_beam() {
     const LINKS: u32 = 8;
     let (length, mass, bending) = (1.0, 0.08, 1.0);
     let rope =
@@ -138,7 +138,7 @@ fn numbers_that_are_not_finite_panic_in_the_setter() {
 /// Particles hit moving and rotating shapes of every kind at up to 100 m/s: on the way from one end of a substep to
 /// the next, in the shape's frame, none is inside.
 #[test]
-fn nothing_passes_through_what_moves_and_turns() {
+fn particles_never_pass_through_moving_shapes() {
     let mut random = Random::new(7);
     let h = 1.0 / 240.0;
     for case in 0..600 {
@@ -194,7 +194,7 @@ fn nothing_passes_through_what_moves_and_turns() {
 
 /// A kinematic wall at 50 m/s pushes all particles along, within a step and from step to step.
 #[test]
-fn a_fast_wall_leaves_nothing_behind() {
+fn a_fast_wall_pushes_all_particles() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let mut random = Random::new(3);
     let wall = BodyDef {

@@ -193,13 +193,13 @@ fn mass(world: &World) -> f32 {
 }
 
 #[test]
-fn worlds_of_particles_stay_finite_and_give_no_energy() {
+fn worlds_of_particles_stay_finite_and_add_no_energy() {
     are_sound(&asked_seeds().map_or_else(|| SEEDS.to_vec(), Iterator::collect), false);
 }
 
 /// The same without projected springs. Seeds 0 to 199 pass if asked for.
 #[test]
-fn worlds_of_implicit_nets_stay_finite_and_give_no_energy() {
+fn worlds_of_implicit_nets_stay_finite_and_add_no_energy() {
     are_sound(&asked_seeds().map_or_else(|| SEEDS[..8].to_vec(), Iterator::collect), true);
 }
 

@@ -319,7 +319,7 @@ fn friction_holds_below_its_angle_and_slides_above() {
 
 /// A particle that begins inside a solid leaves at half a metre a second, keeps no velocity from that, and does not stretch its spring.
 #[test]
-fn what_begins_inside_comes_out_slowly() {
+fn particles_starting_inside_come_out_slowly() {
     let h = 1.0 / 480.0;
     let slab = obstacle(Shape::Box { half_extents: Vec3::new(1.0, 0.5, 1.0) }, Transform::IDENTITY, 0.3, 0.0);
     let def = GroupDef {
@@ -344,7 +344,7 @@ fn what_begins_inside_comes_out_slowly() {
 
 /// Particles slide on a movable body as on the ground, by gravity less Coulomb friction, though they are up to a hundred million times lighter.
 #[test]
-fn grains_slide_on_heavy_bodies_as_on_the_ground() {
+fn particles_slide_on_heavy_bodies_as_on_the_ground() {
     let (angle, friction) = (0.6f32, 0.4);
     let tilt = Rotation::from_axis_angle(Vec3::new(0.48, 0.6, 0.64), angle);
     let up = tilt * Vec3::Y;
@@ -383,7 +383,7 @@ fn grains_slide_on_heavy_bodies_as_on_the_ground() {
 
 /// A body carries the weight of a particle.
 #[test]
-fn a_particle_weighs_on_the_body_below() {
+fn a_body_carries_the_weight_of_a_particle() {
     let def =
         GroupDef { particles: vec![particle(Vec3::new(0.2, 0.1, 0.0), 2.0, 0.0)], ..GroupDef::default() };
     let mut group = ParticleGroup::new(&def);
@@ -516,7 +516,7 @@ fn a_rope_over_a_pulley_carries_its_weight_undiminished() {
 }
 
 #[test]
-fn a_loaded_group_goes_on_as_the_saved_one() {
+fn a_loaded_group_continues_equally() {
     let mut def = RopeDef {
         from: Vec3::new(-1.0, 0.7, 0.1),
         to: Vec3::new(1.0, 0.7, 0.0),
@@ -572,7 +572,7 @@ fn a_loaded_group_goes_on_as_the_saved_one() {
 
 /// The place of a particle before a wall stopped it must not affect its next contacts, because snapshots do not hold it.
 #[test]
-fn a_particle_that_has_struck_a_wall_goes_on_alike_in_a_loaded_world() {
+fn an_impact_does_not_change_a_loaded_worlds_future() {
     // Impacts in each part of a step.
     for delay in 0..16 {
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
@@ -602,7 +602,7 @@ fn a_particle_that_has_struck_a_wall_goes_on_alike_in_a_loaded_world() {
 
 /// A particle falls through a body that its group ignores and rests on the one beneath, also after loading a snapshot.
 #[test]
-fn a_group_passes_through_the_bodies_that_it_names() {
+fn a_group_passes_through_its_ignored_bodies() {
     let mut world = World::new(WorldDef { gravity: GRAVITY, ..WorldDef::default() });
     let shelf = |height: f32| {
         BodyDef::fixed(Shape::Box { half_extents: Vec3::new(1.0, 0.1, 1.0) }).at(Vec3::Y * height)

@@ -42,7 +42,7 @@ fn sunk(world: &World, id: GroupId) -> f32 {
 
 /// A heavy roller crosses a rope on the ground: it loses energy, the rope gains none, and its particles stay on the ground.
 #[test]
-fn a_roller_goes_over_a_rope() {
+fn a_roller_crosses_a_rope_without_energy_gain() {
     for (stiffness, turn) in [(1e3, 0.0), (5e4, 0.0), (5e4, 0.7), (5e4, 1.5)] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -71,7 +71,7 @@ fn a_roller_goes_over_a_rope() {
 
 /// A roller set down on cloth on the ground rests on it and does not sink in.
 #[test]
-fn cloth_on_the_ground_bears_a_roller() {
+fn cloth_on_the_ground_carries_a_roller() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     let roller = roller(&mut world, 2.0 * RADIUS + 0.01, 0.0);
@@ -102,7 +102,7 @@ fn cloth_on_the_ground_bears_a_roller() {
 
 /// The end of a rope that starts in the narrow crease between two limbs comes out without a gain of energy.
 #[test]
-fn what_is_made_in_a_crease_comes_out_of_it() {
+fn a_rope_end_starting_in_a_crease_comes_out() {
     for bend in [0.2_f32, 0.8, 1.6] {
         let mut world = World::new(WorldDef::default());
         let limb = |turn: f32| {
@@ -293,7 +293,7 @@ fn cloth_slides_from_under_a_crate_by_coulombs_law() {
 /// A ball in the wedge between the floor and a hinged slab carries the slab if half the opening angle is below the friction angle,
 /// 16.7°; else the slab comes down and pushes it out along the floor until it does.
 #[test]
-fn what_is_nipped_bears_and_what_is_not_slips_out() {
+fn a_ball_in_a_narrow_wedge_carries_and_in_a_wide_one_slips_out() {
     for (degrees, is_nipped) in [(30.0_f32, true), (80.0, false)] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -333,7 +333,7 @@ fn what_is_nipped_bears_and_what_is_not_slips_out() {
 
 /// A world loaded from a snapshot during a pinch continues with the same bits.
 #[test]
-fn what_is_pinched_goes_on_from_a_snapshot() {
+fn pinched_contacts_restore_equally() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     world.add_particles(&carpet(Vec3::new(-0.4, 0.0, -0.4), [16, 16], 0.6));
@@ -383,7 +383,7 @@ fn a_tether_through_the_floor_does_not_tear() {
 
 /// Pinched contacts forget removed bodies and shapes: a world saved afterwards can be loaded.
 #[test]
-fn what_goes_is_forgotten() {
+fn removed_bodies_leave_no_pinched_contacts() {
     for takes_shape in [false, true] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -407,7 +407,7 @@ fn what_goes_is_forgotten() {
 
 /// A crate on cloth on a belt is carried along; a crate whose contact the user's function drops falls through.
 #[test]
-fn surfaces_do_through_cloth_what_they_do_without() {
+fn surface_velocities_and_modifiers_act_through_cloth() {
     for drops in [false, true] {
         let mut world = World::new(WorldDef::default());
         world.register_modifier(1, |_, _| None);

@@ -65,7 +65,7 @@ fn weight(world: &World, bodies: &[BodyId]) -> f32 {
 }
 
 #[test]
-fn a_pinned_body_sags_by_its_weight_over_the_stiffness_and_the_pin_tells_its_weight() {
+fn a_pinned_body_sags_by_weight_over_stiffness() {
     for stiffness in [500.0, 5e4, 1e6] {
         let mut world = world();
         let ground = ground(&mut world);
@@ -108,7 +108,7 @@ fn a_chain_with_every_link_pinned_holds_its_joints() {
 }
 
 #[test]
-fn pins_at_the_ends_carry_what_lies_between() {
+fn pins_at_the_ends_carry_a_chain() {
     let mut world = world();
     let ground = ground(&mut world);
     let (bodies, joints) = chain(&mut world, 9);
@@ -121,7 +121,7 @@ fn pins_at_the_ends_carry_what_lies_between() {
 }
 
 #[test]
-fn a_weak_pin_gives_what_it_has() {
+fn a_weak_pin_pulls_with_its_cap() {
     let mut world = world();
     let ground = ground(&mut world);
     let body = lump(&mut world, Vec3::Y, 4.0);
@@ -206,7 +206,7 @@ fn energy_rises_by_the_work_of_pins_at_most() {
 }
 
 #[test]
-fn what_is_made_kinematic_goes_its_way_and_comes_back_as_it_was() {
+fn a_body_made_kinematic_and_back_keeps_its_properties() {
     let mut world = world();
     let (bodies, joints) = chain(&mut world, 6);
     let before = world.mass(bodies[2]);
@@ -238,7 +238,7 @@ fn what_is_made_kinematic_goes_its_way_and_comes_back_as_it_was() {
 }
 
 #[test]
-fn a_body_that_is_led_works_on_what_hangs_on_it_and_what_it_pushes() {
+fn kinematic_bodies_report_work_on_joints_and_contacts() {
     let mut world = world();
     let (bodies, _) = chain(&mut world, 4);
     world.set_kind(bodies[0], BodyKind::Kinematic);
@@ -263,7 +263,7 @@ fn a_body_that_is_led_works_on_what_hangs_on_it_and_what_it_pushes() {
 }
 
 #[test]
-fn a_body_that_is_led_works_on_particles_that_hang_on_it_and_that_it_lifts() {
+fn kinematic_bodies_report_work_on_particles() {
     let lift = |held: bool| {
         let mut world = world();
         let half_extents = Vec3::new(1.0, 0.1, 1.0);

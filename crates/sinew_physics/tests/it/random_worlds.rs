@@ -96,7 +96,7 @@ fn is_known(seed: u64) -> bool {
 }
 
 #[test]
-fn random_worlds_stay_finite_give_no_energy_and_restore() {
+fn random_worlds_stay_finite_add_no_energy_and_restore() {
     for (seed, outcome) in outcomes(0..100) {
         match outcome {
             Ok(_) if is_known(seed) => println!("world {seed} holds again: take it off the list"),

@@ -165,7 +165,7 @@ fn went(tiles: Tiles, kind: usize, speed: f32, seed: u64) -> Way {
 }
 
 #[test]
-fn what_goes_over_seams_goes_as_over_one_box() {
+fn sliding_over_seams_matches_one_box() {
     let mut seed = 0;
     for kind in 0..8 {
         for speed in [0.5, 1.0, 3.0, 6.0, 10.0] {
@@ -182,7 +182,7 @@ fn what_goes_over_seams_goes_as_over_one_box() {
 
 /// A step of 5 mm and a gap wider than a slop are hit; walls on the ground and beside it stop bodies.
 #[test]
-fn real_edges_stop_what_comes() {
+fn real_edges_stop_bodies() {
     for (name, at, half) in [
         ("a wall beside the floor", Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.5, 1.0, 0.5)),
         ("a wall on the floor", Vec3::new(0.4, 0.5, 0.0), Vec3::new(0.1, 0.5, 0.5)),

@@ -110,7 +110,7 @@ fn fall(load: f32, thickness: f32, steps: usize) -> (usize, f32, f32) {
 }
 
 #[test]
-fn folds_do_not_go_through_each_other() {
+fn folds_do_not_intersect() {
     // A box as heavy as the cloth, and one thirteen times as heavy as the particles under it.
     for load in [0.1, 0.2] {
         let (seen, gain, height) = fall(load, THICKNESS, 240);
@@ -150,7 +150,7 @@ fn pair(particles: [(Vec3, Vec3, f32); 2], joined: bool) -> ParticleGroup {
 }
 
 #[test]
-fn two_that_meet_go_on_together() {
+fn two_colliding_particles_move_on_together() {
     let mut group = pair([(Vec3::ZERO, Vec3::X, 1.0), (Vec3::X * 0.2, -Vec3::X, 3.0)], false);
     for _ in 0..200 {
         group.substep(1e-3, Vec3::ZERO, &[], &[], &mut []);
@@ -164,7 +164,7 @@ fn two_that_meet_go_on_together() {
 }
 
 #[test]
-fn what_a_spring_joins_may_be_near() {
+fn spring_neighbours_may_be_near() {
     for (joined, distance) in [(true, 0.05), (false, 0.1)] {
         let mut group = pair([(Vec3::ZERO, Vec3::ZERO, 1.0), (Vec3::X * 0.05, Vec3::ZERO, 1.0)], joined);
         for _ in 0..1000 {
@@ -178,7 +178,7 @@ fn what_a_spring_joins_may_be_near() {
 }
 
 #[test]
-fn restored_and_on_threads_it_is_the_same() {
+fn self_collision_restores_equally_on_any_threads() {
     let [mut one, mut two] = [folded(0.1, THICKNESS).0, folded(0.1, THICKNESS).0];
     let threads = Threads::new(2);
     for _ in 0..40 {

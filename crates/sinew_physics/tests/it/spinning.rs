@@ -54,7 +54,7 @@ fn misses_and_ghosts(kind: BodyKind, spin: f32, length: f32) -> [u32; 2] {
 }
 
 #[test]
-fn rods_strike_what_flies_through_their_discs() {
+fn rods_hit_balls_that_fly_through_their_discs() {
     for kind in [BodyKind::Kinematic, BodyKind::Dynamic] {
         for (spin, length) in [(30.0, 1.0), (60.0, 1.0), (120.0, 1.0), (200.0, 1.0), (120.0, 0.5)] {
             let [missed, ghosts] = misses_and_ghosts(kind, spin, length);

@@ -42,7 +42,7 @@ fn floor_force(world: &World, on: BodyId) -> f64 {
 }
 
 #[test]
-fn towers_of_any_masses_stand_on_a_floor_that_bears_their_weight() {
+fn towers_of_any_masses_stand_and_load_the_floor_by_their_weight() {
     towers_of_any_masses_shift_by(1e-3);
 }
 
@@ -83,7 +83,7 @@ fn towers_of_any_masses_shift_by(most_aside: f32) {
 }
 
 #[test]
-fn what_is_not_squeezed_weighs_what_it_weighs_beside_what_is_heavy() {
+fn unsqueezed_bodies_keep_their_mass_beside_heavy_ones() {
     let mut world = world_with_floor();
     let light = cube(&mut world, place(0), 0.1);
     cube(&mut world, place(0) + Vec3::X * (2.0 * HALF), 1e6);
@@ -95,7 +95,7 @@ fn what_is_not_squeezed_weighs_what_it_weighs_beside_what_is_heavy() {
 }
 
 #[test]
-fn what_is_hit_from_one_side_takes_the_speed_of_what_is_heavy() {
+fn a_light_body_hit_by_a_heavy_one_takes_its_speed() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let light = cube(&mut world, Vec3::ZERO, 0.1);
     let heavy = cube(&mut world, -Vec3::X * 0.6, 1e6);

@@ -92,7 +92,7 @@ fn bits_are_the_same_alone_and_beside_others() {
 }
 
 #[test]
-fn a_strand_is_what_an_island_does() {
+fn strands_match_islands() {
     for (i, links, is_held) in [(0, 1, true), (1, 2, true), (2, 9, true), (3, 2, false), (4, 9, false)] {
         let [mut strand, mut island] = [(); 2].map(|()| World::new(WorldDef::default()));
         let [a, b] = [&mut strand, &mut island].map(|world| Chain::new(world, i, links, is_held));
@@ -120,7 +120,7 @@ fn a_strand_is_what_an_island_does() {
 }
 
 #[test]
-fn objects_disturb_only_what_they_act_on() {
+fn objects_change_only_their_bodies() {
     let [mut with, mut without] = [(); 2].map(|()| World::new(WorldDef::default()));
     let [with_chains, chains] =
         [&mut with, &mut without].map(|world| [0, 1].map(|i| Chain::new(world, i, 5, true)));
@@ -151,7 +151,7 @@ fn momentum_of_a_free_strand_stays() {
 }
 
 #[test]
-fn joints_of_a_long_rope_carry_what_hangs_below_them() {
+fn joints_of_a_long_rope_carry_the_weight_below() {
     for links in [24, 31, 49, 100] {
         let mut world = World::new(WorldDef::default());
         let anchor = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
@@ -177,7 +177,7 @@ fn joints_of_a_long_rope_carry_what_hangs_below_them() {
 }
 
 #[test]
-fn a_long_tangle_that_whirls_stays_closed() {
+fn joints_of_a_long_whirling_chain_stay_closed() {
     for (seed, links) in [(1, 41), (2, 42), (3, 64), (4, 71), (5, 90)] {
         let mut random = Random::new(seed);
         let mut world = World::new(WorldDef::default());

@@ -120,7 +120,7 @@ fn a_belt_carries_a_box_to_its_speed() {
 }
 
 #[test]
-fn a_belt_that_stops_and_starts_is_felt_at_once() {
+fn a_belt_acts_at_once_when_it_stops_and_starts() {
     let mut world = World::new(WorldDef::default());
     let belt = world.add_body(&fixed(box_body(Vec3::new(20.0, 0.5, 20.0), Vec3::Y * -0.5)));
     let load = world.add_body(&box_body(Vec3::splat(0.2), Vec3::Y * 0.2));
@@ -138,7 +138,7 @@ fn a_belt_that_stops_and_starts_is_felt_at_once() {
 }
 
 #[test]
-fn a_turntable_turns_what_lies_on_its_middle() {
+fn a_turntable_turns_a_body_on_its_axis() {
     let mut world = World::new(WorldDef::default());
     let table = Material { surface_spin: Vec3::Y * 2.0, ..Material::DEFAULT };
     world.add_body(&fixed(made_of(box_body(Vec3::new(5.0, 0.5, 5.0), Vec3::Y * -0.5), table)));
@@ -149,7 +149,7 @@ fn a_turntable_turns_what_lies_on_its_middle() {
 }
 
 #[test]
-fn a_particle_is_carried_too_and_passes_what_does_not_push() {
+fn surfaces_carry_particles_and_ghosts_let_them_pass() {
     let mut world = World::new(WorldDef::default());
     let belt = Material { friction: 0.5, surface_velocity: Vec3::X * 1.5, ..Material::DEFAULT };
     world.add_body(&fixed(made_of(box_body(Vec3::new(20.0, 0.5, 20.0), Vec3::Y * -0.5), belt)));
@@ -196,7 +196,7 @@ fn platform(world: &mut World, top: f32) -> BodyId {
 }
 
 #[test]
-fn a_one_way_platform_lets_pass_from_below_and_holds_from_above() {
+fn a_one_way_platform_passes_upward_and_holds_downward() {
     for (speed, radius) in [(6.0, 0.2), (8.0, 0.02), (30.0, 0.1)] {
         let mut world = World::new(WorldDef::default());
         floor(&mut world);
@@ -217,7 +217,7 @@ fn a_one_way_platform_lets_pass_from_below_and_holds_from_above() {
 }
 
 #[test]
-fn what_passes_goes_on_passing_also_after_a_restore() {
+fn a_passing_body_keeps_passing_after_a_restore() {
     // Its apex is inside the platform: it must fall out again, not be put on top.
     let start = || {
         let mut world = World::new(WorldDef::default());
@@ -248,7 +248,7 @@ fn trig_speed(height: f32) -> f32 {
 }
 
 #[test]
-fn a_ghost_is_told_of_and_does_not_push() {
+fn a_ghost_is_reported_without_pushing() {
     let mut world = World::new(WorldDef::default());
     let ghost = fixed(box_body(Vec3::splat(0.5), Vec3::ZERO));
     let ghost = world.add_body(&under_rule(ghost, ContactRule::Ghost));
@@ -317,7 +317,7 @@ fn even(a: &PairSide, b: &PairSide) -> bool {
 }
 
 #[test]
-fn a_pair_function_parts_and_its_choice_is_part_of_the_state() {
+fn a_pair_function_disables_pairs_and_is_state() {
     let mut world = World::new(WorldDef::default());
     world.register_pair_function(1, even);
     let ground = world.add_body(&fixed(box_body(Vec3::new(5.0, 0.5, 5.0), Vec3::Y * -0.5)));
@@ -343,7 +343,7 @@ fn a_pair_function_parts_and_its_choice_is_part_of_the_state() {
 }
 
 #[test]
-fn a_disabled_pair_wakes_and_parts_and_meets_again_when_enabled() {
+fn disabling_and_enabling_a_pair_wakes_it() {
     let mut world = World::new(WorldDef::default());
     let ground = floor(&mut world);
     let below = world.add_body(&box_body(Vec3::splat(0.5), Vec3::Y * 0.5));
@@ -362,7 +362,7 @@ fn a_disabled_pair_wakes_and_parts_and_meets_again_when_enabled() {
 }
 
 #[test]
-fn a_filter_a_rule_and_sensing_change_at_once_and_wake() {
+fn filter_rule_and_sensing_changes_act_at_once_and_wake() {
     let mut world = World::new(WorldDef::default());
     let slab = world.add_body(&fixed(box_body(Vec3::new(5.0, 0.5, 5.0), Vec3::Y * -0.5)));
     let ball = world.add_body(&sphere_body(0.1, Vec3::Y * 0.1));
@@ -387,7 +387,7 @@ fn a_filter_a_rule_and_sensing_change_at_once_and_wake() {
 }
 
 #[test]
-fn a_hit_tells_how_fast_and_what_it_took_once() {
+fn a_hit_reports_speed_and_impulse_once() {
     for (restitution, tolerance) in [(0.0, 0.01), (0.5, 0.02)] {
         for i in 0..40 {
             let height = 0.3 + 0.07 * i as f32;
@@ -418,7 +418,7 @@ fn a_hit_tells_how_fast_and_what_it_took_once() {
 }
 
 #[test]
-fn a_pile_at_rest_tells_of_no_hit() {
+fn a_pile_at_rest_reports_no_hit() {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     floor(&mut world);
     for i in 0..5 {
@@ -431,7 +431,7 @@ fn a_pile_at_rest_tells_of_no_hit() {
 }
 
 #[test]
-fn contacts_tell_what_they_carry() {
+fn contacts_report_their_load() {
     let angle = 0.3;
     let (mut world, block, down) = on_slope(angle, Material::DEFAULT);
     run(&mut world, 120);
@@ -446,7 +446,7 @@ fn contacts_tell_what_they_carry() {
 }
 
 #[test]
-fn sensors_see_what_stands_moves_sleeps_and_goes() {
+fn sensors_report_static_moving_sleeping_and_removed_bodies() {
     let mut world = World::new(WorldDef::default());
     let ground = floor(&mut world);
     let mut gate = fixed(box_body(Vec3::splat(0.5), Vec3::Y * 0.5));
@@ -486,7 +486,7 @@ fn sensors_see_what_stands_moves_sleeps_and_goes() {
 }
 
 #[test]
-fn a_pair_of_bodies_with_many_shapes_is_told_of_once() {
+fn a_pair_of_many_shapes_is_reported_once() {
     let mut world = World::new(WorldDef::default());
     let ground = floor(&mut world);
     let mut table = box_body(Vec3::splat(0.1), Vec3::Y * 0.12);
@@ -508,7 +508,7 @@ fn a_pair_of_bodies_with_many_shapes_is_told_of_once() {
 
 #[test]
 #[should_panic(expected = "friction")]
-fn a_material_that_is_no_number_is_refused() {
+fn a_nan_material_is_refused() {
     let (mut world, block, _) = on_slope(0.0, Material::DEFAULT);
     let shape = only_shape(&world, block);
     world.set_material(shape, Material { friction: f32::NAN, ..Material::DEFAULT });
@@ -547,6 +547,6 @@ fn a_pair_function_that_is_not_registered_is_refused() {
 
 #[test]
 #[should_panic(expected = "speed of a hit")]
-fn a_hit_speed_that_is_no_number_is_refused() {
+fn a_nan_hit_speed_is_refused() {
     let _ = World::new(WorldDef { hit_speed: f32::NAN, ..WorldDef::default() });
 }

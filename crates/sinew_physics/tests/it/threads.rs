@@ -16,7 +16,7 @@ fn calls(threads: &Threads, count: usize) -> usize {
 }
 
 #[test]
-fn each_batch_makes_as_many_calls_as_it_says() {
+fn each_batch_makes_every_call() {
     for of in [0, 1, 2, 3, 8] {
         let threads = Threads::new(of);
         assert_eq!(threads.count(), of.max(1));
@@ -28,7 +28,7 @@ fn each_batch_makes_as_many_calls_as_it_says() {
 
 /// Batches of all sizes, at once and after pauses in which the workers fall asleep.
 #[test]
-fn random_batches_lose_nothing() {
+fn random_batches_lose_no_call() {
     let threads = Threads::new(4);
     let mut random = Random::new(5);
     for round in 0..20_000 {
@@ -120,7 +120,7 @@ fn several_threads_of_the_host_may_share_a_pool() {
 }
 
 #[test]
-fn a_pool_can_go_at_any_time() {
+fn a_pool_can_be_dropped_at_any_time() {
     for round in 0..200 {
         let threads = Threads::new(1 + round % 5);
         if round % 2 == 0 {

@@ -54,7 +54,7 @@ fn nap() -> (World, BodyId, BodyId, BodyId) {
 }
 
 #[test]
-fn what_slept_ends_its_touches_when_it_is_taken_away() {
+fn removing_a_sleeping_body_ends_its_touches() {
     let ways: [fn(&mut World, BodyId); 4] = [
         |world, sleeper| world.set_transform(sleeper, Transform::from_translation(Vec3::Y * 9.0)),
         |world, sleeper| world.remove_body(sleeper),
@@ -85,7 +85,7 @@ fn what_slept_ends_its_touches_when_it_is_taken_away() {
 }
 
 #[test]
-fn parting_what_does_not_touch_wakes_nobody() {
+fn disabling_an_untouched_pair_wakes_nothing() {
     let (mut world, floor, zone, sleeper) = nap();
     let other = world.add_body(&box_body(Vec3::splat(0.2), Vec3::new(3.0, 0.2, 0.0)));
     run(&mut world, 120);
@@ -102,7 +102,7 @@ fn parting_what_does_not_touch_wakes_nobody() {
 }
 
 #[test]
-fn what_comes_gently_and_what_bounces_at_once_touch() {
+fn slow_and_bouncing_contacts_are_reported() {
     // On the floor at 5 cm/s, and from 1 to 20 m/s with high restitution.
     for (speed, restitution) in [(0.05, 0.0), (1.5, 0.9), (5.0, 0.9), (20.0, 1.0)] {
         let def = WorldDef { sleeping: Sleeping::Off, gravity: Vec3::ZERO, ..WorldDef::default() };

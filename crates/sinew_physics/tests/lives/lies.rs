@@ -82,7 +82,7 @@ fn live_on(shapes: &[u8], state: &[u8]) -> bool {
 }
 
 #[test]
-fn lying_snapshots_are_refused_or_lived_with() {
+fn damaged_snapshots_are_refused_or_step() {
     let mut random = Random::new(57);
     let (mut taken, mut all) = (0, 0);
     let lies = if std::env::var_os("SINEW_FULL").is_some() { LIES } else { LIES / 5 };

@@ -619,7 +619,7 @@ mod tests {
     }
 
     #[test]
-    fn covers_what_the_half_planes_say() {
+    fn coverage_matches_half_planes() {
         let mut random = Random::new(11);
         for case in 0..600 {
             let mut vertices = [vertex(&mut random), vertex(&mut random), vertex(&mut random)];

@@ -142,7 +142,7 @@ fn smoothed_edges_show_the_share_that_is_covered() {
 }
 
 #[test]
-fn odd_input_is_left_out() {
+fn invalid_triangles_are_skipped() {
     let good = [Vec3::new(-1.0, -1.0, -3.0), Vec3::new(1.0, -1.0, -3.0), Vec3::new(0.0, 1.0, -3.0)];
     let expected = draw(&plain(vec![triangle(good, [0.5; 3])]), Antialiasing::Samples4);
     let mut models = vec![triangle(good, [0.5; 3]), Model::default()];
@@ -166,7 +166,7 @@ fn odd_input_is_left_out() {
 }
 
 #[test]
-fn odd_cameras_lines_and_lights_do_no_harm() {
+fn extreme_cameras_lines_and_lights_do_not_panic() {
     let mut renderer = Renderer::new(RenderSettings { width: 1, height: 1, ..RenderSettings::default() });
     let mut scene =
         Scene { models: vec![draw::floor(Vec3::ZERO, 1e6, [0.5; 3], [0.2; 3])], ..Scene::default() };
@@ -206,7 +206,7 @@ fn back_faces_are_drawn_or_not_as_asked() {
 }
 
 #[test]
-fn glass_mixes_with_what_is_behind_it() {
+fn glass_blends_with_the_background() {
     let at = |z: f32| [Vec3::new(-9.0, -9.0, z), Vec3::new(9.0, -9.0, z), Vec3::new(0.0, 9.0, z)];
     let wall = triangle(at(-4.0), [0.0, 0.0, 1.0]);
     let mut glass = triangle(at(-2.0), [1.0, 0.0, 0.0]);

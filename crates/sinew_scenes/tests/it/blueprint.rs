@@ -21,7 +21,7 @@ fn check(scene: &Blueprint, bodies: usize, dynamic: usize, joints: usize) {
 }
 
 #[test]
-fn they_are_as_large_as_described() {
+fn blueprints_have_their_described_sizes() {
     check(&blueprint::ragdoll_pile(), 1551, 1500, 1400);
     check(&blueprint::rain(), 1 + 100 + 300 * 15, 300 * 15, 300 * 14);
     check(&blueprint::ragdolls(), 1 + 4 + 8 * 15, 8 * 15, 8 * 14);
@@ -103,7 +103,7 @@ fn mass_ratio(scene: &Blueprint) -> f32 {
 }
 
 #[test]
-fn weights_are_as_heavy_as_described() {
+fn masses_match_the_descriptions() {
     assert_eq!(mass_ratio(&blueprint::stack_mass_ratio(4, 10.0)), 1000.0);
     assert_eq!(mass_ratio(&blueprint::stack_ratio(6)), 32768.0);
     assert_eq!(mass_ratio(&blueprint::heavy_rope()), 1800.0);

@@ -77,7 +77,7 @@ fn the_first_difference_is_found() {
 }
 
 #[test]
-fn a_tampered_hash_is_told_at_its_step() {
+fn a_tampered_hash_is_reported_at_its_step() {
     let mut recording = played(1.0);
     recording.steps[17].hash ^= 1;
     let mut replay = Replay::start(recording).expect("it starts");
@@ -93,7 +93,7 @@ const KEPT: &str = "\
     0000803f 00000040 00004040 00000000 00000000 00000000 0000803f";
 
 #[test]
-fn a_kept_file_is_read() {
+fn a_stored_file_is_read() {
     let digits: Vec<u8> = KEPT.bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
     let byte =
         |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).expect("ASCII"), 16).expect("hexadecimal");
@@ -114,7 +114,7 @@ fn a_kept_file_is_read() {
 
 /// A single flipped bit anywhere is reported.
 #[test]
-fn every_flipped_bit_is_seen() {
+fn every_flipped_bit_is_reported() {
     let bytes = played(1.0).to_bytes();
     for bit in 0..8 * bytes.len() {
         let mut flipped = bytes.clone();
@@ -124,7 +124,7 @@ fn every_flipped_bit_is_seen() {
 }
 
 #[test]
-fn poses_that_are_not_those_of_the_states_are_seen() {
+fn wrong_poses_in_key_frames_are_reported() {
     let mut recording = played(1.0);
     let frame = &mut recording.key_frames[1];
     let (step, body) = (frame.step, frame.bodies[0].0);

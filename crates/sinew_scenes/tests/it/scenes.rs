@@ -245,7 +245,7 @@ scenes!(
 );
 
 #[test]
-fn what_is_not_yet_met_is_expected() {
+fn known_misses_are_expected() {
     for &(name, figures) in NOT_YET {
         let metrics = scene(name).start(&scene(name).settings()).metrics();
         for figure in figures {

@@ -91,7 +91,7 @@ fn restored_in_the_middle() {
 /// Like [`restored_in_the_middle`], in a new world and on two threads. Scenes with their own functions or objects are left
 /// out, because a new world does not have them.
 #[test]
-fn loaded_by_strangers() {
+fn loaded_into_unrelated_worlds() {
     let mut met = 0;
     for (number, scene) in registry().iter().enumerate() {
         let mut run = started(scene);
@@ -119,7 +119,7 @@ fn loaded_by_strangers() {
 
 /// A brawl saved at any moment, with characters in every state, continues in a new world as in its own.
 #[test]
-fn a_brawl_goes_on_among_strangers() {
+fn a_brawl_continues_in_an_unrelated_world() {
     let scene = find("brawl").expect("the registry has it");
     for powered in 0..2 {
         let mut settings = scene.settings();
@@ -173,7 +173,7 @@ fn settings_are_checked() {
 }
 
 #[test]
-fn names_and_settings_are_fit_for_a_command_line() {
+fn names_and_settings_are_valid_on_a_command_line() {
     for scene in registry() {
         let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
         let plain = |name: &str| name.chars().all(fits);

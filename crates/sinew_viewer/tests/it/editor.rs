@@ -86,7 +86,7 @@ fn keys_change_a_limit_which_is_saved() {
 
 /// The mouse drags the handle of a limit, and the limit follows.
 #[test]
-fn a_handle_is_drawn() {
+fn dragging_a_handle_changes_a_limit() {
     let Some(mut viewer) = bench("edited_by_handles") else { return };
     choose(&mut viewer, "rightUpperLeg");
     let before = degrees(def(&viewer), "rightUpperLeg");

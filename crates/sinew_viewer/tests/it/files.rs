@@ -76,7 +76,7 @@ fn a_ragdoll_that_is_dropped_falls() {
 
 /// Bytes with names, as a page passes them: a glTF finds the file beside it, and has the bits of the same file on a disk.
 #[test]
-fn files_without_a_folder_are_as_those_with_one() {
+fn dropped_bytes_load_as_files_do() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let folder = folder("dropped_on_a_page");
     let glb = mannequin_glb();
@@ -108,7 +108,7 @@ fn parts(glb: &[u8]) -> (&[u8], &[u8]) {
 }
 
 #[test]
-fn what_cannot_be_read_is_a_line_and_changes_nothing() {
+fn unreadable_files_give_a_message_and_change_nothing() {
     let Some(mut viewer) = viewer("pendulum", [640, 360]) else { return };
     let folder = folder("dropped_nonsense");
     let nonsense: [(&str, &[u8]); 6] = [
@@ -161,7 +161,7 @@ fn a_bvh_that_is_dropped_plays() {
 
 /// The saved file has the played motion as an additional clip with the same joint poses.
 #[test]
-fn what_was_played_is_saved_as_glb() {
+fn the_played_motion_is_saved_as_glb() {
     let glb = mannequin_glb();
     let file = NamedFile { name: "mannequin.glb".into(), bytes: glb.clone() };
     let subject = Subject::dropped(vec![file]).expect("it is a character");

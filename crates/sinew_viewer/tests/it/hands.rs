@@ -107,7 +107,7 @@ fn a_ball_is_thrown_and_layers_are_drawn() {
 
 /// A file that cannot be shown gives a message, and the viewer continues.
 #[test]
-fn a_bad_file_is_a_line() {
+fn a_bad_file_gives_a_message() {
     let Some(mut viewer) = viewer("pendulum", SIZE) else { return };
     viewer.app_mut().open_file("nowhere.json".as_ref());
     assert_eq!(viewer.app().message(), Some("nowhere.json: no such file"));

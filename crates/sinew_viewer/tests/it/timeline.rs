@@ -39,7 +39,7 @@ fn seek(session: &mut Session, step: u64) {
 /// Scenes of bodies, joints, particles, and characters: after any seek the state is that
 /// of the recording, and so are the figures.
 #[test]
-fn forth_and_back_to_the_same_bits() {
+fn seeking_gives_the_same_bits() {
     for scene in ["stack", "pendulum", "rope_on_box", "stairs", "two_tracks", "flag", "dominoes"] {
         let recording = recorded(scene, 130, Some(40));
         let mut session = Session::start(played(&recording)).expect("it is ours");

@@ -287,7 +287,7 @@ fn joints_and_fields_come_change_and_go() {
 }
 
 #[test]
-fn what_is_drawn_lies_between_two_steps() {
+fn interpolated_poses_lie_between_two_steps() {
     let mut app = app();
     app.insert_resource(Interpolation::On);
     let frame = Duration::from_nanos(16_666_667 / 4);

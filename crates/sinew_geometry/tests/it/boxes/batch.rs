@@ -138,7 +138,7 @@ fn separations_match_enumeration() {
 }
 
 #[test]
-fn faces_alone_never_say_more() {
+fn face_axes_never_exceed_all_axes() {
     let mut random = Random::new(64);
     let boxes: Vec<[Obb; 2]> = (0..CASES).map(|_| pair(&mut random)).collect();
     let pairs = pairs_of(&boxes);
@@ -174,7 +174,7 @@ fn spoilt(boxes: &[Obb; 2], index: usize, value: f32) -> [Obb; 2] {
 }
 
 #[test]
-fn nan_stays_where_it_is() {
+fn nan_affects_only_its_own_lane() {
     let mut random = Random::new(65);
     let boxes: [[Obb; 2]; 8] = core::array::from_fn(|_| pair(&mut random));
     let whole = pairs_of(&boxes);

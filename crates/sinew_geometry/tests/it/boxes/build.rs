@@ -8,7 +8,7 @@ use sinew_math::{Random, Rotation, Vec3};
 use std::panic::catch_unwind;
 
 #[test]
-fn sizes_and_places_that_are_none_panic() {
+fn nonfinite_sizes_and_places_panic() {
     let turn = Rotation::IDENTITY;
     for bad in [-1.0, f32::NAN, f32::INFINITY] {
         let half = Vec3::new(1.0, bad, 1.0);

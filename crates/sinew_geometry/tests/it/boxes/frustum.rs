@@ -131,7 +131,7 @@ fn the_nearest_box_is_picked() {
 }
 
 #[test]
-fn eyes_that_see_nothing_panic() {
+fn degenerate_cameras_panic() {
     let at = Transform::IDENTITY;
     let lost = Transform::from_translation(Vec3::new(f32::NAN, 0.0, 0.0));
     assert!(catch_unwind(|| Frustum::new(lost, 1.0, 1.0, 0.1, 10.0)).is_err());

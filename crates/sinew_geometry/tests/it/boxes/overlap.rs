@@ -208,7 +208,7 @@ fn capsules_match_a_search_along_their_cores() {
 
 /// Boxes that touch overlap, at depth 0.
 #[test]
-fn touch_counts() {
+fn touching_boxes_overlap() {
     let unit = Obb::new(Vec3::ZERO, Rotation::IDENTITY, Vec3::ONE);
     let beside = Obb::new(Vec3::new(2.0, 0.0, 0.0), Rotation::IDENTITY, Vec3::ONE);
     let way = unit.penetration(&beside).expect("they touch");
@@ -234,7 +234,7 @@ fn touch_counts() {
 
 /// Boxes that are rectangles, segments and points.
 #[test]
-fn flat_boxes_meet_like_what_they_are() {
+fn flat_boxes_overlap_exactly() {
     let point = |p: Vec3| Obb::new(p, Rotation::from_scaled_axis(Vec3::new(0.3, 0.2, 0.9)), Vec3::ZERO);
     assert!(point(Vec3::ONE).overlaps(&point(Vec3::ONE)));
     assert!(!point(Vec3::ONE).overlaps(&point(Vec3::new(1.0, 1.0, 1.001))));

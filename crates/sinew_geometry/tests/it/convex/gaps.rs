@@ -121,7 +121,7 @@ fn gaps_are_proved_by_points_and_planes() {
 
 /// The other order gives the same gap from the other side; the moved pair has the same gap there.
 #[test]
-fn gaps_keep_under_exchange_and_motion() {
+fn gaps_are_invariant_under_exchange_and_motion() {
     let mut random = Random::new(12);
     for (ka, kb) in all_pairs() {
         for case in 0..cases(100_000) {
@@ -150,7 +150,7 @@ fn gaps_keep_under_exchange_and_motion() {
 
 /// Three methods for the gap of two boxes: separating axes, GJK and EPA, and a search over directions.
 #[test]
-fn boxes_are_judged_alike_by_axes_by_growth_and_by_sweep() {
+fn three_gap_methods_agree_for_boxes() {
     let mut random = Random::new(13);
     for case in 0..cases(100_000) {
         let (a, b) = any_pair(Kind::Box, Kind::Box, &mut random);
@@ -173,7 +173,7 @@ fn boxes_are_judged_alike_by_axes_by_growth_and_by_sweep() {
 }
 
 #[test]
-fn numbers_that_are_none_have_no_gap() {
+fn nan_has_no_gap() {
     for kind in FINITE {
         let shape = random_shape(kind, 1.0, &mut Random::new(1));
         let nowhere = Transform::from_translation(Vec3::new(f32::NAN, 0.0, 0.0));

@@ -146,7 +146,7 @@ fn a_round_cloud_is_simplified() {
 }
 
 #[test]
-fn what_is_no_solid_is_an_error() {
+fn degenerate_clouds_are_errors() {
     let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
     let new = |points: &[Vec3]| Hull::new(points).expect_err("no solid");
     assert_eq!(new(&[]), HullError::TooFewPoints);

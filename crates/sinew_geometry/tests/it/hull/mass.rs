@@ -106,7 +106,7 @@ fn rays_and_distances_agree() {
 
 /// Water, bounds and regions treat a hull of a box's corners as the box.
 #[test]
-fn a_box_of_corners_is_a_box_to_all_questions() {
+fn a_hull_of_box_corners_answers_as_the_box() {
     let mut random = Random::new(22);
     let half = Vec3::new(0.3, 1.0, 0.7);
     let shapes = [box_hull(half), Shape::Box { half_extents: half }];

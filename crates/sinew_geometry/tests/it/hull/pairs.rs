@@ -272,7 +272,7 @@ fn neither_order_nor_turning_matters() {
 
 /// A hull of a box's eight corners has the box's contacts.
 #[test]
-fn a_box_of_corners_is_a_box() {
+fn a_hull_of_box_corners_has_box_contacts() {
     let mut random = Random::new(20);
     let mut met = 0;
     for number in 0..cases(100_000) {

@@ -6,7 +6,7 @@ use sinew_math::{Rotation, Vec3};
 use sinew_physics::*;
 
 #[test]
-fn a_lasting_force_is_that_of_every_step() {
+fn a_lasting_force_equals_a_force_each_step() {
     let (mut lasting, mut stepwise) = (weightless(), weightless());
     let def = box_body(Vec3::new(0.1, 0.2, 0.3), Vec3::ZERO);
     let a = lasting.add_body(&def);
@@ -65,7 +65,7 @@ fn a_thruster_turns_with_its_body() {
 }
 
 #[test]
-fn a_lasting_force_keeps_to_its_point() {
+fn a_lasting_force_acts_at_its_point() {
     // A pendulum pulled along x by a force on its bob instead of gravity hangs along x.
     let mut world = weightless();
     let hook = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });

@@ -49,7 +49,7 @@ fn blown(angle: f32, wind: Wind) -> Vec3 {
 }
 
 #[test]
-fn a_sheet_aslant_bears_the_square_of_what_comes_straight_at_it() {
+fn sheet_force_follows_normal_speed_squared() {
     for degrees in [0.0f32, 25.0, 60.0, 85.0, 120.0, 180.0] {
         let angle = degrees.to_radians();
         let (sin, cos) = sinew_math::trig::sin_cos(angle);
@@ -66,7 +66,7 @@ fn a_sheet_aslant_bears_the_square_of_what_comes_straight_at_it() {
 
 /// Lift of a plate: `½ ρ C_l |w|² A cos θ sin θ`, across the stream.
 #[test]
-fn a_sheet_aslant_is_lifted() {
+fn a_tilted_sheet_gets_lift() {
     let angle = 30f32.to_radians();
     let lifts = |lift| Wind { drag: 0.0, lift, ..wind(Vec3::NEG_Y * 8.0) };
     let force = blown(angle, lifts(0.7));
@@ -76,7 +76,7 @@ fn a_sheet_aslant_is_lifted() {
 }
 
 #[test]
-fn a_flat_sheet_falls_at_its_steady_speed() {
+fn a_flat_sheet_reaches_terminal_velocity() {
     let mut world =
         World::new(WorldDef { gravity: Vec3::Y * -9.81, sleeping: Sleeping::Off, ..WorldDef::default() });
     let group = world.add_particles(&sheet(0.0));
@@ -90,7 +90,7 @@ fn a_flat_sheet_falls_at_its_steady_speed() {
 
 /// Silk of a gram in a storm keeps still, where an explicit force would give it a hundred times the storm's speed.
 #[test]
-fn light_sheets_are_taken_along_and_never_pass_the_storm() {
+fn light_sheets_never_exceed_the_wind() {
     let mut world = weightless();
     let mut silk = sheet(0.0);
     silk.particles.iter_mut().for_each(|particle| particle.mass *= 1e-3 / 0.2);
@@ -128,7 +128,7 @@ fn faces_are_of_three_particles_and_there_once() {
 }
 
 #[test]
-fn a_restored_sheet_flies_on_as_the_saved_one() {
+fn a_restored_sheet_continues_equally() {
     let mut world = World::new(WorldDef::default());
     world.add_particles(&sheet(0.4));
     let gusts = Some(Gusts { speed: 3.0, length: 0.5, time: 0.3, seed: 9 });

@@ -73,7 +73,7 @@ fn saved(world: &World) -> Vec<u8> {
 }
 
 #[test]
-fn a_restored_world_goes_on_as_the_saved_one() {
+fn a_restored_world_continues_equally() {
     let mut world = crowded(2.0);
     run(&mut world, 50);
     let bytes = saved(&world);
@@ -145,7 +145,7 @@ fn sleeper() -> (World, BodyId) {
 }
 
 #[test]
-fn what_wakes_and_what_keeps_awake() {
+fn fields_wake_and_keep_awake() {
     let up = FieldKind::Uniform(UniformGravity { acceleration: Vec3::Y });
     let (mut world, id) = sleeper();
     let region = Region::ball(Vec3::ZERO, 2.0, Fade::None);
@@ -167,7 +167,7 @@ fn what_wakes_and_what_keeps_awake() {
 }
 
 #[test]
-fn what_attracts_sleeps_and_wakes_together() {
+fn attracting_bodies_sleep_and_wake_together() {
     let (mut world, id) = sleeper();
     let other = world.add_body(&box_body(Vec3::splat(0.2), Vec3::new(-3.0, 0.2, 0.0)));
     let law = MutualGravity { constant: 1e-3, softening: 0.0 };
@@ -183,7 +183,7 @@ fn what_attracts_sleeps_and_wakes_together() {
 }
 
 #[test]
-fn a_particle_hung_on_a_body_hands_on_what_it_feels() {
+fn attached_particles_pass_forces_to_their_body() {
     let mut world = weightless();
     let body = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     let mut def = particle(0.5, 0.0, Vec3::ZERO);

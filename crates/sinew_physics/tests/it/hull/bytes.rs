@@ -97,7 +97,7 @@ fn the_hash_covers_the_content() {
 
 /// Any changed byte and any cut gives an error or a valid library, never a panic.
 #[test]
-fn every_byte_of_a_library_may_be_wrong() {
+fn damaged_shape_libraries_give_errors() {
     let bytes = library(&pebbles());
     let mut errors = 0;
     for at in 0..bytes.len() {

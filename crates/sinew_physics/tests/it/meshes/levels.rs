@@ -45,7 +45,7 @@ fn sleepless() -> World {
 }
 
 #[test]
-fn what_rests_on_a_mesh_stays() {
+fn bodies_at_rest_on_a_mesh_stay() {
     let mut world = sleepless();
     ground(&mut world, floor_shape(Floor::Shuffled), FRICTION);
     let half = Vec3::new(0.2, 0.1, 0.3);
@@ -72,7 +72,7 @@ fn what_rests_on_a_mesh_stays() {
 }
 
 #[test]
-fn a_ramp_lifts_what_slides_onto_it() {
+fn a_ramp_lifts_sliding_bodies() {
     for (degrees, speed) in [(10.0_f32, 5.0), (30.0, 5.0), (10.0, 20.0), (30.0, 20.0), (60.0, 10.0)] {
         let angle = degrees.to_radians();
         let slope = sin(angle) / cos(angle);
@@ -169,7 +169,7 @@ fn a_ball_swings_in_a_bowl() {
 }
 
 #[test]
-fn events_count_a_pair_once() {
+fn events_report_a_pair_once() {
     let mut world = sleepless();
     // A corner of three walls: three manifolds.
     let vertices = [Vec3::ZERO, Vec3::X * 3.0, Vec3::Y * 3.0, Vec3::Z * 3.0];

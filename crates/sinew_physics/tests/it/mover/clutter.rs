@@ -108,7 +108,7 @@ fn random_walks_in_clutter_are_never_inside_and_never_through() {
 /// A mover can move on wherever a capsule of its size, with its skin, fits 10 cm further at the same height or a little lower, if it
 /// is steered there.
 #[test]
-fn it_is_never_stuck_where_there_is_room() {
+fn movers_are_never_stuck_where_there_is_room() {
     let mut random = Random::new(12);
     let mut stuck = 0;
     let mut tried = 0;

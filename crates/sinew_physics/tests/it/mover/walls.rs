@@ -6,7 +6,7 @@ use sinew_math::{Rotation, Vec3};
 use sinew_physics::*;
 
 #[test]
-fn a_wall_stops_it_at_its_skin_and_it_slides_along() {
+fn a_mover_stops_at_its_skin_and_slides_along_a_wall() {
     let mut world = level();
     block(&mut world, Vec3::new(2.0, 0.0, -50.0), Vec3::new(2.2, 3.0, 50.0));
     let id = world.add_mover(&MoverDef::default());
@@ -31,7 +31,7 @@ fn a_wall_stops_it_at_its_skin_and_it_slides_along() {
 }
 
 #[test]
-fn it_walks_as_fast_as_it_is_told() {
+fn a_mover_reaches_its_walk_speed() {
     let mut world = level();
     let id = world.add_mover(&MoverDef::default());
     settle(&mut world, id);
@@ -51,7 +51,7 @@ fn it_walks_as_fast_as_it_is_told() {
 
 /// Two walls meet at an angle from 90 to 5 degrees; the mover presses into the corner and must lie still.
 #[test]
-fn wedges_hold_it_still() {
+fn wedges_hold_a_mover_still() {
     for degrees in [90.0_f32, 60.0, 40.0, 20.0, 10.0, 5.0] {
         for aside in [0.0, 0.3, -0.5] {
             let half = degrees.to_radians() * 0.5;
@@ -89,7 +89,7 @@ fn wedges_hold_it_still() {
 
 /// Abutting boxes, below and beside the mover, do not slow it down.
 #[test]
-fn it_does_not_catch_between_boxes_that_abut() {
+fn a_mover_does_not_catch_between_abutting_boxes() {
     let mut world = World::new(WorldDef::default());
     for i in 0..40 {
         let x = i as f32 * 0.5;
@@ -115,7 +115,7 @@ fn it_does_not_catch_between_boxes_that_abut() {
 
 /// A floor and a wall of many triangles.
 #[test]
-fn it_does_not_catch_on_the_seams_of_a_mesh() {
+fn a_mover_does_not_catch_on_mesh_seams() {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for i in 0..=40_u32 {
         let x = i as f32 * 0.37;
@@ -151,7 +151,7 @@ fn it_does_not_catch_on_the_seams_of_a_mesh() {
 
 /// 50 m/s is 0.8 m a step; the walls are 1 cm, boxes and one-sided triangles.
 #[test]
-fn thin_walls_stop_it_at_50_metres_a_second() {
+fn thin_walls_stop_a_mover_at_50_metres_a_second() {
     for turn in 0..16 {
         let angle = turn as f32 * 0.4;
         let way = Vec3::new(cos(angle), 0.0, sin(angle));
@@ -234,7 +234,7 @@ fn a_slope_is_walked_on_up_to_the_limit_and_slid_down_beyond_it() {
 
 /// Two walls closer than the skin that lean apart slightly: the skin would fit only high above.
 #[test]
-fn a_cleft_that_opens_upward_shoots_nobody_up() {
+fn an_upward_cleft_does_not_eject_a_mover() {
     for lean in [0.0006_f32, 0.001, 0.002, 0.005] {
         for walk in [Vec3::ZERO, Vec3::Z, Vec3::new(0.5, 0.0, 0.5)] {
             let mut world = level();

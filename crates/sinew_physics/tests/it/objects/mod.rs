@@ -61,7 +61,7 @@ fn act_once_moved(world: &mut World, act: impl FnOnce(&mut Corrections<'_>) + Se
 }
 
 #[test]
-fn what_does_nothing_changes_nothing() {
+fn objects_without_effect_change_nothing() {
     let (mut with, mut without) = (mixed(), mixed());
     let counter = with.add_object(Box::new(Counter::default()));
     for step in 1..=240 {
@@ -92,7 +92,7 @@ fn a_force_acts_substep_by_substep() {
 
 /// The force of an object adds to the world's own, once: gravity as a field, and a lasting force.
 #[test]
-fn a_force_adds_to_fields_and_to_forces_that_last() {
+fn an_objects_force_adds_to_fields_and_lasting_forces() {
     let mut world = weightless();
     let body = world.add_body(&sphere_body(0.1, Vec3::ZERO));
     let weight = world.mass(body).mass * 9.81;
@@ -110,7 +110,7 @@ fn a_force_adds_to_fields_and_to_forces_that_last() {
 }
 
 #[test]
-fn forces_and_impulses_do_what_newton_says() {
+fn forces_and_impulses_match_newtons_laws() {
     let mut world = weightless();
     let body = world.add_body(&box_body(Vec3::new(0.1, 0.2, 0.3), Vec3::ZERO));
     let (mass, h) = (world.mass(body).mass, world.def().dt() / 4.0);
@@ -134,7 +134,7 @@ fn forces_and_impulses_do_what_newton_says() {
 }
 
 #[test]
-fn what_is_seen_is_where_things_are_in_the_substep() {
+fn objects_see_poses_of_the_current_substep() {
     let mut world = weightless();
     let mut def = sphere_body(0.1, Vec3::ZERO);
     def.linear_velocity = Vec3::X;
@@ -181,7 +181,7 @@ fn a_leash_is_a_pendulum() {
 }
 
 #[test]
-fn a_correction_goes_through_the_joints() {
+fn corrections_act_through_joints() {
     let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
     let hook = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
     let (mut last, mut joints) = (hook, Vec::new());
@@ -204,7 +204,7 @@ fn a_correction_goes_through_the_joints() {
 }
 
 #[test]
-fn joints_are_felt_in_the_response() {
+fn responses_include_joints() {
     let mut world = weightless();
     let hook = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
     let rod = world.add_body(&box_body(Vec3::new(0.5, 0.05, 0.05), Vec3::X * 0.5));
@@ -246,7 +246,7 @@ fn particles_rest_on_an_obstacle_of_the_users_own() {
 }
 
 #[test]
-fn a_push_wakes_and_nothing_else_does() {
+fn only_a_push_of_an_object_wakes() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     let body = world.add_body(&box_body(Vec3::splat(0.2), Vec3::Y * 0.2));

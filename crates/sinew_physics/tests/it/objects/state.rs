@@ -48,7 +48,7 @@ fn threads_do_not_matter() {
 }
 
 #[test]
-fn a_restored_world_goes_on_as_the_saved_one() {
+fn a_restored_world_continues_equally() {
     let mut world = inhabited();
     run(&mut world, 50);
     let bytes = saved(&world);
@@ -84,7 +84,7 @@ fn reset_is_exact() {
 }
 
 #[test]
-fn objects_come_and_go_with_the_snapshots() {
+fn snapshots_add_and_remove_objects() {
     let mut world = mixed();
     let [first, second] = [3, 5].map(|asked| world.add_object(Box::new(Counter { asked })));
     let both = saved(&world);
@@ -150,7 +150,7 @@ fn a_wrong_load_is_an_error_and_changes_nothing() {
 }
 
 #[test]
-fn every_byte_may_be_wrong() {
+fn damaged_snapshots_with_objects_give_errors() {
     let mut world = inhabited();
     run(&mut world, 5);
     let bytes = saved(&world);
@@ -176,7 +176,7 @@ fn an_object_of_another_type() {
 
 #[test]
 #[should_panic(expected = "was removed")]
-fn an_object_that_was_taken_out() {
+fn a_removed_object_is_refused() {
     let mut world = mixed();
     let id = world.add_object(Box::new(Counter::default()));
     world.remove_object(id);

@@ -11,7 +11,7 @@ use sinew_physics::*;
 const NEAR: f64 = 4e-6;
 
 #[test]
-fn balls_go_by_the_distance_of_their_centres() {
+fn ball_queries_follow_centre_distances() {
     let mut random = Random::new(410);
     let (mut overlaps, mut hits) = (0, 0);
     for case in 0..cases(100_000) {

@@ -73,7 +73,7 @@ fn kinds_sensors_and_exceptions() {
 }
 
 #[test]
-fn predicates_see_the_body_and_the_number_of_the_shape() {
+fn predicates_get_body_and_shape_number() {
     let mut world = World::new(WorldDef::default());
     let shapes = vec![
         ball(),

@@ -25,7 +25,7 @@ where
 }
 
 #[test]
-fn what_is_not_finite_has_no_answer() {
+fn nonfinite_queries_have_no_answer() {
     let mut random = Random::new(408);
     let world = Populated::new(30, 1.0, &mut random).world;
     for bad in bad_vectors() {

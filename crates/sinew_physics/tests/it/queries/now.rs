@@ -137,7 +137,7 @@ fn met(world: &mut World, id: BodyId, filter: QueryFilter<'_>) -> [bool; 3] {
 
 /// A change of filter acts at once, also for a static body of a single shape, of which the tree keeps a copy.
 #[test]
-fn after_a_shape_was_changed_whom_it_meets() {
+fn after_a_filter_change() {
     let mut world = World::new(WorldDef::default());
     let mut def = box_body(Vec3::splat(0.5), Vec3::ZERO);
     def.kind = BodyKind::Static;

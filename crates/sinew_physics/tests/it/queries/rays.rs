@@ -148,7 +148,7 @@ fn many_rays_hit_what_each_by_itself_hits() {
 
 #[test]
 #[should_panic(expected = "one answer for each question")]
-fn a_batch_has_as_many_answers_as_questions() {
+fn a_batch_needs_equal_lengths() {
     let ray = Ray { origin: Vec3::ZERO, direction: Vec3::X };
     World::new(WorldDef::default()).query().first_each(&[ray], &mut []);
 }

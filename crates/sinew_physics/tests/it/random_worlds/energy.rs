@@ -158,7 +158,7 @@ fn twist_square(range: Range, rotation: Rotation) -> f32 {
 }
 
 #[test]
-fn energy_of_an_undamped_swing_stays_what_was_wound_up() {
+fn an_undamped_swing_keeps_its_energy() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let a = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
     let b = world.add_body(&crate::build::sphere_body(0.1, Vec3::ZERO));

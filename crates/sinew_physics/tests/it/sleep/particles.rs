@@ -17,7 +17,7 @@ fn grains(height: f32) -> GroupDef {
 }
 
 #[test]
-fn what_particles_strike_wakes_as_they_come() {
+fn fast_particles_wake_bodies() {
     // From 1 m above the crate, 0.45 s.
     let Nap { mut world, sleeper, .. } = nap();
     world.add_particles(&grains(1.41));
@@ -29,7 +29,7 @@ fn what_particles_strike_wakes_as_they_come() {
 
 /// Bodies wake by contact, not by overlapping bounds: a world loaded from a snapshot has other bounds.
 #[test]
-fn what_is_within_its_bounds_but_far_from_it_does_not_wake_a_sleeper() {
+fn overlapping_bounds_do_not_wake_a_body() {
     let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
     let slope = Rotation::from_axis_angle(Vec3::Z, core::f32::consts::FRAC_PI_4);
     let plank = BodyDef::dynamic(Shape::cuboid(Vec3::new(3.0, 0.05, 0.5))).turned(slope);
@@ -50,7 +50,7 @@ fn what_is_within_its_bounds_but_far_from_it_does_not_wake_a_sleeper() {
 }
 
 #[test]
-fn what_particles_lie_on_sleeps() {
+fn bodies_under_resting_particles_sleep() {
     let Nap { mut world, sleeper, .. } = nap();
     let id = world.add_particles(&grains(0.41));
     run(&mut world, 30);
@@ -60,7 +60,7 @@ fn what_particles_lie_on_sleeps() {
 }
 
 #[test]
-fn what_flies_past_wakes_nobody() {
+fn passing_particles_wake_nothing() {
     let Nap { mut world, sleeper, .. } = nap();
     let mut def = grains(0.5);
     def.gravity_scale = 0.0;
@@ -126,7 +126,7 @@ fn a_cloth_at_rest_sleeps_where_it_is() {
 }
 
 #[test]
-fn what_is_done_to_particles_wakes_them() {
+fn changes_wake_particles() {
     wakes_curtain("a push", 1, |world, id| world.particles_mut(id).apply_impulse(40, Vec3::Z * 1e-6));
     wakes_curtain("a velocity", 1, |world, id| world.particles_mut(id).set_velocity(40, Vec3::ZERO));
     wakes_curtain("a place", 1, |world, id| {
@@ -145,7 +145,7 @@ fn what_is_done_to_particles_wakes_them() {
 }
 
 #[test]
-fn what_comes_to_particles_wakes_them() {
+fn contacts_wake_particles() {
     let ball = |at: Vec3, velocity: Vec3| BodyDef {
         linear_velocity: velocity,
         gravity_scale: 0.0,
@@ -189,7 +189,7 @@ fn hung() -> (World, GroupId, BodyId) {
 }
 
 #[test]
-fn what_hangs_together_wakes_together() {
+fn attached_groups_and_bodies_wake_together() {
     let (mut world, id, body) = hung();
     world.apply_impulse_at_center(body, Vec3::X);
     world.step();
@@ -204,7 +204,7 @@ fn what_hangs_together_wakes_together() {
 }
 
 #[test]
-fn a_world_taken_back_sleeps_and_wakes_the_same() {
+fn a_restored_world_sleeps_and_wakes_equally() {
     let (mut world, id, body) = hung();
     let mut at_rest = Writer::new();
     world.save(&mut at_rest);
@@ -228,7 +228,7 @@ fn a_world_taken_back_sleeps_and_wakes_the_same() {
 }
 
 #[test]
-fn what_a_rope_swings_over_sleeps() {
+fn a_body_under_a_swinging_rope_sleeps() {
     let mut world = World::new(WorldDef::default());
     floor(&mut world);
     let at = Vec3::Y * 0.25;
@@ -299,7 +299,7 @@ fn netted() -> (World, GroupId, BodyId) {
 }
 
 #[test]
-fn what_lay_on_particles_wakes_when_they_go() {
+fn bodies_wake_when_the_particles_below_are_removed() {
     let (mut world, net, ball) = netted();
     let at = world.center_of_mass(ball);
     for pin in 0..22 {
@@ -323,7 +323,7 @@ fn what_lay_on_particles_wakes_when_they_go() {
 }
 
 #[test]
-fn what_a_net_has_caught_falls_asleep() {
+fn a_body_in_a_net_falls_asleep() {
     let mut world = World::new(WorldDef::default());
     let mut net = net(0.2);
     let is_border = |i: &u32| [0, 10].contains(&(i % 11)) || [0, 10].contains(&(i / 11));

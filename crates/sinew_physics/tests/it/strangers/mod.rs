@@ -90,7 +90,7 @@ fn seeds() -> core::ops::Range<u64> {
 }
 
 #[test]
-fn strangers_have_the_same_future() {
+fn unrelated_worlds_have_the_same_future() {
     if let Ok(minutes) = std::env::var("SINEW_MINUTES") {
         return for_minutes(minutes.parse().expect("SINEW_MINUTES is a number"));
     }
