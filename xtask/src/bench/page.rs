@@ -2,7 +2,7 @@
 
 use super::figures::{Figure, came_apart, headline, rounded, telling};
 use super::machine::Machine;
-use super::requirements::{HOLDS, Hold, SPEEDS, STANDS, Verdict};
+use super::requirements::{Bar, HOLDS, Hold, SPEEDS, STANDS, Verdict};
 use super::results::{EngineResult, Results, SceneResult};
 use super::table::Table;
 use std::fmt::Write as _;
@@ -216,6 +216,8 @@ pub fn speeds(results: &Results) -> Table {
             Verdict::Goal => "reaches the goal".to_owned(),
             Verdict::Met => "met".to_owned(),
             Verdict::Missed => "**falls short**".to_owned(),
+            // Without a peer whose joints hold there is no bar.
+            Verdict::Open(_) if matches!(speed.bar, Bar::Factor { .. }) => continue,
             Verdict::Open(why) => why,
             Verdict::NotRun => continue,
         };
