@@ -206,7 +206,7 @@ impl CharacterFile {
         Ok(Self { name, document, analysis, settings, garments })
     }
 
-    /// The ragdoll of the character, and what the build says of it.
+    /// The ragdoll of the character, and the notes of the build.
     ///
     /// # Errors
     /// Names the file and the problem of the file or the options.

@@ -474,7 +474,7 @@ impl Bake {
         Ok(PyBytes::new(py, &py.detach(|| self.bytes(mesh))?))
     }
 
-    /// The character, its motion and its ragdoll as USD text (.usda), and what that cannot hold, a sentence each.
+    /// The character, its motion and its ragdoll as USD text (.usda), and a sentence on each loss.
     #[pyo3(signature = (*, physics=true))]
     fn usda(&self, py: Python<'_>, physics: bool) -> PyResult<(String, Vec<String>)> {
         let input = UsdInput {

@@ -41,7 +41,7 @@ pub fn tokens(source: &str) -> Vec<Token<'_>> {
     tokens
 }
 
-/// Kind (`None` for space and comments) and length in bytes of what `rest` starts with.
+/// Kind (`None` for space and comments) and length in bytes of the start of `rest`.
 fn next(rest: &str) -> (Option<Kind>, usize) {
     let first = rest.chars().next().unwrap_or(' ');
     if first.is_whitespace() {

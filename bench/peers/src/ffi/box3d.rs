@@ -335,7 +335,7 @@ fn hull(points: &[Vec3]) -> Result<*mut b3HullData, Unsupported> {
     // Box3D would simplify a hull of more: another scene.
     let count = i32::try_from(points.len()).ok().filter(|&count| count <= MOST_HULL_CORNERS);
     let count = count.ok_or_else(|| Unsupported::new("no hulls of more than 128 corners"))?;
-    // SAFETY: there are as many points as it is told, and they live through the call.
+    // SAFETY: the count is that of the points, and they live through the call.
     let hull = unsafe { b3CreateHull(points.as_ptr(), count, count) };
     if hull.is_null() { Err(Unsupported::new("a hull that Box3D refuses")) } else { Ok(hull) }
 }
@@ -359,7 +359,7 @@ fn mesh(vertices: &[Vec3], triangles: &[[u32; 3]]) -> *mut b3MeshData {
         useMedianSplit: false,
         identifyEdges: true,
     };
-    // SAFETY: there are as many vertices and indices as it is told, and they live through the call, which copies them;
+    // SAFETY: the counts are those of the vertices and indices, and they live through the call, which copies them;
     // null and 0 ask for no list of triangles without area.
     let mesh = unsafe { b3CreateMesh(&raw const def, ptr::null_mut(), 0) };
     assert!(!mesh.is_null(), "Box3D takes the mesh");

@@ -9,7 +9,7 @@
 //! joints, links with two parent joints, cycles.
 //!
 //! - **The root link** is free; a root named `world` stands.
-//! - **Links without mass** between joints get one of a gram, as frames have it in files; a note says so. The root frame of most robots is one.
+//! - **Links without mass** between joints get one of a gram, because files have them as frames; a note says so. The root frame of most robots is one.
 //! - **Collision** of links with a joint between them is off, as most simulators have it; `<dynamics>` damping is a spring without stiffness, friction the joint's.
 //!
 //! ```

@@ -96,7 +96,7 @@ impl Laden {
     }
 }
 
-/// Ropes bear a body and everything on it: stretch and tension are those of the whole weight.
+/// Ropes carry a body and everything on it: stretch and tension are those of the whole weight.
 #[test]
 fn ropes_carry_the_load_on_a_plank() {
     are_weighed_on(false);

@@ -141,7 +141,7 @@ fn friction_on_a_tiled_floor_is_that_of_a_plane() {
             sliders().into_iter().filter(|(slider, _)| matches!(slider, Shape::Box { .. }))
         {
             let (deviation, end) = slide(&shape, &slider, height, 20.0, FRICTION);
-            // Two seconds, but for the first substep.
+            // Two seconds without the first substep.
             let expected = 20.0 - FRICTION * 9.81 * 2.0;
             println!("{floor:?} {slider:?}: {deviation} m, {end} m/s for {expected}");
             assert!(deviation < 1e-3, "{floor:?} {slider:?}: {deviation} m");

@@ -393,7 +393,7 @@ pub(crate) struct Pixel {
     pub(crate) start: usize,
 }
 
-/// Takes what [`scan`] finds.
+/// Gets the results of [`scan`].
 pub(crate) trait Cells {
     /// Depths of eight samples side by side, from the first of a pixel on, and which of them are covered: at least one. To be marked
     /// `#[inline(always)]`.

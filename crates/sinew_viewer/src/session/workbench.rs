@@ -75,7 +75,7 @@ impl Workbench {
         Ok(Self { name: name.to_owned(), source, wishes, def, findings, report })
     }
 
-    /// The ragdoll as it is now.
+    /// Returns the current ragdoll.
     pub fn def(&self) -> &RagdollDef {
         &self.def
     }

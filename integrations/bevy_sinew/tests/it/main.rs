@@ -1,4 +1,4 @@
-//! The plugin, without a window: against the library by itself, and against what a user may do to entities.
+//! The plugin without a window: compared with the library alone, and under changes of entities.
 
 use bevy_app::{App, FixedUpdate};
 use bevy_ecs::prelude::*;
@@ -111,7 +111,7 @@ fn a_scene_has_the_bits_that_the_library_gives_it() {
     }
 }
 
-/// kB of the process, where the system tells.
+/// Resident memory of the process, kB, where the system reports it.
 fn memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS"))?;
@@ -233,7 +233,7 @@ fn what_is_changed_is_seen() {
     app.world_mut().get_mut::<Transform>(ball).expect("it has one").translation = Vec3::X * 7.0;
     run(&mut app, 1);
     assert!((at(&app, ball) - Vec3::X * 7.0).length() < 0.05, "{}", at(&app, ball));
-    // A velocity, which comes back changed by gravity.
+    // A velocity, which returns changed by gravity.
     app.world_mut().get_mut::<Velocity>(ball).expect("it has one").linear = Vec3::Z * 3.0;
     run(&mut app, 1);
     let velocity = app.world().get::<Velocity>(ball).expect("it has one").linear;

@@ -115,7 +115,7 @@ impl<'a> Run<'a> {
         self.ids.joints[joint].filter(|&id| self.world.contains_joint(id))
     }
 
-    /// Does what the plan has for a step; returns whether there was anything.
+    /// Applies the plan's changes of a step; returns whether there was one.
     fn change(&mut self, step: u32) -> bool {
         let plan = self.plan;
         let mut changed = false;

@@ -142,7 +142,7 @@ pub(in crate::scenes) const TRIPLE_PENDULUM: Scene = Scene {
     about: "three rods let go from the horizontal keep their energy for a minute",
     steps: 3600,
     settings: &[],
-    // Likewise, `[7/3 3/2 1/2; 3/2 4/3 1/2; 1/2 1/2 1/3] α = g/l [5/2; 3/2; 1/2]`.
+    // Similarly, `[7/3 3/2 1/2; 3/2 4/3 1/2; 1/2 1/2 1/3] α = g/l [5/2; 3/2; 1/2]`.
     build: |setup| rods(setup, &[33.0 / 26.0, -9.0 / 26.0, 3.0 / 26.0]),
 };
 

@@ -114,7 +114,7 @@ struct Figure {
 }
 
 impl Figure {
-    /// In its keyframe, or in the pose of the file if it has none of that name; moved by `aside`.
+    /// Returns the pose of its keyframe, or of the file if it has none of that name, moved by `aside`.
     fn spawn(
         world: &mut World,
         model: &MjcfModel,
