@@ -352,7 +352,7 @@ fn write_page(all: &Results, names: &[&str]) -> Result<()> {
     let page = command::root().join(PAGE);
     if page::scene_count(&fs::read_to_string(&page).unwrap_or_default()) > all.scenes.len() {
         eprintln!(
-            "{PAGE} stays as it is: it has more than the scenes measured here, without {}",
+            "{PAGE} is unchanged: it has more scenes than were measured here, which lack {}",
             missing.join(", ")
         );
         return Ok(());

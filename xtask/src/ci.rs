@@ -226,7 +226,7 @@ fn licences() -> Result<()> {
         Err(error) => {
             eprintln!("{error:#}");
             eprintln!(
-                "SKIPPED: cargo-deny cannot be had on this machine (`cargo install --locked cargo-deny`)"
+                "SKIPPED: cargo-deny cannot be installed on this machine (`cargo install --locked cargo-deny`)"
             );
             return Ok(());
         }

@@ -148,7 +148,7 @@ fn main() -> ExitCode {
         Command::Mjcf { scene, start } => match start.map_or(Start::Own, Start::Perturbed).of((scene.work)())
         {
             Work::Bodies(blueprint) if scene.field == Field::Figures => mjcf(&blueprint),
-            _ => return failure(&format!("{} is no scene of figures", scene.name)),
+            _ => return failure(&format!("{} is not a scene of ragdolls", scene.name)),
         },
         Command::Run { engine: Entry { name, engine: None }, .. } => {
             return failure(&format!(

@@ -15,7 +15,7 @@ use std::path::Path;
 /// In words, if the scene is no world of bodies, or the file cannot be written.
 pub fn save(scene: &Scene, start: Start, steps: u32, to: &Path) -> Result<Value, String> {
     let Work::Bodies(blueprint) = start.of((scene.work)()) else {
-        return Err(format!("{} is no scene of bodies", scene.name));
+        return Err(format!("{} is not a scene of bodies", scene.name));
     };
     let (mut world, ..) = blueprint.build();
     (0..steps).for_each(|_| world.step());

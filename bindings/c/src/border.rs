@@ -151,7 +151,7 @@ fn check_count<T>(count: usize, name: &str) -> Outcome {
     if count <= most {
         Ok(())
     } else {
-        Err(error(SinewStatus::BadArgument, format!("{count} {name} are too many")))
+        Err(error(SinewStatus::BadArgument, format!("too many {name}: {count}")))
     }
 }
 

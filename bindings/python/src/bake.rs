@@ -89,7 +89,7 @@ impl Actor {
             return Err(bad(format!("times are finite, not {wrong}")));
         }
         if !(0.0..f32::INFINITY).contains(&return_seconds) {
-            return Err(bad(format!("a return takes 0 s or longer, not {return_seconds}")));
+            return Err(bad(format!("return_seconds must not be negative, not {return_seconds}")));
         }
         let place = match pose {
             Some(pose) => poses(&floats(pose, &[Some(7)], "pose")?, "pose")?[0],

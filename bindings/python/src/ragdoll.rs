@@ -90,7 +90,7 @@ fn scaled_shape(shape: &Shape, factor: f32) -> PyResult<Shape> {
             radius_bottom: radius_bottom * factor,
             radius_top: radius_top * factor,
         },
-        _ => return Err(bad("this shape cannot be scaled: give a new one")),
+        _ => return Err(bad("this shape cannot be scaled; give a new one")),
     })
 }
 

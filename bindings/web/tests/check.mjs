@@ -6,7 +6,7 @@ import { fileURLToPath } from 'node:url';
 import { blocks, browse, check, emptyFolder, open, run, serve, told, until, write } from './harness.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
-// Of the front page: a desk's and a phone's.
+// Widths of the front page on a desktop and on a phone.
 const SIZES = [[1280, 720], [390, 844]];
 const pictures = join(told.out, 'pictures');
 const names = Object.keys(told.native.hashes).filter((name) => name !== 'boxes');

@@ -196,7 +196,7 @@ fn speed_within(scene: &SceneResult, figure: &Figure, most: f64) -> Result<f64, 
     }
     let mut fair = scene.clone();
     fair.engines.retain(holds);
-    fair.speed().ok_or_else(|| Verdict::Open("no peer stretches as little: no bar".to_owned()))
+    fair.speed().ok_or_else(|| Verdict::Open("no bar: peers stretch more".to_owned()))
 }
 
 /// A row of a table of requirements.
@@ -400,7 +400,7 @@ mod tests {
             speed(CLOTH_RACE).judge(&of("cloth", ours, theirs))
         };
         assert_eq!(judge(0.02, 0.03), (Some(0.75), Verdict::Missed));
-        assert_eq!(judge(0.02, 0.08), (None, Verdict::Open("no peer stretches as little: no bar".into())));
+        assert_eq!(judge(0.02, 0.08), (None, Verdict::Open("no bar: peers stretch more".into())));
         assert_eq!(judge(0.04, 0.03).1, Verdict::Missed);
     }
 

@@ -13,7 +13,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (index, row) in rows.iter().enumerate() {
         if rows[..index].iter().any(|other| row.repeats(other)) {
-            findings.push(Finding::new(PATH, row.line, format!("`{}` is there twice", row.key)));
+            findings.push(Finding::new(PATH, row.line, format!("`{}` is listed twice", row.key)));
         }
     }
     findings
@@ -32,7 +32,7 @@ mod tests {
         };
         assert!(found(LISTS).is_empty());
         let twice = format!("{LISTS}\n### `bake`\n\n- `nan` (integer): again\n");
-        assert_eq!(found(&twice), ["docs/contract.md:7: `nan` is there twice"]);
+        assert_eq!(found(&twice), ["docs/contract.md:7: `nan` is listed twice"]);
         assert_eq!(found("### `a`\n- `b`: c"), ["docs/contract.md:2: not \"- `key` (type): meaning\""]);
         assert_eq!(found("### `a`\n- `b` (float): c").len(), 1);
     }

@@ -39,11 +39,7 @@ pub fn check(repo: &Repo) -> Vec<Finding> {
     if findings.is_empty()
         && let Some(((name, line), (other, _))) = pairs.find(|(coded, documented)| coded.0 != documented.0)
     {
-        findings.push(Finding::new(
-            STAGE,
-            *line,
-            format!("stage `{name}` stands where {MANUAL} has `{other}`"),
-        ));
+        findings.push(Finding::new(STAGE, *line, format!("stage `{name}` is where {MANUAL} has `{other}`")));
     }
     if findings.is_empty() && drawn(&manual.text, &coded).is_some_and(|drawn| drawn != coded.len()) {
         findings.push(Finding::new(MANUAL, 1, "the diagram has not all stages in their order"));
@@ -126,7 +122,7 @@ mod tests {
         assert_eq!(
             check_stages(CODE, "## `integrate_velocity`\n## `pairs`\n"),
             [
-                "crates/sinew_physics/src/stage.rs:3: stage `pairs` stands where docs/step.md has `integrate_velocity`"
+                "crates/sinew_physics/src/stage.rs:3: stage `pairs` is where docs/step.md has `integrate_velocity`"
             ]
         );
     }

@@ -115,7 +115,7 @@ fn refuse_rolling_on_boxes(scene: &Blueprint) -> Result<(), Unsupported> {
     let rolls = shapes.clone().any(|(_, part)| part.material.rolling != 0.0);
     let has_no_radius = |part: &ShapeDef| triangles(&part.shape).is_some();
     if rolls && shapes.any(|(kind, part)| kind != BodyKind::Dynamic && !has_no_radius(part)) {
-        return Err(Unsupported::new("rolling resistance on what is no mesh and does not move"));
+        return Err(Unsupported::new("rolling resistance on a static shape other than a mesh"));
     }
     Ok(())
 }

@@ -155,7 +155,7 @@ fn mass_and_inertia_are_those_given() {
 }
 
 #[test]
-fn an_oblique_centre_of_mass_is_where_it_was_put() {
+fn an_oblique_centre_of_mass_is_as_defined() {
     let center = Vec3::new(0.2, 0.1, 0.0);
     let inertia = Sym3 { diagonal: Vec3::new(1.0, 2.0, 2.5), off: Vec3::new(0.0, 0.0, -0.3) };
     let def = BodyDef {

@@ -79,7 +79,10 @@ pub fn own_motions(def: &CharacterDef, analysis: &RigAnalysis, clips: Vec<Clip>)
             }
             Err(reason) if is_looped => notes.push(format!("{} has no footsteps: {reason}", name(clip))),
             Err(reason) => {
-                notes.push(format!("{} is left out, for nothing keeps it in step: {reason}", name(clip)));
+                notes.push(format!(
+                    "{} is left out because its steps cannot be matched: {reason}",
+                    name(clip)
+                ));
             }
         }
     }

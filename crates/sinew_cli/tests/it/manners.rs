@@ -57,7 +57,7 @@ fn a_link_is_written_through_and_a_device_never_replaced() {
     let device = folder.path("device.json");
     std::os::unix::fs::symlink("/dev/null", &device).expect("a link");
     let run = sinew(&["ragdoll", "build", &file, "-o", &device]);
-    assert_eq!(run.refusal(1), format!("error: {device}: cannot write: is there and is not a regular file"));
+    assert_eq!(run.refusal(1), format!("error: {device}: cannot write: exists and is not a regular file"));
     // A link to an input is that input.
     let own = folder.path("own.glb");
     std::os::unix::fs::symlink("mannequin.glb", &own).expect("a link");

@@ -146,7 +146,7 @@ fn read_nodes(root: At<'_>) -> Result<Vec<Node<'_>>> {
         seen += 1;
         open.extend(&below[index]);
     }
-    if seen < nodes.len() { Err(root.malformed("nodes are in a circle")) } else { Ok(nodes) }
+    if seen < nodes.len() { Err(root.malformed("nodes form a circle")) } else { Ok(nodes) }
 }
 
 fn local(node: At<'_>) -> Result<Affine> {
@@ -172,7 +172,7 @@ fn unit(of: At<'_>, key: &str) -> Result<Rotation> {
     if length > 1e-6 && length.is_finite() {
         Ok(rotation.normalize())
     } else {
-        Err(of.malformed(format!("`{key}` is a quaternion of no length")))
+        Err(of.malformed(format!("`{key}` must not be zero")))
     }
 }
 

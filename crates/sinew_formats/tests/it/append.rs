@@ -201,7 +201,7 @@ fn inferred_weights_of_loose_vertices_are_written() {
     let file = sinew_formats::write_gltf(&with_loose_vertices(5), &[]).unwrap();
     let read = |bytes: &[u8]| read_gltf(bytes, ReadOptions::default(), &mut no_files).unwrap();
     let document = read(&file);
-    assert_eq!(document.warnings, ["5 vertices hang on no bone: they follow the nearest skin"]);
+    assert_eq!(document.warnings, ["5 vertices have no bone: they follow the nearest skin"]);
     let neutral = document.rig.joints.iter().position(|joint| joint.name == "neutral_bone");
     let moves = |document: &Document| {
         let of_mesh = |mesh: &sinew_anim::RigMesh| {

@@ -142,7 +142,7 @@ fn complaints_name_the_line() {
     for (from, to, expected) in [
         ("HIERARCHY", "hello", "not a BVH file: does not begin with `HIERARCHY` (line 1)"),
         ("ROOT hips", "ROOT", "a joint without a name (line 2)"),
-        ("JOINT arm", "JOIN arm", "`JOIN` stands where `}`, `JOINT` or `End Site` is due (line 6)"),
+        ("JOINT arm", "JOIN arm", "expected `}`, `JOINT` or `End Site`, found `JOIN` (line 6)"),
         ("OFFSET 2", "OFFSET two", "an offset: `two` is not a number (line 8)"),
         ("CHANNELS 3", "CHANNELS 4", "unknown channel `End` (line 10, joint `arm`)"),
         (
@@ -154,7 +154,7 @@ fn complaints_name_the_line() {
         ("Yrotation Zrotation", "Yrotation Yrotation", "`Yrotation` is listed twice (line 9, joint `arm`)"),
         ("Frames: 2", "Frames: 4000000000", "declares 4000000000 frames, has 2 (line 20)"),
         ("Frames: 2", "Frames: 1", "declares 1 frames, has 2 (line 20)"),
-        ("Frames: 2", "Frames: -2", "-2 is no number of frames (line 17)"),
+        ("Frames: 2", "Frames: -2", "-2 is not a number of frames (line 17)"),
         ("Frame Time: 0.5", "Frame Time: 0", "a frame time of 0 s (line 18)"),
         ("Frame Time: 0.5", "Frame Time: nan", "the frame time: `nan` is not finite (line 18)"),
         ("90 0 0 5", "90 0 NaN 5", "`NaN` is not finite (line 19, Yrotation of `hips`)"),

@@ -79,7 +79,7 @@ fn the_skin_follows_its_bones() {
 }
 
 #[test]
-fn a_cut_anywhere_is_no_panic() {
+fn a_truncated_file_does_not_panic() {
     let text = leg();
     let mut refused = 0;
     for length in 0..text.len() {
@@ -93,7 +93,7 @@ fn a_cut_anywhere_is_no_panic() {
 }
 
 #[test]
-fn garbage_is_no_panic() {
+fn garbage_does_not_panic() {
     let text = leg().into_bytes();
     let mut random = Random::new(0xFB);
     for _ in 0..300 {

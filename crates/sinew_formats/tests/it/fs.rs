@@ -50,10 +50,10 @@ fn only_regular_files_are_replaced() {
     symlink("circle.json", folder.join("circle.json")).unwrap();
     let socket = std::os::unix::net::UnixListener::bind(folder.join("socket.json")).unwrap();
     for (name, why) in [
-        ("device.json", "is there and is not a regular file"),
-        ("socket.json", "is there and is not a regular file"),
-        ("far", "is there and is not a regular file"),
-        ("circle.json", "is a link that leads to a link without end"),
+        ("device.json", "exists and is not a regular file"),
+        ("socket.json", "exists and is not a regular file"),
+        ("far", "exists and is not a regular file"),
+        ("circle.json", "is a link in a circle of links"),
     ] {
         let error = write_atomic(folder.join(name), b"new").unwrap_err();
         assert_eq!(error.what, format!("cannot write: {why}"), "{name}");

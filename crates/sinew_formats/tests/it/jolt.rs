@@ -222,9 +222,9 @@ fn an_animation_is_keys_by_joint() {
     assert_eq!((turns.interpolation, turns.times.as_slice()), (Interpolation::Linear, &[0.0, 0.5][..]));
     assert_eq!(turns.values[4..], [0.0, 0.0, 0.6, 0.8]);
     let error = read_jolt_animation(animation([0.5, 0.5]).as_bytes(), &rig).unwrap_err();
-    assert_eq!(error.to_string(), "a key that is not later than the one before (line 18)");
+    assert_eq!(error.to_string(), "a key that is not after the previous one (line 18)");
     let error = read_jolt_animation(animation([0.0, 1.0]).as_bytes(), &Rig::default()).unwrap_err();
-    assert_eq!(error.to_string(), "`tip` is no joint of the skeleton (line 13)");
+    assert_eq!(error.to_string(), "`tip` is not a joint of the skeleton (line 13)");
     let error = read_jolt_animation(SMALL.as_bytes(), &rig).unwrap_err();
     assert!(error.to_string().starts_with("no animation in it"), "{error}");
 }
@@ -233,7 +233,7 @@ fn an_animation_is_keys_by_joint() {
 fn errors_name_their_line() {
     for (from, to, what) in [
         ("TOS 1.00", "TOF 1.00", "not a text object file: does not begin with `TOS` (line 1)"),
-        ("\"root\"\n      \"\"", "\"root\"\n      \"tip\"", "`tip` is no joint before `root` (line 59)"),
+        ("\"root\"\n      \"\"", "\"root\"\n      \"tip\"", "`tip` is not a joint before `root` (line 59)"),
         ("SphereShapeSettings", "TorusShapeSettings", "a shape of class `TorusShapeSettings` (line 69)"),
         (
             "  mRadius float\n\nobject Sphere",
@@ -245,9 +245,9 @@ fn errors_name_their_line() {
             "  -0.1\n\ndeclare Static",
             "a radius must be positive and finite (line 69)",
         ),
-        ("      0 1.5 0\n", "      0 nan 0\n", "a line with what is no finite number (line 45)"),
+        ("      0 1.5 0\n", "      0 nan 0\n", "a line without a finite number (line 45)"),
         ("      00000005\n", "      00000009\n", "names object 00000009, which is not there (line 54)"),
-        ("  0.375\n", "  0.375.0\n", "`0.375.0` is no finite number (line 128)"),
+        ("  0.375\n", "  0.375.0\n", "`0.375.0` is not a finite number (line 128)"),
     ] {
         let text = SMALL.replace(from, to);
         assert_ne!(text, SMALL);

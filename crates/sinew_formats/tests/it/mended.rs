@@ -107,7 +107,7 @@ fn nonfinite_weights_come_from_the_nearest_skin() {
     assert_eq!(part.weights[0], [1.0, 0.0, 0.0, 0.0]);
     let expected = [
         "2 of 7 elements are not finite: taken as 0 (meshes[0].primitives[0].attributes.WEIGHTS_0)",
-        "1 vertex hangs on no bone: it follows the nearest skin",
+        "1 vertex has no bone: it follows the nearest skin",
     ];
     assert_eq!(document.warnings, expected);
 }

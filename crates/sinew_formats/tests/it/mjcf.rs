@@ -421,7 +421,7 @@ fn complaints_name_the_place() {
         ),
         (
             body("<geom size='1' quat='1 0 0 0' euler='0 0 0'/>"),
-            "`euler`: `quat` says it already (line 3 column 33)",
+            "`euler`: `quat` sets the same (line 3 column 33)",
         ),
         (
             "<compiler eulerseq='xyzx'/>".into(),

@@ -17,7 +17,7 @@ fn format_is_detected_from_bytes() {
     is(b"{\"Skeleton\": {}}", MotionFormat::DeepMimicCharacter);
     is(b"Kaydara FBX Binary  \0", MotionFormat::Fbx);
     is(b"; FBX 7.4.0 project file", MotionFormat::Fbx);
-    for (bytes, what) in [(&b""[..], "empty"), (b"solid cube", "begins like none"), (b"{", "not JSON")] {
+    for (bytes, what) in [(&b""[..], "empty"), (b"solid cube", "unknown first bytes"), (b"{", "not JSON")] {
         let error = MotionFormat::of(bytes).unwrap_err();
         assert!(error.kind == ErrorKind::Malformed && error.what.contains(what), "{error}");
     }

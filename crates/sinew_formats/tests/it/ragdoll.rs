@@ -132,21 +132,17 @@ fn complaints_name_the_place() {
         (
             r#""parent": "Hips""#,
             r#""parent": "LeftUpLeg""#,
-            "a parent has to stand before its child (bodies[1].joint.parent)",
+            "a parent must come before its child (bodies[1].joint.parent)",
         ),
         ("[-40, 40]", "[40, -40]", "the lower end comes first (bodies[1].joint.limits_deg.swing_y)"),
-        (
-            "[-40, 40]",
-            "[4, 40]",
-            "zero has to lie inside a swing's range (bodies[1].joint.limits_deg.swing_y)",
-        ),
+        ("[-40, 40]", "[4, 40]", "a swing's range must contain zero (bodies[1].joint.limits_deg.swing_y)"),
         (
             "[-35, 35]",
             "[-35, 350]",
             "must lie between -180 and 180 degrees (bodies[1].joint.limits_deg.twist[1])",
         ),
         (r#""kg": 40"#, r#""kg": 0"#, "must be more than 0 (bodies[0].mass.kg)"),
-        (r#""kg": 40"#, r#""kg": 1e30"#, "a mass or moment that no solver can work with (bodies[0].mass)"),
+        (r#""kg": 40"#, r#""kg": 1e30"#, "a mass or moment out of range (bodies[0].mass)"),
         (
             r#""position": [0, 0.95, 0]"#,
             r#""position": [0, 3e38, 0]"#,

@@ -54,13 +54,9 @@ fn complaints_name_the_place_and_the_nearest_key() {
         (
             r#""mass": 82"#,
             r#""unit_scale": 0.01"#,
-            "`unit_scale` says it already: give one of the two (height)",
+            "`unit_scale` sets the same: give one of the two (height)",
         ),
-        (
-            "[-80, 80]",
-            "[10, 80]",
-            "zero has to lie inside a swing's range (bones.upperArm.limits_deg.swing_y)",
-        ),
+        ("[-80, 80]", "[10, 80]", "a swing's range must contain zero (bones.upperArm.limits_deg.swing_y)"),
         ("[-2, 130]", "[130, -2]", "the lower end comes first (bones.lowerLeg.limits_deg.twist)"),
         (r#"["leftHand", "leftUpperLeg"]"#, r#"["leftHand"]"#, "must name two bones (disable_pairs[0])"),
         (r#""version": 1"#, r#""version": 2"#, "version 2 is newer than 1, the last one known (version)"),

@@ -27,10 +27,10 @@ impl Picture {
         let (mut path, mut at) = (None, 1.0);
         while let Some(arg) = args.next() {
             match arg.as_str() {
-                "--picture" => path = Some(args.next().ok_or("--picture wants a file")?),
+                "--picture" => path = Some(args.next().ok_or("--picture needs a file")?),
                 "--at" => {
-                    let seconds = args.next().ok_or("--at wants seconds")?;
-                    at = seconds.parse().map_err(|_| format!("--at wants seconds, not {seconds}"))?;
+                    let seconds = args.next().ok_or("--at needs seconds")?;
+                    at = seconds.parse().map_err(|_| format!("--at needs seconds, not {seconds}"))?;
                 }
                 file if file.ends_with(".glb") => {} // of the example
                 other => return Err(format!("there is no {other}")),
