@@ -1,4 +1,4 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | blender | npm | release | web | fuzz | lives | soak`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | new-user | sizes | bindings | blender | npm | release | web | fuzz | lives | soak | sample`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -16,6 +16,7 @@ mod new_user;
 mod npm;
 mod ragdolls;
 mod release;
+mod sample;
 mod searches;
 mod sizes;
 mod spawns;
@@ -72,6 +73,8 @@ enum Task {
     Lives(searches::Lives),
     /// An hour of game, checked after each step
     Soak(searches::Soak),
+    /// Random comments, messages, names and page lines, for a reader who judges their words
+    Sample(sample::Sample),
 }
 
 fn main() -> ExitCode {
@@ -98,6 +101,7 @@ fn run() -> anyhow::Result<ExitCode> {
         Task::Fuzz(fuzz) => fuzz.run()?,
         Task::Lives(lives) => lives.run()?,
         Task::Soak(soak) => soak.run()?,
+        Task::Sample(sample) => sample.run()?,
         Task::Npm(npm) => npm.run()?,
         Task::Release(release) => release.run()?,
         Task::Web(web) => web.run()?,

@@ -160,7 +160,9 @@ pub struct Repo {
 }
 
 impl Repo {
-    fn read() -> Result<Self> {
+    /// # Errors
+    /// If a folder cannot be read, or cargo fails.
+    pub fn read() -> Result<Self> {
         let mut files = Vec::new();
         let root = command::root();
         collect(&root, "", &mut files).with_context(|| root.display().to_string())?;
