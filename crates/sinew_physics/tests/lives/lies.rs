@@ -107,5 +107,5 @@ fn damaged_snapshots_are_refused_or_step() {
             all += 1;
         }
     }
-    eprintln!("{all} lying snapshots, {taken} taken");
+    eprintln!("{all} damaged snapshots, {taken} loaded");
 }

@@ -97,7 +97,7 @@ fn refused(error: impl core::fmt::Display) -> Unsupported {
     Unsupported::new(error.to_string())
 }
 
-/// Empty, with room for `bodies`.
+/// Returns an empty world with room for `bodies`.
 fn new_world(gravity: Vec3, bodies: usize, layers: CollisionLayers) -> Result<PhysicsWorld, Unsupported> {
     let settings = WorldSettings::default()
         .single_threaded()

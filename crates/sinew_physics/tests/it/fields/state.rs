@@ -179,7 +179,7 @@ fn attracting_bodies_sleep_and_wake_together() {
     run(&mut world, 120);
     let third = world.add_body(&box_body(Vec3::splat(0.2), Vec3::new(0.0, 0.2, 3.0)));
     world.step();
-    assert!(world.is_awake(id) && world.is_awake(third), "one that came wakes those it attracts");
+    assert!(world.is_awake(id) && world.is_awake(third), "a new body wakes those it attracts");
 }
 
 #[test]

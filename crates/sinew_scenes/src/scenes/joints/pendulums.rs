@@ -45,7 +45,7 @@ struct Bob {
     amplitude: f32,
     /// Energy, J.
     start: f32,
-    /// The farthest that the energy was from the start, J.
+    /// Largest difference of the energy from the start, J.
     drift: f32,
     /// Energy for one metre of height, J.
     depth: f32,
@@ -174,7 +174,7 @@ struct Rods {
     starts: &'static [f32],
     /// Energy, J.
     start: f32,
-    /// The farthest that the energy was from the start, J.
+    /// Largest difference of the energy from the start, J.
     drift: f32,
     /// Angular accelerations in the first step, rad/s², downward.
     first: Vec<f32>,
