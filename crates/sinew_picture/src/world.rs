@@ -151,7 +151,7 @@ impl Canvas for Scene {
     }
 }
 
-/// Paints the world's bodies, particles, springs, joints and the drawings of its objects.
+/// Paints the world's bodies, particles, springs, joints and what its objects draw.
 pub fn paint(world: &World, frame: &Frame, canvas: &mut dyn Canvas) {
     paint_all_but(world, &[], frame, canvas);
 }

@@ -53,7 +53,7 @@ impl Shown {
 
     /// All of them have been given: the first that can be shown is shown.
     pub fn open(&mut self) {
-        // No receiver exists after the viewer has ended, which is reported separately.
+        // Nobody hears it if the viewer has ended, which is told on its own.
         let _ = self.proxy.send_event(Told::Files(std::mem::take(&mut self.files)));
     }
 }
