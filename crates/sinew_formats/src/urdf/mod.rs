@@ -438,7 +438,7 @@ mod tests {
             ("axis xyz=\"0 1 0\"", "axis xyz=\"0 0 0\"", "an axis must not be zero"),
             ("type=\"revolute\"", "type=\"planar\"", "planar joints are not read"),
             ("mass value=\"1\"", "mass value=\"nan\"", "not within"),
-            ("<parent link=\"base\"/>", "<parent link=\"tip\"/>", "hangs on itself"),
+            ("<parent link=\"base\"/>", "<parent link=\"tip\"/>", "is its own ancestor"),
             ("radius=\"0.05\"", "radius=\"0\"", "line"),
         ] {
             let error = read_urdf(ARM.replace(wrong, right).as_bytes()).expect_err(right).to_string();

@@ -385,7 +385,7 @@ fn writing_refuses_invalid_clips() {
     let with = |options: BvhWriteOptions<'_>| write_bvh(&rig, &clip, &options).unwrap_err().to_string();
     let plain = BvhWriteOptions::default;
     assert_eq!(with(BvhWriteOptions { frame_time: 0.0, ..plain() }), "must be above 0 (frame time)");
-    assert_eq!(with(BvhWriteOptions { frame_time: 1e-300, ..plain() }).split(' ').nth(1), Some("frames"));
+    assert!(with(BvhWriteOptions { frame_time: 1e-300, ..plain() }).starts_with("too many frames: "));
     assert_eq!(
         with(BvhWriteOptions { metres_per_unit: f32::NAN, ..plain() }),
         "must be above 0 (metres per unit)"

@@ -238,7 +238,7 @@ fn errors_name_their_line() {
         (
             "  mRadius float\n\nobject Sphere",
             "  mRadius quaternions\n\nobject Sphere",
-            "a member of type `quaternions` (line 67)",
+            "unknown type `quaternions` of a member (line 67)",
         ),
         (
             "  0.1\n\ndeclare Static",
@@ -246,7 +246,7 @@ fn errors_name_their_line() {
             "a radius must be positive and finite (line 69)",
         ),
         ("      0 1.5 0\n", "      0 nan 0\n", "a line without a finite number (line 45)"),
-        ("      00000005\n", "      00000009\n", "names object 00000009, which is not there (line 54)"),
+        ("      00000005\n", "      00000009\n", "names object 00000009, which does not exist (line 54)"),
         ("  0.375\n", "  0.375.0\n", "`0.375.0` is not a finite number (line 128)"),
     ] {
         let text = SMALL.replace(from, to);

@@ -223,8 +223,8 @@ fn keyframes_match_mujoco() {
 fn omitted_features_are_noted() {
     let model = humanoid();
     for note in [
-        "`ankle_y_right` and `ankle_x_right` are 0.040 m apart; here they are one, in the middle",
-        "springs of `abdomen_z` and `abdomen_y` are not the same; here all have the softest",
+        "`ankle_y_right` and `ankle_x_right` are 0.040 m apart; they became one, in the middle",
+        "springs of `abdomen_z` and `abdomen_y` differ; all became the softest",
         "left out: rotor inertia of joints (21)",
         "left out: tendons (2)",
         "left out: actuators (21)",
