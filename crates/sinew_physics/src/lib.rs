@@ -45,7 +45,7 @@ pub use body::owner::Owner;
 pub use body::shape::{Filter, Sensing, ShapeDef};
 pub use body::{Velocity, def, shape};
 pub use contact::Effect;
-pub use contact::events::Events;
+pub use contact::events::{Events, Push};
 pub use contact::filter::{PairFunction, PairSide};
 pub use contact::hits::Hit;
 pub use draw::{DebugDraw, DrawKind};

@@ -103,7 +103,8 @@ pub(crate) struct Body {
     /// Before the last step: for interpolation and continuous collision.
     pub previous: Transform,
     pub velocity: Velocity,
-    /// Applied by the user for the next step, N and N·m, world axes.
+    /// Applied by the user for the next step, N and N·m, world axes. It does not move a kinematic body and is
+    /// [reported](crate::Events::pushed).
     pub force: Vec3,
     pub torque: Vec3,
     /// Forces that last until they are changed.
@@ -258,6 +259,19 @@ impl Body {
             center: body_from_principal.translation,
             inertia: Sym3::from_rotated_diagonal(body_from_principal.rotation, self.inertia),
         }
+    }
+
+    /// Adds a force and a torque that the next step reports; one that would make the sum infinite is dropped.
+    pub fn note_push(&mut self, force: Vec3, torque: Vec3) {
+        let (force, torque) = (self.force + force, self.torque + torque);
+        if force.is_finite() && torque.is_finite() {
+            (self.force, self.torque) = (force, torque);
+        }
+    }
+
+    /// Mass that it has or would have as a dynamic body, kg; 0 if it never had one.
+    pub fn weighs(&self) -> f32 {
+        self.laid_by.map_or(self.mass, |(mass, _)| mass)
     }
 
     pub fn world_from_body(&self) -> Transform {

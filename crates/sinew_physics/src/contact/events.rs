@@ -2,6 +2,7 @@
 
 use crate::contact::hits::Hit;
 use crate::id::{BodyId, GroupId, JointId, ShapeId};
+use sinew_math::Vec3;
 
 /// Events of the last step. Every list is in the order of pairs: by the two body indices, the smaller one first, then
 /// by the two shape numbers. The order does not depend on the number of threads or on loading a snapshot.
@@ -46,6 +47,20 @@ pub struct Events {
     pub limited: Vec<BodyId>,
     /// Groups with particles whose state became non-finite: these stopped where they were before the step.
     pub rolled_back: Vec<GroupId>,
+    /// Kinematic bodies that forces, impulses or explosions acted on since the last step, by index. They are not moved by
+    /// them; characters react to those on their bodies. Forces of fields and lasting forces are not included.
+    pub pushed: Vec<Push>,
     /// Joints that broke, in the order of joint indices. They still exist, but are disabled.
     pub broken: Vec<JointId>,
+}
+
+/// Impulse on a kinematic body in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// The body.
+    pub body: BodyId,
+    /// Sum of the impulses, N·s, world axes.
+    pub impulse: Vec3,
+    /// Sum of the angular impulses about the centre of mass, N·m·s, world axes.
+    pub angular_impulse: Vec3,
 }

@@ -11,8 +11,8 @@ use sinew_math::{Transform, Vec3, max, normalize_or};
 ///
 /// Each shape gets `J = impulse × fade(1 − d/radius) × A` at its centre, in the direction from the blast's centre to
 /// its own. `d` is the distance from the blast to the shape's nearest point (0 inside), `A` its area projected from the
-/// blast (for a ball `π r²`; for a box the facing faces times the cosine of their angle; a particle is a ball). Only
-/// dynamic bodies are affected.
+/// blast (for a ball `π r²`; for a box the facing faces times the cosine of their angle; a particle is a ball). Static
+/// bodies are not affected, and kinematic ones only [report](crate::Events::pushed) it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Explosion {

@@ -1,9 +1,12 @@
 //! Measures of a scene: energies, momenta, overlaps of bodies.
 
+use super::{BodyKinds, OverlapWith, Probe, QueryFilter};
+use crate::body::contact_rule::ContactRule;
 use crate::body::def::BodyKind;
+use crate::body::shape::Sensing;
 use crate::boxes::{Aabb, Overlap};
 use crate::collide::collide_all;
-use crate::contact::ContactKey;
+use crate::contact::{ContactKey, ordered};
 use crate::id::{BodyId, GroupId};
 use crate::world::World;
 use sinew_math::{Vec3, max};
@@ -123,10 +126,13 @@ impl World {
         keys.into_iter().map(other).map(|index| self.bodies.id(index))
     }
 
-    /// Deepest overlap of a body with static ones, metres, at its present pose.
+    /// Deepest overlap of a body with static ones, metres, at its present pose. Nothing stops a kinematic body, so this
+    /// is how deep its motion takes it into the static world.
     #[track_caller]
     pub fn penetration(&self, id: BodyId) -> f32 {
-        self.expect(id);
+        if self.expect(id).kind == BodyKind::Kinematic {
+            return self.led_penetration(id);
+        }
         // A pair with several contacts is processed several times, which needs no memory.
         self.contacts_at(id.index)
             .filter(|contact| contact.pushes())
@@ -134,6 +140,28 @@ impl World {
             .map(|index| self.bodies.id(index))
             .filter(|&other| self.kind(other) == BodyKind::Static)
             .fold(0.0, |deepest, other| max(deepest, self.overlap(id, other)))
+    }
+
+    /// [`penetration`](Self::penetration) of a kinematic body, which has no contacts with static ones.
+    fn led_penetration(&self, id: BodyId) -> f32 {
+        let body = self.expect(id);
+        let (mut deepest, mut near) = (0.0, Vec::new());
+        for (number, s) in body.shapes.iter().enumerate() {
+            let surface = body.surface(number);
+            if surface.sensing == Sensing::Sensor || surface.rule == ContactRule::Ghost {
+                continue;
+            }
+            let filter = QueryFilter { meets: surface.filter, ..QueryFilter::of(BodyKinds::STATIC) };
+            let is_solid = |other: BodyId, shape: u32| {
+                self.expect(other).surface(shape as usize).rule != ContactRule::Ghost
+                    && self.parted.disabled.binary_search(&ordered(id.index, other.index)).is_err()
+            };
+            let around = Probe::from(s.shape.aabb(&body.world_from_shape(number)));
+            self.query().filter(filter).accept(is_solid).all(&OverlapWith(around), &mut near);
+            near.dedup_by_key(|shape| shape.body);
+            deepest = near.iter().map(|shape| self.overlap(id, shape.body)).fold(deepest, max);
+        }
+        deepest
     }
 
     /// Shapes of a body with their world poses, for drawing.

@@ -4,14 +4,14 @@ use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::def::WorldDef;
 use crate::body::{Body, Velocity};
-use crate::contact::events::Events;
+use crate::contact::events::{Events, Push};
 use crate::context::StepContext;
 use crate::solver::SolvedBody;
 use crate::step::islands::Islands;
 use sinew_math::{Vec3, max};
 
 /// `finalize`: poses and velocities. A body with a non-finite state keeps its old pose, stops and is quarantined.
-/// Kinematic bodies move according to their velocity; the forces of the step are cleared.
+/// Kinematic bodies move according to their velocity, and forces on them are reported. The forces of the step are cleared.
 pub(crate) fn finalize(
     islands: &Islands,
     bodies: &mut Arena<Body>,
@@ -24,6 +24,7 @@ pub(crate) fn finalize(
     let gain = (rest.distance / rest.angle, max(1.0 - context.dt / max(rest.time, context.dt), 0.0));
     events.quarantined.clear();
     events.limited.clear();
+    events.pushed.clear();
     for SolvedBody { index, pose, velocity, is_limited } in &islands.solution().bodies {
         let body = bodies.at_mut(*index);
         body.previous = body.world_from_principal;
@@ -50,15 +51,20 @@ pub(crate) fn finalize(
         }
     }
     for &index in activity.kinematic() {
+        let id = bodies.id(index);
         let body = bodies.at_mut(index);
         body.previous = body.world_from_principal;
+        let (force, torque) = (core::mem::take(&mut body.force), core::mem::take(&mut body.torque));
+        if force != Vec3::ZERO || torque != Vec3::ZERO {
+            let (impulse, angular_impulse) = (force * context.dt, torque * context.dt);
+            events.pushed.push(Push { body: id, impulse, angular_impulse });
+        }
         let carried = body.carried(context.h, context.substeps);
         if (carried * body.principal_from_body).is_finite() {
             body.world_from_principal = carried;
         } else {
             body.velocity = Default::default();
             body.quarantined = true;
-            let id = bodies.id(index);
             events.quarantined.push(id);
         }
     }

@@ -10,7 +10,8 @@ use crate::world::World;
 use sinew_math::Vec3;
 
 impl World {
-    /// Applies an explosion: affected bodies and particles get their new velocity at once, and wake.
+    /// Applies an explosion: affected dynamic bodies and particles get their new velocity at once, and wake. Impulses
+    /// on kinematic bodies are reported by the next step in [`Events::pushed`](crate::Events::pushed).
     ///
     /// # Panics
     /// If [`Explosion::check`] rejects it.
@@ -18,7 +19,7 @@ impl World {
         if let Err(what) = explosion.check() {
             panic!("{what}");
         }
-        let bodies: Vec<BodyId> = self.body_ids().filter(|&id| self.kind(id) == BodyKind::Dynamic).collect();
+        let bodies: Vec<BodyId> = self.body_ids().filter(|&id| self.kind(id) != BodyKind::Static).collect();
         for id in bodies {
             for shape in 0..self.expect(id).shapes.len() {
                 self.blast_shape(explosion, id, shape);

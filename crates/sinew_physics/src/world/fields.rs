@@ -67,19 +67,22 @@ impl World {
         self.functions.set(number, function);
     }
 
-    /// Force and torque about the centre of mass that a field currently applies to a body, N and N·m, world axes; 0 for
-    /// bodies that are not dynamic.
+    /// Force and torque about the centre of mass that a field currently applies to a body, N and N·m, world axes. For a
+    /// kinematic body: those that it would apply to it as a dynamic one, without mutual attraction. 0 for static ones.
     #[track_caller]
     pub fn field_force(&self, id: FieldId, body: BodyId) -> Wrench {
         let (field, it) = (self.field(id), self.expect(body));
-        if it.kind != BodyKind::Dynamic {
+        if it.kind == BodyKind::Static {
             return Wrench::default();
         }
         if let FieldKind::Mutual(law) = &field.kind {
-            return Wrench { force: self.attraction_of_all(field, law, body), torque: Vec3::ZERO };
+            let acts = it.kind == BodyKind::Dynamic;
+            let force = if acts { self.attraction_of_all(field, law, body) } else { Vec3::ZERO };
+            return Wrench { force, torque: Vec3::ZERO };
         }
         let mut load = Load::default();
-        field.act(&Target::of_body(it), &self.fields_now(), &mut load);
+        let target = Target { mass: it.weighs(), ..Target::of_body(it) };
+        field.act(&target, &self.fields_now(), &mut load);
         load.wrench
     }
 

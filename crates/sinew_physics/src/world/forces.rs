@@ -7,8 +7,9 @@ use crate::world::World;
 use sinew_math::{Mat3, Sym3, Vec3, skew};
 
 impl World {
-    /// Impulse (N·s) at a world point: changes the velocity at once, `Δv = J/m`, `Δω = I⁻¹ ((p − c) × J)`. No effect on
-    /// static and kinematic bodies.
+    /// Impulse (N·s) at a world point: changes the velocity at once, `Δv = J/m`, `Δω = I⁻¹ ((p − c) × J)`. It does not
+    /// move static and kinematic bodies; the next step reports its effect on a kinematic one in
+    /// [`Events::pushed`](crate::Events::pushed).
     #[track_caller]
     pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
         assert!(
@@ -16,8 +17,12 @@ impl World {
             "an impulse is finite, not {impulse:?} and {point:?} ({id:?})"
         );
         self.wake_body(id.index);
+        let dt = self.def.dt();
         let body = self.expect_mut(id);
         let arm = point - body.center();
+        if body.kind == BodyKind::Kinematic {
+            return body.note_push(impulse / dt, arm.cross(impulse) / dt);
+        }
         body.velocity.linear += finite_change(impulse, |impulse| impulse * body.inverse_mass());
         body.velocity.angular +=
             finite_change(impulse, |impulse| body.inverse_inertia_mul(arm.cross(impulse)));
@@ -34,7 +39,11 @@ impl World {
     pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Vec3) {
         assert!(impulse.is_finite(), "an impulse is finite, not {impulse:?} ({id:?})");
         self.wake_body(id.index);
+        let dt = self.def.dt();
         let body = self.expect_mut(id);
+        if body.kind == BodyKind::Kinematic {
+            return body.note_push(Vec3::ZERO, impulse / dt);
+        }
         body.velocity.angular += finite_change(impulse, |impulse| body.inverse_inertia_mul(impulse));
     }
 
@@ -67,9 +76,13 @@ impl World {
     fn apply_wrench(&mut self, id: BodyId, Wrench { force, torque }: Wrench) {
         self.wake_body(id.index);
         let body = self.expect_mut(id);
-        if body.kind == BodyKind::Dynamic {
-            body.force += force;
-            body.torque += torque;
+        match body.kind {
+            BodyKind::Static => {}
+            BodyKind::Kinematic => body.note_push(force, torque),
+            BodyKind::Dynamic => {
+                body.force += force;
+                body.torque += torque;
+            }
         }
     }
 

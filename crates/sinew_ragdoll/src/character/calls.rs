@@ -4,7 +4,9 @@ use super::activity::{Activity, Flinch};
 use super::grasp::Grab;
 use super::hold::Grip;
 use super::show::rows;
-use super::{Character, CharacterDef, CharacterEvent, Detail, Limb, Part, Preset, State, blows, clear};
+use super::{
+    AfterSettling, Character, CharacterDef, CharacterEvent, Detail, Limb, Part, Preset, State, blows, clear,
+};
 use crate::character::tuning::{POWERED_HALF_LIFE, RETURNED_AFTER};
 use crate::drive::{DriveMode, Drives};
 use crate::owner::is_limb;
@@ -118,7 +120,8 @@ impl Character {
         self.activity.stumble().is_some()
     }
 
-    /// Transform of the character in the world. While it is limp: the last one before.
+    /// Transform of the character in the world. While it lies it goes with the body, without turning: under the pelvis,
+    /// as high as the lowest body.
     pub fn world_from_character(&self) -> Transform {
         self.figure.place
     }
@@ -303,7 +306,12 @@ impl Character {
                 self.physique.drives.set_all(DriveMode::Keyed, POWERED_HALF_LIFE);
                 self.activity = Activity::Flinching(Flinch { seconds: RETURNED_AFTER * POWERED_HALF_LIFE });
             }
-            (Preset::Animated, State::Limp | State::Preparing) if may_get_up => self.get_up(world),
+            (Preset::Animated, State::Limp | State::Preparing) if may_get_up => {
+                // What holds it would be torn off by bodies that clips lead.
+                if !self.grips.is_gripped(&self.physique, world) {
+                    self.get_up(world);
+                }
+            }
             (Preset::Flinching, State::Animated | State::Flinching) => {
                 for body in blows::pelvis_children(&self.def.ragdoll) {
                     self.flinch(world, body, Vec3::ZERO);
@@ -312,6 +320,18 @@ impl Character {
             (Preset::Powered, _) if may_get_up => self.power(world),
             _ => {}
         }
+    }
+
+    /// Sets what it does once it lies still, instead of [`CharacterDef::after_settling`]. A dead one stays down: set
+    /// [`StayDown`](AfterSettling::StayDown) before or after it falls; one that gets up already goes on. Set back, one
+    /// that lies still gets up.
+    pub fn set_after_settling(&mut self, after_settling: AfterSettling) {
+        self.after_settling = after_settling;
+    }
+
+    /// Its action once it lies still.
+    pub fn after_settling(&self) -> AfterSettling {
+        self.after_settling
     }
 
     /// Gives it back to its looped clip, whatever it does now: at `place`, `phase` seconds into the clip. Pose and motion die away within
@@ -411,7 +431,9 @@ impl Character {
     /// passes through the character's own bodies and through movers.
     ///
     /// One of the two must be dynamic: a kinematic hand drags limp or powered bodies. A grabbed character stays limp
-    /// and does not get up.
+    /// and does not get up. A limb of an animated one is kinematic until a blow makes it give way:
+    /// [`hit`](Self::hit) it with an impulse of 0 before. Held, it stays so; its character follows the limb at up to
+    /// 2 m/s, and falls if that is drawn 0.3 of its height from the clip.
     ///
     /// `None` if the target is out of reach, its own, held by it already, or neither body is dynamic; or if the
     /// character has no such body in the world.

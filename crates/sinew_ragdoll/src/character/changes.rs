@@ -13,7 +13,9 @@ use super::{
     Blow, Character, CharacterEvent, Detail, FootPlanting, GettingReady, HitBodies, Locomotion, State,
     Toughness, blows, ground, powered, prepare,
 };
-use crate::character::tuning::{ABOVE_PELVIS, INTO_GET_UP, INTO_LOOP, INTO_STANDING, LYING_MOVER};
+use crate::character::tuning::{
+    ABOVE_PELVIS, FELLING_SPEED, INTO_GET_UP, INTO_LOOP, INTO_STANDING, LYING_MOVER,
+};
 use crate::drive::{DriveMode, Muscle};
 use crate::ragdoll::BodyState;
 use sinew_anim::{LoopMode, Pose, Track, TrackDef, TrackId, local_to_model};
@@ -214,7 +216,7 @@ impl Character {
     }
 
     /// Flinches or falls; false if no body may move by the blow.
-    fn react(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
+    pub(super) fn react(&mut self, world: &mut World, body: usize, impulse: Vec3) -> bool {
         assert!(impulse.is_finite(), "an impulse is finite");
         assert!(body < self.def.ragdoll.bodies.len(), "there is such a body");
         if self.stands_blow(Blow { body, impulse, state: self.state() }) {
@@ -237,6 +239,17 @@ impl Character {
                 }
                 Toughness::Function(fells) => !fells(&self.def, &blow),
             }
+    }
+
+    /// True if a field that gave it this momentum fells it. Without a threshold the usual one applies: a breeze is no blow.
+    pub(super) fn is_swept_by(&self, blow: Blow) -> bool {
+        let lowness = self.activity.lowness(&self.def, &self.gait.animator);
+        let fells = |least: f32| blow.impulse.length() >= blows::felling(least, lowness);
+        match self.def.in_world.toughness {
+            Toughness::None => fells(FELLING_SPEED * self.def.ragdoll.total_mass),
+            Toughness::Impulse(least) => fells(least),
+            Toughness::Function(decides) => decides(&self.def, &blow),
+        }
     }
 
     /// Makes the struck limb weak; false if none may be. For a body that is being driven to the start of a clip, all

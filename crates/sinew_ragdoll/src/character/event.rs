@@ -29,11 +29,11 @@ pub enum CharacterEvent {
         /// Index of the body in the definition.
         body: usize,
     },
-    /// Something struck one of its bodies (from contacts).
+    /// Something struck one of its bodies: a contact, or a blast or another impulse on bodies that its clips lead.
     Struck {
-        /// Index of the body in the definition.
+        /// Index of the body in the definition; of several the one that was struck hardest.
         body: usize,
-        /// N·s.
+        /// N·s; of a blast the sum over its bodies.
         impulse: f32,
     },
     /// A blow did not fell it: the limb is weak and returns.

@@ -42,8 +42,8 @@ pub(super) struct Stand<'a> {
     pub figure: &'a Figure,
     /// Speed over the ground, m/s.
     pub speed: f32,
-    /// Seconds since it had ground.
-    pub air: f32,
+    /// It jumps or falls.
+    pub aloft: bool,
     /// Its feet follow the ground.
     pub follows: bool,
     /// Its bodies, if it is in the world.

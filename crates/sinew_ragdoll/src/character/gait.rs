@@ -4,11 +4,12 @@ use super::activity::Activity;
 use super::figure::Figure;
 use super::{CharacterDef, HitBodies, Locomotion, State, ground};
 use crate::character::tuning::{
-    CLIMB_SPEED, FASTEST_PACE, HIGHEST_STEP, MOST_BESIDE, MOST_PACES, PACE_RATE, PICKS_UP, POWERED_TURNS,
-    PUSHED_ASIDE, STANDS_BELOW, STANDS_IN, STEP_SETTLES, STEP_SLOPE,
+    CLIMB_SPEED, FASTEST_PACE, HIGHEST_STEP, LIFTS_OFF, MOST_BESIDE, MOST_PACES, OFF_GROUND, PACE_RATE,
+    PICKS_UP, POWERED_TURNS, PULL_RATE, PULL_SLACK, PULL_SPEED, PUSHED_ASIDE, STANDS_BELOW, STANDS_IN,
+    STEP_SETTLES, STEP_SLOPE,
 };
 use sinew_anim::{Animator, ClipId, TrackDef, TrackId, smoothstep, weights_on_line};
-use sinew_math::{Rotation, Transform, Vec3, clamp, max, min, trig};
+use sinew_math::{Rotation, Transform, Vec3, clamp, max, min, normalize_or, trig};
 use sinew_physics::{BodyId, MoverDef, MoverId, World};
 
 /// Clips and mover of a character, and where it is to go.
@@ -36,6 +37,12 @@ pub(super) struct Gait {
     /// Offset from its mover to its shown place: it takes a moment to follow a step down, or a mover that was pushed
     /// out, metres.
     pub beside: Vec3,
+    /// Velocity that blasts and fields give it beside its walk, m/s; its feet brake it. Upward: on the way off the ground.
+    pub shoved: Vec3,
+    /// Change of velocity by these in the last step, m/s; nothing between updates.
+    pub blown: Vec3,
+    /// Velocity at which it follows a held limb, level, m/s; nothing between updates.
+    pub pulled: Vec3,
     /// It left the ground for too long or landed too fast.
     pub falls: bool,
 }
@@ -62,6 +69,9 @@ impl Gait {
             pace: 0.0,
             air: 0.0,
             beside: Vec3::ZERO,
+            shoved: Vec3::ZERO,
+            blown: Vec3::ZERO,
+            pulled: Vec3::ZERO,
             falls: false,
         }
     }
@@ -165,11 +175,38 @@ impl Gait {
             Some(stumble) => stumble.velocity,
             None => self.reachable_walk(def, activity, rotation, on_feet, world),
         };
+        let walk = self.be_shoved(mover, walk, world);
         world.set_mover_walk(mover, if walk.is_finite() { walk } else { Vec3::ZERO });
         let height = def.in_world.mover.as_ref().map_or(0.0, |mover| mover.height);
         if world.mover(mover).def().height < height && activity.left_to_rise(def, &self.animator) < 0.5 {
             world.set_mover_height(mover, height);
         }
+    }
+
+    /// Adds what blasts, fields and pulls do to a walk: on the ground feet brake it, in the air nothing does.
+    fn be_shoved(&mut self, mover: MoverId, walk: Vec3, world: &mut World) -> Vec3 {
+        let (blown, pulled) = (core::mem::take(&mut self.blown), core::mem::take(&mut self.pulled));
+        if blown == Vec3::ZERO && self.shoved == Vec3::ZERO {
+            return walk + pulled;
+        }
+        let dt = world.def().dt();
+        let stands = world.mover_ground(mover).is_some();
+        let lift = blown.y - world.def().gravity.length() * dt;
+        let rises = if stands { max(self.shoved.y + lift, 0.0) } else { 0.0 };
+        self.shoved = Vec3::new(self.shoved.x + blown.x, rises, self.shoved.z + blown.z);
+        if !stands || rises > LIFTS_OFF {
+            let velocity = world.mover(mover).velocity() + blown + Vec3::Y * rises;
+            if velocity.is_finite() {
+                world.set_mover_velocity(mover, velocity);
+            }
+            self.shoved.y = 0.0;
+            // In the air a mover without a wish keeps its velocity.
+            return if walk == Vec3::ZERO { walk } else { walk + self.shoved };
+        }
+        let level = Vec3::new(self.shoved.x, 0.0, self.shoved.z);
+        let kept = level * max(1.0 - PICKS_UP * dt / max(level.length(), 1e-6), 0.0);
+        self.shoved = Vec3 { y: rises, ..kept };
+        walk + kept + pulled
     }
 
     /// [`wanted_walk`](Self::wanted_walk), limited by the acceleration of its own feet.
@@ -186,6 +223,7 @@ impl Gait {
         let ground = self.mover.filter(|_| on_feet).and_then(|mover| world.mover_ground(mover));
         let Some(ground) = ground else { return wish };
         let now = (self.velocity - ground.velocity) * Vec3::new(1.0, 0.0, 1.0);
+        let now = now - Vec3 { y: 0.0, ..self.shoved };
         let change = wish - now;
         now + change * min(PICKS_UP * dt / max(change.length(), 1e-6), 1.0)
     }
@@ -305,10 +343,33 @@ impl Gait {
         self.mover = Some(world.add_mover(&mover));
         (self.yaw, self.air, self.pace) = (0.0, 0.0, 0.0);
         (self.velocity, self.beside, self.falls) = (Vec3::ZERO, Vec3::ZERO, false);
+        self.calm();
+    }
+
+    /// True once it has left the ground: at once in a jump, after a moment over an edge or a kerb.
+    pub fn is_aloft(&self) -> bool {
+        self.air >= OFF_GROUND || self.air > 0.0 && self.velocity.y > LIFTS_OFF
+    }
+
+    /// Follows a held limb that is drawn from its clip by `off` and moves at `velocity`: at its speed once it is off by
+    /// the slack, and by what it is off beyond that.
+    pub fn follow_pull(&mut self, off: Vec3, velocity: Vec3, height: f32) {
+        let level = Vec3::new(off.x, 0.0, off.z);
+        let way = normalize_or(level, Vec3::ZERO);
+        let slack = PULL_SLACK * height;
+        let along = max(velocity.dot(way), 0.0) * min(level.length() / slack, 1.0);
+        let speed = along + PULL_RATE * max(level.length() - slack, 0.0);
+        self.pulled = way * min(speed, PULL_SPEED);
+    }
+
+    /// Forgets shoves and pulls.
+    fn calm(&mut self) {
+        (self.shoved, self.blown, self.pulled) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
     }
 
     /// Removes its mover because it lies.
     pub fn sit_down(&mut self, world: &mut World) {
+        self.calm();
         if let Some(mover) = self.mover.take().filter(|&mover| world.contains_mover(mover)) {
             world.remove_mover(mover);
         }
@@ -317,6 +378,7 @@ impl Gait {
     /// Restarts at a new place.
     pub fn teleport(&mut self, place: Vec3, world: &mut World) {
         (self.air, self.beside, self.velocity) = (0.0, Vec3::ZERO, Vec3::ZERO);
+        self.calm();
         if let Some(mover) = self.mover {
             let skin = world.mover(mover).def().skin;
             world.set_mover_position(mover, place + Vec3::Y * skin);

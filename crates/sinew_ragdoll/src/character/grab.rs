@@ -36,22 +36,26 @@ impl Grips {
         Some(joint)
     }
 
-    /// True if a hand, a grip or a joint of something else holds one of its bodies: another character, or a body that
-    /// is not dynamic.
+    /// True if something holds one of its bodies: see [`gripped`](Self::gripped).
     pub fn is_gripped(&self, physique: &Physique, world: &World) -> bool {
+        self.gripped(physique, world).is_some()
+    }
+
+    /// Index of the first of its bodies that a hand, a grip or a joint of something else holds: another character, a body
+    /// that is not dynamic, or one that hangs on such by joints.
+    pub fn gripped(&self, physique: &Physique, world: &World) -> Option<usize> {
         let own = physique.own();
         let is_own_joint =
             |joint| physique.drives.is_pin(joint) || self.holds.iter().any(|hold| hold.joint == joint);
-        own.iter().any(|&body| {
+        let is_held = |&body: &BodyId| {
             // Those of ragdolls have owners.
             world.joints_of(body).filter(|&joint| world.joint_owner(joint).is_none()).any(|joint| {
-                let (a, b) = world.joint_bodies(joint);
-                let other = if a == body { b } else { a };
-                let holds = world.kind(other) != BodyKind::Dynamic || world.body_owner(other).is_some();
+                let other = across(world, joint, body);
                 let is_others = !own.contains(&other) && !is_own_joint(joint);
-                holds && is_others && world.joint(joint).state == JointState::Enabled
+                is_others && world.joint(joint).state == JointState::Enabled && is_anchored(world, other, own)
             })
-        })
+        };
+        own.iter().find(|body| is_held(body)).and_then(|&body| physique.index_of(body))
     }
 
     /// True for a body that its own pass through because it hangs on a held or released one.
@@ -96,6 +100,32 @@ impl Grips {
         }
         None
     }
+}
+
+/// The other body of a joint.
+fn across(world: &World, joint: JointId, body: BodyId) -> BodyId {
+    let (a, b) = world.joint_bodies(joint);
+    if a == body { b } else { a }
+}
+
+/// True for a body that is not dynamic or is another character's, and for one that hangs on such by joints, as the hook of
+/// a crane does. `own`: bodies through which the search does not go.
+fn is_anchored(world: &World, body: BodyId, own: &[BodyId]) -> bool {
+    let (mut found, mut next) = (vec![body], 0);
+    while let Some(&body) = found.get(next) {
+        next += 1;
+        if world.kind(body) != BodyKind::Dynamic || world.body_owner(body).is_some() {
+            return true;
+        }
+        for joint in world.joints_of(body) {
+            let other = across(world, joint, body);
+            let holds = world.joint(joint).state == JointState::Enabled;
+            if holds && !own.contains(&other) && !found.contains(&other) {
+                found.push(other);
+            }
+        }
+    }
+    false
 }
 
 /// True if a mover stands in these bodies, for instance one that dragged them.

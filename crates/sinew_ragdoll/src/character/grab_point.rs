@@ -46,7 +46,8 @@ pub struct GrabPoint {
 
 impl GrabPoint {
     /// Grabs a body at the surface point nearest to `point` (metres, world), or at `point` itself if it is inside.
-    /// `None` if that is further away than [`Grab::reach`], or the body is not dynamic.
+    /// `None` if that is further away than [`Grab::reach`], or the body is not dynamic. For a limb of an animated
+    /// character see [`Character::grab`](super::Character::grab).
     ///
     /// # Panics
     /// If a number of the grip is invalid, the point is not finite, or the body is missing.

@@ -1,9 +1,15 @@
 //! Ground that a character stands on.
 
-use crate::character::tuning::{GROUND_DEPTH, LEVEL_GROUND, LIES_ON, LYING_SEARCH, STEEPEST_GROUND};
+use crate::character::tuning::{
+    BORNE, GROUND_DEPTH, LEVEL_GROUND, LIES_LOW, LIES_ON, LYING_SEARCH, STEEPEST_GROUND,
+};
+use crate::def::RagdollDef;
 use sinew_math::{Rotation, Vec3, max, min, trig};
 use sinew_physics::ray::Ray;
-use sinew_physics::{BodyHit, BodyId, BodyKinds, ContactRule, QueryFilter, ShapeId, Velocity, World};
+use sinew_physics::{
+    BodyContact, BodyHit, BodyId, BodyKind, BodyKinds, ContactRule, Effect, QueryFilter, ShapeId, Velocity,
+    World,
+};
 
 /// Height of the supporting surface under a point, searched from `above` metres over it: of the static world for a
 /// character outside of a world (`own` is `None`), else of everything except its own bodies, led bodies of others, and
@@ -55,6 +61,27 @@ pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
     let ray = Ray { origin: world.center_of_mass(pelvis), direction: Vec3::Y * -LIES_ON };
     let Some(hit) = bearer(world, &ray, bodies) else { return GroundMotion::default() };
     GroundMotion { velocity: world.velocity(hit.body), center: world.center_of_mass(hit.body) }
+}
+
+/// True if a lying body, its pelvis the first of some, is low over ground, or the static world bears it.
+pub(super) fn bears(def: &RagdollDef, own: &[BodyId], world: &World) -> bool {
+    let Some(&pelvis) = own.first() else { return true };
+    let (at, low) = (world.center_of_mass(pelvis), LIES_LOW * def.height);
+    if found_below(world, at, LYING_SEARCH, Some(own)).is_some_and(|hit| at.y - hit.point.y < low) {
+        return true;
+    }
+    let lift = |contact: &BodyContact| {
+        let [a, b] = [contact.a.body, contact.b.body];
+        let sign = match (own.contains(&a), own.contains(&b)) {
+            (true, false) if world.kind(b) == BodyKind::Static => -1.0,
+            (false, true) if world.kind(a) == BodyKind::Static => 1.0,
+            _ => return 0.0,
+        };
+        sign * (contact.normal.y * contact.impulse() + contact.friction.y)
+    };
+    let pushing = world.contacts().filter(|contact| contact.effect == Effect::Push);
+    let borne: f32 = pushing.map(|contact| lift(&contact)).sum();
+    borne > BORNE * def.total_mass * world.def().gravity.length() * world.def().dt()
 }
 
 /// The ground under a body as a plane through its heights under these points: the rotation from the vertical to the

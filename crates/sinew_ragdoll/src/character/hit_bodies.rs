@@ -7,7 +7,7 @@ use crate::character::tuning::{GIVES_WAY, TELEPORTED};
 use crate::owner::{is_limb, together};
 use sinew_anim::LocalTransform;
 use sinew_math::{Transform, Vec3, max, min, normalize_or};
-use sinew_physics::{BodyId, BodyKind, Hit, Velocity, World};
+use sinew_physics::{BodyId, BodyKind, Hit, Push, Velocity, World};
 
 /// A contact blow.
 #[derive(Clone, Copy, Debug, Default)]
@@ -95,6 +95,32 @@ impl Physique {
         felt
     }
 
+    /// Impulses on its led bodies in the last step, by index: of blasts, bullets and forces.
+    pub fn pushes(&self, world: &World) -> Vec<(usize, Push)> {
+        let pushed = world.events().pushed.iter();
+        pushed.filter_map(|push| Some((self.index_of(push.body)?, *push))).collect()
+    }
+
+    /// Impulse of all fields on its led bodies in a step, N·s.
+    pub fn field_impulse(&self, world: &World) -> Vec3 {
+        let mut force = Vec3::ZERO;
+        for field in world.field_ids() {
+            let led = self.own().iter().filter(|&&body| world.kind(body) == BodyKind::Kinematic);
+            force = led.fold(force, |sum, &body| sum + world.field_force(field, body).force);
+        }
+        force * world.def().dt()
+    }
+
+    /// Applies impulses to those of its bodies that are led no longer.
+    pub fn take_pushes(&self, pushes: &[(usize, Push)], world: &mut World) {
+        for &(_, Push { body, impulse, angular_impulse }) in pushes {
+            if world.kind(body) == BodyKind::Dynamic {
+                world.apply_impulse_at_center(body, impulse);
+                world.apply_angular_impulse(body, angular_impulse);
+            }
+        }
+    }
+
     /// Contacts that its bodies began and ended in the last step, as events.
     pub fn contacts(&self, world: &World) -> impl Iterator<Item = CharacterEvent> {
         let told = world.events();
@@ -117,7 +143,10 @@ impl Physique {
         let speed = max(strike.speed, GIVES_WAY);
         for body in core::iter::successors(Some(body), parent) {
             let share = min(left, def.bodies[body].mass.mass * speed);
-            world.apply_impulse_at_center(self.limp().bodies[body], way * share);
+            let id = self.limp().bodies[body];
+            if world.kind(id) == BodyKind::Dynamic {
+                world.apply_impulse_at_center(id, way * share);
+            }
             left -= share;
         }
     }
@@ -125,6 +154,9 @@ impl Physique {
     /// Applies an impulse to a body, at a point or at its centre of mass; returns the work, joules.
     pub fn push(&self, body: usize, impulse: Vec3, point: Option<Vec3>, world: &mut World) -> f32 {
         let id = self.limp().bodies[body];
+        if world.kind(id) != BodyKind::Dynamic {
+            return 0.0;
+        }
         let before = world.body_energy(id).kinetic;
         match point {
             Some(point) => world.apply_impulse(id, impulse, point),

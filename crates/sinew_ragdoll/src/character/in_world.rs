@@ -86,7 +86,7 @@ pub struct InWorld {
     /// [`toughness`](Self::toughness), unless that is a function or none. 0: it does not step. Humanoids with a mover
     /// only. Default 4.
     pub most_steps: u32,
-    /// Least impulse that it feels from contacts, N·s; infinite: it feels only
+    /// Least impulse that it feels from contacts and blasts, N·s; infinite: it feels only
     /// [`Character::hit`](super::Character::hit). Default 3.
     pub feels: f32,
     /// True: [`CharacterEvent::Contact`](super::CharacterEvent::Contact) reports contacts of its bodies. Default false,

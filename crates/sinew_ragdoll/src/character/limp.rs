@@ -4,10 +4,12 @@ use super::CharacterDef;
 use super::figure::{Figure, Scratch};
 use super::ground::{self, GroundMotion};
 use super::physique::Physique;
-use crate::character::tuning::{LINGERS, SLACKENS, STILL_ANGULAR, STILL_LINEAR, STILL_TIME, SUNK};
+use crate::character::tuning::{
+    LINGERS, PLACE_FOLLOWS, PLACE_RESTS, SLACKENS, STILL_ANGULAR, STILL_LINEAR, STILL_TIME, SUNK,
+};
 use crate::ragdoll::Ragdoll;
 use sinew_anim::{Motion, Pose};
-use sinew_math::{Vec3, min};
+use sinew_math::{Transform, Vec3, min, trig};
 use sinew_physics::{BodyId, Velocity, World};
 
 /// A limp character.
@@ -121,6 +123,22 @@ impl Physique {
         base.iter().enumerate().for_each(|(joint, local)| resting.set(joint, local));
         self.lingering.apply(seconds, resting);
         scratch.pose.extend(resting.iter());
+    }
+
+    /// Has the place of a limp character go with its pelvis, under which it comes to be, as high as its lowest body.
+    pub fn take_along(&self, place: &mut Transform, world: &World, scratch: &mut Scratch) {
+        let Some(&pelvis) = self.own().first() else { return };
+        let dt = world.def().dt();
+        let lowest = self.own().iter().map(|&body| world.bounds(body).min.y).fold(f32::INFINITY, min);
+        let under = world.transform(pelvis).translation;
+        let under = Vec3::new(under.x, lowest, under.z);
+        let carried = world.velocity(pelvis).linear * Vec3::new(dt, 0.0, dt);
+        let left = under - place.translation - carried;
+        let way = carried - left * trig::exp_m1(-PLACE_FOLLOWS * dt);
+        if way.is_finite() && way.length() > PLACE_RESTS {
+            place.translation += way;
+            scratch.posed.clear();
+        }
     }
 
     /// Takes the pose from the bodies, except for joints without one. Bodies that have not moved since the last pose

@@ -93,11 +93,11 @@ use grab::is_entered;
 use hold::Grips;
 use limp::Lying;
 use physique::Physique;
-use sinew_math::Transform;
-use sinew_physics::{ContactRule, ShapeId, World};
+use sinew_math::{Transform, Vec3};
+use sinew_physics::{ContactRule, Push, ShapeId, World};
 use std::sync::Arc;
 use stumble::Balancing;
-use tuning::FLINCH_HALF_LIFE;
+use tuning::{FLINCH_HALF_LIFE, PULL_FELLS};
 use wear::{Bearer, Wear};
 
 /// A character in a world.
@@ -106,6 +106,8 @@ pub struct Character {
     def: Arc<CharacterDef>,
     /// State, with its data.
     activity: Activity,
+    /// Its action once it lies still.
+    after_settling: AfterSettling,
     /// Its level of detail, now or once clips move it; `None`: it is in no world.
     detail: Option<Detail>,
     gait: Gait,
@@ -129,6 +131,7 @@ impl Character {
         let figure = Figure::new(animator.pose().iter().collect(), world_from_character);
         Self {
             activity: Activity::Animated,
+            after_settling: def.after_settling,
             detail: None,
             gait: Gait::new(animator),
             figure,
@@ -184,6 +187,7 @@ impl Character {
         self.advance(world);
         self.plant(world);
         self.attend(world);
+        self.mind_held(world);
     }
 
     fn go_rising(&mut self, world: &mut World) {
@@ -198,6 +202,7 @@ impl Character {
         }
         self.plant(world);
         self.attend(world);
+        self.mind_held(world);
     }
 
     /// Advances the clips and the character over the ground by a step.
@@ -216,7 +221,7 @@ impl Character {
             animator: &self.gait.animator,
             figure: &self.figure,
             speed: self.gait.speed,
-            air: self.gait.air,
+            aloft: self.gait.is_aloft(),
             follows: self.follows_ground(),
             own: self.detail.map(|_| self.physique.hit.as_slice()),
         };
@@ -228,7 +233,7 @@ impl Character {
         if !self.is_in_world() {
             return;
         }
-        if self.gait.falls {
+        if self.gait.falls || self.is_swept_off() {
             return self.go_limp(world);
         }
         self.feel(world);
@@ -243,10 +248,42 @@ impl Character {
         if !self.is_in_world() {
             return;
         }
+        self.feel_pushes(world);
+        if self.state() == State::Limp {
+            return;
+        }
         if let Some((body, strike)) = self.physique.felt(&self.def, self.steps(), world) {
             self.events.push(CharacterEvent::Struck { body, impulse: strike.impulse.length() });
             self.be_struck(world, body, strike);
         }
+    }
+
+    /// Blasts, other impulses on its led bodies, and fields.
+    fn feel_pushes(&mut self, world: &mut World) {
+        let pushes = self.physique.pushes(world);
+        let blown = self.physique.field_impulse(world);
+        let total: Vec3 = pushes.iter().map(|(_, push)| push.impulse).sum();
+        if self.gait.mover.is_some() {
+            self.gait.blown += (total + blown) / self.def.ragdoll.total_mass;
+        }
+        let harder = |a: (usize, Push), b: (usize, Push)| {
+            if b.1.impulse.length() > a.1.impulse.length() { b } else { a }
+        };
+        let Some((body, _)) = pushes.iter().copied().reduce(harder) else { return };
+        if total.length() < self.def.in_world.feels {
+            return;
+        }
+        self.events.push(CharacterEvent::Struck { body, impulse: total.length() });
+        if self.react(world, body, total) {
+            self.physique.take_pushes(&pushes, world);
+        }
+    }
+
+    /// True if a field, such as wind, has swept it off its feet.
+    fn is_swept_off(&self) -> bool {
+        let momentum = Vec3 { y: 0.0, ..self.gait.shoved } * self.def.ragdoll.total_mass;
+        let blow = Blow { body: 0, impulse: momentum, state: self.state() };
+        momentum != Vec3::ZERO && self.gait.air == 0.0 && self.is_swept_by(blow)
     }
 
     /// Has the hit bodies go where the pose will be.
@@ -276,7 +313,10 @@ impl Character {
         let bodies = &self.scratch.after;
         self.physique.physical.pose_over(def.mapping(), &def.rig, &resting, place, bodies, pose);
         self.scratch.pose = resting;
-        if self.gait.falls || in_vain || self.is_toppled(world) {
+        if self.gait.falls || in_vain || self.is_toppled(world) || self.is_swept_off() {
+            return self.go_limp(world);
+        }
+        if self.is_pulled_over(world) {
             return self.go_limp(world);
         }
         if self.goes_on_flinching(world) {
@@ -315,6 +355,37 @@ impl Character {
         balance.go_on(on, steps, &mut self.scratch, world, &mut self.events)
     }
 
+    /// Gives way with a limb that something holds; held by the pelvis, or while it gets up, it goes limp.
+    fn mind_held(&mut self, world: &mut World) {
+        if self.physique.hit.is_empty() || self.physique.ragdoll.is_some() {
+            return;
+        }
+        let Some(body) = self.grips.gripped(&self.physique, world) else { return };
+        let gives_way = body > 0 && self.state() == State::Animated;
+        if !(gives_way && self.flinch(world, body, Vec3::ZERO)) {
+            self.go_limp(world);
+        }
+    }
+
+    /// Follows a held limb; true if that is pulled too far from its clip.
+    fn is_pulled_over(&mut self, world: &World) -> bool {
+        if !matches!(self.activity, Activity::Flinching(_)) {
+            return false;
+        }
+        let Some(body) = self.grips.gripped(&self.physique, world) else { return false };
+        let mut clip = core::mem::take(&mut self.scratch.wanted);
+        clip.clear();
+        clip.extend(self.gait.animator.pose().iter());
+        let mut bodies = core::mem::take(&mut self.scratch.before);
+        self.scratch.bodies_of(&self.def, &clip, self.figure.place, &mut bodies);
+        let held = self.physique.limp().bodies[body];
+        let off = world.transform(held).translation - bodies[body].translation;
+        (self.scratch.wanted, self.scratch.before) = (clip, bodies);
+        let height = self.def.ragdoll.height;
+        self.gait.follow_pull(off, world.velocity(held).linear, height);
+        off.length() > PULL_FELLS * height
+    }
+
     fn is_toppled(&mut self, world: &World) -> bool {
         let (animator, place) = (&self.gait.animator, self.figure.place);
         matches!(self.activity, Activity::Powered(_))
@@ -350,16 +421,21 @@ impl Character {
         if self.mind_grips(world) {
             return;
         }
-        let gets_up = self.def.after_settling == AfterSettling::GetUp && self.physique.may_get_up(&self.def);
+        let gets_up = self.after_settling == AfterSettling::GetUp && self.physique.may_get_up(&self.def);
+        let is_down = self.lies_on_ground(world);
         let Activity::Limp(Lying { stillness: still, .. }) = &mut self.activity else { return };
         let impatient = !still.settled && still.steps as f32 * dt >= self.def.patience;
-        if gets_up && (still.settled || impatient) {
-            if impatient {
-                self.events.push(CharacterEvent::NeverSettled);
-                still.settled = true;
-            }
-            self.prepare(world);
+        if !gets_up || !(still.settled || impatient) {
+            return;
         }
+        if !is_down {
+            return still.wait(dt);
+        }
+        if impatient {
+            self.events.push(CharacterEvent::NeverSettled);
+            still.settled = true;
+        }
+        self.prepare(world);
     }
 
     /// True while something holds it: movers then pass through it, so that it does not block whoever drags it.
@@ -381,7 +457,8 @@ impl Character {
     /// A step of preparing; gets up when the body lies as the clip begins, or time is up.
     fn go_preparing(&mut self, world: &mut World) {
         self.follow_bodies(world);
-        if self.grips.is_gripped(&self.physique, world) {
+        let stays = self.after_settling == AfterSettling::StayDown || !self.lies_on_ground(world);
+        if stays || self.grips.is_gripped(&self.physique, world) {
             return self.go_limp(world);
         }
         let Activity::Preparing(preparing) = &mut self.activity else { return };
@@ -402,9 +479,18 @@ impl Character {
         prepare::draw(&def, &choice, &mut self.physique, &mut self.scratch, world);
     }
 
-    /// Takes the pose from the bodies, except for joints without one.
+    /// True if ground is under its pelvis, or the static world bears it: one that is carried does not get up. Outside of
+    /// a world: always.
+    fn lies_on_ground(&self, world: &World) -> bool {
+        !self.is_in_world() || ground::bears(&self.def.ragdoll, self.physique.own(), world)
+    }
+
+    /// Takes place and pose from the bodies, except for joints without one.
     fn follow_bodies(&mut self, world: &World) {
         self.figure.keep_earlier();
+        if self.is_in_world() {
+            self.physique.take_along(&mut self.figure.place, world, &mut self.scratch);
+        }
         let animator = &mut self.gait.animator;
         animator.update(self.def.set(), world.def().dt());
         self.physique.pose(&self.def, &mut self.figure, world, &mut self.scratch);

@@ -14,7 +14,7 @@ use super::physique::Physique;
 use super::prepare::Preparing;
 use super::stumble::{Balance, Stumble};
 use super::tread::{Tread, Treads};
-use super::{Character, CharacterDef, CharacterEvent, State};
+use super::{AfterSettling, Character, CharacterDef, CharacterEvent, State};
 use crate::garments::Worn;
 use crate::ragdoll::Ragdoll;
 use crate::springs::SpringSwing;
@@ -23,7 +23,7 @@ use sinew_math::{ReadError, Reader, Vec3, Writer};
 use sinew_physics::{BodyId, JointId, MoverId, Velocity};
 
 /// First bytes; the last is the version.
-const MAGIC: &[u8; 8] = b"sinew-c\x07";
+const MAGIC: &[u8; 8] = b"sinew-c\x08";
 /// Flag of a held body: a pulling grip follows.
 const GRASPS: u8 = 2;
 /// Bytes of an unreported event.
@@ -38,6 +38,7 @@ impl Character {
     pub fn save(&self, w: &mut Writer) {
         w.raw(MAGIC);
         save_activity(w, &self.activity);
+        w.bool(self.after_settling == AfterSettling::GetUp);
         w.u8(self.detail.map_or(u8::MAX, |detail| detail as u8));
         self.gait.save(w, &self.def);
         w.transform(self.figure.place);
@@ -80,6 +81,7 @@ impl Character {
         let (joints, count) = (def.rig.joints.len(), def.ragdoll.bodies.len());
         let mut loaded = self.clone();
         loaded.activity = load_activity(&def, r)?;
+        loaded.after_settling = if r.bool()? { AfterSettling::GetUp } else { AfterSettling::StayDown };
         loaded.detail = load_detail(r)?;
         loaded.gait = Gait::load(&def, r)?;
         let place = r.transform()?;
@@ -227,6 +229,7 @@ impl Treads {
             w.bool(stands);
         }
         w.f32(self.level);
+        w.bool(self.aloft);
     }
 
     fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
@@ -235,7 +238,7 @@ impl Treads {
             let (points, floor) = ([r.vec3()?, r.vec3()?], r.vec3()?);
             Ok(Tread { offset, home, slip, points, floor, ground: r.f32()?, stands: r.bool()? })
         };
-        Ok(Self { feet: [foot()?, foot()?], level: r.f32()? })
+        Ok(Self { feet: [foot()?, foot()?], level: r.f32()?, aloft: r.bool()? })
     }
 }
 
@@ -263,6 +266,7 @@ impl Gait {
         }
         w.vec3(self.velocity);
         w.vec3(self.beside);
+        w.vec3(self.shoved);
         [self.yaw, self.speed, self.climbing, self.pace, self.air].into_iter().for_each(|x| w.f32(x));
         w.bool(self.falls);
     }
@@ -274,10 +278,27 @@ impl Gait {
             Ok::<Option<Vec3>, ReadError>(if r.bool()? { Some(r.vec3()?) } else { r.vec3().map(|_| None)? })
         };
         let (wish, facing) = (wish()?, wish()?);
-        let (velocity, beside) = (r.vec3()?, r.vec3()?);
+        let (velocity, beside, shoved) = (r.vec3()?, r.vec3()?, r.vec3()?);
         let [yaw, speed, climbing, pace, air] = [r.f32()?, r.f32()?, r.f32()?, r.f32()?, r.f32()?];
         let falls = r.bool()?;
-        Ok(Self { animator, mover, wish, facing, yaw, velocity, speed, climbing, pace, air, beside, falls })
+        let (blown, pulled) = (Vec3::ZERO, Vec3::ZERO);
+        Ok(Self {
+            animator,
+            mover,
+            wish,
+            facing,
+            yaw,
+            velocity,
+            speed,
+            climbing,
+            pace,
+            air,
+            beside,
+            shoved,
+            blown,
+            pulled,
+            falls,
+        })
     }
 }
 

@@ -11,8 +11,8 @@ use super::ground;
 use super::legs::{Legs, Need};
 use crate::character::tuning::{
     FOOT_EDGE, FOOT_FLOOR, FOOT_HOME, FOOT_RANGE, FOOT_SEARCH, LANDS, LEAST_TREAD, LOOKS_AHEAD, MOST_ASTRAY,
-    OFF_GROUND, RELEASES, RISES, SMALL_WAY, SOLE_SINKS, STANCE_HEIGHT, STANCE_SPEED, STEEPEST_TREAD,
-    TOES_CLEAR, TOES_OVER, TREAD_QUICKNESS, TREAD_RANGE,
+    RELEASES, RISES, SMALL_WAY, SOLE_SINKS, STANCE_HEIGHT, STANCE_SPEED, STEEPEST_TREAD, TOES_CLEAR,
+    TOES_OVER, TREAD_QUICKNESS, TREAD_RANGE,
 };
 use sinew_anim::ik::hold_feet;
 use sinew_anim::{LocalTransform, local_to_model};
@@ -43,6 +43,8 @@ pub(super) struct Tread {
 pub(super) struct Treads {
     pub feet: [Tread; 2],
     pub level: f32,
+    /// It jumps or falls: its feet leave the ground with it.
+    pub aloft: bool,
 }
 
 /// A foot as the clips have it in a step.
@@ -98,8 +100,8 @@ impl Feet {
         let by_clips = figure.earlier.place * root_step(def, stand.animator);
         let is_new = self.treads.is_none();
         let mut treads = self.treads.unwrap_or(Treads { level, ..Treads::default() });
-        let rise = level - treads.level;
-        treads.level = level;
+        let rise = if stand.aloft { 0.0 } else { level - treads.level };
+        (treads.level, treads.aloft) = (level, stand.aloft);
         for (foot, tread) in treads.feet.iter_mut().enumerate() {
             let (points, sole) = legs.points(foot, place, model);
             if is_new {
@@ -114,8 +116,11 @@ impl Feet {
                 slip: (points[1] - by_clips.point(place.inverse_point(points[1])) - carried) * flat,
                 height: min(sole[0].y, sole[1].y) - level,
             };
-            tread.go_on(&step, def.ragdoll.height, stand.air < OFF_GROUND, dt);
-            let found = stand.found(world, tread, &step, (legs.heel, dt));
+            tread.go_on(&step, def.ragdoll.height, !stand.aloft, dt);
+            let mut found = stand.found(world, tread, &step, (legs.heel, dt));
+            if stand.aloft {
+                (found.need, found.floor) = (Need::default(), Vec3::ZERO);
+            }
             tread.home = if tread.stands { Vec3::ZERO } else { found.home };
             let planting = &mut self.planting;
             let ground = level + found.need.height;
@@ -173,7 +178,7 @@ impl Feet {
     /// Heights of the feet over the floor of a clip of a character that will be at `now`.
     pub(super) fn planting_at(&self, now: Transform, later: f32) -> super::legs::Planting {
         let mut planting = self.planting.ahead(later);
-        if let Some(treads) = self.treads.filter(|_| later > 0.0) {
+        if let Some(treads) = self.treads.filter(|treads| later > 0.0 && !treads.aloft) {
             for foot in 0..2 {
                 let tread = treads.feet[foot];
                 planting.heights[foot] += tread.floor.y * later - (now.translation.y - treads.level);

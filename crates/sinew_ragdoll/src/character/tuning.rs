@@ -261,7 +261,45 @@ pub(crate) const STRAIGHT_UP: f32 = 0.22;
 /// Larger: toes in the floor of a slope. Smaller: feet over it. Shown by the tests of `slopes`.
 pub(crate) const FOOT_SHARE: f32 = 0.15;
 
+// character/grab.rs
+
+/// Distance by which a held limb is drawn from its clip before its character follows, over body height.
+///
+/// Larger: it leans out before it steps. Smaller: it creeps after a hand that only touches. Shown by the tests of `held`.
+pub(crate) const PULL_SLACK: f32 = 0.03;
+
+/// Upward speed at which a standing character leaves the ground, m/s.
+///
+/// Larger: an updraft lifts it late, and feet stick in a jump. Smaller: its mover finds the ground again. Shown by the tests of `blown`.
+pub(crate) const LIFTS_OFF: f32 = 0.5;
+
+/// Rate at which a character follows a held limb beyond [`PULL_SLACK`], 1/s.
+///
+/// Larger: it jerks. Smaller: a slow pull fells it. Shown by the tests of `held`.
+pub(crate) const PULL_RATE: f32 = 6.0;
+
+/// Largest speed at which it follows a held limb, m/s.
+///
+/// Larger: it is dragged on its feet faster than it can walk. Smaller: a walker who holds it fells it. Shown by the tests
+/// of `held`.
+pub(crate) const PULL_SPEED: f32 = 2.0;
+
+/// Distance of a held limb from its clip at which its character falls, over body height: an arm is out of reach.
+///
+/// Larger: joints are torn. Smaller: a pull fells it at once. Shown by the tests of `held`.
+pub(crate) const PULL_FELLS: f32 = 0.3;
+
 // character/get_up.rs
+
+/// Height of a pelvis over the ground up to which a body lies on it, over body height.
+///
+/// Larger: carried bodies get up in the air. Smaller: who lies on others waits. Shown by the tests of `held`.
+pub(crate) const LIES_LOW: f32 = 0.3;
+
+/// Share of its weight that the static world bears of a body that lies over an edge or a rail, from which it gets up.
+///
+/// Larger: it stays on rails. Smaller: a carried body whose foot drags gets up. Shown by the tests of `held`.
+pub(crate) const BORNE: f32 = 0.5;
 
 /// Time in which the bodies' pose dies away in a get-up clip, seconds.
 ///
@@ -370,6 +408,17 @@ pub(crate) const MOVER_RADIUS: f32 = 0.17;
 ///
 /// Larger: speeds of the next step. Smaller: noise. Shown by the tests of `hand_over`.
 pub(crate) const HAND_OVER_TIME: f32 = 1.0 / 1000.0;
+
+/// Rate at which the place of a limp character approaches the point under its pelvis, beside moving with it, 1/s.
+///
+/// Larger: it jumps where a fall begins. Smaller: a camera looks beside the body. Shown by the tests of `held`.
+pub(crate) const PLACE_FOLLOWS: f32 = 8.0;
+
+/// Distance below which that place stays, metres: a body at rest keeps its pose.
+///
+/// Larger: it stays beside the body. Smaller: the pose of a resting body is computed in every step. Shown by the tests of
+/// `held`.
+pub(crate) const PLACE_RESTS: f32 = 1e-4;
 
 /// Time in which joints without bodies come to rest, seconds.
 ///

@@ -8,7 +8,7 @@ use crate::numbers::{Numbers, Temper};
 use sinew_anim::{LocalTransform, LoopMode, TrackDef};
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer};
 use sinew_physics::{BodyDef, BodyHit, BodyKind, Shape, Velocity};
-use sinew_ragdoll::{Character, Detail, DriveMode, Muscle, Part, Pin, Preset};
+use sinew_ragdoll::{AfterSettling, Character, Detail, DriveMode, Muscle, Part, Pin, Preset};
 
 pub const ALL: &[Deed] = &[
     Deed::new("spawn", 10, spawn),
@@ -19,6 +19,7 @@ pub const ALL: &[Deed] = &[
     Deed::new("set_preset", 10, set_preset),
     Deed::new("set_drive", 4, set_drive),
     Deed::new("return_to_clip", 2, return_to_clip),
+    Deed::new("set_after_settling", 2, set_after_settling),
     Deed::new("drives_mut", 2, drives_mut),
     Deed::new("animator_mut", 2, animator_mut),
     Deed::new("lead", 10, lead),
@@ -246,6 +247,13 @@ fn return_to_clip(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     Some(())
 }
 
+fn set_after_settling(a: &mut Actor, n: &mut Numbers) -> Option<()> {
+    let who = who(a, n)?;
+    let after = n.one_of(&[AfterSettling::GetUp, AfterSettling::StayDown]);
+    to!(a[who].set_after_settling(after));
+    Some(())
+}
+
 fn teleport(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let who = who(a, n)?;
     let at = place(n);
@@ -306,6 +314,7 @@ fn ask_character(a: &mut Actor, n: &mut Numbers) -> Option<()> {
     let (mut said, mut calls) = (String::new(), vec!["Character::clone"]);
     asked!(character, said, calls, state level_of_detail lost_joints mover bodies stumbles garments);
     asked!(character, said, calls, pose pose_without_springs world_from_character world_from_model ragdoll drives);
+    asked!(character, said, calls, after_settling);
     let held: Vec<_> = character.held().collect();
     say(&mut said, "held", &held);
     say(&mut said, "has_body", &character.has_body(body));
