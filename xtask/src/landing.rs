@@ -22,7 +22,7 @@ pub const GALLERY: [(&str, u32, &str, &str); 12] = [
         "Feet on the ground",
         "A walk made for a flat floor goes over waves by inverse kinematics.",
     ),
-    ("ragdoll_pile", 150, "A heap of ragdolls", "100 figures of 15 bodies. No joint opens or bends too far."),
+    ("ragdolls", 170, "Ragdolls in a heap", "Eight figures fall from 14 m onto boxes. No joint opens or bends too far."),
     ("street", 300, "A street", "Movers push crates, flinch and fall when hit, ride a lift and jump."),
     ("rope_bridge", 150, "Ropes", "Two limp figures fall on planks that hang on two ropes."),
     ("skirt", 150, "Skirts and capes of bones", "Chains of bones swing by springs and keep off the legs."),
@@ -32,24 +32,24 @@ pub const GALLERY: [(&str, u32, &str, &str); 12] = [
     ("retarget", 150, "Any size", "One walk on a child of 0.8 m and on a giant of 14 m."),
 ];
 
-/// Ways to use Sinew: name, page, and a command.
+/// Ways to use Sinew: name, page, one line, and commands from a clone.
 const WAYS: [(&str, &str, &str, &str); 6] = [
-    (
-        "Rust",
-        "first_ragdoll.html",
-        "A library without unsafe code in its API.",
-        "cargo add sinew --git URL-OF-THIS-REPOSITORY",
-    ),
-    ("Bevy", "bevy.html", "A plugin: entities, transforms, gizmos, events.", "bevy_sinew = { git = \"…\" }"),
+    ("Rust", "first_ragdoll.html", "The library: worlds, joints, characters, files.", "cargo add sinew --path sinew/crates/sinew"),
+    ("Bevy", "bevy.html", "A plugin: entities, transforms, gizmos, events.", "cargo add bevy_sinew --path sinew/integrations/bevy_sinew"),
     ("Blender", "blender.html", "An extension: falls become actions on your rig.", "cargo xtask blender"),
     (
         "npm and three.js",
         "three.html",
         "A package with an adapter for three.js, workers and Node.",
-        "npm install sinew-physics three",
+        "cargo xtask npm\nnpm install out/npm/sinew-physics.tgz three",
     ),
-    ("Python", "python.html", "A wheel with batches of worlds, Gymnasium and Ray.", "pip install sinew"),
-    ("C", "c.html", "One header and a library.", "#include <sinew.h>"),
+    (
+        "Python",
+        "python.html",
+        "A wheel with batches of worlds, Gymnasium and Ray.",
+        "maturin build --release -m bindings/python/Cargo.toml --out wheels\npip install wheels/*.whl",
+    ),
+    ("C", "c.html", "One header and a library.", "cargo build --release --manifest-path bindings/Cargo.toml -p sinew_c"),
 ];
 
 /// Pages about the calls of each language.

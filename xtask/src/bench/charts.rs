@@ -134,7 +134,11 @@ fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
 /// Lines at powers of ten with their names, and the titles of the axes.
 fn axes(out: &mut String, (across, xs): ([f64; 2], [f64; 2]), (up, ys): ([f64; 2], [f64; 2])) {
     let ticks = |[low, high]: [f64; 2]| (low as i32..=high as i32).map(|power| 10f64.powi(power));
-    let named = |value: f64| if value < 1.0 { format!("{value}") } else { format!("{value:.0}") };
+    let named = |value: f64| match value {
+        _ if value < 1.0 => format!("{value}"),
+        _ if value < 1e3 => format!("{value:.0}"),
+        _ => format!("{:.0}k", 1e-3 * value),
+    };
     for value in ticks(across) {
         let x = place(value, across, xs);
         let name = if value <= LEAST_GAP { format!("≤ {}", named(value)) } else { named(value) };
