@@ -1,5 +1,6 @@
 //! Time and quality of Sinew and other engines.
 
+mod charts;
 mod counts;
 mod figures;
 mod kernels;
@@ -318,6 +319,16 @@ fn file() -> PathBuf {
 fn kept() -> Results {
     let earlier = fs::read_to_string(file()).ok().and_then(|text| serde_json::from_str(&text).ok());
     Results::from_json(&earlier.unwrap_or(Value::Null))
+}
+
+/// Charts of the landing page, and the machine of the last measurement, in words.
+///
+/// # Errors
+/// If a scene of the charts was not measured.
+pub fn charts() -> Result<(String, String)> {
+    let results = kept();
+    let html = charts::charts(&results)?;
+    Ok((html, results.machine.unwrap_or_default()))
 }
 
 /// Adds the figures of another machine, at least one.

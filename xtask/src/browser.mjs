@@ -1,14 +1,16 @@
-// Tries the page of `cargo xtask web` in a headless Chromium, by the DevTools protocol: node browser.mjs FOLDER PICTURES
+// Tries the page of `cargo xtask web` in a headless Chromium, by the DevTools protocol: node browser.mjs check FOLDER PICTURES
 // CASES, where CASES is JSON: {"scenes": [[NAME, STEPS], …], "drop": [PATH of a GLB, …]}, and "ways" to draw if not all. Prints JSON: for each of the ways to draw
 // what it draws by, milliseconds to the first picture, hashes, what was dragged and dropped; errors of the console end it.
+// `pictures` in place of `check` draws those of the start page: {"gallery": [[NAME, STEPS], …]}.
 import { spawn } from 'node:child_process';
 import { createServer } from 'node:http';
 import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { basename, extname, join } from 'node:path';
+import { drawn, startPage } from './start_page.mjs';
 
-const [folder, pictures, cases] = process.argv.slice(2);
-const { scenes, drop, ways } = JSON.parse(cases);
+const [task, folder, pictures, cases] = process.argv.slice(2);
+const { scenes, drop, ways, gallery } = JSON.parse(cases);
 // Software drivers on a busy machine.
 const PATIENCE_MS = 180_000;
 const SIZE = { width: 1280, height: 760 };
@@ -18,7 +20,9 @@ const WAYS = {
   webgpu: ['--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan',
     '--use-vulkan=swiftshader', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
 };
-const KINDS = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
+const KINDS = {
+  '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm', '.jpg': 'image/jpeg', '.png': 'image/png',
+};
 
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
@@ -112,13 +116,26 @@ class Browser {
     return this.said();
   }
 
+  // Value of an expression in the page.
+  async ask(expression) {
+    const { result, exceptionDetails } = await this.send('Runtime.evaluate', { expression, awaitPromise: true, returnByValue: true });
+    if (exceptionDetails) throw new Error(`${expression}: ${JSON.stringify(exceptionDetails)}`);
+    return result.value;
+  }
+
+  size(width, height, mobile = false) {
+    return this.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile });
+  }
+
   mouse(type, x, y, buttons) {
     return this.send('Input.dispatchMouseEvent', { type, x, y, button: 'left', buttons, clickCount: 1 });
   }
 
-  async picture(name) {
-    const { data } = await this.send('Page.captureScreenshot');
-    await writeFile(join(pictures, `${name}.png`), Buffer.from(data, 'base64'));
+  // A picture of the page, or of a part of it as a JPEG.
+  async picture(name, clip) {
+    const how = clip ? { format: 'jpeg', quality: 80, clip: { ...clip, scale: 1 } } : {};
+    const { data } = await this.send('Page.captureScreenshot', how);
+    await writeFile(join(pictures, `${name}.${clip ? 'jpg' : 'png'}`), Buffer.from(data, 'base64'));
   }
 
   async end() {
@@ -163,7 +180,7 @@ async function dropped(browser, url, path) {
 async function chapter(browser, url) {
   const address = new URL('chapter-1.html', url);
   address.search = new URL(url).search;
-  const ask = async (expression) => (await browser.send('Runtime.evaluate', { expression })).result.value;
+  const ask = (expression) => browser.ask(expression);
   await browser.send('Page.navigate', { url: String(address) });
   const button = "document.querySelector('button[data-scene]')";
   await browser.until('a chapter', () => ask(`document.readyState === 'complete' && ${button}?.dataset.scene`));
@@ -176,8 +193,9 @@ async function chapter(browser, url) {
   return scene;
 }
 
-async function tried(way, url) {
+async function tried(way, site) {
   const browser = await Browser.start(WAYS[way]);
+  const url = `${site}viewer.html?gpu=${way}`;
   try {
     const { ready } = await browser.open(url);
     const by = await browser.line('drawn by');
@@ -196,18 +214,23 @@ async function tried(way, url) {
     for (const path of drop) shown.push(await dropped(browser, url, path));
     const run = await chapter(browser, url);
     await browser.picture(`${way}-chapter`);
+    const start = await startPage(browser, way, site, drop);
     if (browser.errors.length) throw new Error(browser.errors.join('\n'));
-    return { by, ready_ms: Number(ready), ready_again_ms: Number(again), hashes, held, dropped: shown, chapter: run };
+    return { by, ready_ms: Number(ready), ready_again_ms: Number(again), hashes, held, dropped: shown, chapter: run, start };
   } finally {
     await browser.end();
   }
 }
 
 const server = await serve();
+const site = `http://127.0.0.1:${server.address().port}/`;
 const outcome = {};
 try {
-  for (const way of ways ?? Object.keys(WAYS)) {
-    outcome[way] = await tried(way, `http://127.0.0.1:${server.address().port}/?gpu=${way}`);
+  if (task === 'pictures') {
+    const browser = await Browser.start(WAYS.webgl2);
+    await drawn(browser, site, gallery).finally(() => browser.end());
+  } else {
+    for (const way of ways ?? Object.keys(WAYS)) outcome[way] = await tried(way, site);
   }
   console.log(JSON.stringify(outcome, null, 1));
 } catch (error) {

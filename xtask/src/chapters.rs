@@ -2,13 +2,16 @@
 //!
 //! The text is the guide's own; pictures of scenes become what runs at a click, and pages that a chapter links to lie beside it.
 
+use crate::formulas;
 use anyhow::{Context, Result, bail, ensure};
-use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd};
+use pulldown_cmark::{CodeBlockKind, CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd};
 use std::fs;
 use std::path::Path;
 
 /// Text of the book.
 const BOOK: &str = "docs/guide/src/book.md";
+/// Folder of the scenes.
+const SCENES: &str = "crates/sinew_scenes/src/scenes";
 /// Folder of the book, of the pages that it links to, and of its pictures.
 const GUIDE: &str = "docs/guide/src";
 
@@ -21,22 +24,22 @@ struct Chapter<'a> {
 /// Contents of pages as they are made: what they show and lead to.
 #[derive(Default)]
 struct Site {
+    /// Sources of all scenes; none in tests.
+    sources: String,
     /// Scenes whose pictures are shown.
     scenes: Vec<String>,
-    /// Pages of the guide that are linked to, by file name without its ending.
-    pages: Vec<String>,
 }
 
-/// Writes a page for each chapter and one with their titles into the folder of the viewer's page; returns the number of chapters, and that of scenes.
+/// Writes a page for each chapter and one with their titles into the folder of the viewer's page; returns the titles of the chapters as HTML, and the number of scenes.
 ///
 /// # Errors
 /// If the book is not there or has no chapters, or if one of its pictures, links or chapters would be lost.
-pub fn write(root: &Path, folder: &Path) -> Result<(usize, usize)> {
+pub fn write(root: &Path, folder: &Path) -> Result<(Vec<String>, usize)> {
     let book = fs::read_to_string(root.join(BOOK)).context(BOOK)?;
     let chapters = chapters(&book);
     ensure!(!chapters.is_empty(), "{BOOK} has no chapters");
     let titles: Vec<String> = chapters.iter().map(|chapter| html(chapter.title.clone())).collect();
-    let mut site = Site::default();
+    let mut site = Site { sources: sources(root)?, ..Site::default() };
     for (number, chapter) in chapters.into_iter().enumerate() {
         let links = links(&titles, Some(number));
         let text = site.html(chapter.text).with_context(|| format!("{BOOK}, chapter {}", number + 1))?;
@@ -52,23 +55,21 @@ pub fn write(root: &Path, folder: &Path) -> Result<(usize, usize)> {
         let from = root.join(GUIDE).join("book").join(&picture);
         fs::copy(&from, pictures.join(&picture)).with_context(|| from.display().to_string())?;
     }
-    for name in &site.pages {
-        let text = guide_page(root, name)?;
-        let body =
-            format!("<nav><a href=\"book.html\">The book</a></nav>\n{}", html(without_links(events(&text))));
-        fs::write(folder.join(format!("{name}.html")), page(name, &body))?;
-    }
     let body = format!(
         "<h1>The book's experiments</h1>\n<p>Each chapter with its scenes beside the formulas: a click on a picture runs it. \
-         <a href=\"index.html\">All scenes</a> are in the viewer.</p>\n<ul>{}</ul>",
-        links(&titles, None)
+         <a href=\"viewer.html\">All scenes</a> are in the viewer; <a href=\"index.html\">the start page</a> has the demo.</p>\n<ul>{}</ul>",
+        list(&titles, None)
     );
     fs::write(folder.join("book.html"), page("The book's experiments", &body))?;
-    Ok((titles.len(), site.scenes.len()))
+    let scenes = site.scenes.len();
+    Ok((titles, scenes))
 }
 
 /// Text of a page of the guide, with what it includes.
-fn guide_page(root: &Path, name: &str) -> Result<String> {
+///
+/// # Errors
+/// If it or what it includes cannot be read.
+pub fn guide_page(root: &Path, name: &str) -> Result<String> {
     let path = root.join(GUIDE).join(format!("{name}.md"));
     let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
     let Some((before, rest)) = text.split_once("{{#include ") else { return Ok(text) };
@@ -83,8 +84,16 @@ fn file(number: usize) -> String {
     format!("chapter-{}.html", number + 1)
 }
 
-/// Links to all chapters, but for the one that is shown.
+/// Links to all chapters, but for the one that is shown, with one to the start.
 fn links(titles: &[String], shown: Option<usize>) -> String {
+    format!(
+        "<a href=\"index.html\">Start</a> · <a href=\"viewer.html\">Viewer</a><ol>{}</ol>",
+        list(titles, shown)
+    )
+}
+
+/// Chapters as items of a list, with links but for the one that is shown.
+pub fn list(titles: &[String], shown: Option<usize>) -> String {
     let link = |(number, title): (usize, &String)| {
         if shown == Some(number) {
             format!("<li><b>{title}</b></li>")
@@ -92,12 +101,43 @@ fn links(titles: &[String], shown: Option<usize>) -> String {
             format!("<li><a href=\"{}\">{title}</a></li>", file(number))
         }
     };
-    let list: Vec<String> = titles.iter().enumerate().map(link).collect();
-    if shown.is_some() {
-        format!("<a href=\"index.html\">Viewer</a><ol>{}</ol>", list.concat())
-    } else {
-        list.concat()
+    titles.iter().enumerate().map(link).collect()
+}
+
+/// Sources of the scenes, one after the other.
+///
+/// # Errors
+/// If they cannot be read.
+pub fn sources(root: &Path) -> Result<String> {
+    fn collect(folder: &Path, text: &mut String) -> Result<()> {
+        for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
+            let path = entry?.path();
+            if path.is_dir() { collect(&path, text)? } else { *text += &fs::read_to_string(&path)? }
+        }
+        Ok(())
     }
+    let mut text = String::new();
+    collect(&root.join(SCENES), &mut text)?;
+    Ok(text)
+}
+
+/// The line that a scene has for people.
+///
+/// # Errors
+/// If there is no such scene.
+pub fn about(root: &Path, scene: &str) -> Result<String> {
+    about_in(&sources(root)?, scene)
+}
+
+fn about_in(sources: &str, scene: &str) -> Result<String> {
+    let after = sources.split_once(&format!("name: \"{scene}\",")).map(|(_, after)| after);
+    let line = after.and_then(|after| after.split_once("about: \"")?.1.split_once("\","));
+    Ok(line.with_context(|| format!("the scene {scene} has no line for people"))?.0.to_owned())
+}
+
+/// Text within HTML.
+pub fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 fn events(text: &str) -> Vec<Event<'_>> {
@@ -136,25 +176,112 @@ fn plain(html: &str) -> String {
     html.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text)).collect()
 }
 
-/// Text whose links are words: of a page that a chapter leads to, whose own links lead into the repository.
-fn without_links(events: Vec<Event<'_>>) -> Vec<Event<'_>> {
-    let is_link = |event: &Event<'_>| matches!(event, Event::Start(Tag::Link { dest_url, .. }) if !dest_url.starts_with("https://"));
-    let mut is_open = Vec::new();
-    let mut kept = Vec::with_capacity(events.len());
-    for event in events {
-        let is_left_out = match &event {
-            Event::Start(Tag::Link { .. }) => {
-                is_open.push(is_link(&event));
-                is_link(&event)
+/// Formulas among the code as MathML.
+fn typeset(events: Vec<Event<'_>>) -> Vec<Event<'_>> {
+    let mut out: Vec<Event<'_>> = Vec::with_capacity(events.len());
+    let mut events = events.into_iter().peekable();
+    while let Some(event) = events.next() {
+        match &event {
+            Event::Code(code) => match formulas::mathml(code, false) {
+                Some(math) => out.push(Event::InlineHtml(math.into())),
+                None => out.push(event),
+            },
+            Event::Start(Tag::CodeBlock(CodeBlockKind::Fenced(kind))) if &**kind == "text" => {
+                let math = match events.peek() {
+                    Some(Event::Text(text)) => formulas::mathml(text, true),
+                    _ => None,
+                };
+                let Some(math) = math else {
+                    out.push(event);
+                    continue;
+                };
+                // The text and the end of the block.
+                events.by_ref().take(2).for_each(drop);
+                out.push(Event::Html(format!("{math}\n").into()));
             }
-            Event::End(TagEnd::Link) => is_open.pop() == Some(true),
-            _ => false,
-        };
-        if !is_left_out {
-            kept.push(event);
+            _ => out.push(event),
         }
     }
-    kept
+    out
+}
+
+/// Files of texts by the names of their sources, for links between them.
+#[derive(Default)]
+pub struct Pages(Vec<(String, String)>);
+
+impl Pages {
+    /// The text of a source's name has a page in that file.
+    pub fn add(&mut self, source: &str, file: &str) {
+        self.0.push((source.to_owned(), file.to_owned()));
+    }
+
+    /// Text from a folder of the repository as HTML. Links to other pages lead there, others into the repository become words; pictures
+    /// are copied.
+    ///
+    /// # Errors
+    /// If a picture is missing.
+    pub fn html(&self, root: &Path, folder: &Path, text: &str, place: &str) -> Result<String> {
+        let mut is_open = Vec::new();
+        let mut kept = Vec::new();
+        for event in events(&without_hidden(text)) {
+            match event {
+                Event::Start(Tag::Link { link_type, dest_url, title, id }) => {
+                    let to = self.link(&dest_url);
+                    is_open.push(to.is_some());
+                    let dest_url = CowStr::from(to.unwrap_or_default());
+                    if is_open.last() == Some(&true) {
+                        kept.push(Event::Start(Tag::Link { link_type, dest_url, title, id }).into_static());
+                    }
+                }
+                Event::End(TagEnd::Link) => {
+                    if is_open.pop() == Some(true) {
+                        kept.push(event.into_static());
+                    }
+                }
+                Event::Start(Tag::Image { link_type, dest_url, title, id }) if !dest_url.contains(':') => {
+                    let from = root.join(place).join(&*dest_url);
+                    let name = dest_url.rsplit('/').next().unwrap_or_default().to_owned();
+                    fs::create_dir_all(folder.join("pictures"))?;
+                    let to = folder.join("pictures").join(&name);
+                    fs::copy(&from, to).with_context(|| from.display().to_string())?;
+                    let dest_url = CowStr::from(format!("pictures/{name}"));
+                    kept.push(Event::Start(Tag::Image { link_type, dest_url, title, id }).into_static());
+                }
+                event => kept.push(event.into_static()),
+            }
+        }
+        Ok(html(kept))
+    }
+
+    /// Address of a page that a link of a text means.
+    fn link(&self, address: &str) -> Option<String> {
+        if address.starts_with("https://") || address.starts_with('#') {
+            return Some(address.to_owned());
+        }
+        let (path, anchor) =
+            address.split_once('#').map_or((address, None), |(path, anchor)| (path, Some(anchor)));
+        let name = path.rsplit('/').next().unwrap_or(path);
+        let (_, file) = self.0.iter().find(|(source, _)| source == name)?;
+        Some(anchor.map_or_else(|| file.clone(), |anchor| format!("{file}#{anchor}")))
+    }
+}
+
+/// Text without the lines of Rust that only its tests need.
+fn without_hidden(text: &str) -> String {
+    let mut is_rust = false;
+    let mut is_code = false;
+    let mut out = String::with_capacity(text.len());
+    for line in text.lines() {
+        if let Some(kind) = line.trim_start().strip_prefix("```") {
+            is_rust = !is_code && kind.starts_with("rust");
+            is_code = !is_code;
+        } else if is_rust && is_code && (line.trim() == "#" || line.trim_start().starts_with("# ")) {
+            continue;
+        }
+        out += line;
+        out.push('\n');
+    }
+    out
 }
 
 impl Site {
@@ -165,7 +292,7 @@ impl Site {
     fn html(&mut self, events: Vec<Event<'_>>) -> Result<String> {
         let mut out: Vec<Event<'_>> = Vec::with_capacity(events.len());
         let mut in_picture = false;
-        for event in events {
+        for event in typeset(events) {
             match event {
                 Event::Start(Tag::Image { dest_url, .. }) => {
                     let scene = dest_url.strip_prefix("book/").and_then(|file| file.strip_suffix(".png"));
@@ -174,7 +301,9 @@ impl Site {
                     let begins = matches!(out.last(), Some(Event::Start(Tag::Paragraph)));
                     ensure!(begins, "the picture {dest_url} stands within a paragraph");
                     out.pop();
-                    out.push(Event::Html(figure(scene).into()));
+                    let about = about_in(&self.sources, scene).unwrap_or_default();
+                    ensure!(self.sources.is_empty() || !about.is_empty(), "there is no scene {scene}");
+                    out.push(Event::Html(figure(scene, &about).into()));
                     self.scenes.push(scene.to_owned());
                     in_picture = true;
                 }
@@ -192,7 +321,7 @@ impl Site {
     }
 
     /// Address of what a link of the guide leads to.
-    fn link(&mut self, address: &str) -> Result<String> {
+    fn link(&self, address: &str) -> Result<String> {
         if address.starts_with("https://") {
             return Ok(address.to_owned());
         }
@@ -200,22 +329,22 @@ impl Site {
         let Some(name) = file.strip_suffix(".md").filter(|name| !name.contains('/')) else {
             bail!("the link to {address} leads nowhere in the pages of the book");
         };
-        if !self.pages.iter().any(|known| known == name) {
-            self.pages.push(name.to_owned());
-        }
         Ok(if anchor.is_empty() { format!("{name}.html") } else { format!("{name}.html#{anchor}") })
     }
 }
 
-/// Picture of a scene that runs at a click.
-fn figure(scene: &str) -> String {
+/// Picture of a scene that runs at a click, with the scene's line for people.
+fn figure(scene: &str, about: &str) -> String {
+    let about = escaped(about);
     format!(
-        "<figure><button data-scene=\"{scene}\" title=\"run it here\"><img src=\"book/{scene}.png\" alt=\"Picture of the scene {scene}\" \
-         loading=\"lazy\"><span>Run {scene} here</span></button></figure>\n"
+        "<figure class=\"run\"><button data-scene=\"{scene}\" title=\"Run it here\"><img src=\"book/{scene}.png\" width=\"560\" height=\"315\" \
+         alt=\"{scene}: {about}\" loading=\"lazy\"><span>Run {scene} here</span></button></figure>\n"
     )
 }
 
-fn page(title: &str, body: &str) -> String {
+/// A page of text.
+pub fn page(title: &str, body: &str) -> String {
+    let title = escaped(title);
     format!(
         r#"<!doctype html>
 <html lang="en">
@@ -223,20 +352,16 @@ fn page(title: &str, body: &str) -> String {
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta http-equiv="Content-Security-Policy" content="default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:">
-<title>{title}</title>
+<title>{title} · Sinew</title>
+<meta name="description" content="{title}: a page about Sinew, a physics engine for characters.">
 <link rel="icon" href="data:,">
-<style>
-  body {{ margin: 0 auto; max-width: 900px; padding: 1em; background: #1b1e24; color: #e1e5eb; font: 16px/1.55 system-ui, sans-serif; }}
-  a {{ color: #58a6ff; }} code {{ background: #14161b; padding: 0 .25em; border-radius: 3px; }} pre {{ background: #14161b; padding: 1em; overflow: auto; }}
-  nav {{ font-size: 14px; }} nav ol {{ columns: 2; padding-left: 1.2em; list-style: none; }}
-  table {{ border-collapse: collapse; margin: 1em 0; }} th, td {{ border: 1px solid #3a404b; padding: .25em .7em; text-align: left; }}
-  figure {{ margin: 1em 0; }} figure button {{ border: 0; padding: 0; background: none; color: #58a6ff; cursor: pointer; font: inherit; }}
-  figure img {{ display: block; max-width: 100%; }} iframe {{ width: 100%; height: 520px; border: 1px solid #3a404b; }}
-</style>
+<link rel="stylesheet" href="page.css">
 <script type="module" src="chapter.js"></script>
 </head>
 <body>
+<main class="text">
 {body}
+</main>
 </body>
 </html>
 "#
@@ -268,7 +393,7 @@ mod tests {
         );
         assert!(page.contains("<td>1</td><td>2</td>"), "{page}");
         assert!(!page.contains("<p><figure>"), "{page}");
-        assert_eq!((site.scenes, site.pages), (vec!["two_men".to_owned()], vec!["there".to_owned()]));
+        assert_eq!(site.scenes, ["two_men"]);
     }
 
     #[test]
@@ -278,6 +403,25 @@ mod tests {
         }
     }
 
+    #[test]
+    fn formulas_are_typeset_and_code_is_not() {
+        let text = "So `a = F/m` by `World::step`.\n\n```text\nT = 4π √(r/g) = 2.00607 s.\n```\n\n```text\nplain text\n```\n";
+        let page = Site::default().html(events(text)).expect("a page");
+        assert!(page.contains("<math><mi>a</mi>") && page.contains("<code>World::step</code>"), "{page}");
+        assert!(page.contains("<math display=\"block\"><mi>T</mi>") && page.contains("plain text"), "{page}");
+    }
+
+    #[test]
+    fn links_of_a_guide_lead_to_its_pages() {
+        let mut pages = super::Pages::default();
+        pages.add("joints.md", "joints.html");
+        let text = "See [joints](../guide/src/joints.md#limits), [code](../src/lib.rs).\n\n```rust\n# hidden\nlet x = 1;\n```\n";
+        let here = command::root();
+        let html = pages.html(&here, &here, text, "").expect("a page");
+        assert!(html.contains("<a href=\"joints.html#limits\">joints</a>, code."), "{html}");
+        assert!(html.contains("let x = 1;") && !html.contains("hidden"), "{html}");
+    }
+
     /// Nothing of the book itself is lost: every heading is a chapter, every picture a button.
     #[test]
     fn the_whole_book_is_written() {
@@ -285,7 +429,7 @@ mod tests {
         std::fs::create_dir_all(&folder).expect("a folder");
         let (written, scenes) = super::write(&command::root(), &folder).expect("the book");
         let book = std::fs::read_to_string(command::root().join(super::BOOK)).expect("the book");
-        assert_eq!(written, book.lines().filter(|line| line.starts_with("## ")).count());
+        assert_eq!(written.len(), book.lines().filter(|line| line.starts_with("## ")).count());
         assert_eq!(scenes, book.lines().filter(|line| line.starts_with("![")).count());
     }
 }

@@ -3,7 +3,7 @@
 use crate::command;
 use crate::ragdolls;
 use crate::targets;
-use crate::web;
+use crate::web::{self, copy};
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::{Value, json};
 use std::fs;
@@ -125,16 +125,6 @@ fn types(package: &Path, tools: &Path) -> Result<()> {
     fs::copy(command::root().join(TESTS).join("tsconfig.json"), tools.join("tsconfig.json"))?;
     let mut compiler = Command::new(tools.join("node_modules/.bin/tsc"));
     command::run(compiler.arg("--project").arg(tools).arg("--outDir").arg(package))
-}
-
-fn copy(from: &Path, to: &Path) -> Result<()> {
-    fs::create_dir_all(to).with_context(|| to.display().to_string())?;
-    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
-        let entry = entry?;
-        let (from, to) = (entry.path(), to.join(entry.file_name()));
-        if from.is_dir() { copy(&from, &to)? } else { _ = fs::copy(from, to)? }
-    }
-    Ok(())
 }
 
 /// Hashes and times of the native library for the same scenes; `flags` are the compiler's.

@@ -1,6 +1,7 @@
 //! The viewer as a page: a folder of static files, and its trial in a browser.
 
 use crate::command::{self, cargo};
+use crate::landing::{self, Facts};
 use crate::{chapters, golden, ragdolls, targets};
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::{Value, json};
@@ -10,10 +11,24 @@ use std::process::{Command, Stdio};
 
 /// Folder of the files around the program.
 const PAGE: &str = "crates/sinew_viewer/page";
-/// Most bytes of the folder, compressed as servers do.
+/// Files of the start page that are copied as they are.
+const COPIED: [&str; 4] = ["page.js", "page.css", "chapter.js", "poster.jpg"];
+/// What the start page loads with its first picture.
+const LOADED: [&str; 6] = ["index.html", "page.js", "page.css", "poster.jpg", "sinew.js", "sinew_bg.wasm"];
+/// Crates whose calls have a reference on the page.
+const API: [&str; 7] = [
+    "sinew",
+    "sinew_math",
+    "sinew_geometry",
+    "sinew_physics",
+    "sinew_anim",
+    "sinew_ragdoll",
+    "sinew_formats",
+];
+/// Most bytes of what the start page loads, compressed as servers do.
 const MOST_BYTES: u64 = 6_000_000;
 /// Most milliseconds to the first picture on the loopback, once the browser has compiled it before.
-const MOST_MS: u64 = 2_000;
+const MOST_MS: u64 = 1_500;
 /// Scenes whose hashes are compared: bodies on a floor, joints and a character's skin, a rope.
 const SCENES: [&str; 3] = ["stack", "stairs", "rope_on_box"];
 /// Dropped on the page where the shared rigs are there.
@@ -25,9 +40,15 @@ pub struct Web {
     /// Folder to write
     #[arg(long, default_value = "out/web")]
     out: PathBuf,
-    /// Tries it in headless Chromium as well: hashes of three scenes, a drag, a dropped character, the time that it takes
+    /// Address at which it will stand, `https://…/`, for previews of the page
+    #[arg(long, default_value = "")]
+    address: String,
+    /// Tries it in headless Chromium as well: hashes of three scenes, a drag, a dropped character, the demo in five sizes, the time that it takes
     #[arg(long)]
     check: bool,
+    /// Draws the start page's pictures anew, into its sources
+    #[arg(long)]
+    pictures: bool,
 }
 
 impl Web {
@@ -35,7 +56,10 @@ impl Web {
     /// If the page does not compile, is too large, or fails its trial.
     pub fn run(&self) -> Result<()> {
         let folder = command::root().join(&self.out);
-        build(&folder)?;
+        build(&folder, &self.address)?;
+        if self.pictures {
+            draw(&folder)?;
+        }
         if self.check { tried(&folder) } else { Ok(()) }
     }
 }
@@ -45,10 +69,10 @@ impl Web {
 /// # Errors
 /// As [`Web::run`].
 pub fn check() -> Result<()> {
-    Web { out: "out/web".into(), check: true }.run()
+    Web { out: "out/web".into(), address: String::new(), check: true, pictures: false }.run()
 }
 
-fn build(folder: &Path) -> Result<()> {
+fn build(folder: &Path, address: &str) -> Result<()> {
     targets::add(targets::BROWSER)?;
     let binder = binder()?;
     let mut rustc = cargo(&["rustc", "--package", "sinew_viewer", "--lib", "--crate-type", "cdylib"]);
@@ -62,18 +86,57 @@ fn build(folder: &Path) -> Result<()> {
     let mut bind = Command::new(binder);
     bind.args(["--target", "web", "--no-typescript", "--remove-name-section", "--remove-producers-section"]);
     command::run(bind.args(["--out-name", "sinew", "--out-dir"]).arg(folder).arg(program))?;
-    let page = command::root().join(PAGE);
-    for file in ["index.html", "page.js", "chapter.js"] {
-        fs::copy(page.join(file), folder.join(file)).with_context(|| file.to_owned())?;
+    let root = command::root();
+    for file in COPIED {
+        fs::copy(root.join(PAGE).join(file), folder.join(file)).with_context(|| file.to_owned())?;
     }
-    let (chapters, scenes) = chapters::write(&command::root(), folder)?;
-    let bytes = compressed(folder)?;
+    let (chapters, scenes) = chapters::write(&root, folder)?;
+    let bytes = fs::metadata(folder.join("sinew_bg.wasm")).context("sinew_bg.wasm")?.len();
+    let source = source();
+    let facts = Facts { address, bytes, source: source.as_deref(), chapters: &chapters };
+    landing::write(&root, folder, &facts)?;
+    // reference(folder)?;
+    let bytes = LOADED.iter().map(|file| gzipped(&folder.join(file))).sum::<Result<u64>>()?;
     eprintln!(
-        "{}: {:.2} MB compressed, {chapters} chapters of the book with {scenes} scenes",
+        "{}: the start page loads {:.2} MB compressed; {} chapters of the book with {scenes} scenes",
         folder.display(),
-        bytes as f64 * 1e-6
+        bytes as f64 * 1e-6,
+        chapters.len()
     );
     ensure!(bytes < MOST_BYTES, "the page is larger than {MOST_BYTES} bytes");
+    Ok(())
+}
+
+/// Address of the source, where the repository has one that all can read.
+fn source() -> Option<String> {
+    let mut git = Command::new("git");
+    let address =
+        command::output(git.args(["config", "--get", "remote.origin.url"]).current_dir(command::root())).ok()?;
+    let address = address.trim().trim_end_matches(".git");
+    // An address with a name or a secret in it is nobody else's.
+    (address.starts_with("https://") && !address.contains('@')).then(|| address.to_owned())
+}
+
+/// The reference of the libraries, by rustdoc.
+fn reference(folder: &Path) -> Result<()> {
+    let mut doc = cargo(&["doc", "--no-deps", "--lib"]);
+    for name in API {
+        doc.args(["--package", name]);
+    }
+    // Other documentation lies in the usual folder.
+    let target = command::target().join("web-doc");
+    command::run(doc.arg("--target-dir").arg(&target))?;
+    copy(&target.join("doc"), &folder.join("api"))
+}
+
+/// Copies a folder with all in it.
+pub fn copy(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to).with_context(|| to.display().to_string())?;
+    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
+        let entry = entry?;
+        let (from, to) = (entry.path(), to.join(entry.file_name()));
+        if from.is_dir() { copy(&from, &to)? } else { _ = fs::copy(from, to)? }
+    }
     Ok(())
 }
 
@@ -93,20 +156,6 @@ pub fn binder() -> Result<PathBuf> {
     Ok(program)
 }
 
-/// Bytes of the files that lie in a folder, each compressed by itself.
-fn compressed(folder: &Path) -> Result<u64> {
-    let mut bytes = 0;
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.is_dir() {
-            // Pictures, each fetched by its chapter alone.
-            continue;
-        }
-        bytes += gzipped(&path)?;
-    }
-    Ok(bytes)
-}
-
 /// Bytes of a file after gzip.
 pub fn gzipped(path: &Path) -> Result<u64> {
     let out = Command::new("gzip").args(["-9", "-c"]).arg(path).output().context("gzip")?;
@@ -114,10 +163,29 @@ pub fn gzipped(path: &Path) -> Result<u64> {
     Ok(out.stdout.len() as u64)
 }
 
-/// Opens the page in a browser, by WebGL2 and by WebGPU.
-fn tried(folder: &Path) -> Result<()> {
+/// Draws the pictures of the start page anew: the demo's first frame, and the scenes of the gallery.
+fn draw(folder: &Path) -> Result<()> {
+    let gallery: Vec<Value> =
+        landing::GALLERY.iter().map(|(scene, steps, ..)| json!([scene, steps])).collect();
+    let pictures = command::root().join(PAGE);
+    fs::create_dir_all(pictures.join("gallery"))?;
+    browser("pictures", folder, &pictures, &json!({"gallery": gallery}))?;
+    fs::copy(pictures.join("poster.jpg"), folder.join("poster.jpg"))?;
+    copy(&pictures.join("gallery"), &folder.join("gallery"))
+}
+
+/// Runs the script in a browser; returns what it tells.
+fn browser(task: &str, folder: &Path, pictures: &Path, cases: &Value) -> Result<Value> {
     command::provide("chromium", "chromium")?;
     command::provide("node", "nodejs")?;
+    let mut node = Command::new("node");
+    node.args(["--no-warnings", "--experimental-websocket"]);
+    node.arg(command::root().join("xtask/src/browser.mjs")).args([task.as_ref(), folder, pictures]);
+    command::output_json(node.arg(cases.to_string()).stderr(Stdio::inherit()))
+}
+
+/// Opens the page in a browser, by WebGL2 and by WebGPU.
+fn tried(folder: &Path) -> Result<()> {
     let pictures = command::target().join("web");
     fs::create_dir_all(&pictures)?;
     let expected = SCENES.iter().map(|scene| golden::committed(scene)).collect::<Result<Vec<_>>>()?;
@@ -129,11 +197,7 @@ fn tried(folder: &Path) -> Result<()> {
     if drop.is_empty() {
         eprintln!("skipped: {DROPPED} is not there to be dropped");
     }
-    let mut node = Command::new("node");
-    node.args(["--no-warnings", "--experimental-websocket"]);
-    node.arg(command::root().join("xtask/src/browser.mjs")).arg(folder).arg(&pictures);
-    node.arg(json!({"scenes": scenes, "drop": drop}).to_string()).stderr(Stdio::inherit());
-    let told = command::output_json(&mut node)?;
+    let told = browser("check", folder, &pictures, &json!({"scenes": scenes, "drop": drop}))?;
     eprintln!("{told:#}\npictures in {}", pictures.display());
     for (way, told) in told.as_object().context("no outcome")? {
         for (scene, (steps, hash)) in SCENES.iter().zip(&expected) {

@@ -8,17 +8,19 @@ use sinew::physics::particles::{ParticleGroup, SpringDef};
 use sinew::physics::{
     BodyId, BodyKind, DebugDraw, DrawKind, JointDef, JointId, JointKind, Shape, SixDof, World,
 };
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Part of a world shown in a picture: thin and small things are drawn thick enough to be visible.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct Frame<'a> {
     /// The middle, world space, metres.
     pub center: Vec3,
     /// Radius around the middle that it shows, metres, above 0.
     pub radius: f32,
     /// Way in which kinematic bodies are drawn.
     pub kinematic: Kinematic,
+    /// Colours (linear) of bodies that have their own; the others have those of their kind.
+    pub colors: &'a [(BodyId, [f32; 3])],
 }
 
 /// Way in which kinematic bodies are drawn.
@@ -44,6 +46,8 @@ const COLORS: [[f32; 3]; 8] = [
 const STANDING: [f32; 3] = [0.34, 0.35, 0.36];
 const KINEMATIC: [f32; 3] = [0.20, 0.24, 0.28];
 const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
+/// Brightness of every second square of a floor with a colour of its own, as a factor.
+const MOWN: f32 = 1.2;
 const PARTICLE: [f32; 3] = [0.70, 0.34, 0.05];
 const SPRING: [f32; 3] = [0.25, 0.22, 0.18];
 const JOINT: [f32; 3] = [0.10, 0.11, 0.12];
@@ -152,13 +156,14 @@ impl Canvas for Scene {
 }
 
 /// Paints the world's bodies, particles, springs, joints and what its objects draw.
-pub fn paint(world: &World, frame: &Frame, canvas: &mut dyn Canvas) {
+pub fn paint(world: &World, frame: &Frame<'_>, canvas: &mut dyn Canvas) {
     paint_all_but(world, &[], frame, canvas);
 }
 
 /// Paints as [`paint`] does, without bodies shown by other means, and without their joints: those of a character drawn by its skin.
-pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, canvas: &mut dyn Canvas) {
+pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame<'_>, canvas: &mut dyn Canvas) {
     let shown: HashSet<BodyId> = shown.iter().copied().collect();
+    let colors: HashMap<BodyId, [f32; 3]> = frame.colors.iter().copied().collect();
     for (number, id) in world.body_ids().enumerate() {
         if shown.contains(&id) {
             continue;
@@ -169,7 +174,8 @@ pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, canvas: &mu
                 .flat_map(|(shape, place)| draw::wire(&shape, place, KINEMATIC, LineDepth::Tested));
             wires.for_each(|wire| canvas.line(wire));
         } else {
-            paint_body(world, id, number, frame, canvas);
+            let color = colors.get(&id).copied();
+            paint_body(world, id, color.ok_or(number), frame, canvas);
         }
     }
     for id in world.group_ids() {
@@ -196,7 +202,7 @@ fn lines_of_objects(world: &World) -> Lines {
 }
 
 /// Rods, or lines where they are too many.
-fn thin(segments: &[[Vec3; 2]], color: [f32; 3], frame: &Frame, canvas: &mut dyn Canvas) {
+fn thin(segments: &[[Vec3; 2]], color: [f32; 3], frame: &Frame<'_>, canvas: &mut dyn Canvas) {
     let long = segments.iter().filter(|[from, to]| (*to - *from).length() > ROD * frame.radius);
     for &[from, to] in long {
         if segments.len() <= MOST_SOLID {
@@ -207,20 +213,29 @@ fn thin(segments: &[[Vec3; 2]], color: [f32; 3], frame: &Frame, canvas: &mut dyn
     }
 }
 
-fn paint_body(world: &World, id: BodyId, number: usize, frame: &Frame, canvas: &mut dyn Canvas) {
+/// `color` is the body's own, or else its number.
+fn paint_body(
+    world: &World,
+    id: BodyId,
+    color: Result<[f32; 3], usize>,
+    frame: &Frame<'_>,
+    canvas: &mut dyn Canvas,
+) {
     let kind = world.kind(id);
-    let color = match kind {
-        BodyKind::Static => STANDING,
-        BodyKind::Kinematic => KINEMATIC,
-        BodyKind::Dynamic if world.is_awake(id) => body_color(number),
-        BodyKind::Dynamic => pale(body_color(number)),
+    let squares = color.map_or(FLOOR, |color| [color.map(|x| MOWN * x), color]);
+    let color = match (color, kind) {
+        (Ok(color), _) => color,
+        (Err(_), BodyKind::Static) => STANDING,
+        (Err(_), BodyKind::Kinematic) => KINEMATIC,
+        (Err(number), BodyKind::Dynamic) if world.is_awake(id) => body_color(number),
+        (Err(number), BodyKind::Dynamic) => pale(body_color(number)),
     };
     let smallest = SMALLEST * frame.radius;
     let mut seen = kind == BodyKind::Static;
     for (shape, place) in world.shapes(id) {
         match shape {
             Shape::Sphere { radius } => canvas.ball(radius, place, color),
-            Shape::HalfSpace => canvas.model(floor(&place, frame)),
+            Shape::HalfSpace => canvas.model(floor(&place, squares, frame)),
             _ => canvas.solid(&shape, place, color),
         }
         seen |= shape.bounding_radius() > smallest;
@@ -236,11 +251,11 @@ fn pale(color: [f32; 3]) -> [f32; 3] {
 }
 
 /// The part of a half-space's plane below the frame, in squares that suit it.
-fn floor(place: &Transform, frame: &Frame) -> Model {
+fn floor(place: &Transform, squares: [[f32; 3]; 2], frame: &Frame<'_>) -> Model {
     let up = place.rotation * Vec3::Y;
     let below = frame.center - up * (frame.center - place.translation).dot(up);
     let half_size = max(40.0, 12.0 * frame.radius);
-    draw::plane(Transform::new(below, place.rotation), half_size, round_length(0.4 * frame.radius), FLOOR)
+    draw::plane(Transform::new(below, place.rotation), half_size, round_length(0.4 * frame.radius), squares)
 }
 
 /// The largest of 1, 2, 5, 10, 20 … metres (or 0.5, 0.2, 0.1 …) that is no more than `length`.
@@ -255,7 +270,7 @@ fn round_length(length: f32) -> f32 {
     [5.0, 2.0].map(|step| step * decade).into_iter().find(|&size| size <= length).unwrap_or(decade)
 }
 
-fn paint_group(group: &ParticleGroup, frame: &Frame, canvas: &mut dyn Canvas) {
+fn paint_group(group: &ParticleGroup, frame: &Frame<'_>, canvas: &mut dyn Canvas) {
     let positions = group.positions();
     if positions.len() <= MOST_SOLID {
         for (&position, &radius) in positions.iter().zip(group.radii()) {

@@ -12,6 +12,7 @@ pub mod maned;
 pub mod played;
 pub mod recording;
 pub mod skirted;
+pub mod staged;
 pub use sinew::mannequin;
 mod parts;
 pub mod scenes;

@@ -8,8 +8,8 @@ for (const button of document.querySelectorAll('button[data-scene]')) {
     const address = new URLSearchParams({ scene: button.dataset.scene, panels: 'few' });
     const gpu = new URLSearchParams(location.search).get('gpu');
     if (gpu) address.set('gpu', gpu);
-    frame.src = `index.html?${address}`;
-    frame.title = button.dataset.scene;
+    frame.src = `viewer.html?${address}`;
+    frame.title = `The scene ${button.dataset.scene} as it runs`;
     button.replaceWith(frame);
     running = () => frame.replaceWith(button);
   });

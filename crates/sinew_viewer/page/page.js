@@ -1,12 +1,22 @@
-// The page around the viewer: what the address asks for, files that are dropped, files to be kept.
+// The page around the picture: what the address asks for, buttons, files that are chosen or dropped, files to be kept.
 //
 // ?scene=NAME, set=KEY=VALUE (any number), steps=N (steps so far at once, then tells the hash), gpu=webgl2 (not WebGPU),
-// panels=few (without the list of scenes).
-// The canvas says what it shows: data-scene, data-steps, data-line; data-ready is the time to the first picture, ms.
-import init, { show } from './sinew.js';
+// panels=few (without the list of scenes) or none. The page's own panels stand in data-panels of its body.
+// The canvas says what it shows: data-scene, data-steps, data-line (last message), data-subject (its place in the picture, in shares),
+// data-follows, data-runs; data-ready is the time to the first picture, ms.
+import init, { scenes, show } from './sinew.js';
 
 const canvas = document.getElementById('viewer');
 const line = document.getElementById('line');
+const asked = new URLSearchParams(location.search);
+const panels = asked.get('panels') ?? document.body.dataset.panels;
+// On the start page characters walk and fall; in the viewer they lie on the workbench.
+const onStage = panels === 'none';
+let shown;
+let isWanted = true;
+
+const element = (id) => document.getElementById(id);
+const orders = [...document.querySelectorAll('[data-order]')];
 
 function download(name, blob) {
   const link = document.createElement('a');
@@ -16,24 +26,31 @@ function download(name, blob) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
+function say(text) {
+  canvas.dataset.line = text;
+  if (text && !text.startsWith('drawn by')) line.textContent = text;
+}
+
 const page = {
   tell(text) {
-    canvas.dataset.line = text;
     if (text) console.log(text);
+    say(text);
   },
   failed(text) {
     console.error(text);
-    line.textContent = text;
-    line.hidden = false;
+    notice(text);
   },
-  shown(title, steps) {
+  shown(title, steps, x, y, runs, follows) {
     if (!canvas.dataset.ready) {
       canvas.dataset.ready = Math.round(performance.now());
-      line.hidden = true;
+      element('loading').hidden = true;
     }
-    if (canvas.dataset.scene !== title) document.title = `Sinew: ${title}`;
-    canvas.dataset.scene = title;
-    canvas.dataset.steps = steps;
+    if (canvas.dataset.scene !== title && panels !== 'none') document.title = `Sinew: ${title}`;
+    Object.assign(canvas.dataset, { scene: title, steps, subject: `${x.toFixed(3)} ${y.toFixed(3)}`, runs, follows });
+    for (const button of orders) {
+      if (button.dataset.order === 'follow') button.ariaPressed = String(follows);
+      if (button.dataset.order === 'pause') button.ariaPressed = String(!runs);
+    }
   },
   keep(name, bytes) {
     download(name, new Blob([bytes]));
@@ -43,28 +60,160 @@ const page = {
   },
 };
 
-async function begin() {
-  await init();
-  const asked = new URLSearchParams(location.search);
-  const steps = Number.parseInt(asked.get('steps') ?? '', 10);
-  const shown = show(
-    canvas,
-    page,
-    asked.get('scene') ?? undefined,
-    asked.getAll('set'),
-    steps > 0 ? steps : undefined,
-    asked.get('gpu') === 'webgl2',
-    asked.get('panels') === 'few',
-  );
-  document.addEventListener('dragover', (event) => event.preventDefault());
-  document.addEventListener('drop', async (event) => {
-    event.preventDefault();
-    const files = [...event.dataTransfer.files];
-    const contents = await Promise.all(files.map((file) => file.arrayBuffer()));
-    files.forEach((file, index) => shown.file(file.name, new Uint8Array(contents[index])));
-    if (files.length > 0) shown.open();
-  });
-  canvas.focus();
+// Text, and elements after it, over the picture.
+function notice(text, ...more) {
+  const box = element('notice');
+  box.replaceChildren(Object.assign(document.createElement('p'), { textContent: text }), ...more);
+  box.hidden = false;
+  canvas.dataset.line = text;
 }
 
-begin().catch((error) => page.failed(String(error)));
+// All scenes by chapter, as links.
+function listed() {
+  const chapters = new Map();
+  for (const scene of scenes().split('\n')) {
+    const [name, chapter, about] = scene.split('\t');
+    const link = Object.assign(document.createElement('a'), { href: `?scene=${name}`, textContent: name, title: about });
+    const item = document.createElement('li');
+    item.append(link);
+    if (!chapters.has(chapter)) chapters.set(chapter, []);
+    chapters.get(chapter).push(item);
+  }
+  return [...chapters].flatMap(([chapter, items]) => {
+    const list = document.createElement('ul');
+    list.append(...items);
+    return [Object.assign(document.createElement('b'), { textContent: chapter }), list];
+  });
+}
+
+// The program, with its progress: the server may not know how many bytes it sends.
+async function program() {
+  const response = await fetch('sinew_bg.wasm');
+  const total = Number(canvas.dataset.bytes);
+  const reader = response.clone().body.getReader();
+  (async () => {
+    let come = 0;
+    for (;;) {
+      const { done, value } = await reader.read();
+      if (done) break;
+      come += value.length;
+      element('progress').value = (100 * come) / total;
+    }
+  })().catch(() => {});
+  return response;
+}
+
+function begin(scene, settings) {
+  const steps = Number.parseInt(asked.get('steps') ?? '', 10);
+  return show(canvas, page, scene, settings, steps > 0 ? steps : undefined, asked.get('gpu') === 'webgl2', panels);
+}
+
+// Shows what the address asks for; where that cannot be, the demo, and what there is.
+function beginAsked() {
+  const scene = asked.get('scene') ?? undefined;
+  try {
+    return begin(scene, asked.getAll('set'));
+  } catch (error) {
+    const text = String(error);
+    const isUnknown = text.startsWith('no scene');
+    notice(isUnknown ? `There is no scene '${scene}'. The demo runs instead; these scenes exist:` : text, ...(isUnknown ? listed() : []));
+    return begin(undefined, []);
+  }
+}
+
+async function start() {
+  element('play').hidden = true;
+  element('loading').hidden = false;
+  await init({ module_or_path: await program() });
+  shown = beginAsked();
+  watch();
+  return shown;
+}
+
+// It stands still while nobody sees it.
+function watch() {
+  if (!onStage) return;
+  new IntersectionObserver(([entry]) => {
+    const runs = canvas.dataset.runs === 'true';
+    if (entry.isIntersecting ? isWanted && canvas.dataset.runs === 'false' : runs) shown.order('pause');
+  }).observe(canvas);
+}
+
+let starting;
+const started = () => (starting ??= start().catch((error) => page.failed(String(error))));
+
+async function act(what) {
+  await started();
+  isWanted = true;
+  try {
+    what();
+  } catch (error) {
+    say(String(error));
+  }
+}
+
+async function openFiles(files) {
+  const contents = await Promise.all(files.map((file) => file.arrayBuffer()));
+  await act(() => {
+    files.forEach((file, index) => shown.file(file.name, new Uint8Array(contents[index])));
+    if (files.length > 0) shown.open(onStage);
+  });
+  if (onStage) element('stage').scrollIntoView({ block: 'nearest' });
+}
+
+for (const button of orders) {
+  button.addEventListener('click', () => {
+    const runs = canvas.dataset.runs === 'true';
+    act(() => shown.order(button.dataset.order)).then(() => {
+      if (button.dataset.order === 'pause') isWanted = !runs;
+    });
+    element('hint')?.remove();
+  });
+}
+for (const button of document.querySelectorAll('[data-sample]')) {
+  button.addEventListener('click', async () => {
+    await act(() => shown.sample(button.dataset.sample));
+    element('stage').scrollIntoView({ block: 'nearest' });
+  });
+}
+// Links to scenes run them here; with a key held they open the viewer.
+for (const link of document.querySelectorAll('a.scene')) {
+  link.addEventListener('click', async (event) => {
+    if (event.ctrlKey || event.metaKey || event.shiftKey || event.button !== 0) return;
+    event.preventDefault();
+    await act(() => shown.scene(link.dataset.scene));
+    element('full').href = link.href;
+    element('stage').scrollIntoView({ block: 'center' });
+  });
+}
+for (const button of document.querySelectorAll('[data-pick]')) button.addEventListener('click', () => element('file').click());
+element('file').addEventListener('change', ({ target }) => openFiles([...target.files]));
+element('play').addEventListener('click', started);
+document.addEventListener('dragover', (event) => {
+  event.preventDefault();
+  element('drop')?.classList.add('over');
+});
+document.addEventListener('dragleave', () => element('drop')?.classList.remove('over'));
+document.addEventListener('drop', (event) => {
+  event.preventDefault();
+  element('drop')?.classList.remove('over');
+  openFiles([...event.dataTransfer.files]);
+});
+canvas.addEventListener('pointerdown', () => element('hint')?.remove());
+canvas.addEventListener('keydown', (event) => {
+  // Tab leaves the picture, which takes all other keys.
+  if (event.key === 'Tab') event.stopImmediatePropagation();
+  if (!onStage) return;
+  if (event.key === 'Enter') act(() => shown.order('push'));
+  if (event.key === ' ') event.preventDefault();
+}, { capture: true });
+
+// Those who want no motion, or little data, press a button first.
+const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches || navigator.connection?.saveData;
+if (isStill && onStage && !asked.has('scene')) {
+  element('play').hidden = false;
+  element('loading').hidden = true;
+} else {
+  started();
+  if (!onStage) canvas.focus();
+}

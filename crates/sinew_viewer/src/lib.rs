@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod app;
+mod chase;
 mod gpu;
 mod headless;
 mod layers;
@@ -16,7 +17,8 @@ mod stage_times;
 mod view;
 mod window;
 
-pub use app::{App, Options};
+pub use app::{App, Options, Order};
+pub use chase::Chase;
 pub use gpu::{Gpu, GpuError, Offscreen, StageRenderer, Target};
 pub use headless::Headless;
 pub use layers::Layer;

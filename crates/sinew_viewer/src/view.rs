@@ -161,7 +161,7 @@ pub fn stage<'a>(session: &'a Session, camera: &Camera, layers: &[Layer]) -> Sta
     world::paint_all_but(
         instance.world(),
         &bodies,
-        &Frame { center: camera.target, radius, kinematic },
+        &Frame { center: camera.target, radius, kinematic, colors: instance.colors() },
         &mut stage,
     );
     stage.figures = figures;

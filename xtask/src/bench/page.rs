@@ -124,7 +124,7 @@ fn columns(scenes: &[&SceneResult]) -> Vec<String> {
 }
 
 /// Display name of an engine.
-fn title(engine: &str) -> &str {
+pub fn title(engine: &str) -> &str {
     match engine {
         "sinew" => "Sinew",
         "rapier" => "Rapier",
@@ -142,7 +142,8 @@ fn heading<'a>(before: &[&'a str], engines: &'a [String], after: &[&'a str]) -> 
     Table::new(2, [before, &engines.iter().map(|name| title(name)).collect::<Vec<_>>(), after].concat())
 }
 
-fn of<'a>(scene: &'a SceneResult, engine: &str) -> Option<&'a EngineResult> {
+/// An engine's result.
+pub fn of<'a>(scene: &'a SceneResult, engine: &str) -> Option<&'a EngineResult> {
     scene.engines.iter().find(|result| result.name == engine)
 }
 

@@ -7,7 +7,7 @@ use super::metric::{Expected, Metric};
 use core::time::Duration;
 use sinew::math::{ReadError, Reader, Vec3, Writer, max};
 use sinew::physics::stage::{NoProfiler, Profiler};
-use sinew::physics::{BodyId, DebugDraw, Energy, LoadError, Serial, TaskRunner, Update, World};
+use sinew::physics::{BodyId, BodyKind, DebugDraw, Energy, LoadError, Serial, TaskRunner, Update, World};
 
 /// The part of a scene that accompanies its world.
 pub trait Script: Send {
@@ -66,6 +66,14 @@ pub trait Script: Send {
     fn bodies_of_figures(&self) -> Vec<BodyId> {
         Vec::new()
     }
+
+    /// Colours (linear) of bodies that have their own in a picture.
+    fn colors(&self) -> &[(BodyId, [f32; 3])] {
+        &[]
+    }
+
+    /// A user pushes a kinematic body, N·s at a point, world space. The world moves none by an impulse; a character falls.
+    fn strike(&mut self, _world: &mut World, _body: BodyId, _impulse: Vec3, _point: Vec3) {}
 
     /// Sets the velocity of the character that a user may control, from the next step on, m/s, world space. Most scenes have none.
     fn steer(&mut self, _way: Vec3) {}
@@ -134,6 +142,18 @@ impl Instance {
     /// Bodies that these skins replace in a picture.
     pub fn bodies_of_figures(&self) -> Vec<BodyId> {
         self.script.bodies_of_figures()
+    }
+
+    /// Colours (linear) of bodies that have their own in a picture.
+    pub fn colors(&self) -> &[(BodyId, [f32; 3])] {
+        self.script.colors()
+    }
+
+    /// Pushes a kinematic body of a character, N·s at a point, world space.
+    pub(crate) fn push(&mut self, body: BodyId, impulse: Vec3, point: Vec3) {
+        if self.world.contains(body) && self.world.kind(body) == BodyKind::Kinematic {
+            self.script.strike(&mut self.world, body, impulse, point);
+        }
     }
 
     /// Sets the velocity of the character that a user may control, from the next step on, m/s, world space.

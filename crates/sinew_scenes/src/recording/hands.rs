@@ -24,9 +24,9 @@ pub enum Operation {
     },
     /// Lets go.
     Release,
-    /// Applies an impulse to a body.
+    /// Applies an impulse to a body, or pushes the character whose clips move it.
     Push {
-        /// The body; if it does not exist or does not move, nothing happens.
+        /// The body; if it does not exist or is static, nothing happens.
         body: BodyId,
         /// N·s.
         impulse: Vec3,
@@ -207,9 +207,12 @@ impl Operation {
     }
 
     /// Applies operations that need the scene, not only its world.
-    pub(super) fn apply_to(&self, instance: &mut Instance) {
-        if let (Self::Steer { way }, true) = (*self, self.is_sound()) {
-            instance.steer(way);
+    pub fn apply_to(&self, instance: &mut Instance) {
+        match *self {
+            _ if !self.is_sound() => {}
+            Self::Steer { way } => instance.steer(way),
+            Self::Push { body, impulse, point } => instance.push(body, impulse, point),
+            _ => {}
         }
     }
 

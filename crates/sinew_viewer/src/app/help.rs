@@ -5,7 +5,7 @@ use egui::{Align2, Color32, FontId, Grid, RichText};
 
 /// Hints shown at the start.
 const HINTS: [&str; 3] = [
-    "Drag a body with the left button; drag the background to look around",
+    "Click to push him; drag a body to pull it, the background to look around",
     "Press B to throw a ball, Space to pause, R to start again",
     "Choose a scene at the left, or drop a file on the window; ? shows all keys",
 ];
@@ -40,7 +40,7 @@ const KEYS: [(&str, &str); 22] = [
 pub(super) fn overlay(app: &App, ui: &mut egui::Ui) {
     let area = app.area;
     let font = FontId::proportional(14.0);
-    if app.shows_hints {
+    if app.shows_hints && area.width() > super::ROOMY {
         let mut top = area.left_top() + egui::vec2(16.0, 16.0);
         for line in HINTS {
             top.y = plate(ui, top, Align2::LEFT_TOP, line, &font).bottom() + 12.0;

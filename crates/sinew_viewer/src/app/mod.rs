@@ -6,11 +6,13 @@ mod editor;
 mod help;
 mod inspector;
 mod mouse;
+mod orders;
 mod style;
 mod timeline;
 mod transport;
 mod walk;
 
+use crate::chase::Chase;
 use crate::layers::Layer;
 use crate::preferences::Preferences;
 use crate::session::{NamedFile, Session, Subject};
@@ -19,9 +21,11 @@ use crate::view::{self, Orbit};
 use bench::Bench;
 use egui::{Key, Rect, Vec2};
 use mouse::Mouse;
+pub use orders::Order;
 use sinew::math::Vec3;
 use sinew_picture::Camera;
 use sinew_scenes::recording::Recording;
+use sinew_scenes::staged::Sample;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use web_time::{Duration, Instant};
@@ -54,6 +58,8 @@ pub struct Options {
     pub ghost: Option<PathBuf>,
     /// True to hide the list of scenes, for a small window on one scene.
     pub hides_browser: bool,
+    /// True to hide all panels and messages, for a picture in a page that has its own.
+    pub hides_panels: bool,
     /// True to hide measured times, for pictures that are compared.
     pub hides_times: bool,
     /// File to which a picture of the window is written after the steps; then the window closes.
@@ -63,10 +69,17 @@ pub struct Options {
 /// Number of frames until panels have their final sizes.
 const SETTLING: u8 = 4;
 
-/// Introductory scene with its settings: coloured figures walk, are hit, fall and get up. The camera follows.
-const FIRST: (&str, &str) = ("crowd", "n=6");
-/// Time in which a following camera covers two thirds of its distance, seconds: swinging limbs do not shake it.
-const FOLLOWING: f32 = 0.4;
+/// Width of a window from which on both panels stand beside the picture, points; in a narrower one they are folded.
+const WIDE: f32 = 860.0;
+/// Width from which on there is room for hints in the picture, points.
+const ROOMY: f32 = 600.0;
+
+/// A panel beside the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Scenes,
+    Figures,
+}
 
 /// The viewer without its window.
 pub struct App {
@@ -98,12 +111,16 @@ pub struct App {
     bench: Bench,
     /// Target step while seeking in a recording.
     seeking: Option<u64>,
-    /// Centre of the scene when the camera last followed it.
-    follows: Option<Vec3>,
+    /// The camera's way of following its subject; `None` where it stands still.
+    follows: Option<Chase>,
     /// Velocity of the character controlled by keys, m/s; `None` while keys move the camera.
     leads: Option<Vec3>,
     hides_times: bool,
     hides_browser: bool,
+    hides_panels: bool,
+    /// Panel that is open in a narrow window.
+    unfolded: Option<Side>,
+    is_narrow: bool,
     area: Rect,
     /// True once the camera has been set for the actual size of the picture.
     is_framed: bool,
@@ -129,7 +146,7 @@ impl App {
         let shows_hints = options.subject.is_none();
         let subject = match options.subject {
             Some(subject) => subject,
-            None => Subject::scene(FIRST.0, &[FIRST.1.to_owned()])?,
+            None => Subject::Sample(Sample::Mannequin),
         };
         let mut session = Session::start(subject).map_err(|error| error.to_string())?;
         if let Some(path) = &options.ghost {
@@ -166,6 +183,9 @@ impl App {
             leads: None,
             hides_times: options.hides_times,
             hides_browser: options.hides_browser,
+            hides_panels: options.hides_panels,
+            unfolded: None,
+            is_narrow: false,
             area: Rect::from_min_size(Default::default(), Vec2::new(640.0, 360.0)),
             is_framed: false,
             starts: 0,
@@ -177,7 +197,6 @@ impl App {
             screenshot: options.screenshot.map(|path| (path, SETTLING)),
         };
         app.begin();
-        app.follows = shows_hints.then(|| view::bounds(app.session.instance()).center());
         Ok(app)
     }
 
@@ -222,6 +241,22 @@ impl App {
         let x = 0.5 + 0.5 * way.dot(axes.right) / (depth * axes.half_width);
         let y = 0.5 - 0.5 * way.dot(axes.up) / (depth * axes.half_height);
         (depth > 0.0).then(|| self.area.min + Vec2::new(x * self.area.width(), y * self.area.height()))
+    }
+
+    /// Place of the subject in the picture: from its left and upper edge, as shares of its size; `None` behind the camera.
+    pub fn subject_place(&self) -> Option<[f32; 2]> {
+        let at = self.on_screen(view::bounds(self.session.instance()).center())? - self.area.min;
+        Some([at.x / self.area.width(), at.y / self.area.height()])
+    }
+
+    /// Returns true if the camera goes along with its subject.
+    pub fn is_following(&self) -> bool {
+        self.follows.is_some()
+    }
+
+    /// Returns true if it runs.
+    pub fn is_running(&self) -> bool {
+        self.running
     }
 
     /// Key of the subject; each start has a new one.
@@ -383,6 +418,8 @@ impl App {
             }
             _ => Vec::new(),
         };
+        let is_staged = self.session.subject().is_staged();
+        self.follows = is_staged.then(|| Chase::at(Vec3::ZERO));
         self.frame();
     }
 
@@ -402,6 +439,21 @@ impl App {
         let aspect = self.area.width().max(1.0) / self.area.height().max(1.0);
         let bounds = view::with_ground(&view::bounds(instance), instance.world());
         self.orbit = Orbit::framing(&bounds, instance.camera_hint().direction, aspect);
+        self.follow(self.follows.is_some());
+    }
+
+    /// Has the camera go along with the subject, or stand still.
+    fn follow(&mut self, follows: bool) {
+        self.follows = follows.then(|| Chase::at(view::bounds(self.session.instance()).center()));
+    }
+
+    /// Moves the camera along with the subject for a time, seconds.
+    pub fn go_along(&mut self, seconds: f32) {
+        if let Some(chase) = &mut self.follows {
+            let subject = view::bounds(self.session.instance()).center();
+            self.orbit.target += chase.go(subject, seconds, self.orbit.distance);
+        }
+        self.orbit.rise_above(self.session.instance().world());
     }
 
     fn restart(&mut self) {
@@ -412,7 +464,12 @@ impl App {
             return;
         }
         match self.session.restart() {
-            Ok(()) => self.begin_again(),
+            Ok(()) => {
+                self.begin_again();
+                if self.follows.is_some() {
+                    self.frame();
+                }
+            }
             Err(error) => self.tell(error.to_string()),
         }
     }
@@ -481,36 +538,44 @@ impl App {
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         style::apply(ui.ctx());
         self.keys(ui);
-        if !self.hides_browser {
-            browser::show(self, ui);
-        }
-        transport::show(self, ui);
-        inspector::show(self, ui);
+        self.panels(ui);
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let area = ui.max_rect();
             if area != self.area {
                 self.area = area;
-                if !self.is_framed {
+                if !self.is_framed || self.hides_panels {
                     self.is_framed = true;
                     self.frame();
                 }
             }
-            if let Some(before) = self.follows {
-                let goal = view::bounds(self.session.instance()).center();
-                // A still picture needs no fade.
-                let share = if self.hides_times { 1.0 } else { self.passed / (self.passed + FOLLOWING) };
-                let now = before + (goal - before) * share;
-                self.orbit.target += now - before;
-                self.follows = Some(now);
-            }
             mouse::act(self, ui);
-            self.orbit.rise_above(self.session.instance().world());
+            // A still picture needs no fade.
+            self.go_along(if self.hides_times { f32::INFINITY } else { self.passed });
             bench::overlay(self, ui);
-            help::overlay(self, ui);
+            if !self.hides_panels {
+                help::overlay(self, ui);
+            }
         });
         help::window(self, ui.ctx());
         if !self.hides_times && self.message.as_ref().is_some_and(|(_, since)| since.elapsed() > MESSAGE) {
             self.message = None;
+        }
+    }
+
+    /// Shows the panels around the picture.
+    fn panels(&mut self, ui: &mut egui::Ui) {
+        self.is_narrow = ui.max_rect().width() < WIDE;
+        if self.hides_panels {
+            return;
+        }
+        let is_open = |side: Side| !self.is_narrow || self.unfolded == Some(side);
+        let (scenes, figures) = (is_open(Side::Scenes) && !self.hides_browser, is_open(Side::Figures));
+        if scenes {
+            browser::show(self, ui);
+        }
+        transport::show(self, ui);
+        if figures {
+            inspector::show(self, ui);
         }
     }
 
@@ -543,11 +608,12 @@ impl App {
             walk::toggle(self);
         }
         if pressed(Key::C) {
-            self.follows = self.follows.is_none().then(|| view::bounds(self.session.instance()).center());
+            self.follow(self.follows.is_none());
             self.tell(if self.follows.is_some() { "the camera goes along" } else { "the camera stays" });
         }
         if pressed(Key::B) {
-            mouse::throw(self, ui);
+            let at = ui.input(|input| input.pointer.hover_pos());
+            mouse::throw(self, at.filter(|at| self.area.contains(*at)));
         }
         if pressed(Key::P) || pressed(Key::F12) {
             self.wants_screenshot = true;

@@ -2,9 +2,9 @@
 
 use super::{App, bench};
 use egui::{PointerButton, Pos2, Sense};
-use sinew::math::Vec3;
+use sinew::math::{Vec3, min, normalize_or};
 use sinew::physics::ray::Ray;
-use sinew::physics::{BodyHit, BodyKinds, QueryFilter};
+use sinew::physics::{BodyHit, BodyId, BodyKind, BodyKinds, QueryFilter};
 use sinew_scenes::recording::Operation;
 
 /// Radius of a ball that is thrown, metres.
@@ -15,6 +15,14 @@ const DENSITY: f32 = 1000.0;
 const THROW: f32 = 14.0;
 /// Rotation of the camera per point of mouse motion, radians.
 const TURN: f32 = 0.0065;
+
+/// Impulse of a push, N·s: a shove with both hands that fells a man. And the largest speed that it gives to a light body, m/s.
+const SHOVE: f32 = 130.0;
+const SHOVE_SPEED: f32 = 6.0;
+/// Share of the view's slope that a push has: it goes along the ground.
+const LIFT: f32 = 0.3;
+/// Distance beside a character at which a push still reaches it, as a share of the camera's distance.
+const FINGER: f32 = 0.06;
 
 /// State of the mouse.
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,6 +60,11 @@ pub(super) fn act(app: &mut App, ui: &mut egui::Ui) {
     {
         let body = body_at(app, &ray(app, at)).map(|hit| hit.body);
         bench::pick(app, body);
+    } else if response.clicked_by(PointerButton::Primary)
+        && (app.hides_panels || app.session.subject().is_staged())
+        && let Some(at) = response.interact_pointer_pos()
+    {
+        push(app, at);
     }
     if let (Some(depth), Some(at)) = (app.mouse.held, response.interact_pointer_pos()) {
         let to = at_depth(app, &ray(app, at), depth);
@@ -73,7 +86,8 @@ pub(super) fn act(app: &mut App, ui: &mut egui::Ui) {
     } else if turns {
         app.orbit.turn(-delta.x * TURN, delta.y * TURN);
     }
-    if response.hovered() {
+    // A page scrolls by the wheel.
+    if response.hovered() && !app.hides_panels {
         let scroll = ui.input(|input| input.smooth_scroll_delta.y);
         if scroll != 0.0 {
             app.orbit.zoom((-0.0022 * scroll).exp2());
@@ -81,10 +95,54 @@ pub(super) fn act(app: &mut App, ui: &mut egui::Ui) {
     }
 }
 
-/// Throws a ball from the camera at the mouse position, or straight ahead.
-pub(super) fn throw(app: &mut App, ui: &egui::Ui) {
-    let at = ui.input(|input| input.pointer.hover_pos()).filter(|at| app.area.contains(*at));
-    let ray = ray(app, at.unwrap_or(app.area.center()));
+/// Pushes what is at a point of the picture away from the camera.
+fn push(app: &mut App, at: Pos2) {
+    let ray = ray(app, at);
+    let Some((body, point)) = pushed(app, &ray) else { return };
+    let way = ray.direction * Vec3::new(1.0, LIFT, 1.0);
+    let mass = app.session.world().mass(body).mass;
+    let is_led = app.session.world().kind(body) == BodyKind::Kinematic;
+    let size = if is_led { SHOVE } else { min(SHOVE, SHOVE_SPEED * mass) };
+    app.shows_hints = false;
+    app.session.apply(Operation::Push { body, impulse: normalize_or(way, Vec3::Z) * size, point });
+    app.tell("pushed");
+}
+
+/// Pushes the subject away from the camera.
+pub(super) fn push_subject(app: &mut App) {
+    push(app, subject(app));
+}
+
+/// Place of the subject in the window, points; the middle of the picture where it cannot be seen.
+fn subject(app: &App) -> Pos2 {
+    let place = app.subject_place().map(|[x, y]| app.area.lerp_inside(egui::vec2(x, y)));
+    place.filter(|at| app.area.contains(*at)).unwrap_or(app.area.center())
+}
+
+/// The body on a ray, and the point on it; else the nearest of a character's bodies beside the ray, because a finger is wide.
+fn pushed(app: &App, ray: &Ray) -> Option<(BodyId, Vec3)> {
+    let world = app.session.world();
+    let of_figures = app.session.instance().bodies_of_figures();
+    let all = QueryFilter::of(BodyKinds::DYNAMIC | BodyKinds::KINEMATIC | BodyKinds::STATIC);
+    let hit = world.query().filter(all).first(ray);
+    if let Some(hit) = hit
+        && (world.kind(hit.body) == BodyKind::Dynamic || of_figures.contains(&hit.body))
+    {
+        return Some((hit.body, hit.point));
+    }
+    let way = ray.direction.normalize();
+    let beside = of_figures.into_iter().map(|body| {
+        let center = world.center_of_mass(body);
+        let from = center - ray.origin;
+        ((from - way * from.dot(way)).length(), body, center)
+    });
+    let nearest = beside.min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.filter(|near| near.0 < FINGER * app.orbit.distance).map(|(_, body, center)| (body, center))
+}
+
+/// Throws a ball from the camera at a point of the window, or at the subject.
+pub(super) fn throw(app: &mut App, at: Option<Pos2>) {
+    let ray = ray(app, at.unwrap_or_else(|| subject(app)));
     let way = ray.direction.normalize();
     // The ball scales with the world.
     let size = (app.orbit.distance / 6.0).clamp(0.2, 20.0);
@@ -123,7 +181,7 @@ fn grab(app: &mut App, at: Pos2) {
     }
     let Some(BodyHit { body, point, .. }) = body_at(app, &ray(app, at)) else { return };
     let world = app.session.world();
-    if world.kind(body) != sinew::physics::BodyKind::Dynamic {
+    if world.kind(body) != BodyKind::Dynamic {
         return;
     }
     app.mouse.held = Some(depth(app, point));

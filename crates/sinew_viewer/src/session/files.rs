@@ -3,18 +3,21 @@
 use super::subject::{NamedFile, has_extension};
 use super::workbench::Workbench;
 use sinew::anim::{Wrap, analyze_skeleton, rest_pose, sample};
+use sinew::character_of;
 use sinew::formats::{
-    Error, MotionFile, MotionOptions, ReadOptions, Textures, load_motion, read_bytes, read_motion,
+    Error, MotionFile, MotionOptions, ReadOptions, Textures, load_motion, read_bytes, read_gltf, read_motion,
     read_ragdoll, read_world,
 };
 use sinew::physics::{World, WorldDef};
+use sinew::ragdoll::Settings;
 use sinew_scenes::played::played;
 use sinew_scenes::scenes::Instance;
+use sinew_scenes::staged::staged;
 use std::path::Path;
 
 /// Content of a file.
 pub(super) enum Opened {
-    /// Bodies, and lines that describe them.
+    /// Bodies or a character on a stage, and lines that describe them.
     World(Box<Instance>, Vec<String>),
     /// A motion without a skin, which plays, and lines that describe it.
     Motion(Box<Instance>, Vec<String>),
@@ -40,15 +43,30 @@ pub(super) fn open_dropped(files: &[NamedFile]) -> Result<Opened, Error> {
     if has_extension(Path::new(name), "json") {
         return of_json(bytes, name).map_err(|error| error.with_file(name.clone()));
     }
-    // Pages give names without folders.
-    let last = |path: &str| path.rsplit('/').next().unwrap_or(path).to_owned();
-    let mut resolve = |relative: &str| {
-        let found = beside.iter().find(|file| file.name == last(relative));
-        let missing = || Error::io(format!("'{relative}' was not dropped with it"));
-        found.map(|file| file.bytes.clone()).ok_or_else(missing)
-    };
-    let file = read_motion(bytes, &motion_options(), &mut resolve);
+    let file = read_motion(bytes, &motion_options(), &mut |relative: &str| companion(beside, relative));
     file.and_then(|file| of_motion(file, name)).map_err(|error| error.with_file(name.clone()))
+}
+
+/// A file dropped with another one, by its path relative to it. Pages give names without folders.
+fn companion(beside: &[NamedFile], relative: &str) -> Result<Vec<u8>, Error> {
+    let last = relative.rsplit('/').next().unwrap_or(relative);
+    let found = beside.iter().find(|file| file.name == last);
+    let missing = || Error::io(format!("'{relative}' was not dropped with it"));
+    found.map(|file| file.bytes.clone()).ok_or_else(missing)
+}
+
+/// The character of dropped files on a stage.
+pub(super) fn stage(files: &[NamedFile]) -> Result<Opened, Error> {
+    let [NamedFile { name, bytes }, beside @ ..] = files else {
+        return Err(Error::unsupported("nothing was dropped", ""));
+    };
+    let options = ReadOptions { textures: Textures::Decode };
+    let document = read_gltf(bytes, options, &mut |relative: &str| companion(beside, relative))
+        .map_err(|error| error.with_file(name.clone()))?;
+    let loaded = character_of(document, name, &Settings::default());
+    let loaded = loaded.map_err(|error| Error::unsupported(error.to_string(), ""))?;
+    let report = loaded.notes.clone();
+    Ok(Opened::World(Box::new(staged(loaded.def)), report))
 }
 
 fn motion_options() -> MotionOptions<'static> {

@@ -19,6 +19,7 @@ use sinew::physics::{BodyId, Serial, TaskRunner, Threads, World};
 use sinew::ragdoll::settings::BoneSettings;
 use sinew_scenes::recording::{Hands, Operation, Recorder, Recording};
 use sinew_scenes::scenes::{Instance, Metric};
+use sinew_scenes::staged::staged;
 use std::path::Path;
 use web_time::{Duration, Instant};
 
@@ -72,6 +73,12 @@ impl Session {
                 let playback = playback.map_err(|error| error.with_file(path.display().to_string()))?;
                 return Ok(Self::of(subject, Run::Replay(Box::new(playback))));
             }
+            Subject::Sample(sample) => {
+                let instance = staged(sample.character());
+                let run = Recorder::of(instance, sample.name(), &[]);
+                return Ok(Self::of(subject, Run::Live(Box::new(run))));
+            }
+            Subject::Staged(files) => files::stage(files)?,
             Subject::File(path) => files::open(path)?,
             Subject::Dropped(files) => files::open_dropped(files)?,
         };

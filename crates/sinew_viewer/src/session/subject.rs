@@ -3,6 +3,7 @@
 use sinew::formats::{Error, read_bytes};
 use sinew_scenes::recording::Recording;
 use sinew_scenes::scenes::{Scene, Settings, find};
+use sinew_scenes::staged::Sample;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -17,6 +18,10 @@ pub enum Subject {
     Dropped(Arc<[NamedFile]>),
     /// A recording, and where it comes from.
     Recording(PathBuf, Box<Recording>),
+    /// A built-in character that walks, is pushed, falls and gets up, again and again.
+    Sample(Sample),
+    /// The same with the character of files without a folder.
+    Staged(Arc<[NamedFile]>),
 }
 
 /// A file without a folder.
@@ -59,18 +64,26 @@ impl Subject {
     /// # Errors
     /// One line that names the file.
     pub fn dropped(mut files: Vec<NamedFile>) -> Result<Self, Error> {
-        let is_shown =
-            |file: &NamedFile| SHOWN.iter().any(|extension| has_extension(Path::new(&file.name), extension));
-        let first = files.iter().position(is_shown).unwrap_or(0);
-        match files.get(first) {
+        match main_file(&mut files) {
             None => Err(Error::unsupported("nothing was dropped", "")),
             Some(file) if has_extension(Path::new(&file.name), "sinewrec") => {
                 Self::recording(Path::new(&file.name), &file.bytes)
             }
-            Some(_) => {
-                files.swap(0, first);
-                Ok(Self::Dropped(files.into()))
-            }
+            Some(_) => Ok(Self::Dropped(files.into())),
+        }
+    }
+
+    /// As [`dropped`](Self::dropped), but a character walks, is pushed, falls and gets up.
+    ///
+    /// # Errors
+    /// One line that names the file.
+    pub fn staged(mut files: Vec<NamedFile>) -> Result<Self, Error> {
+        let is_character = |file: &NamedFile| {
+            ["glb", "gltf", "vrm"].iter().any(|extension| has_extension(Path::new(&file.name), extension))
+        };
+        match main_file(&mut files) {
+            Some(file) if is_character(file) => Ok(Self::Staged(files.into())),
+            _ => Self::dropped(files),
         }
     }
 
@@ -80,6 +93,11 @@ impl Subject {
         Ok(Self::Recording(path.to_owned(), Box::new(recording)))
     }
 
+    /// True for a character on the stage of the demo, which the camera follows and a click pushes.
+    pub fn is_staged(&self) -> bool {
+        matches!(self, Self::Sample(_) | Self::Staged(_))
+    }
+
     /// Name to be shown.
     pub fn title(&self) -> String {
         let file_name =
@@ -87,7 +105,8 @@ impl Subject {
         match self {
             Self::Scene(scene, ..) => scene.name.to_owned(),
             Self::File(path) | Self::Recording(path, _) => file_name(path),
-            Self::Dropped(files) => files[0].name.clone(),
+            Self::Dropped(files) | Self::Staged(files) => files[0].name.clone(),
+            Self::Sample(sample) => sample.name().to_owned(),
         }
     }
 
@@ -96,7 +115,8 @@ impl Subject {
         match self {
             Self::Scene(scene, ..) => scene.about.to_owned(),
             Self::File(path) => path.display().to_string(),
-            Self::Dropped(files) => files[0].name.clone(),
+            Self::Dropped(files) | Self::Staged(files) => files[0].name.clone(),
+            Self::Sample(_) => ON_STAGE.to_owned(),
             Self::Recording(_, recording) => format!(
                 "recording of {} by version {}, {} steps",
                 recording.scene,
@@ -107,8 +127,23 @@ impl Subject {
     }
 }
 
+/// Description of a built-in character on the stage.
+const ON_STAGE: &str =
+    "it walks, is pushed down the stairs, falls, gets up, and begins again: click to push it";
+
 /// Extensions of files that can be shown on their own; others are companions.
 const SHOWN: [&str; 7] = ["sinewrec", "json", "glb", "gltf", "vrm", "fbx", "bvh"];
+
+/// Puts the first file that can be shown on its own before the others, and returns it.
+fn main_file(files: &mut [NamedFile]) -> Option<&NamedFile> {
+    let is_shown =
+        |file: &NamedFile| SHOWN.iter().any(|extension| has_extension(Path::new(&file.name), extension));
+    let first = files.iter().position(is_shown).unwrap_or(0);
+    if first < files.len() {
+        files.swap(0, first);
+    }
+    files.first()
+}
 
 pub(super) fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().is_some_and(|it| it.eq_ignore_ascii_case(extension))

@@ -5,7 +5,7 @@ mod desktop;
 #[cfg(target_arch = "wasm32")]
 pub mod web;
 
-use crate::app::App;
+use crate::app::{App, Order};
 use crate::gpu::{Gpu, GpuError};
 use crate::painter::{Painter, Panels};
 use crate::session::NamedFile;
@@ -62,6 +62,9 @@ enum Told {
     /// Files that were dropped on the page.
     #[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "a desktop tells paths"))]
     Files(Vec<NamedFile>),
+    /// An order of the page.
+    #[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "a desktop has keys"))]
+    Order(Order),
 }
 
 /// A window and its renderer.
@@ -117,6 +120,7 @@ impl ApplicationHandler<Told> for Viewer {
                 event_loop.exit();
             }
             Told::Files(files) => self.app.open_dropped(files),
+            Told::Order(order) => self.app.obey(order),
         }
         self.moves = true;
     }

@@ -1,10 +1,12 @@
 //! A canvas of a page, and the page around it.
 
 use super::{Screen, Told, Viewer};
-use crate::app::{App, Options};
+use crate::app::{App, Options, Order};
 use crate::gpu::GpuError;
 use crate::painter::Panels;
 use crate::session::{NamedFile, Subject};
+use sinew_scenes::scenes::{Scene, registry};
+use sinew_scenes::staged::Sample;
 use std::cell::RefCell;
 use std::future::Future;
 use wasm_bindgen::prelude::*;
@@ -26,9 +28,10 @@ extern "C" {
     /// The line why nothing is drawn.
     #[wasm_bindgen(method)]
     fn failed(this: &Page, line: &str);
-    /// Subject and number of steps of the frame that is shown.
+    /// Subject and number of steps of the frame that is shown, the subject's place in the picture (NaN: not in sight), and whether it
+    /// runs and is followed.
     #[wasm_bindgen(method)]
-    fn shown(this: &Page, title: &str, steps: f64);
+    fn shown(this: &Page, title: &str, steps: f64, x: f32, y: f32, runs: bool, follows: bool);
     /// A file to be kept.
     #[wasm_bindgen(method)]
     fn keep(this: &Page, name: &str, bytes: &[u8]);
@@ -51,15 +54,61 @@ impl Shown {
         self.files.push(NamedFile { name, bytes });
     }
 
-    /// All of them have been given: the first that can be shown is shown.
-    pub fn open(&mut self) {
+    /// All of them have been given: the first that can be shown is shown, on the stage of the demo or on the workbench.
+    ///
+    /// # Errors
+    /// One line: none can be shown.
+    pub fn open(&mut self, on_stage: bool) -> Result<(), String> {
+        let files = std::mem::take(&mut self.files);
+        if on_stage {
+            let subject = Subject::staged(files).map_err(|error| error.to_string())?;
+            self.send(Told::Order(Order::Open(Box::new(subject))));
+        } else {
+            self.send(Told::Files(files));
+        }
+        Ok(())
+    }
+
+    /// Shows a scene.
+    ///
+    /// # Errors
+    /// One line: there is none of that name.
+    pub fn scene(&self, name: &str) -> Result<(), String> {
+        let subject = Subject::scene(name, &[])?;
+        self.send(Told::Order(Order::Open(Box::new(subject))));
+        Ok(())
+    }
+
+    /// Shows a built-in character; an unknown name shows the mannequin.
+    pub fn sample(&self, name: &str) {
+        let sample = Sample::ALL.into_iter().find(|sample| sample.name() == name);
+        let subject = Subject::Sample(sample.unwrap_or(Sample::Mannequin));
+        self.send(Told::Order(Order::Open(Box::new(subject))));
+    }
+
+    /// Acts as the button of that name; an unknown name does nothing.
+    pub fn order(&self, name: &str) {
+        if let Some(order) = Order::named(name) {
+            self.send(Told::Order(order));
+        }
+    }
+
+    fn send(&self, told: Told) {
         // Nobody hears it if the viewer has ended, which is told on its own.
-        let _ = self.proxy.send_event(Told::Files(std::mem::take(&mut self.files)));
+        let _ = self.proxy.send_event(told);
     }
 }
 
-/// Shows a scene with settings `key=value` in a canvas; without a scene that of the first minute. With `steps` it is stepped so
-/// far as fast as it goes, and tells its hash.
+/// All scenes as lines of a name, a chapter and a description, with tabs between them.
+#[wasm_bindgen]
+pub fn scenes() -> String {
+    let line = |scene: &Scene| format!("{}\t{}\t{}", scene.name, scene.chapter.title(), scene.about);
+    registry().iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// Shows a scene with settings `key=value` in a canvas; without a scene the demo. With `steps` it is stepped so far as fast as it goes,
+/// and tells its hash. `panels` are `all`, `few` (without the list of scenes) or `none`; without panels keys and the wheel move the
+/// page as well.
 ///
 /// # Errors
 /// One line: there is no such scene, it refuses a setting, or the page has no loop of events.
@@ -71,17 +120,18 @@ pub fn show(
     settings: Vec<String>,
     steps: Option<u32>,
     webgl: bool,
-    hides_browser: bool,
+    panels: &str,
 ) -> Result<Shown, String> {
     // WebAssembly alone says `unreachable` and no more.
     std::panic::set_hook(Box::new(|what| console_error(&what.to_string())));
     let subject = scene.map(|name| Subject::scene(&name, &settings)).transpose()?;
     let steps = steps.map(u64::from);
-    let app = App::new(Options { subject, steps, hides_browser, ..Options::default() })?;
+    let (hides_browser, hides_panels) = (panels == "few", panels == "none");
+    let app = App::new(Options { subject, steps, hides_browser, hides_panels, ..Options::default() })?;
     let event_loop = EventLoop::with_user_event().build().map_err(|error| error.to_string())?;
     let proxy: EventLoopProxy<Told> = event_loop.create_proxy();
     let told = RefCell::default();
-    let host = Host { canvas, page, webgl, proxy: proxy.clone(), told };
+    let host = Host { canvas, page, webgl, is_part: hides_panels, proxy: proxy.clone(), told };
     event_loop.spawn_app(Viewer::new(app, host));
     Ok(Shown { proxy, files: Vec::new() })
 }
@@ -92,6 +142,8 @@ pub(super) struct Host {
     page: Page,
     /// True to draw by WebGL2 also where there is WebGPU.
     webgl: bool,
+    /// True for a canvas that is a part of its page.
+    is_part: bool,
     proxy: EventLoopProxy<Told>,
     /// The last message.
     told: RefCell<String>,
@@ -99,7 +151,8 @@ pub(super) struct Host {
 
 impl Host {
     pub fn attributes(&self) -> WindowAttributes {
-        Window::default_attributes().with_canvas(Some(self.canvas.clone()))
+        let attributes = Window::default_attributes().with_canvas(Some(self.canvas.clone()));
+        attributes.with_prevent_default(!self.is_part)
     }
 
     /// Kinds of cards that it may draw by.
@@ -140,7 +193,9 @@ impl Host {
             self.page.tell(line);
         }
         let session = app.session();
-        self.page.shown(&session.subject().title(), session.world().step_count() as f64);
+        let [x, y] = app.subject_place().unwrap_or([f32::NAN; 2]);
+        let steps = session.world().step_count() as f64;
+        self.page.shown(&session.subject().title(), steps, x, y, app.is_running(), app.is_following());
     }
 
     /// Has the page keep a picture of the canvas.

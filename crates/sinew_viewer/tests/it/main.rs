@@ -1,5 +1,6 @@
 //! Integration tests of the viewer: pictures by the present driver, panels and input without a window, a window under Xvfb.
 
+mod chase;
 mod editor;
 mod endurance;
 mod files;

@@ -178,6 +178,7 @@ impl Take {
             center: shown.center(),
             radius: 0.5 * (shown.max - shown.min).length(),
             kinematic: if figures.is_empty() { Kinematic::Solid } else { Kinematic::Wire },
+            colors: self.run.colors(),
         };
         let mut scene = Scene {
             sun: Sun { shadow_radius: 1.3 * frame.radius, ..Sun::default() },

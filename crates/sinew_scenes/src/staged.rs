@@ -1,0 +1,267 @@
+//! A character on the stage of the demo: it walks out of the cabin, is pushed down the stairs, gets up, walks on, and begins again.
+//!
+//! Unlike the film of [`demo`](crate::demo) it runs, so that users can push and pull the character at any time.
+
+use crate::cabin::Site;
+use crate::dressed::{CAPE, dressed};
+use crate::framework::actors::Figure;
+use crate::framework::camera_hint::{CameraHint, Trails};
+use crate::framework::instance::{Instance, Script};
+use crate::framework::metric::Metric;
+use crate::maned::{HAIR, maned};
+use sinew::anim::local_to_model;
+use sinew::math::{Affine, ReadError, Reader, Transform, Vec3, Writer};
+use sinew::physics::boxes::Aabb;
+use sinew::physics::{BodyId, BodyKind, World, WorldDef};
+use sinew::ragdoll::{Character, CharacterDef, State};
+use std::sync::Arc;
+
+/// Height of the mannequin, for which the cabin is built, and heights of characters that fit its door and stairs, metres.
+const MANNEQUIN: f32 = 1.8;
+const FITTING: core::ops::RangeInclusive<f32> = 1.3..=2.3;
+/// Way from the place behind the door to the start, metres: the wall hides a character behind it.
+const OUT_OF_THE_DOOR: f32 = 0.45;
+/// Speed of the walk of a character of the mannequin's height, m/s.
+const WALK: f32 = 1.3;
+/// Distance before the edge of the porch at which the push comes, and time until it on flat ground, metres and seconds.
+const PUSH_BEFORE_EDGE: f32 = 0.45;
+const PUSH_AFTER: f32 = 2.5;
+/// Speed that the push gives to the mass of the whole character, m/s: a shove with both hands.
+const SHOVE: f32 = 1.45;
+/// Times after which it begins again: walking on its feet, and down without getting up, seconds.
+const WALKS_ON: f32 = 4.0;
+const STAYS_DOWN: f32 = 12.0;
+/// Half of the box that a camera keeps in the picture, in heights of the character: it fits lying, and so do raised arms.
+const ROOM: Vec3 = Vec3::new(0.5, 0.56, 0.5);
+
+/// Built-in characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sample {
+    /// The mannequin.
+    Mannequin,
+    /// The mannequin with a ponytail and braids, which swing by springs.
+    Braids,
+    /// The mannequin with a cape of cloth.
+    Cape,
+}
+
+impl Sample {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Mannequin, Self::Braids, Self::Cape];
+
+    /// Name of it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mannequin => "mannequin",
+            Self::Braids => "braids",
+            Self::Cape => "cape",
+        }
+    }
+
+    /// The character.
+    pub fn character(self) -> CharacterDef {
+        match self {
+            Self::Mannequin => sinew::mannequin::character(),
+            Self::Braids => maned(&HAIR),
+            Self::Cape => dressed(&[&CAPE], |_| {}),
+        }
+    }
+}
+
+/// The character on the stage.
+pub fn staged(def: CharacterDef) -> Instance {
+    let def = Arc::new(def);
+    let height = def.ragdoll.height;
+    let site = if FITTING.contains(&height) { Site::CabinWithStairs } else { Site::Flat };
+    let mut world = World::new(WorldDef::default());
+    let colors = site.props().iter().map(|prop| (world.add_body(&prop.body), prop.color)).collect();
+    let start = site.spawn().world_from_character * Transform::from_translation(Vec3::Z * OUT_OF_THE_DOOR);
+    let character = Character::spawn(&mut world, &def, start);
+    let mut stage =
+        Staged { def, site, start, colors, character, since: 0, was: None, led: None, model: Vec::new() };
+    stage.walk();
+    stage.show();
+    Instance::new(world, stage)
+}
+
+struct Staged {
+    def: Arc<CharacterDef>,
+    site: Site,
+    /// World from character.
+    start: Transform,
+    colors: Vec<(BodyId, [f32; 3])>,
+    character: Character,
+    /// Steps since it last began to stand or to lie.
+    since: u32,
+    /// State of the run; `None` until the push.
+    was: Option<Part>,
+    /// Velocity that a user gave it, m/s.
+    led: Option<Vec3>,
+    /// World from joint.
+    model: Vec<Affine>,
+}
+
+/// Part of a run after the push.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Down,
+    Up,
+}
+
+impl Staged {
+    fn walk(&mut self) {
+        let speed = WALK * (self.def.ragdoll.height / MANNEQUIN).sqrt();
+        let ahead = self.character.world_from_character().rotation * Vec3::Z;
+        self.character.set_move(self.led.unwrap_or(ahead * speed));
+        if let Some(way) = self.led.filter(|&way| way != Vec3::ZERO) {
+            self.character.face(way);
+        }
+    }
+
+    fn show(&mut self) {
+        let root = self.character.world_from_model();
+        local_to_model(&self.def.rig, self.character.pose(), &root, &mut self.model);
+    }
+
+    fn is_at_the_push(&self, dt: f32) -> bool {
+        let place = self.character.world_from_character().translation;
+        match self.site {
+            Site::CabinWithStairs => place.z > -PUSH_BEFORE_EDGE,
+            Site::Flat => self.since as f32 * dt > PUSH_AFTER,
+        }
+    }
+
+    /// The push from behind.
+    fn shove(&mut self, world: &mut World) {
+        let chest = self.def.body_named("chest").unwrap_or(0);
+        let ahead = self.character.world_from_character().rotation * Vec3::Z;
+        self.character.hit(world, chest, ahead * (SHOVE * self.def.ragdoll.total_mass));
+    }
+
+    /// Puts a new character at the start, and removes what users threw.
+    fn begin_again(&mut self, world: &mut World) {
+        let next = Character::new(self.def.clone(), self.start, 0.0);
+        core::mem::replace(&mut self.character, next).despawn(world);
+        let thrown: Vec<BodyId> =
+            world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic).collect();
+        for body in thrown {
+            world.remove_body(body);
+        }
+        self.character.enter(world);
+        (self.since, self.was) = (0, None);
+    }
+
+    /// Middle of all joints' bounds, world space, metres.
+    fn middle(&self) -> Vec3 {
+        let points = self.model.iter().map(|joint| Aabb { min: joint.translation, max: joint.translation });
+        let around = points.reduce(|a, b| a.merge(&b)).unwrap_or_default();
+        around.center()
+    }
+}
+
+impl Script for Staged {
+    fn after_step(&mut self, world: &mut World) {
+        self.character.update(world);
+        let is_up = self.character.state() == State::Animated;
+        let part = match (self.was, is_up) {
+            (None, true) => None,
+            (_, false) => Some(Part::Down),
+            (Some(_), true) => Some(Part::Up),
+        };
+        self.since = if part == self.was { self.since + 1 } else { 0 };
+        self.was = part;
+        let dt = world.def().dt();
+        let passed = self.since as f32 * dt;
+        match part {
+            None if self.led.is_none() && self.is_at_the_push(dt) => self.shove(world),
+            Some(Part::Up) if self.led.is_none() && passed > WALKS_ON => self.begin_again(world),
+            Some(Part::Down) if passed > STAYS_DOWN => self.begin_again(world),
+            _ => {}
+        }
+        self.walk();
+        self.show();
+    }
+
+    fn save(&self, out: &mut Writer) {
+        self.character.save(out);
+        out.u32(self.since);
+        out.u8(self.was.map_or(0, |part| 1 + part as u8));
+        out.u8(u8::from(self.led.is_some()));
+        out.vec3(self.led.unwrap_or(Vec3::ZERO));
+    }
+
+    fn load(&mut self, bytes: &mut Reader<'_>) -> Result<(), ReadError> {
+        self.character.load(bytes)?;
+        self.since = bytes.u32()?;
+        self.was = [None, Some(Part::Down), Some(Part::Up)].get(usize::from(bytes.u8()?)).copied().flatten();
+        let (is_led, way) = (bytes.u8()? != 0, bytes.vec3()?);
+        self.led = is_led.then_some(way);
+        self.show();
+        Ok(())
+    }
+
+    fn metrics(&self, _: &World) -> Vec<Metric> {
+        Vec::new()
+    }
+
+    /// From the right of the stairs, a little from the front; the box moves along with the character.
+    fn camera_hint(&self) -> CameraHint {
+        let half = ROOM * self.def.ragdoll.height;
+        let bounds = Aabb::around(self.middle(), half);
+        CameraHint { direction: Vec3::new(0.9, 0.28, 0.42), bounds: Some(bounds), trails: Trails::None }
+    }
+
+    fn figures(&self) -> Vec<Figure<'_>> {
+        vec![Figure { rig: &self.def.rig, world_from_joint: &self.model }]
+    }
+
+    fn bodies_of_figures(&self) -> Vec<BodyId> {
+        self.character.bodies().to_vec()
+    }
+
+    fn colors(&self) -> &[(BodyId, [f32; 3])] {
+        &self.colors
+    }
+
+    fn strike(&mut self, world: &mut World, body: BodyId, impulse: Vec3, _: Vec3) {
+        if let Some(body) = self.character.body_index(body) {
+            self.character.hit(world, body, impulse);
+        }
+    }
+
+    fn steer(&mut self, way: Vec3) {
+        self.led = Some(way);
+    }
+
+    fn steered(&self) -> Option<Vec3> {
+        Some(self.character.world_from_character().translation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every sample is pushed, falls, gets up, walks on, and begins again at the start, twice.
+    #[test]
+    fn samples_fall_get_up_and_begin_again() {
+        for sample in Sample::ALL {
+            let mut stage = staged(sample.character());
+            let start = stage.steered().expect("it can be led");
+            let (mut lowest, mut begins) = (start.y, Vec::new());
+            let mut before = start;
+            for step in 0..60 * 40 {
+                stage.step();
+                let place = stage.steered().expect("it can be led");
+                lowest = f32::min(lowest, place.y);
+                if (place - start).length() < 0.1 && (before - start).length() > 1.0 {
+                    begins.push(step / 60);
+                }
+                before = place;
+            }
+            println!("{}: begins again after {begins:?} s", sample.name());
+            assert!(begins.len() >= 2, "{}: {begins:?}", sample.name());
+            assert!(lowest < start.y - 1.0, "{} stays on the porch", sample.name());
+        }
+    }
+}

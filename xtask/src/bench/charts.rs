@@ -1,0 +1,209 @@
+//! Charts of the landing page: time of the mean step against the largest gap of a joint, an SVG for each scene.
+
+use super::figures::{self, GAP, came_apart, rounded};
+use super::page::{of, title};
+use super::results::{Results, SceneResult};
+use anyhow::{Context, Result, ensure};
+use std::fmt::Write;
+
+/// Scenes that have a chart: characters in heaps, heavy chains, nets.
+pub const SCENES: [&str; 4] = ["ragdoll_pile", "crowd_pile", "chain_100_links", "net"];
+/// Engines with the colour of their dots; Sinew's is the page's own.
+const ENGINES: [(&str, &str); 5] = [
+    ("sinew", "#ff8a50"),
+    ("rapier", "#7db8ff"),
+    ("rapier_simd8", "#5fd0c5"),
+    ("box3d", "#d7a6ff"),
+    ("jolt", "#f2d060"),
+];
+/// Size of a chart, and the margins left, right, above and below its axes, in units of the SVG.
+const SIZE: [f64; 2] = [420.0, 290.0];
+const MARGINS: [f64; 4] = [58.0, 16.0, 14.0, 46.0];
+/// Height of a line of text.
+const LINE: f64 = 17.0;
+/// Smallest gap that has a place of its own, millimetres: smaller ones stand at the left edge.
+const LEAST_GAP: f64 = 1e-3;
+
+/// A dot: an engine, and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dot {
+    engine: &'static str,
+    color: &'static str,
+    /// Largest gap of a joint after any step, millimetres.
+    gap: f64,
+    /// Mean step, milliseconds.
+    time: f64,
+    came_apart: bool,
+}
+
+/// The engines of a scene.
+fn dots(scene: &SceneResult) -> Vec<Dot> {
+    let dot = |(name, color): &(&'static str, &'static str)| {
+        let engine = of(scene, name)?;
+        let (time, gap) = (engine.times()?.mean, 1e3 * (GAP.of)(engine)?);
+        Some(Dot { engine: title(name), color, gap, time, came_apart: came_apart(engine) })
+    };
+    ENGINES.iter().filter_map(dot).collect()
+}
+
+/// Whole powers of ten around values.
+fn decades(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
+    let least = values.clone().fold(f64::INFINITY, f64::min).log10();
+    let most = values.fold(f64::NEG_INFINITY, f64::max).log10();
+    [(least - 0.05).floor(), (most + 0.05).ceil()]
+}
+
+/// Place of a value on a logarithmic axis.
+fn place(value: f64, [low, high]: [f64; 2], [from, to]: [f64; 2]) -> f64 {
+    from + (value.log10() - low) / (high - low) * (to - from)
+}
+
+/// The charts of [`SCENES`] as figures of HTML.
+///
+/// # Errors
+/// If one of them was not measured, or has fewer than two engines.
+pub fn charts(results: &Results) -> Result<String> {
+    let mut html = String::new();
+    for name in SCENES {
+        let scene = results.scene(name).with_context(|| format!("{name} was not measured"))?;
+        let dots = dots(scene);
+        ensure!(dots.len() > 1 && dots[0].engine == "Sinew", "{name} has no peers to compare with");
+        html += &figure(scene, &dots);
+    }
+    Ok(html)
+}
+
+fn figure(scene: &SceneResult, dots: &[Dot]) -> String {
+    let cells = |dot: &Dot| {
+        let mark = if dot.came_apart { " †" } else { "" };
+        let (time, gap) = (rounded(dot.time), figures::Unit::Length.show(1e-3 * dot.gap));
+        format!("<tr><th scope=\"row\">{}</th><td>{time} ms</td><td>{gap}{mark}</td></tr>", dot.engine)
+    };
+    let rows: String = dots.iter().map(cells).collect();
+    let note = if dots.iter().any(|dot| dot.came_apart) { "<p>† the joints came apart.</p>" } else { "" };
+    format!(
+        "<figure><figcaption>{name}: {about}</figcaption>\n{svg}\n<details><summary>As a table</summary><table><tr><th>engine</th>\
+         <th>mean step</th><th>largest gap</th></tr>{rows}</table>{note}</details></figure>\n",
+        name = scene.name,
+        about = scene.about,
+        svg = svg(scene, dots),
+    )
+}
+
+fn svg(scene: &SceneResult, dots: &[Dot]) -> String {
+    let [width, height] = SIZE;
+    let [left, right, above, below] = MARGINS;
+    let gaps = dots.iter().map(|dot| dot.gap.max(LEAST_GAP));
+    let (mut across, up) = (decades(gaps), decades(dots.iter().map(|dot| dot.time)));
+    across[0] = across[0].max(LEAST_GAP.log10());
+    let (xs, ys) = ([left, width - right], [height - below, above]);
+    let told: Vec<String> = dots
+        .iter()
+        .map(|dot| format!("{} {} ms and {} mm", dot.engine, rounded(dot.time), rounded(dot.gap)))
+        .collect();
+    let mut out = format!(
+        "<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}: {}\">\n",
+        scene.name,
+        told.join("; ")
+    );
+    axes(&mut out, (across, xs), (up, ys));
+    let mut labels: Vec<[f64; 2]> = Vec::new();
+    for dot in dots {
+        let [x, y] = [place(dot.gap.max(LEAST_GAP), across, xs), place(dot.time, up, ys)];
+        let radius = if dot.engine == "Sinew" { 8.0 } else { 6.0 };
+        _ = writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{}\"/>", dot.color);
+        // Where names would lie on each other, one moves down.
+        let is_right = x > 0.5 * width;
+        let mut at = y + 4.0;
+        while labels.iter().any(|[side, other]| (side - x).abs() < 130.0 && (other - at).abs() < LINE) {
+            at += 2.0;
+        }
+        labels.push([x, at]);
+        let (anchor, shift) = if is_right { ("end", -12.0) } else { ("start", 13.0) };
+        _ = writeln!(
+            out,
+            "<text x=\"{:.1}\" y=\"{at:.1}\" fill=\"{}\" text-anchor=\"{anchor}\">{}</text>",
+            x + shift,
+            dot.color,
+            dot.engine
+        );
+    }
+    out + "</svg>"
+}
+
+/// Lines at powers of ten with their names, and the titles of the axes.
+fn axes(out: &mut String, (across, xs): ([f64; 2], [f64; 2]), (up, ys): ([f64; 2], [f64; 2])) {
+    let ticks = |[low, high]: [f64; 2]| (low as i32..=high as i32).map(|power| 10f64.powi(power));
+    let named = |value: f64| match value {
+        _ if value < 1.0 => format!("{value}"),
+        _ if value < 1e3 => format!("{value:.0}"),
+        _ => format!("{:.0}k", 1e-3 * value),
+    };
+    for value in ticks(across) {
+        let x = place(value, across, xs);
+        let name = if value <= LEAST_GAP { format!("≤ {}", named(value)) } else { named(value) };
+        _ = writeln!(
+            out,
+            "<path d=\"M{x:.1} {:.1}V{:.1}\" stroke=\"#39414e\"/><text x=\"{x:.1}\" y=\"{:.1}\" fill=\"#b3bcc9\" text-anchor=\"middle\">{name}</text>",
+            ys[0],
+            ys[1],
+            ys[0] + LINE
+        );
+    }
+    for value in ticks(up) {
+        let y = place(value, up, ys);
+        _ = writeln!(
+            out,
+            "<path d=\"M{:.1} {y:.1}H{:.1}\" stroke=\"#39414e\"/><text x=\"{:.1}\" y=\"{:.1}\" fill=\"#b3bcc9\" text-anchor=\"end\">{}</text>",
+            xs[0],
+            xs[1],
+            xs[0] - 6.0,
+            y + 4.0,
+            named(value)
+        );
+    }
+    let (middle, bottom) = (0.5 * (xs[0] + xs[1]), SIZE[1] - 8.0);
+    _ = writeln!(
+        out,
+        "<text x=\"{middle:.1}\" y=\"{bottom:.1}\" fill=\"#e6eaf0\" text-anchor=\"middle\">largest gap of a joint, mm</text>"
+    );
+    let center = 0.5 * (ys[0] + ys[1]);
+    _ = writeln!(
+        out,
+        "<text transform=\"translate(14 {center:.1}) rotate(-90)\" fill=\"#e6eaf0\" text-anchor=\"middle\">mean step, ms</text>"
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command;
+    use std::fs;
+
+    /// The charts show what the committed page of figures says.
+    #[test]
+    fn charts_are_those_of_the_page() {
+        let page = fs::read_to_string(command::root().join("docs/benchmarks.md")).expect("the page");
+        let results = super::super::kept();
+        charts(&results).expect("all scenes were measured");
+        for name in SCENES {
+            let scene = results.scene(name).expect("it was measured");
+            let row = page.lines().find(|line| line.starts_with(&format!("| {name} "))).expect("a row");
+            for dot in dots(scene) {
+                assert!(row.contains(&format!(" {} · ", rounded(dot.time))), "{dot:?}: {row}");
+            }
+            assert_eq!(dots(scene).len(), ENGINES.len(), "{name}");
+        }
+    }
+
+    /// Every dot lies within its axes, and a larger gap lies further right.
+    #[test]
+    fn dots_stand_where_their_figures_say() {
+        let [low, high] = decades([0.003, 193.0].into_iter());
+        assert_eq!([low, high], [-3.0, 3.0]);
+        assert_eq!(place(1.0, [-3.0, 3.0], [0.0, 600.0]), 300.0);
+        assert!(place(193.0, [low, high], [0.0, 1.0]) > place(0.003, [low, high], [0.0, 1.0]));
+        // A value at a power of ten has room on both sides.
+        assert_eq!(decades([1.0, 10.0].into_iter()), [-1.0, 2.0]);
+    }
+}
